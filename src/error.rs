@@ -1,0 +1,65 @@
+//! One error type for the crate. Every message is one sentence that names the file, the line or body,
+//! what was found and what was expected.
+
+use std::fmt;
+
+/// What went wrong, and with it the exit code of the command-line program.
+#[derive(Debug, Clone)]
+pub enum Error {
+    /// What the user wrote cannot be solved as written (exit code 2).
+    Input(String),
+    /// The Krylov or the outer iteration did not reach its tolerance (exit code 1).
+    NotConverged(String),
+    /// The machine, MPI, the disk or the installation refused (exit code 3).
+    Environment(String),
+    /// A PETSc or SLEPc call failed; `trace` holds PETSc's own error stack, innermost call first (exit code 3).
+    Petsc {
+        /// The PETSc error code (`PETSC_ERR_*`).
+        code: i32,
+        /// The call that failed, by its C name.
+        call: &'static str,
+        /// PETSc's message and stack, one entry per frame.
+        trace: Vec<String>,
+    },
+}
+
+/// Shorthand for results of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// An [`Error::Input`] from anything printable.
+    pub fn input(message: impl Into<String>) -> Self {
+        Error::Input(message.into())
+    }
+
+    /// An [`Error::Environment`] from anything printable.
+    pub fn environment(message: impl Into<String>) -> Self {
+        Error::Environment(message.into())
+    }
+
+    /// The exit code of the command-line program: 1 not converged, 2 bad input, 3 the environment.
+    pub fn exit_code(&self) -> i32 {
+        match self {
+            Error::NotConverged(_) => 1,
+            Error::Input(_) => 2,
+            Error::Environment(_) | Error::Petsc { .. } => 3,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Input(m) | Error::NotConverged(m) | Error::Environment(m) => out.write_str(m),
+            Error::Petsc { code, call, trace } => {
+                write!(out, "{call} failed with PETSc error {code}")?;
+                for line in trace {
+                    write!(out, "\n  {line}")?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}

@@ -1,0 +1,71 @@
+//! The joint between problems and the method: subdomain matrices and the rows that tie bodies together.
+//!
+//! A scene and a MATIS both end here, and nothing to the right of this module knows where the matrices came
+//! from. Everything is distributed: a rank holds its own subdomains and provides its own rows.
+
+use crate::sparse::Csr;
+
+/// One subdomain Ω_ij with its Dirichlet degrees of freedom eliminated.
+///
+/// n is the number of its free degrees of freedom; "local dof" is an index in 0..n.
+#[derive(Debug, Clone)]
+pub struct Subdomain {
+    /// Global index of the subdomain, unique over all bodies and ranks, in 0..n_subdomains.
+    pub index: usize,
+    /// The body it belongs to.
+    pub body: usize,
+    /// Stiffness K^(ij), n × n, symmetric positive semidefinite.
+    pub k: Csr,
+    /// Load f^(ij), length n.
+    pub f: Vec<f64>,
+    /// Body dof of each local dof, length n. Two subdomains of one body share a degree of freedom exactly when
+    /// both list the same number here; numbers of different bodies never coincide. Holes are allowed.
+    pub dofs: Vec<u64>,
+    /// Coefficient ρ as this subdomain sees it at each local dof, length n, > 0: the weight of ρ-scaling.
+    pub rho: Vec<f64>,
+    /// Local dofs at subdomain vertices, where continuity inside the body is primal (strictly increasing).
+    pub primal: Vec<u32>,
+    /// Columns that span every kernel that this subdomain's matrix could have before it is held (constants; rigid
+    /// body modes), each of length n. `None`: nothing is known, kernels are found from the matrices alone.
+    pub near_kernel: Option<Vec<Vec<f64>>>,
+    /// Position of each local dof, if known: used for nested dissection. Length n.
+    pub coordinates: Option<Vec<[f64; 3]>>,
+}
+
+/// How a row holds: as an equation, or as an inequality that the contact loop may switch off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowKind {
+    /// (B u)_r = c_r.
+    Equality,
+    /// (B u)_r ≤ c_r.
+    Inequality,
+}
+
+/// One row of B_gl: Σ coefficient · u(body dof), with right-hand side c.
+#[derive(Debug, Clone)]
+pub struct InterfaceRow {
+    /// (body dof, coefficient) pairs; for matching scalar meshes (a, +1), (b, −1).
+    pub terms: Vec<(u64, f64)>,
+    /// Right-hand side c_r (the gap; zero on tied faces).
+    pub gap: f64,
+    /// Equation or inequality.
+    pub kind: RowKind,
+    /// Rows that share a body dof carry the same block number (unique over all ranks) and are provided by the same rank: the
+    /// scaling B D⁻¹ Bᵀ is inverted block by block.
+    pub block: u64,
+}
+
+/// Everything the method needs to know about a problem; each rank holds its own part.
+#[derive(Debug, Clone)]
+pub struct Substructures {
+    /// Number of bodies over all ranks.
+    pub n_bodies: usize,
+    /// Number of subdomains over all ranks.
+    pub n_subdomains: usize,
+    /// Name of every body, for messages; length n_bodies.
+    pub body_names: Vec<String>,
+    /// This rank's subdomains, in increasing order of `index`.
+    pub local: Vec<Subdomain>,
+    /// The rows that this rank provides. Each row of the problem is provided by exactly one rank.
+    pub rows: Vec<InterfaceRow>,
+}
