@@ -1,1 +1,27 @@
-//! (to be written)
+//! The method, one file per operator, symbols as in the theory page.
+
+pub mod check;
+pub mod coarse;
+pub mod dual;
+pub mod exchange;
+pub mod halo;
+pub mod jump;
+pub mod kernel;
+pub mod lifting;
+pub mod local;
+pub mod natural;
+pub mod preconditioner;
+pub mod primal;
+pub mod recover;
+pub mod scaling;
+pub mod settings;
+pub mod sharing;
+pub mod solver;
+pub mod spectrum;
+pub mod stiffness;
+pub mod team;
+
+pub use recover::{Kkt, Solution};
+pub use settings::{PcType, ProjectorKind, Scaling, Settings};
+pub use solver::FetiFeti;
+pub use spectrum::Spectrum;

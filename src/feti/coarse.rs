@@ -1,0 +1,96 @@
+//! The bodies' primal problem S_Π behind a PETSc KSP (prefix `fetifeti_coarse_`).
+//!
+//! S_Π is block diagonal by body, and a body's rows live on one rank, so block Jacobi with a Cholesky factorisation per rank
+//! solves it exactly without a message. Any other KSP and PC may be chosen by options.
+
+use super::halo::Halo;
+use super::primal::PrimalSpace;
+use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
+use crate::{Error, Result};
+
+/// S_Π, regularised, with its solver. Nothing at all where no body has primal dofs.
+pub struct PrimalProblem {
+    parts: Option<Parts>,
+}
+
+struct Parts {
+    ksp: Ksp,
+    matrix: Mat,
+    rhs: PetscVec,
+    solution: PetscVec,
+    halo: Halo,
+}
+
+impl PrimalProblem {
+    /// Assembles the matrix and sets its solver up. Collective.
+    pub fn new(session: &Session, space: &PrimalSpace, prefix: &str) -> Result<PrimalProblem> {
+        if space.n_global == 0 {
+            return Ok(PrimalProblem { parts: None });
+        }
+        let entries = space.entries.iter();
+        let triplets: Vec<(i32, i32, f64)> = entries
+            .map(|e| (e.row as i32, e.col as i32, e.value))
+            .collect();
+        let matrix = Mat::from_triplets(session, Comm::World, space.n_owned, space.n_owned, &triplets)?;
+        matrix.set_flag(MatFlag::Spd)?;
+        let rhs = PetscVec::mpi(session, space.n_owned)?;
+        let solution = rhs.duplicate()?;
+        let ksp = Ksp::new(session, Comm::World)?;
+        ksp.set_operators(&matrix, &matrix)?;
+        ksp.set_options_prefix(prefix)?;
+        ksp.set_type("preonly")?;
+        let pc = ksp.pc()?;
+        if session.size() == 1 {
+            pc.set_type("cholesky")?;
+        } else {
+            pc.set_type("bjacobi")?;
+            let options = Options::new(session, prefix);
+            options.set_default("sub_ksp_type", "preonly")?;
+            options.set_default("sub_pc_type", "cholesky")?;
+        }
+        ksp.set_from_options()?;
+        ksp.setup()?;
+        let halo = Halo::new(session, &rhs, &space.ghosts)?;
+        Ok(PrimalProblem {
+            parts: Some(Parts {
+                ksp,
+                matrix,
+                rhs,
+                solution,
+                halo,
+            }),
+        })
+    }
+
+    /// `values` (at this rank's ghosts): in, every rank's contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
+    pub fn solve(&self, values: &mut [f64]) -> Result<()> {
+        let Some(p) = &self.parts else { return Ok(()) };
+        p.halo.sum(values, &p.rhs)?;
+        p.ksp.solve(&p.rhs, &p.solution)?;
+        let reason = p.ksp.converged_reason()?;
+        if reason.code < 0 {
+            return Err(Error::NotConverged(format!(
+                "the primal problem of the bodies was not solved ({}): change the -fetifeti_coarse_ options",
+                reason.name
+            )));
+        }
+        p.halo.fetch(&p.solution, values)
+    }
+
+    /// ‖·‖₂ of the sum of every rank's contributions at its ghosts. Collective.
+    pub fn norm_of_sum(&self, values: &[f64]) -> Result<f64> {
+        let Some(p) = &self.parts else { return Ok(0.0) };
+        p.halo.sum(values, &p.rhs)?;
+        p.rhs.norm2()
+    }
+
+    /// The matrix S_Π with its regularisation, if there is one.
+    pub fn matrix(&self) -> Option<&Mat> {
+        self.parts.as_ref().map(|p| &p.matrix)
+    }
+
+    /// The solver, if there is one.
+    pub fn ksp(&self) -> Option<&Ksp> {
+        self.parts.as_ref().map(|p| &p.ksp)
+    }
+}

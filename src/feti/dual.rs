@@ -1,0 +1,178 @@
+//! The dual problem as PETSc sees it: a MatShell Pᵀ F P and a PCShell P M⁻¹ Pᵀ.
+//!
+//! The projector stands on both sides of both, so that every Krylov method, flexible or pipelined, left or right
+//! preconditioned, works in the space V = ker Gᵀ without knowing of it.
+
+use std::rc::Rc;
+
+use super::natural::NaturalCoarse;
+use super::preconditioner::Preconditioner;
+use super::stiffness::Stiffness;
+use crate::petsc::{Event, Mat, Session, ShellMat, ShellPc, Vec as PetscVec};
+use crate::Result;
+
+/// F, M⁻¹ and P of one problem.
+pub struct Dual {
+    /// S̃⁺, B and F.
+    pub stiffness: Stiffness,
+    /// M⁻¹.
+    pub preconditioner: Preconditioner,
+    /// G and P.
+    pub natural: NaturalCoarse,
+    session: Session,
+    events: [Event; 3],
+    /// Buffers for projected copies.
+    x: PetscVec,
+    y: PetscVec,
+}
+
+impl Dual {
+    /// Puts the operators together. Collective.
+    pub fn new(
+        session: &Session,
+        stiffness: Stiffness,
+        preconditioner: Preconditioner,
+        natural: NaturalCoarse,
+    ) -> Result<Dual> {
+        let x = PetscVec::mpi(session, stiffness.jump.n_owned)?;
+        let event = |name| Event::register(session, name);
+        Ok(Dual {
+            events: [event("FetiFetiF")?, event("FetiFetiM")?, event("FetiFetiP")?],
+            session: session.clone(),
+            y: x.duplicate()?,
+            x,
+            stiffness,
+            preconditioner,
+            natural,
+        })
+    }
+
+    /// A vector of multipliers.
+    pub fn multipliers(&self) -> Result<PetscVec> {
+        self.x.duplicate()
+    }
+
+    /// y ← F x.
+    pub fn f(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let _timed = self.events[0].scope()?;
+        self.stiffness.f_mult(x, y)
+    }
+
+    /// y ← M⁻¹ x.
+    pub fn m(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let _timed = self.events[1].scope()?;
+        self.preconditioner.apply(&self.stiffness, x, y)
+    }
+
+    /// x ← P x.
+    pub fn p(&self, x: &PetscVec) -> Result<()> {
+        let _timed = self.events[2].scope()?;
+        self.natural.project(self.session.comm(), x)
+    }
+
+    /// x ← Pᵀ x.
+    pub fn p_transpose(&self, x: &PetscVec) -> Result<()> {
+        let _timed = self.events[2].scope()?;
+        self.natural.project_transpose(self.session.comm(), x)
+    }
+
+    /// y ← Pᵀ F P x.
+    fn projected_f(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        if self.natural.r == 0 {
+            return self.f(x, y);
+        }
+        self.x.copy_from(x)?;
+        self.p(&self.x)?; /*            x ← P x          */
+        self.f(&self.x, y)?; /*         y ← F x          */
+        self.p_transpose(y) /*          y ← Pᵀ y         */
+    }
+
+    /// y ← P M⁻¹ Pᵀ x.
+    fn projected_m(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        if self.natural.r == 0 {
+            return self.m(x, y);
+        }
+        self.y.copy_from(x)?;
+        self.p_transpose(&self.y)?; /*  x ← Pᵀ x         */
+        self.m(&self.y, y)?; /*         y ← M⁻¹ x        */
+        self.p(y) /*                    y ← P y          */
+    }
+
+    fn describe(&self) -> String {
+        let (jump, natural) = (&self.stiffness.jump, &self.natural);
+        let lifted = match self.preconditioner.lifting() {
+            Some(l) => {
+                let (rank, order) = l.rank_and_order;
+                format!(", {rank} independent of {order} coarse functions on this rank")
+            }
+            None => String::new(),
+        };
+        format!(
+            "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies)\n  preconditioner: {}{lifted}\n",
+            jump.n_local,
+            jump.n_global - jump.n_local,
+            natural.projector.name(),
+            natural.r,
+            self.preconditioner.kind().name(),
+        )
+    }
+}
+
+struct Operator(Rc<Dual>);
+struct Projected(Rc<Dual>);
+
+impl ShellMat for Operator {
+    fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.0.projected_f(x, y)
+    }
+    fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.0.projected_f(x, y)
+    }
+    fn symmetric(&self) -> bool {
+        true
+    }
+    fn view(&self) -> String {
+        self.0.describe()
+    }
+}
+
+impl ShellMat for Projected {
+    fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.0.projected_m(x, y)
+    }
+    fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.0.projected_m(x, y)
+    }
+    fn symmetric(&self) -> bool {
+        true
+    }
+}
+
+impl ShellPc for Projected {
+    fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.0.projected_m(x, y)
+    }
+    fn apply_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.0.projected_m(x, y)
+    }
+    fn view(&self) -> String {
+        self.0.describe()
+    }
+}
+
+/// Pᵀ F P as a matrix. Collective.
+pub fn operator(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
+    let n = dual.stiffness.jump.n_owned;
+    Mat::shell(session, n, n, Box::new(Operator(dual.clone())))
+}
+
+/// P M⁻¹ Pᵀ as a matrix. Collective.
+pub fn preconditioner_matrix(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
+    let n = dual.stiffness.jump.n_owned;
+    Mat::shell(session, n, n, Box::new(Projected(dual.clone())))
+}
+
+/// P M⁻¹ Pᵀ as what a PCShell applies.
+pub fn preconditioner_shell(dual: &Rc<Dual>) -> Box<dyn ShellPc> {
+    Box::new(Projected(dual.clone()))
+}

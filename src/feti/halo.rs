@@ -1,0 +1,48 @@
+//! A distributed vector seen by a rank with the entries that its subdomains touch.
+
+use std::cell::RefCell;
+
+use crate::petsc::{Scatter, Session, Vec as PetscVec};
+use crate::Result;
+
+/// Moves entries between a distributed vector and this rank's ghost list, both ways.
+pub struct Halo {
+    scatter: Scatter,
+    /// Sequential vector that holds the ghost entries on their way.
+    buffer: RefCell<PetscVec>,
+    n_ghosts: usize,
+}
+
+impl Halo {
+    /// A halo for vectors laid out like `layout`; `ghosts` lists global numbers. Collective.
+    pub fn new(session: &Session, layout: &PetscVec, ghosts: &[u32]) -> Result<Halo> {
+        let indices: Vec<i32> = ghosts.iter().map(|&g| g as i32).collect();
+        let buffer = PetscVec::seq(session, ghosts.len())?;
+        Ok(Halo {
+            scatter: Scatter::new(layout, &indices, &buffer)?,
+            buffer: RefCell::new(buffer),
+            n_ghosts: ghosts.len(),
+        })
+    }
+
+    /// Number of ghost entries.
+    pub fn n_ghosts(&self) -> usize {
+        self.n_ghosts
+    }
+
+    /// `ghost` ← the entries of `x`. Collective.
+    pub fn fetch(&self, x: &PetscVec, ghost: &mut [f64]) -> Result<()> {
+        let buffer = self.buffer.borrow_mut();
+        self.scatter.forward(x, &buffer)?;
+        ghost.copy_from_slice(&buffer.array()?);
+        Ok(())
+    }
+
+    /// `y` ← the sum of every rank's `ghost` entries. Collective.
+    pub fn sum(&self, ghost: &[f64], y: &PetscVec) -> Result<()> {
+        let buffer = self.buffer.borrow_mut();
+        buffer.array_mut()?.copy_from_slice(ghost);
+        y.set(0.0)?;
+        self.scatter.reverse_add(&buffer, y)
+    }
+}

@@ -1,0 +1,272 @@
+//! Z_c: coarse functions of the bodies that vanish where bodies may touch (method section 5).
+//!
+//! Columns of Z_c are the columns of Ψ, their copies averaged inside the body with the scaling weights, set to zero on
+//! candidate contact nodes. Removing their span S̃-orthogonally from what B_Dᵀ lifts,
+//!
+//! ```text
+//!     M_C⁻¹ = B_D ( S̃ − Y A⁺ Yᵀ ) B_Dᵀ,      Y = S̃ Z_c,   A = Z_cᵀ S̃ Z_c
+//! ```
+//!
+//! lets a jump on a body's face decay over the whole body instead of over the layer of subdomains beside it. B Z_c = 0 for
+//! every active set, so nothing here changes in a contact step.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use mpi::traits::Communicator;
+
+use super::exchange::{exchange, exchange_words};
+use super::halo::Halo;
+use super::local::dense::{multiply, Dense};
+use super::local::semidefinite::Semidefinite;
+use super::primal::PrimalEntry;
+use super::sharing::Sharing;
+use super::stiffness::{Stiffness, Work};
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// Z_c of all bodies, with A factored. Columns carry the numbers of the primal dofs they come from.
+pub struct Lifting {
+    /// Z_c on each local subdomain's interface: n_Γ × its columns.
+    pub z: Vec<Dense>,
+    /// Y = S Z_c, same shape.
+    y: Vec<Dense>,
+    /// For each local subdomain, the ghost column behind each of its columns.
+    columns: Vec<Vec<u32>>,
+    /// Global number of each ghost column.
+    ghosts: Vec<u32>,
+    halo: Halo,
+    /// For each owned body: first owned column and the factor of its block of A.
+    bodies: Vec<(usize, Semidefinite)>,
+    vector: PetscVec,
+    ghost: RefCell<Vec<f64>>,
+    /// Rank of A and its order (columns that are not zero), over this rank's bodies.
+    pub rank_and_order: (usize, usize),
+}
+
+impl Lifting {
+    /// Builds Z_c; `None` if no body has a column. Collective.
+    pub fn new(
+        session: &Session,
+        problem: &Substructures,
+        sharing: &Sharing,
+        stiffness: &Stiffness,
+    ) -> Result<Option<Lifting>> {
+        let comm = session.comm();
+        let space = &stiffness.space;
+        let averaged = average_copies(session, problem, sharing, stiffness);
+
+        let mut ghosts: Vec<u32> = averaged.iter().flat_map(|a| a.columns.clone()).collect();
+        ghosts.sort_unstable();
+        ghosts.dedup();
+        let place = |g: &u32| {
+            let at = ghosts.binary_search(g);
+            at.expect("every column was collected") as u32
+        };
+        let columns: Vec<Vec<u32>> = averaged
+            .iter()
+            .map(|a| a.columns.iter().map(place).collect())
+            .collect();
+        let z: Vec<Dense> = averaged.into_iter().map(|a| a.z).collect();
+
+        let products = stiffness.team.map(z.len(), |j| {
+            let s = &stiffness.locals[j].s;
+            let mut y = Dense::zeros(z[j].rows, z[j].cols);
+            multiply(y.view_mut(), false, 1.0, s.view(), z[j].view());
+            let mut a = Dense::zeros(z[j].cols, z[j].cols);
+            multiply(a.view_mut(), false, 1.0, z[j].view().transpose(), y.view());
+            (y, a)
+        });
+        let mut entries: Vec<Vec<PrimalEntry>> = vec![Vec::new(); comm.size() as usize];
+        let mut y = Vec::new();
+        for (j, (yj, a)) in products.into_iter().enumerate() {
+            let to = space.owner[problem.local[j].body] as usize;
+            for (q, &gq) in columns[j].iter().enumerate() {
+                for (p, &gp) in columns[j].iter().enumerate() {
+                    entries[to].push(PrimalEntry {
+                        row: ghosts[gp as usize],
+                        col: ghosts[gq as usize],
+                        value: a.get(p, q),
+                    });
+                }
+            }
+            y.push(yj);
+        }
+        let entries = exchange(comm, &entries).concat();
+        let mut bodies = Vec::new();
+        let (mut rank, mut order) = (0, 0);
+        for body in &space.owned {
+            let n = body.range.len();
+            let first = space.first + body.range.start;
+            let mut a = Dense::zeros(n, n);
+            for e in &entries {
+                let i = (e.row as usize).wrapping_sub(first);
+                if i < n {
+                    a.data[i + (e.col as usize - first) * n] += e.value;
+                }
+            }
+            order += (0..n).filter(|&i| a.get(i, i) > 0.0).count();
+            let factor = Semidefinite::new(&a);
+            rank += factor.rank();
+            bodies.push((body.range.start, factor));
+        }
+        let mut total = [order as f64];
+        super::exchange::sum_all(comm, &mut total);
+        if total[0] == 0.0 {
+            return Ok(None);
+        }
+        let vector = PetscVec::mpi(session, space.n_owned)?;
+        let halo = Halo::new(session, &vector, &ghosts)?;
+        Ok(Some(Lifting {
+            z,
+            y,
+            columns,
+            ghost: RefCell::new(vec![0.0; ghosts.len()]),
+            ghosts,
+            halo,
+            bodies,
+            vector,
+            rank_and_order: (rank, order),
+        }))
+    }
+
+    /// y ← Z_c x on local subdomain `j`, x given by global column number.
+    pub fn combine(&self, j: usize, x: impl Fn(u32) -> f64, y: &mut [f64]) {
+        let columns = self.columns[j].iter();
+        let c: Vec<f64> = columns.map(|&g| x(self.ghosts[g as usize])).collect();
+        y.fill(0.0);
+        self.z[j].add_mul(&c, y);
+    }
+
+    /// work.y ← work.y − Y A⁺ Yᵀ work.v. Collective.
+    pub fn remove(&self, stiffness: &Stiffness, work: &mut [Work]) -> Result<()> {
+        let mut ghost = self.ghost.borrow_mut();
+        ghost.fill(0.0);
+        let mut local: Vec<Vec<f64>> = self.columns.iter().map(|c| vec![0.0; c.len()]).collect();
+        let inputs = &*work;
+        stiffness.team.for_each(&mut local, |j, t| {
+            self.y[j].add_mul_transpose(&inputs[j].v, t); /*  t ← Yᵀ v        */
+        });
+        for (t, places) in local.iter().zip(&self.columns) {
+            for (&g, v) in places.iter().zip(t) {
+                ghost[g as usize] += v;
+            }
+        }
+        self.halo.sum(&ghost, &self.vector)?;
+        {
+            let mut owned = self.vector.array_mut()?;
+            for (start, factor) in &self.bodies {
+                let n = factor.order();
+                factor.solve(&mut owned[*start..start + n]); /*  c ← A⁺ t        */
+            }
+        }
+        self.halo.fetch(&self.vector, &mut ghost)?;
+        let ghost = &*ghost;
+        stiffness.team.for_each(work, |j, w| {
+            let places = self.columns[j].iter();
+            let c: Vec<f64> = places.map(|&g| -ghost[g as usize]).collect();
+            self.y[j].add_mul(&c, &mut w.y); /*               y ← y − Y c     */
+        });
+        Ok(())
+    }
+}
+
+/// Z_c on one subdomain with the global numbers of its columns.
+struct Averaged {
+    z: Dense,
+    columns: Vec<u32>,
+}
+
+/// Column → value, for one interface dof.
+type SparseRow = BTreeMap<u32, f64>;
+
+/// Exchanges rows of Ψ between the copies of every shared dof and averages them.
+fn average_copies(
+    session: &Session,
+    problem: &Substructures,
+    sharing: &Sharing,
+    stiffness: &Stiffness,
+) -> Vec<Averaged> {
+    let comm = session.comm();
+    let space = &stiffness.space;
+    // [subdomain, local dof, n, (column, share of the value) × n] to every holder of a copy
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
+    for (j, sub) in problem.local.iter().enumerate() {
+        let local = &stiffness.locals[j];
+        let n_columns = space.n_vertices[j];
+        for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+            let copies = sharing.shared(sub.dofs[dof as usize]);
+            let total: f64 = copies.iter().map(|c| c.weight).sum();
+            let Some(own) = copies.iter().find(|c| c.subdomain as usize == sub.index) else {
+                continue;
+            };
+            for to in copies {
+                let list = &mut outgoing[sharing.rank_of[to.subdomain as usize] as usize];
+                list.extend([u64::from(to.subdomain), u64::from(to.local), n_columns as u64]);
+                for p in 0..n_columns {
+                    let value = own.weight / total * local.psi.get(i, p);
+                    list.extend([u64::from(global(j, p)), value.to_bits()]);
+                }
+            }
+        }
+    }
+    let index: BTreeMap<usize, usize> = problem
+        .local
+        .iter()
+        .enumerate()
+        .map(|(j, s)| (s.index, j))
+        .collect();
+    let mut rows: Vec<BTreeMap<u32, SparseRow>> = vec![BTreeMap::new(); problem.local.len()];
+    for words in exchange_words(comm, outgoing) {
+        let mut rest = &words[..];
+        while let [subdomain, dof, n, tail @ ..] = rest {
+            let (pairs, tail) = tail.split_at(2 * *n as usize);
+            let row = rows[index[&(*subdomain as usize)]].entry(*dof as u32).or_default();
+            for pair in pairs.chunks_exact(2) {
+                *row.entry(pair[0] as u32).or_insert(0.0) += f64::from_bits(pair[1]);
+            }
+            rest = tail;
+        }
+    }
+    (0..rows.len())
+        .map(|j| {
+            let local = &stiffness.locals[j];
+            for p in 0..space.n_vertices[j] {
+                let dof = local.interface[local.n_delta + p];
+                rows[j].entry(dof).or_default().insert(global(j, p), 1.0);
+            }
+            let candidate = candidates(stiffness, j);
+            gather(local.interface.as_slice(), &rows[j], &candidate)
+        })
+        .collect()
+}
+
+/// Which interface positions of local subdomain `j` may be in contact: those with an entry of B_gl.
+fn candidates(stiffness: &Stiffness, j: usize) -> Vec<bool> {
+    let columns = &stiffness.jump.columns[j];
+    let mut out = vec![false; stiffness.locals[j].n_gamma()];
+    for (&row, &at) in columns.row.iter().zip(&columns.at) {
+        out[at as usize] |= stiffness.jump.ghost_is_contact[row as usize];
+    }
+    out
+}
+
+fn gather(interface: &[u32], rows: &BTreeMap<u32, SparseRow>, candidate: &[bool]) -> Averaged {
+    let live = |i: usize| rows.get(&interface[i]).filter(|_| !candidate[i]);
+    let mut columns: Vec<u32> = (0..interface.len())
+        .filter_map(live)
+        .flat_map(|row| row.keys().copied())
+        .collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let mut z = Dense::zeros(interface.len(), columns.len());
+    for i in 0..interface.len() {
+        for (column, &value) in live(i).into_iter().flatten() {
+            let at = columns.binary_search(column);
+            z.set(i, at.expect("every column was collected"), value);
+        }
+    }
+    Averaged { z, columns }
+}

@@ -1,0 +1,264 @@
+//! The operators of one subdomain on its interface: S, T, Ψ and Σ of method section 2.
+//!
+//! The interface Γ is ordered [Δ, Π]: dual dofs, then primal ones. From the Schur complement S on Γ follow
+//!
+//! ```text
+//!     T = S_ΔΔ⁻¹          local solve with the primal dofs held
+//!     Ψ = [−T S_ΔΠ; I]    energy-minimal functions with value 1 at one primal dof, 0 at the others
+//!     Σ = Ψᵀ S Ψ = S_ΠΠ − S_ΠΔ T S_ΔΠ
+//! ```
+
+use std::sync::Arc;
+
+use super::dense::{self, Dense, Scratch};
+use super::multifrontal::{PartialCholesky, SingularInterior, Symbolic};
+use crate::sparse::Csr;
+
+/// S_ΔΔ counts as singular below this relative pivot: the dof is then held as a primal one of its own. Holding a dof that
+/// did not need it is harmless (the primal problem frees it exactly), so the bound is generous.
+const WEAKLY_HELD: f64 = 1e-6;
+
+/// One subdomain, factored.
+#[derive(Debug)]
+pub struct LocalProblem {
+    /// Local dofs of the interface in the order [Δ, Π]; length n_Γ.
+    pub interface: Vec<u32>,
+    /// Number of dual interface dofs.
+    pub n_delta: usize,
+    /// How many of the primal dofs (the last ones of `interface`) were added here to make S_ΔΔ regular.
+    pub n_fixing: usize,
+    /// S on Γ, n_Γ × n_Γ, both triangles.
+    pub s: Dense,
+    /// T = S_ΔΔ⁻¹, n_Δ × n_Δ, both triangles.
+    pub t: Dense,
+    /// Ψ on Δ, n_Δ × n_Π (on Π it is the identity).
+    pub psi: Dense,
+    /// Σ, n_Π × n_Π.
+    pub sigma: Dense,
+    factor: PartialCholesky,
+}
+
+impl LocalProblem {
+    /// Factors subdomain matrix `k` with the given dual and primal interface dofs.
+    pub fn new(
+        k: &Csr,
+        delta: &[u32],
+        primal: &[u32],
+        coordinates: Option<&[[f64; 3]]>,
+    ) -> Result<LocalProblem, SingularInterior> {
+        let mut interface = [delta, primal].concat();
+        let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
+        let (factor, mut s) = PartialCholesky::new(k, symbolic)?;
+        let mut n_delta = delta.len();
+        let mut scratch = Scratch::default();
+        let mut l = match try_cholesky(&s, n_delta, &mut scratch) {
+            Some(l) => l,
+            None => {
+                // Hold what keeps S_ΔΔ from being definite; Γ's order changes, the factor's does not.
+                let fixing = weakest(&s, n_delta);
+                let order = moved_to_the_end(interface.len(), n_delta, &fixing);
+                interface = order.iter().map(|&i| interface[i]).collect();
+                s = permuted(&s, &order);
+                n_delta -= fixing.len();
+                try_cholesky(&s, n_delta, &mut scratch).ok_or(SingularInterior {
+                    dof: interface[n_delta],
+                })?
+            }
+        };
+        let n_fixing = delta.len() - n_delta;
+        let n_pi = interface.len() - n_delta;
+        let t = dense::inverse_from_cholesky(l.view(), &mut scratch);
+        l.data = Vec::new();
+
+        let s_delta_pi = s.view().submatrix(0, n_delta, n_delta, n_pi);
+        let mut psi = Dense::zeros(n_delta, n_pi);
+        dense::multiply(psi.view_mut(), false, -1.0, t.view(), s_delta_pi);
+        let mut sigma = Dense::zeros(n_pi, n_pi);
+        for j in 0..n_pi {
+            let column = s.col(n_delta + j)[n_delta..].to_vec();
+            sigma.col_mut(j).copy_from_slice(&column);
+        }
+        dense::multiply(sigma.view_mut(), true, 1.0, s_delta_pi.transpose(), psi.view());
+        symmetrise(&mut sigma);
+        Ok(LocalProblem {
+            interface,
+            n_delta,
+            n_fixing,
+            s,
+            t,
+            psi,
+            sigma,
+            factor,
+        })
+    }
+
+    /// Number of interface dofs n_Γ.
+    pub fn n_gamma(&self) -> usize {
+        self.interface.len()
+    }
+
+    /// Number of primal dofs n_Π.
+    pub fn n_pi(&self) -> usize {
+        self.interface.len() - self.n_delta
+    }
+
+    /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
+    /// handed to [`recover`](Self::recover).
+    pub fn condense(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut work = f.to_vec();
+        self.factor.forward(&mut work);
+        let g = self.interface.iter().map(|&i| work[i as usize]).collect();
+        (work, g)
+    }
+
+    /// The solution on all dofs from its interface values `u_gamma` and the `work` of [`condense`](Self::condense).
+    pub fn recover(&self, mut work: Vec<f64>, u_gamma: &[f64]) -> Vec<f64> {
+        for (&i, &u) in self.interface.iter().zip(u_gamma) {
+            work[i as usize] = u;
+        }
+        self.factor.backward(&mut work);
+        work
+    }
+
+    /// p ← Ψᵀ v, v on Γ.
+    pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
+        p.copy_from_slice(&v[self.n_delta..]);
+        self.psi.add_mul_transpose(&v[..self.n_delta], p);
+    }
+
+    /// y ← T v on Δ, zero on Π.
+    pub fn t_apply(&self, v: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        self.t.add_mul(&v[..self.n_delta], &mut y[..self.n_delta]);
+    }
+
+    /// y ← y + Ψ c.
+    pub fn add_psi(&self, c: &[f64], y: &mut [f64]) {
+        self.psi.add_mul(c, &mut y[..self.n_delta]);
+        for (yi, ci) in y[self.n_delta..].iter_mut().zip(c) {
+            *yi += ci;
+        }
+    }
+
+    /// Bytes held by the factor and by the dense operators: (sparse, dense).
+    pub fn bytes(&self) -> (usize, usize) {
+        let dense = [&self.s, &self.t, &self.psi, &self.sigma];
+        let dense: usize = dense.iter().map(|d| d.data.len()).sum();
+        (self.factor.bytes(), dense * std::mem::size_of::<f64>())
+    }
+}
+
+/// L of S_ΔΔ = L Lᵀ, or nothing if a pivot is weak.
+fn try_cholesky(s: &Dense, n_delta: usize, scratch: &mut Scratch) -> Option<Dense> {
+    let mut l = Dense::zeros(n_delta, n_delta);
+    for j in 0..n_delta {
+        l.col_mut(j)[j..].copy_from_slice(&s.col(j)[j..n_delta]);
+    }
+    dense::cholesky(l.view_mut(), scratch).ok()?;
+    let weak = (0..n_delta).any(|j| !(l.get(j, j).powi(2) > WEAKLY_HELD * s.get(j, j)));
+    (!weak).then_some(l)
+}
+
+/// Dual dofs to hold so that the rest of S_ΔΔ is definite: those left with a weak pivot by Cholesky factorisation with
+/// diagonal pivoting (increasing).
+fn weakest(s: &Dense, n: usize) -> Vec<usize> {
+    let scale: Vec<f64> = (0..n).map(|i| s.get(i, i).max(f64::MIN_POSITIVE).sqrt()).collect();
+    let mut a = Dense::zeros(n, n);
+    for j in 0..n {
+        for i in 0..n {
+            a.set(i, j, s.get(i, j) / (scale[i] * scale[j]));
+        }
+    }
+    let mut left: Vec<usize> = (0..n).collect();
+    loop {
+        let best = left
+            .iter()
+            .enumerate()
+            .max_by(|x, y| a.get(*x.1, *x.1).total_cmp(&a.get(*y.1, *y.1)).then(y.1.cmp(x.1)));
+        let Some((at, &p)) = best else { break };
+        let pivot = a.get(p, p);
+        if !(pivot > WEAKLY_HELD) {
+            break;
+        }
+        left.swap_remove(at);
+        let column: Vec<f64> = a.col(p).to_vec();
+        for &j in &left {
+            let factor = column[j] / pivot;
+            for &i in &left {
+                let v = a.get(i, j) - column[i] * factor;
+                a.set(i, j, v);
+            }
+        }
+    }
+    left.sort_unstable();
+    left
+}
+
+/// The order [Δ without `moved`, Π, moved].
+fn moved_to_the_end(n: usize, n_delta: usize, moved: &[usize]) -> Vec<usize> {
+    let stays = (0..n_delta).filter(|i| moved.binary_search(i).is_err());
+    stays.chain(n_delta..n).chain(moved.iter().copied()).collect()
+}
+
+fn permuted(s: &Dense, order: &[usize]) -> Dense {
+    let mut out = Dense::zeros(order.len(), order.len());
+    for (j, &oj) in order.iter().enumerate() {
+        for (i, &oi) in order.iter().enumerate() {
+            out.set(i, j, s.get(oi, oj));
+        }
+    }
+    out
+}
+
+fn symmetrise(a: &mut Dense) {
+    for j in 0..a.cols {
+        for i in 0..j {
+            let mean = 0.5 * (a.get(i, j) + a.get(j, i));
+            a.set(i, j, mean);
+            a.set(j, i, mean);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feti::local::testing::{grid_laplacian, random};
+
+    #[test]
+    fn s_plus_inverts_a_definite_subdomain() {
+        // With one subdomain, S̃⁺ = T + Ψ Σ⁻¹ Ψᵀ is S⁻¹; interiors come back through condense and recover.
+        let (k, x) = grid_laplacian(9, 9, 0.1);
+        let delta: Vec<u32> = (1..8).collect();
+        let local = LocalProblem::new(&k, &delta, &[0, 8], Some(&x)).expect("definite");
+        assert_eq!(local.n_fixing, 0);
+        let u = random(k.n(), 5);
+        let mut f = vec![0.0; k.n()];
+        k.mul(&u, &mut f);
+        let (work, g) = local.condense(&f);
+        let mut p = vec![0.0; 2];
+        local.psi_transpose(&g, &mut p);
+        let s = |i, j| local.sigma.get(i, j);
+        let det = s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0);
+        let c = [
+            (s(1, 1) * p[0] - s(0, 1) * p[1]) / det,
+            (s(0, 0) * p[1] - s(1, 0) * p[0]) / det,
+        ];
+        let mut u_gamma = vec![0.0; local.n_gamma()];
+        local.t_apply(&g, &mut u_gamma);
+        local.add_psi(&c, &mut u_gamma);
+        let back = local.recover(work, &u_gamma);
+        let error = back.iter().zip(&u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(error < 1e-12, "error {error:.1e}");
+    }
+
+    #[test]
+    fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
+        let (k, x) = grid_laplacian(8, 6, 0.0);
+        let delta: Vec<u32> = (0..8).collect();
+        let local = LocalProblem::new(&k, &delta, &[], Some(&x)).expect("one dof is held");
+        assert_eq!((local.n_fixing, local.n_pi()), (1, 1));
+        assert!(local.sigma.get(0, 0).abs() < 1e-13);
+        assert!(local.psi.data.iter().all(|v| (v - 1.0).abs() < 1e-12));
+    }
+}

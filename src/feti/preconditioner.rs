@@ -1,0 +1,109 @@
+//! M⁻¹: none, lumped, Dirichlet (M_D) and coarse-corrected Dirichlet (M_C).
+//!
+//! ```text
+//!     lumped      M_L⁻¹ = Z B_D K_ΓΓ B_Dᵀ Z
+//!     dirichlet   M_D⁻¹ = Z B_D S̃ B_Dᵀ Z                      [Lee, section 3.1]
+//!     corrected   M_C⁻¹ = Z B_D (S̃ − S̃ Z_c (Z_cᵀ S̃ Z_c)⁺ Z_cᵀ S̃) B_Dᵀ Z
+//! ```
+
+use std::cell::RefCell;
+
+use super::lifting::Lifting;
+use super::settings::PcType;
+use super::stiffness::{Stiffness, Work};
+use crate::petsc::Vec as PetscVec;
+use crate::sparse::Csr;
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// The preconditioner of the dual problem.
+pub struct Preconditioner {
+    kind: PcType,
+    lifting: Option<Lifting>,
+    /// K_ΓΓ of each local subdomain in the order of Γ, for the lumped preconditioner.
+    k_gamma: Vec<Csr>,
+    buffers: RefCell<(Vec<Work>, Vec<f64>)>,
+}
+
+impl Preconditioner {
+    /// A preconditioner of the given kind; `lifting` is needed by the coarse-corrected one alone.
+    pub fn new(
+        kind: PcType,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        lifting: Option<Lifting>,
+    ) -> Preconditioner {
+        let k_gamma = match kind {
+            PcType::Lumped => problem
+                .local
+                .iter()
+                .zip(&stiffness.locals)
+                .map(|(sub, local)| restrict(&sub.k, &local.interface))
+                .collect(),
+            _ => Vec::new(),
+        };
+        Preconditioner {
+            kind,
+            lifting,
+            k_gamma,
+            buffers: RefCell::new((stiffness.work(), vec![0.0; stiffness.jump.ghosts.len()])),
+        }
+    }
+
+    /// What it is.
+    pub fn kind(&self) -> PcType {
+        self.kind
+    }
+
+    /// Z_c, where it is used.
+    pub fn lifting(&self) -> Option<&Lifting> {
+        self.lifting.as_ref()
+    }
+
+    /// out ← M⁻¹ λ. Collective.
+    pub fn apply(&self, stiffness: &Stiffness, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        if self.kind == PcType::None {
+            return out.copy_from(lambda);
+        }
+        let (work, ghost) = &mut *self.buffers.borrow_mut();
+        let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
+        stiffness.dual_halo.fetch(lambda, ghost)?;
+        let received = &*ghost;
+        stiffness.team.for_each(work, |j, w| {
+            columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
+            match self.kind {
+                PcType::Lumped => self.k_gamma[j].mul(&w.v, &mut w.y), /* y ← K_ΓΓ v */
+                _ => {
+                    w.y.fill(0.0);
+                    locals[j].s.add_mul(&w.v, &mut w.y); /*   y ← S v            */
+                }
+            }
+        });
+        if let Some(lifting) = &self.lifting {
+            lifting.remove(stiffness, work)?; /*              y ← y − Y A⁺ Yᵀ v  */
+        }
+        ghost.fill(0.0);
+        for (w, columns) in work.iter().zip(columns) {
+            columns.add_bd(&w.y, ghost); /*                   out ← B_D y        */
+        }
+        stiffness.dual_halo.sum(ghost, out)
+    }
+}
+
+/// The rows and columns of `k` listed in `interface`, in that order.
+fn restrict(k: &Csr, interface: &[u32]) -> Csr {
+    let mut place = vec![u32::MAX; k.n()];
+    for (p, &i) in interface.iter().enumerate() {
+        place[i as usize] = p as u32;
+    }
+    let mut triplets = Vec::new();
+    for (p, &i) in interface.iter().enumerate() {
+        let (col, val) = k.row(i as usize);
+        for (&j, &v) in col.iter().zip(val) {
+            if place[j as usize] != u32::MAX {
+                triplets.push((p as u32, place[j as usize], v));
+            }
+        }
+    }
+    Csr::from_triplets(interface.len(), &triplets)
+}

@@ -1,0 +1,158 @@
+//! What a user may choose, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
+
+use crate::petsc::{Options, Session};
+use crate::{Error, Result};
+
+/// The preconditioner of the dual problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PcType {
+    /// No preconditioner: the projector alone.
+    None,
+    /// B_D K_ΓΓ B_Dᵀ: no interior solve.
+    Lumped,
+    /// M_D of the paper.
+    Dirichlet,
+    /// M_C: M_D with the coarse functions of the bodies removed.
+    CoarseCorrected,
+}
+
+/// The weights D of the scaled jump operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scaling {
+    /// D = 1: every copy counts the same.
+    Multiplicity,
+    /// D = ρ^γ.
+    Rho,
+    /// D = diag(K).
+    Stiffness,
+}
+
+/// The weight Q of the projector P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProjectorKind {
+    /// Q = I, as in the paper.
+    Identity,
+    /// Q = the diagonal of B_D diag(K) B_Dᵀ (superlumped).
+    Diagonal,
+    /// Q = M⁻¹.
+    Preconditioner,
+    /// Q = M⁻¹ where floating bodies and their neighbours differ in stiffness, else I.
+    Auto,
+}
+
+macro_rules! names {
+    ($kind:ident { $($variant:ident = $name:literal),* $(,)? }) => {
+        impl $kind {
+            /// Names as the option takes them, in the order of the variants.
+            pub const NAMES: &'static [&'static str] = &[$($name),*];
+
+            /// The name as the option takes it.
+            pub fn name(self) -> &'static str {
+                match self { $($kind::$variant => $name),* }
+            }
+
+            fn from_index(index: usize) -> Self {
+                [$($kind::$variant),*][index]
+            }
+        }
+    };
+}
+
+names!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
+names!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness" });
+names!(ProjectorKind {
+    Identity = "identity",
+    Diagonal = "diagonal",
+    Preconditioner = "preconditioner",
+    Auto = "auto",
+});
+
+/// Everything that can be set about the method itself; Krylov settings live in the KSP (`fetifeti_ksp_`).
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// `fetifeti_pc_type`; `None` chooses coarse_corrected where a body has more than one subdomain and there is more than
+    /// one body, dirichlet otherwise.
+    pub pc_type: Option<PcType>,
+    /// `fetifeti_scaling`.
+    pub scaling: Scaling,
+    /// `fetifeti_scaling_gamma`, γ ∈ [1/2, ∞).
+    pub gamma: f64,
+    /// `fetifeti_projector`.
+    pub projector: ProjectorKind,
+    /// `fetifeti_threads`: threads of this rank; `None`: all cores where one rank runs, else one.
+    pub threads: Option<usize>,
+    /// `fetifeti_check`: print the identities that the theory promises.
+    pub check: bool,
+    /// `fetifeti_spectrum`: exact extreme eigenvalues of the preconditioned operator.
+    pub spectrum: bool,
+    /// Relative residual of the dual problem to stop at, unless `fetifeti_ksp_rtol` says otherwise.
+    pub rtol: f64,
+    /// Prefix of all options.
+    pub prefix: String,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            pc_type: None,
+            scaling: Scaling::Rho,
+            gamma: 1.0,
+            projector: ProjectorKind::Auto,
+            threads: None,
+            check: false,
+            spectrum: false,
+            rtol: 1e-6,
+            prefix: "fetifeti_".into(),
+        }
+    }
+}
+
+impl Settings {
+    /// These settings with what the options database says on top; lists them under `-help`.
+    pub fn with_options(mut self, session: &Session) -> Result<Settings> {
+        let o = Options::new(session, &self.prefix);
+        o.heading("FETI-FETI options")?;
+        let auto = [&["auto"], PcType::NAMES].concat();
+        let now = self.pc_type.map_or(0, |t| 1 + t as usize);
+        let help = "preconditioner of the dual problem";
+        self.pc_type = match o.choice("pc_type", &auto, now, help)? {
+            0 => None,
+            i => Some(PcType::from_index(i - 1)),
+        };
+        let help = "weights of the scaled jump operator";
+        let i = o.choice("scaling", Scaling::NAMES, self.scaling as usize, help)?;
+        self.scaling = Scaling::from_index(i);
+        let help = "exponent of rho in the scaling, at least 0.5";
+        self.gamma = o.f64("scaling_gamma", self.gamma, help)?;
+        if !(self.gamma >= 0.5 && self.gamma.is_finite()) {
+            return Err(Error::input(format!(
+                "option -{} is {}, expected a number of at least 0.5",
+                o.full_name("scaling_gamma").trim_start_matches('-'),
+                self.gamma
+            )));
+        }
+        let help = "weight Q of the projector";
+        let i = o.choice("projector", ProjectorKind::NAMES, self.projector as usize, help)?;
+        self.projector = ProjectorKind::from_index(i);
+        let help = "primal constraints inside the bodies";
+        o.choice("primal", &["vertices"], 0, help)?;
+        let help = "threads per rank; 0: all cores where one rank runs, else 1";
+        self.threads = match o.usize("threads", self.threads.unwrap_or(0), help)? {
+            0 => None,
+            n => Some(n),
+        };
+        let help = "print the operator identities, which must be zero";
+        self.check = o.bool("check", self.check, help)?;
+        let help = "exact extreme eigenvalues of the preconditioned operator";
+        self.spectrum = o.bool("spectrum", self.spectrum, help)?;
+        for (name, help) in [
+            ("ksp_", "the Krylov method of the dual problem (any KSP option)"),
+            ("coarse_", "the primal problem of the bodies (any KSP or PC option)"),
+            ("gtg_", "the natural coarse problem of floating bodies (any KSP or PC option)"),
+            ("eps_", "the eigensolver of -fetifeti_spectrum (any EPS option)"),
+        ] {
+            o.list(name, "...", help)?;
+        }
+        Ok(self)
+    }
+}

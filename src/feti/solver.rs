@@ -1,0 +1,258 @@
+//! `FetiFeti`: from substructures to a solver that can be asked for solutions and spectra.
+
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::coarse::PrimalProblem;
+use super::dual::{self, Dual};
+use super::halo::Halo;
+use super::jump::Jump;
+use super::lifting::Lifting;
+use super::local::problem::LocalProblem;
+use super::natural::NaturalCoarse;
+use super::preconditioner::Preconditioner;
+use super::primal::PrimalSpace;
+use super::recover::{self, Solution};
+use super::settings::{PcType, Scaling, Settings};
+use super::sharing::Sharing;
+use super::spectrum::{self, Spectrum};
+use super::stiffness::Stiffness;
+use super::team::Team;
+use crate::petsc::{cite, Comm, Ksp, NormType, Session, Stage, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::{Error, Result};
+
+const CITATION: &str = "@techreport{Lee2010,
+  author = {Jungho Lee},
+  title  = {Convergence analysis of a new domain decomposition method for a linearized contact problem},
+  institution = {Oak Ridge National Laboratory},
+  year   = {2010}
+}
+";
+
+/// Facts about the problem as the solver sees it.
+#[derive(Debug, Clone, Default)]
+pub struct Facts {
+    /// Rows of B_loc.
+    pub multipliers_local: usize,
+    /// Rows of B_gl.
+    pub multipliers_global: usize,
+    /// Rows of B_gl that hold.
+    pub multipliers_active: usize,
+    /// Bodies with a kernel.
+    pub floating_bodies: usize,
+    /// Dimension of all kernels, r.
+    pub kernel_dimension: usize,
+    /// Primal dofs of all bodies.
+    pub primal: usize,
+    /// Bytes of the subdomains' sparse factors on this rank.
+    pub factor_bytes: usize,
+    /// Bytes of the subdomains' dense operators on this rank.
+    pub dense_bytes: usize,
+    /// Seconds of set-up.
+    pub setup_seconds: f64,
+}
+
+/// The FETI-FETI solver of one problem.
+pub struct FetiFeti {
+    session: Session,
+    problem: Substructures,
+    settings: Settings,
+    dual: Rc<Dual>,
+    ksp: Ksp,
+    facts: Facts,
+    solve_stage: Stage,
+}
+
+impl FetiFeti {
+    /// Factors, assembles the coarse problems and sets the Krylov method up. Collective.
+    ///
+    /// # Errors
+    /// Bad substructures, a body that nothing holds, or PETSc's own errors; the same on all ranks.
+    pub fn new(session: &Session, problem: Substructures, settings: Settings) -> Result<FetiFeti> {
+        let clock = Instant::now();
+        cite(session, CITATION)?;
+        let stage = Stage::register(session, "FETI-FETI setup")?;
+        let _staged = stage.scope()?;
+        let settings = settings.with_options(session)?;
+        let comm = session.comm();
+        let prefix = settings.prefix.clone();
+
+        let weights = weights(&problem, &settings);
+        let sharing = session.agree(Sharing::new(comm, &problem, &weights))?;
+        drop(weights);
+        let mut jump = Jump::new(comm, &problem, &sharing);
+        let team = Team::new(threads(session, &settings))?;
+        let locals = session.agree(factor(&problem, &jump, &team))?;
+        for (j, local) in locals.iter().enumerate() {
+            jump.place(j, &local.interface);
+        }
+        let space = PrimalSpace::new(comm, &problem, &sharing, &locals);
+        let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
+        let layout = PetscVec::mpi(session, jump.n_owned)?;
+        let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
+        let stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
+
+        let kind = settings.pc_type.unwrap_or_else(|| default_pc(&problem, &stiffness));
+        let lifting = match kind {
+            PcType::CoarseCorrected => Lifting::new(session, &problem, &sharing, &stiffness)?,
+            _ => None,
+        };
+        let preconditioner = Preconditioner::new(kind, &problem, &stiffness, lifting);
+        let natural = NaturalCoarse::new(
+            session,
+            &problem,
+            &stiffness,
+            &preconditioner,
+            settings.projector,
+            &format!("{prefix}gtg_"),
+        )?;
+        let mut facts = facts(&stiffness, &natural, comm);
+        let dual = Rc::new(Dual::new(session, stiffness, preconditioner, natural)?);
+        let ksp = krylov(session, &dual, &settings)?;
+        facts.setup_seconds = clock.elapsed().as_secs_f64();
+        Ok(FetiFeti {
+            session: session.clone(),
+            problem,
+            settings,
+            dual,
+            ksp,
+            facts,
+            solve_stage: Stage::register(session, "FETI-FETI solve")?,
+        })
+    }
+
+    /// Solves for the loads of the substructures. Collective.
+    ///
+    /// A Krylov method that stops early is no error here: look at [`Solution::converged`].
+    pub fn solve(&self) -> Result<Solution> {
+        let _staged = self.solve_stage.scope()?;
+        recover::solve(&self.session, &self.problem, &self.dual, &self.ksp)
+    }
+
+    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Collective.
+    pub fn spectrum(&self) -> Result<Option<Spectrum>> {
+        let prefix = format!("{}eps_", self.settings.prefix);
+        spectrum::exact(&self.session, &self.dual, &prefix)
+    }
+
+    /// The identities that the theory promises, each with its relative defect, which must be about rounding. Collective.
+    pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
+        super::check::identities(&self.session, &self.problem, &self.dual)
+    }
+
+    /// Facts about the problem.
+    pub fn facts(&self) -> &Facts {
+        &self.facts
+    }
+
+    /// The settings in force, with options applied.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &Substructures {
+        &self.problem
+    }
+
+    /// The operators.
+    pub fn dual(&self) -> &Dual {
+        &self.dual
+    }
+
+    /// The Krylov solver of the dual problem.
+    pub fn ksp(&self) -> &Ksp {
+        &self.ksp
+    }
+}
+
+/// The diagonal of D for every local subdomain.
+fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
+    let of = |sub: &crate::substructures::Subdomain| -> Vec<f64> {
+        match settings.scaling {
+            Scaling::Multiplicity => vec![1.0; sub.k.n()],
+            Scaling::Rho if settings.gamma == 1.0 => sub.rho.clone(),
+            Scaling::Rho => sub.rho.iter().map(|r| r.powf(settings.gamma)).collect(),
+            Scaling::Stiffness => (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect(),
+        }
+    };
+    problem.local.iter().map(of).collect()
+}
+
+fn threads(session: &Session, settings: &Settings) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    settings
+        .threads
+        .unwrap_or(if session.size() == 1 { cores } else { 1 })
+}
+
+fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<LocalProblem>>> {
+    let results = team.map(problem.local.len(), |j| {
+        let sub = &problem.local[j];
+        let x = sub.coordinates.as_deref();
+        LocalProblem::new(&sub.k, &jump.delta[j], &jump.primal[j], x)
+    });
+    let together = results.into_iter().zip(&problem.local).map(|(result, sub)| {
+        result.map(Arc::new).map_err(|_| {
+            Error::input(format!(
+                "body \"{}\" is held by nothing in subdomain {} (no Dirichlet side and no tie to another body), expected a Dirichlet side or a tie",
+                problem.body_names[sub.body], sub.index
+            ))
+        })
+    });
+    together.collect()
+}
+
+/// M_C where there is something to lift: a body cut into subdomains that other bodies pull at; else M_D.
+fn default_pc(problem: &Substructures, stiffness: &Stiffness) -> PcType {
+    let jump = &stiffness.jump;
+    let cut = problem.n_subdomains > problem.n_bodies;
+    if cut && problem.n_bodies > 1 && jump.n_global > jump.n_local {
+        PcType::CoarseCorrected
+    } else {
+        PcType::Dirichlet
+    }
+}
+
+fn facts(
+    stiffness: &Stiffness,
+    natural: &NaturalCoarse,
+    comm: &mpi::topology::SimpleCommunicator,
+) -> Facts {
+    let jump = &stiffness.jump;
+    let contact = jump.active[jump.n_owned_local..].iter();
+    let mut active = [contact.filter(|a| **a).count() as f64];
+    super::exchange::sum_all(comm, &mut active);
+    let bytes = stiffness.locals.iter().map(|l| l.bytes());
+    let (factor_bytes, dense_bytes) = bytes.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    Facts {
+        multipliers_local: jump.n_local,
+        multipliers_global: jump.n_global - jump.n_local,
+        multipliers_active: active[0] as usize,
+        floating_bodies: stiffness.space.defect.iter().filter(|d| **d > 0).count(),
+        kernel_dimension: natural.r,
+        primal: stiffness.space.n_global,
+        factor_bytes,
+        dense_bytes,
+        setup_seconds: 0.0,
+    }
+}
+
+/// CG on Pᵀ F P with P M⁻¹ Pᵀ, stopped by ‖r_n‖₂ / ‖r_0‖₂ as in the paper.
+fn krylov(session: &Session, dual: &Rc<Dual>, settings: &Settings) -> Result<Ksp> {
+    let a = dual::operator(session, dual)?;
+    let ksp = Ksp::new(session, Comm::World)?;
+    ksp.set_operators(&a, &a)?;
+    // PETSc itself adds `ksp_` (and `pc_`) to this prefix.
+    ksp.set_options_prefix(&settings.prefix)?;
+    ksp.set_type("cg")?;
+    ksp.set_norm_type(NormType::Unpreconditioned)?;
+    ksp.set_tolerances(Some(settings.rtol), None, None, None)?;
+    ksp.set_compute_singular_values(true)?;
+    ksp.pc()?.set_shell("fetifeti", dual::preconditioner_shell(dual))?;
+    ksp.set_from_options()?;
+    ksp.setup()?;
+    Ok(ksp)
+}

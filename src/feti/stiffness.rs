@@ -1,0 +1,137 @@
+//! S̃⁺ and F: the FETI-DP solve inside every body (method section 2).
+//!
+//! ```text
+//!     S̃⁺ v = Σ_j T_j v_j + Ψ S_Π⁺ Ψᵀ v            F = Z B S̃⁺ Bᵀ Z
+//! ```
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use super::coarse::PrimalProblem;
+use super::halo::Halo;
+use super::jump::Jump;
+use super::local::problem::LocalProblem;
+use super::primal::PrimalSpace;
+use super::team::Team;
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+/// Buffers of one subdomain on its interface Γ.
+#[derive(Debug, Clone, Default)]
+pub struct Work {
+    /// Input: a load, length n_Γ.
+    pub v: Vec<f64>,
+    /// Output: a displacement, length n_Γ.
+    pub y: Vec<f64>,
+    /// Coarse values in and out, length n_Π.
+    pub p: Vec<f64>,
+}
+
+/// Everything that depends on the matrices alone, with the jump operator on top.
+pub struct Stiffness {
+    /// B and B_D.
+    pub jump: Jump,
+    /// The factored subdomains of this rank.
+    pub locals: Vec<Arc<LocalProblem>>,
+    /// Numbering and kernels of the bodies.
+    pub space: PrimalSpace,
+    /// The bodies' primal problem S_Π behind a KSP.
+    pub primal: PrimalProblem,
+    /// Moves multipliers to and from the subdomains.
+    pub dual_halo: Halo,
+    /// The threads of this rank.
+    pub team: Team,
+    buffers: RefCell<Buffers>,
+}
+
+#[derive(Default)]
+struct Buffers {
+    work: Vec<Work>,
+    ghost: Vec<f64>,
+}
+
+impl Stiffness {
+    /// Puts the parts together.
+    pub fn new(
+        jump: Jump,
+        locals: Vec<Arc<LocalProblem>>,
+        space: PrimalSpace,
+        primal: PrimalProblem,
+        dual_halo: Halo,
+        team: Team,
+    ) -> Stiffness {
+        let buffers = Buffers {
+            work: locals.iter().map(|l| Work::for_subdomain(l)).collect(),
+            ghost: vec![0.0; jump.ghosts.len()],
+        };
+        Stiffness {
+            jump,
+            locals,
+            space,
+            primal,
+            dual_halo,
+            team,
+            buffers: RefCell::new(buffers),
+        }
+    }
+
+    /// work.y ← S̃⁺ work.v on every subdomain. Collective.
+    pub fn s_plus(&self, work: &mut [Work]) -> Result<()> {
+        let (locals, space) = (&self.locals, &self.space);
+        self.team.for_each(work, |j, w| {
+            locals[j].psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
+        });
+        let mut sum = vec![0.0; space.ghosts.len()];
+        for (w, places) in work.iter().zip(&space.of_subdomain) {
+            for (&g, p) in places.iter().zip(&w.p) {
+                sum[g as usize] += p;
+            }
+        }
+        self.primal.solve(&mut sum)?; /*                  c ← S_Π⁺ p     */
+        self.team.for_each(work, |j, w| {
+            for (&g, p) in space.of_subdomain[j].iter().zip(&mut w.p) {
+                *p = sum[g as usize];
+            }
+            locals[j].t_apply(&w.v, &mut w.y); /*         y ← T v        */
+            locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
+        });
+        Ok(())
+    }
+
+    /// out ← F λ = B S̃⁺ Bᵀ λ. Collective.
+    pub fn f_mult(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        self.dual_halo.fetch(lambda, ghost)?;
+        let columns = &self.jump.columns;
+        self.team.for_each(work, |j, w| {
+            columns[j].b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
+        });
+        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
+        self.jump_of(work, out) /*                        out ← B y      */
+    }
+
+    /// out ← B y of the displacements in `work`. Collective.
+    pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+        let mut sum = vec![0.0; self.jump.ghosts.len()];
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_b(&w.y, &mut sum);
+        }
+        self.dual_halo.sum(&sum, out)
+    }
+
+    /// Fresh buffers for all subdomains of this rank.
+    pub fn work(&self) -> Vec<Work> {
+        self.locals.iter().map(|l| Work::for_subdomain(l)).collect()
+    }
+}
+
+impl Work {
+    /// Zeros of the sizes of a subdomain.
+    pub fn for_subdomain(local: &LocalProblem) -> Work {
+        Work {
+            v: vec![0.0; local.n_gamma()],
+            y: vec![0.0; local.n_gamma()],
+            p: vec![0.0; local.n_pi()],
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The threads that share one rank's subdomains.
+
+use rayon::prelude::*;
+
+use crate::{Error, Result};
+
+/// A pool of threads, or none: subdomains are then worked off one after the other.
+pub struct Team {
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl Team {
+    /// A team of `threads` threads (0 or 1: no pool).
+    pub fn new(threads: usize) -> Result<Team> {
+        if threads < 2 {
+            return Ok(Team { pool: None });
+        }
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|e| Error::environment(format!("cannot start {threads} threads: {e}")))?;
+        Ok(Team { pool: Some(pool) })
+    }
+
+    /// Number of threads that work.
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, |p| p.current_num_threads())
+    }
+
+    /// Runs `work` on every item; items are independent of each other.
+    pub fn for_each<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
+        match &self.pool {
+            Some(pool) => pool.install(|| {
+                items
+                    .par_iter_mut()
+                    .enumerate()
+                    .for_each(|(i, item)| work(i, item))
+            }),
+            None => items
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, item)| work(i, item)),
+        }
+    }
+
+    /// `work` of every index below `n`, in order.
+    pub fn map<T: Send>(&self, n: usize, work: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        match &self.pool {
+            Some(pool) => pool.install(|| (0..n).into_par_iter().map(work).collect()),
+            None => (0..n).map(work).collect(),
+        }
+    }
+}
