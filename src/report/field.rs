@@ -255,7 +255,12 @@ fn colour_bar(raster: &mut Raster, at: Point, height: f64, range: (f64, f64), sc
         &[],
     );
     let (low, high) = (scale.forward(range.0), scale.forward(range.1));
-    for t in ticks::ticks(range.0, range.1, scale, (height / 60.0) as usize) {
+    for t in ticks::ticks(
+        range.0,
+        range.1,
+        scale,
+        ((height / 32.0) as usize).clamp(2, 7),
+    ) {
         let y = at.1 - height * (scale.forward(t.at) - low) / (high - low);
         let length = if t.label.is_empty() { 2.5 } else { 4.0 };
         raster.line(

@@ -189,7 +189,7 @@ mumps
 
     #[test]
     fn unknown_numbers_are_dashes() {
-        assert_eq!(fixed(Some(2.71828), 2), "2.72");
+        assert_eq!(fixed(Some(2.7549), 2), "2.75");
         assert_eq!(fixed(Some(f64::NAN), 2), "–");
         assert_eq!(scientific(Some(1.23e-9)), "1.2e-9");
         assert_eq!(scientific(None) + &count(None) + &count(Some(3)), "––3");

@@ -121,6 +121,16 @@ fn logarithmic(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
         &[1]
     };
     let every = (decades / wanted.max(1) as f64).ceil().max(1.0) as i32;
+    // Either all labels are plain numbers or all are powers.
+    let plain = low > 0.9e-3 && high < 1.1e4;
+    let label = |m: u32, power: i32| {
+        let exponent = power.to_string().replace('-', "−");
+        match m {
+            _ if plain => number(f64::from(m) * 10f64.powi(power)),
+            1 => format!("10^{{{exponent}}}"),
+            m => format!("{m}·10^{{{exponent}}}"),
+        }
+    };
     let mut out = Vec::new();
     for power in first..=last {
         for m in 1..10 {
@@ -134,7 +144,11 @@ fn logarithmic(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
             }
             out.push(Tick {
                 at,
-                label: if wordy { number(at) } else { String::new() },
+                label: if wordy {
+                    label(m, power)
+                } else {
+                    String::new()
+                },
             });
         }
     }
@@ -209,7 +223,7 @@ mod tests {
             ["10^{−9}", "10^{−8}", "10^{−7}", "10^{−6}", "10^{−5}"]
         );
         let many = ticks(1e-12, 1e12, Scale::Log, 6);
-        assert!(labels(&many).len() <= 7 && labels(&many).contains(&"1"));
+        assert!(labels(&many).len() <= 7 && labels(&many).contains(&"10^{0}"));
     }
 
     #[test]
