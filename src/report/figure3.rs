@@ -85,18 +85,8 @@ fn panel(family: Family, rows: &[Table1Row]) -> Panel {
     };
     let (blue, red) = (Colour::CYCLE[0], Colour::CYCLE[1]);
     let (light_blue, light_red) = (Colour::CYCLE[5], Colour::CYCLE[4]);
+    // The paper's hollow markers come first: ours fill them where both agree.
     let series = vec![
-        Series::new(
-            "(I) ours, M_{D}",
-            ours(|r| with_m_d(&r.whole_interface)),
-            blue,
-        )
-        .marker(Marker::Circle, true, 3.4),
-        Series::new("(II) ours, M_{D}", ours(|r| with_m_d(&r.middle_third)), red).marker(
-            Marker::Square,
-            true,
-            3.4,
-        ),
         Series::new(
             "(I) paper, M_{D}",
             printed
@@ -117,6 +107,17 @@ fn panel(family: Family, rows: &[Table1Row]) -> Panel {
         )
         .marker(Marker::Square, false, 6.5)
         .line(Line::None),
+        Series::new(
+            "(I) ours, M_{D}",
+            ours(|r| with_m_d(&r.whole_interface)),
+            blue,
+        )
+        .marker(Marker::Circle, true, 3.4),
+        Series::new("(II) ours, M_{D}", ours(|r| with_m_d(&r.middle_third)), red).marker(
+            Marker::Square,
+            true,
+            3.4,
+        ),
         Series::new(
             "(I) ours, M_{C}",
             ours(|r| with_m_c(&r.whole_interface)),
@@ -167,7 +168,7 @@ mod tests {
         let lengths: Vec<usize> = figure
             .panels
             .iter()
-            .map(|p| p.series[0].points.len())
+            .map(|p| p.series[2].points.len())
             .collect();
         assert_eq!(lengths, [6, 9, 7]);
         for panel in &figure.panels {
@@ -178,7 +179,7 @@ mod tests {
             assert!(panel.series[0].points.windows(2).all(|w| w[0].0 < w[1].0));
         }
         assert_eq!(
-            figure.panels[1].series[3].points.last(),
+            figure.panels[1].series[1].points.last(),
             Some(&(18.0, 16.4836))
         );
     }
@@ -189,11 +190,11 @@ mod tests {
         let lengths: Vec<usize> = figure
             .panels
             .iter()
-            .map(|p| p.series[0].points.len())
+            .map(|p| p.series[2].points.len())
             .collect();
         assert_eq!(lengths, [0, 1, 0]);
         assert_eq!(
-            figure.panels[2].series[2].points.len(),
+            figure.panels[2].series[0].points.len(),
             7,
             "the paper's points are always there"
         );
