@@ -1,1 +1,29 @@
-//! (to be written)
+//! Results for people and programs: JSON, terminal tables, CSV, plots (PNG and SVG), pictures of fields, VTU for ParaView.
+//!
+//! Nothing here knows PETSc, MPI or the method: every function takes plain arrays or the structs of [`json`]. All files are
+//! written to a temporary name first and then renamed, so that a reader never sees half a file.
+//!
+//! | module | what it writes |
+//! |---|---|
+//! | [`json`] | the records of `solve`, `table1` and `compare` ([`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`]) |
+//! | [`table`], [`summary`] | aligned text for terminals, CSV, and the tables of the three commands |
+//! | [`paper`] | Table 1 of Lee (2010) as printed |
+//! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
+//! | [`field`] | pictures of u and ρ on quadrilaterals |
+//! | [`vtu`] | ParaView files |
+
+pub mod canvas;
+pub mod colormap;
+pub mod field;
+pub mod figure3;
+pub mod json;
+mod outline;
+pub mod output;
+pub mod paper;
+pub mod plot;
+pub mod raster;
+pub mod summary;
+pub mod svg;
+pub mod table;
+pub mod ticks;
+pub mod vtu;

@@ -1,0 +1,67 @@
+# From a fresh Debian 12 machine to pictures: make run.  To green tests: make test.
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.PHONY: help setup build run test fmt lint docs clean
+
+OUT ?= out
+TARGET := $(if $(CARGO_TARGET_DIR),$(CARGO_TARGET_DIR),target)
+FETIFETI := $(TARGET)/release/fetifeti
+
+# rustup's toolchain comes first where there is one.
+export PATH := $(if $(wildcard $(HOME)/.cargo/bin),$(HOME)/.cargo/bin:)$(PATH)
+
+# Open MPI: more ranks than cores are wanted (PCBDDC takes one subdomain per rank), so idle ranks must yield and none may be
+# pinned to a core. Copies through the kernel are forbidden in most containers and only cost messages there.
+export OMPI_MCA_rmaps_base_oversubscribe = 1
+export OMPI_MCA_mpi_yield_when_idle = 1
+export OMPI_MCA_hwloc_base_binding_policy = none
+export OMPI_MCA_btl_vader_single_copy_mechanism = none
+ifeq ($(shell id -u),0)
+export OMPI_ALLOW_RUN_AS_ROOT = 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM = 1
+endif
+
+# The parallelism is over subdomains and ranks: BLAS gets one thread.
+export OMP_NUM_THREADS ?= 1
+export OMP_THREAD_LIMIT ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+help: ## Say what can be made
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s%s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+setup: ## Install the Debian packages that are missing
+	@scripts/setup.sh
+
+build: setup ## Build the program in release mode
+	cargo build --release
+
+run: build ## Solve the model problems, compare with PETSc's solvers, redo Table 1
+	@mkdir -p "$(OUT)"
+	$(FETIFETI) solve examples/scenes/poisson_2x2.toml --out "$(OUT)/poisson"
+	$(FETIFETI) compare examples/scenes/poisson_2x2.toml --json "$(OUT)/compare.json"
+	$(FETIFETI) table1 --out "$(OUT)/table1" --json "$(OUT)/table1/table1.json"
+	@echo
+	@echo "Solution of the 2x2 scene (report, picture, ParaView):  $(abspath $(OUT))/poisson"
+	@echo "Comparison with PETSc's solvers:                        $(abspath $(OUT))/compare.json"
+	@echo "Table 1 and Figure 3 (CSV, JSON, PNG, SVG):             $(abspath $(OUT))/table1"
+
+test: setup ## Check format, lints and documentation, then run every test
+	cargo fmt --all -- --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
+	cargo test --workspace --no-fail-fast
+
+fmt: ## Format the sources
+	cargo fmt --all
+
+lint: setup ## Check format and lints only
+	cargo fmt --all -- --check
+	cargo clippy --workspace --all-targets -- -D warnings
+
+docs: setup ## Build the documentation of the crate
+	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
+
+clean: ## Remove everything that was built or written
+	cargo clean
+	rm -rf "$(OUT)"

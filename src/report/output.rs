@@ -1,0 +1,210 @@
+//! Where results go: files written atomically, or standard output for the path `-`.
+
+use crate::{Error, Result};
+use std::fs;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes a file through `fill`, first to a temporary name beside it, then by a rename: a reader sees the old file or the
+/// complete new one. Missing directories are made. The path `-` is standard output; devices and pipes are written directly.
+///
+/// # Errors
+/// [`Error::Environment`], one sentence with the path, when the disk refuses; the old file is then untouched.
+pub fn write_file(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<()> {
+    let refused =
+        |e: std::io::Error| Error::Environment(format!("cannot write {}: {e}", shown(path)));
+    if is_stdout(path) {
+        let mut out = BufWriter::new(std::io::stdout().lock());
+        return fill(&mut out).and_then(|()| out.flush()).map_err(refused);
+    }
+    // A link keeps pointing where it points: the file behind it is replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    if let Ok(there) = fs::metadata(&target) {
+        if there.is_dir() {
+            return Err(Error::Environment(format!(
+                "cannot write {}: it is a directory, expected a file",
+                shown(path)
+            )));
+        }
+        if !there.is_file() {
+            // Renaming over /dev/null or a pipe would replace the device by a file.
+            let device = fs::OpenOptions::new()
+                .write(true)
+                .open(&target)
+                .map_err(refused)?;
+            let mut out = BufWriter::new(device);
+            return fill(&mut out).and_then(|()| out.flush()).map_err(refused);
+        }
+    }
+    if let Some(parent) = target.parent().filter(|p| !p.as_os_str().is_empty()) {
+        fs::create_dir_all(parent).map_err(refused)?;
+    }
+    let temporary = temporary_name(&target);
+    let written = fs::File::create(&temporary).and_then(|file| {
+        let mut out = BufWriter::new(file);
+        fill(&mut out)?;
+        out.flush()?;
+        drop(out);
+        fs::rename(&temporary, &target)
+    });
+    if written.is_err() {
+        let _ = fs::remove_file(&temporary);
+    }
+    written.map_err(refused)
+}
+
+/// [`write_file`] for text that is ready.
+///
+/// # Errors
+/// As [`write_file`].
+pub fn write_text(path: &Path, text: &str) -> Result<()> {
+    write_file(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// Makes a directory for results and proves, by writing and removing an empty file, that results can be written there:
+/// called before a long computation so that it does not end with a full result and no place to put it.
+///
+/// # Errors
+/// [`Error::Environment`] with the path.
+pub fn prepare_directory(path: &Path) -> Result<()> {
+    let refused = |e: std::io::Error| {
+        Error::Environment(format!(
+            "cannot write into the directory {}: {e}",
+            shown(path)
+        ))
+    };
+    fs::create_dir_all(path).map_err(refused)?;
+    let probe = temporary_name(&path.join("probe"));
+    fs::File::create(&probe).map_err(refused)?;
+    fs::remove_file(&probe).map_err(refused)
+}
+
+/// As [`prepare_directory`] for the directory of a result file; the path `-` needs nothing.
+///
+/// # Errors
+/// [`Error::Environment`] with the path.
+pub fn prepare_file(path: &Path) -> Result<()> {
+    if is_stdout(path) {
+        return Ok(());
+    }
+    match fs::metadata(path) {
+        Ok(there) if there.is_dir() => {
+            return Err(Error::Environment(format!(
+                "cannot write {}: it is a directory, expected a file",
+                shown(path)
+            )))
+        }
+        Ok(there) if !there.is_file() => return Ok(()),
+        _ => {}
+    }
+    match path.parent().filter(|p| !p.as_os_str().is_empty()) {
+        Some(parent) => prepare_directory(parent),
+        None => prepare_directory(Path::new(".")),
+    }
+}
+
+/// Whether a path stands for standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+fn shown(path: &Path) -> String {
+    if is_stdout(path) {
+        "to standard output".to_string()
+    } else {
+        path.display().to_string()
+    }
+}
+
+fn temporary_name(target: &Path) -> PathBuf {
+    let name = target
+        .file_name()
+        .map(|n| n.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    target.with_file_name(format!(".{name}.{}.tmp", std::process::id()))
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A fresh directory that is removed again when the test ends.
+    pub(crate) struct Scratch(pub PathBuf);
+
+    impl Scratch {
+        pub(crate) fn new(name: &str) -> Self {
+            let dir = std::env::temp_dir().join(format!("fetifeti-{name}-{}", std::process::id()));
+            let _ = fs::remove_dir_all(&dir);
+            fs::create_dir_all(&dir).unwrap();
+            Scratch(dir)
+        }
+    }
+
+    impl Drop for Scratch {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn writes_replaces_and_leaves_nothing_behind() {
+        let dir = Scratch::new("output");
+        let path = dir.0.join("a/b/file.txt");
+        write_text(&path, "one").unwrap();
+        write_text(&path, "two").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "two");
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn failure_keeps_the_old_file() {
+        let dir = Scratch::new("output-keep");
+        let path = dir.0.join("file.txt");
+        write_text(&path, "old").unwrap();
+        let result = write_file(&path, |out| {
+            out.write_all(b"half")?;
+            Err(std::io::Error::other("the disk is full"))
+        });
+        let message = result.unwrap_err().to_string();
+        assert!(
+            message.contains("file.txt") && message.contains("disk is full"),
+            "{message}"
+        );
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(fs::read_dir(&dir.0).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn unwritable_places_are_environment_errors_with_the_path() {
+        let dir = Scratch::new("output-bad");
+        let file = dir.0.join("file");
+        write_text(&file, "x").unwrap();
+        // A file where a directory is needed, and a directory where a file is needed.
+        for bad in [file.join("below.json"), dir.0.clone()] {
+            for error in [
+                write_text(&bad, "x").unwrap_err(),
+                prepare_file(&bad).unwrap_err(),
+            ] {
+                assert_eq!(error.exit_code(), 3);
+                let message = error.to_string();
+                assert!(
+                    message.contains("output-bad") && !message.contains('\n'),
+                    "{message}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn devices_stay_devices() {
+        use std::os::unix::fs::FileTypeExt;
+        write_text(Path::new("/dev/null"), "x").unwrap();
+        assert!(fs::metadata("/dev/null")
+            .unwrap()
+            .file_type()
+            .is_char_device());
+    }
+}

@@ -1,0 +1,248 @@
+//! Axes: scales, ranges, and where the ticks go.
+
+/// How numbers become positions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal steps add.
+    Linear,
+    /// Equal steps multiply; only numbers > 0 are shown.
+    Log,
+}
+
+impl Scale {
+    /// The number on a ruler with equal marks.
+    pub fn forward(self, x: f64) -> f64 {
+        match self {
+            Scale::Linear => x,
+            Scale::Log => x.log10(),
+        }
+    }
+
+    /// Whether the number has a place on this scale.
+    pub fn shows(self, x: f64) -> bool {
+        x.is_finite() && (self == Scale::Linear || x > 0.0)
+    }
+}
+
+/// A tick: where and what is written there; minor ticks have no label.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tick {
+    /// The number.
+    pub at: f64,
+    /// Its text, empty for a minor tick.
+    pub label: String,
+}
+
+/// The smallest range that holds the numbers with some air; 0..1 (or 1..10) when there are none.
+pub fn range(values: impl Iterator<Item = f64>, scale: Scale) -> (f64, f64) {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for v in values.filter(|&v| scale.shows(v)) {
+        low = low.min(v);
+        high = high.max(v);
+    }
+    match scale {
+        _ if low > high && scale == Scale::Log => (1.0, 10.0),
+        _ if low > high => (0.0, 1.0),
+        Scale::Linear => {
+            let size = high - low;
+            let air = if size > 1e-12 * high.abs().max(low.abs()) {
+                0.05 * size
+            } else {
+                high.abs().max(1.0) * 0.5
+            };
+            // A range that nearly starts at zero starts at zero.
+            let from_zero = low >= 0.0 && low < 0.35 * high;
+            (if from_zero { 0.0 } else { low - air }, high + air)
+        }
+        Scale::Log => {
+            let air = if high > 1.0001 * low {
+                (high / low).powf(0.05)
+            } else {
+                2.0
+            };
+            (low / air, high * air)
+        }
+    }
+}
+
+/// Ticks for a range: about `wanted` labelled ones.
+pub fn ticks(low: f64, high: f64, scale: Scale, wanted: usize) -> Vec<Tick> {
+    match scale {
+        Scale::Linear => linear(low, high, wanted),
+        Scale::Log => logarithmic(low, high, wanted),
+    }
+}
+
+fn linear(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
+    let raw = (high - low) / wanted.max(1) as f64;
+    if raw.is_nan() || raw <= 0.0 || !raw.is_finite() {
+        return vec![Tick {
+            at: low,
+            label: number(low),
+        }];
+    }
+    let power = 10f64.powf(raw.log10().floor());
+    let step = power
+        * [1.0, 2.0, 2.5, 5.0, 10.0]
+            .into_iter()
+            .find(|m| m * power >= raw * 0.999)
+            .unwrap_or(10.0);
+    let first = (low / step - 1e-9).ceil() as i64;
+    let last = (high / step + 1e-9).floor() as i64;
+    let size = low.abs().max(high.abs());
+    let digits = (0..12).find(|&d| {
+        let scaled = step * 10f64.powi(d);
+        (scaled - scaled.round()).abs() < 1e-6 * scaled
+    });
+    (first..=last)
+        .map(|k| {
+            let at = k as f64 * step;
+            let label = match digits {
+                _ if k == 0 => "0".to_string(),
+                Some(d) if size < 1e5 && d <= 4 => {
+                    format!("{at:.0$}", d as usize).replace('-', "−")
+                }
+                _ => number(at),
+            };
+            Tick { at, label }
+        })
+        .collect()
+}
+
+fn logarithmic(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
+    let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+    let decades = high.log10() - low.log10();
+    // Few decades: 1, 2, 5 are labelled; many: every so many-th power of ten.
+    let labelled: &[u32] = if decades < 1.0 {
+        &[1, 2, 3, 5, 7]
+    } else if decades < 2.5 {
+        &[1, 2, 5]
+    } else {
+        &[1]
+    };
+    let every = (decades / wanted.max(1) as f64).ceil().max(1.0) as i32;
+    // Either all labels are plain numbers or all are powers.
+    let plain = low > 0.9e-3 && high < 1.1e4;
+    let label = |m: u32, power: i32| {
+        let exponent = power.to_string().replace('-', "−");
+        match m {
+            _ if plain => number(f64::from(m) * 10f64.powi(power)),
+            1 => format!("10^{{{exponent}}}"),
+            m => format!("{m}·10^{{{exponent}}}"),
+        }
+    };
+    let mut out = Vec::new();
+    for power in first..=last {
+        for m in 1..10 {
+            let at = f64::from(m) * 10f64.powi(power);
+            if at < low * (1.0 - 1e-9) || at > high * (1.0 + 1e-9) {
+                continue;
+            }
+            let wordy = labelled.contains(&m) && power.rem_euclid(every) == 0;
+            if !wordy && decades > 6.0 {
+                continue;
+            }
+            out.push(Tick {
+                at,
+                label: if wordy {
+                    label(m, power)
+                } else {
+                    String::new()
+                },
+            });
+        }
+    }
+    out
+}
+
+/// A number for a tick: plain between 0.001 and 100000, else as 2·10⁷.
+pub fn number(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_string();
+    }
+    if (1e-3..1e5).contains(&x.abs()) {
+        let digits = (3 - x.abs().log10().floor() as i32).clamp(0, 6) as usize;
+        let text = format!("{x:.digits$}");
+        let text = if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.')
+        } else {
+            &text
+        };
+        return text.replace('-', "−");
+    }
+    let text = format!("{x:.2e}");
+    let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+    let mantissa = mantissa
+        .trim_end_matches('0')
+        .trim_end_matches('.')
+        .replace('-', "−");
+    let power = power.replace('-', "−");
+    match mantissa.as_str() {
+        "1" => format!("10^{{{power}}}"),
+        "−1" => format!("−10^{{{power}}}"),
+        m => format!("{m}·10^{{{power}}}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(t: &[Tick]) -> Vec<&str> {
+        t.iter()
+            .filter(|t| !t.label.is_empty())
+            .map(|t| t.label.as_str())
+            .collect()
+    }
+
+    #[test]
+    fn linear_ticks_are_round() {
+        assert_eq!(
+            labels(&ticks(0.0, 44.0, Scale::Linear, 5)),
+            ["0", "10", "20", "30", "40"]
+        );
+        assert_eq!(
+            labels(&ticks(-0.8, 0.1, Scale::Linear, 4)),
+            ["−0.75", "−0.50", "−0.25", "0"]
+        );
+        assert_eq!(
+            labels(&ticks(0.0, 3e-7, Scale::Linear, 3)),
+            ["0", "10^{−7}", "2·10^{−7}", "3·10^{−7}"]
+        );
+        assert_eq!(ticks(2.0, 2.0, Scale::Linear, 3).len(), 1);
+    }
+
+    #[test]
+    fn log_ticks_are_decades_or_one_two_five() {
+        assert_eq!(
+            labels(&ticks(1.0, 50.0, Scale::Log, 5)),
+            ["1", "2", "5", "10", "20", "50"]
+        );
+        assert_eq!(
+            labels(&ticks(1e-9, 1e-5, Scale::Log, 5)),
+            ["10^{−9}", "10^{−8}", "10^{−7}", "10^{−6}", "10^{−5}"]
+        );
+        let many = ticks(1e-12, 1e12, Scale::Log, 6);
+        assert!(labels(&many).len() <= 7 && labels(&many).contains(&"10^{0}"));
+    }
+
+    #[test]
+    fn ranges_hold_the_data() {
+        assert_eq!(range([1.0, 41.0].into_iter(), Scale::Linear), (0.0, 43.0));
+        let (low, high) = range([f64::NAN, -1.0, 1.0, 100.0].into_iter(), Scale::Log);
+        assert!(low < 1.0 && low > 0.5 && high > 100.0 && high < 200.0);
+        let (low, high) = range([3.0, 3.0].into_iter(), Scale::Linear);
+        assert!(low < 3.0 && high > 3.0);
+        assert_eq!(range(std::iter::empty(), Scale::Linear), (0.0, 1.0));
+    }
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(number(0.25), "0.25");
+        assert_eq!(number(1.0 / 3.0), "0.3333");
+        assert_eq!(number(-20.0), "−20");
+        assert_eq!(number(1e6), "10^{6}");
+        assert_eq!(number(2.5e-7), "2.5·10^{−7}");
+        assert_eq!(number(12345.6), "12346");
+    }
+}
