@@ -1,1 +1,39 @@
-//! (to be written)
+//! The safe layer over PETSc and SLEPc, one file per class; names are PETSc's without the prefix.
+//!
+//! - A [`Session`] stands for an initialised PETSc. Every object keeps it alive, so nothing outlives `PetscFinalize`.
+//! - Objects are reference counted by PETSc: `clone` counts up, `drop` counts down.
+//! - PETSc owns what a shell ([`ShellMat`], [`ShellPc`], [`ShellOp`]) captures and drops it with the object.
+//! - An error or a panic in a callback travels through PETSc's C frames as an error code and comes out of the outer
+//!   call ([`Ksp::solve`], [`Mat::mult`], …) as the original Rust error.
+//! - Nothing here is `Send`: PETSc is not thread safe.
+
+#[macro_use]
+mod error;
+mod citations;
+mod eps;
+mod handle;
+mod is;
+mod ksp;
+mod log;
+mod mat;
+mod matis;
+mod options;
+mod pc;
+mod scatter;
+mod session;
+mod shell;
+pub mod testing;
+mod vec;
+
+pub use citations::cite;
+pub use eps::{extreme_eigenvalues, Eps, ProblemType, Which};
+pub use is::Is;
+pub use ksp::{ConvergedReason, Ksp, NormType};
+pub use log::{Event, Scope, Stage};
+pub use mat::{Mat, MatFlag};
+pub use options::Options;
+pub use pc::Pc;
+pub use scatter::Scatter;
+pub use session::{max_memory, Comm, Session};
+pub use shell::{ShellMat, ShellOp, ShellPc};
+pub use vec::{Array, ArrayMut, Vec};

@@ -1,1 +1,53 @@
-//! Raw bindings.
+//! Raw bindings to the part of PETSc and SLEPc that fetifeti uses.
+//!
+//! Names and meaning are PETSc's own; `ff_*` functions come from `shim.c` and stand for macros, inline functions and
+//! things that differ between PETSc 3.18 and 3.26. The safe layer is `fetifeti::petsc`.
+#![allow(
+    non_camel_case_types,
+    non_snake_case,
+    non_upper_case_globals,
+    clippy::all
+)]
+
+pub use mpi::ffi::MPI_Comm;
+use std::os::raw::c_int;
+
+/// An MPI count or rank.
+pub type PetscMPIInt = c_int;
+/// PETSc's error code: an int in 3.18, an enum of the same size later.
+pub type PetscErrorCode = c_int;
+
+include!(concat!(env!("OUT_DIR"), "/bindings.rs"));
+
+/// PETSc chooses the value.
+pub const PETSC_DECIDE: c_int = -1;
+/// PETSc computes the value.
+pub const PETSC_DETERMINE: c_int = -1;
+/// Keep the present or the default value.
+pub const PETSC_DEFAULT: c_int = -2;
+
+/// A truth value of PETSc: a four-byte enum up to 3.23, one byte from 3.24.
+pub trait Flag: Copy {
+    /// From a Rust truth value.
+    fn of(value: bool) -> Self;
+    /// To a Rust truth value.
+    fn get(self) -> bool;
+}
+
+impl Flag for bool {
+    fn of(value: bool) -> Self {
+        value
+    }
+    fn get(self) -> bool {
+        self
+    }
+}
+
+impl Flag for std::os::raw::c_uint {
+    fn of(value: bool) -> Self {
+        value.into()
+    }
+    fn get(self) -> bool {
+        self != 0
+    }
+}

@@ -1,0 +1,252 @@
+//! Eigenvalue solvers (SLEPc).
+
+use super::error::{c_string, rust_string};
+use super::handle::Handle;
+use super::{Comm, ConvergedReason, Mat, Session, ShellOp, Vec};
+use crate::{Error, Result};
+use petsc_sys as sys;
+use petsc_sys::Flag;
+
+/// The kind of eigenvalue problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProblemType {
+    /// A x = θ x, A symmetric.
+    Hep,
+    /// A x = θ B x, A symmetric, B symmetric positive (semi)definite.
+    Ghep,
+    /// A x = θ x, A general.
+    Nhep,
+    /// A x = θ B x, both symmetric, B indefinite.
+    Ghiep,
+}
+
+/// The end of the spectrum that is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Which {
+    /// Largest |θ|.
+    LargestMagnitude,
+    /// Smallest |θ|.
+    SmallestMagnitude,
+    /// Largest θ.
+    LargestReal,
+    /// Smallest θ.
+    SmallestReal,
+}
+
+/// An eigenvalue solver. Clones are handles to the same solver.
+#[derive(Clone)]
+pub struct Eps(pub(super) Handle<sys::_p_EPS>);
+
+impl Eps {
+    /// A solver without operators. The first one initialises SLEPc. Collective.
+    pub fn new(session: &Session, comm: Comm) -> Result<Eps> {
+        session.need_slepc()?;
+        let mut raw = std::ptr::null_mut();
+        petsc!(EPSCreate(session.raw_comm(comm), &mut raw))?;
+        Ok(Eps(Handle::own(raw, session)))
+    }
+
+    /// A, and B for a generalised problem.
+    pub fn set_operators(&self, a: &Mat, b: Option<&Mat>) -> Result<()> {
+        let b = b.map_or(std::ptr::null_mut(), Mat::raw);
+        petsc!(EPSSetOperators(self.0.raw(), a.raw(), b))
+    }
+
+    /// The kind of problem.
+    pub fn set_problem_type(&self, kind: ProblemType) -> Result<()> {
+        let kind = match kind {
+            ProblemType::Hep => sys::EPS_HEP,
+            ProblemType::Ghep => sys::EPS_GHEP,
+            ProblemType::Nhep => sys::EPS_NHEP,
+            ProblemType::Ghiep => sys::EPS_GHIEP,
+        };
+        petsc!(EPSSetProblemType(self.0.raw(), kind))
+    }
+
+    /// The method by SLEPc's name (`"krylovschur"` is the default).
+    pub fn set_type(&self, name: &str) -> Result<()> {
+        petsc!(EPSSetType(self.0.raw(), c_string(name).as_ptr()))
+    }
+
+    /// The end of the spectrum that is wanted.
+    pub fn set_which(&self, which: Which) -> Result<()> {
+        let which = match which {
+            Which::LargestMagnitude => sys::EPS_LARGEST_MAGNITUDE,
+            Which::SmallestMagnitude => sys::EPS_SMALLEST_MAGNITUDE,
+            Which::LargestReal => sys::EPS_LARGEST_REAL,
+            Which::SmallestReal => sys::EPS_SMALLEST_REAL,
+        };
+        petsc!(EPSSetWhichEigenpairs(self.0.raw(), which))
+    }
+
+    /// Number of wanted eigenvalues and, if given, the size of the search space.
+    pub fn set_dimensions(&self, nev: usize, ncv: Option<usize>) -> Result<()> {
+        petsc!(EPSSetDimensions(
+            self.0.raw(),
+            nev as i32,
+            ncv.map_or(sys::PETSC_DEFAULT, |n| n as i32),
+            sys::PETSC_DEFAULT
+        ))
+    }
+
+    /// Relative tolerance, and the largest number of restarts if given.
+    pub fn set_tolerances(&self, tol: f64, max_it: Option<usize>) -> Result<()> {
+        petsc!(EPSSetTolerances(
+            self.0.raw(),
+            tol,
+            max_it.map_or(sys::PETSC_DEFAULT, |n| n as i32)
+        ))
+    }
+
+    /// Keeps the search orthogonal to these vectors (in the problem's inner product).
+    pub fn set_deflation_space(&self, vectors: &[Vec]) -> Result<()> {
+        let mut raw = readable(vectors)?;
+        petsc!(EPSSetDeflationSpace(
+            self.0.raw(),
+            raw.len() as i32,
+            raw.as_mut_ptr()
+        ))
+    }
+
+    /// Starts the search from these vectors.
+    pub fn set_initial_space(&self, vectors: &[Vec]) -> Result<()> {
+        let mut raw = readable(vectors)?;
+        petsc!(EPSSetInitialSpace(
+            self.0.raw(),
+            raw.len() as i32,
+            raw.as_mut_ptr()
+        ))
+    }
+
+    /// Apply the operator once more to computed eigenvectors (SLEPc does so for generalised problems by default).
+    pub fn set_purify(&self, on: bool) -> Result<()> {
+        petsc!(EPSSetPurify(self.0.raw(), Flag::of(on)))
+    }
+
+    /// The prefix of this solver's options, without a dash.
+    pub fn set_options_prefix(&self, prefix: &str) -> Result<()> {
+        petsc!(EPSSetOptionsPrefix(
+            self.0.raw(),
+            c_string(prefix).as_ptr()
+        ))
+    }
+
+    /// Reads the options of this solver.
+    pub fn set_from_options(&self) -> Result<()> {
+        petsc!(EPSSetFromOptions(self.0.raw()))
+    }
+
+    /// Computes; ask [`Eps::converged`] how many eigenvalues came out. Collective.
+    ///
+    /// # Errors
+    /// The error of a shell operator if one failed; else SLEPc's.
+    pub fn solve(&self) -> Result<()> {
+        petsc!(EPSSolve(self.0.raw()))
+    }
+
+    /// Number of converged eigenvalues.
+    pub fn converged(&self) -> Result<usize> {
+        let mut n = 0;
+        petsc!(EPSGetConverged(self.0.raw(), &mut n))?;
+        Ok(n as usize)
+    }
+
+    /// Why the last solve stopped.
+    pub fn converged_reason(&self) -> Result<ConvergedReason> {
+        let mut code = 0;
+        petsc!(EPSGetConvergedReason(self.0.raw(), &mut code))?;
+        // SAFETY: SLEPc's table is indexed by the code, from the smallest (negative) one up.
+        let name = unsafe { rust_string(*sys::EPSConvergedReasons.offset(code as isize)) };
+        Ok(ConvergedReason { code, name })
+    }
+
+    /// Restarts of the last solve.
+    pub fn iterations(&self) -> Result<usize> {
+        let mut n = 0;
+        petsc!(EPSGetIterationNumber(self.0.raw(), &mut n))?;
+        Ok(n as usize)
+    }
+
+    /// Real part of the i-th converged eigenvalue, the most wanted first.
+    pub fn eigenvalue(&self, i: usize) -> Result<f64> {
+        let (mut re, mut im) = (0.0, 0.0);
+        petsc!(EPSGetEigenvalue(
+            self.0.raw(),
+            i as i32,
+            &mut re,
+            &mut im
+        ))?;
+        Ok(re)
+    }
+
+    /// Writes the (real part of the) i-th eigenvector.
+    pub fn eigenvector(&self, i: usize, x: &Vec) -> Result<()> {
+        let x = x.write()?;
+        petsc!(EPSGetEigenvector(
+            self.0.raw(),
+            i as i32,
+            x,
+            std::ptr::null_mut()
+        ))
+    }
+
+    /// SLEPc's estimate of the relative error of the i-th eigenvalue.
+    pub fn error_estimate(&self, i: usize) -> Result<f64> {
+        let mut error = 0.0;
+        petsc!(EPSGetErrorEstimate(self.0.raw(), i as i32, &mut error))?;
+        Ok(error)
+    }
+}
+
+fn readable(vectors: &[Vec]) -> Result<std::vec::Vec<sys::Vec>> {
+    vectors.iter().map(Vec::read).collect()
+}
+
+struct Product {
+    a: Mat,
+    c: Mat,
+    ax: Vec,
+}
+
+impl ShellOp for Product {
+    fn apply(&self, x: &Vec, y: &Vec) -> Result<()> {
+        self.a.mult(x, &self.ax)?;
+        self.c.mult(&self.ax, y)
+    }
+}
+
+/// The smallest and the largest non-zero eigenvalue of C A.
+pub fn extreme_eigenvalues(
+    session: &Session,
+    a: &Mat,
+    c: &Mat,
+    start: &Vec,
+    tol: f64,
+    prefix: &str,
+) -> Result<(f64, f64)> {
+    let one = |which| {
+        let eps = Eps::new(session, Comm::World)?;
+        eps.set_operators(a, Some(a))?;
+        eps.set_problem_type(ProblemType::Ghep)?;
+        eps.set_which(which)?;
+        eps.set_dimensions(1, None)?;
+        eps.set_tolerances(tol, Some(1000))?;
+        eps.set_initial_space(std::slice::from_ref(start))?;
+        eps.set_st_shell(Box::new(Product {
+            a: a.clone(),
+            c: c.clone(),
+            ax: a.left_vec()?,
+        }))?;
+        eps.set_options_prefix(prefix)?;
+        eps.set_from_options()?;
+        eps.solve()?;
+        if eps.converged()? == 0 {
+            return Err(Error::NotConverged(format!(
+                "The extreme eigenvalues did not converge: {}.",
+                eps.converged_reason()?.name
+            )));
+        }
+        eps.eigenvalue(0)
+    };
+    Ok((one(Which::SmallestReal)?, one(Which::LargestReal)?))
+}

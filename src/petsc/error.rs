@@ -1,0 +1,139 @@
+//! How failures cross the border between Rust and C, in both directions.
+//!
+//! From C: PETSc's error handler is replaced by one that collects the frames, and [`check`] turns a code into
+//! [`Error::Petsc`] with that trace. To C: [`guard`] runs a callback, keeps its error or panic in a slot of this
+//! thread and gives PETSc a code; the call that started it all finds the slot filled and returns what is in it.
+
+use crate::{Error, Result};
+use petsc_sys as sys;
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::ffi::{c_char, c_int, CStr, CString};
+use std::panic::{catch_unwind, AssertUnwindSafe};
+
+thread_local! {
+    /// The first error of a callback that PETSc is carrying out as a code.
+    static PENDING: RefCell<Option<Error>> = const { RefCell::new(None) };
+    /// PETSc's frames for the present error, innermost first.
+    static TRACE: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+    /// A call failed on this rank and the other ranks may not know.
+    static FAILED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Calls a PETSc function and turns its code into a `Result`.
+///
+/// The macro holds the `unsafe` of the whole layer in one place. Whoever writes a call owes: handles that are alive
+/// (they come from [`Handle`](super::handle::Handle)s in scope), out-pointers to live locals, and slices whose lengths are the ones passed.
+macro_rules! petsc {
+    ($function:ident ( $($argument:expr),* $(,)? )) => {
+        // SAFETY: see the macro's documentation; arguments are valid for the duration of the call.
+        $crate::petsc::error::check(unsafe { petsc_sys::$function($($argument),*) }, stringify!($function))
+    };
+}
+
+/// `Ok` for code 0; else the error that a callback left behind, or PETSc's own with its trace.
+pub(crate) fn check(code: c_int, call: &'static str) -> Result<()> {
+    if code == 0 {
+        return Ok(());
+    }
+    FAILED.set(true);
+    let trace = TRACE.take();
+    Err(PENDING
+        .take()
+        .unwrap_or(Error::Petsc { code, call, trace }))
+}
+
+/// Did a PETSc call fail on this rank without the other ranks having been told?
+pub(crate) fn failed() -> bool {
+    FAILED.get()
+}
+
+/// The ranks agreed on what happened: objects may be destroyed collectively again.
+pub(crate) fn settled() {
+    FAILED.set(false);
+}
+
+/// Runs a callback for PETSc: no unwinding crosses C, and the error is kept for the outer call.
+pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_int {
+    let error = match catch_unwind(AssertUnwindSafe(body)) {
+        Ok(Ok(())) => return 0,
+        Ok(Err(error)) => error,
+        Err(payload) => panicked(what, payload.as_ref()),
+    };
+    let code = match &error {
+        Error::Petsc { code, .. } => *code,
+        _ => sys::PETSC_ERR_LIB as c_int,
+    };
+    let message = c_string(&error.to_string());
+    let function = c_string(what);
+    PENDING.with_borrow_mut(|slot| slot.get_or_insert(error).exit_code());
+    // SAFETY: the strings live until the call returns; PetscError copies what it keeps.
+    unsafe {
+        sys::ff_error(
+            sys::ff_comm_self(),
+            line!() as c_int,
+            function.as_ptr(),
+            c"callback".as_ptr(),
+            code,
+            message.as_ptr(),
+        )
+    }
+}
+
+/// The error that stands for a panic.
+pub(crate) fn panicked(what: &str, payload: &(dyn Any + Send)) -> Error {
+    let text = payload
+        .downcast_ref::<&str>()
+        .map(|s| s.to_string())
+        .or_else(|| payload.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "no message".into());
+    Error::Environment(format!("Internal error: {what} panicked: {text}"))
+}
+
+/// A C string; a NUL inside the text ends it, which only shortens a message or a name.
+pub(crate) fn c_string(text: &str) -> CString {
+    let end = text.find('\0').unwrap_or(text.len());
+    CString::new(&text[..end]).expect("the text was cut before its first NUL")
+}
+
+/// A Rust string from PETSc's, empty for NULL.
+pub(crate) fn rust_string(text: *const c_char) -> String {
+    if text.is_null() {
+        return String::new();
+    }
+    // SAFETY: PETSc hands out NUL-terminated strings that live at least until the next call.
+    unsafe { CStr::from_ptr(text) }
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// Collects the frames of PETSc's errors on this thread instead of letting PETSc print them.
+pub(crate) fn collect_traces() -> Result<()> {
+    petsc!(ff_push_error_handler(Some(frame)))
+}
+
+/// One frame of an error: the first carries the message.
+unsafe extern "C" fn frame(
+    line: c_int,
+    function: *const c_char,
+    file: *const c_char,
+    _code: c_int,
+    initial: c_int,
+    message: *const c_char,
+) {
+    let entry = format!(
+        "{}() at {}:{line}",
+        rust_string(function),
+        rust_string(file)
+    );
+    // `try_with`: an error during thread exit has nowhere to go and must not panic here.
+    let _ = TRACE.try_with(|trace| {
+        if let Ok(mut trace) = trace.try_borrow_mut() {
+            if initial != 0 {
+                trace.clear();
+                trace.push(rust_string(message).trim_end().to_string());
+            }
+            trace.push(entry);
+        }
+    });
+}

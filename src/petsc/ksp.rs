@@ -1,0 +1,273 @@
+//! Krylov solvers.
+
+use super::error::{c_string, rust_string};
+use super::handle::Handle;
+use super::{Comm, Mat, Pc, Session, Vec};
+use crate::Result;
+use petsc_sys as sys;
+use petsc_sys::Flag;
+
+/// The residual norm that convergence is judged by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NormType {
+    /// None: run a fixed number of iterations.
+    None,
+    /// ‖M⁻¹ r‖.
+    Preconditioned,
+    /// ‖r‖.
+    Unpreconditioned,
+    /// √(rᵀ M⁻¹ r).
+    Natural,
+}
+
+/// Why a solver stopped.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ConvergedReason {
+    /// PETSc's number: positive for convergence, negative for divergence, 0 while iterating.
+    pub code: i32,
+    /// PETSc's name, such as `CONVERGED_RTOL`.
+    pub name: String,
+}
+
+impl ConvergedReason {
+    /// Did the solver converge?
+    pub fn converged(&self) -> bool {
+        self.code > 0
+    }
+}
+
+/// A linear solver. Clones are handles to the same solver.
+#[derive(Clone)]
+pub struct Ksp(Handle<sys::_p_KSP>);
+
+impl Ksp {
+    /// A solver without operators. Collective.
+    pub fn new(session: &Session, comm: Comm) -> Result<Ksp> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(KSPCreate(session.raw_comm(comm), &mut raw))?;
+        Ok(Ksp(Handle::own(raw, session)))
+    }
+
+    pub(crate) fn raw(&self) -> sys::KSP {
+        self.0.raw()
+    }
+
+    /// The operator of the system and the matrix that the preconditioner is built from.
+    pub fn set_operators(&self, a: &Mat, p: &Mat) -> Result<()> {
+        petsc!(KSPSetOperators(self.raw(), a.raw(), p.raw()))
+    }
+
+    /// The operator of the system.
+    pub fn operator(&self) -> Result<Mat> {
+        let mut a = std::ptr::null_mut();
+        petsc!(KSPGetOperators(self.raw(), &mut a, std::ptr::null_mut()))?;
+        Mat::share(a, self.0.session())
+    }
+
+    /// Sets the type by PETSc's name (`"cg"`, `"preonly"`, `"fetidp"`, …).
+    pub fn set_type(&self, name: &str) -> Result<()> {
+        petsc!(KSPSetType(self.raw(), c_string(name).as_ptr()))
+    }
+
+    /// The type's name; empty where none is set.
+    pub fn type_name(&self) -> Result<String> {
+        let mut name = std::ptr::null();
+        petsc!(KSPGetType(self.raw(), &mut name))?;
+        Ok(rust_string(name))
+    }
+
+    /// Relative, absolute and divergence tolerance and the largest number of iterations; `None` keeps what is set.
+    pub fn set_tolerances(
+        &self,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        dtol: Option<f64>,
+        max_it: Option<usize>,
+    ) -> Result<()> {
+        let or = |value: Option<f64>| value.unwrap_or(sys::PETSC_DEFAULT as f64);
+        petsc!(KSPSetTolerances(
+            self.raw(),
+            or(rtol),
+            or(atol),
+            or(dtol),
+            max_it.map_or(sys::PETSC_DEFAULT, |n| n.min(i32::MAX as usize) as i32)
+        ))
+    }
+
+    /// (rtol, atol, dtol, max_it) as set now, options included.
+    pub fn tolerances(&self) -> Result<(f64, f64, f64, usize)> {
+        let (mut rtol, mut atol, mut dtol, mut max_it) = (0.0, 0.0, 0.0, 0);
+        petsc!(KSPGetTolerances(
+            self.raw(),
+            &mut rtol,
+            &mut atol,
+            &mut dtol,
+            &mut max_it
+        ))?;
+        Ok((rtol, atol, dtol, max_it as usize))
+    }
+
+    /// The norm that convergence is judged by.
+    pub fn set_norm_type(&self, norm: NormType) -> Result<()> {
+        let norm = match norm {
+            NormType::None => sys::KSP_NORM_NONE,
+            NormType::Preconditioned => sys::KSP_NORM_PRECONDITIONED,
+            NormType::Unpreconditioned => sys::KSP_NORM_UNPRECONDITIONED,
+            NormType::Natural => sys::KSP_NORM_NATURAL,
+        };
+        petsc!(KSPSetNormType(self.raw(), norm))
+    }
+
+    /// Keep what [`Ksp::eigenvalues`] needs.
+    pub fn set_compute_eigenvalues(&self, on: bool) -> Result<()> {
+        petsc!(KSPSetComputeEigenvalues(self.raw(), Flag::of(on)))
+    }
+
+    /// Keep what [`Ksp::extreme_singular_values`] needs.
+    pub fn set_compute_singular_values(&self, on: bool) -> Result<()> {
+        petsc!(KSPSetComputeSingularValues(self.raw(), Flag::of(on)))
+    }
+
+    /// Start from what the solution vector holds instead of zero.
+    pub fn set_initial_guess_nonzero(&self, on: bool) -> Result<()> {
+        petsc!(KSPSetInitialGuessNonzero(self.raw(), Flag::of(on)))
+    }
+
+    /// Keep the preconditioner although the matrix has changed.
+    pub fn set_reuse_preconditioner(&self, on: bool) -> Result<()> {
+        petsc!(KSPSetReusePreconditioner(self.raw(), Flag::of(on)))
+    }
+
+    /// The prefix of this solver's options, without a dash.
+    pub fn set_options_prefix(&self, prefix: &str) -> Result<()> {
+        petsc!(KSPSetOptionsPrefix(self.raw(), c_string(prefix).as_ptr()))
+    }
+
+    /// Appends to the prefix.
+    pub fn append_options_prefix(&self, prefix: &str) -> Result<()> {
+        petsc!(KSPAppendOptionsPrefix(
+            self.raw(),
+            c_string(prefix).as_ptr()
+        ))
+    }
+
+    /// Reads the options of this solver and its preconditioner.
+    pub fn set_from_options(&self) -> Result<()> {
+        petsc!(KSPSetFromOptions(self.raw()))
+    }
+
+    /// Builds what the solver and its preconditioner need. Collective.
+    pub fn setup(&self) -> Result<()> {
+        petsc!(KSPSetUp(self.raw()))
+    }
+
+    /// Solves A x = b; ask [`Ksp::converged_reason`] whether it did. Collective.
+    ///
+    /// # Errors
+    /// The error of a shell operator or preconditioner if one failed; else PETSc's. Divergence is no error.
+    pub fn solve(&self, b: &Vec, x: &Vec) -> Result<()> {
+        let (b, x) = (b.read()?, x.write()?);
+        petsc!(KSPSolve(self.raw(), b, x))
+    }
+
+    /// Forgets the operators and what was built from them.
+    pub fn reset(&self) -> Result<()> {
+        petsc!(KSPReset(self.raw()))
+    }
+
+    /// Why the last solve stopped.
+    pub fn converged_reason(&self) -> Result<ConvergedReason> {
+        let (mut code, mut name) = (0, std::ptr::null());
+        petsc!(KSPGetConvergedReason(self.raw(), &mut code))?;
+        petsc!(KSPGetConvergedReasonString(self.raw(), &mut name))?;
+        Ok(ConvergedReason {
+            code,
+            name: rust_string(name),
+        })
+    }
+
+    /// Iterations of the last solve.
+    pub fn iterations(&self) -> Result<usize> {
+        let mut n = 0;
+        petsc!(KSPGetIterationNumber(self.raw(), &mut n))?;
+        Ok(n as usize)
+    }
+
+    /// The last residual norm, of the kind that convergence is judged by.
+    pub fn residual_norm(&self) -> Result<f64> {
+        let mut norm = 0.0;
+        petsc!(KSPGetResidualNorm(self.raw(), &mut norm))?;
+        Ok(norm)
+    }
+
+    /// Record the residual norms of the next solve, up to `length` of them.
+    pub fn record_residuals(&self, length: usize) -> Result<()> {
+        petsc!(KSPSetResidualHistory(
+            self.raw(),
+            std::ptr::null_mut(),
+            length as _,
+            Flag::of(true)
+        ))
+    }
+
+    /// The residual norms of the last solve, the initial one first; empty unless [`Ksp::record_residuals`] was called.
+    pub fn residual_history(&self) -> Result<std::vec::Vec<f64>> {
+        let (mut data, mut n) = (std::ptr::null(), 0);
+        petsc!(KSPGetResidualHistory(self.raw(), &mut data, &mut n))?;
+        if data.is_null() || n == 0 {
+            return Ok(std::vec::Vec::new());
+        }
+        // SAFETY: PETSc keeps `n` norms until the next solve.
+        Ok(unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec())
+    }
+
+    /// (largest, smallest) singular value of the preconditioned operator as the last solve saw them.
+    pub fn extreme_singular_values(&self) -> Result<(f64, f64)> {
+        let (mut large, mut small) = (0.0, 0.0);
+        petsc!(KSPComputeExtremeSingularValues(
+            self.raw(),
+            &mut large,
+            &mut small
+        ))?;
+        Ok((large, small))
+    }
+
+    /// Real parts of the eigenvalues of the preconditioned operator as the last solve saw them, ascending for CG.
+    pub fn eigenvalues(&self) -> Result<std::vec::Vec<f64>> {
+        let n = self.iterations()?;
+        if n == 0 {
+            return Ok(std::vec::Vec::new());
+        }
+        let (mut re, mut im, mut found) = (vec![0.0; n], vec![0.0; n], 0);
+        petsc!(KSPComputeEigenvalues(
+            self.raw(),
+            n as i32,
+            re.as_mut_ptr(),
+            im.as_mut_ptr(),
+            &mut found
+        ))?;
+        re.truncate(found as usize);
+        Ok(re)
+    }
+
+    /// The preconditioner.
+    pub fn pc(&self) -> Result<Pc> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(KSPGetPC(self.raw(), &mut raw))?;
+        Ok(Pc(Handle::share(raw, self.0.session())?))
+    }
+
+    /// KSPFETIDP: the solver for the multipliers, which holds the iterations and the spectrum.
+    pub fn fetidp_inner_ksp(&self) -> Result<Ksp> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(KSPFETIDPGetInnerKSP(self.raw(), &mut raw))?;
+        Ok(Ksp(Handle::share(raw, self.0.session())?))
+    }
+
+    /// KSPFETIDP: the PCBDDC that it is built from.
+    pub fn fetidp_inner_bddc(&self) -> Result<Pc> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(KSPFETIDPGetInnerBDDC(self.raw(), &mut raw))?;
+        Ok(Pc(Handle::share(raw, self.0.session())?))
+    }
+}

@@ -1,0 +1,108 @@
+//! Events and stages of `-log_view`.
+
+use super::error::c_string;
+use super::Session;
+use crate::Result;
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+thread_local! {
+    /// What was registered on this thread: registering a name twice would list it twice.
+    static KNOWN: RefCell<HashMap<(bool, String), i32>> = RefCell::default();
+}
+
+fn register(stage: bool, name: &str, make: impl FnOnce() -> Result<i32>) -> Result<i32> {
+    let key = (stage, name.to_string());
+    if let Some(id) = KNOWN.with_borrow(|known| known.get(&key).copied()) {
+        return Ok(id);
+    }
+    let id = make()?;
+    KNOWN.with_borrow_mut(|known| known.insert(key, id));
+    Ok(id)
+}
+
+/// A kind of work that `-log_view` times, by name.
+#[derive(Debug, Clone, Copy)]
+pub struct Event(i32);
+
+impl Event {
+    /// The event of this name; the same one for the same name.
+    pub fn register(_session: &Session, name: &str) -> Result<Event> {
+        let class = register(false, "", || {
+            let mut id = 0;
+            petsc!(PetscClassIdRegister(c"fetifeti".as_ptr(), &mut id))?;
+            Ok(id)
+        })?;
+        let id = register(false, name, || {
+            let mut id = 0;
+            petsc!(PetscLogEventRegister(
+                c_string(name).as_ptr(),
+                class,
+                &mut id
+            ))?;
+            Ok(id)
+        })?;
+        Ok(Event(id))
+    }
+
+    /// Starts the clock.
+    pub fn begin(&self) -> Result<()> {
+        petsc!(ff_event_begin(self.0))
+    }
+
+    /// Stops the clock.
+    pub fn end(&self) -> Result<()> {
+        petsc!(ff_event_end(self.0))
+    }
+
+    /// Runs the clock until the guard is dropped.
+    pub fn scope(&self) -> Result<Scope> {
+        self.begin()?;
+        let event = *self;
+        Ok(Scope(Box::new(move || event.end())))
+    }
+}
+
+/// A phase of the program: `-log_view` has a table for each.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage(i32);
+
+impl Stage {
+    /// The stage of this name; the same one for the same name.
+    pub fn register(_session: &Session, name: &str) -> Result<Stage> {
+        let id = register(true, name, || {
+            let mut id = 0;
+            petsc!(PetscLogStageRegister(c_string(name).as_ptr(), &mut id))?;
+            Ok(id)
+        })?;
+        Ok(Stage(id))
+    }
+
+    /// Makes this the present stage.
+    pub fn push(&self) -> Result<()> {
+        petsc!(PetscLogStagePush(self.0))
+    }
+
+    /// Back to the stage before.
+    pub fn pop(&self) -> Result<()> {
+        petsc!(PetscLogStagePop())
+    }
+
+    /// Makes this the present stage until the guard is dropped.
+    pub fn scope(&self) -> Result<Scope> {
+        self.push()?;
+        let stage = *self;
+        Ok(Scope(Box::new(move || stage.pop())))
+    }
+}
+
+/// Ends an event or a stage when dropped.
+#[must_use = "the clock stops when the scope is dropped"]
+pub struct Scope(Box<dyn Fn() -> Result<()>>);
+
+impl Drop for Scope {
+    fn drop(&mut self) {
+        // A clock that cannot be stopped is no reason to fail.
+        let _ = (self.0)();
+    }
+}

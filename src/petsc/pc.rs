@@ -1,0 +1,73 @@
+//! Preconditioners.
+
+use super::error::{c_string, rust_string};
+use super::handle::Handle;
+use super::{Is, Vec};
+use crate::Result;
+use petsc_sys as sys;
+
+/// A preconditioner, usually that of a [`Ksp`](super::Ksp). [`Pc::set_shell`] makes one of Rust code.
+#[derive(Clone)]
+pub struct Pc(pub(super) Handle<sys::_p_PC>);
+
+impl Pc {
+    /// Sets the type by PETSc's name (`"none"`, `"cholesky"`, `"gamg"`, `"bddc"`, …).
+    pub fn set_type(&self, name: &str) -> Result<()> {
+        petsc!(PCSetType(self.0.raw(), c_string(name).as_ptr()))
+    }
+
+    /// The type's name; empty where none is set.
+    pub fn type_name(&self) -> Result<String> {
+        let mut name = std::ptr::null();
+        petsc!(PCGetType(self.0.raw(), &mut name))?;
+        Ok(rust_string(name))
+    }
+
+    /// The package of a factorisation (`"mumps"`, `"cholmod"`, …).
+    pub fn set_solver_type(&self, package: &str) -> Result<()> {
+        petsc!(PCFactorSetMatSolverType(
+            self.0.raw(),
+            c_string(package).as_ptr()
+        ))
+    }
+
+    /// Reads the options of this preconditioner.
+    pub fn set_from_options(&self) -> Result<()> {
+        petsc!(PCSetFromOptions(self.0.raw()))
+    }
+
+    /// Builds what the preconditioner needs. Collective.
+    pub fn setup(&self) -> Result<()> {
+        petsc!(PCSetUp(self.0.raw()))
+    }
+
+    /// y ← M⁻¹ x. Collective.
+    pub fn apply(&self, x: &Vec, y: &Vec) -> Result<()> {
+        let (x, y) = (x.read()?, y.write()?);
+        petsc!(PCApply(self.0.raw(), x, y))
+    }
+
+    /// PCBDDC: local dofs of this rank's subdomain with essential conditions. Collective.
+    pub fn bddc_set_dirichlet_local(&self, dofs: &Is) -> Result<()> {
+        petsc!(PCBDDCSetDirichletBoundariesLocal(
+            self.0.raw(),
+            dofs.0.raw()
+        ))
+    }
+
+    /// PCBDDC: local dofs of this rank's subdomain on the rest of the boundary. Collective.
+    pub fn bddc_set_neumann_local(&self, dofs: &Is) -> Result<()> {
+        petsc!(PCBDDCSetNeumannBoundariesLocal(
+            self.0.raw(),
+            dofs.0.raw()
+        ))
+    }
+
+    /// PCBDDC: local dofs that are primal beside those it finds itself. Collective.
+    pub fn bddc_set_primal_local(&self, dofs: &Is) -> Result<()> {
+        petsc!(PCBDDCSetPrimalVerticesLocalIS(
+            self.0.raw(),
+            dofs.0.raw()
+        ))
+    }
+}

@@ -1,0 +1,91 @@
+//! Moving chosen entries between a distributed and a local vector.
+
+use super::handle::Handle;
+use super::{Comm, Is, Vec};
+use crate::Result;
+use petsc_sys as sys;
+
+/// A plan that copies entries of one vector to another, and adds them back.
+#[derive(Clone)]
+pub struct Scatter(Handle<sys::_p_PetscSF>);
+
+impl Scatter {
+    /// Entry k of `to` (a vector of this rank alone) is entry `from_indices[k]` (global numbering) of `from`.
+    ///
+    /// Collective over the ranks of `from`; `to` has at least as many entries as there are indices.
+    pub fn new(from: &Vec, from_indices: &[i32], to: &Vec) -> Result<Scatter> {
+        let session = from.session();
+        let source = Is::general(session, Comm::Own, from_indices)?;
+        let first: std::vec::Vec<i32> = (0..from_indices.len() as i32).collect();
+        let target = Is::general(session, Comm::Own, &first)?;
+        let mut raw = std::ptr::null_mut();
+        petsc!(VecScatterCreate(
+            from.raw(),
+            source.0.raw(),
+            to.raw(),
+            target.0.raw(),
+            &mut raw
+        ))?;
+        Ok(Scatter(Handle::own(raw, session)))
+    }
+
+    /// to ← entries of from: starts the messages.
+    pub fn forward_begin(&self, from: &Vec, to: &Vec) -> Result<()> {
+        let (x, y) = (from.read()?, to.write()?);
+        petsc!(VecScatterBegin(
+            self.0.raw(),
+            x,
+            y,
+            sys::INSERT_VALUES,
+            sys::SCATTER_FORWARD
+        ))
+    }
+
+    /// Completes [`Scatter::forward_begin`].
+    pub fn forward_end(&self, from: &Vec, to: &Vec) -> Result<()> {
+        let (x, y) = (from.read()?, to.write()?);
+        petsc!(VecScatterEnd(
+            self.0.raw(),
+            x,
+            y,
+            sys::INSERT_VALUES,
+            sys::SCATTER_FORWARD
+        ))
+    }
+
+    /// to ← entries of from.
+    pub fn forward(&self, from: &Vec, to: &Vec) -> Result<()> {
+        self.forward_begin(from, to)?;
+        self.forward_end(from, to)
+    }
+
+    /// from ← from + entries of to, on every rank: starts the messages. (`local` is the `to` of [`Scatter::new`].)
+    pub fn reverse_add_begin(&self, local: &Vec, global: &Vec) -> Result<()> {
+        let (x, y) = (local.read()?, global.write()?);
+        petsc!(VecScatterBegin(
+            self.0.raw(),
+            x,
+            y,
+            sys::ADD_VALUES,
+            sys::SCATTER_REVERSE
+        ))
+    }
+
+    /// Completes [`Scatter::reverse_add_begin`].
+    pub fn reverse_add_end(&self, local: &Vec, global: &Vec) -> Result<()> {
+        let (x, y) = (local.read()?, global.write()?);
+        petsc!(VecScatterEnd(
+            self.0.raw(),
+            x,
+            y,
+            sys::ADD_VALUES,
+            sys::SCATTER_REVERSE
+        ))
+    }
+
+    /// global ← global + entries of local.
+    pub fn reverse_add(&self, local: &Vec, global: &Vec) -> Result<()> {
+        self.reverse_add_begin(local, global)?;
+        self.reverse_add_end(local, global)
+    }
+}

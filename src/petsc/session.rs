@@ -1,0 +1,381 @@
+//! An initialised PETSc: starting it, ending it, and failing on several ranks without a hang.
+
+use super::error::{c_string, collect_traces, panicked, settled};
+use crate::{Error, Result};
+use mpi::raw::FromRaw;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+use petsc_sys as sys;
+use petsc_sys::Flag;
+use std::cell::{Cell, RefCell};
+use std::collections::HashSet;
+use std::ffi::{c_char, c_int, c_void};
+use std::mem::{ManuallyDrop, MaybeUninit};
+use std::panic::{catch_unwind, AssertUnwindSafe};
+use std::ptr::{null, null_mut};
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+/// The ranks that share a new object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Comm {
+    /// All ranks of the session.
+    World,
+    /// This rank alone.
+    Own,
+}
+
+/// An initialised PETSc. Cheap to clone; the last clone (every PETSc object holds one) finalises PETSc if this
+/// session initialised it.
+#[derive(Clone)]
+pub struct Session(Rc<Inner>);
+
+struct Inner {
+    /// The communicator of [`Comm::World`] as PETSc gets it.
+    world: sys::MPI_Comm,
+    /// PETSc's inner communicator of `world`, held so that destroying the last object frees no communicator.
+    held: sys::MPI_Comm,
+    /// Ours for messages of the method, apart from PETSc's.
+    comm: ManuallyDrop<SimpleCommunicator>,
+    /// For [`Session::agree`].
+    agreement: ManuallyDrop<SimpleCommunicator>,
+    /// For the end of [`Session::run`] only: its one operation must not meet any other.
+    ending: ManuallyDrop<SimpleCommunicator>,
+    rank: usize,
+    size: usize,
+    /// We initialised PETSc, so we finalise it.
+    owned: bool,
+    /// We initialised SLEPc, so we finalise it.
+    began_slepc: Cell<bool>,
+    /// Options that `-help` has listed.
+    pub(super) listed: RefCell<HashSet<String>>,
+}
+
+impl Session {
+    /// Initialises PETSc (and MPI, unless the program did) with these command-line arguments, without the program's name.
+    ///
+    /// PETSc reads its options from `args`, PETSC_OPTIONS, `-options_file` and .petscrc; `help` is printed first under `-help`.
+    /// PETSc's printed stacks are replaced by [`Error::Petsc`], its signal handler is left out.
+    ///
+    /// # Errors
+    /// [`Error::Environment`] when PETSc is already initialised or finalised, is another version than the one compiled against,
+    /// or refuses to start.
+    pub fn new(args: &[String], help: &str) -> Result<Session> {
+        check_version()?;
+        let (mut begun, mut ended) = (Flag::of(false), Flag::of(false));
+        petsc!(PetscInitialized(&mut begun))?;
+        petsc!(PetscFinalized(&mut ended))?;
+        if begun.get() {
+            return Err(Error::environment(
+                "PETSc is already initialised: use Session::borrowed.",
+            ));
+        }
+        if ended.get() {
+            return Err(Error::environment(
+                "PETSc was finalised in this process and cannot start again.",
+            ));
+        }
+        // Rust reports panics and stack overflows itself. Options set before PetscInitialize are kept by it.
+        petsc!(PetscOptionsSetValue(
+            null_mut(),
+            c"-no_signal_handler".as_ptr(),
+            c"true".as_ptr()
+        ))?;
+        // PETSc and MPI keep pointers to the arguments until the end: they are leaked, once per process.
+        let mut argv: Vec<*mut c_char> = std::iter::once("fetifeti")
+            .chain(args.iter().map(String::as_str))
+            .map(|arg| c_string(arg).into_raw())
+            .collect();
+        let argc: &'static mut c_int = Box::leak(Box::new(argv.len() as c_int));
+        argv.push(null_mut());
+        let argv: &'static mut *mut *mut c_char =
+            Box::leak(Box::new(Box::leak(argv.into_boxed_slice()).as_mut_ptr()));
+        let help = c_string(help).into_raw();
+        petsc!(PetscInitialize(argc, argv, null(), help)).map_err(|e| {
+            Error::environment(format!("PETSc could not be initialised: {e}"))
+        })?;
+        collect_traces()?;
+        // SAFETY: PETSc is initialised, so PETSC_COMM_WORLD is valid until it is finalised.
+        let world = unsafe { sys::ff_comm_world() };
+        Session::on(world, true)
+    }
+
+    /// A session inside a program that initialised PETSc itself, on one of its communicators. PETSc is not finalised at the end
+    /// and its error handler stays the host's.
+    ///
+    /// `comm` must be a valid communicator that outlives the session.
+    ///
+    /// # Errors
+    /// [`Error::Environment`] when PETSc is not initialised or is another version than the one compiled against.
+    pub fn borrowed(comm: sys::MPI_Comm) -> Result<Session> {
+        check_version()?;
+        let mut begun = Flag::of(false);
+        petsc!(PetscInitialized(&mut begun))?;
+        if !begun.get() {
+            return Err(Error::environment("PETSc is not initialised."));
+        }
+        Session::on(comm, false)
+    }
+
+    fn on(world: sys::MPI_Comm, owned: bool) -> Result<Session> {
+        let (mut held, mut tag) = (MaybeUninit::uninit(), 0);
+        petsc!(PetscCommDuplicate(world, held.as_mut_ptr(), &mut tag))?;
+        let comm = duplicate(world)?;
+        let (rank, size) = (comm.rank() as usize, comm.size() as usize);
+        Ok(Session(Rc::new(Inner {
+            world,
+            // SAFETY: PetscCommDuplicate returned without error, so it wrote the communicator.
+            held: unsafe { held.assume_init() },
+            comm: ManuallyDrop::new(comm),
+            agreement: ManuallyDrop::new(duplicate(world)?),
+            ending: ManuallyDrop::new(duplicate(world)?),
+            rank,
+            size,
+            owned,
+            began_slepc: Cell::new(false),
+            listed: RefCell::default(),
+        })))
+    }
+
+    /// The communicator for our own messages: the same ranks as PETSc's, its messages kept apart.
+    pub fn comm(&self) -> &SimpleCommunicator {
+        &self.0.comm
+    }
+
+    /// This rank, in 0..size.
+    pub fn rank(&self) -> usize {
+        self.0.rank
+    }
+
+    /// Number of ranks.
+    pub fn size(&self) -> usize {
+        self.0.size
+    }
+
+    /// The MPI communicator to create PETSc objects on.
+    pub(crate) fn raw_comm(&self, comm: Comm) -> sys::MPI_Comm {
+        match comm {
+            Comm::World => self.0.world,
+            // SAFETY: MPI is initialised.
+            Comm::Own => unsafe { sys::ff_comm_self() },
+        }
+    }
+
+    /// True the first time that `-help` meets this key.
+    pub(crate) fn list_once(&self, key: &str) -> bool {
+        self.0.listed.borrow_mut().insert(key.to_string())
+    }
+
+    /// Initialises SLEPc if nobody has.
+    pub(crate) fn need_slepc(&self) -> Result<()> {
+        let mut begun = Flag::of(false);
+        petsc!(SlepcInitialized(&mut begun))?;
+        if !begun.get() {
+            petsc!(SlepcInitialize(null_mut(), null_mut(), null(), null()))?;
+            self.0.began_slepc.set(true);
+        }
+        Ok(())
+    }
+
+    /// Collective: `Ok` on all ranks, or the same error on all: that of the lowest failing rank.
+    ///
+    /// To be called at points that every rank reaches whatever happened to it, so that a failure of one rank (a file, a factorisation,
+    /// a bad number) becomes a common error instead of a hang.
+    ///
+    /// # Errors
+    /// The error of the lowest rank that passed one.
+    pub fn agree<T>(&self, result: Result<T>) -> Result<T> {
+        use mpi::collective::{CommunicatorCollectives, Root, SystemOperation};
+        let comm = &*self.0.agreement;
+        let mine = if result.is_err() {
+            self.rank()
+        } else {
+            self.size()
+        } as i32;
+        let mut first = 0;
+        comm.all_reduce_into(&mine, &mut first, SystemOperation::min());
+        settled();
+        if first as usize == self.size() {
+            return result;
+        }
+        let mut packed = match &result {
+            Err(error) if first == mine => pack(error),
+            _ => Vec::new(),
+        };
+        let root = comm.process_at_rank(first);
+        let mut length = packed.len() as u64;
+        root.broadcast_into(&mut length);
+        packed.resize(length as usize, 0);
+        root.broadcast_into(&mut packed[..]);
+        match result {
+            Err(error) if first == mine => Err(error),
+            _ => Err(unpack(&packed)),
+        }
+    }
+
+    /// Runs the program's work and returns its exit code: 0, or the error's.
+    ///
+    /// An error that every rank returns is printed once. An error of some ranks only, while the others are still at work, is printed with its rank
+    /// and ends all ranks through MPI_Abort: they may be waiting for the failed one. Panics count as errors.
+    pub fn run(&self, work: impl FnOnce(&Session) -> Result<()>) -> i32 {
+        let result = catch_unwind(AssertUnwindSafe(|| work(self)))
+            .unwrap_or_else(|payload| Err(panicked("the program", payload.as_ref())));
+        if self.size() == 1 {
+            return match result {
+                Ok(()) => 0,
+                Err(error) => {
+                    eprintln!("Error: {error}");
+                    error.exit_code()
+                }
+            };
+        }
+        let first = self.first_failure(result.is_err());
+        match (first, result) {
+            (Some(first), result) if first < self.size() => {
+                // Every rank has come here; the lowest failing one speaks.
+                let own = result.is_err();
+                let result = self.agree(result);
+                let error = result.expect_err("a rank failed");
+                if own && first == self.rank() {
+                    eprintln!("Error: {error}");
+                }
+                error.exit_code()
+            }
+            (Some(_), _) => 0,
+            (None, Err(error)) => {
+                eprintln!("Error on rank {}: {error}", self.rank());
+                self.abort(error.exit_code())
+            }
+            (None, Ok(())) => unreachable!("a rank without error waits until the others come"),
+        }
+    }
+
+    /// Ends all ranks.
+    pub fn abort(&self, code: i32) -> ! {
+        self.0.comm.abort(code)
+    }
+
+    /// The lowest failing rank (the number of ranks if none), or `None` when this rank failed and the others did not come
+    /// within the grace time.
+    fn first_failure(&self, failed: bool) -> Option<usize> {
+        use mpi::ffi;
+        use mpi::raw::AsRaw;
+        const GRACE: Duration = Duration::from_millis(1000);
+        let mine = if failed { self.rank() } else { self.size() } as c_int;
+        // The buffers must outlive an operation that may never finish.
+        let buffers: &'static mut [c_int; 2] = Box::leak(Box::new([mine, 0]));
+        let (send, receive) = buffers.split_at_mut(1);
+        let mut request = MaybeUninit::uninit();
+        // SAFETY: the buffers are leaked; the communicator lives as long as the session.
+        let code = unsafe {
+            ffi::MPI_Iallreduce(
+                send.as_ptr() as *const c_void,
+                receive.as_mut_ptr() as *mut c_void,
+                1,
+                ffi::RSMPI_INT32_T,
+                ffi::RSMPI_MIN,
+                self.0.ending.as_raw(),
+                request.as_mut_ptr(),
+            )
+        };
+        if code != 0 {
+            return None;
+        }
+        let start = Instant::now();
+        loop {
+            let mut done = 0;
+            // SAFETY: the request was started above and is tested until it completes, no longer.
+            unsafe {
+                ffi::MPI_Test(
+                    request.as_mut_ptr(),
+                    &mut done,
+                    ffi::RSMPI_STATUS_IGNORE,
+                )
+            };
+            if done != 0 {
+                return Some(receive[0] as usize);
+            }
+            if failed && start.elapsed() > GRACE {
+                return None;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+impl Drop for Inner {
+    fn drop(&mut self) {
+        // SAFETY: dropped once, here, and before MPI may be finalised. Codes are ignored: the program is ending.
+        unsafe {
+            ManuallyDrop::drop(&mut self.comm);
+            ManuallyDrop::drop(&mut self.agreement);
+            ManuallyDrop::drop(&mut self.ending);
+            sys::PetscCommDestroy(&mut self.held);
+            if self.owned {
+                if self.began_slepc.get() {
+                    sys::SlepcFinalize();
+                }
+                sys::PetscPopErrorHandler();
+                sys::PetscFinalize();
+            }
+        }
+    }
+}
+
+/// Largest memory that this process has held so far, in bytes.
+pub fn max_memory() -> f64 {
+    // SAFETY: a call without arguments.
+    unsafe { sys::ff_max_memory() }
+}
+
+fn duplicate(comm: sys::MPI_Comm) -> Result<SimpleCommunicator> {
+    let mut copy = MaybeUninit::uninit();
+    // SAFETY: `comm` is valid; on success the copy is ours, and SimpleCommunicator frees it.
+    unsafe {
+        if mpi::ffi::MPI_Comm_dup(comm, copy.as_mut_ptr()) != 0 {
+            return Err(Error::environment("MPI could not duplicate a communicator."));
+        }
+        Ok(SimpleCommunicator::from_raw(copy.assume_init()))
+    }
+}
+
+/// Structures differ between minor versions, so the headers and the library must agree in both numbers.
+fn check_version() -> Result<()> {
+    let (mut major, mut minor) = (0, 0);
+    petsc!(PetscGetVersionNumber(
+        &mut major,
+        &mut minor,
+        null_mut(),
+        null_mut()
+    ))?;
+    let built = (
+        sys::PETSC_VERSION_MAJOR as i32,
+        sys::PETSC_VERSION_MINOR as i32,
+    );
+    if (major, minor) == built {
+        return Ok(());
+    }
+    Err(Error::environment(format!(
+        "fetifeti was compiled against PETSc {}.{} but runs with PETSc {major}.{minor}: rebuild it.",
+        built.0, built.1
+    )))
+}
+
+/// An error as bytes: a letter for its kind, then the text.
+fn pack(error: &Error) -> Vec<u8> {
+    let kind = match error {
+        Error::Input(_) => 'i',
+        Error::NotConverged(_) => 'n',
+        Error::Environment(_) | Error::Petsc { .. } => 'e',
+    };
+    format!("{kind}{error}").into_bytes()
+}
+
+fn unpack(bytes: &[u8]) -> Error {
+    let text = String::from_utf8_lossy(bytes.get(1..).unwrap_or_default()).into_owned();
+    match bytes.first() {
+        Some(b'i') => Error::Input(text),
+        Some(b'n') => Error::NotConverged(text),
+        _ => Error::Environment(text),
+    }
+}

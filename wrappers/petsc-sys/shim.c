@@ -1,0 +1,194 @@
+#include "shim.h"
+#include <sys/resource.h>
+
+MPI_Comm ff_comm_world(void)
+{
+  return PETSC_COMM_WORLD;
+}
+
+MPI_Comm ff_comm_self(void)
+{
+  return PETSC_COMM_SELF;
+}
+
+int ff_error(MPI_Comm comm, int line, const char *function, const char *file, int code, const char *message)
+{
+  return (int)PetscError(comm, line, function, file, (PetscErrorCode)code, PETSC_ERROR_INITIAL, "%s", message);
+}
+
+/* ---- contexts: a PetscContainer composed with the object, which STSHELL of 3.18 needs and all versions have ---- */
+
+typedef struct {
+  void *context;
+  void (*drop)(void *);
+} Attached;
+
+static PetscErrorCode AttachedFree(Attached *attached)
+{
+  attached->drop(attached->context);
+  return PetscFree(attached);
+}
+
+#if PETSC_VERSION_GE(3, 23, 0)
+static PetscErrorCode AttachedDestroy(void **context)
+{
+  return AttachedFree((Attached *)*context);
+}
+#else
+static PetscErrorCode AttachedDestroy(void *context)
+{
+  return AttachedFree((Attached *)context);
+}
+#endif
+
+int ff_attach(PetscObject object, const char *key, void *context, void (*drop)(void *))
+{
+  Attached      *attached;
+  PetscContainer container;
+
+  PetscCall(PetscNew(&attached));
+  attached->context = context;
+  attached->drop    = drop;
+  PetscCall(PetscContainerCreate(PetscObjectComm(object), &container));
+  PetscCall(PetscContainerSetPointer(container, attached));
+#if PETSC_VERSION_GE(3, 23, 0)
+  PetscCall(PetscContainerSetCtxDestroy(container, AttachedDestroy));
+#else
+  PetscCall(PetscContainerSetUserDestroy(container, AttachedDestroy));
+#endif
+  PetscCall(PetscObjectCompose(object, key, (PetscObject)container));
+  PetscCall(PetscContainerDestroy(&container));
+  return 0;
+}
+
+void *ff_attached(PetscObject object, const char *key)
+{
+  PetscContainer container = NULL;
+  void          *attached  = NULL;
+
+  if (PetscObjectQuery(object, key, (PetscObject *)&container) || !container) return NULL;
+  if (PetscContainerGetPointer(container, &attached) || !attached) return NULL;
+  return ((Attached *)attached)->context;
+}
+
+/* ---- shells ---- */
+
+#if PETSC_VERSION_GE(3, 24, 0)
+  #define FF_OPERATION(f) ((PetscErrorCodeFn *)(f))
+#else
+  #define FF_OPERATION(f) ((void (*)(void))(f))
+#endif
+
+int ff_mat_shell_set_mult(Mat mat, int (*f)(Mat, Vec, Vec))
+{
+  return (int)MatShellSetOperation(mat, MATOP_MULT, FF_OPERATION(f));
+}
+
+int ff_mat_shell_set_mult_transpose(Mat mat, int (*f)(Mat, Vec, Vec))
+{
+  return (int)MatShellSetOperation(mat, MATOP_MULT_TRANSPOSE, FF_OPERATION(f));
+}
+
+int ff_mat_shell_set_diagonal(Mat mat, int (*f)(Mat, Vec))
+{
+  return (int)MatShellSetOperation(mat, MATOP_GET_DIAGONAL, FF_OPERATION(f));
+}
+
+int ff_mat_shell_set_view(Mat mat, int (*f)(Mat, PetscViewer))
+{
+  return (int)MatShellSetOperation(mat, MATOP_VIEW, FF_OPERATION(f));
+}
+
+/* PetscErrorCode is an enum from 3.19 on; an enum and an int return alike, so the casts only silence the compiler. */
+int ff_pc_shell_set_apply(PC pc, int (*f)(PC, Vec, Vec))
+{
+  return (int)PCShellSetApply(pc, (PetscErrorCode(*)(PC, Vec, Vec))f);
+}
+
+int ff_pc_shell_set_apply_transpose(PC pc, int (*f)(PC, Vec, Vec))
+{
+  return (int)PCShellSetApplyTranspose(pc, (PetscErrorCode(*)(PC, Vec, Vec))f);
+}
+
+int ff_pc_shell_set_view(PC pc, int (*f)(PC, PetscViewer))
+{
+  return (int)PCShellSetView(pc, (PetscErrorCode(*)(PC, PetscViewer))f);
+}
+
+int ff_st_shell_set_apply(ST st, int (*f)(ST, Vec, Vec))
+{
+  return (int)STShellSetApply(st, (PetscErrorCode(*)(ST, Vec, Vec))f);
+}
+
+/* ---- errors ---- */
+
+static PetscErrorCode CollectFrame(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *context)
+{
+  (void)comm;
+  ((ff_trace)context)(line, function, file, (int)code, type == PETSC_ERROR_INITIAL, message);
+  return code;
+}
+
+int ff_push_error_handler(ff_trace trace)
+{
+  return (int)PetscPushErrorHandler(CollectFrame, (void *)trace);
+}
+
+/* ---- log, citations, printing ---- */
+
+int ff_event_begin(int event)
+{
+  PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));
+  return 0;
+}
+
+int ff_event_end(int event)
+{
+  PetscCall(PetscLogEventEnd(event, 0, 0, 0, 0));
+  return 0;
+}
+
+int ff_citation(const char *text, int *set)
+{
+  PetscBool flag = *set ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscCall(PetscCitationsRegister(text, &flag));
+  *set = flag ? 1 : 0;
+  return 0;
+}
+
+int ff_help_print(MPI_Comm comm, const char *text)
+{
+  return (int)(*PetscHelpPrintf)(comm, "%s", text);
+}
+
+int ff_viewer_print(PetscViewer viewer, const char *text)
+{
+  return (int)PetscViewerASCIIPrintf(viewer, "%s", text);
+}
+
+int ff_viewer_is_ascii(PetscViewer viewer, int *ascii)
+{
+  PetscBool flag = PETSC_FALSE;
+
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &flag));
+  *ascii = flag ? 1 : 0;
+  return 0;
+}
+
+int ff_free(void *memory)
+{
+  return (int)PetscFree(memory);
+}
+
+double ff_max_memory(void)
+{
+  struct rusage usage;
+
+  if (getrusage(RUSAGE_SELF, &usage)) return 0.0;
+#if defined(__APPLE__)
+  return (double)usage.ru_maxrss;
+#else
+  return 1024.0 * (double)usage.ru_maxrss;
+#endif
+}

@@ -1,0 +1,45 @@
+/* Macros, inline functions and version differences of PETSc and SLEPc as plain functions.
+
+   Everything here must compile against PETSc 3.18 to 3.26. */
+#if !defined(FETIFETI_SHIM_H)
+#define FETIFETI_SHIM_H
+
+#include <petscksp.h>
+#include <slepceps.h>
+
+/* PETSC_COMM_WORLD is a variable, PETSC_COMM_SELF a macro. */
+MPI_Comm ff_comm_world(void);
+MPI_Comm ff_comm_self(void);
+
+/* PetscError() for the first frame of an error; it is variadic and takes the message as a format. */
+int ff_error(MPI_Comm comm, int line, const char *function, const char *file, int code, const char *message);
+
+/* Ties a context to an object: drop(context) runs when the object dies or gets another context. */
+int ff_attach(PetscObject object, const char *key, void *context, void (*drop)(void *));
+/* The context tied under this key, or NULL. */
+void *ff_attached(PetscObject object, const char *key);
+
+int ff_mat_shell_set_mult(Mat mat, int (*f)(Mat, Vec, Vec));
+int ff_mat_shell_set_mult_transpose(Mat mat, int (*f)(Mat, Vec, Vec));
+int ff_mat_shell_set_diagonal(Mat mat, int (*f)(Mat, Vec));
+int ff_mat_shell_set_view(Mat mat, int (*f)(Mat, PetscViewer));
+int ff_pc_shell_set_apply(PC pc, int (*f)(PC, Vec, Vec));
+int ff_pc_shell_set_apply_transpose(PC pc, int (*f)(PC, Vec, Vec));
+int ff_pc_shell_set_view(PC pc, int (*f)(PC, PetscViewer));
+int ff_st_shell_set_apply(ST st, int (*f)(ST, Vec, Vec));
+
+/* Collects PETSc's error frames instead of printing them. */
+typedef void (*ff_trace)(int line, const char *function, const char *file, int code, int initial, const char *message);
+int ff_push_error_handler(ff_trace trace);
+
+int ff_event_begin(int event);
+int ff_event_end(int event);
+int ff_citation(const char *text, int *set);
+int ff_help_print(MPI_Comm comm, const char *text);
+int ff_viewer_print(PetscViewer viewer, const char *text);
+int ff_viewer_is_ascii(PetscViewer viewer, int *ascii);
+int ff_free(void *memory);
+/* Largest resident set of this process so far, in bytes. */
+double ff_max_memory(void);
+
+#endif
