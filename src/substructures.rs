@@ -50,6 +50,9 @@ pub struct InterfaceRow {
     pub gap: f64,
     /// Equation or inequality.
     pub kind: RowKind,
+    /// Z⁰: whether the row holds to begin with. A row that does not hold marks candidate contact nodes: the bodies are apart
+    /// there, but preconditioner and interface are prepared for them to meet.
+    pub holds: bool,
     /// Rows that share a body dof carry the same block number (unique over all ranks) and are provided by the same rank: the
     /// scaling B D⁻¹ Bᵀ is inverted block by block.
     pub block: u64,

@@ -22,9 +22,9 @@ pub struct JumpColumns {
     pub row: Vec<u32>,
     /// Interface position (index into Γ) of each entry; before [`Jump::place`], the local dof.
     pub at: Vec<u32>,
-    /// Entry of B (zero where only B_D has one).
+    /// Entry of Z B (zero where only B_D has one, and in rows that do not hold).
     pub b: Vec<f64>,
-    /// Entry of B_D.
+    /// Entry of Z B_D.
     pub bd: Vec<f64>,
 }
 
@@ -137,7 +137,7 @@ impl Record for Entry {
 }
 
 impl Jump {
-    /// Builds B and B_D with every row active. Collective.
+    /// Builds Z B and Z B_D with the rows that hold to begin with. Collective.
     pub fn new(comm: &SimpleCommunicator, problem: &Substructures, sharing: &Sharing) -> Jump {
         let rank = comm.rank() as u32;
         let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
@@ -167,16 +167,20 @@ impl Jump {
         }
 
         let (order, blocks) = contact_blocks(problem, sharing, n_owned_local);
+        let locals_hold = std::iter::repeat_n(true, n_owned_local);
+        let contacts_hold = order.iter().map(|&r| problem.rows[r].holds);
+        let active: Vec<bool> = locals_hold.chain(contacts_hold).collect();
         for block in &blocks {
-            let bd = scaling::block(&block.b, &block.weights, &vec![true; block.b.rows]);
-            for r in 0..block.b.rows {
+            let holds: Vec<bool> = block.rows.clone().map(|r| active[r]).collect();
+            let bd = scaling::block(&block.b, &block.weights, &holds);
+            for (r, &on) in holds.iter().enumerate() {
                 let row = (first + block.rows.start + r) as u64;
                 for (j, dof) in block.dofs.iter().enumerate() {
                     // A row acts on the weighted average of the copies of one body (method section 3);
                     // B_Dᵀ λ is then the same on all of them, as a function in W̃ must be.
                     for copy in &sharing.copies[dof] {
                         let share = copy.weight / block.weights[j];
-                        let b = block.b.get(r, j) * share;
+                        let b = if on { block.b.get(r, j) * share } else { 0.0 };
                         send(Entry::new(row, copy, true, b, bd.get(r, j)));
                     }
                 }
@@ -198,7 +202,7 @@ impl Jump {
             inequality: never
                 .chain(rows.map(|r| r.kind == RowKind::Inequality))
                 .collect(),
-            active: vec![true; n_owned],
+            active,
             blocks,
             ..Jump::default()
         };

@@ -70,8 +70,9 @@ impl Lifting {
             .collect();
         let z: Vec<Dense> = averaged.into_iter().map(|a| a.z).collect();
 
+        let (locals, zs) = (&stiffness.locals, &z);
         let products = stiffness.team.map(z.len(), |j| {
-            let s = &stiffness.locals[j].s;
+            let (s, z) = (&locals[j].s, zs);
             let mut y = Dense::zeros(z[j].rows, z[j].cols);
             multiply(y.view_mut(), false, 1.0, s.view(), z[j].view());
             let mut a = Dense::zeros(z[j].cols, z[j].cols);
@@ -144,9 +145,9 @@ impl Lifting {
         let mut ghost = self.ghost.borrow_mut();
         ghost.fill(0.0);
         let mut local: Vec<Vec<f64>> = self.columns.iter().map(|c| vec![0.0; c.len()]).collect();
-        let inputs = &*work;
+        let (inputs, ys, columns) = (&*work, &self.y, &self.columns);
         stiffness.team.for_each(&mut local, |j, t| {
-            self.y[j].add_mul_transpose(&inputs[j].v, t); /*  t ← Yᵀ v        */
+            ys[j].add_mul_transpose(&inputs[j].v, t); /*  t ← Yᵀ v        */
         });
         for (t, places) in local.iter().zip(&self.columns) {
             for (&g, v) in places.iter().zip(t) {
@@ -164,9 +165,8 @@ impl Lifting {
         self.halo.fetch(&self.vector, &mut ghost)?;
         let ghost = &*ghost;
         stiffness.team.for_each(work, |j, w| {
-            let places = self.columns[j].iter();
-            let c: Vec<f64> = places.map(|&g| -ghost[g as usize]).collect();
-            self.y[j].add_mul(&c, &mut w.y); /*               y ← y − Y c     */
+            let c: Vec<f64> = columns[j].iter().map(|&g| -ghost[g as usize]).collect();
+            ys[j].add_mul(&c, &mut w.y); /*               y ← y − Y c     */
         });
         Ok(())
     }

@@ -68,11 +68,11 @@ impl Preconditioner {
         let (work, ghost) = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
         stiffness.dual_halo.fetch(lambda, ghost)?;
-        let received = &*ghost;
+        let (received, kind, k_gamma) = (&*ghost, self.kind, &self.k_gamma);
         stiffness.team.for_each(work, |j, w| {
             columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
-            match self.kind {
-                PcType::Lumped => self.k_gamma[j].mul(&w.v, &mut w.y), /* y ← K_ΓΓ v */
+            match kind {
+                PcType::Lumped => k_gamma[j].mul(&w.v, &mut w.y), /* y ← K_ΓΓ v */
                 _ => {
                     w.y.fill(0.0);
                     locals[j].s.add_mul(&w.v, &mut w.y); /*   y ← S v            */

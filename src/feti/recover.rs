@@ -67,9 +67,8 @@ pub(super) fn solve(
 ) -> Result<Solution> {
     let clock = Instant::now();
     let stiffness = &dual.stiffness;
-    let condensed = stiffness.team.map(problem.local.len(), |j| {
-        stiffness.locals[j].condense(&problem.local[j].f)
-    });
+    let locals = &stiffness.locals;
+    let condensed = stiffness.team.map(locals.len(), |j| locals[j].condense(&problem.local[j].f));
     let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
 
     let lambda = dual.multipliers()?;
@@ -121,8 +120,9 @@ fn displacements(
     stiffness.s_plus(work)?; /*                           y ← S̃⁺ v          */
     stiffness.jump_of(work, residual)?; /*                r ← B y − c       */
     let mut r = residual.array_mut()?;
-    for (r, c) in r.iter_mut().zip(&stiffness.jump.gap) {
-        *r -= c;
+    let rows = stiffness.jump.gap.iter().zip(&stiffness.jump.active);
+    for (r, (c, on)) in r.iter_mut().zip(rows) {
+        *r -= if *on { *c } else { 0.0 };
     }
     let norm: f64 = work.iter().flat_map(|w| &w.y).map(|y| y * y).sum();
     Ok(norm)
@@ -193,9 +193,9 @@ fn back(
     let jump = dual.multipliers()?;
     displacements(dual, g, lambda, work, &jump)?;
     let alpha = natural.alpha(session.comm(), &jump)?;
-    stiffness.team.for_each(work, |j, w| {
+    for (j, w) in work.iter_mut().enumerate() {
         natural.add_kernel(j, &alpha, &mut w.y); /*      u ← y + R α         */
-    });
+    }
 
     // What is left of the jumps inside a body is averaged away: u ← u − B_D,locᵀ B_loc u.
     stiffness.jump_of(work, &jump)?;
@@ -210,10 +210,10 @@ fn back(
         }
     });
     let mut parts: Vec<Vec<f64>> = interiors;
-    let work = &*work;
+    let (work, locals) = (&*work, &stiffness.locals);
     stiffness.team.for_each(&mut parts, |j, part| {
         let interior = std::mem::take(part);
-        *part = stiffness.locals[j].recover(interior, &work[j].y);
+        *part = locals[j].recover(interior, &work[j].y);
     });
     Ok(parts)
 }
@@ -268,7 +268,7 @@ fn certify(
     let mut largest = [0.0f64; 4]; // |u|, |λ|, violation, |λ (Bu − c)|
     let mut smallest = [0.0f64];
     largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
-    for r in 0..jump.n_owned {
+    for r in (0..jump.n_owned).filter(|&r| jump.active[r]) {
         let violation = gaps[r] - jump.gap[r];
         largest[1] = largest[1].max(lambda[r].abs());
         if jump.inequality[r] {
