@@ -118,6 +118,23 @@ impl Dual {
     }
 }
 
+struct Range(Rc<Dual>);
+
+impl ShellMat for Range {
+    /// y ← Π P x
+    fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let dual = &self.0;
+        dual.x.copy_from(x)?;
+        dual.p(&dual.x)?;
+        dual.stiffness.range_projection(&dual.x, y)
+    }
+    /// y ← Pᵀ Π x
+    fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.0.stiffness.range_projection(x, y)?;
+        self.0.p_transpose(y)
+    }
+}
+
 struct Operator(Rc<Dual>);
 struct Projected(Rc<Dual>);
 
@@ -170,6 +187,13 @@ pub fn operator(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
 pub fn preconditioner_matrix(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
     let n = dual.stiffness.jump.n_owned;
     Mat::shell(session, n, n, Box::new(Projected(dual.clone())))
+}
+
+/// E = Π P as a matrix, Π the orthogonal projection onto range B: F (I − Π) = 0 and P (I − Π) = I − Π make E a projection
+/// with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. Collective.
+pub fn range_matrix(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
+    let n = dual.stiffness.jump.n_owned;
+    Mat::shell(session, n, n, Box::new(Range(dual.clone())))
 }
 
 /// P M⁻¹ Pᵀ as what a PCShell applies.

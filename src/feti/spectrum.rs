@@ -28,17 +28,18 @@ const TOLERANCE: f64 = 1e-8;
 
 /// The extreme eigenvalues of P M⁻¹ Pᵀ F by SLEPc; `None` without multipliers. Collective.
 ///
-/// The pencil is (A C A, A) with A = Pᵀ F P and C = P M⁻¹ Pᵀ in the inner product of A, which does not see redundant
-/// multipliers or the range of G: the eigensolver stays in the range of C A, where there are none.
+/// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range of G
+/// are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
 pub fn exact(session: &Session, dual: &Rc<Dual>, prefix: &str) -> Result<Option<Spectrum>> {
     if dual.stiffness.jump.n_global == 0 {
         return Ok(None);
     }
     let a = dual::operator(session, dual)?;
     let c = dual::preconditioner_matrix(session, dual)?;
+    let e = dual::range_matrix(session, dual)?;
     let start = start_vector(dual)?;
     let (lambda_min, lambda_max) =
-        extreme_eigenvalues(session, &a, &c, &start, TOLERANCE, prefix)?;
+        extreme_eigenvalues(session, &a, &c, Some(&e), &start, TOLERANCE, prefix)?;
     Ok(Some(Spectrum {
         lambda_min,
         lambda_max,

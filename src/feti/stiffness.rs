@@ -110,6 +110,16 @@ impl Stiffness {
         self.jump_of(work, out) /*                        out ← B y      */
     }
 
+    /// out ← B B_Dᵀ λ, the orthogonal projection onto range B: redundant multipliers are removed. Collective.
+    pub fn range_projection(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        self.dual_halo.fetch(lambda, ghost)?;
+        for (w, columns) in work.iter_mut().zip(&self.jump.columns) {
+            columns.bd_transpose(ghost, &mut w.y); /*     y ← B_Dᵀ λ     */
+        }
+        self.jump_of(work, out) /*                        out ← B y      */
+    }
+
     /// out ← B y of the displacements in `work`. Collective.
     pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
