@@ -315,7 +315,10 @@ impl Pc {
 }
 
 impl Eps {
-    /// Makes the spectral transformation an operator written in Rust.
+    /// Makes the spectral transformation an operator OP written in Rust.
+    ///
+    /// The search space is built with OP and [`Eps::set_which`] is about its eigenvalues; those that come out are the Rayleigh quotients of A.
+    /// STSHELL of 3.18 takes no generalised problem (it knows no bilinear form): see `extreme_eigenvalues` for the way round.
     pub fn set_st_shell(&self, op: Box<dyn ShellOp>) -> Result<()> {
         let mut st = std::ptr::null_mut();
         petsc!(EPSGetST(self.0.raw(), &mut st))?;
