@@ -2,8 +2,8 @@
 
 use super::error::{c_string, rust_string};
 use super::handle::Handle;
-use super::{Comm, ConvergedReason, Mat, Session, ShellOp, Vec};
-use crate::{Error, Result};
+use super::{Comm, ConvergedReason, Ksp, Mat, Session, Vec};
+use crate::Result;
 use petsc_sys as sys;
 use petsc_sys::Flag;
 
@@ -125,10 +125,7 @@ impl Eps {
 
     /// The prefix of this solver's options, without a dash.
     pub fn set_options_prefix(&self, prefix: &str) -> Result<()> {
-        petsc!(EPSSetOptionsPrefix(
-            self.0.raw(),
-            c_string(prefix).as_ptr()
-        ))
+        petsc!(EPSSetOptionsPrefix(self.0.raw(), c_string(prefix).as_ptr()))
     }
 
     /// Reads the options of this solver.
@@ -170,12 +167,7 @@ impl Eps {
     /// Real part of the i-th converged eigenvalue, the most wanted first.
     pub fn eigenvalue(&self, i: usize) -> Result<f64> {
         let (mut re, mut im) = (0.0, 0.0);
-        petsc!(EPSGetEigenvalue(
-            self.0.raw(),
-            i as i32,
-            &mut re,
-            &mut im
-        ))?;
+        petsc!(EPSGetEigenvalue(self.0.raw(), i as i32, &mut re, &mut im))?;
         Ok(re)
     }
 
@@ -198,55 +190,16 @@ impl Eps {
     }
 }
 
-fn readable(vectors: &[Vec]) -> Result<std::vec::Vec<sys::Vec>> {
-    vectors.iter().map(Vec::read).collect()
-}
-
-struct Product {
-    a: Mat,
-    c: Mat,
-    ax: Vec,
-}
-
-impl ShellOp for Product {
-    fn apply(&self, x: &Vec, y: &Vec) -> Result<()> {
-        self.a.mult(x, &self.ax)?;
-        self.c.mult(&self.ax, y)
+impl Eps {
+    /// The solver for B of the spectral transformation.
+    pub fn st_ksp(&self) -> Result<Ksp> {
+        let (mut st, mut ksp) = (std::ptr::null_mut(), std::ptr::null_mut());
+        petsc!(EPSGetST(self.0.raw(), &mut st))?;
+        petsc!(STGetKSP(st, &mut ksp))?;
+        Ksp::share(ksp, self.0.session())
     }
 }
 
-/// The smallest and the largest non-zero eigenvalue of C A.
-pub fn extreme_eigenvalues(
-    session: &Session,
-    a: &Mat,
-    c: &Mat,
-    start: &Vec,
-    tol: f64,
-    prefix: &str,
-) -> Result<(f64, f64)> {
-    let one = |which| {
-        let eps = Eps::new(session, Comm::World)?;
-        eps.set_operators(a, Some(a))?;
-        eps.set_problem_type(ProblemType::Ghep)?;
-        eps.set_which(which)?;
-        eps.set_dimensions(1, None)?;
-        eps.set_tolerances(tol, Some(1000))?;
-        eps.set_initial_space(std::slice::from_ref(start))?;
-        eps.set_st_shell(Box::new(Product {
-            a: a.clone(),
-            c: c.clone(),
-            ax: a.left_vec()?,
-        }))?;
-        eps.set_options_prefix(prefix)?;
-        eps.set_from_options()?;
-        eps.solve()?;
-        if eps.converged()? == 0 {
-            return Err(Error::NotConverged(format!(
-                "The extreme eigenvalues did not converge: {}.",
-                eps.converged_reason()?.name
-            )));
-        }
-        eps.eigenvalue(0)
-    };
-    Ok((one(Which::SmallestReal)?, one(Which::LargestReal)?))
+fn readable(vectors: &[Vec]) -> Result<std::vec::Vec<sys::Vec>> {
+    vectors.iter().map(Vec::read).collect()
 }

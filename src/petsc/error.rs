@@ -38,9 +38,7 @@ pub(crate) fn check(code: c_int, call: &'static str) -> Result<()> {
     }
     FAILED.set(true);
     let trace = TRACE.take();
-    Err(PENDING
-        .take()
-        .unwrap_or(Error::Petsc { code, call, trace }))
+    Err(PENDING.take().unwrap_or(Error::Petsc { code, call, trace }))
 }
 
 /// Did a PETSc call fail on this rank without the other ranks having been told?
@@ -66,9 +64,8 @@ pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_
     };
     let message = c_string(&error.to_string());
     let function = c_string(what);
-    PENDING.with_borrow_mut(|slot| slot.get_or_insert(error).exit_code());
     // SAFETY: the strings live until the call returns; PetscError copies what it keeps.
-    unsafe {
+    let code = unsafe {
         sys::ff_error(
             sys::ff_comm_self(),
             line!() as c_int,
@@ -77,7 +74,10 @@ pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_
             code,
             message.as_ptr(),
         )
-    }
+    };
+    // After ff_error, which empties the slot as every new error does.
+    PENDING.set(Some(error));
+    code
 }
 
 /// The error that stands for a panic.
@@ -130,6 +130,8 @@ unsafe extern "C" fn frame(
     let _ = TRACE.try_with(|trace| {
         if let Ok(mut trace) = trace.try_borrow_mut() {
             if initial != 0 {
+                // A callback's error that PETSc swallowed must not be taken for the cause of this one.
+                let _ = PENDING.try_with(|slot| slot.take());
                 trace.clear();
                 trace.push(rust_string(message).trim_end().to_string());
             }

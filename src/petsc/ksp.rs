@@ -48,6 +48,10 @@ impl Ksp {
         Ok(Ksp(Handle::own(raw, session)))
     }
 
+    pub(super) fn share(raw: sys::KSP, session: &Session) -> Result<Ksp> {
+        Ok(Ksp(Handle::share(raw, session)?))
+    }
+
     pub(crate) fn raw(&self) -> sys::KSP {
         self.0.raw()
     }

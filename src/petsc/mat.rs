@@ -201,13 +201,7 @@ impl Mat {
     pub fn row(&self, row: usize) -> Result<(std::vec::Vec<i32>, std::vec::Vec<f64>)> {
         let (mut n, mut cols, mut vals) = (0, std::ptr::null(), std::ptr::null());
         let row = count(row)?;
-        petsc!(MatGetRow(
-            self.raw(),
-            row,
-            &mut n,
-            &mut cols,
-            &mut vals
-        ))?;
+        petsc!(MatGetRow(self.raw(), row, &mut n, &mut cols, &mut vals))?;
         let copy = if n == 0 {
             Default::default()
         } else {
@@ -219,13 +213,7 @@ impl Mat {
                 )
             }
         };
-        petsc!(MatRestoreRow(
-            self.raw(),
-            row,
-            &mut n,
-            &mut cols,
-            &mut vals
-        ))?;
+        petsc!(MatRestoreRow(self.raw(), row, &mut n, &mut cols, &mut vals))?;
         Ok(copy)
     }
 
@@ -238,32 +226,20 @@ impl Mat {
     /// A vector x that fits A x.
     pub fn right_vec(&self) -> Result<Vec> {
         let mut raw = std::ptr::null_mut();
-        petsc!(MatCreateVecs(
-            self.raw(),
-            &mut raw,
-            std::ptr::null_mut()
-        ))?;
+        petsc!(MatCreateVecs(self.raw(), &mut raw, std::ptr::null_mut()))?;
         Ok(Vec::own(raw, self.session()))
     }
 
     /// A vector y that fits y = A x.
     pub fn left_vec(&self) -> Result<Vec> {
         let mut raw = std::ptr::null_mut();
-        petsc!(MatCreateVecs(
-            self.raw(),
-            std::ptr::null_mut(),
-            &mut raw
-        ))?;
+        petsc!(MatCreateVecs(self.raw(), std::ptr::null_mut(), &mut raw))?;
         Ok(Vec::own(raw, self.session()))
     }
 
     /// Tells PETSc what the matrix is.
     pub fn set_flag(&self, flag: MatFlag) -> Result<()> {
-        petsc!(MatSetOption(
-            self.raw(),
-            sys::MAT_SYMMETRIC,
-            Flag::of(true)
-        ))?;
+        petsc!(MatSetOption(self.raw(), sys::MAT_SYMMETRIC, Flag::of(true)))?;
         petsc!(MatSetOption(
             self.raw(),
             sys::MAT_SYMMETRY_ETERNAL,
@@ -287,11 +263,7 @@ impl Mat {
         petsc!(MatSetNearNullSpace(self.raw(), space.raw()))
     }
 
-    fn null_space(
-        &self,
-        constants: bool,
-        vectors: &[Vec],
-    ) -> Result<Handle<sys::_p_MatNullSpace>> {
+    fn null_space(&self, constants: bool, vectors: &[Vec]) -> Result<Handle<sys::_p_MatNullSpace>> {
         let raw_vectors: std::vec::Vec<sys::Vec> = vectors.iter().map(Vec::raw).collect();
         let mut raw = std::ptr::null_mut();
         // SAFETY: the matrix is alive, so its communicator is.

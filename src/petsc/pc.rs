@@ -57,17 +57,11 @@ impl Pc {
 
     /// PCBDDC: local dofs of this rank's subdomain on the rest of the boundary. Collective.
     pub fn bddc_set_neumann_local(&self, dofs: &Is) -> Result<()> {
-        petsc!(PCBDDCSetNeumannBoundariesLocal(
-            self.0.raw(),
-            dofs.0.raw()
-        ))
+        petsc!(PCBDDCSetNeumannBoundariesLocal(self.0.raw(), dofs.0.raw()))
     }
 
     /// PCBDDC: local dofs that are primal beside those it finds itself. Collective.
     pub fn bddc_set_primal_local(&self, dofs: &Is) -> Result<()> {
-        petsc!(PCBDDCSetPrimalVerticesLocalIS(
-            self.0.raw(),
-            dofs.0.raw()
-        ))
+        petsc!(PCBDDCSetPrimalVerticesLocalIS(self.0.raw(), dofs.0.raw()))
     }
 }

@@ -91,9 +91,8 @@ impl Session {
         let argv: &'static mut *mut *mut c_char =
             Box::leak(Box::new(Box::leak(argv.into_boxed_slice()).as_mut_ptr()));
         let help = c_string(help).into_raw();
-        petsc!(PetscInitialize(argc, argv, null(), help)).map_err(|e| {
-            Error::environment(format!("PETSc could not be initialised: {e}"))
-        })?;
+        petsc!(PetscInitialize(argc, argv, null(), help))
+            .map_err(|e| Error::environment(format!("PETSc could not be initialised: {e}")))?;
         collect_traces()?;
         // SAFETY: PETSc is initialised, so PETSC_COMM_WORLD is valid until it is finalised.
         let world = unsafe { sys::ff_comm_world() };
@@ -285,13 +284,7 @@ impl Session {
         loop {
             let mut done = 0;
             // SAFETY: the request was started above and is tested until it completes, no longer.
-            unsafe {
-                ffi::MPI_Test(
-                    request.as_mut_ptr(),
-                    &mut done,
-                    ffi::RSMPI_STATUS_IGNORE,
-                )
-            };
+            unsafe { ffi::MPI_Test(request.as_mut_ptr(), &mut done, ffi::RSMPI_STATUS_IGNORE) };
             if done != 0 {
                 return Some(receive[0] as usize);
             }
@@ -333,7 +326,9 @@ fn duplicate(comm: sys::MPI_Comm) -> Result<SimpleCommunicator> {
     // SAFETY: `comm` is valid; on success the copy is ours, and SimpleCommunicator frees it.
     unsafe {
         if mpi::ffi::MPI_Comm_dup(comm, copy.as_mut_ptr()) != 0 {
-            return Err(Error::environment("MPI could not duplicate a communicator."));
+            return Err(Error::environment(
+                "MPI could not duplicate a communicator.",
+            ));
         }
         Ok(SimpleCommunicator::from_raw(copy.assume_init()))
     }

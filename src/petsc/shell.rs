@@ -177,33 +177,28 @@ unsafe fn view<T: ?Sized>(
     viewer: sys::PetscViewer,
     text: impl FnOnce(&T) -> String,
 ) -> c_int {
+    let print = |context: &Context<T>| {
+        let text = text(&context.op);
+        let mut ascii = 0;
+        petsc!(ff_viewer_is_ascii(viewer, &mut ascii))?;
+        if ascii == 0 {
+            return Ok(());
+        }
+        for line in text.lines() {
+            petsc!(ff_viewer_print(
+                viewer,
+                c_string(&format!("  {line}\n")).as_ptr()
+            ))?;
+        }
+        Ok(())
+    };
     // SAFETY: by the caller's promise.
-    unsafe {
-        with_context::<T>("a shell's view", object, |context| {
-            let text = text(&context.op);
-            let mut ascii = 0;
-            petsc!(ff_viewer_is_ascii(viewer, &mut ascii))?;
-            if ascii == 0 {
-                return Ok(());
-            }
-            for line in text.lines() {
-                petsc!(ff_viewer_print(
-                    viewer,
-                    c_string(&format!("  {line}\n")).as_ptr()
-                ))?;
-            }
-            Ok(())
-        })
-    }
+    unsafe { with_context("a shell's view", object, print) }
 }
 
 unsafe extern "C" fn mat_mult(a: sys::Mat, x: sys::Vec, y: sys::Vec) -> c_int {
     // SAFETY: called by PETSc with live objects for a matrix made by `Mat::shell`.
-    unsafe {
-        product::<dyn ShellMat>("a matrix product", a as _, x, y, |op, x, y| {
-            op.mult(x, y)
-        })
-    }
+    unsafe { product::<dyn ShellMat>("a matrix product", a as _, x, y, |op, x, y| op.mult(x, y)) }
 }
 
 unsafe extern "C" fn mat_mult_transpose(a: sys::Mat, x: sys::Vec, y: sys::Vec) -> c_int {
@@ -231,11 +226,7 @@ unsafe extern "C" fn mat_view(a: sys::Mat, viewer: sys::PetscViewer) -> c_int {
 
 unsafe extern "C" fn pc_apply(pc: sys::PC, x: sys::Vec, y: sys::Vec) -> c_int {
     // SAFETY: called by PETSc with live objects for a preconditioner prepared by `Pc::set_shell`.
-    unsafe {
-        product::<dyn ShellPc>("a preconditioner", pc as _, x, y, |op, x, y| {
-            op.apply(x, y)
-        })
-    }
+    unsafe { product::<dyn ShellPc>("a preconditioner", pc as _, x, y, |op, x, y| op.apply(x, y)) }
 }
 
 unsafe extern "C" fn pc_apply_transpose(pc: sys::PC, x: sys::Vec, y: sys::Vec) -> c_int {
@@ -324,7 +315,10 @@ impl Pc {
 }
 
 impl Eps {
-    /// Makes the spectral transformation an operator written in Rust.
+    /// Makes the spectral transformation an operator OP written in Rust.
+    ///
+    /// The search space is built with OP and [`Eps::set_which`] is about its eigenvalues; those that come out are the Rayleigh quotients of A.
+    /// STSHELL of 3.18 takes no generalised problem (it knows no bilinear form): see `extreme_eigenvalues` for the way round.
     pub fn set_st_shell(&self, op: Box<dyn ShellOp>) -> Result<()> {
         let mut st = std::ptr::null_mut();
         petsc!(EPSGetST(self.0.raw(), &mut st))?;

@@ -262,10 +262,7 @@ impl Vec {
 
     /// The name under which viewers show the vector.
     pub fn set_name(&self, name: &str) -> Result<()> {
-        petsc!(PetscObjectSetName(
-            self.0.object(),
-            c_string(name).as_ptr()
-        ))
+        petsc!(PetscObjectSetName(self.0.object(), c_string(name).as_ptr()))
     }
 
     /// Writes the vector to a file in PETSc's binary format. Collective.
@@ -283,11 +280,7 @@ impl Vec {
     }
 }
 
-fn binary(
-    vec: &Vec,
-    path: &Path,
-    mode: sys::PetscFileMode,
-) -> Result<Handle<sys::_p_PetscViewer>> {
+fn binary(vec: &Vec, path: &Path, mode: sys::PetscFileMode) -> Result<Handle<sys::_p_PetscViewer>> {
     let mut raw = std::ptr::null_mut();
     // SAFETY: the vector is alive, so its communicator is.
     let comm = unsafe { sys::PetscObjectComm(vec.0.object()) };

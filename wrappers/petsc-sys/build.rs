@@ -63,7 +63,8 @@ fn prefer_petsc_dir() -> bool {
         first.extend(env::split_paths(
             &env::var_os("PKG_CONFIG_PATH").unwrap_or_default(),
         ));
-        let joined = env::join_paths(first).unwrap_or_else(|e| fail(&format!("PKG_CONFIG_PATH: {e}.")));
+        let joined =
+            env::join_paths(first).unwrap_or_else(|e| fail(&format!("PKG_CONFIG_PATH: {e}.")));
         env::set_var("PKG_CONFIG_PATH", joined);
     }
     found
