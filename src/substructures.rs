@@ -23,7 +23,8 @@ pub struct Subdomain {
     pub dofs: Vec<u64>,
     /// Coefficient ρ as this subdomain sees it at each local dof, length n, > 0: the weight of ρ-scaling.
     pub rho: Vec<f64>,
-    /// Local dofs at subdomain vertices, where continuity inside the body is primal (strictly increasing).
+    /// Local dofs at subdomain vertices (strictly increasing). Continuity inside the body is primal at those that subdomains
+    /// share; corners of the body count too, they matter where bodies meet.
     pub primal: Vec<u32>,
     /// Columns that span every kernel that this subdomain's matrix could have before it is held (constants; rigid
     /// body modes), each of length n. `None`: nothing is known, kernels are found from the matrices alone.

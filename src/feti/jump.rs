@@ -102,8 +102,11 @@ pub struct Jump {
     pub columns: Vec<JumpColumns>,
     /// Dual interface dofs of each local subdomain, increasing.
     pub delta: Vec<Vec<u32>>,
-    /// Primal interface dofs of each local subdomain, increasing.
+    /// Primal interface dofs of each local subdomain: those shared with other subdomains of the body, then corners of the body
+    /// that may touch other bodies.
     pub primal: Vec<Vec<u32>>,
+    /// How many of them are shared.
+    pub n_shared: Vec<usize>,
 }
 
 /// One entry of B and B_D on its way to the rank of its subdomain.
@@ -217,6 +220,10 @@ impl Jump {
         ghosts.dedup();
         (self.ghosts, self.ghost_is_contact) = ghosts.into_iter().unzip();
 
+        let mut subdomains_of = vec![0; problem.n_bodies];
+        for &body in &sharing.body_of {
+            subdomains_of[body as usize] += 1;
+        }
         entries.sort_unstable_by_key(|e| (e.subdomain, e.local, e.row));
         let mut rest = &entries[..];
         for sub in &problem.local {
@@ -225,22 +232,29 @@ impl Jump {
             rest = others;
             let mut columns = JumpColumns::default();
             let mut dual = Vec::new();
-            let mut primal = Vec::new();
+            let mut corners = Vec::new();
             for e in mine {
                 let row = self.ghosts.binary_search(&(e.row as u32));
                 columns.row.push(row.expect("every entry's row was collected") as u32);
                 columns.at.push(e.local);
                 columns.b.push(e.b);
                 columns.bd.push(e.bd);
-                dual.push(e.local);
-            }
-            for (i, dof) in sub.dofs.iter().enumerate() {
-                if Sharing::is_primal(sharing.shared(*dof)) {
-                    primal.push(i as u32);
+                let vertex = sub.primal.binary_search(&e.local).is_ok();
+                let alone = sharing.shared(sub.dofs[e.local as usize]).is_empty();
+                if e.contact && vertex && alone && subdomains_of[sub.body] > 1 {
+                    corners.push(e.local);
+                } else {
+                    dual.push(e.local);
                 }
             }
+            let shared = (0..sub.dofs.len() as u32)
+                .filter(|&i| Sharing::is_primal(sharing.shared(sub.dofs[i as usize])));
+            let mut primal: Vec<u32> = shared.collect();
+            corners.dedup();
             dual.dedup();
             dual.retain(|i| primal.binary_search(i).is_err());
+            self.n_shared.push(primal.len());
+            primal.extend(corners);
             self.columns.push(columns);
             self.delta.push(dual);
             self.primal.push(primal);

@@ -1,6 +1,6 @@
 //! Z_c: coarse functions of the bodies that vanish where bodies may touch (method section 5).
 //!
-//! Columns of Z_c are the columns of Ψ, their copies averaged inside the body with the scaling weights, set to zero on
+//! Columns of Z_c are the columns of Ψ at vertices that subdomains of the body share, their copies averaged inside the body with the scaling weights, set to zero on
 //! candidate contact nodes. Removing their span S̃-orthogonally from what B_Dᵀ lifts,
 //!
 //! ```text
@@ -195,7 +195,7 @@ fn average_copies(
     let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
     for (j, sub) in problem.local.iter().enumerate() {
         let local = &stiffness.locals[j];
-        let n_columns = space.n_vertices[j];
+        let n_columns = stiffness.jump.n_shared[j];
         for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
             let copies = sharing.shared(sub.dofs[dof as usize]);
             let total: f64 = copies.iter().map(|c| c.weight).sum();
@@ -233,7 +233,7 @@ fn average_copies(
     (0..rows.len())
         .map(|j| {
             let local = &stiffness.locals[j];
-            for p in 0..space.n_vertices[j] {
+            for p in 0..stiffness.jump.n_shared[j] {
                 let dof = local.interface[local.n_delta + p];
                 rows[j].entry(dof).or_default().insert(global(j, p), 1.0);
             }

@@ -69,8 +69,6 @@ pub struct PrimalSpace {
     pub ghosts: Vec<u32>,
     /// For each local subdomain, the place in `ghosts` of each of its primal dofs.
     pub of_subdomain: Vec<Vec<u32>>,
-    /// For each local subdomain, how many of them (the first ones) are vertices rather than fixing dofs.
-    pub n_vertices: Vec<usize>,
     /// Bodies owned by this rank.
     pub owned: Vec<OwnedBody>,
     /// Rank that owns each body; length n_bodies.
@@ -129,7 +127,6 @@ impl PrimalSpace {
         for (sub, local) in problem.local.iter().zip(locals) {
             let local = local.as_ref();
             let n_vertices = local.n_pi() - local.n_fixing;
-            self.n_vertices.push(n_vertices);
             for (p, &dof) in local.interface[local.n_delta..].iter().enumerate() {
                 // A fixing dof belongs to its subdomain alone; the top bit keeps its key apart from body dofs.
                 let key = if p < n_vertices {

@@ -83,7 +83,7 @@ impl FetiFeti {
         let sharing = session.agree(Sharing::new(comm, &problem, &weights))?;
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
-        let team = Team::new(threads(session, &settings))?;
+        let mut team = Team::new(threads(session, &settings))?;
         let locals = session.agree(factor(&problem, &jump, &team))?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
@@ -92,6 +92,7 @@ impl FetiFeti {
         let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
         let layout = PetscVec::mpi(session, jump.n_owned)?;
         let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
+        team.set_load(locals.iter().map(|l| l.t.data.len()).sum());
         let stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
 
         let kind = settings.pc_type.unwrap_or_else(|| default_pc(&problem, &stiffness));

@@ -7,19 +7,31 @@ use crate::{Error, Result};
 /// A pool of threads, or none: subdomains are then worked off one after the other.
 pub struct Team {
     pool: Option<rayon::ThreadPool>,
+    /// Whether the work of one iteration is worth waking threads for.
+    iterates: bool,
 }
+
+/// Entries of the dense operators below which one thread applies them faster than two can be woken: waking costs some
+/// ten microseconds, in which a core reads about this many numbers.
+const WORTH_WAKING: usize = 100_000;
 
 impl Team {
     /// A team of `threads` threads (0 or 1: no pool).
     pub fn new(threads: usize) -> Result<Team> {
         if threads < 2 {
-            return Ok(Team { pool: None });
+            return Ok(Team {
+                pool: None,
+                iterates: false,
+            });
         }
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .map_err(|e| Error::environment(format!("cannot start {threads} threads: {e}")))?;
-        Ok(Team { pool: Some(pool) })
+        Ok(Team {
+            pool: Some(pool),
+            iterates: true,
+        })
     }
 
     /// Number of threads that work.
@@ -27,9 +39,14 @@ impl Team {
         self.pool.as_ref().map_or(1, |p| p.current_num_threads())
     }
 
+    /// Says how many entries the dense operators of one application have.
+    pub fn set_load(&mut self, entries: usize) {
+        self.iterates = entries > WORTH_WAKING;
+    }
+
     /// Runs `work` on every item; items are independent of each other.
     pub fn for_each<T: Send>(&self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync + Send) {
-        match &self.pool {
+        match self.pool.as_ref().filter(|_| self.iterates) {
             Some(pool) => pool.install(|| {
                 items
                     .par_iter_mut()

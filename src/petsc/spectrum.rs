@@ -150,7 +150,7 @@ pub fn extreme_eigenvalues(
         eps.set_operators(&operator, Some(&inner_product))?;
         eps.set_problem_type(ProblemType::Ghep)?;
         eps.set_which(which)?;
-        eps.set_dimensions(1, Some(n.clamp(1, 48)))?;
+        eps.set_dimensions(1, Some(n.clamp(1, 240)))?;
         eps.set_tolerances(tol, Some(500))?;
         eps.set_purify(false)?;
         eps.set_initial_space(std::slice::from_ref(&first))?;

@@ -104,14 +104,9 @@ impl Grid {
                 }
             }
         }
-        let pb = self.per_body();
         let primal = number
             .iter()
-            .filter(|((y, x), _)| {
-                let corner = x % ne == 0 && y % ne == 0;
-                let body_corner = x % pb == 0 && y % pb == 0;
-                corner && !body_corner
-            })
+            .filter(|((y, x), _)| x % ne == 0 && y % ne == 0)
             .map(|(_, &i)| i)
             .collect();
         let dofs = number.keys().map(|&(y, x)| self.dof(b, x, y)).collect();
