@@ -16,3 +16,4 @@ pub mod sparse;
 pub mod substructures;
 
 pub use error::{Error, Result};
+pub use feti::{FetiFeti, PcType, ProjectorKind, Scaling, Settings, Solution, Spectrum};

@@ -1,4 +1,5 @@
 //! The command-line program.
+
 fn main() {
-    std::process::exit(0)
+    std::process::exit(fetifeti::cli::main())
 }

@@ -1,1 +1,68 @@
-//! (to be written)
+//! The command-line program: arguments, then run, then an exit code.
+
+pub mod args;
+mod plan;
+mod problem;
+mod solve;
+mod table1;
+
+use args::{Command, Invocation};
+
+use crate::petsc::{Comm, Ksp, Session};
+use crate::{Error, Result, Settings};
+
+/// Runs the program with the process's arguments and returns its exit code.
+pub fn main() -> i32 {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let parsed = args::parse(&args);
+    let petsc = parsed.as_ref().map(|p| p.petsc.clone()).unwrap_or_default();
+    let session = match Session::new(&petsc, args::USAGE) {
+        Ok(session) => session,
+        Err(error) => {
+            eprintln!("Error: {error}");
+            return error.exit_code();
+        }
+    };
+    session.run(|session| run(session, parsed?))
+}
+
+fn run(session: &Session, invocation: Invocation) -> Result<()> {
+    let Invocation { command, petsc } = invocation;
+    let wants_help = petsc.iter().any(|a| a == "-help" || a == "-h");
+    match command {
+        Command::Help if wants_help => list_options(session),
+        Command::Help => {
+            if session.rank() == 0 {
+                print!("{}", args::USAGE);
+            }
+            Ok(())
+        }
+        Command::Version => {
+            if session.rank() == 0 {
+                println!("fetifeti {}", env!("CARGO_PKG_VERSION"));
+            }
+            Ok(())
+        }
+        Command::Solve(args) => solve::run(session, &args),
+        Command::Plan { scene } => plan::run(session, &scene),
+        Command::Table1(args) => table1::run(session, &args),
+        Command::Compare(args) => crate::baselines::compare(session, &args, &petsc),
+        Command::Baseline { job } => crate::baselines::run_job(session, &job),
+    }
+}
+
+/// `fetifeti -help`: our options and those of the solvers behind them, without a scene.
+fn list_options(session: &Session) -> Result<()> {
+    let settings = Settings::default().with_options(session)?;
+    let ksp = Ksp::new(session, Comm::World)?;
+    ksp.set_options_prefix(&settings.prefix)?;
+    ksp.set_type("cg")?;
+    ksp.set_from_options()
+}
+
+/// The error of a solve that stopped early; results were written before.
+fn not_converged(what: &str, reason: &str, iterations: usize) -> Error {
+    Error::NotConverged(format!(
+        "{what} did not converge: {reason} after {iterations} iterations (the results written are partial)"
+    ))
+}

@@ -15,6 +15,7 @@ pub mod primal;
 pub mod recover;
 pub mod scaling;
 pub mod settings;
+pub mod sizes;
 pub mod sharing;
 pub mod solver;
 pub mod spectrum;

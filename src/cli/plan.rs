@@ -1,0 +1,134 @@
+//! `fetifeti plan`: what the solver will build for a scene, and why.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::problem;
+use crate::feti::sizes::Sizes;
+use crate::feti::team::Team;
+use crate::petsc::Session;
+use crate::report::table::{Align, Table};
+use crate::scene::{Plan, Scene};
+use crate::Result;
+
+/// Bodies and interfaces are listed one by one up to this many lines.
+const LIST: usize = 24;
+
+/// Validates the scene and prints the plan.
+pub fn run(session: &Session, path: &Path) -> Result<()> {
+    let scene = problem::load(session, path)?;
+    let substructures = problem::substructures(session, &scene)?;
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let team = Team::new(if session.size() == 1 { threads } else { 1 })?;
+    let sizes = session.agree(Sizes::new(session.comm(), &substructures, &team))?;
+    if session.rank() == 0 {
+        print!("{}", text(&scene, &sizes));
+    }
+    Ok(())
+}
+
+fn text(scene: &Scene, sizes: &Sizes) -> String {
+    let plan = scene.plan();
+    let mut out = format!("{}\n\n", plan.title);
+    out += &bodies(&plan, sizes);
+    out += &interfaces(&plan);
+    out += &decisions(&plan, sizes);
+    out
+}
+
+fn bodies(plan: &Plan, sizes: &Sizes) -> String {
+    let header = ["body", "elements", "subdomains", "dofs", "prescribed", "primal", "kernel"];
+    let mut table = Table::new(header).align(0, Align::Left);
+    for (b, defect) in plan.bodies.iter().zip(&sizes.defect).take(LIST) {
+        table.row([
+            b.name.clone(),
+            format!("{} x {}", b.elements[0], b.elements[1]),
+            format!("{} x {}", b.subdomains[0], b.subdomains[1]),
+            b.dofs.to_string(),
+            b.prescribed.to_string(),
+            b.primal.to_string(),
+            match defect {
+                0 => "held".into(),
+                d => format!("floats ({d})"),
+            },
+        ]);
+    }
+    let more = plan.bodies.len().saturating_sub(LIST);
+    let rest = if more > 0 { format!("... and {more} more bodies\n") } else { String::new() };
+    format!("{table}{rest}\n")
+}
+
+fn interfaces(plan: &Plan) -> String {
+    if plan.interfaces.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(["touch", "nodes", "tied"]).align(0, Align::Left);
+    let faces = plan.interfaces.iter().filter(|i| !i.corner);
+    for i in faces.clone().take(LIST) {
+        let [a, b] = i.bodies.map(|b| plan.bodies[b].name.as_str());
+        table.row([format!("{a} - {b}"), i.nodes.to_string(), i.tied.to_string()]);
+    }
+    let more = faces.count().saturating_sub(LIST);
+    let rest = if more > 0 { format!("... and {more} more faces\n") } else { String::new() };
+    format!("{table}{rest}\n")
+}
+
+fn decisions(plan: &Plan, sizes: &Sizes) -> String {
+    let mut out = String::new();
+    let mut line = |what: &str, text: String| {
+        let _ = writeln!(out, "{what:<22}{text}");
+    };
+    let (n_bodies, n_subdomains) = (plan.bodies.len(), plan.subdomains);
+    line(
+        "size",
+        format!(
+            "{} elements, {} dofs in {n_bodies} bodies of {n_subdomains} subdomains ({} unknowns if assembled)",
+            plan.elements, plan.dofs, plan.assembled
+        ),
+    );
+    line(
+        "multipliers",
+        format!(
+            "{} inside bodies, {} between them, {} of those hold at the start",
+            sizes.multipliers_local, sizes.multipliers_global, sizes.multipliers_active
+        ),
+    );
+    line("outer loop", match sizes.inequalities {
+        0 => "none: no inequality".into(),
+        n => format!("active set: {n} inequalities"),
+    });
+    let floating = sizes.defect.iter().filter(|d| **d > 0).count();
+    line("projector", match floating {
+        0 => "none: no body floats".into(),
+        n => format!(
+            "natural coarse problem of size {}: {n} of {n_bodies} bodies float",
+            sizes.defect.iter().sum::<usize>()
+        ),
+    });
+    line("primal problem", match sizes.primal {
+        0 => "none: every body is one subdomain".into(),
+        n => format!("{n} vertices, at most {} in a body", sizes.largest_primal),
+    });
+    let method = match (n_bodies, n_subdomains == n_bodies) {
+        (1, true) => "direct: one body of one subdomain",
+        (1, false) => "FETI-DP: one body",
+        (_, true) => "one-level FETI: one subdomain per body",
+        _ => "FETI-FETI: FETI-DP inside the bodies, one-level FETI between them",
+    };
+    line("method", method.into());
+    let lifted = n_bodies > 1 && n_subdomains > n_bodies && sizes.multipliers_global > 0;
+    line("preconditioner", if lifted {
+        "coarse_corrected (M_C): jumps between bodies are lifted into whole bodies".into()
+    } else {
+        "dirichlet (M_D): there is nothing to lift".into()
+    });
+    let [factors, dense] = [sizes.factor_bytes, sizes.dense_bytes].map(|b| b / 1e6);
+    line(
+        "memory",
+        format!(
+            "{factors:.1} MB sparse factors, {dense:.1} MB dense operators (largest interface {} dofs)",
+            sizes.largest_interface
+        ),
+    );
+    out
+}

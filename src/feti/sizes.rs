@@ -1,0 +1,114 @@
+//! What would be built, counted exactly without factoring anything (`fetifeti plan`).
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::exchange::{exchange_words, max_all, sum_all};
+use super::jump::Jump;
+use super::kernel;
+use super::local::dense::Dense;
+use super::local::multifrontal::Symbolic;
+use super::sharing::Sharing;
+use super::team::Team;
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// Sizes over all ranks.
+#[derive(Debug, Clone, Default)]
+pub struct Sizes {
+    /// Rows of B_loc.
+    pub multipliers_local: usize,
+    /// Rows of B_gl.
+    pub multipliers_global: usize,
+    /// Rows of B_gl that hold.
+    pub multipliers_active: usize,
+    /// Rows of B_gl that are inequalities.
+    pub inequalities: usize,
+    /// Primal dofs of all bodies, fixing dofs left out.
+    pub primal: usize,
+    /// Largest primal problem of a body.
+    pub largest_primal: usize,
+    /// Largest number of interface dofs of a subdomain.
+    pub largest_interface: usize,
+    /// Dimension of every body's kernel.
+    pub defect: Vec<usize>,
+    /// Bytes of the sparse factors.
+    pub factor_bytes: f64,
+    /// Bytes of the dense operators S, T, Ψ.
+    pub dense_bytes: f64,
+}
+
+impl Sizes {
+    /// Counts. Collective.
+    pub fn new(comm: &SimpleCommunicator, problem: &Substructures, team: &Team) -> Result<Sizes> {
+        let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
+        let sharing = Sharing::new(comm, problem, &weights)?;
+        let jump = Jump::new(comm, problem, &sharing);
+        let locals = team.map(problem.local.len(), |j| {
+            let sub = &problem.local[j];
+            let interface = [&jump.delta[j][..], &jump.primal[j]].concat();
+            let symbolic = Symbolic::new(&sub.k, &interface, sub.coordinates.as_deref());
+            symbolic.factor_entries()
+        });
+
+        let mut primal = vec![0.0; problem.n_bodies];
+        let mut sums = [0.0; 4];
+        let mut largest = [0.0f64];
+        for (j, sub) in problem.local.iter().enumerate() {
+            let (n_delta, n_pi) = (jump.delta[j].len() as f64, jump.primal[j].len() as f64);
+            sums[0] += 8.0 * locals[j] as f64;
+            sums[1] += 8.0 * ((n_delta + n_pi).powi(2) + n_delta * (n_delta + n_pi));
+            largest[0] = largest[0].max(n_delta + n_pi);
+            for &i in &jump.primal[j] {
+                // Every primal dof is counted by its lowest subdomain.
+                let copies = sharing.shared(sub.dofs[i as usize]);
+                let first = copies.first().is_none_or(|c| c.subdomain as usize == sub.index);
+                primal[sub.body] += f64::from(u8::from(first));
+            }
+        }
+        let contact = jump.n_owned_local..jump.n_owned;
+        sums[2] = contact.clone().filter(|&r| jump.active[r]).count() as f64;
+        sums[3] = contact.filter(|&r| jump.inequality[r]).count() as f64;
+        sum_all(comm, &mut sums);
+        sum_all(comm, &mut primal);
+        max_all(comm, &mut largest);
+        Ok(Sizes {
+            multipliers_local: jump.n_local,
+            multipliers_global: jump.n_global - jump.n_local,
+            multipliers_active: sums[2] as usize,
+            inequalities: sums[3] as usize,
+            primal: primal.iter().sum::<f64>() as usize,
+            largest_primal: primal.iter().fold(0.0f64, |a, &b| a.max(b)) as usize,
+            largest_interface: largest[0] as usize,
+            defect: defects(comm, problem),
+            factor_bytes: sums[0],
+            dense_bytes: sums[1],
+        })
+    }
+}
+
+/// Dimension of every body's kernel, from its matrices and near-kernels; a body without near-kernel counts as held.
+fn defects(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<usize> {
+    let mut words = Vec::new();
+    for sub in &problem.local {
+        let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
+        let factor = kernel::residual_factor(&sub.k, columns);
+        words.extend([sub.body as u64, columns.len() as u64]);
+        words.extend(factor.data.iter().map(|v| v.to_bits()));
+    }
+    let all = exchange_words(comm, vec![words; comm.size() as usize]).concat();
+    let mut factors: Vec<Vec<Dense>> = vec![Vec::new(); problem.n_bodies];
+    let mut rest = &all[..];
+    while let [body, k, tail @ ..] = rest {
+        let k = *k as usize;
+        let (data, tail) = tail.split_at(k * k);
+        factors[*body as usize].push(Dense {
+            rows: k,
+            cols: k,
+            data: data.iter().map(|&w| f64::from_bits(w)).collect(),
+        });
+        rest = tail;
+    }
+    let defect = |f: &Vec<Dense>| kernel::null_combinations(f).cols;
+    factors.iter().map(defect).collect()
+}
