@@ -1,1 +1,8 @@
-//! (to be written)
+//! Finite elements: Q1 rectangles for −∇·(ρ∇u) = f [Lee (2.1)–(2.2)], assembly of one subdomain, error norms.
+
+mod assemble;
+mod norms;
+pub mod q1;
+
+pub use assemble::{assemble, load_vector, Quadrature};
+pub use norms::{error_squares, ErrorNorms};

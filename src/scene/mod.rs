@@ -1,1 +1,180 @@
-//! (to be written)
+//! Scenes: what the user writes, and everything that follows from it before a matrix is solved with.
+//!
+//! ```text
+//! TOML ── read ──> SceneSpec ── Scene::new ──> Scene ──┬─> Substructures   (the method)
+//!                     ▲                                ├─> Numbering       (assembled baselines)
+//!      a program ─────┘                                ├─> SubdomainMesh   (output, error norms)
+//!                                                      └─> Plan            (what will be built)
+//! ```
+//!
+//! A [`SceneSpec`] is unchecked data, a [`Scene`] is checked and has every default filled in. A scene is small: it holds
+//! what happens on the boundaries of bodies, O(boundary nodes), and is the same on every rank; matrices are made
+//! subdomain by subdomain, on the rank that owns the subdomain.
+
+mod document;
+mod dual;
+mod expr;
+mod field;
+mod interface;
+mod joint;
+mod numbering;
+mod plan;
+mod points;
+mod read;
+mod spec;
+mod ties;
+mod validate;
+
+pub use dual::Dual;
+pub use expr::{Expr, Variables};
+pub use field::{At, By, Field, Region};
+pub use interface::{Interface, Link, Shape, SharedNode};
+pub use numbering::Numbering;
+pub use plan::{BodyPlan, InterfacePlan, Plan};
+pub use points::{Member, Point, PointRow};
+pub use spec::{
+    held_all_round, lee, BodySpec, Extent, Faces, GridSpec, Load, Pair, SceneSpec, Sides, TieSpec,
+    SIDES,
+};
+
+use crate::error::{Error, Result};
+use crate::mesh::BoxMesh;
+use std::path::Path;
+
+/// A body of a checked scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// What was written about it.
+    pub spec: BodySpec,
+    /// Body dof of its node 0; its node k has the number `first_dof + k`.
+    pub first_dof: u64,
+    /// Global index of its subdomain 0.
+    pub first_subdomain: usize,
+    /// Nodes with a given value, in increasing order: Dirichlet sides, and nodes that are tied to such a node of
+    /// another body.
+    pub prescribed: Vec<(usize, f64)>,
+}
+
+impl Body {
+    /// Its mesh.
+    pub fn mesh(&self) -> &BoxMesh {
+        &self.spec.mesh
+    }
+
+    /// The given value at `node`, if there is one.
+    pub fn prescribed_at(&self, node: usize) -> Option<f64> {
+        self.prescribed
+            .binary_search_by_key(&node, |&(n, _)| n)
+            .ok()
+            .map(|k| self.prescribed[k].1)
+    }
+}
+
+/// A checked scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Title for reports.
+    pub title: String,
+    /// The bodies.
+    pub bodies: Vec<Body>,
+    /// Pairs of bodies that touch, by increasing numbers, and the nodes at which they meet.
+    pub interfaces: Vec<Interface>,
+    /// Points at which nodes of several bodies coincide, by increasing [`Point::block`].
+    pub points: Vec<Point>,
+    /// The exact solution, if it is known.
+    pub exact: Option<Expr>,
+    /// PETSc options (without the dash) that hold unless the command line says otherwise.
+    pub options: Vec<(String, String)>,
+    /// Number of subdomains.
+    n_subdomains: usize,
+}
+
+impl Scene {
+    /// Reads and checks the scene in the file `path`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line and what was expected.
+    pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| Error::Input(format!("{file}: the scene cannot be read: {e}")))?;
+        Scene::parse(&file, &text)
+    }
+
+    /// Checks the scene in `text`; `file` names it in messages.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn parse(file: &str, text: &str) -> Result<Scene> {
+        Scene::new(read::read(file, text)?)
+    }
+
+    /// Checks a scene that a program has built.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for overlapping bodies, non-matching nodes on tied faces, values out of range, ….
+    pub fn new(spec: SceneSpec) -> Result<Scene> {
+        validate::check(&spec)?;
+        let mut bodies = Vec::with_capacity(spec.bodies.len());
+        let (mut first_dof, mut first_subdomain) = (0, 0);
+        for body in spec.bodies {
+            let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
+            bodies.push(Body {
+                prescribed: validate::dirichlet_nodes(&body)?,
+                spec: body,
+                first_dof,
+                first_subdomain,
+            });
+            first_dof += nodes as u64;
+            first_subdomain += subdomains;
+        }
+        let interfaces = ties::find(&bodies, spec.tied_by_default, &spec.ties)?;
+        let points = points::collect(&mut bodies, &interfaces)?;
+        validate::check_unknowns(&bodies)?;
+        Ok(Scene {
+            title: spec.title,
+            bodies,
+            interfaces,
+            points,
+            exact: spec.exact,
+            options: spec.options,
+            n_subdomains: first_subdomain,
+        })
+    }
+
+    /// The experiment of Table 1 of \[Lee\]; see [`lee`].
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a count is zero, or when no node lies in the middle third of any face.
+    pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> Result<Scene> {
+        Scene::new(lee(bodies, subdomains, elements, faces))
+    }
+
+    /// A grid of equal bodies, tied wherever they touch.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn grid(title: impl Into<String>, grid: &GridSpec) -> Result<Scene> {
+        Scene::new(SceneSpec::tied(title, grid.expand()))
+    }
+
+    /// Number of bodies.
+    pub fn n_bodies(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Number of subdomains of all bodies.
+    pub fn n_subdomains(&self) -> usize {
+        self.n_subdomains
+    }
+
+    /// The body that subdomain `index` belongs to, and the subdomain's number inside it.
+    pub fn body_of(&self, index: usize) -> (usize, usize) {
+        let body = self
+            .bodies
+            .partition_point(|b| b.first_subdomain <= index)
+            .saturating_sub(1);
+        (body, index - self.bodies[body].first_subdomain)
+    }
+}

@@ -1,0 +1,100 @@
+//! The bilinear element on a rectangle.
+//!
+//! Its four nodes are numbered lower left, lower right, upper left, upper right: node a lies at
+//! (a mod 2, a div 2) of the unit square.
+
+/// Stiffness of −Δ on a rectangle of width `dx` and height `dy`:
+/// `K[a][b]` = ∫ ∇N_a·∇N_b = (dy/dx) D(x) M(y) + (dx/dy) M(x) D(y), with D = [1 −1; −1 1] and M = [2 1; 1 2]/6.
+pub fn stiffness(dx: f64, dy: f64) -> [[f64; 4]; 4] {
+    let d = |a: usize, b: usize| if a == b { 1.0 } else { -1.0 };
+    let m = |a: usize, b: usize| if a == b { 1.0 / 3.0 } else { 1.0 / 6.0 };
+    let mut k = [[0.0; 4]; 4];
+    for (a, row) in k.iter_mut().enumerate() {
+        for (b, entry) in row.iter_mut().enumerate() {
+            let (ax, ay, bx, by) = (a % 2, a / 2, b % 2, b / 2);
+            *entry = dy / dx * d(ax, bx) * m(ay, by) + dx / dy * m(ax, bx) * d(ay, by);
+        }
+    }
+    k
+}
+
+/// The shape functions N_a at (s, t) ∈ \[0,1\]².
+pub fn shape(s: f64, t: f64) -> [f64; 4] {
+    [(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t]
+}
+
+/// Their derivatives by s and t: `[a] = [∂N_a/∂s, ∂N_a/∂t]`.
+pub fn shape_gradient(s: f64, t: f64) -> [[f64; 2]; 4] {
+    [[t - 1.0, s - 1.0], [1.0 - t, -s], [-t, 1.0 - s], [t, s]]
+}
+
+/// The two-point Gauss rule on \[0,1\]: (point, weight), exact for cubics.
+pub const GAUSS2: [(f64, f64); 2] = [
+    (0.211_324_865_405_187_1, 0.5),
+    (0.788_675_134_594_812_9, 0.5),
+];
+
+/// The four-point Gauss rule on \[0,1\]: (point, weight), exact for degree 7.
+pub const GAUSS4: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_unit_square_has_the_textbook_matrix() {
+        // 1/6 of [4 −1 −1 −2; −1 4 −2 −1; −1 −2 4 −1; −2 −1 −1 4].
+        let expected = [
+            [4.0, -1.0, -1.0, -2.0],
+            [-1.0, 4.0, -2.0, -1.0],
+            [-1.0, -2.0, 4.0, -1.0],
+            [-2.0, -1.0, -1.0, 4.0],
+        ];
+        let k = stiffness(0.25, 0.25);
+        for a in 0..4 {
+            for b in 0..4 {
+                assert!((k[a][b] - expected[a][b] / 6.0).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn a_rectangle_agrees_with_quadrature_of_the_gradients() {
+        let (dx, dy) = (0.3, 1.7);
+        let k = stiffness(dx, dy);
+        for a in 0..4 {
+            for b in 0..4 {
+                let mut sum = 0.0;
+                for (s, ws) in GAUSS2 {
+                    for (t, wt) in GAUSS2 {
+                        let g = shape_gradient(s, t);
+                        sum += ws
+                            * wt
+                            * dx
+                            * dy
+                            * (g[a][0] * g[b][0] / (dx * dx) + g[a][1] * g[b][1] / (dy * dy));
+                    }
+                }
+                assert!((k[a][b] - sum).abs() < 1e-14, "{a} {b}: {} {sum}", k[a][b]);
+            }
+        }
+    }
+
+    #[test]
+    fn rules_are_exact_for_their_degree() {
+        let integrate =
+            |rule: &[(f64, f64)], p: i32| -> f64 { rule.iter().map(|(x, w)| w * x.powi(p)).sum() };
+        for p in 0..4 {
+            assert!((integrate(&GAUSS2, p) - 1.0 / f64::from(p + 1)).abs() < 1e-15);
+        }
+        for p in 0..8 {
+            assert!((integrate(&GAUSS4, p) - 1.0 / f64::from(p + 1)).abs() < 1e-15);
+        }
+        assert!((integrate(&GAUSS4, 8) - 1.0 / 9.0).abs() > 1e-8);
+    }
+}

@@ -1,0 +1,216 @@
+//! Data over bodies: coefficients, loads and boundary values.
+
+use super::expr::{Expr, Variables};
+
+/// What an alternation or a table follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    /// The place of the body in its grid.
+    Body,
+    /// The place of the subdomain in the whole grid of bodies.
+    Subdomain,
+}
+
+/// A rectangle [x0, x1) × [y0, y1) with its own value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// x0 and x1; `None`: all x.
+    pub x: Option<[f64; 2]>,
+    /// y0 and y1; `None`: all y.
+    pub y: Option<[f64; 2]>,
+    /// The value inside.
+    pub value: Expr,
+}
+
+/// A scalar function on the bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Field {
+    /// A number or an expression in x, y, bi, bj, si, sj.
+    Expression(Expr),
+    /// `values[0]` and `values[1]` in turns, `values[0]` in the lower left corner.
+    Checkerboard {
+        /// The two values.
+        values: [f64; 2],
+        /// What they follow.
+        by: By,
+    },
+    /// `rows[j][i]` in column i and row j of bodies or subdomains, j counted upwards.
+    Table {
+        /// The values, row by row from the bottom.
+        rows: Vec<Vec<f64>>,
+        /// Whether the place is that of the body in its grid or of the subdomain in its body.
+        by: By,
+    },
+    /// The last region that contains the point, `otherwise` where none does.
+    Regions {
+        /// The regions.
+        list: Vec<Region>,
+        /// The value outside all of them.
+        otherwise: Expr,
+    },
+}
+
+/// Where a field is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct At {
+    /// Point and places.
+    pub variables: Variables,
+    /// Subdomains of the body in x and y.
+    pub subdomains: [usize; 2],
+}
+
+impl Field {
+    /// The constant `value`.
+    pub fn constant(value: f64) -> Field {
+        Field::Expression(Expr::constant(value))
+    }
+
+    /// The value at `at`.
+    pub fn eval(&self, at: &At) -> f64 {
+        let v = &at.variables;
+        match self {
+            Field::Expression(e) => e.eval(v),
+            Field::Checkerboard { values, by } => {
+                let parity: usize = (0..2)
+                    .map(|d| match by {
+                        By::Body => v.body[d],
+                        By::Subdomain => v.body[d] * at.subdomains[d] + v.subdomain[d],
+                    })
+                    .sum();
+                values[parity % 2]
+            }
+            Field::Table { rows, by } => {
+                let [i, j] = match by {
+                    By::Body => v.body,
+                    By::Subdomain => v.subdomain,
+                };
+                // The shape was checked against the grid; NaN is reported as a bad value if it ever was not.
+                rows.get(j)
+                    .and_then(|row| row.get(i))
+                    .copied()
+                    .unwrap_or(f64::NAN)
+            }
+            Field::Regions { list, otherwise } => list
+                .iter()
+                .rev()
+                .find(|r| r.contains(v.point))
+                .map_or(otherwise, |r| &r.value)
+                .eval(v),
+        }
+    }
+
+    /// The value, if it is the same everywhere.
+    pub fn as_constant(&self) -> Option<f64> {
+        match self {
+            Field::Expression(e) => e.as_constant(),
+            _ => None,
+        }
+    }
+
+    /// Whether the value is the same at all points of a subdomain, so that one evaluation serves.
+    pub fn is_constant_by_subdomain(&self) -> bool {
+        match self {
+            Field::Expression(e) => e.as_constant().is_some(),
+            Field::Checkerboard { .. } | Field::Table { .. } => true,
+            Field::Regions { .. } => false,
+        }
+    }
+
+    /// The values that are written down as such, for checks before anything is assembled.
+    pub fn known_values(&self) -> Vec<f64> {
+        match self {
+            Field::Expression(e) => e.as_constant().into_iter().collect(),
+            Field::Checkerboard { values, .. } => values.to_vec(),
+            Field::Table { rows, .. } => rows.concat(),
+            Field::Regions { list, otherwise } => list
+                .iter()
+                .map(|r| &r.value)
+                .chain([otherwise])
+                .filter_map(Expr::as_constant)
+                .collect(),
+        }
+    }
+}
+
+impl Region {
+    /// Half-open, so that a point on the border of two regions belongs to the right or upper one.
+    fn contains(&self, point: [f64; 2]) -> bool {
+        let inside = |range: &Option<[f64; 2]>, v: f64| match range {
+            Some([low, high]) => *low <= v && v < *high,
+            None => true,
+        };
+        inside(&self.x, point[0]) && inside(&self.y, point[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(point: [f64; 2], body: [usize; 2], subdomain: [usize; 2]) -> At {
+        At {
+            variables: Variables {
+                point,
+                body,
+                subdomain,
+            },
+            subdomains: [3, 3],
+        }
+    }
+
+    #[test]
+    fn checkerboards_continue_across_bodies() {
+        let board = |by| Field::Checkerboard {
+            values: [1.0, 9.0],
+            by,
+        };
+        // With three subdomains a body, the right neighbour of subdomain 2 of body 0 is subdomain 0 of body 1.
+        let by = board(By::Subdomain);
+        assert_eq!(by.eval(&at([0.0; 2], [0, 0], [2, 0])), 1.0);
+        assert_eq!(by.eval(&at([0.0; 2], [1, 0], [0, 0])), 9.0);
+        assert_eq!(by.eval(&at([0.0; 2], [1, 1], [0, 0])), 1.0);
+        let by = board(By::Body);
+        assert_eq!(by.eval(&at([0.0; 2], [1, 0], [2, 1])), 9.0);
+    }
+
+    #[test]
+    fn the_last_region_wins_and_borders_belong_to_the_right() {
+        let number = Expr::constant;
+        let field = Field::Regions {
+            list: vec![
+                Region {
+                    x: Some([0.0, 0.5]),
+                    y: None,
+                    value: number(1.0),
+                },
+                Region {
+                    x: Some([0.5, 1.0]),
+                    y: None,
+                    value: number(2.0),
+                },
+                Region {
+                    x: None,
+                    y: Some([0.9, 1.0]),
+                    value: number(3.0),
+                },
+            ],
+            otherwise: number(7.0),
+        };
+        let value = |p| field.eval(&at(p, [0; 2], [0; 2]));
+        assert_eq!(value([0.2, 0.2]), 1.0);
+        assert_eq!(value([0.5, 0.2]), 2.0);
+        assert_eq!(value([0.5, 0.95]), 3.0);
+        assert_eq!(value([2.0, 0.5]), 7.0);
+    }
+
+    #[test]
+    fn tables_are_read_upwards() {
+        let table = Field::Table {
+            rows: vec![vec![1.0, 2.0], vec![3.0, 4.0]],
+            by: By::Body,
+        };
+        assert_eq!(table.eval(&at([0.0; 2], [1, 0], [0, 0])), 2.0);
+        assert_eq!(table.eval(&at([0.0; 2], [0, 1], [0, 0])), 3.0);
+        assert!(table.eval(&at([0.0; 2], [2, 0], [0, 0])).is_nan());
+    }
+}

@@ -1,0 +1,152 @@
+//! The assembled problem's numbering: one unknown where tied bodies have several copies, none where u is given.
+//!
+//! Baselines that work on the assembled matrix need it; the method itself does not. Every rank computes the same
+//! numbering from the scene alone, with memory in proportion to the nodes on boundaries of bodies: inside a subdomain
+//! numbers are counted, and only the exceptions (given nodes, and nodes that share a number of another body) are stored.
+//! Unknowns are numbered by subdomain (the lowest that contains the node), so that a contiguous share of
+//! subdomains is a contiguous range of unknowns.
+
+use super::Scene;
+use crate::mesh::BoxMesh;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Map from body dofs to the unknowns 0..len of the assembled problem.
+#[derive(Debug, Clone)]
+pub struct Numbering {
+    /// Mesh, first body dof, first subdomain of every body.
+    bodies: Vec<(BoxMesh, u64, usize)>,
+    /// First unknown of every subdomain, and the total.
+    starts: Vec<u64>,
+    /// Body dofs without an own number, as (owning subdomain, rank among the nodes it owns), sorted.
+    holes: Vec<(usize, usize)>,
+    /// Where the holes of every subdomain start in `holes`.
+    hole_starts: Vec<usize>,
+    /// The body dof whose number a tied body dof shares.
+    shared: HashMap<u64, u64>,
+}
+
+impl Numbering {
+    /// The numbering of `scene`.
+    pub fn new(scene: &Scene) -> Numbering {
+        let bodies: Vec<(BoxMesh, u64, usize)> = scene
+            .bodies
+            .iter()
+            .map(|b| (*b.mesh(), b.first_dof, b.first_subdomain))
+            .collect();
+        let mut shared = HashMap::new();
+        let mut holes = Vec::new();
+        let mut hole = |body: usize, node: usize| {
+            let (mesh, _, first) = &bodies[body];
+            let (owner, rank) = owned_rank(mesh, mesh.place(node));
+            holes.push((first + owner, rank));
+        };
+        for (b, body) in scene.bodies.iter().enumerate() {
+            for &(node, _) in &body.prescribed {
+                hole(b, node);
+            }
+        }
+        for point in &scene.points {
+            for (m, member) in point.members.iter().enumerate() {
+                let to = &point.members[point.tied_to[m]];
+                let given = scene.bodies[member.body].prescribed_at(member.node);
+                if point.tied_to[m] != m && given.is_none() {
+                    hole(member.body, member.node);
+                    let dof = |body: usize, node: usize| bodies[body].1 + node as u64;
+                    shared.insert(dof(member.body, member.node), dof(to.body, to.node));
+                }
+            }
+        }
+        holes.sort_unstable();
+        let n = scene.n_subdomains();
+        let mut hole_starts = vec![0; n + 1];
+        for (subdomain, _) in &holes {
+            hole_starts[subdomain + 1] += 1;
+        }
+        let mut starts = vec![0; n + 1];
+        for (mesh, _, first) in &bodies {
+            for s in 0..mesh.n_subdomains() {
+                let [width, height] = owned_box(mesh, s).1;
+                starts[first + s + 1] = (width * height) as u64;
+            }
+        }
+        for s in 0..n {
+            starts[s + 1] -= hole_starts[s + 1] as u64;
+            starts[s + 1] += starts[s];
+            hole_starts[s + 1] += hole_starts[s];
+        }
+        Numbering {
+            bodies,
+            starts,
+            holes,
+            hole_starts,
+            shared,
+        }
+    }
+
+    /// Number of unknowns N.
+    pub fn len(&self) -> u64 {
+        self.starts[self.starts.len() - 1]
+    }
+
+    /// Whether every node is given.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The unknowns that subdomains `subdomains` own: the rows of a rank that holds this contiguous share.
+    pub fn range(&self, subdomains: Range<usize>) -> Range<u64> {
+        self.starts[subdomains.start]..self.starts[subdomains.end]
+    }
+
+    /// The unknown of a body dof that is free (one that a [`Subdomain`](crate::substructures::Subdomain) lists).
+    /// The answer for a given node means nothing.
+    pub fn global(&self, body_dof: u64) -> u64 {
+        let dof = self.shared.get(&body_dof).copied().unwrap_or(body_dof);
+        let body = self.bodies.partition_point(|b| b.1 <= dof) - 1;
+        let (mesh, first_dof, first_subdomain) = &self.bodies[body];
+        let place = mesh.place((dof - first_dof) as usize);
+        let (owner, rank) = owned_rank(mesh, place);
+        let s = first_subdomain + owner;
+        let holes = &self.holes[self.hole_starts[s]..self.hole_starts[s + 1]];
+        let before = holes.partition_point(|&(_, h)| h < rank);
+        self.starts[s] + (rank - before) as u64
+    }
+
+    /// Position of unknown `global` < N.
+    pub fn coordinates(&self, global: u64) -> [f64; 2] {
+        let s = self.starts.partition_point(|&start| start <= global) - 1;
+        let holes = &self.holes[self.hole_starts[s]..self.hole_starts[s + 1]];
+        // The rank r with r − (holes below r) = number, r itself no hole.
+        let mut rank = (global - self.starts[s]) as usize;
+        for &(_, hole) in holes {
+            if hole <= rank {
+                rank += 1;
+            }
+        }
+        let body = self.bodies.partition_point(|b| b.2 <= s) - 1;
+        let (mesh, _, first) = &self.bodies[body];
+        let (low, [width, _]) = owned_box(mesh, s - first);
+        mesh.position([low[0] + rank % width, low[1] + rank / width])
+    }
+}
+
+/// First node, and the numbers of node columns and rows, that subdomain `s` owns: its left column and lower row belong to the
+/// neighbours of lower number.
+fn owned_box(mesh: &BoxMesh, s: usize) -> ([usize; 2], [usize; 2]) {
+    let block = mesh.block(s);
+    let (mut first, mut count) = ([0; 2], [0; 2]);
+    for d in 0..2 {
+        let inner = usize::from(block.place[d] > 0);
+        first[d] = block.first[d] + inner;
+        count[d] = block.elements[d] + 1 - inner;
+    }
+    (first, count)
+}
+
+/// The owning subdomain of a node and the node's rank among those it owns.
+fn owned_rank(mesh: &BoxMesh, place: [usize; 2]) -> (usize, usize) {
+    let owner = mesh.owner(place);
+    let (first, [width, _]) = owned_box(mesh, owner);
+    (owner, (place[1] - first[1]) * width + (place[0] - first[0]))
+}

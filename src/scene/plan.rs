@@ -1,0 +1,140 @@
+//! What will be built for a scene, counted without building it.
+
+use super::interface::{Link, Shape};
+use super::Scene;
+use crate::error::Result;
+
+/// The sizes of one body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyPlan {
+    /// Its name.
+    pub name: String,
+    /// Lower left corner.
+    pub origin: [f64; 2],
+    /// Width and height.
+    pub size: [f64; 2],
+    /// Elements in x and y.
+    pub elements: [usize; 2],
+    /// Subdomains in x and y.
+    pub subdomains: [usize; 2],
+    /// Free nodes.
+    pub dofs: usize,
+    /// Nodes with a given value.
+    pub prescribed: usize,
+    /// Free vertices that subdomains share: primal constraints.
+    pub primal: usize,
+    /// Rows of B_loc.
+    pub local_multipliers: usize,
+}
+
+/// The sizes of one pair of bodies that touch.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InterfacePlan {
+    /// The bodies.
+    pub bodies: [usize; 2],
+    /// Whether they have only a corner in common.
+    pub corner: bool,
+    /// Nodes at which both have one.
+    pub nodes: usize,
+    /// Nodes of one without a partner in the other.
+    pub unmatched: usize,
+    /// Nodes that are tied.
+    pub tied: usize,
+}
+
+/// The sizes of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Title of the scene.
+    pub title: String,
+    /// Its bodies.
+    pub bodies: Vec<BodyPlan>,
+    /// Its pairs of bodies.
+    pub interfaces: Vec<InterfacePlan>,
+    /// Number of subdomains.
+    pub subdomains: usize,
+    /// Number of elements.
+    pub elements: usize,
+    /// Free nodes, counted once in every body.
+    pub dofs: usize,
+    /// Unknowns of the assembled problem.
+    pub assembled: u64,
+    /// Primal constraints.
+    pub primal: usize,
+    /// Rows of B_loc.
+    pub local_multipliers: usize,
+    /// Rows of B_gl that hold.
+    pub global_multipliers: usize,
+    /// Rows of B_gl that do not hold: candidate contact nodes of faces that are tied in part.
+    pub open_rows: usize,
+}
+
+impl Scene {
+    /// Counts what will be built.
+    pub fn plan(&self) -> Plan {
+        let bodies: Vec<BodyPlan> = (0..self.n_bodies()).map(|b| self.body_plan(b)).collect();
+        let interfaces = self
+            .interfaces
+            .iter()
+            .map(|i| InterfacePlan {
+                bodies: i.bodies,
+                corner: i.shape == Shape::Corner,
+                nodes: i.shared.len(),
+                unmatched: i.unmatched.len(),
+                tied: i.shared.iter().filter(|s| s.link == Link::Tied).count(),
+            })
+            .collect();
+        Plan {
+            title: self.title.clone(),
+            interfaces,
+            subdomains: self.n_subdomains(),
+            elements: bodies.iter().map(|b| b.elements[0] * b.elements[1]).sum(),
+            dofs: bodies.iter().map(|b| b.dofs).sum(),
+            assembled: super::Numbering::new(self).len(),
+            primal: bodies.iter().map(|b| b.primal).sum(),
+            local_multipliers: bodies.iter().map(|b| b.local_multipliers).sum(),
+            global_multipliers: self.rows_that(true),
+            open_rows: self.rows_that(false),
+            bodies,
+        }
+    }
+
+    /// Evaluates ρ and the load in every element, as assembly will, and reports the first bad value.
+    ///
+    /// # Errors
+    /// As [`Scene::substructures`].
+    pub fn check_values(&self) -> Result<()> {
+        (0..self.n_subdomains()).try_for_each(|s| self.subdomain(s).map(drop))
+    }
+
+    fn rows_that(&self, hold: bool) -> usize {
+        self.points
+            .iter()
+            .flat_map(|p| &p.rows)
+            .filter(|r| r.holds == hold)
+            .count()
+    }
+
+    fn body_plan(&self, b: usize) -> BodyPlan {
+        let body = &self.bodies[b];
+        let mesh = body.mesh();
+        let [sx, sy] = mesh.subdomains;
+        let [m, n] = mesh.block_elements();
+        let corners = (0..=sy).flat_map(|j| (0..=sx).map(move |i| [i * m, j * n]));
+        let primal = corners
+            .filter(|&p| mesh.multiplicity(p) > 1 && body.prescribed_at(mesh.node(p)).is_none())
+            .count();
+        BodyPlan {
+            name: body.spec.name.clone(),
+            origin: mesh.origin,
+            size: mesh.size,
+            elements: mesh.elements,
+            subdomains: mesh.subdomains,
+            dofs: mesh.n_nodes() - body.prescribed.len(),
+            prescribed: body.prescribed.len(),
+            primal,
+            // Edges inside the body: every node of their interior has two copies, one row. Their ends are vertices.
+            local_multipliers: (sx - 1) * sy * (n - 1) + sx * (sy - 1) * (m - 1),
+        }
+    }
+}

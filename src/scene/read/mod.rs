@@ -1,0 +1,247 @@
+//! From TOML to a [`SceneSpec`]: keys, types and shapes.
+
+mod fields;
+mod ties;
+mod values;
+
+use super::document::{Item, Section, Source, Value};
+use super::field::{By, Field};
+use super::spec::{BodySpec, GridSpec, Load, SceneSpec, Sides};
+use super::validate::MOST_BODIES;
+use crate::error::{Error, Result};
+use crate::mesh::BoxMesh;
+use fields::Shape;
+use values::MOST;
+
+/// The scene in `text`; `file` names it in messages.
+pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
+    let source = Source { file, text };
+    let reader = Reader { source: &source };
+    let root = source.parse()?;
+    let mut scene = Section::new(&source, "the scene", &root)?;
+
+    let title = match (scene.take("name"), scene.take("title")) {
+        (_, Some(item)) | (Some(item), None) => reader.text(item, "a title")?,
+        (None, None) => stem(file),
+    };
+    if let Some(item) = scene.take("physics") {
+        let physics = reader.text(item, "\"scalar\"")?;
+        if physics != "scalar" {
+            return reader.expected(item, "\"scalar\"");
+        }
+    }
+    let mut bodies = Vec::new();
+    for item in reader.tables(scene.take("grid"))? {
+        bodies.extend(reader.grid(item)?.expand());
+    }
+    for item in reader.tables(scene.take("body"))? {
+        bodies.push(reader.body(item, bodies.len())?);
+    }
+    let tied_by_default = match scene.take("interface") {
+        None => true,
+        Some(item) => reader.interface(item)?,
+    };
+    let mut ties = Vec::new();
+    for item in reader.tables(scene.take("tie"))? {
+        ties.push(reader.tie(item, &bodies)?);
+    }
+    let exact = match scene.take("exact") {
+        None => None,
+        Some(item) => Some(reader.expression(item)?),
+    };
+    let options = match scene.take("options") {
+        None => Vec::new(),
+        Some(item) => reader.options(item)?,
+    };
+    scene.finish()?;
+    if bodies.is_empty() {
+        return Err(Error::Input(format!(
+            "{file}: the scene has no bodies ([[body]] or [grid] was expected)"
+        )));
+    }
+    Ok(SceneSpec {
+        title,
+        bodies,
+        tied_by_default,
+        ties,
+        exact,
+        options,
+    })
+}
+
+fn stem(file: &str) -> String {
+    std::path::Path::new(file)
+        .file_stem()
+        .map_or_else(|| file.to_string(), |s| s.to_string_lossy().into_owned())
+}
+
+struct Reader<'a> {
+    source: &'a Source<'a>,
+}
+
+impl<'a> Reader<'a> {
+    fn body(&self, item: &'a Item, index: usize) -> Result<BodySpec> {
+        let mut section = Section::new(self.source, "[[body]]", item)?;
+        let name = match section.take("name") {
+            Some(item) => self.text(item, "a name")?,
+            None => format!("body{index}"),
+        };
+        let origin = match section.take("origin") {
+            Some(item) => self.pair(item, "a point [x, y]")?,
+            None => [0.0, 0.0],
+        };
+        let size = self.size(section.need("size", "a width and a height")?)?;
+        let (elements, subdomains) = self.partition(&mut section, item, &name)?;
+        let mut body = BodySpec::new(
+            name,
+            BoxMesh {
+                origin,
+                size,
+                elements,
+                subdomains,
+            },
+        );
+        body.written = self.written(item);
+        let shape = Shape {
+            bare: By::Subdomain,
+            bodies: None,
+            subdomains,
+        };
+        let (rho, load, sides) = self.data(&mut section, &shape)?;
+        (body.rho, body.load, body.dirichlet) = (rho, load, sides);
+        section.finish()?;
+        Ok(body)
+    }
+
+    fn grid(&self, item: &'a Item) -> Result<GridSpec> {
+        let mut section = Section::new(self.source, "[grid]", item)?;
+        let name = match section.take("name") {
+            Some(item) => self.text(item, "a name")?,
+            None => "b".into(),
+        };
+        let counts = section.need("bodies", "the number of bodies in x and y")?;
+        let bodies = self.counts(counts)?;
+        if bodies[0] * bodies[1] > MOST_BODIES {
+            return self.error(
+                counts,
+                format_args!(
+                    "{} bodies where at most {MOST_BODIES} were expected",
+                    bodies[0] * bodies[1]
+                ),
+            );
+        }
+        let origin = match section.take("origin") {
+            Some(item) => self.pair(item, "a point [x, y]")?,
+            None => [0.0, 0.0],
+        };
+        let size = match section.take("size") {
+            Some(item) => self.size(item)?,
+            None => [1.0, 1.0],
+        };
+        let (elements, subdomains) = self.partition(&mut section, item, "of the grid")?;
+        let shape = Shape {
+            bare: By::Body,
+            bodies: Some(bodies),
+            subdomains,
+        };
+        let (rho, load, dirichlet) = self.data(&mut section, &shape)?;
+        section.finish()?;
+        Ok(GridSpec {
+            name,
+            bodies,
+            origin,
+            size,
+            elements,
+            subdomains,
+            rho,
+            load,
+            dirichlet,
+            written: self.written(item),
+        })
+    }
+
+    /// `elements` or `elements_per_subdomain`, and `subdomains`.
+    fn partition(
+        &self,
+        section: &mut Section<'a>,
+        item: &Item,
+        name: &str,
+    ) -> Result<([usize; 2], [usize; 2])> {
+        let subdomains = match section.take("subdomains") {
+            Some(item) => self.counts(item)?,
+            None => [1, 1],
+        };
+        match (
+            section.take("elements"),
+            section.take("elements_per_subdomain"),
+        ) {
+            (Some(item), None) => Ok((self.counts(item)?, subdomains)),
+            (None, Some(item)) => {
+                let each = self.counts(item)?;
+                let elements = [0, 1].map(|d| each[d] * subdomains[d]);
+                match elements.iter().find(|n| **n > MOST) {
+                    None => Ok((elements, subdomains)),
+                    Some(n) => self.error(
+                        item,
+                        format_args!("{n} elements in a row, more than {MOST}"),
+                    ),
+                }
+            }
+            (Some(_), Some(item)) => self.error(
+                item,
+                "both `elements` and `elements_per_subdomain` are given where one was expected",
+            ),
+            (None, None) => self.error(
+                item,
+                format_args!(
+                    "body {name} has no `elements` (or `elements_per_subdomain`)",
+                    name = if name == "of the grid" {
+                        name.into()
+                    } else {
+                        format!("`{name}`")
+                    }
+                ),
+            ),
+        }
+    }
+
+    /// `rho`, `load` and `dirichlet`.
+    fn data(&self, section: &mut Section<'a>, shape: &Shape) -> Result<(Field, Load, Sides)> {
+        let rho = match section.take("rho") {
+            Some(item) => self.field(item, shape, 1.0)?.0,
+            None => Field::constant(1.0),
+        };
+        let load = match section.take("load") {
+            Some(item) => {
+                let (field, quadrature) = self.field(item, shape, 0.0)?;
+                Load {
+                    field,
+                    quadrature: quadrature.unwrap_or_default(),
+                }
+            }
+            None => Load::constant(0.0),
+        };
+        let dirichlet = match section.take("dirichlet") {
+            Some(item) => self.sides(item)?,
+            None => [None, None, None, None],
+        };
+        Ok((rho, load, dirichlet))
+    }
+
+    /// PETSc options, with or without the leading dash.
+    fn options(&self, item: &'a Item) -> Result<Vec<(String, String)>> {
+        let section = Section::new(self.source, "[options]", item)?;
+        let mut out = Vec::new();
+        for (key, _, item) in section.entries() {
+            let value = match &item.value {
+                Value::Text(text) => text.clone(),
+                Value::Integer(v) => v.to_string(),
+                Value::Number(v) => format!("{v:e}"),
+                Value::Truth(v) => v.to_string(),
+                _ => return self.expected(item, "a text, a number or a truth value"),
+            };
+            out.push((key.trim_start_matches('-').to_string(), value));
+        }
+        Ok(out)
+    }
+}
