@@ -381,7 +381,13 @@ fn memory_is_plausible() {
 fn on_ranks() {
     let Some(case) = mpi::case() else { return };
     let args: Vec<String> = case.split(' ').map(String::from).collect();
-    let session = Session::new(&args, "Solves things.\n").unwrap();
+    let session = match Session::new(&args, "Solves things.\n") {
+        Ok(session) => session,
+        Err(error) => {
+            println!("refused: {error}");
+            std::process::exit(error.exit_code());
+        }
+    };
     let code = session.run(|session| {
         let event = Event::register(session, "OurEvent")?;
         let stage = Stage::register(session, "Our stage")?;
@@ -453,5 +459,21 @@ fn help_lists_our_options_and_left_finds_typos() {
         "@article{ours",
     ] {
         assert!(out.stdout.contains(text), "{text}: {}", out.all());
+    }
+}
+
+#[test]
+fn a_missing_options_file_is_one_sentence() {
+    let sentence = "PETSc does not start: Unable to open options file /does/not/exist.";
+    for (ranks, before) in [(1, "refused: "), (2, "Error on rank 0: ")] {
+        let out = mpi::run_case(ranks, "-options_file /does/not/exist");
+        assert_eq!(out.code, 3, "{}", out.all());
+        assert_eq!(
+            out.all().matches(&format!("{before}{sentence}")).count(),
+            1,
+            "{}",
+            out.all()
+        );
+        assert!(!out.all().contains("PETSC ERROR"), "{}", out.all());
     }
 }

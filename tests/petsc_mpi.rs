@@ -2,11 +2,11 @@
 
 mod mpi;
 
-use mpi::run_case;
 use fetifeti::petsc::{
     extreme_eigenvalues, Comm, Ksp, Mat, NormType, Scatter, Session, ShellMat, ShellPc, Vec as PVec,
 };
 use fetifeti::{Error, Result};
+use mpi::run_case;
 
 /// What a rank does; nothing in the ordinary test run.
 #[test]

@@ -60,7 +60,7 @@ pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_
     };
     let code = match &error {
         Error::Petsc { code, .. } => *code,
-        _ => sys::PETSC_ERR_LIB as c_int,
+        _ => sys::PETSC_ERR_LIB,
     };
     let message = c_string(&error.to_string());
     let function = c_string(what);

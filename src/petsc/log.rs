@@ -58,8 +58,7 @@ impl Event {
     /// Runs the clock until the guard is dropped.
     pub fn scope(&self) -> Result<Scope> {
         self.begin()?;
-        let event = *self;
-        Ok(Scope(Box::new(move || event.end())))
+        Ok(Scope::Event(*self))
     }
 }
 
@@ -91,18 +90,25 @@ impl Stage {
     /// Makes this the present stage until the guard is dropped.
     pub fn scope(&self) -> Result<Scope> {
         self.push()?;
-        let stage = *self;
-        Ok(Scope(Box::new(move || stage.pop())))
+        Ok(Scope::Stage(*self))
     }
 }
 
 /// Ends an event or a stage when dropped.
 #[must_use = "the clock stops when the scope is dropped"]
-pub struct Scope(Box<dyn Fn() -> Result<()>>);
+pub enum Scope {
+    /// An event whose clock runs.
+    Event(Event),
+    /// A stage that is the present one.
+    Stage(Stage),
+}
 
 impl Drop for Scope {
     fn drop(&mut self) {
         // A clock that cannot be stopped is no reason to fail.
-        let _ = (self.0)();
+        let _ = match self {
+            Scope::Event(event) => event.end(),
+            Scope::Stage(stage) => stage.pop(),
+        };
     }
 }

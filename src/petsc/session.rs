@@ -75,6 +75,8 @@ impl Session {
                 "PETSc was finalised in this process and cannot start again.",
             ));
         }
+        // Before PetscInitialize, so that what is wrong with the options comes back as an error, too.
+        collect_traces()?;
         // Rust reports panics and stack overflows itself. Options set before PetscInitialize are kept by it.
         petsc!(PetscOptionsSetValue(
             null_mut(),
@@ -91,9 +93,16 @@ impl Session {
         let argv: &'static mut *mut *mut c_char =
             Box::leak(Box::new(Box::leak(argv.into_boxed_slice()).as_mut_ptr()));
         let help = c_string(help).into_raw();
-        petsc!(PetscInitialize(argc, argv, null(), help))
-            .map_err(|e| Error::environment(format!("PETSc could not be initialised: {e}")))?;
-        collect_traces()?;
+        if let Err(error) = petsc!(PetscInitialize(argc, argv, null(), help)) {
+            let why = match error {
+                Error::Petsc { trace, .. } if !trace.is_empty() => trace[0].clone(),
+                other => other.to_string(),
+            };
+            settled();
+            let error = Error::Environment(format!("PETSc does not start: {why}."));
+            end_mpi(&error);
+            return Err(error);
+        }
         // SAFETY: PETSc is initialised, so PETSC_COMM_WORLD is valid until it is finalised.
         let world = unsafe { sys::ff_comm_world() };
         Session::on(world, true)
@@ -259,7 +268,8 @@ impl Session {
     fn first_failure(&self, failed: bool) -> Option<usize> {
         use mpi::ffi;
         use mpi::raw::AsRaw;
-        const GRACE: Duration = Duration::from_millis(1000);
+        // Of several failing ranks the lowest gives up first, so that one of them speaks and the others are ended.
+        let grace = Duration::from_millis(1000 + 200 * self.rank().min(20) as u64);
         let mine = if failed { self.rank() } else { self.size() } as c_int;
         // The buffers must outlive an operation that may never finish.
         let buffers: &'static mut [c_int; 2] = Box::leak(Box::new([mine, 0]));
@@ -288,7 +298,7 @@ impl Session {
             if done != 0 {
                 return Some(receive[0] as usize);
             }
-            if failed && start.elapsed() > GRACE {
+            if failed && start.elapsed() > grace {
                 return None;
             }
             std::thread::sleep(Duration::from_millis(2));
@@ -319,6 +329,32 @@ impl Drop for Inner {
 pub fn max_memory() -> f64 {
     // SAFETY: a call without arguments.
     unsafe { sys::ff_max_memory() }
+}
+
+/// Ends MPI after a PetscInitialize that failed half-way. With several ranks this does not return: the others may be waiting for
+/// what the failed rank was about to read to them.
+fn end_mpi(error: &Error) {
+    use mpi::ffi;
+    let (mut begun, mut ended) = (0, 0);
+    // SAFETY: both questions are allowed at any time, the rest between MPI_Init and MPI_Finalize.
+    unsafe {
+        ffi::MPI_Initialized(&mut begun);
+        ffi::MPI_Finalized(&mut ended);
+        if begun == 0 || ended != 0 {
+            return;
+        }
+        let (mut rank, mut size) = (0, 1);
+        ffi::MPI_Comm_rank(ffi::RSMPI_COMM_WORLD, &mut rank);
+        ffi::MPI_Comm_size(ffi::RSMPI_COMM_WORLD, &mut size);
+        if size == 1 {
+            ffi::MPI_Finalize();
+            return;
+        }
+        // The lowest failing rank speaks first and ends the others.
+        std::thread::sleep(Duration::from_millis(200 * rank.min(20) as u64));
+        eprintln!("Error on rank {rank}: {error}");
+        ffi::MPI_Abort(ffi::RSMPI_COMM_WORLD, error.exit_code());
+    }
 }
 
 fn duplicate(comm: sys::MPI_Comm) -> Result<SimpleCommunicator> {

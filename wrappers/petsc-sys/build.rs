@@ -24,6 +24,14 @@ fn main() {
     let petsc = probe(&["petsc", "PETSc"], "PETSc", "PETSC_DIR");
     let slepc = probe(&["slepc", "SLEPc"], "SLEPc", "SLEPC_DIR");
 
+    let minor = |version: &str| version.split('.').take(2).collect::<Vec<_>>().join(".");
+    if minor(&petsc.version) != minor(&slepc.version) {
+        fail(&format!(
+            "PETSc {} and SLEPc {} do not belong together: their first two numbers must agree.",
+            petsc.version, slepc.version
+        ));
+    }
+
     let mut include = petsc.include_paths.clone();
     include.extend(slepc.include_paths.iter().cloned());
     refuse_unusable(&include);
@@ -72,7 +80,6 @@ fn prefer_petsc_dir() -> bool {
 
 fn probe(names: &[&str], what: &str, var: &str) -> pkg_config::Library {
     for name in names {
-        // Versions are spelt out because SLEPc and PETSc must have the same major and minor number.
         if let Ok(library) = pkg_config::Config::new()
             .range_version("3.18".."3.27")
             .probe(name)

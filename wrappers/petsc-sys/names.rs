@@ -220,7 +220,7 @@ const FUNCTIONS: &[&str] = &[
     "STGetKSP",
 ];
 
-const VARIABLES: &[&str] = &["PETSC_VERSION_(MAJOR|MINOR)", "PETSC_ERR_.*", "EPSConvergedReasons"];
+const VARIABLES: &[&str] = &["PETSC_VERSION_(MAJOR|MINOR)", "EPSConvergedReasons"];
 
 const TYPES: &[&str] = &[
     "PetscObject",

@@ -52,7 +52,7 @@ int ff_attach(PetscObject object, const char *key, void *context, void (*drop)(v
   PetscCall(PetscContainerCreate(PetscObjectComm(object), &container));
   PetscCall(PetscContainerSetPointer(container, attached));
 #if PETSC_VERSION_GE(3, 23, 0)
-  PetscCall(PetscContainerSetCtxDestroy(container, AttachedDestroy));
+  PetscCall(PetscContainerSetCtxDestroy(container, (PetscCtxDestroyFn *)AttachedDestroy));
 #else
   PetscCall(PetscContainerSetUserDestroy(container, AttachedDestroy));
 #endif

@@ -26,6 +26,9 @@ pub const PETSC_DETERMINE: c_int = -1;
 /// Keep the present or the default value.
 pub const PETSC_DEFAULT: c_int = -2;
 
+/// Error in external code; a macro in 3.18, a member of an enum later, the same number in all.
+pub const PETSC_ERR_LIB: c_int = 76;
+
 /// A truth value of PETSc: a four-byte enum up to 3.23, one byte from 3.24.
 pub trait Flag: Copy {
     /// From a Rust truth value.
