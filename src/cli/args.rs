@@ -275,12 +275,20 @@ mod tests {
     use super::*;
 
     fn read(line: &str) -> Result<Invocation> {
-        parse(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
+        parse(
+            &line
+                .split_whitespace()
+                .map(String::from)
+                .collect::<Vec<_>>(),
+        )
     }
 
     #[test]
     fn ours_and_petscs_arguments_mix() {
-        let out = read("solve a.toml -fetifeti_ksp_rtol 1e-9 --json - -fetifeti_ksp_monitor --quiet -n -3").expect("fine");
+        let out = read(
+            "solve a.toml -fetifeti_ksp_rtol 1e-9 --json - -fetifeti_ksp_monitor --quiet -n -3",
+        )
+        .expect("fine");
         let solve = Solve {
             scene: "a.toml".into(),
             json: Some("-".into()),
@@ -288,13 +296,24 @@ mod tests {
             ..Solve::default()
         };
         assert_eq!(out.command, Command::Solve(solve));
-        assert_eq!(out.petsc, ["-fetifeti_ksp_rtol", "1e-9", "-fetifeti_ksp_monitor", "-n", "-3"]);
+        assert_eq!(
+            out.petsc,
+            [
+                "-fetifeti_ksp_rtol",
+                "1e-9",
+                "-fetifeti_ksp_monitor",
+                "-n",
+                "-3"
+            ]
+        );
     }
 
     #[test]
     fn rows_repeat_and_are_checked() {
         let out = read("table1 --rows 2,4,2 --rows=2,2,8 --json -").expect("fine");
-        let Command::Table1(table) = out.command else { panic!("table1") };
+        let Command::Table1(table) = out.command else {
+            panic!("table1")
+        };
         assert_eq!(table.rows, [[2, 4, 2], [2, 2, 8]]);
         for bad in ["2,4", "2,4,0", "a,b,c", "1,2,2", ""] {
             assert!(read(&format!("table1 --rows={bad}")).is_err(), "{bad}");
@@ -314,6 +333,9 @@ mod tests {
             assert!(message.contains(part), "{line}: {message}");
         }
         assert_eq!(read("").expect("usage").command, Command::Help);
-        assert_eq!(read("--version").expect("version").command, Command::Version);
+        assert_eq!(
+            read("--version").expect("version").command,
+            Command::Version
+        );
     }
 }

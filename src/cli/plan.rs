@@ -37,7 +37,15 @@ fn text(scene: &Scene, sizes: &Sizes) -> String {
 }
 
 fn bodies(plan: &Plan, sizes: &Sizes) -> String {
-    let header = ["body", "elements", "subdomains", "dofs", "prescribed", "primal", "kernel"];
+    let header = [
+        "body",
+        "elements",
+        "subdomains",
+        "dofs",
+        "prescribed",
+        "primal",
+        "kernel",
+    ];
     let mut table = Table::new(header).align(0, Align::Left);
     for (b, defect) in plan.bodies.iter().zip(&sizes.defect).take(LIST) {
         table.row([
@@ -54,7 +62,11 @@ fn bodies(plan: &Plan, sizes: &Sizes) -> String {
         ]);
     }
     let more = plan.bodies.len().saturating_sub(LIST);
-    let rest = if more > 0 { format!("... and {more} more bodies\n") } else { String::new() };
+    let rest = if more > 0 {
+        format!("... and {more} more bodies\n")
+    } else {
+        String::new()
+    };
     format!("{table}{rest}\n")
 }
 
@@ -66,10 +78,18 @@ fn interfaces(plan: &Plan) -> String {
     let faces = plan.interfaces.iter().filter(|i| !i.corner);
     for i in faces.clone().take(LIST) {
         let [a, b] = i.bodies.map(|b| plan.bodies[b].name.as_str());
-        table.row([format!("{a} - {b}"), i.nodes.to_string(), i.tied.to_string()]);
+        table.row([
+            format!("{a} - {b}"),
+            i.nodes.to_string(),
+            i.tied.to_string(),
+        ]);
     }
     let more = faces.count().saturating_sub(LIST);
-    let rest = if more > 0 { format!("... and {more} more faces\n") } else { String::new() };
+    let rest = if more > 0 {
+        format!("... and {more} more faces\n")
+    } else {
+        String::new()
+    };
     format!("{table}{rest}\n")
 }
 
@@ -93,22 +113,31 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
             sizes.multipliers_local, sizes.multipliers_global, sizes.multipliers_active
         ),
     );
-    line("outer loop", match sizes.inequalities {
-        0 => "none: no inequality".into(),
-        n => format!("active set: {n} inequalities"),
-    });
+    line(
+        "outer loop",
+        match sizes.inequalities {
+            0 => "none: no inequality".into(),
+            n => format!("active set: {n} inequalities"),
+        },
+    );
     let floating = sizes.defect.iter().filter(|d| **d > 0).count();
-    line("projector", match floating {
-        0 => "none: no body floats".into(),
-        n => format!(
-            "natural coarse problem of size {}: {n} of {n_bodies} bodies float",
-            sizes.defect.iter().sum::<usize>()
-        ),
-    });
-    line("primal problem", match sizes.primal {
-        0 => "none: every body is one subdomain".into(),
-        n => format!("{n} vertices, at most {} in a body", sizes.largest_primal),
-    });
+    line(
+        "projector",
+        match floating {
+            0 => "none: no body floats".into(),
+            n => format!(
+                "natural coarse problem of size {}: {n} of {n_bodies} bodies float",
+                sizes.defect.iter().sum::<usize>()
+            ),
+        },
+    );
+    line(
+        "primal problem",
+        match sizes.primal {
+            0 => "none: every body is one subdomain".into(),
+            n => format!("{n} vertices, at most {} in a body", sizes.largest_primal),
+        },
+    );
     let method = match (n_bodies, n_subdomains == n_bodies) {
         (1, true) => "direct: one body of one subdomain",
         (1, false) => "FETI-DP: one body",
@@ -117,11 +146,14 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
     };
     line("method", method.into());
     let lifted = n_bodies > 1 && n_subdomains > n_bodies && sizes.multipliers_global > 0;
-    line("preconditioner", if lifted {
-        "coarse_corrected (M_C): jumps between bodies are lifted into whole bodies".into()
-    } else {
-        "dirichlet (M_D): there is nothing to lift".into()
-    });
+    line(
+        "preconditioner",
+        if lifted {
+            "coarse_corrected (M_C): jumps between bodies are lifted into whole bodies".into()
+        } else {
+            "dirichlet (M_D): there is nothing to lift".into()
+        },
+    );
     let [factors, dense] = [sizes.factor_bytes, sizes.dense_bytes].map(|b| b / 1e6);
     line(
         "memory",

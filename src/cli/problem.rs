@@ -31,10 +31,12 @@ impl Distribution {
     pub fn from_options(session: &Session) -> Result<Distribution> {
         let help = "how subdomains are dealt to ranks";
         let names = ["block", "cyclic"];
-        Ok(match Options::new(session, "fetifeti_").choice("distribution", &names, 0, help)? {
-            0 => Distribution::Block,
-            _ => Distribution::Cyclic,
-        })
+        Ok(
+            match Options::new(session, "fetifeti_").choice("distribution", &names, 0, help)? {
+                0 => Distribution::Block,
+                _ => Distribution::Cyclic,
+            },
+        )
     }
 
     /// Whether subdomain `s` of `n` belongs to rank `rank` of `size`.

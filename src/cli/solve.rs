@@ -84,7 +84,10 @@ fn write_report(args: &Solve, report: &SolveReport) -> Result<()> {
     if let Some(dir) = &args.out {
         json::write(&dir.join("report.json"), report)?;
         if !args.quiet && !to_stdout {
-            println!("written: solution.vtu, solution.png, report.json in {}", dir.display());
+            println!(
+                "written: solution.vtu, solution.png, report.json in {}",
+                dir.display()
+            );
         }
     }
     Ok(())
@@ -168,7 +171,12 @@ fn report(
         converged_reason: solution.reason.clone(),
         ksp_type: solver.ksp().type_name()?,
         preconditioner: dual.preconditioner.kind().name().into(),
-        projector: if floating { dual.natural.projector.name() } else { "none" }.into(),
+        projector: if floating {
+            dual.natural.projector.name()
+        } else {
+            "none"
+        }
+        .into(),
         rtol: solver.ksp().tolerances()?.0,
     })
 }
@@ -225,8 +233,10 @@ impl Gathered {
             all.u.extend(mesh.nodal(&u));
             all.points.extend(&mesh.points);
             let quads = mesh.quads();
-            all.body.extend(std::iter::repeat_n(mesh.body as u32, quads.len()));
-            all.subdomain.extend(std::iter::repeat_n(index as u32, quads.len()));
+            all.body
+                .extend(std::iter::repeat_n(mesh.body as u32, quads.len()));
+            all.subdomain
+                .extend(std::iter::repeat_n(index as u32, quads.len()));
             all.quads
                 .extend(quads.iter().map(|q| q.map(|p| (first + p) as u32)));
             all.rho.extend(&mesh.rho);

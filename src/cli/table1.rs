@@ -13,7 +13,10 @@ use crate::{Error, Result};
 pub fn run(session: &Session, args: &Table1) -> Result<()> {
     solve::prepare(session, args.out.as_deref(), args.json.as_deref())?;
     let wanted: Vec<[usize; 3]> = if args.rows.is_empty() {
-        paper::table1().iter().map(|r| [r.bodies, r.subdomains, r.elements]).collect()
+        paper::table1()
+            .iter()
+            .map(|r| [r.bodies, r.subdomains, r.elements])
+            .collect()
     } else {
         args.rows.clone()
     };
@@ -31,11 +34,18 @@ pub fn run(session: &Session, args: &Table1) -> Result<()> {
             subdomains,
             elements,
             whole_interface: side(Faces::Whole, of_paper.as_ref().map(|p| p.whole_interface))?,
-            middle_third: side(Faces::MiddleThird, of_paper.as_ref().map(|p| p.middle_third))?,
+            middle_third: side(
+                Faces::MiddleThird,
+                of_paper.as_ref().map(|p| p.middle_third),
+            )?,
         });
     }
     progress(session, args, wanted.len(), wanted.len());
-    let written = if session.rank() == 0 { write(args, &rows) } else { Ok(()) };
+    let written = if session.rank() == 0 {
+        write(args, &rows)
+    } else {
+        Ok(())
+    };
     session.agree(written)?;
     stopped.map_or(Ok(()), Err)
 }

@@ -13,7 +13,11 @@ pub(super) fn identities(
     problem: &Substructures,
     dual: &Dual,
 ) -> Result<Vec<(&'static str, f64)>> {
-    let check = Check { session, problem, dual };
+    let check = Check {
+        session,
+        problem,
+        dual,
+    };
     let mut out = vec![
         ("S S^+ S = S", check.generalised_inverse()?),
         ("S R = 0", check.kernel()),
@@ -55,7 +59,11 @@ impl Check<'_> {
         for (j, w) in work.iter_mut().enumerate() {
             let (sub, local) = (&self.problem.local[j], &stiffness.locals[j]);
             for (i, &dof) in local.interface.iter().enumerate() {
-                let copy = if i < local.n_delta { sub.index as u64 + 1 } else { 0 };
+                let copy = if i < local.n_delta {
+                    sub.index as u64 + 1
+                } else {
+                    0
+                };
                 w.y[i] = noise(sub.dofs[dof as usize] ^ (copy << 40));
             }
         }
@@ -65,7 +73,11 @@ impl Check<'_> {
     fn relative(&self, defect: f64, size: f64) -> f64 {
         let mut both = [defect, size];
         max_all(self.session.comm(), &mut both);
-        if both[1] > 0.0 { both[0] / both[1] } else { both[0] }
+        if both[1] > 0.0 {
+            both[0] / both[1]
+        } else {
+            both[0]
+        }
     }
 
     fn multipliers(&self, seed: u64) -> Result<PetscVec> {
@@ -90,7 +102,10 @@ impl Check<'_> {
         for (w, local) in work.iter().zip(&stiffness.locals) {
             let mut back = vec![0.0; w.v.len()];
             local.s.add_mul(&w.y, &mut back);
-            let defect = back.iter().zip(&w.v).fold(0.0f64, |a, (b, v)| a.max((b - v).abs()));
+            let defect = back
+                .iter()
+                .zip(&w.v)
+                .fold(0.0f64, |a, (b, v)| a.max((b - v).abs()));
             let stiff = (0..local.n_gamma()).fold(0.0f64, |a, i| a.max(local.s.get(i, i)));
             let size = w.y.iter().fold(1.0f64, |a, y| a.max(y.abs()));
             if stiff > 0.0 {
@@ -102,7 +117,13 @@ impl Check<'_> {
 
     fn kernel(&self) -> f64 {
         let mut worst = 0.0f64;
-        for (kernel, local) in self.dual.natural.kernels.iter().zip(&self.dual.stiffness.locals) {
+        for (kernel, local) in self
+            .dual
+            .natural
+            .kernels
+            .iter()
+            .zip(&self.dual.stiffness.locals)
+        {
             for c in 0..kernel.cols {
                 let mut image = vec![0.0; kernel.rows];
                 local.s.add_mul(kernel.col(c), &mut image);

@@ -31,7 +31,13 @@ impl PrimalProblem {
         let triplets: Vec<(i32, i32, f64)> = entries
             .map(|e| (e.row as i32, e.col as i32, e.value))
             .collect();
-        let matrix = Mat::from_triplets(session, Comm::World, space.n_owned, space.n_owned, &triplets)?;
+        let matrix = Mat::from_triplets(
+            session,
+            Comm::World,
+            space.n_owned,
+            space.n_owned,
+            &triplets,
+        )?;
         matrix.set_flag(MatFlag::Spd)?;
         let rhs = PetscVec::mpi(session, space.n_owned)?;
         let solution = rhs.duplicate()?;

@@ -37,7 +37,11 @@ impl Dual {
         let x = PetscVec::mpi(session, stiffness.jump.n_owned)?;
         let event = |name| Event::register(session, name);
         Ok(Dual {
-            events: [event("FetiFetiF")?, event("FetiFetiM")?, event("FetiFetiP")?],
+            events: [
+                event("FetiFetiF")?,
+                event("FetiFetiM")?,
+                event("FetiFetiP")?,
+            ],
             session: session.clone(),
             y: x.duplicate()?,
             x,

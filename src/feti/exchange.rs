@@ -59,7 +59,8 @@ pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) ->
     let mut received = vec![0u64; total as usize];
     {
         let from = Partition::new(&sent[..], &send_counts[..], &send_starts[..]);
-        let mut into = PartitionMut::new(&mut received[..], &receive_counts[..], &receive_starts[..]);
+        let mut into =
+            PartitionMut::new(&mut received[..], &receive_counts[..], &receive_starts[..]);
         comm.all_to_all_varcount_into(&from, &mut into);
     }
     receive_counts

@@ -235,7 +235,9 @@ impl Jump {
             let mut corners = Vec::new();
             for e in mine {
                 let row = self.ghosts.binary_search(&(e.row as u32));
-                columns.row.push(row.expect("every entry's row was collected") as u32);
+                columns
+                    .row
+                    .push(row.expect("every entry's row was collected") as u32);
                 columns.at.push(e.local);
                 columns.b.push(e.b);
                 columns.bd.push(e.bd);
@@ -286,17 +288,15 @@ impl Entry {
 }
 
 /// The dual dofs shared inside a body whose lowest subdomain lives here, in a reproducible order.
-fn local_groups<'a>(
-    problem: &Substructures,
-    sharing: &'a Sharing,
-    rank: u32,
-) -> Vec<&'a [Copy]> {
+fn local_groups<'a>(problem: &Substructures, sharing: &'a Sharing, rank: u32) -> Vec<&'a [Copy]> {
     let mut groups = Vec::new();
     for sub in problem.local.iter() {
         debug_assert_eq!(sharing.rank_of[sub.index], rank);
         for &dof in &sub.dofs {
             let copies = sharing.shared(dof);
-            let lowest = copies.first().is_some_and(|c| c.subdomain as usize == sub.index);
+            let lowest = copies
+                .first()
+                .is_some_and(|c| c.subdomain as usize == sub.index);
             if lowest && !Sharing::is_primal(copies) {
                 groups.push(copies);
             }
@@ -323,7 +323,9 @@ fn contact_blocks(
         let mut b = Dense::zeros(rows.len(), dofs.len());
         for (i, &r) in rows.iter().enumerate() {
             for (dof, coefficient) in &problem.rows[r].terms {
-                let j = dofs.binary_search(dof).expect("every term's dof was collected");
+                let j = dofs
+                    .binary_search(dof)
+                    .expect("every term's dof was collected");
                 b.set(i, j, b.get(i, j) + coefficient);
             }
         }

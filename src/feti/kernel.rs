@@ -56,7 +56,9 @@ pub fn null_combinations(factors: &[Dense]) -> Dense {
         return Dense::default();
     };
     let stacked = faer::Mat::from_fn(factors.len() * k, k, |i, j| factors[i / k].get(i % k, j));
-    let svd = stacked.svd().expect("an SVD of a small finite matrix converges");
+    let svd = stacked
+        .svd()
+        .expect("an SVD of a small finite matrix converges");
     let sigma = svd.S().column_vector();
     let scale = (stacked.nrows() as f64).sqrt();
     let rank = (0..k).filter(|&i| sigma[i] > FREE * scale).count();
@@ -80,7 +82,13 @@ pub fn null_space(s_pi: &Dense) -> Dense {
         .collect();
     // A body with one fixing dof and nothing else to hold it: its 1 × 1 matrix is rounding alone.
     let largest = scale.iter().fold(0.0, |a: f64, &b| a.max(b));
-    let safe = |i: usize| if scale[i] > 0.0 { scale[i] } else { largest.max(1.0) };
+    let safe = |i: usize| {
+        if scale[i] > 0.0 {
+            scale[i]
+        } else {
+            largest.max(1.0)
+        }
+    };
     let a = faer::Mat::from_fn(n, n, |i, j| s_pi.get(i, j) / (safe(i) * safe(j)));
     let eigen = a
         .self_adjoint_eigen(faer::Side::Lower)
@@ -117,7 +125,9 @@ pub fn fixing_rows(z: &Dense) -> Vec<usize> {
         if norm > 0.0 {
             for row in &mut rest {
                 let factor = row.iter().zip(&pivot).map(|(a, b)| a * b).sum::<f64>() / norm;
-                row.iter_mut().zip(&pivot).for_each(|(a, b)| *a -= factor * b);
+                row.iter_mut()
+                    .zip(&pivot)
+                    .for_each(|(a, b)| *a -= factor * b);
             }
         }
     }
@@ -133,14 +143,23 @@ mod tests {
     fn a_weak_spring_holds_and_rounding_does_not() {
         for (spring, defect) in [(0.0, 1), (1e-8, 0), (1.0, 0)] {
             let (mut k, _) = grid_laplacian(60, 60, 0.0);
-            let at = k.row_ptr[1777] + k.row(1777).0.iter().position(|&j| j == 1777).expect("diagonal");
+            let at = k.row_ptr[1777]
+                + k.row(1777)
+                    .0
+                    .iter()
+                    .position(|&j| j == 1777)
+                    .expect("diagonal");
             k.val[at] += spring;
             // Stiffness that jumps between subdomains does not matter: the other one floats at 1e12.
             let (mut stiff, _) = grid_laplacian(60, 60, 0.0);
             stiff.val.iter_mut().for_each(|v| *v *= 1e12);
             let ones = vec![vec![1.0; k.n()]];
             let factors = [residual_factor(&k, &ones), residual_factor(&stiff, &ones)];
-            assert_eq!(null_combinations(&factors).cols, defect, "spring {spring:e}");
+            assert_eq!(
+                null_combinations(&factors).cols,
+                defect,
+                "spring {spring:e}"
+            );
         }
     }
 

@@ -204,7 +204,11 @@ fn average_copies(
             };
             for to in copies {
                 let list = &mut outgoing[sharing.rank_of[to.subdomain as usize] as usize];
-                list.extend([u64::from(to.subdomain), u64::from(to.local), n_columns as u64]);
+                list.extend([
+                    u64::from(to.subdomain),
+                    u64::from(to.local),
+                    n_columns as u64,
+                ]);
                 for p in 0..n_columns {
                     let value = own.weight / total * local.psi.get(i, p);
                     list.extend([u64::from(global(j, p)), value.to_bits()]);
@@ -223,7 +227,9 @@ fn average_copies(
         let mut rest = &words[..];
         while let [subdomain, dof, n, tail @ ..] = rest {
             let (pairs, tail) = tail.split_at(2 * *n as usize);
-            let row = rows[index[&(*subdomain as usize)]].entry(*dof as u32).or_default();
+            let row = rows[index[&(*subdomain as usize)]]
+                .entry(*dof as u32)
+                .or_default();
             for pair in pairs.chunks_exact(2) {
                 *row.entry(pair[0] as u32).or_insert(0.0) += f64::from_bits(pair[1]);
             }

@@ -19,7 +19,7 @@ use super::preconditioner::Preconditioner;
 use super::primal::PrimalEntry;
 use super::settings::{PcType, ProjectorKind};
 use super::stiffness::Stiffness;
-use crate::petsc::{Comm, Ksp, Mat, MatFlag, Session, Vec as PetscVec};
+use crate::petsc::{Comm, Ksp, Mat, Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
@@ -76,6 +76,12 @@ impl Rows {
     }
 }
 
+#[derive(Clone, Copy)]
+enum Side {
+    Plain,
+    Transposed,
+}
+
 /// G, Q G and the factored Gᵀ Q G; nothing where no body floats.
 pub struct NaturalCoarse {
     /// Number of kernel vectors of all bodies, r.
@@ -92,8 +98,12 @@ pub struct NaturalCoarse {
     gtqg: Option<Solver>,
 }
 
+/// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹ with D² its diagonal: with Q = M⁻¹ the rows of stiff and soft bodies differ by the square
+/// of the jump in ρ.
 struct Solver {
     ksp: Ksp,
+    /// 1/D.
+    scale: Vec<f64>,
     rhs: PetscVec,
     solution: PetscVec,
     /// Combinations of kernel vectors that no row sees: rigid motions of bodies that nothing holds.
@@ -113,13 +123,19 @@ impl NaturalCoarse {
     ) -> Result<NaturalCoarse> {
         let comm = session.comm();
         let space = &stiffness.space;
-        let r = *space.kernel_start.last().expect("one start per body and the end");
+        let r = *space
+            .kernel_start
+            .last()
+            .expect("one start per body and the end");
         let local = problem.local.iter().zip(&stiffness.locals).enumerate();
         let kernels: Vec<Dense> = local
             .map(|(j, (sub, local))| space.kernel_on_interface(j, sub.body, local))
             .collect();
-        let first_column: Vec<usize> =
-            problem.local.iter().map(|s| space.kernel_start[s.body]).collect();
+        let first_column: Vec<usize> = problem
+            .local
+            .iter()
+            .map(|s| space.kernel_start[s.body])
+            .collect();
         let mut natural = NaturalCoarse {
             r,
             projector: ProjectorKind::Identity,
@@ -136,7 +152,9 @@ impl NaturalCoarse {
         natural.projector = choose(comm, problem, stiffness, preconditioner, wanted);
         natural.qg = match natural.projector {
             ProjectorKind::Diagonal => Some(natural.superlumped(session, problem, stiffness)?),
-            ProjectorKind::Preconditioner => Some(natural.probe(session, stiffness, preconditioner)?),
+            ProjectorKind::Preconditioner => {
+                Some(natural.probe(session, stiffness, preconditioner)?)
+            }
             _ => None,
         };
         natural.gtqg = Some(natural.factor(session, prefix)?);
@@ -244,22 +262,25 @@ impl NaturalCoarse {
             }
         }
         sum_all(session.comm(), &mut a.data);
-        // Gᵀ Q G is symmetric; rounding in a probed Q G is not.
+        let diagonal = |i: usize| match a.get(i, i) {
+            d if d > 0.0 => 1.0 / d.sqrt(),
+            _ => 1.0,
+        };
+        let scale: Vec<f64> = (0..r).map(diagonal).collect();
         for j in 0..r {
-            for i in 0..j {
-                let mean = 0.5 * (a.get(i, j) + a.get(j, i));
-                a.set(i, j, mean);
-                a.set(j, i, mean);
+            for i in 0..r {
+                a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
             }
         }
         let factor = Semidefinite::new(&a);
-        let unheld = null_vectors(&a, &factor);
+        let unheld: Vec<Vec<f64>> = null_vectors(&a, &factor)
+            .into_iter()
+            .map(|v| v.iter().zip(&scale).map(|(v, s)| v * s).collect())
+            .collect();
         // Holding one dependent column of each unheld motion makes the matrix regular without changing what it does to
         // right-hand sides in its range.
-        let trace: f64 = (0..r).map(|i| a.get(i, i)).sum();
         for i in factor.dropped() {
-            let shift = if trace > 0.0 { trace / r as f64 } else { 1.0 };
-            a.set(i, i, a.get(i, i) + shift);
+            a.set(i, i, a.get(i, i) + 1.0);
         }
         let triplets: Vec<(i32, i32, f64)> = (0..r)
             .flat_map(|i| (0..r).map(move |j| (i, j)))
@@ -267,16 +288,18 @@ impl NaturalCoarse {
             .filter(|&(i, j, v)| v != 0.0 || i == j)
             .collect();
         let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
-        matrix.set_flag(MatFlag::Spd)?;
         let ksp = Ksp::new(session, Comm::Own)?;
         ksp.set_operators(&matrix, &matrix)?;
         ksp.set_options_prefix(prefix)?;
         ksp.set_type("preonly")?;
-        ksp.pc()?.set_type("cholesky")?;
+        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the same as
+        // long as it is this very matrix that is inverted: hence LU, and the transpose for Pᵀ.
+        ksp.pc()?.set_type("lu")?;
         ksp.set_from_options()?;
         ksp.setup()?;
         Ok(Solver {
             ksp,
+            scale,
             rhs: PetscVec::seq(session, r)?,
             solution: PetscVec::seq(session, r)?,
             unheld,
@@ -284,11 +307,15 @@ impl NaturalCoarse {
         })
     }
 
-    /// x ← (Gᵀ Q G)⁻¹ x, the same on every rank.
-    fn solve(&self, x: &mut [f64]) -> Result<()> {
+    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank.
+    fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
         let Some(s) = &self.gtqg else { return Ok(()) };
+        x.iter_mut().zip(&s.scale).for_each(|(x, s)| *x *= s);
         s.rhs.array_mut()?.copy_from_slice(x);
-        s.ksp.solve(&s.rhs, &s.solution)?;
+        match side {
+            Side::Plain => s.ksp.solve(&s.rhs, &s.solution)?,
+            Side::Transposed => s.ksp.solve_transpose(&s.rhs, &s.solution)?,
+        }
         let reason = s.ksp.converged_reason()?;
         if reason.code < 0 {
             return Err(Error::NotConverged(format!(
@@ -297,19 +324,20 @@ impl NaturalCoarse {
             )));
         }
         x.copy_from_slice(&s.solution.array()?);
+        x.iter_mut().zip(&s.scale).for_each(|(x, s)| *x *= s);
         Ok(())
     }
 
     /// λ ← P λ. Collective.
     pub fn project(&self, comm: &SimpleCommunicator, lambda: &PetscVec) -> Result<()> {
         let qg = self.qg.as_ref().unwrap_or(&self.g);
-        self.remove(comm, lambda, &self.g, qg) /*  λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ */
+        self.remove(comm, lambda, &self.g, qg, Side::Plain) /*  λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ */
     }
 
     /// r ← Pᵀ r. Collective.
     pub fn project_transpose(&self, comm: &SimpleCommunicator, residual: &PetscVec) -> Result<()> {
         let qg = self.qg.as_ref().unwrap_or(&self.g);
-        self.remove(comm, residual, qg, &self.g) /* r − G (Gᵀ Q G)⁻¹ (Q G)ᵀ r */
+        self.remove(comm, residual, qg, &self.g, Side::Transposed) /* r − G (Gᵀ Q G)⁻ᵀ (Q G)ᵀ r */
     }
 
     fn remove(
@@ -318,13 +346,14 @@ impl NaturalCoarse {
         x: &PetscVec,
         from: &Rows,
         along: &Rows,
+        side: Side,
     ) -> Result<()> {
         let Some(s) = &self.gtqg else { return Ok(()) };
         let mut c = s.scratch.borrow_mut();
         c.fill(0.0);
         from.add_transpose(&x.array()?, &mut c);
         sum_all(comm, &mut c);
-        self.solve(&mut c)?;
+        self.solve(&mut c, side)?;
         along.add(-1.0, &c, &mut x.array_mut()?);
         Ok(())
     }
@@ -339,7 +368,9 @@ impl NaturalCoarse {
         lambda: &PetscVec,
     ) -> Result<()> {
         lambda.set(0.0)?;
-        let Some(solver) = &self.gtqg else { return Ok(()) };
+        let Some(solver) = &self.gtqg else {
+            return Ok(());
+        };
         // e = Rᵀ g, and the size of the terms in it
         let mut e = vec![0.0; 2 * self.r];
         for (j, kernel) in self.kernels.iter().enumerate() {
@@ -359,7 +390,7 @@ impl NaturalCoarse {
                 return Err(not_held(problem, &stiffness.space.kernel_start, motion));
             }
         }
-        self.solve(e)?;
+        self.solve(e, Side::Plain)?;
         let qg = self.qg.as_ref().unwrap_or(&self.g);
         qg.add(1.0, e, &mut lambda.array_mut()?);
         Ok(())
@@ -371,7 +402,7 @@ impl NaturalCoarse {
         let qg = self.qg.as_ref().unwrap_or(&self.g);
         qg.add_transpose(&jump.array()?, &mut c);
         sum_all(comm, &mut c);
-        self.solve(&mut c)?;
+        self.solve(&mut c, Side::Transposed)?;
         c.iter_mut().for_each(|v| *v = -*v);
         Ok(c)
     }
@@ -449,8 +480,12 @@ fn choose(
         }
     }
     sum_all(comm, &mut sums);
-    let means = (0..n).filter(|&b| sums[n + b] > 0.0).map(|b| sums[b] / sums[n + b]);
-    let (low, high) = means.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), m| (l.min(m), h.max(m)));
+    let means = (0..n)
+        .filter(|&b| sums[n + b] > 0.0)
+        .map(|b| sums[b] / sums[n + b]);
+    let (low, high) = means.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), m| {
+        (l.min(m), h.max(m))
+    });
     // A factor of two comes from corners and mesh sizes alone.
     match (high > 3.0 * low, preconditioner.kind()) {
         (false, _) => ProjectorKind::Identity,

@@ -159,7 +159,9 @@ impl PrimalSpace {
             start += group.len();
         }
         let number = |pair: (u64, u64)| {
-            let at = all.binary_search(&pair).expect("every request was collected");
+            let at = all
+                .binary_search(&pair)
+                .expect("every request was collected");
             (first + at) as u32
         };
         let asked: Vec<Vec<u32>> = received
@@ -182,7 +184,10 @@ impl PrimalSpace {
                 let r = self.owner[sub.body] as usize;
                 let n = local.as_ref().n_pi();
                 next[r] += n;
-                answers[r][next[r] - n..next[r]].iter().map(|&g| g as u32).collect()
+                answers[r][next[r] - n..next[r]]
+                    .iter()
+                    .map(|&g| g as u32)
+                    .collect()
             })
             .collect();
         self.ghosts = global.concat();
@@ -192,7 +197,10 @@ impl PrimalSpace {
             let at = self.ghosts.binary_search(g);
             at.expect("every number was collected") as u32
         };
-        self.of_subdomain = global.iter().map(|l| l.iter().map(place).collect()).collect();
+        self.of_subdomain = global
+            .iter()
+            .map(|l| l.iter().map(place).collect())
+            .collect();
         asked
     }
 
@@ -240,7 +248,11 @@ impl PrimalSpace {
             // by nothing but its fixing dof has a diagonal of rounding: then one.
             let trace: f64 = self.entries.iter().filter(inside).map(|e| e.value).sum();
             let stiffness = self.local_stiffness(problem, locals, body.body);
-            let shift = if trace / n > 1e-10 * stiffness { trace / n } else { stiffness.max(1.0) };
+            let shift = if trace / n > 1e-10 * stiffness {
+                trace / n
+            } else {
+                stiffness.max(1.0)
+            };
             for &i in &body.fixing {
                 let at = (first + i) as u32;
                 self.entries.push(PrimalEntry {
@@ -331,9 +343,15 @@ impl PrimalSpace {
             let body = self.owned.iter().find(|b| b.range.contains(&i));
             let body = body.expect("an owned primal dof belongs to an owned body");
             let row = (0..body.z.cols).map(|c| body.z.get(i - body.range.start, c).to_bits());
-            [u64::from(*g), body.z.cols as u64].into_iter().chain(row).collect()
+            [u64::from(*g), body.z.cols as u64]
+                .into_iter()
+                .chain(row)
+                .collect()
         };
-        let replies = asked.iter().map(|l| l.iter().flat_map(row_of).collect()).collect();
+        let replies = asked
+            .iter()
+            .map(|l| l.iter().flat_map(row_of).collect())
+            .collect();
         let answers = exchange_words(comm, replies).concat();
         self.z_at_ghosts = vec![Vec::new(); self.ghosts.len()];
         let mut rest = &answers[..];

@@ -68,11 +68,14 @@ pub(super) fn solve(
     let clock = Instant::now();
     let stiffness = &dual.stiffness;
     let locals = &stiffness.locals;
-    let condensed = stiffness.team.map(locals.len(), |j| locals[j].condense(&problem.local[j].f));
+    let condensed = stiffness
+        .team
+        .map(locals.len(), |j| locals[j].condense(&problem.local[j].f));
     let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
 
     let lambda = dual.multipliers()?;
-    dual.natural.initial(session, problem, stiffness, &g, &lambda)?;
+    dual.natural
+        .initial(session, problem, stiffness, &g, &lambda)?;
     let mut work = stiffness.work();
     let residual = dual.multipliers()?;
     let size = displacements(dual, &g, &lambda, &mut work, &residual)?;
@@ -260,7 +263,8 @@ fn certify(
     }
     sum_all(comm, &mut sums);
     let primal = stiffness.primal.norm_of_sum(&primal)?;
-    let stationarity = (sums[0] + primal * primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
+    let stationarity =
+        (sums[0] + primal * primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
 
     let gaps = dual.multipliers()?;
     stiffness.jump_of(&work, &gaps)?;

@@ -15,11 +15,19 @@ pub fn pair_entry(weights: &[f64], (a, b): (usize, usize), c: usize) -> f64 {
     let total: f64 = weights.iter().sum();
     if weights.len() == 2 {
         // δ†_b on a and −δ†_a on b, without cancellation.
-        return if c == a { weights[b] / total } else { -weights[a] / total };
+        return if c == a {
+            weights[b] / total
+        } else {
+            -weights[a] / total
+        };
     }
-    let q = weights.len() as f64;
-    let jump = f64::from(u8::from(c == a)) - f64::from(u8::from(c == b));
-    (jump - (weights[a] - weights[b]) / total) / q
+    // P_D applied to the column (e_a − e_b) / q of B⁺: the value at c minus the weighted average.
+    let value = |k: usize| f64::from(u8::from(k == a)) - f64::from(u8::from(k == b));
+    let differences = weights
+        .iter()
+        .enumerate()
+        .map(|(k, w)| w * (value(c) - value(k)));
+    differences.sum::<f64>() / (total * weights.len() as f64)
 }
 
 /// B_D of one block of contact rows.
@@ -34,9 +42,13 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
         return out;
     }
     let held = faer::Mat::from_fn(rows.len(), n, |i, j| b.get(rows[i], j));
-    let svd = held.svd().expect("an SVD of a tiny finite matrix converges");
+    let svd = held
+        .svd()
+        .expect("an SVD of a tiny finite matrix converges");
     let sigma = svd.S().column_vector();
-    let rank = (0..sigma.nrows()).filter(|&i| sigma[i] > RANK * sigma[0]).count();
+    let rank = (0..sigma.nrows())
+        .filter(|&i| sigma[i] > RANK * sigma[0])
+        .count();
     // B⁺ = V Σ⁻¹ Uᵀ, n × rows
     let mut pinv = faer::Mat::<f64>::zeros(n, rows.len());
     for l in 0..rank {
@@ -46,8 +58,10 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
             }
         }
     }
-    // B_Dᵀ = P_D B⁺ = B⁺ − N (Nᵀ D N)⁻¹ Nᵀ D B⁺ with ker B = range N
-    let projected = remove_kernel(&kernel_basis(&held, rank, &svd), weights, pinv);
+    let projected = match connected_parts(&held, rank) {
+        Some(part) => minus_average(&part, weights, &pinv),
+        None => remove_kernel(&svd.V().subcols(rank, n - rank).to_owned(), weights, pinv),
+    };
     for (i, &r) in rows.iter().enumerate() {
         for j in 0..n {
             out.set(r, j, projected[(j, i)]);
@@ -56,34 +70,50 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
     out
 }
 
-/// A basis of ker B whose columns have few entries where B is a graph's incidence matrix: indicator vectors of its
-/// connected parts. They make Nᵀ D N diagonal, so that weights of very different size never mix.
-fn kernel_basis(
-    b: &faer::Mat<f64>,
-    rank: usize,
-    svd: &faer::linalg::solvers::Svd<f64>,
-) -> faer::Mat<f64> {
+/// The connected part of each column where the rows only take differences inside them, so that ker B is spanned by the
+/// parts' indicators; `None` for other rows.
+fn connected_parts(b: &faer::Mat<f64>, rank: usize) -> Option<Vec<usize>> {
     let n = b.ncols();
     let mut part: Vec<usize> = (0..n).collect();
     for r in 0..b.nrows() {
         let touched: Vec<usize> = (0..n).filter(|&j| b[(r, j)] != 0.0).collect();
         for w in touched.windows(2) {
             let (keep, drop) = (part[w[0]], part[w[1]]);
-            part.iter_mut().filter(|p| **p == drop).for_each(|p| *p = keep);
+            part.iter_mut()
+                .filter(|p| **p == drop)
+                .for_each(|p| *p = keep);
         }
     }
     let mut names = part.clone();
     names.sort_unstable();
     names.dedup();
-    let indicators = faer::Mat::from_fn(n, names.len(), |i, j| {
-        f64::from(u8::from(part[i] == names[j]))
+    let differences = (0..b.nrows()).all(|r| {
+        let sum = |p: &usize| {
+            (0..n)
+                .filter(|&j| part[j] == *p)
+                .map(|j| b[(r, j)])
+                .sum::<f64>()
+        };
+        names.iter().all(|p| sum(p).abs() <= RANK)
     });
-    if names.len() == n - rank && (b * &indicators).norm_max() <= RANK {
-        return indicators;
-    }
-    svd.V().subcols(rank, n - rank).to_owned()
+    (differences && names.len() == n - rank).then_some(part)
 }
 
+/// P_D x with ker B spanned by indicators: x minus its weighted average over each part, formed from differences, so that the
+/// small values of heavy columns keep all their digits.
+fn minus_average(part: &[usize], d: &[f64], x: &faer::Mat<f64>) -> faer::Mat<f64> {
+    faer::Mat::from_fn(x.nrows(), x.ncols(), |j, c| {
+        let together = (0..part.len()).filter(|&k| part[k] == part[j]);
+        let (mut sum, mut total) = (0.0, 0.0);
+        for k in together {
+            sum += d[k] * (x[(j, c)] - x[(k, c)]);
+            total += d[k];
+        }
+        sum / total
+    })
+}
+
+/// P_D x = x − N (Nᵀ D N)⁻¹ Nᵀ D x with ker B = range N.
 fn remove_kernel(n: &faer::Mat<f64>, d: &[f64], x: faer::Mat<f64>) -> faer::Mat<f64> {
     use faer::linalg::solvers::Solve;
     let dn = faer::Mat::from_fn(n.nrows(), n.ncols(), |i, j| d[i] * n[(i, j)]);

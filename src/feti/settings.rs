@@ -132,7 +132,12 @@ impl Settings {
             )));
         }
         let help = "weight Q of the projector";
-        let i = o.choice("projector", ProjectorKind::NAMES, self.projector as usize, help)?;
+        let i = o.choice(
+            "projector",
+            ProjectorKind::NAMES,
+            self.projector as usize,
+            help,
+        )?;
         self.projector = ProjectorKind::from_index(i);
         let help = "primal constraints inside the bodies";
         o.choice("primal", &["vertices"], 0, help)?;
@@ -146,10 +151,22 @@ impl Settings {
         let help = "exact extreme eigenvalues of the preconditioned operator";
         self.spectrum = o.bool("spectrum", self.spectrum, help)?;
         for (name, help) in [
-            ("ksp_", "the Krylov method of the dual problem (any KSP option)"),
-            ("coarse_", "the primal problem of the bodies (any KSP or PC option)"),
-            ("gtg_", "the natural coarse problem of floating bodies (any KSP or PC option)"),
-            ("eps_", "the eigensolver of -fetifeti_spectrum (any EPS option)"),
+            (
+                "ksp_",
+                "the Krylov method of the dual problem (any KSP option)",
+            ),
+            (
+                "coarse_",
+                "the primal problem of the bodies (any KSP or PC option)",
+            ),
+            (
+                "gtg_",
+                "the natural coarse problem of floating bodies (any KSP or PC option)",
+            ),
+            (
+                "eps_",
+                "the eigensolver of -fetifeti_spectrum (any EPS option)",
+            ),
         ] {
             o.list(name, "...", help)?;
         }

@@ -43,7 +43,12 @@ impl Record for (u64, Copy) {
     fn pack(&self, out: &mut Vec<u64>) {
         let (dof, c) = self;
         let flag = u64::from(c.primal) << 63;
-        out.extend([*dof, flag | u64::from(c.subdomain), u64::from(c.local), c.weight.to_bits()]);
+        out.extend([
+            *dof,
+            flag | u64::from(c.subdomain),
+            u64::from(c.local),
+            c.weight.to_bits(),
+        ]);
     }
     fn unpack(w: &[u64]) -> Self {
         let copy = Copy {
@@ -106,7 +111,11 @@ impl Sharing {
 
         // The dofs in our rows, shared or not.
         let mut queries: Vec<Vec<u64>> = vec![Vec::new(); size];
-        for dof in problem.rows.iter().flat_map(|r| r.terms.iter().map(|t| t.0)) {
+        for dof in problem
+            .rows
+            .iter()
+            .flat_map(|r| r.terms.iter().map(|t| t.0))
+        {
             queries[home(dof)].push(dof);
         }
         for list in &mut queries {

@@ -62,7 +62,9 @@ impl Sizes {
             for &i in &jump.primal[j] {
                 // Every primal dof is counted by its lowest subdomain.
                 let copies = sharing.shared(sub.dofs[i as usize]);
-                let first = copies.first().is_none_or(|c| c.subdomain as usize == sub.index);
+                let first = copies
+                    .first()
+                    .is_none_or(|c| c.subdomain as usize == sub.index);
                 primal[sub.body] += f64::from(u8::from(first));
             }
         }

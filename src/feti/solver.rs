@@ -95,7 +95,9 @@ impl FetiFeti {
         team.set_load(locals.iter().map(|l| l.t.data.len()).sum());
         let stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
 
-        let kind = settings.pc_type.unwrap_or_else(|| default_pc(&problem, &stiffness));
+        let kind = settings
+            .pc_type
+            .unwrap_or_else(|| default_pc(&problem, &stiffness));
         let lifting = match kind {
             PcType::CoarseCorrected => Lifting::new(session, &problem, &sharing, &stiffness)?,
             _ => None,
@@ -252,7 +254,8 @@ fn krylov(session: &Session, dual: &Rc<Dual>, settings: &Settings) -> Result<Ksp
     ksp.set_norm_type(NormType::Unpreconditioned)?;
     ksp.set_tolerances(Some(settings.rtol), None, None, None)?;
     ksp.set_compute_singular_values(true)?;
-    ksp.pc()?.set_shell("fetifeti", dual::preconditioner_shell(dual))?;
+    ksp.pc()?
+        .set_shell("fetifeti", dual::preconditioner_shell(dual))?;
     ksp.set_from_options()?;
     ksp.setup()?;
     Ok(ksp)

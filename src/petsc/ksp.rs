@@ -174,6 +174,12 @@ impl Ksp {
         petsc!(KSPSolve(self.raw(), b, x))
     }
 
+    /// x ← A⁻ᵀ b. Collective.
+    pub fn solve_transpose(&self, b: &Vec, x: &Vec) -> Result<()> {
+        let (b, x) = (b.read()?, x.write()?);
+        petsc!(KSPSolveTranspose(self.raw(), b, x))
+    }
+
     /// Forgets the operators and what was built from them.
     pub fn reset(&self) -> Result<()> {
         petsc!(KSPReset(self.raw()))

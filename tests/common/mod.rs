@@ -151,7 +151,9 @@ impl Grid {
                 let outside = bodies.len() == 4 || 3 * along < pb || 3 * along > 2 * pb;
                 let holds = !(self.middle_third && outside);
                 let b = bodies[0];
-                let sub = |v: usize, b: usize| ((v - b * pb).saturating_sub(1) / self.elements).min(ns - 1);
+                let sub = |v: usize, b: usize| {
+                    ((v - b * pb).saturating_sub(1) / self.elements).min(ns - 1)
+                };
                 let lowest = (b.0 + b.1 * nb) * ns * ns + sub(x, b.0) + sub(y, b.1) * ns;
                 if !mine(lowest) {
                     continue;
@@ -175,8 +177,13 @@ impl Grid {
         Substructures {
             n_bodies: nb * nb,
             n_subdomains,
-            body_names: (0..nb * nb).map(|b| format!("b{}_{}", b % nb, b / nb)).collect(),
-            local: (0..n_subdomains).filter(|&s| mine(s)).map(|s| self.subdomain(s)).collect(),
+            body_names: (0..nb * nb)
+                .map(|b| format!("b{}_{}", b % nb, b / nb))
+                .collect(),
+            local: (0..n_subdomains)
+                .filter(|&s| mine(s))
+                .map(|s| self.subdomain(s))
+                .collect(),
             rows,
         }
     }

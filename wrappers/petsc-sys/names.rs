@@ -160,6 +160,7 @@ const FUNCTIONS: &[&str] = &[
     "KSPSetFromOptions",
     "KSPSetUp",
     "KSPSolve",
+    "KSPSolveTranspose",
     "KSPReset",
     "KSPGetConvergedReason",
     "KSPGetConvergedReasonString",

@@ -101,7 +101,10 @@ impl Symbolic {
                 }
             };
             for &i in set {
-                k.row(i as usize).0.iter().for_each(|&j| add(position[j as usize]));
+                k.row(i as usize)
+                    .0
+                    .iter()
+                    .for_each(|&j| add(position[j as usize]));
             }
             for &c in &children[s] {
                 fronts[c].below.iter().for_each(|&p| add(p));
@@ -307,7 +310,11 @@ impl PartialCholesky {
         let sym = &*self.symbolic;
         let p = position as usize;
         let n = sym.interior.len();
-        (if p < n { sym.interior[p] } else { sym.interface[p - n] }) as usize
+        (if p < n {
+            sym.interior[p]
+        } else {
+            sym.interface[p - n]
+        }) as usize
     }
 }
 
@@ -411,13 +418,11 @@ mod tests {
         let inside: Vec<usize> = (0..k.n())
             .filter(|i| !interface.contains(&(*i as u32)))
             .collect();
-        let pick = |r: &[usize], c: &[usize]| {
-            faer::Mat::from_fn(r.len(), c.len(), |i, j| a[(r[i], c[j])])
-        };
+        let pick =
+            |r: &[usize], c: &[usize]| faer::Mat::from_fn(r.len(), c.len(), |i, j| a[(r[i], c[j])]);
         let outside: Vec<usize> = interface.iter().map(|&i| i as usize).collect();
         let inner = pick(&inside, &inside).partial_piv_lu();
-        pick(&outside, &outside)
-            - pick(&outside, &inside) * inner.solve(pick(&inside, &outside))
+        pick(&outside, &outside) - pick(&outside, &inside) * inner.solve(pick(&inside, &outside))
     }
 
     #[test]
@@ -454,7 +459,11 @@ mod tests {
             b[i as usize] = u[i as usize];
         }
         factor.backward(&mut b);
-        let error = b.iter().zip(&u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let error = b
+            .iter()
+            .zip(&u)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         assert!(error < 1e-12, "error {error:.1e}");
     }
 

@@ -78,7 +78,13 @@ impl LocalProblem {
             let column = s.col(n_delta + j)[n_delta..].to_vec();
             sigma.col_mut(j).copy_from_slice(&column);
         }
-        dense::multiply(sigma.view_mut(), true, 1.0, s_delta_pi.transpose(), psi.view());
+        dense::multiply(
+            sigma.view_mut(),
+            true,
+            1.0,
+            s_delta_pi.transpose(),
+            psi.view(),
+        );
         symmetrise(&mut sigma);
         Ok(LocalProblem {
             interface,
@@ -162,7 +168,9 @@ fn try_cholesky(s: &Dense, n_delta: usize, scratch: &mut Scratch) -> Option<Dens
 /// Dual dofs to hold so that the rest of S_ΔΔ is definite: those left with a weak pivot by Cholesky factorisation with
 /// diagonal pivoting (increasing).
 fn weakest(s: &Dense, n: usize) -> Vec<usize> {
-    let scale: Vec<f64> = (0..n).map(|i| s.get(i, i).max(f64::MIN_POSITIVE).sqrt()).collect();
+    let scale: Vec<f64> = (0..n)
+        .map(|i| s.get(i, i).max(f64::MIN_POSITIVE).sqrt())
+        .collect();
     let mut a = Dense::zeros(n, n);
     for j in 0..n {
         for i in 0..n {
@@ -171,10 +179,11 @@ fn weakest(s: &Dense, n: usize) -> Vec<usize> {
     }
     let mut left: Vec<usize> = (0..n).collect();
     loop {
-        let best = left
-            .iter()
-            .enumerate()
-            .max_by(|x, y| a.get(*x.1, *x.1).total_cmp(&a.get(*y.1, *y.1)).then(y.1.cmp(x.1)));
+        let best = left.iter().enumerate().max_by(|x, y| {
+            a.get(*x.1, *x.1)
+                .total_cmp(&a.get(*y.1, *y.1))
+                .then(y.1.cmp(x.1))
+        });
         let Some((at, &p)) = best else { break };
         let pivot = a.get(p, p);
         if !(pivot > WEAKLY_HELD) {
@@ -197,7 +206,10 @@ fn weakest(s: &Dense, n: usize) -> Vec<usize> {
 /// The order [Δ without `moved`, Π, moved].
 fn moved_to_the_end(n: usize, n_delta: usize, moved: &[usize]) -> Vec<usize> {
     let stays = (0..n_delta).filter(|i| moved.binary_search(i).is_err());
-    stays.chain(n_delta..n).chain(moved.iter().copied()).collect()
+    stays
+        .chain(n_delta..n)
+        .chain(moved.iter().copied())
+        .collect()
 }
 
 fn permuted(s: &Dense, order: &[usize]) -> Dense {
@@ -248,7 +260,11 @@ mod tests {
         local.t_apply(&g, &mut u_gamma);
         local.add_psi(&c, &mut u_gamma);
         let back = local.recover(work, &u_gamma);
-        let error = back.iter().zip(&u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let error = back
+            .iter()
+            .zip(&u)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         assert!(error < 1e-12, "error {error:.1e}");
     }
 

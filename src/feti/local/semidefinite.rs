@@ -77,7 +77,9 @@ impl Semidefinite {
     /// Indices of the columns that were dropped, increasing.
     pub fn dropped(&self) -> Vec<usize> {
         let kept = &self.kept;
-        (0..self.n).filter(|i| kept.binary_search(i).is_err()).collect()
+        (0..self.n)
+            .filter(|i| kept.binary_search(i).is_err())
+            .collect()
     }
 
     /// x ← A⁺ x (zero in the dropped entries).
