@@ -1,5 +1,6 @@
 //! `fetifeti solve`.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
@@ -8,7 +9,7 @@ use mpi::traits::Communicator;
 use super::args::Solve;
 use super::{not_converged, problem};
 use crate::feti::exchange::{exchange_words, sum_all};
-use crate::feti::{FetiFeti, Settings, Solution, Spectrum};
+use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
 use crate::petsc::{max_memory, Session};
 use crate::report::field::{self, Mesh};
 use crate::report::json::{self, SolveReport};
@@ -33,10 +34,10 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     } else {
         None
     };
-    if solver.settings().check {
-        print_checks(session, &solver)?;
-    }
     let mut report = report(session, &scene, &solver, &solution, exact)?;
+    if solver.settings().check {
+        report.check = Some(checks(&solver)?);
+    }
     report.seconds.assemble = assemble;
     if let Some(dir) = &args.out {
         write_fields(session, &scene, &solution, &solver, dir)?;
@@ -93,15 +94,20 @@ fn write_report(args: &Solve, report: &SolveReport) -> Result<()> {
     Ok(())
 }
 
-fn print_checks(session: &Session, solver: &FetiFeti) -> Result<()> {
-    let checks = solver.check()?;
-    if session.rank() == 0 {
-        println!("identities (relative defects, to be about rounding):");
-        for (name, defect) in checks {
-            println!("  {name:<18} {defect:.1e}");
+/// The identities, and λ_min ≥ 1 by the exact spectrum.
+fn checks(solver: &FetiFeti) -> Result<BTreeMap<String, f64>> {
+    let identities = solver.check()?;
+    let mut out: BTreeMap<String, f64> = identities
+        .into_iter()
+        .map(|(name, defect)| (name.to_string(), defect))
+        .collect();
+    let kind = solver.dual().preconditioner.kind();
+    if matches!(kind, PcType::Dirichlet | PcType::CoarseCorrected) {
+        if let Some(s) = solver.spectrum()? {
+            out.insert("lambda_min >= 1".into(), (1.0 - s.lambda_min).max(0.0));
         }
     }
-    Ok(())
+    Ok(out)
 }
 
 fn spectrum(s: Spectrum) -> json::Spectrum {
@@ -177,6 +183,7 @@ fn report(
             "none"
         }
         .into(),
+        check: None,
         rtol: solver.ksp().tolerances()?.0,
     })
 }

@@ -28,6 +28,7 @@ pub(super) fn identities(
         out.push(("M^-1 symmetric", check.symmetric(|x, y| dual.m(x, y))?));
     }
     if dual.natural.r > 0 {
+        out.push(("G^T lambda_0 = e", check.start()?));
         out.push(("P P = P", check.projector(|x| dual.p(x))?));
         out.push(("P^T P^T = P^T", check.projector(|x| dual.p_transpose(x))?));
         out.push(("G^T P = 0", check.admissible()?));
@@ -175,20 +176,36 @@ impl Check<'_> {
         Ok(self.relative(twice.norm2()?, x.norm2()?))
     }
 
-    /// Bᵀ P λ does no work on a rigid motion: R ᵀ Bᵀ P λ = 0, through B and not through G.
-    fn admissible(&self) -> Result<f64> {
+    /// Rᵀ (g − Bᵀ λ₀) = 0, relative to the terms of the sum.
+    fn start(&self) -> Result<f64> {
         let (stiffness, natural) = (&self.dual.stiffness, &self.dual.natural);
-        let x = self.multipliers(4)?;
-        self.dual.p(&x)?;
+        let locals = self.problem.local.iter().zip(&stiffness.locals);
+        let g: Vec<Vec<f64>> = locals
+            .map(|(sub, local)| local.condense(&sub.f).1)
+            .collect();
+        let lambda = self.dual.multipliers()?;
+        natural.initial(self.session, self.problem, stiffness, &g, &lambda)?;
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
-        stiffness.dual_halo.fetch(&x, &mut ghost)?;
+        stiffness.dual_halo.fetch(&lambda, &mut ghost)?;
+        let loads = g.iter().enumerate().map(|(j, g)| {
+            let mut v = vec![0.0; g.len()];
+            stiffness.jump.columns[j].b_transpose(&ghost, &mut v);
+            v.iter_mut().zip(g).for_each(|(v, g)| *v = g - *v);
+            v
+        });
+        let sizes = g.iter().map(|g| g.iter().map(|v| v.abs()).sum::<f64>());
+        let scale = sizes.fold(0.0, f64::max);
+        self.work_on_kernels(loads.collect(), scale)
+    }
+
+    /// Largest |Rᵀ v| relative to the terms of the sum or to `scale`, whichever is larger.
+    fn work_on_kernels(&self, v: Vec<Vec<f64>>, scale: f64) -> Result<f64> {
+        let (stiffness, natural) = (&self.dual.stiffness, &self.dual.natural);
         let mut sums = vec![0.0; 2 * natural.r];
-        for (j, columns) in stiffness.jump.columns.iter().enumerate() {
-            let mut v = vec![0.0; stiffness.locals[j].n_gamma()];
-            columns.b_transpose(&ghost, &mut v);
+        for (j, v) in v.iter().enumerate() {
             let start = stiffness.space.kernel_start[self.problem.local[j].body];
             for c in 0..natural.kernels[j].cols {
-                for (r, v) in natural.kernels[j].col(c).iter().zip(&v) {
+                for (r, v) in natural.kernels[j].col(c).iter().zip(v) {
                     sums[start + c] += r * v;
                     sums[natural.r + start + c] += (r * v).abs();
                 }
@@ -197,7 +214,23 @@ impl Check<'_> {
         sum_all(self.session.comm(), &mut sums);
         let (work, size) = sums.split_at(natural.r);
         let largest = |s: &[f64]| s.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-        Ok(self.relative(largest(work), largest(size)))
+        Ok(self.relative(largest(work), largest(size).max(scale)))
+    }
+
+    /// Bᵀ P λ does no work on a rigid motion: R ᵀ Bᵀ P λ = 0, through B and not through G.
+    fn admissible(&self) -> Result<f64> {
+        let stiffness = &self.dual.stiffness;
+        let x = self.multipliers(4)?;
+        self.dual.p(&x)?;
+        let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+        stiffness.dual_halo.fetch(&x, &mut ghost)?;
+        let loads = stiffness.jump.columns.iter().zip(&stiffness.locals);
+        let loads = loads.map(|(columns, local)| {
+            let mut v = vec![0.0; local.n_gamma()];
+            columns.b_transpose(&ghost, &mut v);
+            v
+        });
+        self.work_on_kernels(loads.collect(), 0.0)
     }
 
     /// B Z_c x for a random x.

@@ -168,19 +168,26 @@ fn iterate(
     dual.p(&x)?;
     lambda.axpy(1.0, &x)?;
     let iterations = ksp.iterations()?;
-    let estimate = match ksp.extreme_singular_values() {
-        Ok((largest, smallest)) if smallest > 0.0 && iterations > 0 => Some(Spectrum {
-            lambda_min: smallest,
-            lambda_max: largest,
-        }),
-        _ => None,
-    };
+    let estimate = estimate(ksp, iterations)?;
     Ok(Outcome {
         iterations,
         reason: ksp.converged_reason()?,
         residuals: ksp.residual_history()?,
         estimate,
     })
+}
+
+/// The ends of the spectrum by CG's Lanczos matrix. Other methods' singular values are not eigenvalues, and FCG of PETSc 3.18
+/// reads CG's data where it keeps its own.
+fn estimate(ksp: &Ksp, iterations: usize) -> Result<Option<Spectrum>> {
+    if ksp.type_name()? != "cg" || iterations == 0 {
+        return Ok(None);
+    }
+    let (lambda_max, lambda_min) = ksp.extreme_singular_values()?;
+    Ok((lambda_min > 0.0).then_some(Spectrum {
+        lambda_min,
+        lambda_max,
+    }))
 }
 
 /// u of every local subdomain from λ.

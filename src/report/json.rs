@@ -85,6 +85,9 @@ pub struct SolveReport {
     pub preconditioner: String,
     /// Weight Q of the projector: `none` without floating bodies, else `identity`, `diagonal` or `preconditioner`.
     pub projector: String,
+    /// Relative defects of the operators' identities, where `-fetifeti_check` asked for them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub check: Option<std::collections::BTreeMap<String, f64>>,
     /// Relative tolerance of the inner iteration.
     #[serde(with = "number")]
     pub rtol: f64,
@@ -343,6 +346,7 @@ mod tests {
             ksp_type: "cg".into(),
             preconditioner: "dirichlet".into(),
             projector: "identity".into(),
+            check: None,
             rtol: 1e-6,
         }
     }

@@ -107,10 +107,17 @@ pub fn solve(r: &SolveReport) -> String {
         .map(|(name, _)| name.chars().count())
         .max()
         .unwrap_or(0);
-    lines
+    let mut text: String = lines
         .iter()
         .map(|(name, value)| format!("{name:<width$}  {value}\n"))
-        .collect()
+        .collect();
+    if let Some(identities) = &r.check {
+        text += "identities (relative defects, to be about rounding)\n";
+        for (name, defect) in identities {
+            text += &format!("  {name:<width$}{defect:.1e}\n");
+        }
+    }
+    text
 }
 
 fn ranks(n: usize) -> String {
