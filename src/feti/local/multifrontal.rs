@@ -389,7 +389,7 @@ fn factor_front(
     dense::cholesky(pivot.as_mut(), scratch).map_err(|e| e.index)?;
     for (j, &d) in diagonal.iter().enumerate() {
         let l = pivot[(j, j)];
-        if !(l * l > SINGULAR * d) {
+        if l * l <= SINGULAR * d || l.is_nan() {
             return Err(j);
         }
     }
