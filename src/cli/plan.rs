@@ -154,6 +154,13 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
             "dirichlet (M_D): there is nothing to lift".into()
         },
     );
+    line(
+        "factorisations",
+        format!(
+            "{} for {n_subdomains} subdomains: equal ones share theirs",
+            sizes.kinds
+        ),
+    );
     let [factors, dense] = [sizes.factor_bytes, sizes.dense_bytes].map(|b| b / 1e6);
     line(
         "memory",

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod coarse;
 pub mod dual;
+pub mod equal;
 pub mod exchange;
 pub mod gtg;
 pub mod halo;
