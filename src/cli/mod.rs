@@ -57,6 +57,8 @@ fn list_options(session: &Session) -> Result<()> {
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_options_prefix(&settings.prefix)?;
     ksp.set_type("cg")?;
+    ksp.pc()?
+        .set_options_prefix(&format!("{}ksp_", settings.prefix))?;
     ksp.set_from_options()
 }
 

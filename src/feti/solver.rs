@@ -265,8 +265,9 @@ fn krylov(session: &Session, dual: &Rc<Dual>, settings: &Settings) -> Result<Ksp
     ksp.set_norm_type(NormType::Unpreconditioned)?;
     ksp.set_tolerances(Some(settings.rtol), None, None, None)?;
     ksp.set_compute_singular_values(true)?;
-    ksp.pc()?
-        .set_shell("fetifeti", dual::preconditioner_shell(dual))?;
+    let pc = ksp.pc()?;
+    pc.set_shell("fetifeti", dual::preconditioner_shell(dual))?;
+    pc.set_options_prefix(&format!("{}ksp_", settings.prefix))?;
     ksp.set_from_options()?;
     ksp.setup()?;
     Ok(ksp)
