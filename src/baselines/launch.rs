@@ -109,7 +109,7 @@ impl Launcher {
             .arg("baseline")
             .arg(task);
         command.args(&self.petsc);
-        environment(&mut command, self.limit, &self.workspace.dir);
+        environment(&mut command, self.limit);
         command
             .stdin(Stdio::null())
             .stdout(create(out)?)
@@ -197,7 +197,7 @@ fn spoken(stderr: &str) -> Option<String> {
 
 /// The environment of mpirun: what this process inherited from an mpirun around it would lead it astray, and there may be
 /// more ranks than cores.
-fn environment(command: &mut Command, limit: Duration, dir: &Path) {
+fn environment(command: &mut Command, limit: Duration) {
     // What a user may have set about transports stays.
     const KEPT: [&str; 6] = ["btl_", "btl", "pml", "mtl", "coll_", "opal_"];
     for (name, _) in std::env::vars_os() {
@@ -219,10 +219,6 @@ fn environment(command: &mut Command, limit: Duration, dir: &Path) {
         .env("MPIEXEC_TIMEOUT", limit.as_secs().max(1).to_string())
         .env("OMP_NUM_THREADS", "1")
         .env("OPENBLAS_NUM_THREADS", "1");
-    if std::env::var_os("OMPI_MCA_btl_vader_backing_directory").is_none() {
-        // Shared segments of hundreds of ranks do not fit into the small /dev/shm of a container.
-        command.env("OMPI_MCA_btl_vader_backing_directory", dir);
-    }
     if is_root() {
         command
             .env("OMPI_ALLOW_RUN_AS_ROOT", "1")

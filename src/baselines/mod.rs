@@ -217,8 +217,8 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
     progress(args, "direct solution");
     let verdict = judge(&launcher, plan, &file, &solutions)?;
     for ((k, _), [error, residual]) in solutions.iter().zip(&verdict.solutions) {
-        rows[*k].error = Some(*error);
-        rows[*k].residual = Some(*residual);
+        rows[*k].error = *error;
+        rows[*k].residual = *residual;
     }
     progress(args, "");
     let report = CompareReport {
@@ -228,7 +228,7 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         dofs: Numbering::new(scene).len() as usize,
         rtol: plan.rtol,
         cores: plan.cores,
-        reference_residual: (!verdict.solutions.is_empty()).then_some(verdict.residual),
+        reference_residual: verdict.residual,
         rows,
     };
     write(args, &report)?;
@@ -319,8 +319,8 @@ fn row(name: &str, run: &Run, outcome: std::result::Result<Outcome, String>) -> 
             },
             memory_mb: Some(o.memory / 1e6),
             memory_at_start_mb: Some(o.memory_at_start / 1e6),
-            residual: Some(o.residual),
-            rtol: Some(o.rtol),
+            residual: o.residual,
+            rtol: o.rtol,
             converged: o.message.is_none(),
             converged_reason: o.reason,
             message: o.message,
