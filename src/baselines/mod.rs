@@ -1,15 +1,361 @@
-//! PETSc's own solvers on the same problem.
+//! PETSc's own solvers on the same problem: PCBDDC, KSPFETIDP, GAMG, hypre's BoomerAMG and MUMPS beside ours.
+//!
+//! ```text
+//! Scene ──> System (A u = b, one unknown per tied point) ──> KSP by a row of option strings ──> Outcome
+//!      └──> FetiFeti ───────────────────────────────────────────────────────────────────────> Outcome
+//!                                             all solutions ──> judge (direct solution) ─────> Verdict
+//! ```
+//!
+//! Every method runs in a process group of its own, started by mpirun, so that neither its memory nor its time is another's. All are
+//! driven to the same relative residual of the assembled problem.
+
+mod job;
+mod launch;
+mod system;
+mod table;
+
+use std::path::Path;
+use std::time::Duration;
+
+use mpi::point_to_point::{Destination, Source};
+use mpi::traits::Communicator;
 
 use crate::cli::args::Compare;
-use crate::petsc::Session;
+use crate::cli::problem;
+use crate::petsc::{Options, Session};
+use crate::report::json::{self, CompareReport, CompareRow, CompareSeconds};
+use crate::report::{output, summary};
+use crate::scene::{Numbering, Scene};
 use crate::{Error, Result};
+use job::{Job, Outcome, Task, Verdict};
+use launch::{Launcher, Workspace};
+use table::{Baseline, Format};
 
-/// Runs the comparison.
-pub fn compare(_session: &Session, _args: &Compare, _petsc: &[String]) -> Result<()> {
-    Err(Error::environment("this build has no baselines"))
+pub use job::run as run_job;
+pub use table::BASELINES;
+
+/// Runs the comparison. Under mpirun only rank 0 starts jobs, the others wait. Collective.
+///
+/// Jobs are started with the running executable, which must be the `fetifeti` program.
+///
+/// # Errors
+/// [`Error::Input`] for what can be known before anything runs, and where the first job (ours) finds the problem
+/// unsolvable; [`Error::NotConverged`] when ours does not converge; [`Error::Environment`] without mpirun. A baseline that fails
+/// is no error but a row with a message.
+pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()> {
+    let scene = problem::load(session, &args.scene)?;
+    let baselines = session.agree(table::select(&args.with))?;
+    let plan = Plan::new(session, &scene, &baselines)?;
+    for baseline in &baselines {
+        baseline.set_options(session, plan.rtol)?;
+    }
+    let ready = if session.rank() == 0 {
+        prepare(args)
+    } else {
+        Ok(())
+    };
+    session.agree(ready)?;
+    let finished = if session.rank() == 0 {
+        run(args, &scene, &plan, petsc)
+    } else {
+        Ok(())
+    };
+    wait_for_first(session);
+    session.agree(finished)
 }
 
-/// Runs one method of a comparison.
-pub fn run_job(_session: &Session, _job: &std::path::Path) -> Result<()> {
-    Err(Error::environment("this build has no baselines"))
+/// Finds out before the work whether results can be written.
+fn prepare(args: &Compare) -> Result<()> {
+    if let Some(dir) = &args.out {
+        output::prepare_directory(dir)?;
+    }
+    args.json.as_deref().map_or(Ok(()), output::prepare_file)
+}
+
+/// Rank 0 tells the others that it is done; they sleep until then, for the cores belong to the jobs.
+fn wait_for_first(session: &Session) {
+    let comm = session.comm();
+    if session.rank() == 0 {
+        for rank in 1..session.size() {
+            comm.process_at_rank(rank as i32).send(&1_i32);
+        }
+        return;
+    }
+    let first = comm.process_at_rank(0);
+    while first.immediate_probe().is_none() {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let (_, _): (i32, _) = first.receive();
+}
+
+/// One method in one layout.
+struct Run {
+    /// `None`: ours.
+    baseline: Option<&'static Baseline>,
+    ranks: usize,
+    threads: usize,
+    /// Parts of the domain that the method sees.
+    parts: Option<usize>,
+}
+
+/// What is run, and to which residual.
+struct Plan {
+    rtol: f64,
+    cores: usize,
+    limit: Duration,
+    runs: Vec<Run>,
+}
+
+impl Plan {
+    fn new(session: &Session, scene: &Scene, baselines: &[&'static Baseline]) -> Result<Plan> {
+        let ours = Options::new(session, "fetifeti_");
+        let rtol = ours.get_f64("ksp_rtol")?.unwrap_or(1e-6);
+        if !(rtol > 0.0 && rtol < 1.0) {
+            return Err(Error::input(format!(
+                "-fetifeti_ksp_rtol is {rtol}, expected a number between 0 and 1"
+            )));
+        }
+        let options = Options::new(session, "compare_");
+        options.heading("Options of compare")?;
+        let all = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let cores = options
+            .usize("cores", all, "cores that every method may use")?
+            .max(1);
+        let limit = options
+            .usize("time_limit", 600, "seconds after which a method is ended")?
+            .max(1);
+        Ok(Plan {
+            rtol,
+            cores,
+            limit: Duration::from_secs(limit as u64),
+            runs: runs(scene.n_subdomains(), cores, baselines),
+        })
+    }
+}
+
+/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on one per core; the others on all
+/// cores.
+fn runs(subdomains: usize, cores: usize, baselines: &[&'static Baseline]) -> Vec<Run> {
+    let ours = |ranks, threads| Run {
+        baseline: None,
+        ranks,
+        threads,
+        parts: Some(subdomains),
+    };
+    let mut runs = vec![ours(1, cores)];
+    if cores > 1 && subdomains > 1 {
+        runs.push(ours(cores.min(subdomains), 1));
+    }
+    for &baseline in baselines {
+        let on = |ranks, parts| Run {
+            baseline: Some(baseline),
+            ranks,
+            threads: 1,
+            parts,
+        };
+        match baseline.format {
+            Format::Assembled => runs.push(on(cores, None)),
+            Format::Unassembled => {
+                runs.push(on(subdomains, Some(subdomains)));
+                let few = cores.min(subdomains);
+                if few < subdomains {
+                    runs.push(on(few, Some(few)));
+                }
+            }
+        }
+    }
+    runs
+}
+
+/// On rank 0: all jobs one after the other, then the judge, then the tables.
+fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<()> {
+    let launcher = Launcher {
+        workspace: Workspace::new()?,
+        limit: plan.limit,
+        petsc: forwarded(petsc),
+    };
+    let file = std::fs::canonicalize(&args.scene).unwrap_or_else(|_| args.scene.clone());
+    let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
+    let quiet = args.quiet || to_stdout;
+    let mut rows = Vec::new();
+    let mut solutions = Vec::new();
+    for (k, run) in plan.runs.iter().enumerate() {
+        let name = run.baseline.map_or("fetifeti", |b| b.name);
+        progress(args, &format!("{name} on {} ranks", run.ranks));
+        let solution = launcher.workspace.file(&format!("{k}.u"));
+        let task = match run.baseline {
+            None => Task::FetiFeti {
+                threads: run.threads,
+                solution: solution.clone(),
+            },
+            Some(b) => Task::Baseline {
+                name: b.name.into(),
+                solution: solution.clone(),
+            },
+        };
+        let job = Job {
+            scene: file.clone(),
+            result: launcher.workspace.file(&format!("{k}.json")),
+            rtol: plan.rtol,
+            task,
+        };
+        let finished = launcher.run(&k.to_string(), &job, run.ranks)?;
+        if !quiet && !finished.printed.trim().is_empty() {
+            println!("{name} on {} ranks:\n{}", run.ranks, finished.printed);
+        }
+        let outcome = match finished.record {
+            Ok(text) => Ok(read::<Outcome>(&text)?),
+            // What ours cannot solve is a mistake in the scene or here, and the comparison ends.
+            Err(failure) if run.baseline.is_none() => return Err(failure.into_error()),
+            Err(failure) => Err(failure.message),
+        };
+        if outcome.is_ok() {
+            solutions.push((k, solution));
+        }
+        rows.push(row(name, run, outcome));
+    }
+    progress(args, "direct solution");
+    let verdict = judge(&launcher, plan, &file, &solutions)?;
+    for ((k, _), [error, residual]) in solutions.iter().zip(&verdict.solutions) {
+        rows[*k].error = *error;
+        rows[*k].residual = *residual;
+    }
+    progress(args, "");
+    let report = CompareReport {
+        scene: scene.title.clone(),
+        bodies: scene.n_bodies(),
+        subdomains: scene.n_subdomains(),
+        dofs: Numbering::new(scene).len() as usize,
+        rtol: plan.rtol,
+        cores: plan.cores,
+        reference_residual: verdict.residual,
+        rows,
+    };
+    write(args, &report)?;
+    let stopped = report
+        .rows
+        .iter()
+        .find(|r| r.method == "fetifeti" && !r.converged);
+    match stopped {
+        None => Ok(()),
+        Some(row) => Err(Error::NotConverged(format!(
+            "fetifeti on {}: {}",
+            args.scene.display(),
+            row.message.as_deref().unwrap_or(&row.converged_reason)
+        ))),
+    }
+}
+
+/// PETSc's arguments for the jobs: what asks for a text about the whole program is for the parent.
+fn forwarded(petsc: &[String]) -> Vec<String> {
+    const PARENTS: [&str; 4] = ["-help", "-h", "-options_left", "-version"];
+    let mut forwarded = Vec::new();
+    let mut drop_value = false;
+    for arg in petsc {
+        let is_option = arg.starts_with('-') && arg.parse::<f64>().is_err();
+        if is_option {
+            drop_value = PARENTS.contains(&arg.as_str());
+        }
+        if !drop_value {
+            forwarded.push(arg.clone());
+        }
+    }
+    forwarded
+}
+
+/// The direct solution's verdict on every solution; an empty one when it cannot be had.
+fn judge(
+    launcher: &Launcher,
+    plan: &Plan,
+    scene: &Path,
+    solutions: &[(usize, std::path::PathBuf)],
+) -> Result<Verdict> {
+    let job = Job {
+        scene: scene.to_path_buf(),
+        result: launcher.workspace.file("verdict.json"),
+        rtol: plan.rtol,
+        task: Task::Judge {
+            solutions: solutions.iter().map(|(_, file)| file.clone()).collect(),
+        },
+    };
+    match launcher.run("judge", &job, plan.cores)?.record {
+        Ok(text) => read(&text),
+        Err(failure) => {
+            eprintln!(
+                "Warning: no direct solution, so no errors: {}",
+                failure.message
+            );
+            Ok(Verdict::default())
+        }
+    }
+}
+
+fn read<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
+    serde_json::from_str(text)
+        .map_err(|e| Error::environment(format!("a job has written an unreadable result: {e}")))
+}
+
+fn row(name: &str, run: &Run, outcome: std::result::Result<Outcome, String>) -> CompareRow {
+    let blank = CompareRow {
+        method: name.to_string(),
+        subdomains: run.parts,
+        ranks: run.ranks,
+        threads: run.threads,
+        ..CompareRow::default()
+    };
+    match outcome {
+        Err(message) => CompareRow {
+            message: Some(message),
+            ..blank
+        },
+        Ok(o) => CompareRow {
+            kappa: o.kappa,
+            iterations: o.iterations,
+            seconds: CompareSeconds {
+                assemble: Some(o.assemble),
+                setup: Some(o.setup),
+                solve: Some(o.solve),
+                total: Some(o.setup + o.solve),
+            },
+            memory_mb: Some(o.memory / 1e6),
+            memory_at_start_mb: Some(o.memory_at_start / 1e6),
+            residual: o.residual,
+            rtol: o.rtol,
+            converged: o.message.is_none(),
+            converged_reason: o.reason,
+            message: o.message,
+            ..blank
+        },
+    }
+}
+
+/// One line on stderr that overwrites itself, on a terminal only.
+fn progress(args: &Compare, what: &str) {
+    use std::io::IsTerminal;
+    if !args.quiet && std::io::stderr().is_terminal() {
+        let text = if what.is_empty() {
+            String::new()
+        } else {
+            format!("compare: {what}")
+        };
+        eprint!("\r\x1b[K{text}");
+    }
+}
+
+fn write(args: &Compare, report: &CompareReport) -> Result<()> {
+    let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
+    if !args.quiet && !to_stdout {
+        print!("{}", summary::compare(report));
+    }
+    if let Some(file) = &args.json {
+        json::write(file, report)?;
+    }
+    if let Some(dir) = &args.out {
+        json::write(&dir.join("compare.json"), report)?;
+        summary::compare_csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
+        if !args.quiet && !to_stdout {
+            println!("written: compare.json, compare.csv in {}", dir.display());
+        }
+    }
+    Ok(())
 }

@@ -2,7 +2,7 @@
 
 pub mod args;
 mod plan;
-mod problem;
+pub(crate) mod problem;
 mod solve;
 mod table1;
 

@@ -268,15 +268,39 @@ pub struct PaperSide {
     pub iter: usize,
 }
 
-/// One row of `compare`: an array of them is the command's JSON.
+/// What `compare` reports: facts about the problem, then one row per method and layout.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CompareReport {
+    /// The scene's title.
+    pub scene: String,
+    /// Bodies.
+    pub bodies: usize,
+    /// Subdomains over all bodies.
+    pub subdomains: usize,
+    /// Unknowns of the assembled problem: one where tied bodies have several copies.
+    pub dofs: usize,
+    /// Relative residual ‖b − A u‖₂ / ‖b‖₂ of the assembled problem that every method was driven to.
+    #[serde(with = "number")]
+    pub rtol: f64,
+    /// Cores that methods without a layout of their own were given.
+    pub cores: usize,
+    /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
+    pub reference_residual: Option<f64>,
+    /// The methods.
+    pub rows: Vec<CompareRow>,
+}
+
+/// One method in one layout.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompareRow {
     /// The method, such as `fetifeti`, `bddc`, `gamg`.
     pub method: String,
-    /// Subdomains; `null` for methods that have none.
+    /// Parts of the domain that the method sees; `null` for methods that see none.
     pub subdomains: Option<usize>,
     /// MPI ranks.
     pub ranks: usize,
+    /// Threads per rank.
+    pub threads: usize,
     /// κ as CG estimates it; `null` where there is none.
     pub kappa: Option<f64>,
     /// Iterations; `null` for a direct solver or a run that failed.
@@ -285,10 +309,16 @@ pub struct CompareRow {
     pub seconds: CompareSeconds,
     /// Largest resident memory over the ranks, summed, in MB of 10⁶ bytes.
     pub memory_mb: Option<f64>,
+    /// The part of `memory_mb` that was there before the problem: program and libraries, once per rank.
+    pub memory_at_start_mb: Option<f64>,
     /// Error in the energy norm against the assembled direct solution, relative.
     pub error: Option<f64>,
-    /// Relative residual that was reached.
+    /// Relative residual of the assembled problem that was reached.
     pub residual: Option<f64>,
+    /// Relative tolerance of the method's own residual with which that was reached.
+    pub rtol: Option<f64>,
+    /// Whether the residual was reached.
+    pub converged: bool,
     /// PETSc's name for why the iteration ended.
     pub converged_reason: String,
     /// One sentence when the method could not run or did not converge.
@@ -299,11 +329,13 @@ pub struct CompareRow {
 /// Wall-clock seconds of one method in `compare`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompareSeconds {
+    /// Mesh and matrices.
+    pub assemble: Option<f64>,
     /// Factorisations, hierarchies, coarse problems.
     pub setup: Option<f64>,
     /// Iterations and recovery.
     pub solve: Option<f64>,
-    /// Both.
+    /// Set-up and solve.
     pub total: Option<f64>,
 }
 
@@ -400,13 +432,14 @@ mod tests {
         assert!(back.energy.is_nan() && back.kkt.feasibility.is_nan());
         assert_eq!(back.iterations, report().iterations);
         let nothing = CompareSeconds {
+            assemble: Some(0.5),
             setup: Some(f64::NAN),
             solve: None,
             total: Some(1.0),
         };
         assert_eq!(
             serde_json::to_string(&nothing).unwrap(),
-            r#"{"setup":null,"solve":null,"total":1.0}"#
+            r#"{"assemble":0.5,"setup":null,"solve":null,"total":1.0}"#
         );
     }
 

@@ -1,6 +1,6 @@
 //! The tables that the commands print, and their CSV forms.
 
-use super::json::{CompareRow, SolveReport, Spectrum, Table1Row, Table1Side};
+use super::json::{CompareReport, CompareRow, SolveReport, Spectrum, Table1Row, Table1Side};
 use super::table::{count, fixed, scientific, Align, Table};
 
 /// The result of `solve` as lines "name  value".
@@ -211,44 +211,64 @@ pub fn table1_csv(rows: &[Table1Row]) -> Table {
     table
 }
 
-/// The comparison for terminals.
-pub fn compare(rows: &[CompareRow]) -> Table {
+/// The comparison for terminals, with a caption.
+pub fn compare(report: &CompareReport) -> String {
     let header = [
-        "method",
-        "subdomains",
-        "ranks",
-        "κ",
-        "it",
-        "set-up s",
-        "solve s",
-        "total s",
-        "MB",
-        "error",
-        "residual",
-        "outcome",
+        "method", "parts", "ranks", "κ", "it", "set-up s", "solve s", "total s", "MB", "MB net",
+        "error", "residual", "outcome",
     ];
     let mut table = Table::new(header)
         .align(0, Align::Left)
-        .align(11, Align::Left);
-    for r in rows {
+        .align(12, Align::Left);
+    let mut notes = String::new();
+    for r in &report.rows {
+        let net = r
+            .memory_mb
+            .zip(r.memory_at_start_mb)
+            .map(|(all, start)| all - start);
+        let outcome = match &r.message {
+            None => r.converged_reason.clone(),
+            Some(message) => {
+                notes += &format!("{} on {}: {message}\n", r.method, ranks(r.ranks));
+                "failed, see below".to_string()
+            }
+        };
         table.row([
             r.method.clone(),
             count(r.subdomains),
-            r.ranks.to_string(),
+            match r.threads {
+                0 | 1 => r.ranks.to_string(),
+                n => format!("{} x {n}", r.ranks),
+            },
             fixed(r.kappa, 3),
             count(r.iterations),
             fixed(r.seconds.setup, 3),
             fixed(r.seconds.solve, 3),
             fixed(r.seconds.total, 3),
             fixed(r.memory_mb, 0),
+            fixed(net, 0),
             scientific(r.error),
             scientific(r.residual),
-            r.message
-                .clone()
-                .unwrap_or_else(|| r.converged_reason.clone()),
+            outcome,
         ]);
     }
-    table
+    format!(
+        "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n\
+         All methods were driven to ‖b − Au‖ ≤ {} ‖b‖ of the assembled problem; its assembly is not in the times.\n\
+         parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); error: in the energy norm,\n\
+         against a refined direct solution{}; MB: largest resident memory, summed over the ranks;\n\
+         net: without what each rank holds before it has read the problem.\n",
+        report.scene,
+        report.bodies,
+        report.subdomains,
+        report.dofs,
+        report.cores,
+        scientific(Some(report.rtol)),
+        match report.reference_residual {
+            Some(r) => format!(" (residual {})", scientific(Some(r))),
+            None => " (not available)".to_string(),
+        },
+    )
 }
 
 /// The comparison for programs: full precision, empty cells where nothing is known.
@@ -257,14 +277,19 @@ pub fn compare_csv(rows: &[CompareRow]) -> Table {
         "method",
         "subdomains",
         "ranks",
+        "threads",
         "kappa",
         "iterations",
+        "assemble_seconds",
         "setup_seconds",
         "solve_seconds",
         "total_seconds",
         "memory_mb",
+        "memory_at_start_mb",
         "error",
         "residual",
+        "rtol",
+        "converged",
         "converged_reason",
         "message",
     ]);
@@ -274,14 +299,19 @@ pub fn compare_csv(rows: &[CompareRow]) -> Table {
             r.method.clone(),
             counted(r.subdomains),
             r.ranks.to_string(),
+            r.threads.to_string(),
             exactly(r.kappa),
             counted(r.iterations),
+            exactly(r.seconds.assemble),
             exactly(r.seconds.setup),
             exactly(r.seconds.solve),
             exactly(r.seconds.total),
             exactly(r.memory_mb),
+            exactly(r.memory_at_start_mb),
             exactly(r.error),
             exactly(r.residual),
+            exactly(r.rtol),
+            r.converged.to_string(),
             r.converged_reason.clone(),
             r.message.clone().unwrap_or_default(),
         ]);
@@ -404,33 +434,48 @@ pub(crate) mod tests {
     fn compare_names_the_outcome() {
         let row = CompareRow {
             method: "hypre".into(),
-            subdomains: None,
             ranks: 2,
+            threads: 1,
             kappa: Some(1.25),
             iterations: Some(8),
             seconds: CompareSeconds {
+                assemble: Some(0.125),
                 setup: Some(0.5),
                 solve: Some(0.25),
                 total: Some(0.75),
             },
             memory_mb: Some(99.6),
+            memory_at_start_mb: Some(50.0),
             error: Some(1.24e-9),
-            residual: None,
+            converged: true,
             converged_reason: "CONVERGED_RTOL".into(),
-            message: None,
+            ..CompareRow::default()
         };
         let mut failed = row.clone();
+        failed.converged = false;
         failed.message = Some("PETSc was built without hypre".into());
-        let text = compare(&[row.clone(), failed.clone()]).to_string();
-        let words: Vec<&str> = text.lines().nth(2).unwrap().split_whitespace().collect();
+        let report = CompareReport {
+            scene: "four bodies".into(),
+            bodies: 4,
+            subdomains: 16,
+            dofs: 225,
+            rtol: 1e-6,
+            cores: 2,
+            reference_residual: None,
+            rows: vec![row, failed.clone()],
+        };
+        let text = compare(&report);
+        let line = text.lines().find(|l| l.starts_with("hypre")).unwrap();
         assert_eq!(
-            words,
-            "hypre – 2 1.250 8 0.500 0.250 0.750 100 1.2e-9 – CONVERGED_RTOL"
+            line.split_whitespace().collect::<Vec<_>>(),
+            "hypre – 2 1.250 8 0.500 0.250 0.750 100 50 1.2e-9 – CONVERGED_RTOL"
                 .split(' ')
                 .collect::<Vec<_>>()
         );
         assert!(text.contains("PETSc was built without hypre"));
+        assert!(text.contains("1e-6") || text.contains("1.0e-6"), "{text}");
         let csv = compare_csv(&[failed]).to_csv();
-        assert!(csv.ends_with("hypre,,2,1.25,8,0.5,0.25,0.75,99.6,1.24e-9,,CONVERGED_RTOL,PETSc was built without hypre\n"));
+        let end = "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,false,CONVERGED_RTOL,PETSc was built without hypre\n";
+        assert!(csv.ends_with(end), "{csv}");
     }
 }

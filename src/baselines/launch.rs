@@ -1,0 +1,267 @@
+//! Starting one job on its own ranks, and waiting for it.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use super::job::Job;
+use crate::report::json;
+use crate::{Error, Result};
+
+/// A directory for jobs, results and solutions that only this user can read; removed with the value.
+pub struct Workspace {
+    dir: PathBuf,
+}
+
+impl Workspace {
+    /// Makes the directory.
+    ///
+    /// # Errors
+    /// [`Error::Environment`] with the path.
+    pub fn new() -> Result<Workspace> {
+        use std::os::unix::fs::DirBuilderExt;
+        let stamp = std::time::SystemTime::now()
+            .duration_since(std::time::UNIX_EPOCH)
+            .map_or(0, |d| d.as_nanos());
+        let name = format!("fetifeti-compare-{}-{stamp}", std::process::id());
+        let dir = std::env::temp_dir().join(name);
+        std::fs::DirBuilder::new()
+            .mode(0o700)
+            .create(&dir)
+            .map_err(|e| {
+                Error::environment(format!("cannot make the directory {}: {e}", dir.display()))
+            })?;
+        Ok(Workspace { dir })
+    }
+
+    /// The path of a file in it.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.dir.join(name)
+    }
+}
+
+impl Drop for Workspace {
+    fn drop(&mut self) {
+        // What cannot be removed stays in the system's directory for temporary files.
+        let _ = std::fs::remove_dir_all(&self.dir);
+    }
+}
+
+/// How jobs are run.
+pub struct Launcher {
+    /// Where files go.
+    pub workspace: Workspace,
+    /// A job that takes longer is ended.
+    pub limit: Duration,
+    /// PETSc's arguments that every job gets.
+    pub petsc: Vec<String>,
+}
+
+/// Why a job has no result.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Failure {
+    /// The exit code of the program, if it had one.
+    pub code: Option<i32>,
+    /// One sentence.
+    pub message: String,
+}
+
+impl Failure {
+    /// As an error of this process, with the kind that the exit code names.
+    pub fn into_error(self) -> Error {
+        match self.code {
+            Some(1) => Error::NotConverged(self.message),
+            Some(2) => Error::Input(self.message),
+            _ => Error::Environment(self.message),
+        }
+    }
+}
+
+/// A job that ran: what it printed, and its record as JSON text.
+pub struct Finished {
+    /// Standard output of all ranks: PETSc's monitors and views.
+    pub printed: String,
+    /// The record that the job has written, or why there is none.
+    pub record: std::result::Result<String, Failure>,
+}
+
+impl Launcher {
+    /// Runs a job on `ranks` ranks and waits for it.
+    ///
+    /// # Errors
+    /// [`Error::Environment`] where the machine refuses to start it at all: no disk, no mpirun.
+    pub fn run(&self, name: &str, job: &Job, ranks: usize) -> Result<Finished> {
+        let files = ["job", "out", "err"].map(|end| self.workspace.file(&format!("{name}.{end}")));
+        let [task, out, err] = &files;
+        json::write(task, job)?;
+        let create = |path: &Path| {
+            File::create(path)
+                .map_err(|e| Error::environment(format!("cannot write {}: {e}", path.display())))
+        };
+        let own = std::env::current_exe()
+            .map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))?;
+        let mut command = Command::new("mpirun");
+        command
+            .arg("-n")
+            .arg(ranks.to_string())
+            .arg(own)
+            .arg("baseline")
+            .arg(task);
+        command.args(&self.petsc);
+        environment(&mut command, self.limit);
+        command
+            .stdin(Stdio::null())
+            .stdout(create(out)?)
+            .stderr(create(err)?);
+        let mut child = command.spawn().map_err(|e| {
+            Error::environment(format!("cannot start mpirun, which compare needs: {e}"))
+        })?;
+        let clock = Instant::now();
+        // mpirun ends itself after the limit; if it hangs in that, it is ended from here.
+        let patience = self.limit + Duration::from_secs(20);
+        let status = loop {
+            match child.try_wait() {
+                Ok(Some(status)) => break status,
+                Ok(None) if clock.elapsed() < patience => {
+                    std::thread::sleep(Duration::from_millis(10));
+                }
+                Ok(None) => {
+                    let _ = child.kill();
+                    let waited = child.wait();
+                    break waited
+                        .map_err(|e| Error::environment(format!("mpirun is lost: {e}")))?;
+                }
+                Err(e) => return Err(Error::environment(format!("mpirun is lost: {e}"))),
+            }
+        };
+        let text = |path: &Path| {
+            let bytes = std::fs::read(path).unwrap_or_default();
+            String::from_utf8_lossy(&bytes).into_owned()
+        };
+        let record = if status.success() {
+            std::fs::read_to_string(&job.result).map_err(|e| Failure {
+                code: None,
+                message: format!("left no result: {e}"),
+            })
+        } else {
+            Err(self.failure(status, clock.elapsed(), &text(err)))
+        };
+        Ok(Finished {
+            printed: text(out),
+            record,
+        })
+    }
+
+    fn failure(&self, status: ExitStatus, took: Duration, stderr: &str) -> Failure {
+        if took >= self.limit {
+            let message = format!(
+                "ended after {} s (-compare_time_limit)",
+                self.limit.as_secs()
+            );
+            return Failure {
+                code: None,
+                message,
+            };
+        }
+        let code = status.code();
+        let message = spoken(stderr).unwrap_or_else(|| match code {
+            Some(code) => format!("ended with exit code {code} and no message"),
+            None => "was ended by a signal".to_string(),
+        });
+        Failure { code, message }
+    }
+}
+
+/// The program's own error among what mpirun and other ranks say, or the last words of whoever spoke.
+fn spoken(stderr: &str) -> Option<String> {
+    let mut lines = stderr.lines().map(str::trim).filter(|l| !l.is_empty());
+    let ours = lines.clone().position(|l| l.starts_with("Error"));
+    let Some(at) = ours else {
+        // Frames of dashes are mpirun's.
+        return lines.rfind(|l| !l.starts_with("---")).map(str::to_string);
+    };
+    let first = lines.nth(at)?;
+    let text = first
+        .split_once(": ")
+        .map_or(first, |(_, rest)| rest)
+        .to_string();
+    // PETSc's own reason is the first line below.
+    if text.contains("failed with PETSc error") {
+        if let Some(why) = lines.next() {
+            return Some(format!("{text}: {why}"));
+        }
+    }
+    Some(text)
+}
+
+/// The environment of mpirun: what this process inherited from an mpirun around it would lead it astray, and there may be
+/// more ranks than cores.
+fn environment(command: &mut Command, limit: Duration) {
+    // What a user may have set about transports stays.
+    const KEPT: [&str; 6] = ["btl_", "btl", "pml", "mtl", "coll_", "opal_"];
+    for (name, _) in std::env::vars_os() {
+        let text = name.to_string_lossy();
+        let foreign = ["OMPI_", "PMIX_", "PMI_", "ORTE_"]
+            .iter()
+            .any(|p| text.starts_with(p));
+        let transport = text
+            .strip_prefix("OMPI_MCA_")
+            .is_some_and(|rest| KEPT.iter().any(|k| rest.starts_with(k)));
+        if foreign && !transport {
+            command.env_remove(&name);
+        }
+    }
+    command
+        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
+        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+        .env("MPIEXEC_TIMEOUT", limit.as_secs().max(1).to_string())
+        .env("OMP_NUM_THREADS", "1")
+        .env("OPENBLAS_NUM_THREADS", "1");
+    if is_root() {
+        command
+            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+    }
+}
+
+fn is_root() -> bool {
+    use std::os::unix::fs::MetadataExt;
+    std::fs::metadata("/proc/self").is_ok_and(|m| m.uid() == 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_programs_own_error_is_found() {
+        let petsc = "[host:1] noise\nError on rank 3: PCSetUp failed with PETSc error 76\n  Zero pivot\n  PCSetUp() line 9\n----\n";
+        assert_eq!(
+            spoken(petsc).as_deref(),
+            Some("PCSetUp failed with PETSc error 76: Zero pivot")
+        );
+        assert_eq!(spoken("Error: a: b\n").as_deref(), Some("a: b"));
+        assert_eq!(
+            spoken("----\nno slots\n----\n").as_deref(),
+            Some("no slots")
+        );
+        assert_eq!(spoken(""), None);
+    }
+
+    #[test]
+    fn a_workspace_is_private_and_goes_away() {
+        use std::os::unix::fs::PermissionsExt;
+        let workspace = Workspace::new().expect("a directory");
+        let dir = workspace.dir.clone();
+        let mode = std::fs::metadata(&dir)
+            .expect("it is there")
+            .permissions()
+            .mode();
+        assert_eq!(mode & 0o777, 0o700);
+        std::fs::write(workspace.file("x"), "x").expect("it can be written");
+        drop(workspace);
+        assert!(!dir.exists());
+    }
+}

@@ -1,0 +1,185 @@
+//! The baselines: rows of option strings on the same problem, to the same residual.
+//!
+//! Every row has a prefix of its own, so that a researcher can tune it on the command line of `compare`:
+//! `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_use_deluxe_scaling`, `-fetidp_fetidp_ksp_monitor`. Ours keeps `-fetifeti_`.
+
+use crate::petsc::{Options, Session};
+use crate::{Error, Result};
+
+/// The matrix that a method works on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// One assembled matrix (AIJ), rows in equal shares.
+    Assembled,
+    /// One matrix per part of the domain, unassembled (MATIS).
+    Unassembled,
+}
+
+/// One of PETSc's solvers.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Baseline {
+    /// Its name for `--with`, and with an underscore the prefix of its options.
+    pub name: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// The matrix it takes.
+    pub format: Format,
+    /// Where the options of the Krylov method are found behind the prefix: KSPFETIDP iterates in a solver inside.
+    pub krylov: &'static str,
+    /// Options (without the prefix) that hold unless the user says otherwise.
+    pub options: &'static [(&'static str, &'static str)],
+}
+
+impl Baseline {
+    /// The baseline of this name.
+    pub fn named(name: &str) -> Option<&'static Baseline> {
+        BASELINES.iter().find(|b| b.name == name)
+    }
+
+    /// The prefix of its options.
+    pub fn prefix(&self) -> String {
+        format!("{}_", self.name)
+    }
+
+    /// Puts its options into the database, below those of the user, and lists them under `-help`.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn set_options(&self, session: &Session, rtol: f64) -> Result<()> {
+        let options = Options::new(session, &self.prefix());
+        options.heading(&format!(
+            "compare --with {}: {}",
+            self.name, self.description
+        ))?;
+        let rtol = format!("{rtol:e}");
+        let tolerance = (format!("{}ksp_rtol", self.krylov), rtol.as_str());
+        let fixed = self
+            .options
+            .iter()
+            .map(|(name, value)| (name.to_string(), *value));
+        for (name, value) in fixed.chain([tolerance]) {
+            options.set_default(&name, value)?;
+            options.list(&name, value, "set by compare")?;
+        }
+        Ok(())
+    }
+}
+
+/// The baselines in the order in which they are run.
+pub const BASELINES: [Baseline; 5] = [
+    Baseline {
+        name: "bddc",
+        description: "CG with PCBDDC, vertices and edge averages primal",
+        format: Format::Unassembled,
+        krylov: "",
+        options: &[
+            ("ksp_type", "cg"),
+            ("ksp_norm_type", "unpreconditioned"),
+            ("pc_type", "bddc"),
+            // Scaling by the stiffness follows jumps of the coefficient; PETSc's default is the multiplicity.
+            ("pc_is_use_stiffness_scaling", "true"),
+            ("pc_bddc_dirichlet_pc_type", "cholesky"),
+            ("pc_bddc_dirichlet_pc_factor_mat_solver_type", "cholmod"),
+            ("pc_bddc_neumann_pc_type", "cholesky"),
+            ("pc_bddc_neumann_pc_factor_mat_solver_type", "cholmod"),
+        ],
+    },
+    Baseline {
+        name: "fetidp",
+        description:
+            "KSPFETIDP, CG on fully redundant multipliers, the primal constraints of PCBDDC",
+        format: Format::Unassembled,
+        krylov: "fetidp_",
+        options: &[
+            ("ksp_type", "fetidp"),
+            ("ksp_fetidp_fullyredundant", "true"),
+            ("fetidp_ksp_type", "cg"),
+            ("fetidp_ksp_norm_type", "unpreconditioned"),
+            ("fetidp_bddc_pc_is_use_stiffness_scaling", "true"),
+            ("fetidp_bddc_pc_bddc_dirichlet_pc_type", "cholesky"),
+            (
+                "fetidp_bddc_pc_bddc_dirichlet_pc_factor_mat_solver_type",
+                "cholmod",
+            ),
+            ("fetidp_bddc_pc_bddc_neumann_pc_type", "cholesky"),
+            (
+                "fetidp_bddc_pc_bddc_neumann_pc_factor_mat_solver_type",
+                "cholmod",
+            ),
+        ],
+    },
+    Baseline {
+        name: "gamg",
+        description: "CG with PETSc's smoothed aggregation",
+        format: Format::Assembled,
+        krylov: "",
+        options: &[
+            ("ksp_type", "cg"),
+            ("ksp_norm_type", "unpreconditioned"),
+            ("pc_type", "gamg"),
+        ],
+    },
+    Baseline {
+        name: "hypre",
+        description: "CG with hypre's BoomerAMG",
+        format: Format::Assembled,
+        krylov: "",
+        options: &[
+            ("ksp_type", "cg"),
+            ("ksp_norm_type", "unpreconditioned"),
+            ("pc_type", "hypre"),
+            ("pc_hypre_type", "boomeramg"),
+        ],
+    },
+    Baseline {
+        name: "mumps",
+        description: "sparse Cholesky by MUMPS",
+        format: Format::Assembled,
+        krylov: "",
+        options: &[
+            ("ksp_type", "preonly"),
+            ("pc_type", "cholesky"),
+            ("pc_factor_mat_solver_type", "mumps"),
+        ],
+    },
+];
+
+/// The baselines that `--with` names, in the order of the table; all of them for an empty list.
+///
+/// # Errors
+/// [`Error::Input`] for a name that is not in the table.
+pub fn select(names: &[String]) -> Result<Vec<&'static Baseline>> {
+    for name in names {
+        if Baseline::named(name).is_none() {
+            let known: Vec<&str> = BASELINES.iter().map(|b| b.name).collect();
+            return Err(Error::input(format!(
+                "--with names \"{name}\", expected some of {}",
+                known.join(",")
+            )));
+        }
+    }
+    let wanted = |b: &&Baseline| names.is_empty() || names.iter().any(|n| n == b.name);
+    Ok(BASELINES.iter().filter(wanted).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_select_rows_in_the_order_of_the_table() {
+        let names = |list: &[&str]| -> Vec<&'static str> {
+            let list: Vec<String> = list.iter().map(|s| s.to_string()).collect();
+            select(&list)
+                .expect("known names")
+                .iter()
+                .map(|b| b.name)
+                .collect()
+        };
+        assert_eq!(names(&[]), ["bddc", "fetidp", "gamg", "hypre", "mumps"]);
+        assert_eq!(names(&["mumps", "bddc", "mumps"]), ["bddc", "mumps"]);
+        let error = select(&["bdcc".to_string()]).expect_err("a typo");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("bdcc"), "{error}");
+    }
+}
