@@ -3,9 +3,26 @@
 mod mpi;
 
 use std::path::PathBuf;
+use std::process::Command;
+use std::sync::OnceLock;
 
-/// Examples lie beside the directory of the test executables; cargo builds them before the tests run.
+/// Examples lie beside the directory of the test executables. A plain `cargo test` has built them; one that names this test
+/// has not, or has left older ones there.
 fn path(name: &str) -> PathBuf {
+    static BUILT: OnceLock<()> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["build", "--quiet", "--examples"]);
+        if !cfg!(debug_assertions) {
+            cargo.arg("--release");
+        }
+        let out = cargo.output().expect("cargo starts");
+        assert!(
+            out.status.success(),
+            "{}",
+            String::from_utf8_lossy(&out.stderr)
+        );
+    });
     let own = std::env::current_exe().expect("the test knows its own path");
     let profile = own.ancestors().nth(2).expect("target/<profile>/deps");
     profile.join("examples").join(name)
@@ -14,7 +31,6 @@ fn path(name: &str) -> PathBuf {
 /// Runs an example and returns what it prints for the given labels.
 fn run(name: &str, ranks: usize, labels: &[&str]) -> Vec<String> {
     let path = path(name);
-    assert!(path.exists(), "{} was not built", path.display());
     let out = mpi::mpirun(ranks, path.to_str().expect("UTF-8"), &[], &[]);
     assert_eq!(out.code, 0, "{name} on {ranks} ranks: {}", out.all());
     let line = |label: &&str| {
