@@ -3,7 +3,7 @@
 use super::error::{c_string, rust_string};
 use super::handle::Handle;
 use super::{Comm, Mat, Pc, Session, Vec};
-use crate::Result;
+use crate::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;
 
@@ -232,7 +232,13 @@ impl Ksp {
     }
 
     /// (largest, smallest) singular value of the preconditioned operator as the last solve saw them.
+    ///
+    /// # Errors
+    /// Where the method keeps none: PETSc's fcg hands its data to a routine that expects those of cg, and crashes.
     pub fn extreme_singular_values(&self) -> Result<(f64, f64)> {
+        if self.type_name()? == "fcg" {
+            return Err(Error::environment("fcg keeps no estimate of the spectrum"));
+        }
         let (mut large, mut small) = (0.0, 0.0);
         petsc!(KSPComputeExtremeSingularValues(
             self.raw(),
