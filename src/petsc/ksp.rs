@@ -1,6 +1,6 @@
 //! Krylov solvers.
 
-use super::error::{c_string, rust_string};
+use super::error::{c_string, refused_option, rust_string};
 use super::handle::Handle;
 use super::{Comm, Mat, Pc, Session, Vec};
 use crate::{Error, Result};
@@ -156,8 +156,15 @@ impl Ksp {
     }
 
     /// Reads the options of this solver and its preconditioner.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a value that PETSc refuses.
     pub fn set_from_options(&self) -> Result<()> {
-        petsc!(KSPSetFromOptions(self.raw()))
+        petsc!(KSPSetFromOptions(self.raw())).map_err(|e| {
+            let mut prefix = std::ptr::null();
+            let found = petsc!(PetscObjectGetOptionsPrefix(self.0.object(), &mut prefix));
+            refused_option(e, &found.map_or(String::new(), |()| rust_string(prefix)))
+        })
     }
 
     /// Builds what the solver and its preconditioner need. Collective.
