@@ -175,7 +175,7 @@ fn files_that_cannot_be_read_or_written() {
     ] {
         let out = fetifeti(&["solve", EXAMPLE, "--quiet", flag, &target]);
         refused(&out, 3, &["cannot write"]);
-        assert_eq!(scratch.files(), [plain.clone()]);
+        assert_eq!(scratch.files(), std::slice::from_ref(&plain));
     }
     let out = fetifeti(&[
         "table1",
