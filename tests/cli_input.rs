@@ -16,7 +16,11 @@ fn refused(out: &Output, code: i32, parts: &[&str]) {
     }
     assert_eq!(out.stderr.matches("Error").count(), 1, "{}", out.all());
     for part in parts {
-        assert!(out.stderr.contains(part), "\"{part}\" is missing: {}", out.all());
+        assert!(
+            out.stderr.contains(part),
+            "\"{part}\" is missing: {}",
+            out.all()
+        );
     }
     assert_eq!(out.stdout, "", "{}", out.all());
 }
@@ -33,7 +37,8 @@ fn bad_scene(text: &str, parts: &[&str]) {
     assert_eq!(scratch.files(), [scene]);
 }
 
-const GRID: &str = "[grid]\nbodies = 2\nelements = 4\nsubdomains = 2\nload = 1\ndirichlet = \"all\"\n";
+const GRID: &str =
+    "[grid]\nbodies = 2\nelements = 4\nsubdomains = 2\nload = 1\ndirichlet = \"all\"\n";
 const EXAMPLE: &str = "examples/scenes/poisson_2x2.toml";
 
 fn grid(line: &str) -> String {
@@ -55,19 +60,31 @@ fn keys_and_geometry() {
     bad_scene(&two("0.5", 1, ""), &["`held` and `loose` overlap"]);
     let finer = two("1", 1, "").replacen("elements = 4", "elements = 3", 1);
     bad_scene(&finer, &["`held` and `loose` are tied", "matching nodes"]);
-    bad_scene(&GRID.replace("elements = 4", "elements = 0"), &["s.toml:3", "positive"]);
-    bad_scene(&GRID.replace("elements = 4", "elements = 5"), &["do not divide 5 elements"]);
+    bad_scene(
+        &GRID.replace("elements = 4", "elements = 0"),
+        &["s.toml:3", "positive"],
+    );
+    bad_scene(
+        &GRID.replace("elements = 4", "elements = 5"),
+        &["do not divide 5 elements"],
+    );
 }
 
 #[test]
 fn values() {
     bad_scene(&grid("rho = 0"), &["b0_0", "ρ = 0", "positive"]);
     bad_scene(&grid("rho = -1"), &["ρ = -1", "positive"]);
-    bad_scene(&grid("rho = \"x - 0.5\""), &["ρ = -0.4375 at (0.0625, 0.0625)"]);
+    bad_scene(
+        &grid("rho = \"x - 0.5\""),
+        &["ρ = -0.4375 at (0.0625, 0.0625)"],
+    );
     bad_scene(&grid("rho = \"sqrt(x - 0.3)\""), &["ρ = NaN"]);
     bad_scene(&grid("rho = \"1/(x - 0.0625)\""), &["ρ = inf"]);
     bad_scene(&grid("rho = nan"), &["s.toml:7", "nan"]);
-    bad_scene(&GRID.replace("load = 1", "load = \"log(x - 0.5)\""), &["load NaN"]);
+    bad_scene(
+        &GRID.replace("load = 1", "load = \"log(x - 0.5)\""),
+        &["load NaN"],
+    );
     let nan = GRID.replace("\"all\"", "{ left = \"log(y - 0.5)\" }");
     bad_scene(&nan, &["Dirichlet value NaN", "side left"]);
 }
@@ -78,16 +95,32 @@ fn bodies_that_nothing_holds() {
         // Apart, and side by side without a tie.
         let free = "[interface]\ndefault = \"free\"\n";
         for text in [two("3", subdomains, ""), two("1", subdomains, free)] {
-            bad_scene(&text, &["body \"loose\" is held by nothing", "expected a Dirichlet side or a tie"]);
+            bad_scene(
+                &text,
+                &[
+                    "body \"loose\" is held by nothing",
+                    "expected a Dirichlet side or a tie",
+                ],
+            );
         }
-        let row = format!("[grid]\nbodies = [3, 1]\nelements = 4\nsubdomains = {subdomains}\nload = 1\n");
-        bad_scene(&row, &["bodies \"b0_0\", \"b1_0\", \"b2_0\" are held by nothing", "does not balance"]);
+        let row =
+            format!("[grid]\nbodies = [3, 1]\nelements = 4\nsubdomains = {subdomains}\nload = 1\n");
+        bad_scene(
+            &row,
+            &[
+                "bodies \"b0_0\", \"b1_0\", \"b2_0\" are held by nothing",
+                "does not balance",
+            ],
+        );
         let one = format!("[[body]]\nname = \"only\"\nsize = 1\nelements = 4\nsubdomains = {subdomains}\nload = 1\n");
         bad_scene(&one, &["body \"only\" is held by nothing"]);
     }
     // Five loose bodies: not all of them are listed.
     let row = "[grid]\nbodies = [5, 1]\nelements = 2\nload = 1\n";
-    bad_scene(row, &["bodies \"b0_0\", \"b1_0\", \"b2_0\" and 2 more are held by nothing"]);
+    bad_scene(
+        row,
+        &["bodies \"b0_0\", \"b1_0\", \"b2_0\" and 2 more are held by nothing"],
+    );
 }
 
 #[test]
@@ -98,7 +131,14 @@ fn a_balanced_load_on_loose_bodies_is_solved() {
         );
         let scratch = Scratch::new("balanced");
         let scene = scratch.file("s.toml", &text);
-        let out = fetifeti(&["solve", &scene, "--json", "-", "-fetifeti_ksp_rtol", "1e-10"]);
+        let out = fetifeti(&[
+            "solve",
+            &scene,
+            "--json",
+            "-",
+            "-fetifeti_ksp_rtol",
+            "1e-10",
+        ]);
         assert_eq!(out.code, 0, "{}", out.all());
         let report: serde_json::Value = serde_json::from_str(&out.stdout).expect("JSON");
         assert_eq!(report["floating_bodies"], 2);
@@ -112,8 +152,16 @@ fn a_balanced_load_on_loose_bodies_is_solved() {
 
 #[test]
 fn files_that_cannot_be_read_or_written() {
-    refused(&fetifeti(&["solve", "no/such.toml"]), 2, &["no/such.toml", "cannot be read"]);
-    refused(&fetifeti(&["plan", "no/such.toml"]), 2, &["no/such.toml", "cannot be read"]);
+    refused(
+        &fetifeti(&["solve", "no/such.toml"]),
+        2,
+        &["no/such.toml", "cannot be read"],
+    );
+    refused(
+        &fetifeti(&["plan", "no/such.toml"]),
+        2,
+        &["no/such.toml", "cannot be read"],
+    );
     refused(&fetifeti(&["solve", "src"]), 2, &["src", "cannot be read"]);
     let scratch = Scratch::new("unwritable");
     let plain = scratch.file("plain", "");
@@ -127,17 +175,32 @@ fn files_that_cannot_be_read_or_written() {
     ] {
         let out = fetifeti(&["solve", EXAMPLE, "--quiet", flag, &target]);
         refused(&out, 3, &["cannot write"]);
-        assert_eq!(scratch.files(), [plain.clone()]);
+        assert_eq!(scratch.files(), std::slice::from_ref(&plain));
     }
-    let out = fetifeti(&["table1", "--rows", "2,2,2", "--quiet", "--out", &format!("{plain}/x")]);
+    let out = fetifeti(&[
+        "table1",
+        "--rows",
+        "2,2,2",
+        "--quiet",
+        "--out",
+        &format!("{plain}/x"),
+    ]);
     refused(&out, 3, &["cannot write"]);
     assert!(out.seconds < 5.0, "found out before the work");
 }
 
 #[test]
 fn a_full_standard_output_is_no_panic() {
-    for args in [&["solve", EXAMPLE][..], &["plan", EXAMPLE], &["--help"], &["solve", EXAMPLE, "--json", "-"]] {
-        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full opens");
+    for args in [
+        &["solve", EXAMPLE][..],
+        &["plan", EXAMPLE],
+        &["--help"],
+        &["solve", EXAMPLE, "--json", "-"],
+    ] {
+        let full = std::fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .expect("/dev/full opens");
         let out = std::process::Command::new(env!("CARGO_BIN_EXE_fetifeti"))
             .args(args)
             .stdout(full)
@@ -145,7 +208,10 @@ fn a_full_standard_output_is_no_panic() {
             .expect("the program starts");
         let stderr = String::from_utf8_lossy(&out.stderr);
         assert_eq!(out.status.code(), Some(3), "{args:?}: {stderr}");
-        assert!(stderr.starts_with("Error: cannot write to standard output: "), "{args:?}: {stderr}");
+        assert!(
+            stderr.starts_with("Error: cannot write to standard output: "),
+            "{args:?}: {stderr}"
+        );
         assert_eq!(stderr.lines().count(), 1, "{args:?}: {stderr}");
     }
 }
@@ -153,18 +219,42 @@ fn a_full_standard_output_is_no_panic() {
 #[test]
 fn option_values() {
     for (option, value, parts) in [
-        ("-fetifeti_pc_type", "nonsense", &["\"nonsense\"", "coarse_corrected"][..]),
-        ("-fetifeti_scaling", "nonsense", &["\"nonsense\"", "stiffness"]),
-        ("-fetifeti_projector", "nonsense", &["\"nonsense\"", "preconditioner"]),
-        ("-fetifeti_distribution", "nonsense", &["\"nonsense\"", "cyclic"]),
+        (
+            "-fetifeti_pc_type",
+            "nonsense",
+            &["\"nonsense\"", "coarse_corrected"][..],
+        ),
+        (
+            "-fetifeti_scaling",
+            "nonsense",
+            &["\"nonsense\"", "stiffness"],
+        ),
+        (
+            "-fetifeti_projector",
+            "nonsense",
+            &["\"nonsense\"", "preconditioner"],
+        ),
+        (
+            "-fetifeti_distribution",
+            "nonsense",
+            &["\"nonsense\"", "cyclic"],
+        ),
         ("-fetifeti_scaling_gamma", "0.1", &["0.1", "at least 0.5"]),
         ("-fetifeti_scaling_gamma", "nan", &["finite"]),
         ("-fetifeti_threads", "-3", &["-3"]),
         ("-fetifeti_check", "maybe", &["maybe", "true or false"]),
         ("-fetifeti_ksp_rtol", "abc", &["-fetifeti_", "abc"]),
         ("-fetifeti_ksp_max_it", "abc", &["-fetifeti_", "abc"]),
-        ("-fetifeti_ksp_type", "nonsense", &["-fetifeti_", "nonsense"]),
-        ("-fetifeti_coarse_pc_type", "nonsense", &["-fetifeti_coarse_", "nonsense"]),
+        (
+            "-fetifeti_ksp_type",
+            "nonsense",
+            &["-fetifeti_", "nonsense"],
+        ),
+        (
+            "-fetifeti_coarse_pc_type",
+            "nonsense",
+            &["-fetifeti_coarse_", "nonsense"],
+        ),
     ] {
         let out = fetifeti(&["solve", EXAMPLE, "--quiet", option, value]);
         refused(&out, 2, parts);
@@ -197,7 +287,10 @@ fn bad_input_on_two_ranks_is_said_once() {
     let scratch = Scratch::new("ranks");
     let bad = [
         // ρ is bad in the last subdomain only, which the second rank holds.
-        (grid("rho = \"if(x > 0.8 && y > 0.8, sqrt(0 - 1), 1)\""), "ρ = NaN at (0.8125, 0.8125)"),
+        (
+            grid("rho = \"if(x > 0.8 && y > 0.8, sqrt(0 - 1), 1)\""),
+            "ρ = NaN at (0.8125, 0.8125)",
+        ),
         (grid("rhoo = 2"), "unknown key `rhoo`"),
         (two("3", 2, ""), "body \"loose\" is held by nothing"),
         // The first rank never sees the loose body.
@@ -210,8 +303,16 @@ fn bad_input_on_two_ranks_is_said_once() {
         assert!(out.seconds < 20.0, "took {} s", out.seconds);
         assert_eq!(scratch.files(), [scene]);
     }
-    refused(&run_fetifeti(2, &["solve", EXAMPLE, "--quiet", "--json", "/dev/full"]), 3, &["cannot write"]);
-    refused(&run_fetifeti(2, &["solve", EXAMPLE, "-fetifeti_ksp_rtol", "abc"]), 2, &["abc"]);
+    refused(
+        &run_fetifeti(2, &["solve", EXAMPLE, "--quiet", "--json", "/dev/full"]),
+        3,
+        &["cannot write"],
+    );
+    refused(
+        &run_fetifeti(2, &["solve", EXAMPLE, "-fetifeti_ksp_rtol", "abc"]),
+        2,
+        &["abc"],
+    );
 }
 
 /// The scene agrees with its direct solution.
@@ -221,13 +322,20 @@ fn solves(name: &'static str, text: impl Into<String>, multipliers: usize) {
         let direct = Direct::new(Scene::parse("s.toml", &text).expect(name));
         let solver = direct.solver(session, &tight());
         let facts = solver.facts();
-        assert_eq!(facts.multipliers_local + facts.multipliers_active, multipliers, "{name}");
+        assert_eq!(
+            facts.multipliers_local + facts.multipliers_active,
+            multipliers,
+            "{name}"
+        );
         for (identity, defect) in solver.check().expect("checks run") {
             assert!(defect < 1e-10, "{name}, {identity}: {defect:.1e}");
         }
         let spectrum = solver.spectrum().expect("eigenvalues");
         assert_eq!(spectrum.is_some(), multipliers > 0, "{name}");
-        assert!(spectrum.is_none_or(|s| s.lambda_min > 1.0 - 1e-8), "{name}: {spectrum:?}");
+        assert!(
+            spectrum.is_none_or(|s| s.lambda_min > 1.0 - 1e-8),
+            "{name}: {spectrum:?}"
+        );
         let solution = solver.solve().expect(name);
         assert!(solution.converged, "{name}: {}", solution.reason);
         let distance = direct.distance(&solution.u);
@@ -238,7 +346,11 @@ fn solves(name: &'static str, text: impl Into<String>, multipliers: usize) {
 
 #[test]
 fn a_single_subdomain_needs_no_iteration() {
-    solves("plain", "[[body]]\nsize = 1\nelements = 8\nload = \"1 + x\"\ndirichlet = [\"left\"]\n", 0);
+    solves(
+        "plain",
+        "[[body]]\nsize = 1\nelements = 8\nload = \"1 + x\"\ndirichlet = [\"left\"]\n",
+        0,
+    );
     // Two of them, apart.
     solves("two apart", two("3", 1, "dirichlet = [\"right\"]\n"), 0);
 }
@@ -267,7 +379,8 @@ fn subdomains_of_one_element() {
     // Every node is a vertex: there are no multipliers inside bodies.
     let text = "[grid]\nbodies = 2\nelements = 2\nsubdomains = 2\nload = 1\ndirichlet = \"all\"\n";
     solves("2,2,1", text, 6 + 4);
-    let text = "[grid]\nbodies = 3\nelements = 3\nsubdomains = 3\nload = \"x\"\ndirichlet = \"all\"\n";
+    let text =
+        "[grid]\nbodies = 3\nelements = 3\nsubdomains = 3\nload = \"x\"\ndirichlet = \"all\"\n";
     solves("3,3,1", text, 4 * 6 + 4 * 6);
 }
 
@@ -278,7 +391,11 @@ fn bodies_in_a_row() {
     // Inside each body one node on each half of two lines is dual; 5 faces of 5 nodes lie between bodies.
     let multipliers = 6 * 4 + 5 * 5;
     solves("row", text, multipliers);
-    solves("column", text.replace("[6, 1]", "[1, 6]").replace("left", "bottom"), multipliers);
+    solves(
+        "column",
+        text.replace("[6, 1]", "[1, 6]").replace("left", "bottom"),
+        multipliers,
+    );
 }
 
 #[test]
@@ -287,13 +404,26 @@ fn no_load_at_all() {
         let scratch = Scratch::new("zero");
         let text = GRID.replace("load = 1\n", "").replace("\"all\"", dirichlet);
         let scene = scratch.file("s.toml", &text);
-        let out = fetifeti(&["solve", &scene, "--json", "-", "--out", &scratch.path("out"), "-fetifeti_spectrum"]);
+        let out = fetifeti(&[
+            "solve",
+            &scene,
+            "--json",
+            "-",
+            "--out",
+            &scratch.path("out"),
+            "-fetifeti_spectrum",
+        ]);
         assert_eq!(out.code, 0, "{}", out.all());
         let report: serde_json::Value = serde_json::from_str(&out.stdout).expect("JSON");
         assert_eq!(report["iterations"]["total"], 0);
         assert_eq!(report["energy"], 0.0);
         assert_eq!(report["kkt"]["stationarity"], 0.0);
-        assert!(report["condition"]["exact"]["kappa"].as_f64().expect("a number") > 1.0);
+        assert!(
+            report["condition"]["exact"]["kappa"]
+                .as_f64()
+                .expect("a number")
+                > 1.0
+        );
         assert_eq!(scratch.files().len(), 4, "{:?}", scratch.files());
     }
 }

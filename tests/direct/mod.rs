@@ -31,7 +31,11 @@ impl Direct {
         let mut global = Vec::new();
         for mesh in &meshes {
             let s = scene.assemble(mesh).unwrap();
-            let place: Vec<usize> = s.dofs.iter().map(|&d| numbering.global(d) as usize).collect();
+            let place: Vec<usize> = s
+                .dofs
+                .iter()
+                .map(|&d| numbering.global(d) as usize)
+                .collect();
             for (i, &gi) in place.iter().enumerate() {
                 f[gi] += s.f[i];
                 let (col, val) = s.k.row(i);
@@ -41,7 +45,10 @@ impl Direct {
             }
             global.push(place);
         }
-        let triplets: Vec<_> = entries.iter().map(|(&(i, j), &v)| Triplet::new(i, j, v)).collect();
+        let triplets: Vec<_> = entries
+            .iter()
+            .map(|(&(i, j), &v)| Triplet::new(i, j, v))
+            .collect();
         let k = SparseColMat::try_new_from_triplets(n, n, &triplets).unwrap();
         let factor = k.sp_cholesky(Side::Lower).unwrap();
         let mut u = vec![0.0; n];
@@ -59,11 +66,21 @@ impl Direct {
             }
             let r = Mat::from_fn(n, 1, |i, _| r[i].0 + r[i].1);
             let correction = factor.solve(&r);
-            u.iter_mut().enumerate().for_each(|(i, u)| *u += correction[(i, 0)]);
+            u.iter_mut()
+                .enumerate()
+                .for_each(|(i, u)| *u += correction[(i, 0)]);
         }
         let torn = |place: &Vec<usize>| place.iter().map(|&g| u[g]).collect::<Vec<f64>>();
-        let nodal = meshes.iter().zip(&global).map(|(m, place)| m.nodal(&torn(place))).collect();
-        Direct { scene, meshes, nodal }
+        let nodal = meshes
+            .iter()
+            .zip(&global)
+            .map(|(m, place)| m.nodal(&torn(place)))
+            .collect();
+        Direct {
+            scene,
+            meshes,
+            nodal,
+        }
     }
 
     pub fn example(name: &str) -> Direct {
@@ -82,7 +99,8 @@ impl Direct {
                 for (a, row) in k.iter().enumerate() {
                     for (b, entry) in row.iter().enumerate() {
                         // Rows of the element matrix add up to zero: energies of differences lose nothing to a large mean.
-                        sum += rho * entry * (u[nodes[a]] - u[nodes[0]]) * (u[nodes[b]] - u[nodes[0]]);
+                        sum +=
+                            rho * entry * (u[nodes[a]] - u[nodes[0]]) * (u[nodes[b]] - u[nodes[0]]);
                     }
                 }
             }
@@ -93,7 +111,8 @@ impl Direct {
     /// ‖u − u_direct‖ / ‖u_direct‖ in the energy norm; `u` by local dof of each subdomain.
     pub fn distance(&self, u: &[Vec<f64>]) -> f64 {
         let nodal: Vec<Vec<f64>> = self.meshes.iter().zip(u).map(|(m, u)| m.nodal(u)).collect();
-        let difference = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        let difference =
+            |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
         let difference: Vec<Vec<f64>> = nodal.iter().zip(&self.nodal).map(difference).collect();
         (self.energy(&difference) / self.energy(&self.nodal)).sqrt()
     }
@@ -132,7 +151,9 @@ pub fn with_options<T>(session: &Session, options: &[(&str, &str)], work: impl F
     }
     let set = Cleared(Options::new(session, "fetifeti_"), options);
     for (name, value) in options {
-        set.0.set_value(name, Some(value)).expect("the option can be set");
+        set.0
+            .set_value(name, Some(value))
+            .expect("the option can be set");
     }
     work()
 }

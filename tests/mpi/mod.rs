@@ -143,7 +143,11 @@ impl Scratch {
 
     /// The path of `name` in it.
     pub fn path(&self, name: &str) -> String {
-        self.0.join(name).to_str().expect("the path is UTF-8").to_string()
+        self.0
+            .join(name)
+            .to_str()
+            .expect("the path is UTF-8")
+            .to_string()
     }
 
     /// Writes a file and returns its path.
