@@ -187,7 +187,6 @@ fn an_error_in_a_callback_of_one_rank_ends_the_run() {
     let message = "Error on rank 1: Body \"left\" has no matrix.";
     assert_eq!(out.stderr.matches(message).count(), 1, "{}", out.all());
     assert!(!out.stderr.contains("PETSC ERROR"), "{}", out.all());
-    assert!(out.seconds < 20.0, "took {} s", out.seconds);
 }
 
 #[test]
@@ -199,7 +198,6 @@ fn a_panic_in_a_callback_of_one_rank_ends_the_run() {
         "{}",
         out.all()
     );
-    assert!(out.seconds < 20.0, "took {} s", out.seconds);
 }
 
 #[test]

@@ -56,6 +56,7 @@ fn say(session: &Session, text: &str) -> Result<()> {
 /// `fetifeti -help`: our options and those of the solvers behind them, without a scene.
 fn list_options(session: &Session) -> Result<()> {
     let settings = Settings::default().with_options(session)?;
+    problem::Distribution::from_options(session)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_options_prefix(&settings.prefix)?;
     ksp.set_type("cg")?;

@@ -83,11 +83,14 @@ impl PrimalProblem {
         p.halo.fetch(&p.solution, values)
     }
 
-    /// ‖·‖₂ of the sum of every rank's contributions at its ghosts. Collective.
-    pub fn norm_of_sum(&self, values: &[f64]) -> Result<f64> {
+    /// Σ r²/d of two vectors of which every rank has contributions at its ghosts. Collective.
+    pub fn weighted_square(&self, r: &[f64], d: &[f64]) -> Result<f64> {
         let Some(p) = &self.parts else { return Ok(0.0) };
-        p.halo.sum(values, &p.rhs)?;
-        p.rhs.norm2()
+        p.halo.sum(r, &p.rhs)?;
+        p.halo.sum(d, &p.solution)?;
+        let quotient = p.rhs.duplicate()?;
+        quotient.pointwise_divide(&p.rhs, &p.solution)?;
+        quotient.dot(&p.rhs)
     }
 
     /// The matrix S_Π with its regularisation, if there is one.

@@ -207,14 +207,20 @@ impl NaturalCoarse {
         let Some(solver) = &self.gtg else {
             return Ok(());
         };
-        // e = Rᵀ g, and the size of the terms in it
+        // e = Rᵀ g, and the size of what may cancel in it: loads inside a subdomain do before they reach g.
         let mut e = vec![0.0; 2 * self.r];
         for (j, kernel) in self.kernels.iter().enumerate() {
+            let load: f64 = problem.local[j].f.iter().map(|f| f.abs()).sum();
             for c in 0..kernel.cols {
-                let products = kernel.col(c).iter().zip(&g[j]).map(|(r, g)| r * g);
                 let at = self.first_column[j] + c;
-                e[at] += products.clone().sum::<f64>();
-                e[self.r + at] += products.map(f64::abs).sum::<f64>();
+                let largest = kernel.col(c).iter().fold(0.0f64, |a, r| a.max(r.abs()));
+                e[at] += kernel
+                    .col(c)
+                    .iter()
+                    .zip(&g[j])
+                    .map(|(r, g)| r * g)
+                    .sum::<f64>();
+                e[self.r + at] += largest * load;
             }
         }
         sum_all(session.comm(), &mut e);
@@ -282,7 +288,7 @@ fn not_held(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> 
     ))
 }
 
-/// Resolves `Auto`: Q = M⁻¹ where a floating body or a neighbour of one differs in stiffness from the others.
+/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness. Only called where some body floats.
 fn choose(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -297,7 +303,7 @@ fn choose(
             _ => wanted,
         };
     }
-    // Mean diagonal of S over each body's interface; with Q = I the rows of stiff and soft bodies are weighed alike.
+    // Mean diagonal of K over each body's interface; with Q = I the rows of stiff and soft bodies are weighed alike.
     let n = problem.n_bodies;
     let mut sums = vec![0.0; 2 * n];
     for (sub, local) in problem.local.iter().zip(&stiffness.locals) {

@@ -13,6 +13,7 @@ use super::kernel;
 use super::local::dense::Dense;
 use super::local::problem::LocalProblem;
 use super::sharing::Sharing;
+use crate::sparse::Csr;
 use crate::substructures::Substructures;
 
 /// An entry of a matrix between primal dofs, on its way to the rank that owns them.
@@ -274,20 +275,23 @@ impl PrimalSpace {
         self.share_kernels(comm, asked);
     }
 
-    /// Largest diagonal entry of S among this rank's subdomains of a body.
+    /// Largest diagonal entry of K on the interface among this rank's subdomains of a body.
     fn local_stiffness(
         &self,
         problem: &Substructures,
         locals: &[impl AsRef<LocalProblem>],
         body: usize,
     ) -> f64 {
-        let of = |s: &Dense| (0..s.rows).map(|i| s.get(i, i)).fold(0.0, f64::max);
+        let of = |k: &Csr, interface: &[u32]| {
+            let diagonal = interface.iter().map(|&i| k.get(i as usize, i as usize));
+            diagonal.fold(0.0, f64::max)
+        };
         problem
             .local
             .iter()
             .zip(locals)
             .filter(|(sub, _)| sub.body == body)
-            .map(|(_, local)| of(&local.as_ref().s))
+            .map(|(sub, local)| of(&sub.k, &local.as_ref().interface))
             .fold(0.0, f64::max)
     }
 

@@ -22,7 +22,8 @@ const ROUNDING: f64 = 1e-14;
 /// How well the optimality conditions hold, relative to the sizes of their terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kkt {
-    /// ‖K u − f + Bᵀ λ‖₂ / (‖f‖₂ + ‖Bᵀ λ‖₂), residuals of primal dofs summed over their copies.
+    /// ‖K u − f + Bᵀ λ‖ / (‖f‖ + ‖Bᵀ λ‖) in the norm of diag(K)⁻¹, in which stiff and soft parts count alike; residuals of
+    /// primal dofs are summed over their copies.
     pub stationarity: f64,
     /// Largest violation of B u = c (≤ c) over the largest |u|.
     pub feasibility: f64,
@@ -242,9 +243,10 @@ fn certify(
     let mut ghost = vec![0.0; jump.ghosts.len()];
     stiffness.dual_halo.fetch(lambda, &mut ghost)?;
 
-    // [Σ r², Σ f², Σ (Bᵀλ)², energy] and the residuals of primal dofs, to be summed over copies
+    // [Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d, energy] with d = diag(K); residuals and d of primal dofs, to be summed over copies
     let mut sums = [0.0; 4];
     let mut primal = vec![0.0; stiffness.space.ghosts.len()];
+    let mut primal_d = primal.clone();
     let mut work = stiffness.work();
     for (j, sub) in problem.local.iter().enumerate() {
         let local = &stiffness.locals[j];
@@ -252,26 +254,28 @@ fn certify(
         sub.k.mul(&u[j], &mut r);
         let products = u[j].iter().zip(&r).zip(&sub.f);
         sums[3] += products.map(|((u, ku), f)| u * (0.5 * ku - f)).sum::<f64>();
-        sums[1] += sub.f.iter().map(|f| f * f).sum::<f64>();
+        let d: Vec<f64> = (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect();
+        sums[1] += sub.f.iter().zip(&d).map(|(f, d)| f * f / d).sum::<f64>();
         r.iter_mut().zip(&sub.f).for_each(|(r, f)| *r -= f);
         jump.columns[j].b_transpose(&ghost, &mut work[j].v);
         for (&i, v) in local.interface.iter().zip(&work[j].v) {
             r[i as usize] += v;
-            sums[2] += v * v;
+            sums[2] += v * v / d[i as usize];
         }
         for (p, &i) in local.interface[local.n_delta..].iter().enumerate() {
-            primal[stiffness.space.of_subdomain[j][p] as usize] += r[i as usize];
+            let at = stiffness.space.of_subdomain[j][p] as usize;
+            primal[at] += r[i as usize];
+            primal_d[at] += d[i as usize];
             r[i as usize] = 0.0;
         }
-        sums[0] += r.iter().map(|r| r * r).sum::<f64>();
+        sums[0] += r.iter().zip(&d).map(|(r, d)| r * r / d).sum::<f64>();
         for (y, &i) in work[j].y.iter_mut().zip(&local.interface) {
             *y = u[j][i as usize];
         }
     }
     sum_all(comm, &mut sums);
-    let primal = stiffness.primal.norm_of_sum(&primal)?;
-    let stationarity =
-        (sums[0] + primal * primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
+    let primal = stiffness.primal.weighted_square(&primal, &primal_d)?;
+    let stationarity = (sums[0] + primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
 
     let gaps = dual.multipliers()?;
     stiffness.jump_of(&work, &gaps)?;

@@ -36,7 +36,7 @@ pub enum ProjectorKind {
     Diagonal,
     /// Q = M⁻¹.
     Preconditioner,
-    /// Q = M⁻¹ where floating bodies and their neighbours differ in stiffness, else I.
+    /// Q = M⁻¹ where some bodies float and bodies differ in stiffness, else I.
     Auto,
 }
 

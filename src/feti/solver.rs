@@ -259,7 +259,7 @@ fn krylov(session: &Session, dual: &Rc<Dual>, settings: &Settings) -> Result<Ksp
     let a = dual::operator(session, dual)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_operators(&a, &a)?;
-    // PETSc itself adds `ksp_` (and `pc_`) to this prefix.
+    // PETSc itself adds `ksp_` to this prefix. The PC gets another one: `pc_type` chooses among our M⁻¹, not among PETSc's PCs.
     ksp.set_options_prefix(&settings.prefix)?;
     ksp.set_type("cg")?;
     ksp.set_norm_type(NormType::Unpreconditioned)?;
@@ -269,6 +269,26 @@ fn krylov(session: &Session, dual: &Rc<Dual>, settings: &Settings) -> Result<Ksp
     pc.set_shell("fetifeti", dual::preconditioner_shell(dual))?;
     pc.set_options_prefix(&format!("{}ksp_", settings.prefix))?;
     ksp.set_from_options()?;
-    ksp.setup()?;
+    let rtol = ksp.tolerances()?.0;
+    if !(0.0..1.0).contains(&rtol) {
+        return Err(Error::input(format!(
+            "option -{}ksp_rtol is {rtol}, expected a number from 0 to below 1",
+            settings.prefix
+        )));
+    }
+    ksp.setup().map_err(|e| unfit_norm(e, &settings.prefix))?;
     Ok(ksp)
+}
+
+/// Says what to do where a Krylov method cannot judge convergence by the norm that is set.
+fn unfit_norm(error: Error, prefix: &str) -> Error {
+    match error {
+        Error::Petsc { trace, .. } if trace.first().is_some_and(|t| t.contains("norm type")) => {
+            Error::input(format!(
+                "option -{prefix}ksp_type: {} (set -{prefix}ksp_norm_type to one that it supports, such as preconditioned)",
+                trace[0]
+            ))
+        }
+        other => other,
+    }
 }

@@ -158,7 +158,7 @@ impl Spectrum {
 /// Residuals of the Karush-Kuhn-Tucker conditions, relative to the load and the solution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Kkt {
-    /// ‖Ku + Bᵀλ − f‖ / ‖f‖.
+    /// ‖Ku + Bᵀλ − f‖ / (‖f‖ + ‖Bᵀλ‖) in the norm of diag(K)⁻¹.
     #[serde(with = "number")]
     pub stationarity: f64,
     /// Largest violation of Bu = c and Bu ≤ c.

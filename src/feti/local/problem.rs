@@ -14,7 +14,7 @@ use super::dense::{self, Dense, Scratch};
 use super::multifrontal::{PartialCholesky, SingularInterior, Symbolic};
 use crate::sparse::Csr;
 
-/// S_ΔΔ counts as singular below this relative pivot: the dof is then held as a primal one of its own. Holding a dof that
+/// S_ΔΔ counts as singular where a pivot is below this fraction of the dof's diagonal entry of K: the dof is then held as a primal one of its own. Holding a dof that
 /// did not need it is harmless (the primal problem frees it exactly), so the bound is generous.
 const WEAKLY_HELD: f64 = 1e-6;
 
@@ -46,21 +46,34 @@ impl LocalProblem {
         primal: &[u32],
         coordinates: Option<&[[f64; 3]]>,
     ) -> Result<LocalProblem, SingularInterior> {
-        let mut interface = [delta, primal].concat();
-        let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
-        let (factor, mut s) = PartialCholesky::new(k, symbolic)?;
+        let mut delta = delta.to_vec();
+        let (mut interface, factor, mut s) = loop {
+            let interface = [&delta[..], primal].concat();
+            let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
+            match PartialCholesky::new(k, symbolic) {
+                Ok((factor, s)) => break (interface, factor, s),
+                // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
+                Err(e) if delta.len() < k.n() && !delta.contains(&e.dof) => delta.push(e.dof),
+                Err(e) => return Err(e),
+            }
+        };
+        let stiff: Vec<f64> = interface
+            .iter()
+            .map(|&i| k.get(i as usize, i as usize))
+            .collect();
         let mut n_delta = delta.len();
         let mut scratch = Scratch::default();
-        let mut l = match try_cholesky(&s, n_delta, &mut scratch) {
+        let mut l = match try_cholesky(&s, &stiff, n_delta, &mut scratch) {
             Some(l) => l,
             None => {
                 // Hold what keeps S_ΔΔ from being definite; Γ's order changes, the factor's does not.
-                let fixing = weakest(&s, n_delta);
+                let fixing = weakest(&s, &stiff, n_delta);
                 let order = moved_to_the_end(interface.len(), n_delta, &fixing);
                 interface = order.iter().map(|&i| interface[i]).collect();
+                let stiff: Vec<f64> = order.iter().map(|&i| stiff[i]).collect();
                 s = permuted(&s, &order);
                 n_delta -= fixing.len();
-                try_cholesky(&s, n_delta, &mut scratch).ok_or(SingularInterior {
+                try_cholesky(&s, &stiff, n_delta, &mut scratch).ok_or(SingularInterior {
                     dof: interface[n_delta],
                 })?
             }
@@ -154,23 +167,21 @@ impl LocalProblem {
     }
 }
 
-/// L of S_ΔΔ = L Lᵀ, or nothing if a pivot is weak.
-fn try_cholesky(s: &Dense, n_delta: usize, scratch: &mut Scratch) -> Option<Dense> {
+/// L of S_ΔΔ = L Lᵀ, or nothing if a pivot is weak against the dof's diagonal entry of K (`stiff`).
+fn try_cholesky(s: &Dense, stiff: &[f64], n_delta: usize, scratch: &mut Scratch) -> Option<Dense> {
     let mut l = Dense::zeros(n_delta, n_delta);
     for j in 0..n_delta {
         l.col_mut(j)[j..].copy_from_slice(&s.col(j)[j..n_delta]);
     }
     dense::cholesky(l.view_mut(), scratch).ok()?;
-    let strong = |j| l.get(j, j).powi(2) > WEAKLY_HELD * s.get(j, j);
+    let strong = |j: usize| l.get(j, j).powi(2) > WEAKLY_HELD * stiff[j];
     (0..n_delta).all(strong).then_some(l)
 }
 
 /// Dual dofs to hold so that the rest of S_ΔΔ is definite: those left with a weak pivot by Cholesky factorisation with
-/// diagonal pivoting (increasing).
-fn weakest(s: &Dense, n: usize) -> Vec<usize> {
-    let scale: Vec<f64> = (0..n)
-        .map(|i| s.get(i, i).max(f64::MIN_POSITIVE).sqrt())
-        .collect();
+/// diagonal pivoting (increasing); pivots are measured by the dofs' diagonal entries of K (`stiff`).
+fn weakest(s: &Dense, stiff: &[f64], n: usize) -> Vec<usize> {
+    let scale: Vec<f64> = stiff[..n].iter().map(|k| k.sqrt()).collect();
     let mut a = Dense::zeros(n, n);
     for j in 0..n {
         for i in 0..n {
