@@ -193,7 +193,8 @@ impl Check<'_> {
             v.iter_mut().zip(g).for_each(|(v, g)| *v = g - *v);
             v
         });
-        let sizes = g.iter().map(|g| g.iter().map(|v| v.abs()).sum::<f64>());
+        let locals = self.problem.local.iter();
+        let sizes = locals.map(|sub| sub.f.iter().map(|f| f.abs()).sum::<f64>());
         let scale = sizes.fold(0.0, f64::max);
         self.work_on_kernels(loads.collect(), scale)
     }
