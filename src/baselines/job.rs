@@ -180,16 +180,16 @@ struct Attempt {
 }
 
 /// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers measure another
-/// residual; methods that iterate on u meet it at once, or drift from it by rounding.
+/// residual; methods that iterate on u meet it at once, or drift from it by rounding. What is reported is the last solve alone.
 fn solve_to(
     target: f64,
     first: f64,
     mut solve: impl FnMut(f64) -> Result<Attempt>,
 ) -> Result<(Attempt, f64, Option<String>)> {
-    const ATTEMPTS: usize = 12;
+    const SMALLEST: f64 = 1e-16;
     let mut rtol = first;
-    let mut best = f64::INFINITY;
-    for attempt in 1.. {
+    let mut before: Option<(Option<usize>, f64)> = None;
+    loop {
         let now = solve(rtol)?;
         if !now.converged {
             let message = format!("did not converge: {}", now.reason);
@@ -198,15 +198,17 @@ fn solve_to(
         if now.residual <= target {
             return Ok((now, rtol, None));
         }
-        let stuck = now.residual.is_nan() || now.residual > 0.9 * best;
-        if attempt == ATTEMPTS || stuck {
+        // More iterations that gain nothing, or no iterations at all to spend.
+        let stuck = before.is_some_and(|(iterations, residual)| {
+            now.iterations.is_none() || now.iterations > iterations && now.residual > 0.9 * residual
+        });
+        if stuck || now.residual.is_nan() || rtol < SMALLEST {
             let message = format!("the residual stays at {:.1e}", now.residual);
             return Ok((now, rtol, Some(message)));
         }
-        best = now.residual;
+        before = Some((now.iterations, now.residual));
         rtol *= (0.5 * target / now.residual).clamp(1e-4, 0.5);
     }
-    unreachable!("the loop returns after a number of attempts")
 }
 
 /// A row of the table on the unassembled or the assembled matrix.

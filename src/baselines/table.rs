@@ -78,6 +78,8 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_type", "bddc"),
             // Scaling by the stiffness follows jumps of the coefficient; PETSc's default is the multiplicity.
             ("pc_is_use_stiffness_scaling", "true"),
+            // Without it a part that floats and has no vertex of its own gets a singular local problem.
+            ("pc_bddc_use_change_of_basis", "true"),
             ("pc_bddc_dirichlet_pc_type", "cholesky"),
             ("pc_bddc_dirichlet_pc_factor_mat_solver_type", "cholmod"),
             ("pc_bddc_neumann_pc_type", "cholesky"),
@@ -96,6 +98,7 @@ pub const BASELINES: [Baseline; 5] = [
             ("fetidp_ksp_type", "cg"),
             ("fetidp_ksp_norm_type", "unpreconditioned"),
             ("fetidp_bddc_pc_is_use_stiffness_scaling", "true"),
+            ("fetidp_bddc_pc_bddc_use_change_of_basis", "true"),
             ("fetidp_bddc_pc_bddc_dirichlet_pc_type", "cholesky"),
             (
                 "fetidp_bddc_pc_bddc_dirichlet_pc_factor_mat_solver_type",
