@@ -9,12 +9,13 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use super::attempt::{solve_to, Attempt};
 use super::system::System;
 use super::table::{Baseline, Format};
 use crate::cli::problem;
 use crate::feti::exchange::{max_all, sum_all};
 use crate::feti::{FetiFeti, Settings};
-use crate::petsc::{max_memory, Comm, Ksp, Options, Session, Vec as PetscVec};
+use crate::petsc::{max_memory, Comm, Ksp, Options, Session};
 use crate::report::json;
 use crate::scene::{Numbering, Scene};
 use crate::{Error, Result};
@@ -61,13 +62,13 @@ pub enum Task {
 pub struct Outcome {
     /// κ by CG.
     pub kappa: Option<f64>,
-    /// Iterations of the last solve; `None` for a direct solver.
+    /// Iterations of the solve; `None` for a direct solver.
     pub iterations: Option<usize>,
     /// Seconds for mesh and matrices.
     pub assemble: f64,
     /// Seconds of set-up.
     pub setup: f64,
-    /// Seconds of the last solve.
+    /// Seconds of the solve.
     pub solve: f64,
     /// Largest resident memory, summed over the ranks, in bytes.
     pub memory: f64,
@@ -166,49 +167,6 @@ fn shared_memory() -> f64 {
     let line = status.lines().find_map(|l| l.strip_prefix("RssShmem:"));
     let kilobytes = line.and_then(|l| l.trim().trim_end_matches("kB").trim().parse().ok());
     1024.0 * kilobytes.unwrap_or(0.0)
-}
-
-/// One solve to a tolerance of the method's own residual.
-struct Attempt {
-    u: PetscVec,
-    residual: f64,
-    kappa: Option<f64>,
-    iterations: Option<usize>,
-    seconds: f64,
-    converged: bool,
-    reason: String,
-}
-
-/// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers measure another
-/// residual; methods that iterate on u meet it at once, or drift from it by rounding. What is reported is the last solve alone.
-fn solve_to(
-    target: f64,
-    first: f64,
-    mut solve: impl FnMut(f64) -> Result<Attempt>,
-) -> Result<(Attempt, f64, Option<String>)> {
-    const SMALLEST: f64 = 1e-16;
-    let mut rtol = first;
-    let mut before: Option<(Option<usize>, f64)> = None;
-    loop {
-        let now = solve(rtol)?;
-        if !now.converged {
-            let message = format!("did not converge: {}", now.reason);
-            return Ok((now, rtol, Some(message)));
-        }
-        if now.residual <= target {
-            return Ok((now, rtol, None));
-        }
-        // More iterations that gain nothing, or no iterations at all to spend.
-        let stuck = before.is_some_and(|(iterations, residual)| {
-            now.iterations.is_none() || now.iterations > iterations && now.residual > 0.9 * residual
-        });
-        if stuck || now.residual.is_nan() || rtol < SMALLEST {
-            let message = format!("the residual stays at {:.1e}", now.residual);
-            return Ok((now, rtol, Some(message)));
-        }
-        before = Some((now.iterations, now.residual));
-        rtol *= (0.5 * target / now.residual).clamp(1e-4, 0.5);
-    }
 }
 
 /// A row of the table on the unassembled or the assembled matrix.

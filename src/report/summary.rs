@@ -229,8 +229,11 @@ pub fn compare(report: &CompareReport) -> String {
         let outcome = match &r.message {
             None => r.converged_reason.clone(),
             Some(message) => {
+                if notes.is_empty() {
+                    notes.push('\n');
+                }
                 notes += &format!("{} on {}: {message}\n", r.method, ranks(r.ranks));
-                "failed, see below".to_string()
+                "see below".to_string()
             }
         };
         table.row([
