@@ -1,4 +1,87 @@
-//! fetifeti (theory page to be completed)
+//! The FETI-FETI method: FETI-DP inside every body, one-level FETI between the bodies, on PETSc.
+//!
+//! # The problem
+//!
+//! Bodies Ω_i, i = 1..N, are each cut into subdomains Ω_ij. Every body carries −∇·(ρ∇u) = f with Dirichlet conditions on
+//! some of its sides, or on none: then it *floats*. On the faces where bodies meet, their displacements are tied, B_gl u = c.
+//! That is the linear problem inside every step of a contact algorithm; \[Lee\] (3.1)–(3.3) is the model.
+//!
+//! After condensation to the interface Γ the unknowns are torn twice, inside the bodies and between them, and tied again by
+//! multipliers λ. What is solved is \[Lee\] (2.11), (3.8)
+//!
+//! ```text
+//!     Pᵀ F λ = Pᵀ d,   Gᵀ λ = e        by CG in λ₀ + ker Gᵀ, preconditioned by P M⁻¹ Pᵀ
+//!     u = S̃⁺(g − Bᵀ λ) + R α           and back substitution into the interiors
+//! ```
+//!
+//! # Notation
+//!
+//! | symbol | shape | meaning | where |
+//! |---|---|---|---|
+//! | K, f | n × n, n | stiffness and load of one subdomain, Dirichlet dofs eliminated | [`substructures`] |
+//! | Γ = Δ ∪ Π | | interface dofs of a subdomain: dual, then primal ones | [`feti::local::problem`] |
+//! | S | n_Γ × n_Γ | Schur complement K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ, with T = S_ΔΔ⁻¹ and the coarse basis Ψ | [`feti::local::problem`] |
+//! | W̃ | | functions continuous at the primal dofs of a body, torn elsewhere, \[Lee\] (3.5)–(3.7) | [`feti::primal`] |
+//! | S̃⁺ | dim W̃ | Σ T + Ψ S_Π⁺ Ψᵀ, block diagonal by body | [`feti::stiffness`], [`feti::coarse`] |
+//! | B = \[B_loc; B_gl\] | m × dim W̃ | jumps inside the bodies (fully redundant) and between them | [`feti::jump`] |
+//! | Z | m × m | 0/1 diagonal: rows that hold; 1 on B_loc | [`feti::jump`] |
+//! | B_D | m × dim W̃ | (B D⁻¹ Bᵀ)⁺ B D⁻¹, jumps scaled with D = ρ^γ | [`feti::scaling`] |
+//! | R | dim W̃ × r | kernels of the floating bodies, found from the matrices | [`feti::kernel`] |
+//! | F | m × m | Z B S̃⁺ Bᵀ Z, \[Lee\] (3.8) | [`feti::stiffness`] |
+//! | G, e | m × r, r | Z B R and Rᵀ g | [`feti::natural`] |
+//! | P | m × m | I − Q G (Gᵀ Q G)⁻¹ Gᵀ, \[Lee\] (2.11) | [`feti::natural`] |
+//! | M_D⁻¹ | m × m | Z B_D S̃ B_Dᵀ Z, \[Lee\] section 3.1 | [`feti::preconditioner`] |
+//! | Z_c, M_C⁻¹ | dim W̃ × n_c, m × m | coarse functions that vanish where bodies may touch; M_D⁻¹ with their span removed | [`feti::lifting`] |
+//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | [`feti::spectrum`] |
+//!
+//! # The way data flows
+//!
+//! ```text
+//! scene.toml → scene → mesh, fem → Substructures → FetiFeti → Solution → report        (a program may enter at Substructures)
+//! ```
+//!
+//! Each stage imports only from stages to its left; [`cli`] puts them in a row and [`baselines`] sends the same scene through
+//! PETSc's own solvers. [`petsc`] is the only module with unsafe code.
+//!
+//! # Only what the problem needs
+//!
+//! | problem | what is not built | what it then is |
+//! |---|---|---|
+//! | one subdomain per body | B_loc, Z_c; the primal problem shrinks to the fixing dofs of floating bodies | one-level FETI, \[Lee\] section 2.2 |
+//! | one body | B_gl, G, Z_c | FETI-DP, \[Lee\] section 2.3 |
+//! | no floating body | G, P | |
+//! | `-fetifeti_pc_type dirichlet` | Z_c | the method whose κ ≤ C (H_b/H_s)(1 + log H_s/h)² is Theorem 3.10 of \[Lee\] |
+//!
+//! These are sizes that come out as zero, not branches of their own: there is one code path. `fetifeti plan` prints what a
+//! scene leads to.
+//!
+//! # Example
+//!
+//! ```no_run
+//! use fetifeti::scene::{GridSpec, Scene};
+//! use fetifeti::{FetiFeti, Result, Session, Settings};
+//!
+//! fn solve(session: &Session) -> Result<()> {
+//!     // The unit square, held all round, f = 1: 2 × 2 bodies of 4 × 4 subdomains and 32 × 32 elements.
+//!     let scene = Scene::grid("square", &GridSpec::unit_square([2, 2], [4, 4], [32, 32]))?;
+//!     let mine = fetifeti::share(session, scene.n_subdomains());
+//!     let problem = scene.substructures(&|s| mine.contains(&s))?;
+//!     let solver = FetiFeti::new(session, problem, Settings::default())?;
+//!     let solution = solver.solve()?;
+//!     let kappa = solver.spectrum()?.map(|s| s.kappa());
+//!     println!("{} iterations, kappa {kappa:?}", solution.iterations);
+//!     Ok(())
+//! }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     fetifeti::run(solve)
+//! }
+//! ```
+//!
+//! # References
+//!
+//! \[Lee\] J. Lee, *Convergence analysis of a new domain decomposition method for a linearized contact problem*, 2010.
+//! `docs/theory.md` in the repository has the others and the reasons behind the choices, `docs/options.md` every option.
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
 
@@ -17,3 +100,26 @@ pub mod substructures;
 
 pub use error::{Error, Result};
 pub use feti::{FetiFeti, PcType, ProjectorKind, Scaling, Settings, Solution, Spectrum};
+pub use petsc::Session;
+pub use scene::Scene;
+pub use sparse::Csr;
+pub use substructures::{InterfaceRow, RowKind, Subdomain, Substructures};
+
+/// Runs `work` as the whole program: starts PETSc with the process's arguments (so that PETSc options work), ends it
+/// afterwards, prints an error as one sentence and turns it into the exit code of [`Error::exit_code`].
+pub fn run(work: impl FnOnce(&Session) -> Result<()>) -> std::process::ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let code = match Session::new(&args, "") {
+        Ok(session) => session.run(work),
+        Err(error) => {
+            eprintln!("Error: {error}");
+            error.exit_code()
+        }
+    };
+    std::process::ExitCode::from(code as u8)
+}
+
+/// The subdomains of this rank where `n` are dealt out in equal runs; any other distribution is as good.
+pub fn share(session: &Session, n: usize) -> std::ops::Range<usize> {
+    mesh::contiguous_share(n, session.size(), session.rank())
+}

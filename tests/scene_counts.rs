@@ -293,8 +293,11 @@ fn lees_experiment_agrees_with_a_second_implementation() {
     }
 }
 
+/// Terms as (subdomain, local dof, coefficient), and whether the row holds.
+type NamedRow = (Vec<(usize, usize, i32)>, bool);
+
 /// The rows with every dof said as (lowest subdomain that has it, local dof there), sorted.
-fn named_rows(problem: &Substructures) -> Vec<(Vec<(usize, usize, i32)>, bool)> {
+fn named_rows(problem: &Substructures) -> Vec<NamedRow> {
     let mut name: HashMap<u64, (usize, usize)> = HashMap::new();
     for s in &problem.local {
         for (k, &dof) in s.dofs.iter().enumerate() {

@@ -9,6 +9,7 @@ mod table1;
 use args::{Command, Invocation};
 
 use crate::petsc::{Comm, Ksp, Session};
+use crate::report::output;
 use crate::{Error, Result, Settings};
 
 /// Runs the program with the process's arguments and returns its exit code.
@@ -31,18 +32,8 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
     let wants_help = petsc.iter().any(|a| a == "-help" || a == "-h");
     match command {
         Command::Help if wants_help => list_options(session),
-        Command::Help => {
-            if session.rank() == 0 {
-                print!("{}", args::USAGE);
-            }
-            Ok(())
-        }
-        Command::Version => {
-            if session.rank() == 0 {
-                println!("fetifeti {}", env!("CARGO_PKG_VERSION"));
-            }
-            Ok(())
-        }
+        Command::Help => say(session, args::USAGE),
+        Command::Version => say(session, concat!("fetifeti ", env!("CARGO_PKG_VERSION"), "\n")),
         Command::Solve(args) => solve::run(session, &args),
         Command::Plan { scene } => plan::run(session, &scene),
         Command::Table1(args) => table1::run(session, &args),
@@ -51,12 +42,22 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
     }
 }
 
+/// Prints `text` on rank 0. Collective.
+fn say(session: &Session, text: &str) -> Result<()> {
+    session.agree(match session.rank() {
+        0 => output::print(text),
+        _ => Ok(()),
+    })
+}
+
 /// `fetifeti -help`: our options and those of the solvers behind them, without a scene.
 fn list_options(session: &Session) -> Result<()> {
     let settings = Settings::default().with_options(session)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_options_prefix(&settings.prefix)?;
     ksp.set_type("cg")?;
+    ksp.pc()?
+        .set_options_prefix(&format!("{}ksp_", settings.prefix))?;
     ksp.set_from_options()
 }
 

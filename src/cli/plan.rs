@@ -21,10 +21,7 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     let team = Team::new(if session.size() == 1 { threads } else { 1 })?;
     let sizes = session.agree(Sizes::new(session.comm(), &substructures, &team))?;
-    if session.rank() == 0 {
-        print!("{}", text(&scene, &sizes));
-    }
-    Ok(())
+    super::say(session, &text(&scene, &sizes))
 }
 
 fn text(scene: &Scene, sizes: &Sizes) -> String {
@@ -153,6 +150,13 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
         } else {
             "dirichlet (M_D): there is nothing to lift".into()
         },
+    );
+    line(
+        "factorisations",
+        format!(
+            "{} for {n_subdomains} subdomains: equal ones share theirs",
+            sizes.kinds
+        ),
     );
     let [factors, dense] = [sizes.factor_bytes, sizes.dense_bytes].map(|b| b / 1e6);
     line(

@@ -77,7 +77,7 @@ pub(super) fn prepare(session: &Session, out: Option<&Path>, file: Option<&Path>
 fn write_report(args: &Solve, report: &SolveReport) -> Result<()> {
     let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
     if !args.quiet && !to_stdout {
-        print!("{}", summary::solve(report));
+        output::print(&summary::solve(report))?;
     }
     if let Some(file) = &args.json {
         json::write(file, report)?;
@@ -85,10 +85,10 @@ fn write_report(args: &Solve, report: &SolveReport) -> Result<()> {
     if let Some(dir) = &args.out {
         json::write(&dir.join("report.json"), report)?;
         if !args.quiet && !to_stdout {
-            println!(
-                "written: solution.vtu, solution.png, report.json in {}",
+            output::print(&format!(
+                "written: solution.vtu, solution.png, report.json in {}\n",
                 dir.display()
-            );
+            ))?;
         }
     }
     Ok(())

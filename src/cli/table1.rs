@@ -112,7 +112,7 @@ fn progress(session: &Session, args: &Table1, done: usize, all: usize) {
 fn write(args: &Table1, rows: &[Table1Row]) -> Result<()> {
     let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
     if !args.quiet && !to_stdout {
-        print!("{}", summary::table1(rows));
+        output::print(&summary::table1(rows).to_string())?;
     }
     if let Some(file) = &args.json {
         json::write(file, &rows)?;
@@ -122,10 +122,10 @@ fn write(args: &Table1, rows: &[Table1Row]) -> Result<()> {
         summary::table1_csv(rows).write_csv(&dir.join("table1.csv"))?;
         figure3::figure3(rows, &dir.join("figure3"))?;
         if !args.quiet && !to_stdout {
-            println!(
-                "written: table1.json, table1.csv, figure3.png, figure3.svg in {}",
+            output::print(&format!(
+                "written: table1.json, table1.csv, figure3.png, figure3.svg in {}\n",
                 dir.display()
-            );
+            ))?;
         }
     }
     Ok(())

@@ -3,7 +3,9 @@
 pub mod check;
 pub mod coarse;
 pub mod dual;
+pub mod equal;
 pub mod exchange;
+pub mod gtg;
 pub mod halo;
 pub mod jump;
 pub mod kernel;
@@ -13,6 +15,7 @@ pub mod natural;
 pub mod preconditioner;
 pub mod primal;
 pub mod recover;
+pub mod rows;
 pub mod scaling;
 pub mod settings;
 pub mod sharing;

@@ -7,80 +7,20 @@
 //! Rows of G are sparse (the bodies at that node) and live with the row's owner; Gᵀ Q G is small and solved by every rank
 //! (prefix `fetifeti_gtg_`).
 
-use std::cell::RefCell;
-
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::exchange::{exchange, gather_all, sum_all};
+use super::gtg::{Gtg, Side};
 use super::local::dense::Dense;
-use super::local::semidefinite::Semidefinite;
 use super::preconditioner::Preconditioner;
 use super::primal::PrimalEntry;
+use super::rows::Rows;
 use super::settings::{PcType, ProjectorKind};
 use super::stiffness::Stiffness;
-use crate::petsc::{Comm, Ksp, Mat, Session, Vec as PetscVec};
+use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
-
-/// Rows of a matrix with r columns, on the rank that owns them.
-#[derive(Debug, Clone, Default)]
-struct Rows {
-    start: Vec<usize>,
-    col: Vec<u32>,
-    val: Vec<f64>,
-}
-
-impl Rows {
-    fn from_triplets(n: usize, mut entries: Vec<(u32, u32, f64)>) -> Rows {
-        entries.sort_by_key(|e| (e.0, e.1));
-        let mut rows = Rows {
-            start: vec![0; n + 1],
-            ..Rows::default()
-        };
-        for group in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let sum: f64 = group.iter().map(|e| e.2).sum();
-            if sum != 0.0 {
-                rows.start[group[0].0 as usize + 1] += 1;
-                rows.col.push(group[0].1);
-                rows.val.push(sum);
-            }
-        }
-        for i in 0..n {
-            rows.start[i + 1] += rows.start[i];
-        }
-        rows
-    }
-
-    fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let range = self.start[i]..self.start[i + 1];
-        range.map(|k| (self.col[k] as usize, self.val[k]))
-    }
-
-    fn n(&self) -> usize {
-        self.start.len() - 1
-    }
-
-    /// out ← out + Aᵀ λ, this rank's share.
-    fn add_transpose(&self, lambda: &[f64], out: &mut [f64]) {
-        for (i, &l) in lambda.iter().enumerate() {
-            self.row(i).for_each(|(c, v)| out[c] += v * l);
-        }
-    }
-
-    /// λ ← λ + α A x.
-    fn add(&self, alpha: f64, x: &[f64], lambda: &mut [f64]) {
-        for (i, l) in lambda.iter_mut().enumerate() {
-            *l += alpha * self.row(i).map(|(c, v)| v * x[c]).sum::<f64>();
-        }
-    }
-}
-
-#[derive(Clone, Copy)]
-enum Side {
-    Plain,
-    Transposed,
-}
 
 /// G, Q G and the factored Gᵀ Q G; nothing where no body floats.
 pub struct NaturalCoarse {
@@ -95,20 +35,7 @@ pub struct NaturalCoarse {
     g: Rows,
     /// Q G where it differs from G.
     qg: Option<Rows>,
-    gtqg: Option<Solver>,
-}
-
-/// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹ with D² its diagonal: with Q = M⁻¹ the rows of stiff and soft bodies differ by the square
-/// of the jump in ρ.
-struct Solver {
-    ksp: Ksp,
-    /// 1/D.
-    scale: Vec<f64>,
-    rhs: PetscVec,
-    solution: PetscVec,
-    /// Combinations of kernel vectors that no row sees: rigid motions of bodies that nothing holds.
-    unheld: Vec<Vec<f64>>,
-    scratch: RefCell<Vec<f64>>,
+    gtg: Option<Gtg>,
 }
 
 impl NaturalCoarse {
@@ -143,7 +70,7 @@ impl NaturalCoarse {
             first_column,
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
-            gtqg: None,
+            gtg: None,
         };
         if r == 0 {
             return Ok(natural);
@@ -157,7 +84,7 @@ impl NaturalCoarse {
             }
             _ => None,
         };
-        natural.gtqg = Some(natural.factor(session, prefix)?);
+        natural.gtg = Some(Gtg::new(session, r, &natural.g, natural.qg(), prefix)?);
         Ok(natural)
     }
 
@@ -216,11 +143,7 @@ impl NaturalCoarse {
         stiffness.dual_halo.sum(&ghost, &q)?;
         let q = q.array()?;
         let mut qg = self.g.clone();
-        for i in 0..qg.n() {
-            for k in qg.start[i]..qg.start[i + 1] {
-                qg.val[k] *= q[i];
-            }
-        }
+        qg.scale_rows(&q);
         Ok(qg)
     }
 
@@ -250,112 +173,25 @@ impl NaturalCoarse {
         Ok(Rows::from_triplets(n, entries))
     }
 
-    fn factor(&self, session: &Session, prefix: &str) -> Result<Solver> {
-        let r = self.r;
-        let qg = self.qg.as_ref().unwrap_or(&self.g);
-        let mut a = Dense::zeros(r, r);
-        for i in 0..self.g.n() {
-            for (p, gp) in self.g.row(i) {
-                for (q, gq) in qg.row(i) {
-                    a.data[p + q * r] += gp * gq;
-                }
-            }
-        }
-        sum_all(session.comm(), &mut a.data);
-        let diagonal = |i: usize| match a.get(i, i) {
-            d if d > 0.0 => 1.0 / d.sqrt(),
-            _ => 1.0,
-        };
-        let scale: Vec<f64> = (0..r).map(diagonal).collect();
-        for j in 0..r {
-            for i in 0..r {
-                a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
-            }
-        }
-        let factor = Semidefinite::new(&a);
-        let unheld: Vec<Vec<f64>> = null_vectors(&a, &factor)
-            .into_iter()
-            .map(|v| v.iter().zip(&scale).map(|(v, s)| v * s).collect())
-            .collect();
-        // Holding one dependent column of each unheld motion makes the matrix regular without changing what it does to
-        // right-hand sides in its range.
-        for i in factor.dropped() {
-            a.set(i, i, a.get(i, i) + 1.0);
-        }
-        let triplets: Vec<(i32, i32, f64)> = (0..r)
-            .flat_map(|i| (0..r).map(move |j| (i, j)))
-            .map(|(i, j)| (i as i32, j as i32, a.get(i, j)))
-            .filter(|&(i, j, v)| v != 0.0 || i == j)
-            .collect();
-        let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
-        let ksp = Ksp::new(session, Comm::Own)?;
-        ksp.set_operators(&matrix, &matrix)?;
-        ksp.set_options_prefix(prefix)?;
-        ksp.set_type("preonly")?;
-        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the same as
-        // long as it is this very matrix that is inverted: hence LU, and the transpose for Pᵀ.
-        ksp.pc()?.set_type("lu")?;
-        ksp.set_from_options()?;
-        ksp.setup()?;
-        Ok(Solver {
-            ksp,
-            scale,
-            rhs: PetscVec::seq(session, r)?,
-            solution: PetscVec::seq(session, r)?,
-            unheld,
-            scratch: RefCell::new(vec![0.0; r]),
-        })
-    }
-
-    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank.
-    fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
-        let Some(s) = &self.gtqg else { return Ok(()) };
-        x.iter_mut().zip(&s.scale).for_each(|(x, s)| *x *= s);
-        s.rhs.array_mut()?.copy_from_slice(x);
-        match side {
-            Side::Plain => s.ksp.solve(&s.rhs, &s.solution)?,
-            Side::Transposed => s.ksp.solve_transpose(&s.rhs, &s.solution)?,
-        }
-        let reason = s.ksp.converged_reason()?;
-        if reason.code < 0 {
-            return Err(Error::NotConverged(format!(
-                "the natural coarse problem was not solved ({}): change the -fetifeti_gtg_ options",
-                reason.name
-            )));
-        }
-        x.copy_from_slice(&s.solution.array()?);
-        x.iter_mut().zip(&s.scale).for_each(|(x, s)| *x *= s);
-        Ok(())
+    /// Q G, which is G itself for Q = I.
+    fn qg(&self) -> &Rows {
+        self.qg.as_ref().unwrap_or(&self.g)
     }
 
     /// λ ← P λ. Collective.
     pub fn project(&self, comm: &SimpleCommunicator, lambda: &PetscVec) -> Result<()> {
-        let qg = self.qg.as_ref().unwrap_or(&self.g);
-        self.remove(comm, lambda, &self.g, qg, Side::Plain) /*  λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ */
+        match &self.gtg {
+            Some(gtg) => gtg.remove(comm, lambda, &self.g, self.qg(), Side::Plain), /*  λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ */
+            None => Ok(()),
+        }
     }
 
     /// r ← Pᵀ r. Collective.
     pub fn project_transpose(&self, comm: &SimpleCommunicator, residual: &PetscVec) -> Result<()> {
-        let qg = self.qg.as_ref().unwrap_or(&self.g);
-        self.remove(comm, residual, qg, &self.g, Side::Transposed) /* r − G (Gᵀ Q G)⁻ᵀ (Q G)ᵀ r */
-    }
-
-    fn remove(
-        &self,
-        comm: &SimpleCommunicator,
-        x: &PetscVec,
-        from: &Rows,
-        along: &Rows,
-        side: Side,
-    ) -> Result<()> {
-        let Some(s) = &self.gtqg else { return Ok(()) };
-        let mut c = s.scratch.borrow_mut();
-        c.fill(0.0);
-        from.add_transpose(&x.array()?, &mut c);
-        sum_all(comm, &mut c);
-        self.solve(&mut c, side)?;
-        along.add(-1.0, &c, &mut x.array_mut()?);
-        Ok(())
+        match &self.gtg {
+            Some(gtg) => gtg.remove(comm, residual, self.qg(), &self.g, Side::Transposed), /* r − G (Gᵀ Q G)⁻ᵀ (Q G)ᵀ r */
+            None => Ok(()),
+        }
     }
 
     /// λ₀ = Q G (Gᵀ Q G)⁻¹ e, and an error if e is not in range: a load on a body that nothing holds. Collective.
@@ -368,7 +204,7 @@ impl NaturalCoarse {
         lambda: &PetscVec,
     ) -> Result<()> {
         lambda.set(0.0)?;
-        let Some(solver) = &self.gtqg else {
+        let Some(solver) = &self.gtg else {
             return Ok(());
         };
         // e = Rᵀ g, and the size of the terms in it
@@ -390,8 +226,8 @@ impl NaturalCoarse {
                 return Err(not_held(problem, &stiffness.space.kernel_start, motion));
             }
         }
-        self.solve(e, Side::Plain)?;
-        let qg = self.qg.as_ref().unwrap_or(&self.g);
+        solver.solve(e, Side::Plain)?;
+        let qg = self.qg();
         qg.add(1.0, e, &mut lambda.array_mut()?);
         Ok(())
     }
@@ -399,10 +235,12 @@ impl NaturalCoarse {
     /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ). Collective.
     pub fn alpha(&self, comm: &SimpleCommunicator, jump: &PetscVec) -> Result<Vec<f64>> {
         let mut c = vec![0.0; self.r];
-        let qg = self.qg.as_ref().unwrap_or(&self.g);
+        let qg = self.qg();
         qg.add_transpose(&jump.array()?, &mut c);
         sum_all(comm, &mut c);
-        self.solve(&mut c, Side::Transposed)?;
+        if let Some(gtg) = &self.gtg {
+            gtg.solve(&mut c, Side::Transposed)?;
+        }
         c.iter_mut().for_each(|v| *v = -*v);
         Ok(c)
     }
@@ -415,24 +253,13 @@ impl NaturalCoarse {
 
     /// Number of rigid motions that no row sees.
     pub fn n_unheld(&self) -> usize {
-        self.gtqg.as_ref().map_or(0, |s| s.unheld.len())
+        self.gtg.as_ref().map_or(0, |s| s.unheld.len())
     }
 
     /// The solver of Gᵀ Q G, where a body floats.
     pub fn ksp(&self) -> Option<&Ksp> {
-        self.gtqg.as_ref().map(|s| &s.ksp)
+        self.gtg.as_ref().map(|s| &s.ksp)
     }
-}
-
-/// Vectors v with A v = 0, one per dropped column.
-fn null_vectors(a: &Dense, factor: &Semidefinite) -> Vec<Vec<f64>> {
-    let column = |&k: &usize| {
-        let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
-        factor.solve(&mut v);
-        v[k] = 1.0;
-        v
-    };
-    factor.dropped().iter().map(column).collect()
 }
 
 fn not_held(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> Error {

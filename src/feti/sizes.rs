@@ -3,6 +3,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::equal;
 use super::exchange::{exchange_words, max_all, sum_all};
 use super::jump::Jump;
 use super::kernel;
@@ -32,6 +33,8 @@ pub struct Sizes {
     pub largest_interface: usize,
     /// Dimension of every body's kernel.
     pub defect: Vec<usize>,
+    /// Different subdomains, each counted once per rank.
+    pub kinds: usize,
     /// Bytes of the sparse factors.
     pub factor_bytes: f64,
     /// Bytes of the dense operators S, T, Ψ.
@@ -44,7 +47,10 @@ impl Sizes {
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing = Sharing::new(comm, problem, &weights)?;
         let jump = Jump::new(comm, problem, &sharing);
-        let locals = team.map(problem.local.len(), |j| {
+        let first = equal::representatives(problem, &jump);
+        let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
+        let entries = team.map(kinds.len(), |k| {
+            let j = kinds[k];
             let sub = &problem.local[j];
             let interface = [&jump.delta[j][..], &jump.primal[j]].concat();
             let symbolic = Symbolic::new(&sub.k, &interface, sub.coordinates.as_deref());
@@ -52,13 +58,17 @@ impl Sizes {
         });
 
         let mut primal = vec![0.0; problem.n_bodies];
-        let mut sums = [0.0; 4];
+        let mut sums = [0.0; 5];
+        sums[4] = kinds.len() as f64;
+        for (&j, &entries) in kinds.iter().zip(&entries) {
+            let (n_delta, n_pi) = (jump.delta[j].len() as f64, jump.primal[j].len() as f64);
+            sums[0] += 8.0 * entries as f64;
+            sums[1] += 8.0 * ((n_delta + n_pi).powi(2) + n_delta * (n_delta + n_pi));
+        }
         let mut largest = [0.0f64];
         for (j, sub) in problem.local.iter().enumerate() {
-            let (n_delta, n_pi) = (jump.delta[j].len() as f64, jump.primal[j].len() as f64);
-            sums[0] += 8.0 * locals[j] as f64;
-            sums[1] += 8.0 * ((n_delta + n_pi).powi(2) + n_delta * (n_delta + n_pi));
-            largest[0] = largest[0].max(n_delta + n_pi);
+            let n_gamma = jump.delta[j].len() + jump.primal[j].len();
+            largest[0] = largest[0].max(n_gamma as f64);
             for &i in &jump.primal[j] {
                 // Every primal dof is counted by its lowest subdomain.
                 let copies = sharing.shared(sub.dofs[i as usize]);
@@ -83,6 +93,7 @@ impl Sizes {
             largest_primal: primal.iter().fold(0.0f64, |a, &b| a.max(b)) as usize,
             largest_interface: largest[0] as usize,
             defect: defects(comm, problem),
+            kinds: sums[4] as usize,
             factor_bytes: sums[0],
             dense_bytes: sums[1],
         })

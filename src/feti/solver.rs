@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use super::coarse::PrimalProblem;
 use super::dual::{self, Dual};
+use super::equal;
 use super::halo::Halo;
 use super::jump::Jump;
 use super::lifting::Lifting;
@@ -46,6 +47,8 @@ pub struct Facts {
     pub kernel_dimension: usize,
     /// Primal dofs of all bodies.
     pub primal: usize,
+    /// Different subdomains on this rank: each is factored once.
+    pub kinds: usize,
     /// Bytes of the subdomains' sparse factors on this rank.
     pub factor_bytes: usize,
     /// Bytes of the subdomains' dense operators on this rank.
@@ -191,21 +194,25 @@ fn threads(session: &Session, settings: &Settings) -> usize {
         .unwrap_or(if session.size() == 1 { cores } else { 1 })
 }
 
+/// Factors one of each kind of subdomain.
 fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<LocalProblem>>> {
-    let results = team.map(problem.local.len(), |j| {
-        let sub = &problem.local[j];
-        let x = sub.coordinates.as_deref();
-        LocalProblem::new(&sub.k, &jump.delta[j], &jump.primal[j], x)
+    let first = equal::representatives(problem, jump);
+    let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
+    let factored = team.map(kinds.len(), |k| {
+        let sub = &problem.local[kinds[k]];
+        let (delta, primal) = (&jump.delta[kinds[k]], &jump.primal[kinds[k]]);
+        LocalProblem::new(&sub.k, delta, primal, sub.coordinates.as_deref())
+            .map(Arc::new)
+            .map_err(|_| {
+                Error::input(format!(
+                    "body \"{}\" is held by nothing in subdomain {} (no Dirichlet side and no tie to another body), expected a Dirichlet side or a tie",
+                    problem.body_names[sub.body], sub.index
+                ))
+            })
     });
-    let together = results.into_iter().zip(&problem.local).map(|(result, sub)| {
-        result.map(Arc::new).map_err(|_| {
-            Error::input(format!(
-                "body \"{}\" is held by nothing in subdomain {} (no Dirichlet side and no tie to another body), expected a Dirichlet side or a tie",
-                problem.body_names[sub.body], sub.index
-            ))
-        })
-    });
-    together.collect()
+    let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
+    let place = |j: &usize| kinds.binary_search(j).expect("a representative is a kind");
+    Ok(first.iter().map(|j| factored[place(j)].clone()).collect())
 }
 
 /// M_C where there is something to lift: a body cut into subdomains that other bodies pull at; else M_D.
@@ -228,7 +235,10 @@ fn facts(
     let contact = jump.active[jump.n_owned_local..].iter();
     let mut active = [contact.filter(|a| **a).count() as f64];
     super::exchange::sum_all(comm, &mut active);
-    let bytes = stiffness.locals.iter().map(|l| l.bytes());
+    let mut kinds: Vec<&Arc<LocalProblem>> = stiffness.locals.iter().collect();
+    kinds.sort_by_key(|l| Arc::as_ptr(l));
+    kinds.dedup_by(|a, b| Arc::ptr_eq(a, b));
+    let bytes = kinds.iter().map(|l| l.bytes());
     let (factor_bytes, dense_bytes) = bytes.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     Facts {
         multipliers_local: jump.n_local,
@@ -239,6 +249,7 @@ fn facts(
         primal: stiffness.space.n_global,
         factor_bytes,
         dense_bytes,
+        kinds: kinds.len(),
         setup_seconds: 0.0,
     }
 }
@@ -254,8 +265,9 @@ fn krylov(session: &Session, dual: &Rc<Dual>, settings: &Settings) -> Result<Ksp
     ksp.set_norm_type(NormType::Unpreconditioned)?;
     ksp.set_tolerances(Some(settings.rtol), None, None, None)?;
     ksp.set_compute_singular_values(true)?;
-    ksp.pc()?
-        .set_shell("fetifeti", dual::preconditioner_shell(dual))?;
+    let pc = ksp.pc()?;
+    pc.set_shell("fetifeti", dual::preconditioner_shell(dual))?;
+    pc.set_options_prefix(&format!("{}ksp_", settings.prefix))?;
     ksp.set_from_options()?;
     ksp.setup()?;
     Ok(ksp)

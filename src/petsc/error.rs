@@ -41,6 +41,18 @@ pub(crate) fn check(code: c_int, call: &'static str) -> Result<()> {
     Err(PENDING.take().unwrap_or(Error::Petsc { code, call, trace }))
 }
 
+/// The error for an option value that PETSc refused while it read the options with `prefix`: it is the user's, and one sentence.
+pub(crate) fn refused_option(error: Error, prefix: &str) -> Error {
+    match error {
+        Error::Petsc { trace, .. } if !trace.is_empty() => {
+            // PETSc ends some messages with a list or a hint of several lines.
+            let reason = trace[0].lines().next().unwrap_or_default();
+            Error::Input(format!("An option -{prefix}... has no valid value: {reason}"))
+        }
+        other => other,
+    }
+}
+
 /// Did a PETSc call fail on this rank without the other ranks having been told?
 pub(crate) fn failed() -> bool {
     FAILED.get()

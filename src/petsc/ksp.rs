@@ -1,9 +1,9 @@
 //! Krylov solvers.
 
-use super::error::{c_string, rust_string};
+use super::error::{c_string, refused_option, rust_string};
 use super::handle::Handle;
 use super::{Comm, Mat, Pc, Session, Vec};
-use crate::Result;
+use crate::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;
 
@@ -156,8 +156,15 @@ impl Ksp {
     }
 
     /// Reads the options of this solver and its preconditioner.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a value that PETSc refuses.
     pub fn set_from_options(&self) -> Result<()> {
-        petsc!(KSPSetFromOptions(self.raw()))
+        petsc!(KSPSetFromOptions(self.raw())).map_err(|e| {
+            let mut prefix = std::ptr::null();
+            let found = petsc!(PetscObjectGetOptionsPrefix(self.0.object(), &mut prefix));
+            refused_option(e, &found.map_or(String::new(), |()| rust_string(prefix)))
+        })
     }
 
     /// Builds what the solver and its preconditioner need. Collective.
@@ -232,7 +239,13 @@ impl Ksp {
     }
 
     /// (largest, smallest) singular value of the preconditioned operator as the last solve saw them.
+    ///
+    /// # Errors
+    /// Where the method keeps none: PETSc's fcg hands its data to a routine that expects those of cg, and crashes.
     pub fn extreme_singular_values(&self) -> Result<(f64, f64)> {
+        if self.type_name()? == "fcg" {
+            return Err(Error::environment("fcg keeps no estimate of the spectrum"));
+        }
         let (mut large, mut small) = (0.0, 0.0);
         petsc!(KSPComputeExtremeSingularValues(
             self.raw(),

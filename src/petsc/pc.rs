@@ -31,6 +31,11 @@ impl Pc {
         ))
     }
 
+    /// The prefix of this preconditioner's options, without a dash.
+    pub fn set_options_prefix(&self, prefix: &str) -> Result<()> {
+        petsc!(PCSetOptionsPrefix(self.0.raw(), c_string(prefix).as_ptr()))
+    }
+
     /// Reads the options of this preconditioner.
     pub fn set_from_options(&self) -> Result<()> {
         petsc!(PCSetFromOptions(self.0.raw()))

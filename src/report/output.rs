@@ -64,6 +64,14 @@ pub fn write_text(path: &Path, text: &str) -> Result<()> {
     write_file(path, |out| out.write_all(text.as_bytes()))
 }
 
+/// Prints text on standard output; unlike `print!` it does not panic where the output is a full disk or a closed pipe.
+///
+/// # Errors
+/// [`Error::Environment`].
+pub fn print(text: &str) -> Result<()> {
+    write_text(Path::new("-"), text)
+}
+
 /// Makes a directory for results and proves, by writing and removing an empty file, that results can be written there:
 /// called before a long computation so that it does not end with a full result and no place to put it.
 ///

@@ -1,7 +1,9 @@
 //! Running things under mpirun: the program itself, or one case of a test file on several ranks.
 #![allow(dead_code)] // every test file uses its own part
 
+use std::fs;
 use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -109,4 +111,71 @@ pub fn run_case(ranks: usize, case: &str) -> Output {
 /// The case that this process is to run as a rank; `None` in the ordinary test run.
 pub fn case() -> Option<String> {
     std::env::var(CASE).ok()
+}
+
+/// `fetifeti args` without mpirun.
+pub fn fetifeti(args: &[&str]) -> Output {
+    let start = Instant::now();
+    let out = Command::new(env!("CARGO_BIN_EXE_fetifeti"))
+        .args(args)
+        .env("RUST_BACKTRACE", "0")
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program starts");
+    Output {
+        code: out.status.code().unwrap_or(-2),
+        stdout: String::from_utf8_lossy(&out.stdout).into_owned(),
+        stderr: String::from_utf8_lossy(&out.stderr).into_owned(),
+        seconds: start.elapsed().as_secs_f64(),
+    }
+}
+
+/// A fresh directory that is removed again when the test ends.
+pub struct Scratch(pub PathBuf);
+
+impl Scratch {
+    pub fn new(name: &str) -> Scratch {
+        let dir = std::env::temp_dir().join(format!("fetifeti-test-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&dir);
+        fs::create_dir_all(&dir).expect("the directory can be made");
+        Scratch(dir)
+    }
+
+    /// The path of `name` in it.
+    pub fn path(&self, name: &str) -> String {
+        self.0
+            .join(name)
+            .to_str()
+            .expect("the path is UTF-8")
+            .to_string()
+    }
+
+    /// Writes a file and returns its path.
+    pub fn file(&self, name: &str, text: &str) -> String {
+        fs::write(self.0.join(name), text).expect("the file can be written");
+        self.path(name)
+    }
+
+    /// Names of all files in it and below.
+    pub fn files(&self) -> Vec<String> {
+        fn walk(dir: &Path, out: &mut Vec<String>) {
+            for entry in fs::read_dir(dir).expect("the directory can be read") {
+                let path = entry.expect("the entry can be read").path();
+                if path.is_dir() {
+                    walk(&path, out);
+                } else {
+                    out.push(path.display().to_string());
+                }
+            }
+        }
+        let mut out = Vec::new();
+        walk(&self.0, &mut out);
+        out
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
 }

@@ -175,6 +175,7 @@ const FUNCTIONS: &[&str] = &[
     "KSPFETIDPGetInnerKSP",
     "KSPFETIDPGetInnerBDDC",
     "PCSetType",
+    "PCSetOptionsPrefix",
     "PCGetType",
     "PCSetOptionsPrefix",
     "PCAppendOptionsPrefix",

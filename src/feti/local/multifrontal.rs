@@ -187,7 +187,6 @@ impl PartialCholesky {
     /// Factors the interior of `k` and returns the factor with S (both triangles), in the order of the interface.
     pub fn new(k: &Csr, symbolic: Arc<Symbolic>) -> Result<(Self, Dense), SingularInterior> {
         let sym = &*symbolic;
-        let n_interior = sym.n_interior();
         let mut s = schur_start(k, sym);
         let mut panels = vec![0.0; sym.storage];
         let mut updates: Vec<Vec<f64>> = vec![Vec::new(); sym.fronts.len()];
@@ -240,7 +239,6 @@ impl PartialCholesky {
                 None => add_lower(&mut s, &front.into_parent, &update.data),
             }
         }
-        debug_assert_eq!(n_interior + s.rows, k.n());
         s.mirror_lower();
         Ok((PartialCholesky { symbolic, panels }, s))
     }
@@ -256,8 +254,7 @@ impl PartialCholesky {
             let panel = self.panel(front);
             x.clear();
             x.extend(self.pivot_dofs(front).iter().map(|&i| b[i as usize]));
-            let x_view = MatMutColumn(&mut x);
-            dense::solve_lower(panel.subrows(0, width), x_view.view());
+            dense::solve_lower(panel.subrows(0, width), column(&mut x));
             for (&i, &v) in self.pivot_dofs(front).iter().zip(&x) {
                 b[i as usize] = v;
             }
@@ -284,8 +281,7 @@ impl PartialCholesky {
                 let column = &self.panels[front.panel + j * front.size()..][width..front.size()];
                 x.push(b[i as usize] - dense::dot(column, &u));
             }
-            let x_view = MatMutColumn(&mut x);
-            dense::solve_lower_transpose(panel.subrows(0, width), x_view.view());
+            dense::solve_lower_transpose(panel.subrows(0, width), column(&mut x));
             for (&i, &v) in self.pivot_dofs(front).iter().zip(&x) {
                 b[i as usize] = v;
             }
@@ -319,13 +315,9 @@ impl PartialCholesky {
 }
 
 /// A vector as a one-column matrix.
-struct MatMutColumn<'a>(&'a mut Vec<f64>);
-
-impl<'a> MatMutColumn<'a> {
-    fn view(self) -> faer::MatMut<'a, f64> {
-        let n = self.0.len();
-        faer::MatMut::from_column_major_slice_mut(self.0, n, 1)
-    }
+fn column(x: &mut [f64]) -> faer::MatMut<'_, f64> {
+    let n = x.len();
+    faer::MatMut::from_column_major_slice_mut(x, n, 1)
 }
 
 /// K_ΓΓ on the lower triangle.
@@ -389,7 +381,7 @@ fn factor_front(
     dense::cholesky(pivot.as_mut(), scratch).map_err(|e| e.index)?;
     for (j, &d) in diagonal.iter().enumerate() {
         let l = pivot[(j, j)];
-        if !(l * l > SINGULAR * d) {
+        if l * l <= SINGULAR * d || l.is_nan() {
             return Err(j);
         }
     }

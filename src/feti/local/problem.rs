@@ -161,8 +161,8 @@ fn try_cholesky(s: &Dense, n_delta: usize, scratch: &mut Scratch) -> Option<Dens
         l.col_mut(j)[j..].copy_from_slice(&s.col(j)[j..n_delta]);
     }
     dense::cholesky(l.view_mut(), scratch).ok()?;
-    let weak = (0..n_delta).any(|j| !(l.get(j, j).powi(2) > WEAKLY_HELD * s.get(j, j)));
-    (!weak).then_some(l)
+    let strong = |j| l.get(j, j).powi(2) > WEAKLY_HELD * s.get(j, j);
+    (0..n_delta).all(strong).then_some(l)
 }
 
 /// Dual dofs to hold so that the rest of S_ΔΔ is definite: those left with a weak pivot by Cholesky factorisation with
@@ -186,7 +186,7 @@ fn weakest(s: &Dense, n: usize) -> Vec<usize> {
         });
         let Some((at, &p)) = best else { break };
         let pivot = a.get(p, p);
-        if !(pivot > WEAKLY_HELD) {
+        if pivot <= WEAKLY_HELD || pivot.is_nan() {
             break;
         }
         left.swap_remove(at);

@@ -1,0 +1,65 @@
+//! One-level FETI: every body is one subdomain, most bodies float.
+//!
+//!     cargo run --release --example feti1
+//!     mpirun -n 2 target/release/examples/feti1 -fetifeti_check
+//!
+//! −Δu = 1 on the unit square, u = 0 at its left and right end, nothing at top and bottom; u = x(1 − x)/2.
+//! Nothing is switched to get FETI: without subdomains there is no jump inside a body and no primal vertex.
+
+use std::process::ExitCode;
+
+use fetifeti::feti::exchange::max_all;
+use fetifeti::scene::{Field, GridSpec, Scene};
+use fetifeti::{FetiFeti, Result, Session, Settings};
+
+fn main() -> ExitCode {
+    fetifeti::run(run)
+}
+
+fn run(session: &Session) -> Result<()> {
+    let zero = || Some(Field::constant(0.0));
+    let grid = GridSpec {
+        dirichlet: [zero(), zero(), None, None], // left, right, bottom, top
+        ..GridSpec::unit_square([4, 4], [1, 1], [8, 8])
+    };
+    let scene = Scene::grid("One-level FETI", &grid)?;
+    let mine = fetifeti::share(session, scene.n_subdomains());
+    let problem = scene.substructures(&|s| mine.contains(&s))?;
+    let settings = Settings {
+        rtol: 1e-12,
+        ..Settings::default()
+    };
+    let solver = FetiFeti::new(session, problem, settings)?;
+    let solution = solver.solve()?;
+    assert!(solution.converged, "{}", solution.reason);
+
+    // The solution does not depend on y, and linear elements in one dimension are exact at the nodes.
+    let mut worst = [0.0f64];
+    for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
+        let mesh = scene.subdomain_mesh(sub.index)?;
+        for (value, [x, _]) in mesh.nodal(u).iter().zip(&mesh.points) {
+            worst[0] = worst[0].max((value - 0.5 * x * (1.0 - x)).abs());
+        }
+    }
+    max_all(session.comm(), &mut worst);
+
+    let facts = solver.facts();
+    if session.rank() == 0 {
+        println!(
+            "bodies        {}, {} of them floating",
+            scene.n_bodies(),
+            facts.floating_bodies
+        );
+        println!(
+            "multipliers   {} inside bodies, {} between them",
+            facts.multipliers_local, facts.multipliers_global
+        );
+        println!("iterations    {}", solution.iterations);
+        println!("largest nodal difference to x(1 - x)/2: {:.1e}", worst[0]);
+    }
+    // The two middle columns of bodies touch no held side. The solver found that from the matrices.
+    assert_eq!(facts.floating_bodies, 8);
+    assert_eq!(facts.multipliers_local, 0);
+    assert!(worst[0] < 1e-9, "not the solution");
+    Ok(())
+}

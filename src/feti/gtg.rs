@@ -1,0 +1,142 @@
+//! Gᵀ Q G behind a PETSc KSP (prefix `fetifeti_gtg_`), the same on every rank.
+
+use std::cell::RefCell;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::exchange::sum_all;
+use super::local::dense::Dense;
+use super::local::semidefinite::Semidefinite;
+use super::rows::Rows;
+use crate::petsc::{Comm, Ksp, Mat, Session, Vec as PetscVec};
+use crate::{Error, Result};
+
+/// Which of the two inverses.
+#[derive(Clone, Copy)]
+pub enum Side {
+    /// (Gᵀ Q G)⁻¹
+    Plain,
+    /// (Gᵀ Q G)⁻ᵀ
+    Transposed,
+}
+
+/// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹ with D² its diagonal: with Q = M⁻¹ the rows of stiff and soft bodies differ by the square
+/// of the jump in ρ.
+pub struct Gtg {
+    /// The solver, on this rank alone.
+    pub ksp: Ksp,
+    /// 1/D.
+    scale: Vec<f64>,
+    rhs: PetscVec,
+    solution: PetscVec,
+    /// Combinations of kernel vectors that no row sees: rigid motions of bodies that nothing holds.
+    pub unheld: Vec<Vec<f64>>,
+    scratch: RefCell<Vec<f64>>,
+}
+
+impl Gtg {
+    /// Assembles and factors the r × r matrix Gᵀ (Q G). Collective.
+    pub fn new(session: &Session, r: usize, g: &Rows, qg: &Rows, prefix: &str) -> Result<Gtg> {
+        let mut a = Dense::zeros(r, r);
+        for i in 0..g.n() {
+            for (p, gp) in g.row(i) {
+                for (q, gq) in qg.row(i) {
+                    a.data[p + q * r] += gp * gq;
+                }
+            }
+        }
+        sum_all(session.comm(), &mut a.data);
+        let diagonal = |i: usize| match a.get(i, i) {
+            d if d > 0.0 => 1.0 / d.sqrt(),
+            _ => 1.0,
+        };
+        let scale: Vec<f64> = (0..r).map(diagonal).collect();
+        for j in 0..r {
+            for i in 0..r {
+                a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
+            }
+        }
+        let factor = Semidefinite::new(&a);
+        let unheld: Vec<Vec<f64>> = null_vectors(&a, &factor)
+            .into_iter()
+            .map(|v| v.iter().zip(&scale).map(|(v, s)| v * s).collect())
+            .collect();
+        // Holding one dependent column of each unheld motion makes the matrix regular without changing what it does to
+        // right-hand sides in its range.
+        for i in factor.dropped() {
+            a.set(i, i, a.get(i, i) + 1.0);
+        }
+        let triplets: Vec<(i32, i32, f64)> = (0..r)
+            .flat_map(|i| (0..r).map(move |j| (i, j)))
+            .map(|(i, j)| (i as i32, j as i32, a.get(i, j)))
+            .filter(|&(i, j, v)| v != 0.0 || i == j)
+            .collect();
+        let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
+        let ksp = Ksp::new(session, Comm::Own)?;
+        ksp.set_operators(&matrix, &matrix)?;
+        ksp.set_options_prefix(prefix)?;
+        ksp.set_type("preonly")?;
+        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the same as
+        // long as it is this very matrix that is inverted: hence LU, and the transpose for Pᵀ.
+        ksp.pc()?.set_type("lu")?;
+        ksp.set_from_options()?;
+        ksp.setup()?;
+        Ok(Gtg {
+            ksp,
+            scale,
+            rhs: PetscVec::seq(session, r)?,
+            solution: PetscVec::seq(session, r)?,
+            unheld,
+            scratch: RefCell::new(vec![0.0; r]),
+        })
+    }
+
+    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank.
+    pub fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        self.rhs.array_mut()?.copy_from_slice(x);
+        match side {
+            Side::Plain => self.ksp.solve(&self.rhs, &self.solution)?,
+            Side::Transposed => self.ksp.solve_transpose(&self.rhs, &self.solution)?,
+        }
+        let reason = self.ksp.converged_reason()?;
+        if reason.code < 0 {
+            return Err(Error::NotConverged(format!(
+                "the natural coarse problem was not solved ({}): change the -fetifeti_gtg_ options",
+                reason.name
+            )));
+        }
+        x.copy_from_slice(&self.solution.array()?);
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        Ok(())
+    }
+
+    /// x ← x − along (Gᵀ Q G)⁻¹ fromᵀ x (or with the transposed inverse). Collective.
+    pub fn remove(
+        &self,
+        comm: &SimpleCommunicator,
+        x: &PetscVec,
+        from: &Rows,
+        along: &Rows,
+        side: Side,
+    ) -> Result<()> {
+        let mut c = self.scratch.borrow_mut();
+        c.fill(0.0);
+        from.add_transpose(&x.array()?, &mut c);
+        sum_all(comm, &mut c);
+        self.solve(&mut c, side)?;
+        along.add(-1.0, &c, &mut x.array_mut()?);
+        Ok(())
+    }
+}
+
+/// Vectors v with A v = 0, one per dropped column.
+fn null_vectors(a: &Dense, factor: &Semidefinite) -> Vec<Vec<f64>> {
+    let column = |&k: &usize| {
+        let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
+        factor.solve(&mut v);
+        v[k] = 1.0;
+        v
+    };
+    factor.dropped().iter().map(column).collect()
+}
