@@ -47,6 +47,8 @@ pub enum Task {
     Baseline {
         /// Its name.
         name: String,
+        /// Whether this is the second try.
+        rescue: bool,
         /// Where the solution goes.
         solution: PathBuf,
     },
@@ -114,9 +116,14 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         Task::FetiFeti { threads, solution } => {
             feti_feti(session, &scene, &job, *threads, solution)?
         }
-        Task::Baseline { name, solution } => {
+        Task::Baseline {
+            name,
+            rescue,
+            solution,
+        } => {
             let row = Baseline::named(name)
                 .ok_or_else(|| Error::input(format!("there is no baseline \"{name}\"")))?;
+            row.set_options(session, job.rtol, *rescue)?;
             baseline(session, &scene, &job, row, solution)?
         }
         Task::Judge { solutions } => {
@@ -177,7 +184,6 @@ fn baseline(
     row: &Baseline,
     file: &Path,
 ) -> Result<Outcome> {
-    row.set_options(session, job.rtol)?;
     let (system, assemble) = timed(session, || {
         System::new(session, scene, &Numbering::new(scene), row.format)
     })?;

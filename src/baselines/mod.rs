@@ -29,7 +29,7 @@ use crate::report::{output, summary};
 use crate::scene::{Numbering, Scene};
 use crate::{Error, Result};
 use job::{Job, Outcome, Task, Verdict};
-use launch::{Launcher, Workspace};
+use launch::{Failure, Launcher, Workspace};
 use table::{Baseline, Format};
 
 pub use job::run as run_job;
@@ -50,7 +50,7 @@ pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()
     let all = Options::new(session, "");
     if all.has("help")? || all.has("h")? {
         for baseline in &baselines {
-            baseline.set_options(session, plan.rtol)?;
+            baseline.set_options(session, plan.rtol, false)?;
         }
     }
     let ready = if session.rank() == 0 {
@@ -100,6 +100,23 @@ struct Run {
     threads: usize,
     /// Parts of the domain that the method sees.
     parts: Option<usize>,
+}
+
+impl Run {
+    fn task(&self, solution: &Path, rescue: bool) -> Task {
+        let solution = solution.to_path_buf();
+        match self.baseline {
+            None => Task::FetiFeti {
+                threads: self.threads,
+                solution,
+            },
+            Some(b) => Task::Baseline {
+                name: b.name.into(),
+                rescue,
+                solution,
+            },
+        }
+    }
 }
 
 /// What is run, and to which residual.
@@ -185,38 +202,42 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
     let mut solutions = Vec::new();
     for (k, run) in plan.runs.iter().enumerate() {
         let name = run.baseline.map_or("fetifeti", |b| b.name);
-        progress(args, &format!("{name} on {} ranks", run.ranks));
         let solution = launcher.workspace.file(&format!("{k}.u"));
-        let task = match run.baseline {
-            None => Task::FetiFeti {
-                threads: run.threads,
-                solution: solution.clone(),
-            },
-            Some(b) => Task::Baseline {
-                name: b.name.into(),
-                solution: solution.clone(),
-            },
+        let solve = |rescue: bool| -> Result<std::result::Result<Outcome, Failure>> {
+            progress(args, &format!("{name} on {} ranks", run.ranks));
+            let job = Job {
+                scene: file.clone(),
+                result: launcher.workspace.file(&format!("{k}-{rescue}.json")),
+                rtol: plan.rtol,
+                task: run.task(&solution, rescue),
+            };
+            let finished = launcher.run(&format!("{k}-{rescue}"), &job, run.ranks)?;
+            if !quiet && !finished.printed.trim().is_empty() {
+                println!("{name} on {} ranks:\n{}", run.ranks, finished.printed);
+            }
+            finished
+                .record
+                .map(|text| read(&text))
+                .map_or_else(|f| Ok(Err(f)), |o| o.map(Ok))
         };
-        let job = Job {
-            scene: file.clone(),
-            result: launcher.workspace.file(&format!("{k}.json")),
-            rtol: plan.rtol,
-            task,
-        };
-        let finished = launcher.run(&k.to_string(), &job, run.ranks)?;
-        if !quiet && !finished.printed.trim().is_empty() {
-            println!("{name} on {} ranks:\n{}", run.ranks, finished.printed);
-        }
-        let outcome = match finished.record {
-            Ok(text) => Ok(read::<Outcome>(&text)?),
+        let mut outcome = solve(false)?;
+        let mut rescue = None;
+        match run.baseline {
             // What ours cannot solve is a mistake in the scene or here, and the comparison ends.
-            Err(failure) if run.baseline.is_none() => return Err(failure.into_error()),
-            Err(failure) => Err(failure.message),
-        };
+            None => outcome = Ok(outcome.map_err(Failure::into_error)?),
+            Some(b) if !b.rescue.is_empty() && worth_a_second_try(&outcome) => {
+                rescue = Some(b.rescue_options());
+                outcome = solve(true)?;
+            }
+            Some(_) => {}
+        }
         if outcome.is_ok() {
             solutions.push((k, solution));
         }
-        rows.push(row(name, run, outcome));
+        rows.push(CompareRow {
+            rescue,
+            ..row(name, run, outcome.map_err(|failure| failure.message))
+        });
     }
     progress(args, "direct solution");
     let verdict = judge(&launcher, plan, &file, &solutions)?;
@@ -246,6 +267,14 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
             args.scene.display(),
             row.message.as_deref().unwrap_or(&row.converged_reason)
         ))),
+    }
+}
+
+/// Whether a method broke down, rather than took too long or met the limits of rounding.
+fn worth_a_second_try(outcome: &std::result::Result<Outcome, Failure>) -> bool {
+    match outcome {
+        Ok(outcome) => !outcome.reason.starts_with("CONVERGED"),
+        Err(failure) => failure.code.is_some(),
     }
 }
 

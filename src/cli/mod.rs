@@ -33,7 +33,10 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
     match command {
         Command::Help if wants_help => list_options(session),
         Command::Help => say(session, args::USAGE),
-        Command::Version => say(session, concat!("fetifeti ", env!("CARGO_PKG_VERSION"), "\n")),
+        Command::Version => say(
+            session,
+            concat!("fetifeti ", env!("CARGO_PKG_VERSION"), "\n"),
+        ),
         Command::Solve(args) => solve::run(session, &args),
         Command::Plan { scene } => plan::run(session, &scene),
         Command::Table1(args) => table1::run(session, &args),

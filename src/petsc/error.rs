@@ -47,7 +47,9 @@ pub(crate) fn refused_option(error: Error, prefix: &str) -> Error {
         Error::Petsc { trace, .. } if !trace.is_empty() => {
             // PETSc ends some messages with a list or a hint of several lines.
             let reason = trace[0].lines().next().unwrap_or_default();
-            Error::Input(format!("An option -{prefix}... has no valid value: {reason}"))
+            Error::Input(format!(
+                "An option -{prefix}... has no valid value: {reason}"
+            ))
         }
         other => other,
     }
