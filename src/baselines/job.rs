@@ -9,12 +9,13 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use super::attempt::{solve_to, Attempt};
 use super::system::System;
 use super::table::{Baseline, Format};
 use crate::cli::problem;
 use crate::feti::exchange::{max_all, sum_all};
 use crate::feti::{FetiFeti, Settings};
-use crate::petsc::{max_memory, Comm, Ksp, Options, Session, Vec as PetscVec};
+use crate::petsc::{max_memory, Comm, Ksp, Options, Session};
 use crate::report::json;
 use crate::scene::{Numbering, Scene};
 use crate::{Error, Result};
@@ -46,6 +47,8 @@ pub enum Task {
     Baseline {
         /// Its name.
         name: String,
+        /// Whether this is the second try.
+        rescue: bool,
         /// Where the solution goes.
         solution: PathBuf,
     },
@@ -61,13 +64,13 @@ pub enum Task {
 pub struct Outcome {
     /// κ by CG.
     pub kappa: Option<f64>,
-    /// Iterations of the last solve; `None` for a direct solver.
+    /// Iterations of the solve; `None` for a direct solver.
     pub iterations: Option<usize>,
     /// Seconds for mesh and matrices.
     pub assemble: f64,
     /// Seconds of set-up.
     pub setup: f64,
-    /// Seconds of the last solve.
+    /// Seconds of the solve.
     pub solve: f64,
     /// Largest resident memory, summed over the ranks, in bytes.
     pub memory: f64,
@@ -113,9 +116,14 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         Task::FetiFeti { threads, solution } => {
             feti_feti(session, &scene, &job, *threads, solution)?
         }
-        Task::Baseline { name, solution } => {
+        Task::Baseline {
+            name,
+            rescue,
+            solution,
+        } => {
             let row = Baseline::named(name)
                 .ok_or_else(|| Error::input(format!("there is no baseline \"{name}\"")))?;
+            row.set_options(session, job.rtol, *rescue)?;
             baseline(session, &scene, &job, row, solution)?
         }
         Task::Judge { solutions } => {
@@ -168,47 +176,6 @@ fn shared_memory() -> f64 {
     1024.0 * kilobytes.unwrap_or(0.0)
 }
 
-/// One solve to a tolerance of the method's own residual.
-struct Attempt {
-    u: PetscVec,
-    residual: f64,
-    kappa: Option<f64>,
-    iterations: Option<usize>,
-    seconds: f64,
-    converged: bool,
-    reason: String,
-}
-
-/// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers measure another
-/// residual; methods that iterate on u meet it at once, or drift from it by rounding.
-fn solve_to(
-    target: f64,
-    first: f64,
-    mut solve: impl FnMut(f64) -> Result<Attempt>,
-) -> Result<(Attempt, f64, Option<String>)> {
-    const ATTEMPTS: usize = 12;
-    let mut rtol = first;
-    let mut best = f64::INFINITY;
-    for attempt in 1.. {
-        let now = solve(rtol)?;
-        if !now.converged {
-            let message = format!("did not converge: {}", now.reason);
-            return Ok((now, rtol, Some(message)));
-        }
-        if now.residual <= target {
-            return Ok((now, rtol, None));
-        }
-        let stuck = now.residual.is_nan() || now.residual > 0.9 * best;
-        if attempt == ATTEMPTS || stuck {
-            let message = format!("the residual stays at {:.1e}", now.residual);
-            return Ok((now, rtol, Some(message)));
-        }
-        best = now.residual;
-        rtol *= (0.5 * target / now.residual).clamp(1e-4, 0.5);
-    }
-    unreachable!("the loop returns after a number of attempts")
-}
-
 /// A row of the table on the unassembled or the assembled matrix.
 fn baseline(
     session: &Session,
@@ -217,7 +184,6 @@ fn baseline(
     row: &Baseline,
     file: &Path,
 ) -> Result<Outcome> {
-    row.set_options(session, job.rtol)?;
     let (system, assemble) = timed(session, || {
         System::new(session, scene, &Numbering::new(scene), row.format)
     })?;

@@ -139,13 +139,14 @@ impl Launcher {
             let bytes = std::fs::read(path).unwrap_or_default();
             String::from_utf8_lossy(&bytes).into_owned()
         };
-        let record = if status.success() {
-            std::fs::read_to_string(&job.result).map_err(|e| Failure {
+        // The record is a job's last act: trouble in the farewell of hundreds of ranks does not take it back.
+        let record = match std::fs::read_to_string(&job.result) {
+            Ok(text) => Ok(text),
+            Err(e) if status.success() => Err(Failure {
                 code: None,
                 message: format!("left no result: {e}"),
-            })
-        } else {
-            Err(self.failure(status, clock.elapsed(), &text(err)))
+            }),
+            Err(_) => Err(self.failure(status, clock.elapsed(), &text(err))),
         };
         Ok(Finished {
             printed: text(out),
@@ -173,13 +174,17 @@ impl Launcher {
     }
 }
 
-/// The program's own error among what mpirun and other ranks say, or the last words of whoever spoke.
+/// The program's own error among what mpirun and other ranks say, or what mpirun says first.
 fn spoken(stderr: &str) -> Option<String> {
-    let mut lines = stderr.lines().map(str::trim).filter(|l| !l.is_empty());
-    let ours = lines.clone().position(|l| l.starts_with("Error"));
-    let Some(at) = ours else {
-        // Frames of dashes are mpirun's.
-        return lines.rfind(|l| !l.starts_with("---")).map(str::to_string);
+    // mpirun frames its messages with dashes and hard line breaks.
+    let is_frame = |l: &str| l.starts_with("---") || l.starts_with("===");
+    let mut lines = stderr
+        .lines()
+        .map(str::trim)
+        .filter(|l| !l.is_empty() && !is_frame(l));
+    let Some(at) = lines.clone().position(|l| l.starts_with("Error")) else {
+        let sentence: Vec<&str> = lines.take(3).collect();
+        return (!sentence.is_empty()).then(|| sentence.join(" "));
     };
     let first = lines.nth(at)?;
     let text = first

@@ -321,6 +321,9 @@ pub struct CompareRow {
     pub converged: bool,
     /// PETSc's name for why the iteration ended.
     pub converged_reason: String,
+    /// Options with which a second try was made after the first had failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rescue: Option<String>,
     /// One sentence when the method could not run or did not converge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,

@@ -226,11 +226,18 @@ pub fn compare(report: &CompareReport) -> String {
             .memory_mb
             .zip(r.memory_at_start_mb)
             .map(|(all, start)| all - start);
+        let mut note = |text: String| {
+            notes += if notes.is_empty() { "\n" } else { "" };
+            notes += &format!("{} on {}: {text}\n", r.method, ranks(r.ranks));
+        };
+        if let Some(options) = &r.rescue {
+            note(format!("second try, with {options}"));
+        }
         let outcome = match &r.message {
             None => r.converged_reason.clone(),
             Some(message) => {
-                notes += &format!("{} on {}: {message}\n", r.method, ranks(r.ranks));
-                "failed, see below".to_string()
+                note(message.clone());
+                "see below".to_string()
             }
         };
         table.row([
@@ -291,6 +298,7 @@ pub fn compare_csv(rows: &[CompareRow]) -> Table {
         "rtol",
         "converged",
         "converged_reason",
+        "rescue",
         "message",
     ]);
     let counted = |n: Option<usize>| n.map(|n| n.to_string()).unwrap_or_default();
@@ -313,6 +321,7 @@ pub fn compare_csv(rows: &[CompareRow]) -> Table {
             exactly(r.rtol),
             r.converged.to_string(),
             r.converged_reason.clone(),
+            r.rescue.clone().unwrap_or_default(),
             r.message.clone().unwrap_or_default(),
         ]);
     }
@@ -475,7 +484,7 @@ pub(crate) mod tests {
         assert!(text.contains("PETSc was built without hypre"));
         assert!(text.contains("1e-6") || text.contains("1.0e-6"), "{text}");
         let csv = compare_csv(&[failed]).to_csv();
-        let end = "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,false,CONVERGED_RTOL,PETSc was built without hypre\n";
+        let end = "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,false,CONVERGED_RTOL,,PETSc was built without hypre\n";
         assert!(csv.ends_with(end), "{csv}");
     }
 }

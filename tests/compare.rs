@@ -1,0 +1,258 @@
+//! `fetifeti compare` from the outside: methods that know nothing of each other must agree.
+
+mod mpi;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use fetifeti::report::json::{CompareReport, CompareRow};
+
+/// A scene file that goes away with the value.
+struct SceneFile(PathBuf);
+
+impl SceneFile {
+    fn new(name: &str, text: &str) -> SceneFile {
+        let file = format!("fetifeti-compare-test-{name}-{}.toml", std::process::id());
+        let path = std::env::temp_dir().join(file);
+        std::fs::write(&path, text).expect("the scene can be written");
+        SceneFile(path)
+    }
+
+    fn path(&self) -> &str {
+        self.0.to_str().expect("the path is UTF-8")
+    }
+}
+
+impl Drop for SceneFile {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+fn fetifeti(args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fetifeti"));
+    command.args(args).output().expect("the program starts")
+}
+
+fn compare(scene: &str, more: &[&str]) -> CompareReport {
+    let args = [
+        &["compare", scene, "--json", "-", "-compare_cores", "2"],
+        more,
+    ]
+    .concat();
+    let output = fetifeti(&args);
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{scene}: {err}");
+    serde_json::from_slice(&output.stdout).expect("a report")
+}
+
+fn row<'a>(report: &'a CompareReport, method: &str, parts: Option<usize>) -> &'a CompareRow {
+    let fits = |r: &&CompareRow| r.method == method && (parts.is_none() || r.subdomains == parts);
+    report
+        .rows
+        .iter()
+        .find(fits)
+        .unwrap_or_else(|| panic!("no row {method} {parts:?}"))
+}
+
+/// What must hold of every row, whatever the scene.
+fn check(report: &CompareReport, rtol: f64) {
+    assert_eq!(report.rtol, rtol);
+    assert!(report.reference_residual.expect("a direct solution") < 1e-11);
+    for r in &report.rows {
+        let what = format!("{} on {} ranks: {r:?}", r.method, r.ranks);
+        assert!(r.converged && r.message.is_none(), "{what}");
+        assert!(r.residual.expect("a residual") <= rtol, "{what}");
+        // ‖e‖_A ≤ ‖r‖ / √λ_min: the residual bounds the error up to the mesh's condition.
+        assert!(r.error.expect("an error") < 10.0 * rtol, "{what}");
+        assert!(r.seconds.total.expect("seconds") > 0.0, "{what}");
+        let net = r.memory_mb.expect("MB") - r.memory_at_start_mb.expect("MB");
+        assert!((0.0..2000.0).contains(&net), "{what}");
+        assert_eq!(
+            r.kappa.is_some(),
+            r.iterations.is_some_and(|n| n > 0),
+            "{what}"
+        );
+    }
+    let mumps = row(report, "mumps", None);
+    assert!(mumps.error.expect("an error") < 1e-12);
+    assert_eq!((mumps.kappa, mumps.iterations), (None, None));
+}
+
+/// Two bodies with 2 + 4 subdomains, a jump of the coefficient, a load without symmetry; tied all along.
+const TIED: &str = r#"
+title = "two bodies"
+
+[[body]]
+name = "left"
+origin = [0, 0]
+size = [1, 1]
+elements = [12, 12]
+subdomains = [1, 2]
+dirichlet = ["left"]
+load = "1 + x"
+
+[[body]]
+name = "right"
+origin = [1, 0]
+size = [1, 1]
+elements = [12, 12]
+subdomains = [2, 2]
+rho = 50
+load = "x*y*y"
+"#;
+
+#[test]
+fn all_methods_agree_on_tied_bodies() {
+    let scene = SceneFile::new("tied", TIED);
+    let report = compare(scene.path(), &["-fetifeti_ksp_rtol", "1e-7"]);
+    check(&report, 1e-7);
+    // Nodes of both bodies less the held ones and the second copies of the common face.
+    assert_eq!(report.dofs, 13 * 12 + 13 * 13 - 13);
+    let methods: Vec<(&str, Option<usize>, usize)> = report
+        .rows
+        .iter()
+        .map(|r| (r.method.as_str(), r.subdomains, r.ranks))
+        .collect();
+    assert_eq!(
+        methods,
+        [
+            ("fetifeti", Some(6), 1),
+            ("fetifeti", Some(6), 2),
+            ("bddc", Some(6), 6),
+            ("bddc", Some(2), 2),
+            ("fetidp", Some(6), 6),
+            ("fetidp", Some(2), 2),
+            ("gamg", None, 2),
+            ("hypre", None, 2),
+            ("mumps", None, 2),
+        ]
+    );
+    for parts in [6, 2] {
+        // Same primal space and scaling: the spectra of BDDC and FETI-DP agree but for ones.
+        let [bddc, fetidp] = ["bddc", "fetidp"].map(|m| row(&report, m, Some(parts)).kappa);
+        let (bddc, fetidp) = (bddc.expect("κ"), fetidp.expect("κ"));
+        assert!(
+            (bddc / fetidp - 1.0).abs() < 0.1,
+            "{parts}: {bddc} and {fetidp}"
+        );
+        // Of two parts the second is held by nothing but the average over one edge along which ρ jumps: a second try.
+        let bound = if parts == 6 { 2.0 } else { 500.0 };
+        assert!((1.0..bound).contains(&bddc), "{parts}: {bddc}");
+        for method in ["bddc", "fetidp"] {
+            let rescue = &row(&report, method, Some(parts)).rescue;
+            assert_eq!(rescue.is_some(), parts == 2, "{method} {parts}");
+        }
+    }
+    let [one, two] = [&report.rows[0], &report.rows[1]];
+    assert_eq!(one.iterations, two.iterations);
+}
+
+#[test]
+fn all_methods_agree_on_partly_tied_bodies() {
+    let partly =
+        format!("{TIED}\n[[tie]]\nbodies = [\"left\", \"right\"]\nrange = [\"1/3\", \"2/3\"]\n");
+    let scene = SceneFile::new("partly", &partly);
+    let report = compare(scene.path(), &[]);
+    check(&report, 1e-6);
+    // Five of the thirteen nodes of the face are tied.
+    assert_eq!(report.dofs, 13 * 12 + 13 * 13 - 5);
+}
+
+#[test]
+fn options_of_a_baseline_reach_it_alone_and_its_failure_is_a_row() {
+    let scene = SceneFile::new("options", TIED);
+    let options = [
+        "--with",
+        "gamg,hypre,mumps",
+        "-gamg_ksp_max_it",
+        "2",
+        "-hypre_pc_type",
+        "no_such_thing",
+    ];
+    let report = compare(scene.path(), &options);
+    let gamg = row(&report, "gamg", None);
+    assert!(!gamg.converged);
+    assert_eq!(gamg.converged_reason, "DIVERGED_ITS");
+    assert!(gamg.error.is_some_and(|e| e > 1e-6), "{gamg:?}");
+    let hypre = row(&report, "hypre", None);
+    let message = hypre.message.as_deref().expect("a message");
+    assert!(message.contains("no_such_thing"), "{message}");
+    assert_eq!((hypre.error, hypre.iterations), (None, None));
+    assert!(row(&report, "mumps", None).converged && row(&report, "fetifeti", None).converged);
+}
+
+#[test]
+fn mistakes_end_before_anything_runs() {
+    let scene = SceneFile::new("mistakes", TIED);
+    // Nothing holds these bodies: ours finds out, first of all.
+    let floating = SceneFile::new("floating", &TIED.replace("dirichlet = [\"left\"]\n", ""));
+    let cases: [(&[&str], i32, &str); 5] = [
+        (&[scene.path(), "--with", "bddc,bdcc"], 2, "bdcc"),
+        (&[scene.path(), "-fetifeti_ksp_rtol", "2"], 2, "ksp_rtol"),
+        (
+            &[scene.path(), "-compare_cores", "many"],
+            2,
+            "compare_cores",
+        ),
+        (
+            &[scene.path(), "--json", "/dev/null/x.json"],
+            3,
+            "/dev/null",
+        ),
+        (&[floating.path(), "--with", "mumps"], 2, "left"),
+    ];
+    for (args, code, part) in cases {
+        let output = fetifeti(&[&["compare"], args].concat());
+        let err = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {err}");
+        assert!(
+            err.contains(part) && err.trim().lines().count() == 1,
+            "{args:?}: {err}"
+        );
+    }
+}
+
+#[test]
+fn under_mpirun_the_first_rank_runs_the_jobs_and_leaves_nothing_behind() {
+    let scene = SceneFile::new("nested", TIED);
+    let scratch = std::env::temp_dir().join(format!("fetifeti-compare-out-{}", std::process::id()));
+    let [out, tmp] = ["out", "tmp"].map(|d| scratch.join(d));
+    std::fs::create_dir_all(&tmp).expect("a directory");
+    let name = |path: &Path| path.to_str().expect("the path is UTF-8").to_string();
+    let (out_name, tmp_name) = (name(&out), name(&tmp));
+    let args = [
+        "compare",
+        scene.path(),
+        "--with",
+        "mumps",
+        "--out",
+        &out_name,
+    ];
+    let run = mpi::mpirun(
+        2,
+        env!("CARGO_BIN_EXE_fetifeti"),
+        &args,
+        &[("TMPDIR", &tmp_name)],
+    );
+    assert_eq!(run.code, 0, "{}", run.all());
+    assert_eq!(
+        run.stdout.matches("All methods were driven").count(),
+        1,
+        "{}",
+        run.all()
+    );
+    let text = std::fs::read_to_string(out.join("compare.json")).expect("a report");
+    let report: CompareReport = serde_json::from_str(&text).expect("a report");
+    assert!(row(&report, "mumps", None).converged);
+    let csv = std::fs::read_to_string(out.join("compare.csv")).expect("a table");
+    assert_eq!(csv.lines().count(), 1 + report.rows.len());
+    let left: Vec<_> = std::fs::read_dir(&tmp)
+        .expect("the directory")
+        .flatten()
+        .map(|entry| entry.file_name())
+        .filter(|entry| entry.to_string_lossy().starts_with("fetifeti"))
+        .collect();
+    assert!(left.is_empty(), "{left:?}");
+    std::fs::remove_dir_all(&scratch).expect("it can be removed");
+}
