@@ -12,9 +12,10 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       solve a scene; write solution.vtu, solution.png and report.json to DIR
   fetifeti plan SCENE
       validate a scene; say what the solver will build and why, with sizes and memory
-  fetifeti compare SCENE [--with bddc,fetidp,gamg,hypre,mumps] [--json FILE] [PETSc options]
-      the same problem through PETSc's solvers, to the same relative residual
-  fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [PETSc options]
+  fetifeti compare SCENE [--with bddc,fetidp,gamg,hypre,mumps] [--json FILE] [--out DIR] [--quiet] [PETSc options]
+      the same problem through PETSc's solvers, to the same relative residual; their options have the prefixes
+      -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
+  fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
   mpirun -n N fetifeti solve SCENE ...
       the same answer on N ranks
