@@ -15,7 +15,6 @@ pub struct PrimalProblem {
 
 struct Parts {
     ksp: Ksp,
-    matrix: Mat,
     rhs: PetscVec,
     solution: PetscVec,
     halo: Halo,
@@ -60,7 +59,6 @@ impl PrimalProblem {
         Ok(PrimalProblem {
             parts: Some(Parts {
                 ksp,
-                matrix,
                 rhs,
                 solution,
                 halo,
@@ -91,15 +89,5 @@ impl PrimalProblem {
         let quotient = p.rhs.duplicate()?;
         quotient.pointwise_divide(&p.rhs, &p.solution)?;
         quotient.dot(&p.rhs)
-    }
-
-    /// The matrix S_Π with its regularisation, if there is one.
-    pub fn matrix(&self) -> Option<&Mat> {
-        self.parts.as_ref().map(|p| &p.matrix)
-    }
-
-    /// The solver, if there is one.
-    pub fn ksp(&self) -> Option<&Ksp> {
-        self.parts.as_ref().map(|p| &p.ksp)
     }
 }

@@ -257,11 +257,6 @@ impl NaturalCoarse {
         kernel.add_mul(&alpha[self.first_column[j]..][..kernel.cols], y);
     }
 
-    /// Number of rigid motions that no row sees.
-    pub fn n_unheld(&self) -> usize {
-        self.gtg.as_ref().map_or(0, |s| s.unheld.len())
-    }
-
     /// The solver of Gᵀ Q G, where a body floats.
     pub fn ksp(&self) -> Option<&Ksp> {
         self.gtg.as_ref().map(|s| &s.ksp)
