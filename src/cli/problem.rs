@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::mesh::contiguous_share;
 use crate::petsc::{Options, Session};
 use crate::scene::Scene;
 use crate::substructures::Substructures;
@@ -42,7 +43,7 @@ impl Distribution {
     /// Whether subdomain `s` of `n` belongs to rank `rank` of `size`.
     pub fn owns(self, s: usize, n: usize, rank: usize, size: usize) -> bool {
         match self {
-            Distribution::Block => s * size / n == rank,
+            Distribution::Block => contiguous_share(n, size, rank).contains(&s),
             Distribution::Cyclic => s % size == rank,
         }
     }

@@ -203,10 +203,10 @@ fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<L
         let (delta, primal) = (&jump.delta[kinds[k]], &jump.primal[kinds[k]]);
         LocalProblem::new(&sub.k, delta, primal, sub.coordinates.as_deref())
             .map(Arc::new)
-            .map_err(|_| {
+            .map_err(|e| {
                 Error::input(format!(
-                    "body \"{}\" is held by nothing in subdomain {} (no Dirichlet side and no tie to another body), expected a Dirichlet side or a tie",
-                    problem.body_names[sub.body], sub.index
+                    "the matrix of subdomain {} in body \"{}\" is not positive semidefinite (at local dof {}), expected a stiffness matrix",
+                    sub.index, problem.body_names[sub.body], e.dof
                 ))
             })
     });

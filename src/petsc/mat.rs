@@ -37,15 +37,8 @@ impl Mat {
         self.0.session()
     }
 
-    /// An AIJ matrix with `rows` rows and `cols` columns on this rank, from (global row, global column, value) entries that any rank
-    /// may give for any row; repeated entries are added up. Collective.
-    pub fn from_triplets(
-        session: &Session,
-        comm: Comm,
-        rows: usize,
-        cols: usize,
-        entries: &[(i32, i32, f64)],
-    ) -> Result<Mat> {
+    /// An AIJ matrix of this size, without room for entries.
+    fn empty_aij(session: &Session, comm: Comm, rows: usize, cols: usize) -> Result<Mat> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatCreate(session.raw_comm(comm), &mut raw))?;
         let mat = Mat::own(raw, session);
@@ -57,6 +50,20 @@ impl Mat {
             sys::PETSC_DETERMINE
         ))?;
         petsc!(MatSetType(raw, c"aij".as_ptr()))?;
+        Ok(mat)
+    }
+
+    /// An AIJ matrix with `rows` rows and `cols` columns on this rank, from (global row, global column, value) entries that any rank
+    /// may give for any row; repeated entries are added up. Collective.
+    pub fn from_triplets(
+        session: &Session,
+        comm: Comm,
+        rows: usize,
+        cols: usize,
+        entries: &[(i32, i32, f64)],
+    ) -> Result<Mat> {
+        let mat = Mat::empty_aij(session, comm, rows, cols)?;
+        let raw = mat.raw();
         // PETSc sorts the index arrays in place.
         let mut i: std::vec::Vec<i32> = entries.iter().map(|e| e.0).collect();
         let mut j: std::vec::Vec<i32> = entries.iter().map(|e| e.1).collect();
@@ -110,17 +117,8 @@ impl Mat {
                 o_nnz.len()
             )));
         }
-        let mut raw = std::ptr::null_mut();
-        petsc!(MatCreate(session.raw_comm(comm), &mut raw))?;
-        let mat = Mat::own(raw, session);
-        petsc!(MatSetSizes(
-            raw,
-            count(rows)?,
-            count(cols)?,
-            sys::PETSC_DETERMINE,
-            sys::PETSC_DETERMINE
-        ))?;
-        petsc!(MatSetType(raw, c"aij".as_ptr()))?;
+        let mat = Mat::empty_aij(session, comm, rows, cols)?;
+        let raw = mat.raw();
         petsc!(MatSeqAIJSetPreallocation(raw, 0, d_nnz.as_ptr()))?;
         if comm == Comm::World {
             petsc!(MatMPIAIJSetPreallocation(

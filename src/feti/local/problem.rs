@@ -18,6 +18,10 @@ use crate::sparse::Csr;
 /// did not need it is harmless (the primal problem frees it exactly), so the bound is generous.
 const WEAKLY_HELD: f64 = 1e-6;
 
+/// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
+/// has a bad pivot then is not semidefinite at all, and trying on would cost a factorisation per dof.
+const MOST_FREE: usize = 12;
+
 /// One subdomain, factored.
 #[derive(Debug)]
 pub struct LocalProblem {
@@ -46,6 +50,7 @@ impl LocalProblem {
         primal: &[u32],
         coordinates: Option<&[[f64; 3]]>,
     ) -> Result<LocalProblem, SingularInterior> {
+        let given = delta.len();
         let mut delta = delta.to_vec();
         let (mut interface, factor, mut s) = loop {
             let interface = [&delta[..], primal].concat();
@@ -53,7 +58,7 @@ impl LocalProblem {
             match PartialCholesky::new(k, symbolic) {
                 Ok((factor, s)) => break (interface, factor, s),
                 // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
-                Err(e) if delta.len() < k.n() && !delta.contains(&e.dof) => delta.push(e.dof),
+                Err(e) if delta.len() < given + MOST_FREE => delta.push(e.dof),
                 Err(e) => return Err(e),
             }
         };
@@ -277,6 +282,27 @@ mod tests {
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, f64::max);
         assert!(error < 1e-12, "error {error:.1e}");
+    }
+
+    #[test]
+    fn an_indefinite_or_broken_matrix_is_refused() {
+        for value in [-3.0, f64::NAN] {
+            let (mut k, x) = grid_laplacian(12, 12, 0.1);
+            for i in 0..k.n() {
+                let at = k.row_ptr[i]
+                    + k.row(i)
+                        .0
+                        .iter()
+                        .position(|&j| j as usize == i)
+                        .expect("diagonal");
+                k.val[at] += value;
+            }
+            let delta: Vec<u32> = (0..12).collect();
+            assert!(
+                LocalProblem::new(&k, &delta, &[], Some(&x)).is_err(),
+                "{value}"
+            );
+        }
     }
 
     #[test]
