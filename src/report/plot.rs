@@ -1,153 +1,13 @@
 //! Line and scatter plots with one or more panels, as PNG and SVG. The legend stands below the panels, never on the data.
 
-use super::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use super::canvas::{self, Anchor, Canvas, TextStyle};
 use super::raster::Raster;
 use super::svg::Svg;
-use super::ticks::{self, Scale, Tick};
 use crate::Result;
 use std::path::{Path, PathBuf};
 
-/// Shape of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marker {
-    /// Nothing.
-    None,
-    /// A disc.
-    Circle,
-    /// A square.
-    Square,
-    /// A square on its corner.
-    Diamond,
-    /// A triangle.
-    Triangle,
-}
-
-/// How points are joined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
-    /// Not at all.
-    None,
-    /// By a full line.
-    Full,
-    /// By a dashed line.
-    Dashed,
-    /// By a dotted line.
-    Dotted,
-}
-
-/// Points that belong together.
-#[derive(Debug, Clone)]
-pub struct Series {
-    /// Name in the legend; series of equal name in several panels appear there once; empty: not in the legend.
-    pub label: String,
-    /// (x, y). A point that the axes cannot show (NaN, ≤ 0 on a log axis) is left out and interrupts the line.
-    pub points: Vec<(f64, f64)>,
-    /// Colour of line and markers.
-    pub colour: Colour,
-    /// Shape of the points.
-    pub marker: Marker,
-    /// Filled or hollow markers.
-    pub filled: bool,
-    /// Radius of the markers in logical pixels.
-    pub size: f64,
-    /// How the points are joined.
-    pub line: Line,
-}
-
-impl Series {
-    /// Filled discs joined by a full line.
-    pub fn new(label: impl Into<String>, points: Vec<(f64, f64)>, colour: Colour) -> Self {
-        Series {
-            label: label.into(),
-            points,
-            colour,
-            marker: Marker::Circle,
-            filled: true,
-            size: 4.0,
-            line: Line::Full,
-        }
-    }
-
-    /// Changes the marker.
-    #[must_use]
-    pub fn marker(mut self, marker: Marker, filled: bool, size: f64) -> Self {
-        (self.marker, self.filled, self.size) = (marker, filled, size);
-        self
-    }
-
-    /// Changes the line.
-    #[must_use]
-    pub fn line(mut self, line: Line) -> Self {
-        self.line = line;
-        self
-    }
-}
-
-/// One axis of a panel.
-#[derive(Debug, Clone)]
-pub struct Axis {
-    /// What it measures; `_{...}` and `^{...}` are sub- and superscripts.
-    pub label: String,
-    /// Linear or logarithmic.
-    pub scale: Scale,
-    /// Where the ticks go; found automatically when empty.
-    pub ticks: Vec<f64>,
-    /// What it shows; everything when `None`.
-    pub range: Option<(f64, f64)>,
-}
-
-impl Axis {
-    /// An axis with automatic range and ticks.
-    pub fn new(label: impl Into<String>, scale: Scale) -> Self {
-        Axis {
-            label: label.into(),
-            scale,
-            ticks: Vec::new(),
-            range: None,
-        }
-    }
-
-    /// Puts labelled ticks at these numbers.
-    #[must_use]
-    pub fn at(mut self, ticks: impl Into<Vec<f64>>) -> Self {
-        self.ticks = ticks.into();
-        self
-    }
-
-    fn limits(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
-        self.range
-            .unwrap_or_else(|| ticks::range(values.chain(self.ticks.iter().copied()), self.scale))
-    }
-
-    fn marks(&self, limits: (f64, f64), wanted: usize) -> Vec<Tick> {
-        if self.ticks.is_empty() {
-            return ticks::ticks(limits.0, limits.1, self.scale, wanted);
-        }
-        let inside = self
-            .ticks
-            .iter()
-            .filter(|&&t| t >= limits.0 && t <= limits.1);
-        inside
-            .map(|&at| Tick {
-                at,
-                label: ticks::number(at),
-            })
-            .collect()
-    }
-}
-
-/// One plot.
-#[derive(Debug, Clone)]
-pub struct Panel {
-    /// Written above; may be empty.
-    pub title: String,
-    /// Horizontal axis.
-    pub x: Axis,
-    /// Vertical axis.
-    pub y: Axis,
-    /// What is shown, later ones on top.
-    pub series: Vec<Series>,
-}
+pub use super::panel::{Axis, Panel};
+pub use super::series::{Line, Marker, Series};
 
 /// Panels in a grid under one title and above one legend.
 #[derive(Debug, Clone)]
@@ -162,10 +22,10 @@ pub struct Figure {
     pub panel_size: (f64, f64),
 }
 
-const TEXT: f64 = 13.0;
-const TICK_TEXT: f64 = 12.0;
+pub(super) const TEXT: f64 = 13.0;
+pub(super) const TICK_TEXT: f64 = 12.0;
 const TITLE_TEXT: f64 = 15.0;
-const MARGIN: f64 = 14.0;
+pub(super) const MARGIN: f64 = 14.0;
 const LEGEND_LINE: f64 = 22.0;
 const SAMPLE: f64 = 34.0;
 
@@ -308,179 +168,10 @@ impl Figure {
     }
 }
 
-impl Series {
-    fn draw(&self, canvas: &mut dyn Canvas, lines: &[Vec<Point>], points: &[Point]) {
-        let dash: &[f64] = match self.line {
-            Line::Dashed => &[7.0, 4.0],
-            Line::Dotted => &[2.0, 3.0],
-            _ => &[],
-        };
-        if self.line != Line::None {
-            for line in lines.iter().filter(|l| l.len() > 1) {
-                canvas.line(line, 1.6, self.colour, dash);
-            }
-        }
-        for &p in points {
-            for (radius, colour) in [(self.size, self.colour), (self.size - 1.6, Colour::WHITE)] {
-                if let Some(shape) = self.marker.shape(p, radius) {
-                    canvas.polygon(&shape, colour);
-                }
-                if self.filled {
-                    break;
-                }
-            }
-        }
-    }
-}
-
-impl Marker {
-    fn shape(self, (x, y): Point, r: f64) -> Option<Vec<Point>> {
-        let r = r.max(0.1);
-        match self {
-            Marker::None => None,
-            Marker::Circle => Some(canvas::circle((x, y), r)),
-            Marker::Square => {
-                let s = 0.9 * r;
-                Some(vec![
-                    (x - s, y - s),
-                    (x + s, y - s),
-                    (x + s, y + s),
-                    (x - s, y + s),
-                ])
-            }
-            Marker::Diamond => {
-                let s = 1.25 * r;
-                Some(vec![(x, y - s), (x + s, y), (x, y + s), (x - s, y)])
-            }
-            Marker::Triangle => {
-                let s = 1.3 * r;
-                Some(vec![
-                    (x, y - s),
-                    (x + 0.87 * s, y + 0.5 * s),
-                    (x - 0.87 * s, y + 0.5 * s),
-                ])
-            }
-        }
-    }
-}
-
-impl Panel {
-    fn draw(&self, canvas: &mut dyn Canvas, at: Point, size: (f64, f64)) {
-        let all = || self.series.iter().flat_map(|s| &s.points);
-        let shown = |p: &&(f64, f64)| self.x.scale.shows(p.0) && self.y.scale.shows(p.1);
-        let x_range = self.x.limits(all().filter(shown).map(|p| p.0));
-        let y_range = self.y.limits(all().filter(shown).map(|p| p.1));
-        let (x_ticks, y_ticks) = (self.x.marks(x_range, 6), self.y.marks(y_range, 5));
-
-        let tick_width = y_ticks
-            .iter()
-            .map(|t| canvas::text_width(&t.label, TICK_TEXT, false))
-            .fold(0.0, f64::max);
-        let y_label = if self.y.label.is_empty() {
-            0.0
-        } else {
-            1.7 * TEXT
-        };
-        let title = if self.title.is_empty() {
-            10.0
-        } else {
-            2.0 * TEXT
-        };
-        let (x0, x1) = (
-            at.0 + MARGIN + y_label + tick_width + 9.0,
-            at.0 + size.0 - 4.0,
-        );
-        let (y0, y1) = (at.1 + title, at.1 + size.1 - 2.0 * TICK_TEXT - 2.2 * TEXT);
-        let place = |scale: Scale, range: (f64, f64), v: f64| {
-            (scale.forward(v) - scale.forward(range.0))
-                / (scale.forward(range.1) - scale.forward(range.0))
-        };
-        let px = |v: f64| x0 + (x1 - x0) * place(self.x.scale, x_range, v);
-        let py = |v: f64| y1 - (y1 - y0) * place(self.y.scale, y_range, v);
-
-        if !self.title.is_empty() {
-            let style = TextStyle {
-                bold: true,
-                ..TextStyle::new(TEXT, Anchor::Middle)
-            };
-            canvas.text((0.5 * (x0 + x1), at.1 + 0.8 * TEXT), &self.title, &style);
-        }
-        for t in &x_ticks {
-            if !t.label.is_empty() {
-                canvas.line(&[(px(t.at), y0), (px(t.at), y1)], 1.0, Colour::GRID, &[]);
-            }
-        }
-        for t in &y_ticks {
-            if !t.label.is_empty() {
-                canvas.line(&[(x0, py(t.at)), (x1, py(t.at))], 1.0, Colour::GRID, &[]);
-            }
-        }
-        // Labels that would touch their left neighbour are left out.
-        let mut free = f64::NEG_INFINITY;
-        for t in &x_ticks {
-            let (x, length) = (px(t.at), if t.label.is_empty() { 3.0 } else { 5.0 });
-            canvas.line(&[(x, y1), (x, y1 + length)], 1.0, Colour::INK, &[]);
-            let half = 0.5 * canvas::text_width(&t.label, TICK_TEXT, false);
-            if !t.label.is_empty() && x - half > free {
-                canvas.text(
-                    (x, y1 + 5.0 + 0.9 * TICK_TEXT),
-                    &t.label,
-                    &TextStyle::new(TICK_TEXT, Anchor::Middle),
-                );
-                free = x + half + 4.0;
-            }
-        }
-        let mut free = f64::INFINITY;
-        for t in &y_ticks {
-            let (y, length) = (py(t.at), if t.label.is_empty() { 3.0 } else { 5.0 });
-            canvas.line(&[(x0 - length, y), (x0, y)], 1.0, Colour::INK, &[]);
-            if !t.label.is_empty() && y + 0.5 * TICK_TEXT < free {
-                canvas.text(
-                    (x0 - 9.0, y),
-                    &t.label,
-                    &TextStyle::new(TICK_TEXT, Anchor::End),
-                );
-                free = y - 0.5 * TICK_TEXT - 1.0;
-            }
-        }
-        canvas.line(&[(x0, y0), (x0, y1), (x1, y1)], 1.2, Colour::INK, &[]);
-        let below = y1 + 5.0 + 1.8 * TICK_TEXT + 0.8 * TEXT;
-        canvas.text(
-            (0.5 * (x0 + x1), below),
-            &self.x.label,
-            &TextStyle::new(TEXT, Anchor::Middle),
-        );
-        let style = TextStyle {
-            upwards: true,
-            ..TextStyle::new(TEXT, Anchor::Middle)
-        };
-        canvas.text(
-            (at.0 + MARGIN + 0.4 * TEXT, 0.5 * (y0 + y1)),
-            &self.y.label,
-            &style,
-        );
-
-        let inside = |v: f64, r: (f64, f64)| v >= r.0 && v <= r.1;
-        for series in &self.series {
-            let mut lines = vec![Vec::new()];
-            for p in &series.points {
-                if shown(&p) && inside(p.0, x_range) && inside(p.1, y_range) {
-                    lines
-                        .last_mut()
-                        .expect("never empty")
-                        .push((px(p.0), py(p.1)));
-                } else {
-                    lines.push(Vec::new());
-                }
-            }
-            let points: Vec<Point> = lines.iter().flatten().copied().collect();
-            series.draw(canvas, &lines, &points);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::{Colour, Point};
+    use super::super::ticks::Scale;
     use super::*;
 
     /// Writes down what is drawn.
