@@ -19,6 +19,7 @@ pub mod figure3;
 pub mod json;
 mod outline;
 pub mod output;
+mod paint;
 mod panel;
 pub mod paper;
 pub mod plot;
