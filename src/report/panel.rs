@@ -69,20 +69,77 @@ pub struct Panel {
     pub y: Axis,
     /// What is shown, later ones on top.
     pub series: Vec<Series>,
+    /// Parts of the horizontal axis that are set off by a coloured ground.
+    pub bands: Vec<Band>,
+}
+
+/// A part of the horizontal axis.
+#[derive(Debug, Clone)]
+pub struct Band {
+    /// Name in the legend, as that of a series.
+    pub label: String,
+    /// Where it starts and ends; a band of no width is drawn as a thin line.
+    pub range: (f64, f64),
+    /// Its ground.
+    pub colour: Colour,
 }
 
 impl Panel {
-    pub(super) fn draw(&self, canvas: &mut dyn Canvas, at: Point, size: (f64, f64)) {
-        let all = || self.series.iter().flat_map(|s| &s.points);
+    /// A place in a figure's grid that stays empty.
+    pub fn blank() -> Self {
+        Panel {
+            title: String::new(),
+            x: Axis::new("", Scale::Linear),
+            y: Axis::new("", Scale::Linear),
+            series: Vec::new(),
+            bands: Vec::new(),
+        }
+    }
+
+    fn is_blank(&self) -> bool {
+        self.series.is_empty() && self.title.is_empty() && self.y.label.is_empty()
+    }
+
+    /// What the axes show.
+    fn ranges(&self) -> [(f64, f64); 2] {
+        let shown = || {
+            let all = self.series.iter().flat_map(|s| &s.points);
+            all.filter(|p| self.x.scale.shows(p.0) && self.y.scale.shows(p.1))
+        };
+        [
+            self.x.limits(shown().map(|p| p.0)),
+            self.y.limits(shown().map(|p| p.1)),
+        ]
+    }
+
+    /// Width of the labels at the vertical axis.
+    pub(super) fn label_width(&self) -> f64 {
+        if self.is_blank() {
+            return 0.0;
+        }
+        let ticks = self.y.marks(self.ranges()[1], 5);
+        let widths = ticks
+            .iter()
+            .map(|t| canvas::text_width(&t.label, TICK_TEXT, false));
+        widths.fold(0.0, f64::max)
+    }
+
+    /// Draws the panel with `label_width` left for the labels at the vertical axis, at least its own: panels under each
+    /// other get the same, so that their axes stand under each other.
+    pub(super) fn draw(
+        &self,
+        canvas: &mut dyn Canvas,
+        at: Point,
+        size: (f64, f64),
+        label_width: f64,
+    ) {
+        if self.is_blank() {
+            return;
+        }
         let shown = |p: &&(f64, f64)| self.x.scale.shows(p.0) && self.y.scale.shows(p.1);
-        let x_range = self.x.limits(all().filter(shown).map(|p| p.0));
-        let y_range = self.y.limits(all().filter(shown).map(|p| p.1));
+        let [x_range, y_range] = self.ranges();
         let (x_ticks, y_ticks) = (self.x.marks(x_range, 6), self.y.marks(y_range, 5));
 
-        let tick_width = y_ticks
-            .iter()
-            .map(|t| canvas::text_width(&t.label, TICK_TEXT, false))
-            .fold(0.0, f64::max);
         let y_label = if self.y.label.is_empty() {
             0.0
         } else {
@@ -94,10 +151,15 @@ impl Panel {
             2.0 * TEXT
         };
         let (x0, x1) = (
-            at.0 + MARGIN + y_label + tick_width + 9.0,
+            at.0 + MARGIN + y_label + label_width + 9.0,
             at.0 + size.0 - 4.0,
         );
-        let (y0, y1) = (at.1 + title, at.1 + size.1 - 2.0 * TICK_TEXT - 2.2 * TEXT);
+        let x_label = if self.x.label.is_empty() {
+            0.9 * TEXT
+        } else {
+            2.2 * TEXT
+        };
+        let (y0, y1) = (at.1 + title, at.1 + size.1 - 2.0 * TICK_TEXT - x_label);
         let place = |scale: Scale, range: (f64, f64), v: f64| {
             (scale.forward(v) - scale.forward(range.0))
                 / (scale.forward(range.1) - scale.forward(range.0))
@@ -110,7 +172,15 @@ impl Panel {
                 bold: true,
                 ..TextStyle::new(TEXT, Anchor::Middle)
             };
-            canvas.text((0.5 * (x0 + x1), at.1 + 0.8 * TEXT), &self.title, &style);
+            let title = canvas::shortened(&self.title, TEXT, true, x1 - x0);
+            canvas.text((0.5 * (x0 + x1), at.1 + 0.8 * TEXT), &title, &style);
+        }
+        for band in &self.bands {
+            let place = |v: f64| px(v).clamp(x0, x1);
+            let (a, b) = (place(band.range.0), place(band.range.1));
+            let air = (0.5 * (3.0 - (b - a))).max(0.0);
+            let (a, b) = ((a - air).max(x0), (b + air).min(x1));
+            canvas.polygon(&[(a, y0), (b, y0), (b, y1), (a, y1)], band.colour);
         }
         for t in &x_ticks {
             if !t.label.is_empty() {

@@ -1,12 +1,12 @@
 //! Line and scatter plots with one or more panels, as PNG and SVG. The legend stands below the panels, never on the data.
 
-use super::canvas::{self, Anchor, Canvas, TextStyle};
+use super::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use super::raster::Raster;
 use super::svg::Svg;
 use crate::Result;
 use std::path::{Path, PathBuf};
 
-pub use super::panel::{Axis, Panel};
+pub use super::panel::{Axis, Band, Panel};
 pub use super::series::{Line, Marker, Series};
 
 /// Panels in a grid under one title and above one legend.
@@ -93,12 +93,14 @@ impl Figure {
         }
     }
 
-    /// The legend's entries: the first series of every name.
-    fn legend(&self) -> Vec<&Series> {
-        let mut out: Vec<&Series> = Vec::new();
-        for series in self.panels.iter().flat_map(|p| &p.series) {
-            if !series.label.is_empty() && out.iter().all(|s| s.label != series.label) {
-                out.push(series);
+    /// The legend's entries: the first series of every name, then the first band of every name.
+    fn legend(&self) -> Vec<Entry<'_>> {
+        let series = self.panels.iter().flat_map(|p| &p.series);
+        let bands = self.panels.iter().flat_map(|p| &p.bands);
+        let mut out: Vec<Entry> = Vec::new();
+        for entry in series.map(Entry::Series).chain(bands.map(Entry::Band)) {
+            if !entry.label().is_empty() && out.iter().all(|e| e.label() != entry.label()) {
+                out.push(entry);
             }
         }
         out
@@ -109,7 +111,7 @@ impl Figure {
         let entries = self.legend();
         let widest = entries
             .iter()
-            .map(|s| canvas::text_width(&s.label, TEXT, false))
+            .map(|s| canvas::text_width(s.label(), TEXT, false))
             .fold(0.0, f64::max);
         let column = SAMPLE + 8.0 + widest + 26.0;
         let columns = (((width - 2.0 * MARGIN) / column) as usize).clamp(1, entries.len().max(1));
@@ -138,39 +140,70 @@ impl Figure {
             );
         }
         let left = 0.5 * (width - self.columns.max(1) as f64 * self.panel_size.0 - MARGIN);
+        let mut label_width = vec![0.0_f64; self.columns.max(1)];
+        for (k, panel) in self.panels.iter().enumerate() {
+            let width = &mut label_width[k % self.columns.max(1)];
+            *width = width.max(panel.label_width());
+        }
         for (k, panel) in self.panels.iter().enumerate() {
             let (row, column) = (k / self.columns.max(1), k % self.columns.max(1));
             let x = left + column as f64 * self.panel_size.0;
             let y = self.title_height() + row as f64 * self.panel_size.1;
-            panel.draw(canvas, (x, y), self.panel_size);
+            panel.draw(canvas, (x, y), self.panel_size, label_width[column]);
         }
         let (columns, rows, column) = self.legend_grid(width);
         let top = height - 0.5 * MARGIN - rows as f64 * LEGEND_LINE;
         let start = 0.5 * (width - columns as f64 * column + 26.0);
-        for (k, series) in self.legend().into_iter().enumerate() {
+        for (k, entry) in self.legend().into_iter().enumerate() {
             // Down the columns: neighbours in the list stand under each other.
             let (c, r) = (k / rows, k % rows);
             let (x, y) = (
                 start + c as f64 * column,
                 top + (r as f64 + 0.5) * LEGEND_LINE,
             );
-            series.draw(
-                canvas,
-                &[vec![(x, y), (x + SAMPLE, y)]],
-                &[(x + 0.5 * SAMPLE, y)],
-            );
+            entry.draw(canvas, (x, y));
             canvas.text(
                 (x + SAMPLE + 8.0, y),
-                &series.label,
+                entry.label(),
                 &TextStyle::new(TEXT, Anchor::Start),
             );
         }
     }
 }
 
+/// A line of the legend.
+enum Entry<'a> {
+    Series(&'a Series),
+    Band(&'a Band),
+}
+
+impl Entry<'_> {
+    fn label(&self) -> &str {
+        match self {
+            Entry::Series(s) => &s.label,
+            Entry::Band(b) => &b.label,
+        }
+    }
+
+    /// A sample of `SAMPLE` pixels to the right of a point.
+    fn draw(&self, canvas: &mut dyn Canvas, (x, y): Point) {
+        let end = x + SAMPLE;
+        match self {
+            Entry::Series(s) => {
+                s.draw(canvas, &[vec![(x, y), (end, y)]], &[(x + 0.5 * SAMPLE, y)]);
+            }
+            Entry::Band(b) => {
+                let (top, bottom) = (y - 0.5 * TEXT, y + 0.5 * TEXT);
+                let corners = [(x, top), (end, top), (end, bottom), (x, bottom)];
+                canvas.polygon(&corners, b.colour);
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::canvas::{Colour, Point};
+    use super::super::canvas::Colour;
     use super::super::ticks::Scale;
     use super::*;
 
@@ -202,6 +235,7 @@ mod tests {
             x: Axis::new("x", Scale::Linear),
             y: Axis::new("y", scale),
             series: vec![Series::new("data", points, RED)],
+            bands: Vec::new(),
         };
         Figure::new("both", vec![panel.clone(), panel])
     }
@@ -277,5 +311,37 @@ mod tests {
         assert!(paths
             .iter()
             .all(|p| std::fs::metadata(p).unwrap().len() > 500));
+    }
+
+    #[test]
+    fn bands_lie_under_their_part_of_the_axis() {
+        const BLUE: Colour = Colour(200, 220, 255);
+        let mut figure = figure(Scale::Linear, vec![(0.0, 1.0), (1.0, 3.0), (2.0, 2e4)]);
+        let band = |from: f64, to: f64| Band {
+            label: "zone".into(),
+            range: (from, to),
+            colour: BLUE,
+        };
+        figure.panels[0].bands = vec![band(1.0, 2.0), band(0.0, 0.0), band(-9.0, -5.0)];
+        figure.panels[1].series[0].points[2].1 = 4.0; // short labels: the axes would stand elsewhere
+        figure.columns = 1;
+        figure.panels.push(Panel::blank());
+        let mut drawn = Recorder::default();
+        figure.draw(&mut drawn);
+        let curves: Vec<_> = drawn.lines.iter().filter(|l| l.1 == RED).collect();
+        let at = |k: usize| curves[0].0[k].0;
+        let bands: Vec<_> = drawn.polygons.iter().filter(|p| p.1 == BLUE).collect();
+        assert_eq!(bands.len(), 3 + 1, "three in the panel, one in the legend");
+        let ends = |k: usize| (bands[k].0[0].0, bands[k].0[1].0);
+        assert!((ends(0).0 - at(1)).abs() < 1e-9 && (ends(0).1 - at(2)).abs() < 1e-9);
+        assert!(
+            ends(1).0 <= at(0) && ends(1).1 - ends(1).0 >= 1.5,
+            "a single point is seen"
+        );
+        assert_eq!(drawn.texts.iter().filter(|t| t.1 == "zone").count(), 1);
+        // Panels under each other share their axes' place.
+        for k in 0..3 {
+            assert!((curves[1].0[k].0 - at(k)).abs() < 1e-9);
+        }
     }
 }
