@@ -268,6 +268,13 @@ impl Gathered {
             body: &self.body,
             subdomain: &self.subdomain,
         };
-        field::write_solution(&mesh, &self.u, &self.rho, title, &dir.join("solution.png"))
+        field::write_solution(
+            &mesh,
+            &self.u,
+            &self.rho,
+            &[],
+            title,
+            &dir.join("solution.png"),
+        )
     }
 }

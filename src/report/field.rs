@@ -4,12 +4,14 @@
 //! or once per subdomain: lines between bodies and subdomains are found from the coordinates.
 
 use super::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use super::marks;
 use super::paint::{axes, colour_bar, colour_range, paint, View, BAR};
 use super::raster::Raster;
 use super::ticks::Scale;
 use crate::{Error, Result};
 use std::path::Path;
 
+pub use super::marks::ContactMark;
 pub use super::outline::Mesh;
 
 /// Numbers to show.
@@ -40,11 +42,19 @@ pub struct Field<'a> {
     pub scale: Scale,
 }
 
-/// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100.
+/// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100. Where
+/// sides may touch, between bodies or at obstacles, `contact` says so: its marks are drawn on u. Empty without contact.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
-pub fn write_solution(mesh: &Mesh, u: &[f64], rho: &[f64], title: &str, path: &Path) -> Result<()> {
+pub fn write_solution(
+    mesh: &Mesh,
+    u: &[f64],
+    rho: &[f64],
+    contact: &[ContactMark],
+    title: &str,
+    path: &Path,
+) -> Result<()> {
     let (low, high) = extremes(rho);
     let scale = if low > 0.0 && high > 100.0 * low {
         Scale::Log
@@ -63,7 +73,8 @@ pub fn write_solution(mesh: &Mesh, u: &[f64], rho: &[f64], title: &str, path: &P
             scale,
         },
     ];
-    write(mesh, &fields, title, path)
+    check(mesh, &fields)?;
+    draw(mesh, &fields, contact, title).write_png(path)
 }
 
 /// Writes any fields of one mesh as PNG: side by side, or under each other where the mesh is wide.
@@ -71,6 +82,11 @@ pub fn write_solution(mesh: &Mesh, u: &[f64], rho: &[f64], title: &str, path: &P
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
 pub fn write(mesh: &Mesh, fields: &[Field], title: &str, path: &Path) -> Result<()> {
+    check(mesh, fields)?;
+    draw(mesh, fields, &[], title).write_png(path)
+}
+
+fn check(mesh: &Mesh, fields: &[Field]) -> Result<()> {
     mesh.check()?;
     for field in fields {
         let (expected, what) = match field.values {
@@ -85,7 +101,7 @@ pub fn write(mesh: &Mesh, fields: &[Field], title: &str, path: &Path) -> Result<
             )));
         }
     }
-    draw(mesh, fields, title).write_png(path)
+    Ok(())
 }
 
 const TEXT: f64 = 13.0;
@@ -94,7 +110,7 @@ const LEFT: f64 = 52.0;
 const BAR_GAP: f64 = 12.0;
 const LABELS: f64 = 74.0;
 
-fn draw(mesh: &Mesh, fields: &[Field], title: &str) -> Raster {
+fn draw(mesh: &Mesh, fields: &[Field], contact: &[ContactMark], title: &str) -> Raster {
     let (low, high) = mesh.bounds();
     let size = [
         (high[0] - low[0]).max(1e-300),
@@ -121,7 +137,8 @@ fn draw(mesh: &Mesh, fields: &[Field], title: &str) -> Raster {
         2.3 * TITLE_TEXT
     };
     let width = (columns * cell.0).max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
-    let mut raster = Raster::new(width, top + rows * cell.1, 2.0);
+    let below = marks::legend_height(contact);
+    let mut raster = Raster::new(width, top + rows * cell.1 + below, 2.0);
     if !title.is_empty() {
         let style = TextStyle {
             bold: true,
@@ -173,6 +190,10 @@ fn draw(mesh: &Mesh, fields: &[Field], title: &str) -> Raster {
             let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
             raster.line(&line, body_line, Colour(0, 0, 0), &[]);
         }
+        if k == 0 {
+            let spacing = spacing(mesh.count(mesh.body));
+            marks::draw(&mut raster, contact, &view, spacing);
+        }
         axes(&mut raster, &view, low, high);
         colour_bar(
             &mut raster,
@@ -182,10 +203,13 @@ fn draw(mesh: &Mesh, fields: &[Field], title: &str) -> Raster {
             field.scale,
         );
     }
+    let middle = top + rows * cell.1 + 0.5 * below - 4.0;
+    marks::legend(&mut raster, contact, (0.5 * width, middle));
     raster
 }
 
-fn extremes(values: &[f64]) -> (f64, f64) {
+/// Smallest and largest finite number; (∞, −∞) without any.
+pub(super) fn extremes(values: &[f64]) -> (f64, f64) {
     let finite = values.iter().filter(|v| v.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |m, &v| {
         (m.0.min(v), m.1.max(v))
@@ -210,6 +234,7 @@ mod tests {
                 values: Values::Nodal(&u),
                 scale: Scale::Linear,
             }],
+            &[],
             "",
         );
         let (_, origin) = (0, (LEFT, 6.0 + 2.4 * TEXT + 400.0));
@@ -235,13 +260,55 @@ mod tests {
     }
 
     #[test]
+    fn the_contact_zone_is_marked_on_u() {
+        // Two bodies that touch along x = 1/2 in its lower half; the upper half is open.
+        let mesh = grid(2, 2, 4, false);
+        let u = vec![0.5; mesh.points.len()];
+        let field = [Field {
+            title: "u",
+            values: Values::Nodal(&u),
+            scale: Scale::Linear,
+        }; 2];
+        let marks: Vec<ContactMark> = (0..16)
+            .map(|k| ContactMark {
+                from: [0.5, f64::from(k) / 16.0],
+                to: [0.5, f64::from(k + 1) / 16.0],
+                closed: k < 8,
+            })
+            .collect();
+        let plain = draw(&mesh.view(), &field, &[], "");
+        let marked = draw(&mesh.view(), &field, &marks, "");
+        let (w, h) = plain.size();
+        assert_eq!(marked.size().0, w);
+        assert!(marked.size().1 > h, "room for the legend");
+        let red = |x: usize, y: usize| {
+            let c = marked.get(x, y);
+            c.0 > 200 && c.1 < 60
+        };
+        let rows =
+            |xs: std::ops::Range<usize>| (0..h).filter(move |&y| xs.clone().any(|x| red(x, y)));
+        // The lower half of the first picture, 400 logical pixels high, and nothing on the second.
+        let count = rows(0..w / 2).count();
+        assert!(count.abs_diff(400) < 12, "{count}");
+        assert_eq!(rows(w / 2..w).count(), 0);
+        // Dashes: black and white in turn, in the upper half.
+        let x = ((LEFT + 200.0) * 2.0) as usize;
+        let y0 = ((6.0 + 2.4 * TEXT) * 2.0) as usize;
+        let dark: Vec<bool> = (y0 + 8..y0 + 380)
+            .map(|y| marked.get(x, y).0 < 100)
+            .collect();
+        let changes = dark.windows(2).filter(|p| p[0] != p[1]).count();
+        assert!((30..80).contains(&changes), "{changes}");
+    }
+
+    #[test]
     fn arrays_of_the_wrong_length_are_refused() {
         let mesh = grid(1, 1, 2, false);
         let (u, rho) = (
             vec![0.0; mesh.points.len()],
             vec![1.0; mesh.quads.len() + 1],
         );
-        let message = write_solution(&mesh.view(), &u, &rho, "", Path::new("/dev/null"))
+        let message = write_solution(&mesh.view(), &u, &rho, &[], "", Path::new("/dev/null"))
             .unwrap_err()
             .to_string();
         assert!(
@@ -256,6 +323,6 @@ mod tests {
         let u: Vec<f64> = mesh.points.iter().map(|p| p[0] * p[1]).collect();
         let rho = vec![1.0; mesh.quads.len()];
         let dir = super::super::output::tests::Scratch::new("field");
-        write_solution(&mesh.view(), &u, &rho, "", &dir.0.join("u.png")).unwrap();
+        write_solution(&mesh.view(), &u, &rho, &[], "", &dir.0.join("u.png")).unwrap();
     }
 }

@@ -9,14 +9,14 @@
 //! | [`table`], [`summary`] | aligned text for terminals, CSV, and the tables of the three commands |
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
-//! | [`field`] | pictures of u and ρ on quadrilaterals |
-//! | [`vtu`] | ParaView files |
+//! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
 
 pub mod canvas;
 pub mod colormap;
 pub mod field;
 pub mod figure3;
 pub mod json;
+mod marks;
 mod outline;
 pub mod output;
 mod paint;
