@@ -162,6 +162,7 @@ fn report(
             min_multiplier: inequalities.then_some(solution.kkt.min_multiplier),
         },
         energy: solution.energy,
+        contact: None,
         error: scene
             .exact
             .is_some()

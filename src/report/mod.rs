@@ -10,9 +10,12 @@
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
 //! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
+//! | [`contact`], [`contact_summary`] | the record of a contact solve, and what the terminal shows of it |
 
 pub mod canvas;
 pub mod colormap;
+pub mod contact;
+pub mod contact_summary;
 pub mod field;
 pub mod figure3;
 pub mod json;
