@@ -162,6 +162,7 @@ fn report(
             min_multiplier: inequalities.then_some(solution.kkt.min_multiplier),
         },
         energy: solution.energy,
+        contact: None,
         error: scene
             .exact
             .is_some()
@@ -268,6 +269,13 @@ impl Gathered {
             body: &self.body,
             subdomain: &self.subdomain,
         };
-        field::write_solution(&mesh, &self.u, &self.rho, title, &dir.join("solution.png"))
+        field::write_solution(
+            &mesh,
+            &self.u,
+            &self.rho,
+            &[],
+            title,
+            &dir.join("solution.png"),
+        )
     }
 }
