@@ -12,6 +12,7 @@ pub mod active_set;
 pub mod augmented;
 pub mod balance;
 pub mod feasible;
+pub mod judge;
 pub mod motion;
 pub mod mprgp;
 pub mod nnls;
