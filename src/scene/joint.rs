@@ -104,6 +104,17 @@ impl Scene {
         Ok(fem::free_load(&mesh, &load))
     }
 
+    /// ∫ f over subdomain `index` at load step `step`, by the quadrature of its load.
+    ///
+    /// # Errors
+    /// As [`Scene::loads`].
+    pub fn resultant(&self, index: usize, step: usize) -> Result<f64> {
+        let factors = Factors::of(&self.steps, step)?;
+        let mesh = self.mesh_with(index, factors)?;
+        let (body, block) = self.place(index);
+        Ok(self.nodal_load(body, &block, &mesh, factors)?.iter().sum())
+    }
+
     /// The factor of given values at load step `step` ([`SubdomainMesh::prescribed`] has that of the last step).
     ///
     /// # Panics
