@@ -91,7 +91,7 @@ impl Scene {
         })
     }
 
-    /// The load f of subdomain `index` at load step `step` (0 is the only one without [steps]), given values eliminated;
+    /// The load f of subdomain `index` at load step `step` (0 is the only one without `[steps]`), given values eliminated;
     /// at the last step that of [`Scene::subdomain`] to the last bit.
     ///
     /// # Errors
@@ -124,7 +124,7 @@ impl Scene {
         factors.expect("the step exists").dirichlet()
     }
 
-    /// Number of load steps; 1 without [steps].
+    /// Number of load steps; 1 without `[steps]`.
     pub fn n_steps(&self) -> usize {
         self.steps.as_ref().map_or(1, |s| s.times.len())
     }
