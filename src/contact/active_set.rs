@@ -11,20 +11,14 @@
 
 use std::time::Instant;
 
-use super::{motion, smalbe, Caution, ContactType, Observer, State, Step};
+use super::{judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
+use crate::feti::dual::Dual;
 use crate::feti::exchange::{gather_all, max_all, sum_all};
 use crate::feti::inner::{iterate, Inner, Loads, Residual};
 use crate::feti::rows::Rows;
 use crate::feti::{recover, FetiFeti, Solution, Spectrum};
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
-
-/// A gap counts as violated above this multiple of the largest jump that is left on the rows that hold: a row that depends on
-/// three others inherits the sum of theirs.
-const NOISE: f64 = 3.0;
-
-/// Multipliers above minus this, relative to the largest, do not pull: rounding.
-const PULL: f64 = 1e-14;
 
 /// Solves by the active-set loop. Collective.
 pub fn solve(solver: &FetiFeti, start: Option<&State>, observe: &mut Observer) -> Result<Solution> {
@@ -235,7 +229,7 @@ impl Run {
     }
 
     /// Judges the rows at the λ and the displacements that are there.
-    fn next(&mut self, solver: &FetiFeti, dual: &crate::feti::dual::Dual) -> Result<Next> {
+    fn next(&mut self, solver: &FetiFeti, dual: &Dual) -> Result<Next> {
         let session = solver.session();
         let comm = session.comm();
         let (stiffness, jump) = (&dual.stiffness, &dual.stiffness.jump);
@@ -246,45 +240,21 @@ impl Run {
             *gap -= c;
         }
         let (gaps, lambda) = (gaps.array()?, self.lambda.array()?);
-        let contact = jump.n_owned_local..jump.n_owned;
-        // [largest jump left on rows that hold, largest |λ|, largest |y|]
-        let mut largest = [0.0f64; 3];
-        for r in contact.clone() {
-            if jump.active[r] {
-                largest[0] = largest[0].max(gaps[r].abs());
-                largest[1] = largest[1].max(lambda[r].abs());
-            }
-        }
         let y = self.residual.work.iter().flat_map(|w| &w.y);
-        largest[2] = y.fold(0.0, |a, y| a.max(y.abs()));
-        max_all(comm, &mut largest);
-        let [jump_left, lambda_max, y_max] = largest;
-        let open = (NOISE * jump_left).max(PULL * y_max);
-        let pull = PULL * lambda_max;
-
-        let mut active = jump.active.clone();
-        // How wrong each row is, in units in which multipliers and gaps compare.
-        let mut wrong = vec![0.0f64; jump.n_owned];
-        for r in contact.filter(|&r| jump.inequality[r]) {
-            if jump.active[r] && lambda[r] < -pull {
-                active[r] = false;
-                wrong[r] = -lambda[r] / lambda_max;
-            } else if !jump.active[r] && gaps[r] > open {
-                active[r] = true;
-                wrong[r] = gaps[r] / y_max;
-            }
-        }
-        let mut total = [wrong.iter().filter(|w| **w > 0.0).count() as f64];
-        sum_all(comm, &mut total);
+        let y = y.fold(0.0f64, |a, y| a.max(y.abs()));
+        let mut judged = judge::Rows::new(comm, jump, &gaps, &lambda, y);
+        let wrong = judged.wrong(comm);
         if self.state.caution == Caution::Single {
-            keep_worst(comm, &jump.active, &mut active, &wrong);
+            judged.keep_worst(comm, jump);
         }
-        let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
-        let score = |r: usize| scale(lambda[r], lambda_max) + scale(gaps[r], y_max);
-        let restored = motion::restore(comm, &self.g, jump, &mut active, &score, dual.natural.r);
+        let load = &self.loads.kernel;
+        let score = |r: usize| judged.score(lambda[r], gaps[r]);
+        let mut active = judged.active.clone();
+        let restored = motion::restore(comm, &self.g, jump, &mut active, &score, load);
         Ok(Next {
             active,
-            wrong: total[0] as usize,
+            wrong,
+            contradictory: judged.contradictory,
             restored,
         })
     }
@@ -305,10 +275,11 @@ impl Run {
             if !to_the_end {
                 return Ok(Verdict::GoOn);
             }
-            if next.restored == 0 {
+            if next.restored == 0 && !next.contradictory {
                 return Ok(Verdict::Solved);
             }
-            // Rows that pull are kept because nothing else holds a body: the rule has no way on from here.
+            // Rows that pull are kept because nothing else holds a body, or rows cannot all be satisfied: the rule has no way on
+            // from here.
             state.caution = Caution::Fallback;
             return Ok(Verdict::GoOn);
         }
@@ -331,6 +302,8 @@ struct Next {
     active: Vec<bool>,
     /// Rows on the wrong side over all ranks.
     wrong: usize,
+    /// Whether rows that hold contradict each other.
+    contradictory: bool,
     /// Rows that were put back so that no body comes loose, over all ranks.
     restored: usize,
 }
@@ -338,26 +311,6 @@ struct Next {
 fn count(before: &[bool], now: &[bool], test: impl Fn(bool, bool) -> bool) -> f64 {
     let pairs = before.iter().zip(now);
     pairs.filter(|(was, on)| test(**was, **on)).count() as f64
-}
-
-/// Of all changes only the worst stays, the first of them where several are equal.
-fn keep_worst(
-    comm: &mpi::topology::SimpleCommunicator,
-    old: &[bool],
-    new: &mut [bool],
-    wrong: &[f64],
-) {
-    let mut largest = [wrong.iter().fold(0.0f64, |a, w| a.max(*w))];
-    max_all(comm, &mut largest);
-    let mine = (0..wrong.len()).find(|&r| old[r] != new[r] && wrong[r] == largest[0]);
-    let holders = gather_all(comm, &[u64::from(mine.is_some())]);
-    let first = holders.iter().position(|w| w[0] == 1);
-    let here = first == Some(mpi::traits::Communicator::rank(comm) as usize);
-    for r in 0..new.len() {
-        if !(here && Some(r) == mine) {
-            new[r] = old[r];
-        }
-    }
 }
 
 /// A number that tells sets apart, the same on every rank.

@@ -94,25 +94,31 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
     (columns, all.iter().map(|w| w[0] == 1).collect())
 }
 
-/// Puts rows back into `active` until the active rows hold all rigid motions that all rows together hold: for every loose motion
-/// the row with the largest `score` among those that see it. Returns how many were put back. Collective.
+/// Puts rows back into `active` until the active rows hold all rigid motions that the load drives: for every loose motion that gains
+/// energy the row with the largest `score` among those that see it. Returns how many were put back. Collective.
 pub fn restore(
     comm: &SimpleCommunicator,
     g: &Rows,
     jump: &Jump,
     active: &mut [bool],
     score: &dyn Fn(usize) -> f64,
-    r: usize,
+    load: &KernelLoad,
 ) -> usize {
+    let r = load.e.len();
     if r == 0 {
         return 0;
     }
     let candidate = |i: usize| jump.inequality[i] || jump.active[i];
-    let floor = loose(comm, g, r, &|i| candidate(i)).len();
+    let driven = |v: &Vec<f64>| {
+        let work: f64 = v.iter().zip(&load.e).map(|(v, e)| v * e).sum();
+        let scale: f64 = v.iter().zip(&load.size).map(|(v, s)| (v * s).abs()).sum();
+        work.abs() > BALANCE * scale
+    };
     let mut restored = 0;
     loop {
-        let motions = loose(comm, g, r, &|i| active[i]);
-        if motions.len() <= floor {
+        let mut motions = loose(comm, g, r, &|i| active[i]);
+        motions.retain(driven);
+        if motions.is_empty() {
             return restored;
         }
         // The best row over all ranks that sees some loose motion.

@@ -109,6 +109,38 @@ impl Block {
     }
 }
 
+impl Block {
+    /// The right-hand sides nearest to `c` that the active rows can satisfy together: B B⁺ c over these rows, `c` on the others.
+    /// Where all candidates hold, gaps around a cross point and both sides of an obstacle contradict each other.
+    fn consistent(&self, active: &[bool], c: &[f64]) -> Vec<f64> {
+        let mut out = c.to_vec();
+        let rows: Vec<usize> = (0..active.len()).filter(|&r| active[r]).collect();
+        let largest = rows.iter().fold(0.0f64, |a, &r| a.max(c[r].abs()));
+        if rows.len() < 2 || largest == 0.0 {
+            return out;
+        }
+        let b = faer::Mat::from_fn(rows.len(), self.dofs.len(), |i, j| self.b.get(rows[i], j));
+        let range = scaling::range(&b);
+        if range.ncols() == rows.len() {
+            return out;
+        }
+        let mut near = vec![0.0; rows.len()];
+        for l in 0..range.ncols() {
+            let along: f64 = (0..rows.len()).map(|i| range[(i, l)] * c[rows[i]]).sum();
+            near.iter_mut()
+                .enumerate()
+                .for_each(|(i, n)| *n += along * range[(i, l)]);
+        }
+        for (&r, n) in rows.iter().zip(&near) {
+            // What differs by rounding alone is meant to be the same.
+            if (n - c[r]).abs() > 1e-12 * largest {
+                out[r] = *n;
+            }
+        }
+        out
+    }
+}
+
 /// Sorts this rank's rows by block: (order of the rows, blocks with `rows` counted after `first` local rows).
 pub(super) fn collect(
     problem: &Substructures,
@@ -156,6 +188,17 @@ pub(super) fn collect(
 }
 
 impl Jump {
+    /// Right-hand sides that the rows that hold can satisfy together, from c and Z^k; of all blocks, or of those that `which` names.
+    pub(super) fn reconcile(&mut self, which: impl Fn(&Block) -> bool) {
+        for block in self.blocks.iter().filter(|b| which(b)) {
+            let (active, c) = (
+                &self.active[block.rows.clone()],
+                &self.gap[block.rows.clone()],
+            );
+            self.held[block.rows.clone()].copy_from_slice(&block.consistent(active, c));
+        }
+    }
+
     /// Changes Z^k: `active` says for each owned row whether it holds (rows of B_loc always do). Only blocks in which a row
     /// changes get a new B_D; everything else stays. Returns the number of rows that changed on this rank. Collective.
     pub fn set_active(&mut self, comm: &SimpleCommunicator, active: &[bool]) -> usize {
@@ -176,7 +219,8 @@ impl Jump {
             }
             changed += here;
         }
-        self.active.copy_from_slice(active);
+        let old = std::mem::replace(&mut self.active, active.to_vec());
+        self.reconcile(|block| old[block.rows.clone()] != active[block.rows.clone()]);
         for entry in exchange(comm, &outgoing).concat() {
             let j = self.subdomains.binary_search(&entry.subdomain);
             let j = j.expect("entries go to the rank of their subdomain");

@@ -93,7 +93,7 @@ impl Residual {
         stiffness.jump_of(&self.work, &self.r)?; /*           r ← B y − c       */
         {
             let mut r = self.r.array_mut()?;
-            let rows = stiffness.jump.gap.iter().zip(&stiffness.jump.active);
+            let rows = stiffness.jump.held.iter().zip(&stiffness.jump.active);
             for (r, (c, on)) in r.iter_mut().zip(rows) {
                 *r -= if *on { *c } else { 0.0 };
             }

@@ -96,6 +96,9 @@ pub struct Jump {
     pub ghost_is_contact: Vec<bool>,
     /// Right-hand side c of each owned row.
     pub gap: Vec<f64>,
+    /// The right-hand side that each owned row is held to: c, or the nearest that the rows of its block that hold can satisfy
+    /// together.
+    pub held: Vec<f64>,
     /// Whether each owned row may be switched off by the contact loop.
     pub inequality: Vec<bool>,
     /// Z⁰ on the owned rows: whether the row holds to begin with.
@@ -188,6 +191,8 @@ impl Jump {
             subdomains: problem.local.iter().map(|s| s.index as u32).collect(),
             ..Jump::default()
         };
+        jump.held = jump.gap.clone();
+        jump.reconcile(|_| true);
         jump.receive(problem, sharing, exchange(comm, &outgoing).concat());
         jump
     }
@@ -198,6 +203,8 @@ impl Jump {
         for (c, &r) in rows.iter_mut().zip(&self.order) {
             *c = gaps[r];
         }
+        self.held.clone_from(&self.gap);
+        self.reconcile(|_| true);
     }
 
     fn receive(&mut self, problem: &Substructures, sharing: &Sharing, mut entries: Vec<Entry>) {
