@@ -1,5 +1,6 @@
 //! One solve, and the repetitions that it takes to meet a residual which is not the method's own.
 
+use super::job::ContactOutcome;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -7,7 +8,7 @@ use crate::Result;
 pub struct Attempt {
     /// The solution, in the order of the assembled problem.
     pub u: PetscVec,
-    /// ‖b − A u‖₂ / ‖b‖₂.
+    /// ‖b − A u‖₂ / ‖f‖₂ of the assembled problem.
     pub residual: f64,
     /// κ by CG.
     pub kappa: Option<f64>,
@@ -15,6 +16,10 @@ pub struct Attempt {
     pub iterations: Option<usize>,
     /// Wall-clock time.
     pub seconds: f64,
+    /// Of set-ups in between, which `seconds` does not count.
+    pub setup: f64,
+    /// What a contact loop has found.
+    pub contact: Option<ContactOutcome>,
     /// Whether the method's own tolerance was reached.
     pub converged: bool,
     /// PETSc's name for why it ended.
@@ -94,6 +99,8 @@ mod tests {
                     kappa: None,
                     iterations: Some(steps as usize),
                     seconds: 0.0,
+                    setup: 0.0,
+                    contact: None,
                     converged: rtol > breaks_at,
                     reason: String::new(),
                 })

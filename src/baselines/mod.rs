@@ -10,12 +10,22 @@
 //! driven to the same relative residual of the assembled problem.
 
 mod attempt;
+mod contact;
+mod groups;
 mod job;
+mod judge;
 mod launch;
+mod linear;
+mod ours;
+mod outer;
+mod plan;
+mod reduced;
+mod rows;
 mod system;
 mod table;
+mod unknowns;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use mpi::point_to_point::{Destination, Source};
@@ -24,13 +34,16 @@ use mpi::traits::Communicator;
 use crate::cli::args::Compare;
 use crate::cli::problem;
 use crate::petsc::{Options, Session};
-use crate::report::json::{self, CompareReport, CompareRow, CompareSeconds};
-use crate::report::{output, summary};
+use crate::report::json::{
+    self, CompareContact, CompareInequalities, CompareReport, CompareRow, CompareSeconds,
+};
+use crate::report::{compare, output};
 use crate::scene::{Numbering, Scene};
 use crate::{Error, Result};
-use job::{Job, Outcome, Task, Verdict};
+use job::{Job, Outcome, Task};
+use judge::{Judgement, Verdict};
 use launch::{Failure, Launcher, Workspace};
-use table::{Baseline, Format};
+use plan::{Plan, Run};
 
 pub use job::run as run_job;
 pub use table::BASELINES;
@@ -92,102 +105,6 @@ fn wait_for_first(session: &Session) {
     let (_, _): (i32, _) = first.receive();
 }
 
-/// One method in one layout.
-struct Run {
-    /// `None`: ours.
-    baseline: Option<&'static Baseline>,
-    ranks: usize,
-    threads: usize,
-    /// Parts of the domain that the method sees.
-    parts: Option<usize>,
-}
-
-impl Run {
-    fn task(&self, solution: &Path, rescue: bool) -> Task {
-        let solution = solution.to_path_buf();
-        match self.baseline {
-            None => Task::FetiFeti {
-                threads: self.threads,
-                solution,
-            },
-            Some(b) => Task::Baseline {
-                name: b.name.into(),
-                rescue,
-                solution,
-            },
-        }
-    }
-}
-
-/// What is run, and to which residual.
-struct Plan {
-    rtol: f64,
-    cores: usize,
-    limit: Duration,
-    runs: Vec<Run>,
-}
-
-impl Plan {
-    fn new(session: &Session, scene: &Scene, baselines: &[&'static Baseline]) -> Result<Plan> {
-        let ours = Options::new(session, "fetifeti_");
-        let rtol = ours.get_f64("ksp_rtol")?.unwrap_or(1e-6);
-        if !(rtol > 0.0 && rtol < 1.0) {
-            return Err(Error::input(format!(
-                "-fetifeti_ksp_rtol is {rtol}, expected a number between 0 and 1"
-            )));
-        }
-        let options = Options::new(session, "compare_");
-        options.heading("Options of compare")?;
-        let all = std::thread::available_parallelism().map_or(1, |n| n.get());
-        let cores = options
-            .usize("cores", all, "cores that every method may use")?
-            .max(1);
-        let limit = options
-            .usize("time_limit", 600, "seconds after which a method is ended")?
-            .max(1);
-        Ok(Plan {
-            rtol,
-            cores,
-            limit: Duration::from_secs(limit as u64),
-            runs: runs(scene.n_subdomains(), cores, baselines),
-        })
-    }
-}
-
-/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on one per core; the others on all
-/// cores.
-fn runs(subdomains: usize, cores: usize, baselines: &[&'static Baseline]) -> Vec<Run> {
-    let ours = |ranks, threads| Run {
-        baseline: None,
-        ranks,
-        threads,
-        parts: Some(subdomains),
-    };
-    let mut runs = vec![ours(1, cores)];
-    if cores > 1 && subdomains > 1 {
-        runs.push(ours(cores.min(subdomains), 1));
-    }
-    for &baseline in baselines {
-        let on = |ranks, parts| Run {
-            baseline: Some(baseline),
-            ranks,
-            threads: 1,
-            parts,
-        };
-        match baseline.format {
-            Format::Assembled => runs.push(on(cores, None)),
-            Format::Unassembled => {
-                runs.push(on(subdomains, Some(subdomains)));
-                let few = cores.min(subdomains);
-                if few < subdomains {
-                    runs.push(on(few, Some(few)));
-                }
-            }
-        }
-    }
-    runs
-}
-
 /// On rank 0: all jobs one after the other, then the judge, then the tables.
 fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<()> {
     let launcher = Launcher {
@@ -199,7 +116,10 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
     let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
     let quiet = args.quiet || to_stdout;
     let mut rows = Vec::new();
-    let mut solutions = Vec::new();
+    // Numbers of the rows that have a solution; the solutions.
+    let (mut solved, mut solutions) = (Vec::new(), Vec::new());
+    // The active set of the last contact loop: methods that solve equations only take it.
+    let mut active: Vec<usize> = Vec::new();
     for (k, run) in plan.runs.iter().enumerate() {
         let name = run.baseline.map_or("fetifeti", |b| b.name);
         let solution = launcher.workspace.file(&format!("{k}.u"));
@@ -209,7 +129,8 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
                 scene: file.clone(),
                 result: launcher.workspace.file(&format!("{k}-{rescue}.json")),
                 rtol: plan.rtol,
-                task: run.task(&solution, rescue),
+                inner: plan.inner,
+                task: run.task(&solution, rescue, &active),
             };
             let finished = launcher.run(&format!("{k}-{rescue}"), &job, run.ranks)?;
             if !quiet && !finished.printed.trim().is_empty() {
@@ -231,8 +152,14 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
             }
             Some(_) => {}
         }
-        if outcome.is_ok() {
-            solutions.push((k, solution));
+        if let Ok(outcome) = &outcome {
+            let contact = outcome.contact.as_ref();
+            if contact.is_some_and(|c| c.steps.is_some()) && run.baseline.is_none() {
+                active = contact.map(|c| c.active.clone()).unwrap_or_default();
+            }
+            let rows = contact.map(|c| c.active.clone()).unwrap_or_default();
+            solved.push(k);
+            solutions.push((solution, rows));
         }
         rows.push(CompareRow {
             rescue,
@@ -240,10 +167,9 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         });
     }
     progress(args, "direct solution");
-    let verdict = judge(&launcher, plan, &file, &solutions)?;
-    for ((k, _), [error, residual]) in solutions.iter().zip(&verdict.solutions) {
-        rows[*k].error = *error;
-        rows[*k].residual = *residual;
+    let verdict = judge(&launcher, plan, &file, solutions)?;
+    for (k, judgement) in solved.into_iter().zip(&verdict.solutions) {
+        sentence(&mut rows[k], judgement);
     }
     progress(args, "");
     let report = CompareReport {
@@ -253,7 +179,8 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         dofs: Numbering::new(scene).len() as usize,
         rtol: plan.rtol,
         cores: plan.cores,
-        reference_residual: verdict.residual,
+        reference_residual: verdict.reference.and_then(|r| r.residual),
+        contact: scene.has_contact().then(|| inequalities(scene, &verdict)),
         rows,
     };
     write(args, &report)?;
@@ -267,6 +194,29 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
             args.scene.display(),
             row.message.as_deref().unwrap_or(&row.converged_reason)
         ))),
+    }
+}
+
+/// Writes into a row what the judge says.
+fn sentence(row: &mut CompareRow, judgement: &Judgement) {
+    row.error = judgement.error;
+    row.residual = judgement.residual;
+    if let Some(contact) = &mut row.contact {
+        contact.differ = judgement.differ;
+        contact.feasibility = judgement.feasibility;
+        contact.min_multiplier = judgement.min_multiplier;
+    }
+}
+
+fn inequalities(scene: &Scene, verdict: &Verdict) -> CompareInequalities {
+    let reference = verdict.reference;
+    CompareInequalities {
+        rows: verdict.rows,
+        active: reference.map(|_| verdict.active),
+        outer: verdict.steps,
+        feasibility: reference.and_then(|r| r.feasibility),
+        min_multiplier: reference.and_then(|r| r.min_multiplier),
+        load_steps: scene.n_steps(),
     }
 }
 
@@ -300,15 +250,14 @@ fn judge(
     launcher: &Launcher,
     plan: &Plan,
     scene: &Path,
-    solutions: &[(usize, std::path::PathBuf)],
+    solutions: Vec<(PathBuf, Vec<usize>)>,
 ) -> Result<Verdict> {
     let job = Job {
         scene: scene.to_path_buf(),
         result: launcher.workspace.file("verdict.json"),
         rtol: plan.rtol,
-        task: Task::Judge {
-            solutions: solutions.iter().map(|(_, file)| file.clone()).collect(),
-        },
+        inner: plan.inner,
+        task: Task::Judge { solutions },
     };
     match launcher.run("judge", &job, plan.cores)?.record {
         Ok(text) => read(&text),
@@ -352,6 +301,11 @@ fn row(name: &str, run: &Run, outcome: std::result::Result<Outcome, String>) -> 
             memory_mb: Some(o.memory / 1e6),
             memory_at_start_mb: Some(o.memory_at_start / 1e6),
             residual: o.residual,
+            contact: o.contact.map(|c| CompareContact {
+                outer: c.steps,
+                active: c.active.len(),
+                ..CompareContact::default()
+            }),
             rtol: o.rtol,
             converged: o.message.is_none(),
             converged_reason: o.reason,
@@ -377,14 +331,14 @@ fn progress(args: &Compare, what: &str) {
 fn write(args: &Compare, report: &CompareReport) -> Result<()> {
     let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
     if !args.quiet && !to_stdout {
-        print!("{}", summary::compare(report));
+        print!("{}", compare::text(report));
     }
     if let Some(file) = &args.json {
         json::write(file, report)?;
     }
     if let Some(dir) = &args.out {
         json::write(&dir.join("compare.json"), report)?;
-        summary::compare_csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
+        compare::csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
         if !args.quiet && !to_stdout {
             println!("written: compare.json, compare.csv in {}", dir.display());
         }

@@ -1,20 +1,25 @@
 //! A u = b of a scene as PETSc's solvers take it: one unknown where tied bodies have several copies.
+//!
+//! With inequalities A is K without them, which bodies that only contact holds make singular; or, on the unknowns of an active set,
+//! Tᵀ K T v = Tᵀ(f − K u₀).
 
 use crate::mesh::contiguous_share;
 use crate::petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
-use crate::scene::{Numbering, Scene};
+use crate::scene::Scene;
 use crate::substructures::Subdomain;
 use crate::Result;
 
 use super::table::Format;
+use super::unknowns::Unknowns;
 
-/// The assembled problem; N is the number of unknowns of [`Numbering`].
+/// The assembled problem on N unknowns.
 pub struct System {
-    /// A, N × N, symmetric positive definite.
+    /// A, N × N, symmetric positive definite unless bodies are held by inequalities only.
     pub a: Mat,
     /// b, length N.
     pub b: PetscVec,
-    norm_b: f64,
+    /// ‖f‖₂ over the unknowns of the scene, or ‖b‖₂ where that is zero: what residuals are relative to.
+    pub reference: f64,
 }
 
 impl System {
@@ -26,33 +31,41 @@ impl System {
     pub fn new(
         session: &Session,
         scene: &Scene,
-        numbering: &Numbering,
+        unknowns: &Unknowns,
         format: Format,
     ) -> Result<System> {
         let (ranks, rank) = (session.size(), session.rank());
         let share = contiguous_share(scene.n_subdomains(), ranks, rank);
         let mine: Result<Vec<Subdomain>> = share.clone().map(|s| scene.subdomain(s)).collect();
         let mine = session.agree(mine)?;
-        let part = Part::new(session, &mine, numbering)?;
-        drop(mine);
+        let part = Part::new(session, &mine, unknowns)?;
         let owned = match format {
-            Format::Assembled => contiguous_share(numbering.len() as usize, ranks, rank),
-            Format::Unassembled => {
-                let range = numbering.range(share);
-                range.start as usize..range.end as usize
-            }
+            Format::Assembled => contiguous_share(unknowns.len(), ranks, rank),
+            Format::Unassembled => unknowns.range(share),
         };
         let b = PetscVec::mpi(session, owned.len())?;
         Scatter::new(&b, &part.unknowns, &part.f)?.reverse_add(&part.f, &b)?;
+        let mut reference = match unknowns.are_all() {
+            true => b.norm2()?,
+            false => norm_f(session, &mine, unknowns)?,
+        };
+        if reference == 0.0 {
+            reference = b.norm2()?;
+        }
+        drop(mine);
         let unassembled = Mat::unassembled(session, owned.len(), &part.unknowns, &part.k)?;
         drop(part);
         let a = match format {
             Format::Assembled => unassembled.convert("aij")?,
             Format::Unassembled => unassembled,
         };
-        a.set_flag(MatFlag::Spd)?;
-        let norm_b = b.norm2()?;
-        Ok(System { a, b, norm_b })
+        let held = unknowns.are_all() && scene.has_contact();
+        a.set_flag(if held {
+            MatFlag::Symmetric
+        } else {
+            MatFlag::Spd
+        })?;
+        Ok(System { a, b, reference })
     }
 
     /// r ← b − A u.
@@ -64,19 +77,22 @@ impl System {
         r.aypx(-1.0, &self.b)
     }
 
-    /// ‖b − A u‖₂ / ‖b‖₂ (‖A u‖₂ where b = 0). Collective.
+    /// ‖b − A u‖₂ / ‖f‖₂ (‖A u‖₂ where all is zero). Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn relative_residual(&self, u: &PetscVec) -> Result<f64> {
         let r = u.duplicate()?;
         self.residual(u, &r)?;
-        let norm = r.norm2()?;
-        Ok(if self.norm_b > 0.0 {
-            norm / self.norm_b
-        } else {
-            norm
-        })
+        Ok(self.relative(r.norm2()?))
+    }
+
+    /// `norm` relative to the load.
+    pub fn relative(&self, norm: f64) -> f64 {
+        match self.reference {
+            reference if reference > 0.0 => norm / reference,
+            _ => norm,
+        }
     }
 
     /// √(uᵀ A u). Collective.
@@ -89,8 +105,8 @@ impl System {
         Ok(u.dot(&au)?.max(0.0).sqrt())
     }
 
-    /// The assembled form of subdomain vectors whose copies may differ by what the iteration has left: at each unknown the
-    /// mean of the copies with weight ρ, as the method's own scaling has it. Collective.
+    /// The assembled form of subdomain vectors whose copies may differ by what the iteration has left: at each unknown of the scene the
+    /// mean of the copies with weight ρ, as the method's own scaling has it; and the sum of the weights. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -99,13 +115,9 @@ impl System {
         session: &Session,
         subdomains: &[Subdomain],
         u: &[Vec<f64>],
-        numbering: &Numbering,
-    ) -> Result<PetscVec> {
-        let unknowns: Vec<i32> = subdomains
-            .iter()
-            .flat_map(|s| &s.dofs)
-            .map(|&dof| numbering.global(dof) as i32)
-            .collect();
+        unknowns: &Unknowns,
+    ) -> Result<(PetscVec, PetscVec)> {
+        let places = places(subdomains, unknowns);
         let rho: Vec<f64> = subdomains
             .iter()
             .flat_map(|s| s.rho.iter().copied())
@@ -113,13 +125,31 @@ impl System {
         let weighted: Vec<f64> = u.iter().flatten().zip(&rho).map(|(u, w)| u * w).collect();
         let (sum, weight) = (self.b.duplicate()?, self.b.duplicate()?);
         let local = PetscVec::from_slice(session, &weighted)?;
-        let scatter = Scatter::new(&sum, &unknowns, &local)?;
+        let scatter = Scatter::new(&sum, &places, &local)?;
         scatter.reverse_add(&local, &sum)?;
         scatter.reverse_add(&PetscVec::from_slice(session, &rho)?, &weight)?;
         let mean = self.b.duplicate()?;
         mean.pointwise_divide(&sum, &weight)?;
-        Ok(mean)
+        Ok((mean, weight))
     }
+}
+
+/// The unknown of the scene at every dof of the subdomains.
+fn places(subdomains: &[Subdomain], unknowns: &Unknowns) -> Vec<i32> {
+    let dofs = subdomains.iter().flat_map(|s| &s.dofs);
+    dofs.map(|&dof| unknowns.numbering.global(dof) as i32)
+        .collect()
+}
+
+/// ‖f‖₂ over the unknowns of the scene. Collective.
+fn norm_f(session: &Session, subdomains: &[Subdomain], unknowns: &Unknowns) -> Result<f64> {
+    let n = unknowns.numbering.len() as usize;
+    let share = contiguous_share(n, session.size(), session.rank());
+    let f = PetscVec::mpi(session, share.len())?;
+    let local: Vec<f64> = subdomains.iter().flat_map(|s| s.f.clone()).collect();
+    let local = PetscVec::from_slice(session, &local)?;
+    Scatter::new(&f, &places(subdomains, unknowns), &local)?.reverse_add(&local, &f)?;
+    f.norm2()
 }
 
 /// The subdomains of one rank, merged: what a domain decomposition of PETSc sees as one subdomain.
@@ -131,29 +161,34 @@ struct Part {
 }
 
 impl Part {
-    fn new(session: &Session, subdomains: &[Subdomain], numbering: &Numbering) -> Result<Part> {
-        let global = |s: &Subdomain| -> Vec<i32> {
-            s.dofs
-                .iter()
-                .map(|&dof| numbering.global(dof) as i32)
-                .collect()
-        };
-        let mut unknowns: Vec<i32> = subdomains.iter().flat_map(global).collect();
+    fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<Part> {
+        let mut unknowns: Vec<i32> = Vec::new();
+        for s in subdomains {
+            unknowns.extend(
+                s.dofs
+                    .iter()
+                    .filter_map(|&dof| all.place(dof).0)
+                    .map(|g| g as i32),
+            );
+        }
         unknowns.sort_unstable();
         unknowns.dedup();
-        let local = |s: &Subdomain| -> Vec<i32> {
-            let place = |g| {
-                unknowns
-                    .binary_search(&g)
-                    .expect("every unknown was listed") as i32
+        // Local unknown and offset of each dof.
+        let local = |s: &Subdomain| -> Vec<(Option<i32>, f64)> {
+            let find = |g: u64| {
+                let found = unknowns.binary_search(&(g as i32));
+                found.expect("every unknown was listed") as i32
             };
-            global(s).into_iter().map(place).collect()
+            let places = s.dofs.iter().map(|&dof| all.place(dof));
+            places.map(|(lead, o)| (lead.map(find), o)).collect()
         };
         let n = unknowns.len();
         let mut room = vec![0; n];
         for s in subdomains {
-            for (i, row) in local(s).into_iter().enumerate() {
-                room[row as usize] += s.k.row(i).0.len() as i32;
+            for (i, (row, _)) in local(s).into_iter().enumerate() {
+                if let Some(row) = row {
+                    room[row as usize] += s.k.row(i).0.len() as i32;
+                }
             }
         }
         room.iter_mut().for_each(|r| *r = (*r).min(n as i32));
@@ -161,11 +196,21 @@ impl Part {
         let mut f = vec![0.0; n];
         for s in subdomains {
             let local = local(s);
-            for (i, &row) in local.iter().enumerate() {
-                let (col, val) = s.k.row(i);
-                let col: Vec<i32> = col.iter().map(|&j| local[j as usize]).collect();
-                k.add_values(&[row], &col, val)?;
+            for (i, &(row, _)) in local.iter().enumerate() {
+                let Some(row) = row else { continue };
+                let mut cols = Vec::new();
+                let mut vals = Vec::new();
                 f[row as usize] += s.f[i];
+                let (col, val) = s.k.row(i);
+                for (&j, &v) in col.iter().zip(val) {
+                    let (col, offset) = local[j as usize];
+                    f[row as usize] -= v * offset;
+                    if let Some(col) = col {
+                        cols.push(col);
+                        vals.push(v);
+                    }
+                }
+                k.add_values(&[row], &cols, &vals)?;
             }
         }
         k.assemble()?;

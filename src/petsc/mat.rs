@@ -153,6 +153,24 @@ impl Mat {
         ))
     }
 
+    /// Sets all entries of these rows (global numbers of rows of this rank) to zero; their places are kept. Collective.
+    pub fn zero_rows(&self, rows: &[i32]) -> Result<()> {
+        let raw = self.raw();
+        petsc!(MatSetOption(
+            raw,
+            sys::MAT_KEEP_NONZERO_PATTERN,
+            Flag::of(true)
+        ))?;
+        petsc!(MatZeroRows(
+            raw,
+            count(rows.len())?,
+            rows.as_ptr(),
+            0.0,
+            std::ptr::null_mut(),
+            std::ptr::null_mut()
+        ))
+    }
+
     /// Sends the values to their owners. Collective.
     pub fn assemble(&self) -> Result<()> {
         petsc!(MatAssemblyBegin(self.raw(), sys::MAT_FINAL_ASSEMBLY))?;

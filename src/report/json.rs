@@ -290,6 +290,9 @@ pub struct CompareReport {
     pub cores: usize,
     /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
     pub reference_residual: Option<f64>,
+    /// In scenes with inequalities: what they are in the direct solution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<CompareInequalities>,
     /// The methods.
     pub rows: Vec<CompareRow>,
 }
@@ -307,7 +310,7 @@ pub struct CompareRow {
     pub threads: usize,
     /// κ as CG estimates it; `null` where there is none.
     pub kappa: Option<f64>,
-    /// Iterations; `null` for a direct solver or a run that failed.
+    /// Iterations, of all contact steps; `null` for a direct solver or a run that failed.
     pub iterations: Option<usize>,
     /// Wall-clock time by phase.
     pub seconds: CompareSeconds,
@@ -319,6 +322,9 @@ pub struct CompareRow {
     pub error: Option<f64>,
     /// Relative residual of the assembled problem that was reached.
     pub residual: Option<f64>,
+    /// In scenes with inequalities: how they came out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<CompareContact>,
     /// Relative tolerance of the method's own residual with which that was reached.
     pub rtol: Option<f64>,
     /// Whether the residual was reached.
@@ -331,6 +337,38 @@ pub struct CompareRow {
     /// One sentence when the method could not run or did not converge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
+}
+
+/// Inequalities in the direct solution of `compare`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct CompareInequalities {
+    /// Inequality rows.
+    pub rows: usize,
+    /// Those that hold with equality; `null` if there is no direct solution.
+    pub active: Option<usize>,
+    /// Active sets that the direct solution took.
+    pub outer: Option<usize>,
+    /// Largest violation, relative to the largest |u|.
+    pub feasibility: Option<f64>,
+    /// Smallest multiplier, relative to the largest; 0 where none pulls.
+    pub min_multiplier: Option<f64>,
+    /// Load steps of the scene, of which the last one is solved.
+    pub load_steps: usize,
+}
+
+/// How the inequalities came out in one row of `compare`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct CompareContact {
+    /// Active sets that were solved for; `null` for a method that solved the equations of the last one only.
+    pub outer: Option<usize>,
+    /// Rows of the last one.
+    pub active: usize,
+    /// Rows that hold here or in the direct solution, but not in both; rows that touch without a force do not count.
+    pub differ: Option<usize>,
+    /// Largest violation, relative to the largest |u|.
+    pub feasibility: Option<f64>,
+    /// Smallest multiplier, relative to the largest; 0 where none pulls.
+    pub min_multiplier: Option<f64>,
 }
 
 /// Wall-clock seconds of one method in `compare`.

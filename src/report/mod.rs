@@ -6,7 +6,7 @@
 //! | module | what it writes |
 //! |---|---|
 //! | [`json`] | the records of `solve`, `table1` and `compare` ([`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`]) |
-//! | [`table`], [`summary`] | aligned text for terminals, CSV, and the tables of the three commands |
+//! | [`table`], [`summary`], [`compare`] | aligned text for terminals, CSV, and the tables of the three commands |
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
 //! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
@@ -17,6 +17,7 @@
 
 pub mod canvas;
 pub mod colormap;
+pub mod compare;
 pub mod contact;
 pub mod contact_fields;
 pub mod contact_summary;

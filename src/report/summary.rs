@@ -1,8 +1,8 @@
 //! The tables that the commands print, and their CSV forms.
 
 use super::contact_summary;
-use super::json::{CompareReport, CompareRow, SolveReport, Spectrum, Table1Row, Table1Side};
-use super::table::{count, fixed, scientific, Align, Table};
+use super::json::{SolveReport, Spectrum, Table1Row, Table1Side};
+use super::table::{count, fixed, Table};
 
 /// The result of `solve` as lines "name  value".
 pub fn solve(r: &SolveReport) -> String {
@@ -118,7 +118,7 @@ pub fn solve(r: &SolveReport) -> String {
     text
 }
 
-fn ranks(n: usize) -> String {
+pub(super) fn ranks(n: usize) -> String {
     if n == 1 {
         "1 rank".to_string()
     } else {
@@ -205,123 +205,6 @@ pub fn table1_csv(rows: &[Table1Row]) -> Table {
         cells.extend(cells_of(&row.whole_interface));
         cells.extend(cells_of(&row.middle_third));
         table.row(cells);
-    }
-    table
-}
-
-/// The comparison for terminals, with a caption.
-pub fn compare(report: &CompareReport) -> String {
-    let header = [
-        "method", "parts", "ranks", "κ", "it", "set-up s", "solve s", "total s", "MB", "MB net",
-        "error", "residual", "outcome",
-    ];
-    let mut table = Table::new(header)
-        .align(0, Align::Left)
-        .align(12, Align::Left);
-    let mut notes = String::new();
-    for r in &report.rows {
-        let net = r
-            .memory_mb
-            .zip(r.memory_at_start_mb)
-            .map(|(all, start)| all - start);
-        let mut note = |text: String| {
-            notes += if notes.is_empty() { "\n" } else { "" };
-            notes += &format!("{} on {}: {text}\n", r.method, ranks(r.ranks));
-        };
-        if let Some(options) = &r.rescue {
-            note(format!("second try, with {options}"));
-        }
-        let outcome = match &r.message {
-            None => r.converged_reason.clone(),
-            Some(message) => {
-                note(message.clone());
-                "see below".to_string()
-            }
-        };
-        table.row([
-            r.method.clone(),
-            count(r.subdomains),
-            match r.threads {
-                0 | 1 => r.ranks.to_string(),
-                n => format!("{} x {n}", r.ranks),
-            },
-            fixed(r.kappa, 3),
-            count(r.iterations),
-            fixed(r.seconds.setup, 3),
-            fixed(r.seconds.solve, 3),
-            fixed(r.seconds.total, 3),
-            fixed(r.memory_mb, 0),
-            fixed(net, 0),
-            scientific(r.error),
-            scientific(r.residual),
-            outcome,
-        ]);
-    }
-    format!(
-        "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n\
-         All methods were driven to ‖b − Au‖ ≤ {} ‖b‖ of the assembled problem; its assembly is not in the times.\n\
-         parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); error: in the energy norm,\n\
-         against a refined direct solution{}; MB: largest resident memory, summed over the ranks;\n\
-         net: without what each rank holds before it has read the problem.\n",
-        report.scene,
-        report.bodies,
-        report.subdomains,
-        report.dofs,
-        report.cores,
-        scientific(Some(report.rtol)),
-        match report.reference_residual {
-            Some(r) => format!(" (residual {})", scientific(Some(r))),
-            None => " (not available)".to_string(),
-        },
-    )
-}
-
-/// The comparison for programs: full precision, empty cells where nothing is known.
-pub fn compare_csv(rows: &[CompareRow]) -> Table {
-    let mut table = Table::new([
-        "method",
-        "subdomains",
-        "ranks",
-        "threads",
-        "kappa",
-        "iterations",
-        "assemble_seconds",
-        "setup_seconds",
-        "solve_seconds",
-        "total_seconds",
-        "memory_mb",
-        "memory_at_start_mb",
-        "error",
-        "residual",
-        "rtol",
-        "converged",
-        "converged_reason",
-        "rescue",
-        "message",
-    ]);
-    let counted = |n: Option<usize>| n.map(|n| n.to_string()).unwrap_or_default();
-    for r in rows {
-        table.row([
-            r.method.clone(),
-            counted(r.subdomains),
-            r.ranks.to_string(),
-            r.threads.to_string(),
-            exactly(r.kappa),
-            counted(r.iterations),
-            exactly(r.seconds.assemble),
-            exactly(r.seconds.setup),
-            exactly(r.seconds.solve),
-            exactly(r.seconds.total),
-            exactly(r.memory_mb),
-            exactly(r.memory_at_start_mb),
-            exactly(r.error),
-            exactly(r.residual),
-            exactly(r.rtol),
-            r.converged.to_string(),
-            r.converged_reason.clone(),
-            r.rescue.clone().unwrap_or_default(),
-            r.message.clone().unwrap_or_default(),
-        ]);
     }
     table
 }
@@ -443,54 +326,5 @@ pub(crate) mod tests {
             "3,3,3,34,0,,,9,,7,3.6999999999999997,,6,34,0,,,9,,7,3.6999999999999997,,6"
         );
         assert_eq!(exactly(Some(1.5e-9)), "1.5e-9");
-    }
-
-    #[test]
-    fn compare_names_the_outcome() {
-        let row = CompareRow {
-            method: "hypre".into(),
-            ranks: 2,
-            threads: 1,
-            kappa: Some(1.25),
-            iterations: Some(8),
-            seconds: CompareSeconds {
-                assemble: Some(0.125),
-                setup: Some(0.5),
-                solve: Some(0.25),
-                total: Some(0.75),
-            },
-            memory_mb: Some(99.6),
-            memory_at_start_mb: Some(50.0),
-            error: Some(1.24e-9),
-            converged: true,
-            converged_reason: "CONVERGED_RTOL".into(),
-            ..CompareRow::default()
-        };
-        let mut failed = row.clone();
-        failed.converged = false;
-        failed.message = Some("PETSc was built without hypre".into());
-        let report = CompareReport {
-            scene: "four bodies".into(),
-            bodies: 4,
-            subdomains: 16,
-            dofs: 225,
-            rtol: 1e-6,
-            cores: 2,
-            reference_residual: None,
-            rows: vec![row, failed.clone()],
-        };
-        let text = compare(&report);
-        let line = text.lines().find(|l| l.starts_with("hypre")).unwrap();
-        assert_eq!(
-            line.split_whitespace().collect::<Vec<_>>(),
-            "hypre – 2 1.250 8 0.500 0.250 0.750 100 50 1.2e-9 – CONVERGED_RTOL"
-                .split(' ')
-                .collect::<Vec<_>>()
-        );
-        assert!(text.contains("PETSc was built without hypre"));
-        assert!(text.contains("1e-6") || text.contains("1.0e-6"), "{text}");
-        let csv = compare_csv(&[failed]).to_csv();
-        let end = "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,false,CONVERGED_RTOL,,PETSc was built without hypre\n";
-        assert!(csv.ends_with(end), "{csv}");
     }
 }

@@ -108,6 +108,7 @@ const FUNCTIONS: &[&str] = &[
     "MatSetValues",
     "MatSetBlockSize",
     "MatZeroEntries",
+    "MatZeroRows",
     "MatAssemblyBegin",
     "MatAssemblyEnd",
     "MatMult",

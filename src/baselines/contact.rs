@@ -1,0 +1,69 @@
+//! A row of the table that solves contact scenes: the active-set loop around a solver of the assembled problem.
+
+use std::path::Path;
+
+use super::attempt::{solve_to, Attempt};
+use super::job::{memory, timed, ContactOutcome, Job, Outcome};
+use super::linear::{kappa, solver};
+use super::outer::{self, Tolerances};
+use super::reduced::Reduced;
+use super::rows::Rows;
+use super::system::System;
+use super::table::Baseline;
+use super::unknowns::Unknowns;
+use crate::petsc::Session;
+use crate::scene::{Numbering, Scene};
+use crate::Result;
+
+/// Solves a scene with inequalities.
+///
+/// # Errors
+/// Those of the scene, PETSc's, and those of the disk.
+pub fn baseline(
+    session: &Session,
+    scene: &Scene,
+    job: &Job,
+    row: &Baseline,
+    file: &Path,
+) -> Result<Outcome> {
+    let ((rows, reduced), assemble) = timed(session, || {
+        let numbering = Numbering::new(scene);
+        let rows = Rows::new(scene, &numbering);
+        let system = System::new(session, scene, &Unknowns::all(&numbering), row.format)?;
+        let reduced = Reduced::new(session, system, &rows)?;
+        Ok((rows, reduced))
+    })?;
+    let (ksp, krylov) = solver(session, row, &reduced.a)?;
+    let first = krylov.tolerances()?.0;
+    let direct = krylov.type_name()? == "preonly";
+    let (attempt, rtol, message) = solve_to(job.rtol, first, |rtol| {
+        let tolerances = Tolerances {
+            rtol,
+            inner: if direct { 0.0 } else { job.inner },
+            solves: 1,
+        };
+        let found = outer::solve(session, &rows, &reduced, &ksp, tolerances)?;
+        Ok(Attempt {
+            residual: found.residual,
+            kappa: kappa(&krylov)?,
+            iterations: (!direct).then_some(found.iterations),
+            seconds: found.solve,
+            setup: found.setup,
+            contact: Some(ContactOutcome {
+                steps: Some(found.steps),
+                active: rows.list(&found.active),
+            }),
+            converged: found.converged,
+            reason: found.reason,
+            u: found.u,
+        })
+    })?;
+    let memory = memory(session);
+    attempt.u.save(file)?;
+    Ok(Outcome::new(
+        attempt,
+        rtol,
+        message,
+        [assemble, 0.0, memory],
+    ))
+}

@@ -1,0 +1,284 @@
+//! Active rows as equations: unknowns that they join form groups, in which every unknown is the group's one plus an offset.
+//!
+//! ```text
+//!     u = T v + u₀,   Tᵀ K T v = Tᵀ (f − K u₀)        T: one column per group, none for a group that hangs on ground
+//!     Bᵀ λ = f − K u                                  the shortest λ, group by group
+//! ```
+
+use super::rows::Rows;
+use crate::feti::local::dense::Dense;
+use crate::feti::local::semidefinite::Semidefinite;
+
+/// Disjoint sets of 0..n with known differences between the members.
+#[derive(Debug, Clone)]
+pub struct Potentials {
+    parent: Vec<usize>,
+    /// u of the member less u of its parent.
+    above: Vec<f64>,
+}
+
+impl Potentials {
+    /// n sets of one member.
+    pub fn new(n: usize) -> Potentials {
+        Potentials {
+            parent: (0..n).collect(),
+            above: vec![0.0; n],
+        }
+    }
+
+    /// The representative of the set of `k`, and u_k less u there.
+    pub fn find(&mut self, k: usize) -> (usize, f64) {
+        let (mut root, mut sum) = (k, 0.0);
+        while self.parent[root] != root {
+            sum += self.above[root];
+            root = self.parent[root];
+        }
+        (self.parent[k], self.above[k]) = (root, sum);
+        (root, sum)
+    }
+
+    /// Makes u_a − u_b = c. Where both are in one set already: by how much the difference there misses c.
+    pub fn join(&mut self, a: usize, b: usize, c: f64) -> Option<f64> {
+        let ((root_a, u_a), (root_b, u_b)) = (self.find(a), self.find(b));
+        if root_a == root_b {
+            return Some(u_a - u_b - c);
+        }
+        self.parent[root_a] = root_b;
+        self.above[root_a] = c - u_a + u_b;
+        None
+    }
+}
+
+/// Gaps that differ by less, relative to the largest, are meant to be the same.
+const SAME: f64 = 1e-12;
+
+/// The groups of one active set.
+#[derive(Debug, Clone)]
+pub struct Groups {
+    /// For every unknown of [`Rows::unknowns`] the lowest one of its group; `None` where the group hangs on ground.
+    pub lead: Vec<Option<usize>>,
+    /// u less u of that one; u itself in a group that hangs on ground.
+    pub offset: Vec<f64>,
+    /// Rows that hold: the active ones and those that follow from them.
+    pub holds: Vec<bool>,
+}
+
+impl Groups {
+    /// Joins the unknowns of the active rows, in the order of `priority`. A row that contradicts those before it is taken out of
+    /// `active`.
+    pub fn new(rows: &Rows, active: &mut [bool], priority: &[usize]) -> Groups {
+        let largest = rows.rows.iter().fold(0.0f64, |a, r| a.max(r.gap.abs()));
+        let n = rows.ground();
+        let mut sets = Potentials::new(n + 1);
+        for &r in priority {
+            let row = &rows.rows[r];
+            if active[r] {
+                let misses = sets.join(row.plus, row.minus, row.gap);
+                active[r] = misses.is_none_or(|by| by.abs() <= SAME * largest);
+            }
+        }
+        let ground = sets.find(n);
+        let mut first: Vec<Option<(usize, f64)>> = vec![None; n + 1];
+        let (mut lead, mut offset) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for k in 0..n {
+            let (root, u) = sets.find(k);
+            if root == ground.0 {
+                lead.push(None);
+                offset.push(u - ground.1);
+            } else {
+                let (one, its) = *first[root].get_or_insert((k, u));
+                lead.push(Some(one));
+                offset.push(u - its);
+            }
+        }
+        let mut follows = |r: &super::rows::Row| {
+            let ((a, u_a), (b, u_b)) = (sets.find(r.plus), sets.find(r.minus));
+            a == b && r.plus != r.minus && (u_a - u_b - r.gap).abs() <= SAME * largest
+        };
+        Groups {
+            lead,
+            offset,
+            holds: rows.rows.iter().map(&mut follows).collect(),
+        }
+    }
+
+    /// Whether unknown `k` is neither led by another one nor given.
+    pub fn is_free(&self, k: usize) -> bool {
+        self.lead[k] == Some(k)
+    }
+
+    /// Tᵀ x at the unknowns in rows: sums over groups, at their first unknown.
+    pub fn fold(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; x.len()];
+        for (lead, x) in self.lead.iter().zip(x) {
+            if let Some(lead) = lead {
+                out[*lead] += x;
+            }
+        }
+        out
+    }
+
+    /// T v + u₀ at the unknowns in rows.
+    pub fn spread(&self, v: &[f64]) -> Vec<f64> {
+        let both = self.lead.iter().zip(&self.offset);
+        both.map(|(lead, offset)| lead.map_or(0.0, |k| v[k]) + offset)
+            .collect()
+    }
+
+    /// The v whose T v + u₀ is nearest to u with these weights.
+    pub fn nearest(&self, u: &[f64], weight: &[f64]) -> Vec<f64> {
+        let apart = u.iter().zip(&self.offset).zip(weight);
+        let sum = self.fold(&apart.map(|((u, o), w)| w * (u - o)).collect::<Vec<_>>());
+        let total = self.fold(weight);
+        let quotient = |(s, t): (&f64, &f64)| if *t > 0.0 { s / t } else { 0.0 };
+        sum.iter().zip(&total).map(quotient).collect()
+    }
+}
+
+/// The shortest multipliers of the active rows with Bᵀ λ = r, as nearly as they can; `r` at the unknowns in rows. Zero on the others.
+pub fn multipliers(rows: &Rows, active: &[bool], r: &[f64]) -> Vec<f64> {
+    let ground = rows.ground();
+    // Ground passes on no force: groups that hang on it stay apart.
+    let mut sets = Potentials::new(ground);
+    let on = || (0..rows.len()).filter(|&k| active[k]);
+    for row in on().map(|k| rows.rows[k]) {
+        if row.plus.max(row.minus) < ground {
+            sets.join(row.plus, row.minus, 0.0);
+        }
+    }
+    let mut of_set: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
+    for k in on() {
+        let end = rows.rows[k].plus.min(rows.rows[k].minus);
+        of_set.entry(sets.find(end).0).or_default().push(k);
+    }
+    let mut lambda = vec![0.0; rows.len()];
+    for members in of_set.values() {
+        let ends = members
+            .iter()
+            .flat_map(|&k| [rows.rows[k].plus, rows.rows[k].minus]);
+        let mut unknowns: Vec<usize> = ends.clone().filter(|&e| e < ground).collect();
+        unknowns.sort_unstable();
+        unknowns.dedup();
+        let floats = ends.clone().all(|e| e < ground);
+        let place = |e: usize| unknowns.binary_search(&e).ok();
+        // λ = B w with Bᵀ B w = r; what the rows cannot carry, a force on the whole group, is taken off.
+        let n = unknowns.len();
+        let mut laplacian = Dense::zeros(n, n);
+        for row in members.iter().map(|&k| rows.rows[k]) {
+            let places = [place(row.plus), place(row.minus)];
+            for (i, a) in places.iter().enumerate() {
+                for (j, b) in places.iter().enumerate() {
+                    if let (Some(a), Some(b)) = (*a, *b) {
+                        let sign = if i == j { 1.0 } else { -1.0 };
+                        laplacian.set(a, b, laplacian.get(a, b) + sign);
+                    }
+                }
+            }
+        }
+        let mut w: Vec<f64> = unknowns.iter().map(|&e| r[e]).collect();
+        if floats {
+            let mean = w.iter().sum::<f64>() / n as f64;
+            w.iter_mut().for_each(|w| *w -= mean);
+        }
+        Semidefinite::new(&laplacian).solve(&mut w);
+        let at = |e: usize| place(e).map_or(0.0, |k| w[k]);
+        for &k in members {
+            lambda[k] = at(rows.rows[k].plus) - at(rows.rows[k].minus);
+        }
+    }
+    lambda
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::Row;
+    use super::*;
+
+    fn rows(n: usize, list: &[(usize, usize, f64)]) -> Rows {
+        let row = |&(plus, minus, gap): &(usize, usize, f64)| Row {
+            plus,
+            minus,
+            gap,
+            joins: [0; 2],
+        };
+        Rows {
+            unknowns: (0..n as u64).collect(),
+            rows: list.iter().map(row).collect(),
+            initial: vec![true; list.len()],
+            ..Rows::default()
+        }
+    }
+
+    fn groups(rows: &Rows, active: &mut [bool]) -> Groups {
+        Groups::new(rows, active, &(0..rows.len()).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn groups_carry_offsets_and_hang_on_ground() {
+        // u0 − u2 = 1, u2 − u1 = 0.5; u3 = 2; −u4 = 3 is off.
+        let rows = rows(5, &[(0, 2, 1.0), (2, 1, 0.5), (3, 5, 2.0), (5, 4, 3.0)]);
+        let mut active = [true, true, true, false];
+        let g = groups(&rows, &mut active);
+        assert_eq!(g.lead, [Some(0), Some(0), Some(0), None, Some(4)]);
+        let u = g.spread(&[10.0, 0.0, 0.0, 0.0, 7.0]);
+        assert_eq!(u, [10.0, 8.5, 9.0, 2.0, 7.0]);
+        assert_eq!(rows.gaps(&u), [0.0, 0.0, 0.0, -10.0]);
+        assert_eq!(
+            g.fold(&[1.0, 2.0, 4.0, 8.0, 16.0]),
+            [7.0, 0.0, 0.0, 0.0, 16.0]
+        );
+        let v = g.nearest(&u, &[1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert!((v[0] - 10.0).abs() < 1e-14 && v[4] == 7.0, "{v:?}");
+        assert!(g.is_free(0) && !g.is_free(1) && !g.is_free(3));
+    }
+
+    #[test]
+    fn rows_that_follow_hold_and_rows_that_contradict_go() {
+        let cycle = |last: f64| rows(3, &[(0, 1, 1.0), (1, 2, 1.0), (0, 2, last)]);
+        let mut active = [true, true, false];
+        assert_eq!(groups(&cycle(2.0), &mut active).holds, [true; 3]);
+        let mut active = [true; 3];
+        let g = groups(&cycle(3.0), &mut active);
+        assert_eq!(active, [true, true, false]);
+        assert_eq!(g.holds, [true, true, false]);
+        let mut active = [true; 3];
+        Groups::new(&cycle(3.0), &mut active, &[2, 1, 0]);
+        assert_eq!(active, [false, true, true]);
+    }
+
+    #[test]
+    fn multipliers_are_the_shortest_that_carry_the_forces() {
+        // A ring of four, fully redundant by one, and a node on ground beside it.
+        let rows = rows(
+            5,
+            &[
+                (0, 1, 0.0),
+                (0, 2, 0.0),
+                (1, 3, 0.0),
+                (2, 3, 0.0),
+                (5, 4, 0.0),
+            ],
+        );
+        let force = [3.0, -1.0, 0.0, -2.0, -4.0];
+        let lambda = multipliers(&rows, &[true; 5], &force);
+        let mut carried = [0.0; 6];
+        for (row, l) in rows.rows.iter().zip(&lambda) {
+            carried[row.plus] += l;
+            carried[row.minus] -= l;
+        }
+        for (c, f) in carried.iter().zip(&force) {
+            assert!((c - f).abs() < 1e-14, "{carried:?}");
+        }
+        // The shortest one has nothing along the ring.
+        let along = lambda[0] + lambda[2] - lambda[1] - lambda[3];
+        assert!(along.abs() < 1e-14, "{lambda:?}");
+        assert_eq!(lambda[4], 4.0);
+        let open = multipliers(
+            &rows,
+            &[true, false, false, false, false],
+            &[1.0, -0.5, 0.0, 0.0, 0.0],
+        );
+        assert_eq!(open[1..], [0.0; 4]);
+        assert!((open[0] - 0.75).abs() < 1e-15);
+    }
+}

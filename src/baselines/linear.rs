@@ -1,0 +1,124 @@
+//! A row of the table on a problem without inequalities, or on the equations of an active set that is given: its rows tie unknowns
+//! together as faces do. PCBDDC and KSPFETIDP are set up for a mesh and its parts; an outer loop would begin anew in every step.
+
+use std::path::Path;
+
+use super::attempt::{solve_to, Attempt};
+use super::groups::Groups;
+use super::job::{memory, timed, ContactOutcome, Job, Outcome};
+use super::rows::Rows;
+use super::system::System;
+use super::table::Baseline;
+use super::unknowns::Unknowns;
+use crate::petsc::{Comm, Ksp, Mat, Session};
+use crate::scene::{Numbering, Scene};
+use crate::Result;
+
+/// The solver of a row with its operator and options, and the solver that iterates: KSPFETIDP hands over to one inside.
+///
+/// # Errors
+/// PETSc's, and those of the options.
+pub fn solver(session: &Session, row: &Baseline, a: &Mat) -> Result<(Ksp, Ksp)> {
+    let ksp = Ksp::new(session, Comm::World)?;
+    ksp.set_operators(a, a)?;
+    ksp.set_options_prefix(&row.prefix())?;
+    ksp.set_from_options()?;
+    let krylov = match ksp.type_name()?.as_str() {
+        "fetidp" => ksp.fetidp_inner_ksp()?,
+        _ => ksp.clone(),
+    };
+    // KSPFETIDP hands this on when it is set up, over what the inner solver was told.
+    ksp.set_compute_singular_values(true)?;
+    krylov.set_compute_singular_values(true)?;
+    Ok((ksp, krylov))
+}
+
+/// κ by the last run of CG; `None` for other methods.
+///
+/// # Errors
+/// PETSc's.
+pub fn kappa(krylov: &Ksp) -> Result<Option<f64>> {
+    if krylov.type_name()? != "cg" || krylov.iterations()? == 0 {
+        return Ok(None);
+    }
+    let (large, small) = krylov.extreme_singular_values()?;
+    // An iteration that goes on after it has found the solution sees rounding as an eigenvalue.
+    Ok((small > 1e-13 * large).then(|| large / small))
+}
+
+/// A row of the table on the unassembled or the assembled matrix. `active`: the rows that hold, in scenes with inequalities.
+///
+/// # Errors
+/// Those of the scene, PETSc's, and those of the disk.
+pub fn baseline(
+    session: &Session,
+    scene: &Scene,
+    job: &Job,
+    row: &Baseline,
+    active: &[usize],
+    file: &Path,
+) -> Result<Outcome> {
+    let numbering = Numbering::new(scene);
+    let unknowns = if scene.has_contact() {
+        let rows = Rows::new(scene, &numbering);
+        let mut on = rows.set(active);
+        let in_order: Vec<usize> = (0..rows.len()).collect();
+        let groups = Groups::new(&rows, &mut on, &in_order);
+        Unknowns::merged(&numbering, &rows, &groups)
+    } else {
+        Unknowns::all(&numbering)
+    };
+    let (system, assemble) = timed(session, || {
+        System::new(session, scene, &unknowns, row.format)
+    })?;
+    let (ksp, krylov) = solver(session, row, &system.a)?;
+    let ((), setup) = timed(session, || ksp.setup())?;
+    let first = krylov.tolerances()?.0;
+    let direct = krylov.type_name()? == "preonly";
+    krylov.record_residuals(1)?;
+    let (attempt, rtol, message) = solve_to(job.rtol, first, |rtol| {
+        krylov.set_tolerances(Some(rtol), None, None, None)?;
+        let u = system.b.duplicate()?;
+        let ((), mut seconds) = timed(session, || ksp.solve(&system.b, &u))?;
+        let mut reason = krylov.converged_reason()?;
+        if !reason.converged() && !row.krylov.is_empty() {
+            // Parts that mirror each other need no multipliers: the first residual is rounding, and iterating on it goes astray.
+            // Whether that is so, the assembled residual tells.
+            let zero = krylov.residual_history()?.first().map(|r| 2.0 * r);
+            krylov.set_tolerances(None, zero, None, None)?;
+            let trial = u.duplicate()?;
+            let ((), more) = timed(session, || ksp.solve(&system.b, &trial))?;
+            krylov.set_tolerances(None, Some(0.0), None, None)?;
+            if system.relative_residual(&trial)? <= job.rtol {
+                u.copy_from(&trial)?;
+                (reason, seconds) = (krylov.converged_reason()?, more);
+            }
+        }
+        let iterations = krylov.iterations()?;
+        Ok(Attempt {
+            residual: system.relative_residual(&u)?,
+            u,
+            kappa: kappa(&krylov)?,
+            iterations: (!direct).then_some(iterations),
+            seconds,
+            setup: 0.0,
+            contact: scene.has_contact().then(|| ContactOutcome {
+                steps: None,
+                active: active.to_vec(),
+            }),
+            converged: reason.converged(),
+            reason: reason.name,
+        })
+    })?;
+    let memory = memory(session);
+    match unknowns.are_all() {
+        true => attempt.u.save(file)?,
+        false => unknowns.spread(session, &attempt.u)?.save(file)?,
+    }
+    Ok(Outcome::new(
+        attempt,
+        rtol,
+        message,
+        [assemble, setup, memory],
+    ))
+}

@@ -1,0 +1,148 @@
+//! Ours as one of the jobs, measured on the assembled problem like the others.
+
+use std::path::Path;
+
+use super::attempt::{solve_to, Attempt};
+use super::groups::Groups;
+use super::job::{memory, timed, ContactOutcome, Job, Outcome};
+use super::judge::stationarity;
+use super::rows::Rows;
+use super::system::System;
+use super::table::Format;
+use super::unknowns::{Trace, Unknowns};
+use crate::cli::problem::{self, Distribution};
+use crate::feti::exchange::{gather_all, max_all};
+use crate::feti::{FetiFeti, Settings, Solution};
+use crate::petsc::{Options, Session, Vec as PetscVec};
+use crate::scene::{Numbering, Scene};
+use crate::Result;
+
+/// Solves a scene by the FETI-FETI method.
+///
+/// # Errors
+/// Those of the scene and of the method, PETSc's, and those of the disk.
+pub fn solve(
+    session: &Session,
+    scene: &Scene,
+    job: &Job,
+    threads: usize,
+    file: &Path,
+) -> Result<Outcome> {
+    Options::new(session, "fetifeti_").set_default("threads", &threads.to_string())?;
+    let (substructures, assemble) = timed(session, || problem::substructures(session, scene))?;
+    let settings = Settings {
+        rtol: job.rtol,
+        ..Settings::default()
+    };
+    let (solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
+    // The assembled matrix is for the residual only: what it needs does not count.
+    let numbering = Numbering::new(scene);
+    let unknowns = Unknowns::all(&numbering);
+    let mut system: Option<Assembled> = None;
+    let mut bytes = 0.0;
+    let (attempt, rtol, message) = solve_to(job.rtol, job.rtol, |rtol| {
+        solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
+        let (solution, _) = timed(session, || solver.solve())?;
+        if system.is_none() {
+            bytes = memory(session);
+            system = Some(Assembled::new(session, scene, &unknowns)?);
+        }
+        let system = system.as_ref().expect("it was built above");
+        let local = &solver.problem().local;
+        let (u, weight) = system.system.mean(session, local, &solution.u, &unknowns)?;
+        let (residual, contact) = match scene.has_contact() {
+            true => {
+                let active = active(session, scene, &solver, &solution, &system.rows)?;
+                let outcome = ContactOutcome {
+                    steps: Some(solution.steps.len()),
+                    active: system.rows.list(&active),
+                };
+                (system.close(session, active, &u, &weight)?, Some(outcome))
+            }
+            false => (system.system.relative_residual(&u)?, None),
+        };
+        let mut seconds = [solution.solve_seconds + solution.recover_seconds];
+        max_all(session.comm(), &mut seconds);
+        Ok(Attempt {
+            residual,
+            u,
+            kappa: solution.estimate.map(|s| s.kappa()),
+            iterations: Some(solution.iterations),
+            seconds: seconds[0],
+            setup: 0.0,
+            contact,
+            converged: solution.converged,
+            reason: solution.reason,
+        })
+    })?;
+    attempt.u.save(file)?;
+    Ok(Outcome::new(
+        attempt,
+        rtol,
+        message,
+        [assemble, setup, bytes],
+    ))
+}
+
+/// K, f and the inequalities.
+struct Assembled {
+    system: System,
+    rows: Rows,
+    trace: Trace,
+}
+
+impl Assembled {
+    fn new(session: &Session, scene: &Scene, unknowns: &Unknowns) -> Result<Assembled> {
+        let system = System::new(session, scene, unknowns, Format::Unassembled)?;
+        let rows = Rows::new(scene, unknowns.numbering);
+        let trace = Trace::new(&rows, &system.b);
+        Ok(Assembled {
+            system,
+            rows,
+            trace,
+        })
+    }
+
+    /// Closes what the iteration has left of the jumps on the active rows, as the weighted mean of both sides does on tied faces,
+    /// and returns the residual. Collective.
+    fn close(
+        &self,
+        session: &Session,
+        mut active: Vec<bool>,
+        u: &PetscVec,
+        weight: &PetscVec,
+    ) -> Result<f64> {
+        let in_order: Vec<usize> = (0..self.rows.len()).collect();
+        let groups = Groups::new(&self.rows, &mut active, &in_order);
+        let comm = session.comm();
+        let [at, weight] = [self.trace.get(comm, u)?, self.trace.get(comm, weight)?];
+        self.trace
+            .set(u, &groups.spread(&groups.nearest(&at, &weight)))?;
+        stationarity(session, &self.system, &self.trace, &groups, u)
+    }
+}
+
+/// Which of the scene's inequalities are active, the same on every rank. Collective.
+fn active(
+    session: &Session,
+    scene: &Scene,
+    solver: &FetiFeti,
+    solution: &Solution,
+    rows: &Rows,
+) -> Result<Vec<bool>> {
+    let deal = Distribution::from_options(session)?;
+    let (n, rank, size) = (scene.n_subdomains(), session.rank(), session.size());
+    let provided = rows.provided(&|s| deal.owns(s, n, rank, size));
+    let dual = solver.dual();
+    let jump = &dual.stiffness.jump;
+    let owned = jump
+        .order
+        .iter()
+        .zip(&solution.active[jump.n_owned_local..]);
+    let mine: Vec<u64> = owned
+        .filter(|(_, on)| **on)
+        .filter_map(|(&row, _)| provided[row].map(|k| k as u64))
+        .collect();
+    let all = gather_all(session.comm(), &mine).concat();
+    Ok(rows.set(&all.iter().map(|&k| k as usize).collect::<Vec<_>>()))
+}

@@ -1,0 +1,267 @@
+//! The primal-dual active set on the assembled problem: the loop of [`contact::active_set`](crate::contact::active_set) around solvers
+//! of PETSc, with the same rules.
+//!
+//! ```text
+//!     solve Tᵀ K T v = Tᵀ(f − K u₀) on A_k,   Bᵀ λ = f − K u,   A_{k+1} = { j : λ_j > 0 on A_k, (B u − c)_j > 0 off it }
+//! ```
+//!
+//! It starts from all candidates. While the set changes, problems are solved loosely and u goes on from where it was; a set that
+//! stays is solved to the end. A set that comes back makes the loop careful: exact solves first, then one row at a time.
+
+use std::collections::HashSet;
+use std::time::Instant;
+
+use super::groups::{multipliers, Groups};
+use super::job::timed;
+use super::reduced::Reduced;
+use super::rows::Rows;
+use crate::petsc::{Ksp, Session, Vec as PetscVec};
+use crate::Result;
+
+/// Multipliers above minus this, relative to the largest, do not pull; gaps below it, relative to the largest u, are closed.
+const ROUNDING: f64 = 1e-14;
+
+/// A row that is kept so that no body comes loose may pull by this much of the largest multiplier: nothing drives the body away.
+const IDLE: f64 = 1e-8;
+
+/// Steps at most.
+const STEPS: usize = 200;
+
+/// Tolerances.
+#[derive(Debug, Clone, Copy)]
+pub struct Tolerances {
+    /// Residual at the end, relative to the load.
+    pub rtol: f64,
+    /// Reduction of the residual in a step while the set still changes.
+    pub inner: f64,
+    /// Solves per step, of which all but the first refine a direct solution.
+    pub solves: usize,
+}
+
+/// What the loop has found.
+pub struct Found {
+    /// The solution.
+    pub u: PetscVec,
+    /// The active set.
+    pub active: Vec<bool>,
+    /// Multipliers of the rows.
+    pub lambda: Vec<f64>,
+    /// B u − c.
+    pub gaps: Vec<f64>,
+    /// Sets that were solved for.
+    pub steps: usize,
+    /// Inner iterations of all steps.
+    pub iterations: usize,
+    /// Seconds for matrices and preconditioners.
+    pub setup: f64,
+    /// Seconds for the rest.
+    pub solve: f64,
+    /// Residual, relative to the load.
+    pub residual: f64,
+    /// Whether the set has settled and the residual was met.
+    pub converged: bool,
+    /// Why it ended.
+    pub reason: String,
+}
+
+/// How carefully the loop goes on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Caution {
+    Loose,
+    Exact,
+    Single,
+}
+
+/// Runs the loop. `ksp` has its options, but neither operator nor set-up. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn solve(
+    session: &Session,
+    rows: &Rows,
+    reduced: &Reduced,
+    ksp: &Ksp,
+    tolerances: Tolerances,
+) -> Result<Found> {
+    let (whole, mut setup) = (Instant::now(), 0.0);
+    let u = reduced.vector()?;
+    let mut active = rows.initial.clone();
+    let mut priority: Vec<usize> = (0..rows.len()).collect();
+    let mut visited: HashSet<Vec<bool>> = HashSet::new();
+    let mut caution = Caution::Loose;
+    let (mut steps, mut iterations, mut tight) = (0, 0, false);
+    let mut groups: Option<Groups> = None;
+    loop {
+        let now = match groups.take() {
+            Some(groups) => groups,
+            None => {
+                let groups = Groups::new(rows, &mut active, &priority);
+                let prepare = || {
+                    reduced.update(&groups)?;
+                    ksp.set_operators(&reduced.a, &reduced.a)?;
+                    ksp.setup()
+                };
+                setup += timed(session, prepare)?.1;
+                groups
+            }
+        };
+        steps += 1;
+        let b = reduced.rhs(&now)?;
+        let v = reduced.start(&now, &u)?;
+        let reference = reduced.reference(&b)?;
+        let target = tolerances.rtol * reference;
+        let (r, d) = (reduced.vector()?, reduced.vector()?);
+        let mut residual = residual_of(reduced, &b, &v, &r)?;
+        let stop = match caution {
+            Caution::Loose if !tight => target.max(tolerances.inner * residual),
+            _ => target,
+        };
+        let mut reason = "CONVERGED_NOTHING_TO_DO".to_string();
+        let mut failed = false;
+        for solve in 0..tolerances.solves {
+            if solve == 0 && residual <= stop {
+                break;
+            }
+            ksp.set_tolerances(Some((stop / residual).min(0.9)), Some(0.0), None, None)?;
+            ksp.solve(&r, &d)?;
+            v.axpy(1.0, &d)?;
+            iterations += ksp.iterations()?;
+            let why = ksp.converged_reason()?;
+            failed = !why.converged();
+            reason = why.name;
+            residual = residual_of(reduced, &b, &v, &r)?;
+        }
+        reduced.spread(&now, &v, &u)?;
+
+        let at = reduced.trace.get(session.comm(), &u)?;
+        let judged = Judged::new(
+            rows,
+            &active,
+            multipliers(rows, &active, &reduced.forces(&u)?),
+            rows.gaps(&at),
+            u.norm_inf()?,
+        );
+        let relative = if reference > 0.0 {
+            residual / reference
+        } else {
+            residual
+        };
+        let mut next = judged.next.clone();
+        if caution == Caution::Single {
+            judged.keep_worst(&active, &mut next);
+        }
+        let restored = rows.restore(&mut next, &judged.score);
+        let stays = next == active;
+        let to_the_end = stop <= target;
+        let end = if failed {
+            Some((false, reason))
+        } else if stays && to_the_end {
+            let idle = |r: &usize| judged.lambda[*r] >= -IDLE * judged.largest[0];
+            match restored.iter().all(idle) {
+                true => Some((relative <= tolerances.rtol, reason)),
+                false => Some((false, "DIVERGED_CONTACT_LOOSE".to_string())),
+            }
+        } else if steps >= STEPS {
+            Some((false, "DIVERGED_CONTACT_ITS".to_string()))
+        } else {
+            None
+        };
+        if let Some((converged, reason)) = end {
+            return Ok(Found {
+                u,
+                active,
+                lambda: judged.lambda,
+                gaps: judged.gaps,
+                steps,
+                iterations,
+                setup,
+                solve: whole.elapsed().as_secs_f64() - setup,
+                residual: relative,
+                converged,
+                reason,
+            });
+        }
+        tight = stays;
+        if stays {
+            groups = Some(now);
+            continue;
+        }
+        if !visited.insert(next.clone()) {
+            caution = match caution {
+                Caution::Loose => Caution::Exact,
+                _ => Caution::Single,
+            };
+            visited.clear();
+        }
+        priority = judged.priority(&active, &next);
+        active = next;
+    }
+}
+
+/// r ← b − A v, and its norm.
+fn residual_of(reduced: &Reduced, b: &PetscVec, v: &PetscVec, r: &PetscVec) -> Result<f64> {
+    reduced.a.mult(v, r)?;
+    r.aypx(-1.0, b)?;
+    r.norm2()
+}
+
+/// Rows on the wrong side, and the set without them.
+struct Judged {
+    lambda: Vec<f64>,
+    gaps: Vec<f64>,
+    next: Vec<bool>,
+    /// How wrong each row is; 0: it is right.
+    wrong: Vec<f64>,
+    /// λ + ρ (B u − c) with the ρ that makes both alike.
+    score: Vec<f64>,
+    /// Largest |λ|, largest |u|.
+    largest: [f64; 2],
+}
+
+impl Judged {
+    fn new(rows: &Rows, active: &[bool], lambda: Vec<f64>, gaps: Vec<f64>, u_max: f64) -> Judged {
+        let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
+        let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
+        let mut out = Judged {
+            next: active.to_vec(),
+            wrong: vec![0.0; rows.len()],
+            score: vec![0.0; rows.len()],
+            largest: [lambda_max, u_max],
+            lambda,
+            gaps,
+        };
+        for r in 0..rows.len() {
+            let (l, gap) = (scale(out.lambda[r], lambda_max), scale(out.gaps[r], u_max));
+            out.score[r] = l + gap;
+            if active[r] && l < -ROUNDING {
+                (out.next[r], out.wrong[r]) = (false, -l);
+            } else if !active[r] && gap > ROUNDING {
+                (out.next[r], out.wrong[r]) = (true, gap);
+            }
+        }
+        out
+    }
+
+    /// Of all changes only the worst stays.
+    fn keep_worst(&self, active: &[bool], next: &mut [bool]) {
+        let by_size = |a: &usize, b: &usize| {
+            let by_size = self.wrong[*a].total_cmp(&self.wrong[*b]);
+            by_size.then(b.cmp(a))
+        };
+        let worst = (0..next.len()).max_by(by_size);
+        for r in (0..next.len()).filter(|r| Some(*r) != worst) {
+            next[r] = active[r];
+        }
+    }
+
+    /// The order in which rows are made to hold: those that were violated, then by multiplier.
+    fn priority(&self, active: &[bool], next: &[bool]) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..next.len()).collect();
+        let entered = |r: usize| next[r] && !active[r];
+        order.sort_by(|&a, &b| {
+            let new = entered(b).cmp(&entered(a));
+            new.then(self.score[b].total_cmp(&self.score[a]))
+        });
+        order
+    }
+}

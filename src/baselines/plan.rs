@@ -1,0 +1,131 @@
+//! Which methods run in which layout, and to which residual.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::job::Task;
+use super::table::{Baseline, Format};
+use crate::petsc::{Options, Session};
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// Default of `-compare_inner_rtol`.
+const INNER: f64 = 0.1;
+
+/// One method in one layout.
+pub struct Run {
+    /// `None`: ours.
+    pub baseline: Option<&'static Baseline>,
+    /// MPI ranks.
+    pub ranks: usize,
+    /// Threads per rank.
+    pub threads: usize,
+    /// Parts of the domain that the method sees.
+    pub parts: Option<usize>,
+}
+
+impl Run {
+    /// The job; `active`: rows of the last active set that is known.
+    pub fn task(&self, solution: &Path, rescue: bool, active: &[usize]) -> Task {
+        let solution = solution.to_path_buf();
+        match self.baseline {
+            None => Task::FetiFeti {
+                threads: self.threads,
+                solution,
+            },
+            Some(b) => Task::Baseline {
+                name: b.name.into(),
+                rescue,
+                active: active.to_vec(),
+                solution,
+            },
+        }
+    }
+}
+
+/// What is run, and to which residual.
+pub struct Plan {
+    /// Relative residual.
+    pub rtol: f64,
+    /// Reduction of the residual in a contact step while the active set changes.
+    pub inner: f64,
+    /// Cores that every method may use.
+    pub cores: usize,
+    /// How long one method may take.
+    pub limit: Duration,
+    /// The methods.
+    pub runs: Vec<Run>,
+}
+
+impl Plan {
+    /// From the options.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a value out of range.
+    pub fn new(session: &Session, scene: &Scene, baselines: &[&'static Baseline]) -> Result<Plan> {
+        let ours = Options::new(session, "fetifeti_");
+        let rtol = ours.get_f64("ksp_rtol")?.unwrap_or(1e-6);
+        if !(rtol > 0.0 && rtol < 1.0) {
+            return Err(Error::input(format!(
+                "-fetifeti_ksp_rtol is {rtol}, expected a number between 0 and 1"
+            )));
+        }
+        let options = Options::new(session, "compare_");
+        options.heading("Options of compare")?;
+        let all = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let cores = options
+            .usize("cores", all, "cores that every method may use")?
+            .max(1);
+        let help = "reduction of the residual per contact step while the active set changes";
+        let inner = options.f64("inner_rtol", INNER, help)?;
+        if !(inner > 0.0 && inner < 1.0) {
+            return Err(Error::input(format!(
+                "-compare_inner_rtol is {inner}, expected a number between 0 and 1"
+            )));
+        }
+        let limit = options
+            .usize("time_limit", 600, "seconds after which a method is ended")?
+            .max(1);
+        Ok(Plan {
+            rtol,
+            inner,
+            cores,
+            limit: Duration::from_secs(limit as u64),
+            runs: runs(scene.n_subdomains(), cores, baselines),
+        })
+    }
+}
+
+/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on one per core; the others on all
+/// cores.
+fn runs(subdomains: usize, cores: usize, baselines: &[&'static Baseline]) -> Vec<Run> {
+    let ours = |ranks, threads| Run {
+        baseline: None,
+        ranks,
+        threads,
+        parts: Some(subdomains),
+    };
+    let mut runs = vec![ours(1, cores)];
+    if cores > 1 && subdomains > 1 {
+        runs.push(ours(cores.min(subdomains), 1));
+    }
+    for &baseline in baselines {
+        let on = |ranks, parts| Run {
+            baseline: Some(baseline),
+            ranks,
+            threads: 1,
+            parts,
+        };
+        match baseline.format {
+            Format::Assembled => runs.push(on(cores, None)),
+            Format::Unassembled => {
+                runs.push(on(subdomains, Some(subdomains)));
+                let few = cores.min(subdomains);
+                if few < subdomains {
+                    runs.push(on(few, Some(few)));
+                }
+            }
+        }
+    }
+    runs
+}
