@@ -40,6 +40,7 @@ pub fn baseline(
         let tolerances = Tolerances {
             rtol,
             inner: if direct { 0.0 } else { job.inner },
+            lag: row.lag,
             solves: 1,
         };
         let found = outer::solve(session, &rows, &reduced, &ksp, tolerances)?;

@@ -155,7 +155,7 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         } => {
             let row = Baseline::named(name)
                 .ok_or_else(|| Error::input(format!("there is no baseline \"{name}\"")))?;
-            row.set_options(session, job.rtol, *rescue)?;
+            row.set_options(session, job.rtol, [scene.has_contact(), *rescue])?;
             match row.format {
                 Format::Assembled if scene.has_contact() => {
                     contact::baseline(session, &scene, &job, row, solution)?

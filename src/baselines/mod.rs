@@ -6,6 +6,9 @@
 //!                                             all solutions ──> judge (direct solution) ─────> Verdict
 //! ```
 //!
+//! With inequalities the solvers of the assembled problem stand inside an active-set loop (`outer`); the domain decompositions of PETSc
+//! solve the equations of the last active set.
+//!
 //! Every method runs in a process group of its own, started by mpirun, so that neither its memory nor its time is another's. All are
 //! driven to the same relative residual of the assembled problem.
 
@@ -63,7 +66,7 @@ pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()
     let all = Options::new(session, "");
     if all.has("help")? || all.has("h")? {
         for baseline in &baselines {
-            baseline.set_options(session, plan.rtol, false)?;
+            baseline.set_options(session, plan.rtol, [scene.has_contact(), false])?;
         }
     }
     let ready = if session.rank() == 0 {

@@ -34,6 +34,8 @@ pub struct Tolerances {
     pub rtol: f64,
     /// Reduction of the residual in a step while the set still changes.
     pub inner: f64,
+    /// The preconditioner stays while at most this part of all rows has changed since it was built.
+    pub lag: f64,
     /// Solves per step, of which all but the first refine a direct solution.
     pub solves: usize,
 }
@@ -90,12 +92,21 @@ pub fn solve(
     let mut visited: HashSet<Vec<bool>> = HashSet::new();
     let mut caution = Caution::Loose;
     let (mut steps, mut iterations, mut tight) = (0, 0, false);
+    // The set that the preconditioner was built for.
+    let mut built: Vec<bool> = Vec::new();
     let mut groups: Option<Groups> = None;
     loop {
         let now = match groups.take() {
             Some(groups) => groups,
             None => {
                 let groups = Groups::new(rows, &mut active, &priority);
+                let changed = active.iter().zip(&built).filter(|(a, b)| a != b).count();
+                let stale = changed as f64 > tolerances.lag * rows.len() as f64;
+                let build = built.is_empty() || stale;
+                if build {
+                    built.clone_from(&active);
+                }
+                ksp.set_reuse_preconditioner(!build)?;
                 let prepare = || {
                     reduced.update(&groups)?;
                     ksp.set_operators(&reduced.a, &reduced.a)?;
@@ -118,8 +129,8 @@ pub fn solve(
         };
         let mut reason = "CONVERGED_NOTHING_TO_DO".to_string();
         let mut failed = false;
-        for solve in 0..tolerances.solves {
-            if solve == 0 && residual <= stop {
+        for _ in 0..tolerances.solves {
+            if tolerances.solves == 1 && residual <= stop {
                 break;
             }
             ksp.set_tolerances(Some((stop / residual).min(0.9)), Some(0.0), None, None)?;

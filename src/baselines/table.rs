@@ -16,7 +16,7 @@ pub enum Format {
 }
 
 /// One of PETSc's solvers.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq)]
 pub struct Baseline {
     /// Its name for `--with`, and with an underscore the prefix of its options.
     pub name: &'static str,
@@ -28,6 +28,11 @@ pub struct Baseline {
     pub krylov: &'static str,
     /// Options (without the prefix) that hold unless the user says otherwise.
     pub options: &'static [(&'static str, &'static str)],
+    /// Further options in contact loops, in which the matrix changes and has entries that are zero.
+    pub contact: &'static [(&'static str, &'static str)],
+    /// In contact loops the preconditioner stays while at most this part of the inequalities has changed since it was built: what is
+    /// fastest on the model problem.
+    pub lag: f64,
     /// Further options for a second try where the first one does not converge.
     pub rescue: &'static [(&'static str, &'static str)],
 }
@@ -53,11 +58,16 @@ impl Baseline {
             .join(" ")
     }
 
-    /// Puts its options (with those of the second try, if this is it) into the database, below those of the user, and lists them under `-help`.
+    /// Puts its options (with those of contact loops and of a second try, if this is one) into the database, below those of the user, and lists them under `-help`.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn set_options(&self, session: &Session, rtol: f64, rescue: bool) -> Result<()> {
+    pub fn set_options(
+        &self,
+        session: &Session,
+        rtol: f64,
+        [contact, rescue]: [bool; 2],
+    ) -> Result<()> {
         let options = Options::new(session, &self.prefix());
         options.heading(&format!(
             "compare --with {}: {}",
@@ -65,10 +75,12 @@ impl Baseline {
         ))?;
         let rtol = format!("{rtol:e}");
         let tolerance = (format!("{}ksp_rtol", self.krylov), rtol.as_str());
+        let contact = if contact { self.contact } else { &[] };
         let rescue = if rescue { self.rescue } else { &[] };
         let fixed = self
             .options
             .iter()
+            .chain(contact)
             .chain(rescue)
             .map(|(name, value)| (name.to_string(), *value));
         for (name, value) in fixed.chain([tolerance]) {
@@ -97,6 +109,8 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_bddc_neumann_pc_type", "cholesky"),
             ("pc_bddc_neumann_pc_factor_mat_solver_type", "cholmod"),
         ],
+        contact: &[],
+        lag: 0.0,
         // A part that floats and has no vertex gets a singular local problem unless averages become unknowns, which costs
         // the other problems time and memory.
         rescue: &[("pc_bddc_use_change_of_basis", "true")],
@@ -124,6 +138,8 @@ pub const BASELINES: [Baseline; 5] = [
                 "cholmod",
             ),
         ],
+        contact: &[],
+        lag: 0.0,
         rescue: &[("fetidp_bddc_pc_bddc_use_change_of_basis", "true")],
     },
     Baseline {
@@ -136,6 +152,12 @@ pub const BASELINES: [Baseline; 5] = [
             ("ksp_norm_type", "unpreconditioned"),
             ("pc_type", "gamg"),
         ],
+        // Unknowns that a step has let go need a place on the coarse grids, and zeros are no connections.
+        contact: &[
+            ("pc_gamg_reuse_interpolation", "false"),
+            ("pc_gamg_threshold", "0"),
+        ],
+        lag: 0.05,
         rescue: &[],
     },
     Baseline {
@@ -149,6 +171,8 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_type", "hypre"),
             ("pc_hypre_type", "boomeramg"),
         ],
+        contact: &[],
+        lag: 0.0,
         rescue: &[],
     },
     Baseline {
@@ -161,6 +185,8 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_type", "cholesky"),
             ("pc_factor_mat_solver_type", "mumps"),
         ],
+        contact: &[],
+        lag: 0.0,
         rescue: &[],
     },
 ];
