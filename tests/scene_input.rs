@@ -73,7 +73,7 @@ fn keys_and_types() {
     check(
         &body("a", "[0, 0]", "elements = 4\nrhoo = 2"),
         "s.toml:6: unknown key `rhoo` in [[body]] (known keys are name, origin, size, subdomains, elements, \
-         elements_per_subdomain, rho, load, dirichlet)",
+         elements_per_subdomain, rho, load, dirichlet, ramp)",
     );
     let e = message(&format!("colour = 1\n{}", pair("")));
     assert!(
@@ -450,7 +450,7 @@ fn ties() {
     );
     check(
         &pair("[interface]\ndefault = \"glued\"\n"),
-        "s.toml:12: the text \"glued\" where \"tied\" or \"free\" was expected",
+        "s.toml:12: the text \"glued\" where \"tied\", \"free\" or \"contact\" was expected",
     );
 }
 

@@ -70,20 +70,7 @@ pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
             if mesh.dof[node] == SubdomainMesh::PRESCRIBED {
                 continue;
             }
-            // stencil[3 (1 + Δj) + (1 + Δi)] is the coupling with the node at offset (Δi, Δj).
-            let mut stencil = [0.0; 9];
-            for (a, coupling) in element.iter().enumerate() {
-                // In the element below and to the left of the node (a = 3) the node is local node 3, and so on.
-                let (ax, ay) = (a % 2, a / 2);
-                if i < ax || j < ay || i - ax >= nx || j - ay >= ny {
-                    continue;
-                }
-                let rho = mesh.rho[(j - ay) * nx + (i - ax)];
-                for (b, value) in coupling.iter().enumerate() {
-                    let (bx, by) = (b % 2, b / 2);
-                    stencil[3 * (1 + by - ay) + (1 + bx - ax)] += rho * value;
-                }
-            }
+            let stencil = stencil(mesh, &element, [i, j]);
             let mut load_here = load[node];
             for (q, &value) in stencil.iter().enumerate() {
                 let (p, q) = (i + q % 3, j + q / 3);
@@ -103,6 +90,54 @@ pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
         }
     }
     (k, f)
+}
+
+/// The load of [`assemble`] alone, to the last bit.
+pub fn free_load(mesh: &SubdomainMesh, load: &[f64]) -> Vec<f64> {
+    let element = q1::stiffness(mesh.step[0], mesh.step[1]);
+    let [nx, ny] = mesh.elements;
+    let width = nx + 1;
+    let mut f = Vec::with_capacity(mesh.n_free());
+    let given = |node: usize| mesh.dof[node] == SubdomainMesh::PRESCRIBED;
+    for node in (0..mesh.dof.len()).filter(|&n| !given(n)) {
+        let (i, j) = (node % width, node / width);
+        let mut load_here = load[node];
+        // The stencil is wanted beside given nodes only.
+        let mut values = None;
+        for q in 0..9 {
+            let (p, r) = (i + q % 3, j + q / 3);
+            if p < 1 || r < 1 || p > nx + 1 || r > ny + 1 {
+                continue;
+            }
+            let other = (r - 1) * width + (p - 1);
+            if given(other) {
+                let values = values.get_or_insert_with(|| stencil(mesh, &element, [i, j]));
+                load_here -= values[q] * mesh.prescribed[other];
+            }
+        }
+        f.push(load_here);
+    }
+    f
+}
+
+/// Entry 3 (1 + Δj) + (1 + Δi) is the coupling of node (i, j) with the node at offset (Δi, Δj).
+#[inline]
+fn stencil(mesh: &SubdomainMesh, element: &[[f64; 4]; 4], [i, j]: [usize; 2]) -> [f64; 9] {
+    let [nx, ny] = mesh.elements;
+    let mut stencil = [0.0; 9];
+    for (a, coupling) in element.iter().enumerate() {
+        // In the element below and to the left of the node (a = 3) the node is local node 3, and so on.
+        let (ax, ay) = (a % 2, a / 2);
+        if i < ax || j < ay || i - ax >= nx || j - ay >= ny {
+            continue;
+        }
+        let rho = mesh.rho[(j - ay) * nx + (i - ax)];
+        for (b, value) in coupling.iter().enumerate() {
+            let (bx, by) = (b % 2, b / 2);
+            stencil[3 * (1 + by - ay) + (1 + bx - ax)] += rho * value;
+        }
+    }
+    stencil
 }
 
 #[cfg(test)]

@@ -4,5 +4,5 @@ mod assemble;
 mod norms;
 pub mod q1;
 
-pub use assemble::{assemble, load_vector, Quadrature};
+pub use assemble::{assemble, free_load, load_vector, Quadrature};
 pub use norms::{error_squares, ErrorNorms};

@@ -1,5 +1,6 @@
 //! Where bodies touch: common faces and corners, and the nodes at which both have one.
 
+use super::profile::Limits;
 use super::Body;
 use crate::error::{Error, Result};
 use crate::mesh::BoxMesh;
@@ -8,7 +9,7 @@ use crate::mesh::BoxMesh;
 pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// How two coinciding nodes are joined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Link {
     /// Not at all.
     Free,
@@ -16,6 +17,18 @@ pub enum Link {
     Open,
     /// u is continuous.
     Tied,
+    /// u_first − u_second ≤ gap.
+    Contact {
+        /// The gap, at the last load step.
+        gap: f64,
+    },
+}
+
+impl Link {
+    /// Whether the nodes are in (unilateral) contact.
+    pub fn is_contact(&self) -> bool {
+        matches!(self, Link::Contact { .. })
+    }
 }
 
 /// What two bodies have in common.
@@ -52,6 +65,17 @@ pub struct Interface {
     pub shared: Vec<SharedNode>,
     /// Nodes of one body on the common face where the other has none, as (t, 0 or 1 for the body that has it, node).
     pub unmatched: Vec<(f64, usize, usize)>,
+    /// Which of `bodies` is the first and which the second in u_first − u_second ≤ g: the second lies above the first.
+    pub order: [usize; 2],
+    /// The gaps at the nodes in contact.
+    pub limits: Limits,
+}
+
+impl Interface {
+    /// Whether some of its nodes are in contact.
+    pub fn has_contact(&self) -> bool {
+        !self.limits.all().is_empty()
+    }
 }
 
 /// Pairs that touch, in order of their numbers, found by a sweep in x.
@@ -111,6 +135,8 @@ fn common(bodies: &[Body], a: usize, b: usize) -> Result<Option<Interface>> {
         shape,
         shared: Vec::new(),
         unmatched: Vec::new(),
+        order: [0, 1],
+        limits: Limits::default(),
     };
     // The first body lies below (or left of) the second exactly when its end is where they meet.
     let first_before = |d: usize| meshes[0].origin[d] < meshes[1].origin[d];

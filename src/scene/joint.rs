@@ -1,12 +1,13 @@
 //! From a scene to [`Substructures`]: subdomain by subdomain, row by row.
 
 use super::field::{At, Field};
+use super::steps::Factors;
 use super::validate::{bad_load, checked_rho};
 use super::{Body, Scene, Variables};
 use crate::error::Result;
 use crate::fem;
 use crate::mesh::{Block, SubdomainMesh};
-use crate::substructures::{InterfaceRow, RowKind, Subdomain, Substructures};
+use crate::substructures::{Subdomain, Substructures};
 use rayon::prelude::*;
 
 impl Scene {
@@ -30,27 +31,7 @@ impl Scene {
         })
     }
 
-    /// The rows of B_gl at points whose lowest subdomain satisfies `owns`: u_a − u_b = 0 for every tied pair of bodies
-    /// a < b, and open rows at the candidate contact nodes of faces that are tied in part.
-    pub fn rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<InterfaceRow> {
-        let mut out = Vec::new();
-        for point in self.points.iter().filter(|p| owns(p.subdomain)) {
-            let dof = |m: usize| {
-                let member = &point.members[m];
-                self.bodies[member.body].first_dof + member.node as u64
-            };
-            out.extend(point.rows.iter().map(|row| InterfaceRow {
-                terms: vec![(dof(row.members[0]), 1.0), (dof(row.members[1]), -1.0)],
-                gap: 0.0,
-                kind: RowKind::Equality,
-                holds: row.holds,
-                block: point.block,
-            }));
-        }
-        out
-    }
-
-    /// Subdomain `index`: matrix, load, numbering, primal vertices. A pure function of the scene.
+    /// Subdomain `index`: matrix, load of the last load step, numbering, primal vertices. A pure function of the scene.
     ///
     /// # Errors
     /// As [`Scene::substructures`].
@@ -65,7 +46,7 @@ impl Scene {
     /// [`Error::Input`](crate::Error::Input) for a load that is not finite.
     pub fn assemble(&self, mesh: &SubdomainMesh) -> Result<Subdomain> {
         let (body, block) = self.place(mesh.index);
-        let load = self.nodal_load(body, &block, mesh)?;
+        let load = self.nodal_load(body, &block, mesh, Factors::last(&self.steps))?;
         let (k, f) = fem::assemble(mesh, &load);
         let whole = body.mesh();
         let n = f.len();
@@ -110,11 +91,43 @@ impl Scene {
         })
     }
 
-    /// The mesh of subdomain `index`: nodes, which of them are free, ρ by element.
+    /// The load f of subdomain `index` at load step `step` (0 is the only one without [steps]), given values eliminated;
+    /// at the last step that of [`Scene::subdomain`] to the last bit.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) for a load that is not finite, or a step that the scene does not have.
+    pub fn loads(&self, index: usize, step: usize) -> Result<Vec<f64>> {
+        let factors = Factors::of(&self.steps, step)?;
+        let mesh = self.mesh_with(index, factors)?;
+        let (body, block) = self.place(index);
+        let load = self.nodal_load(body, &block, &mesh, factors)?;
+        Ok(fem::free_load(&mesh, &load))
+    }
+
+    /// The factor of given values at load step `step` ([`SubdomainMesh::prescribed`] has that of the last step).
+    ///
+    /// # Panics
+    /// For a step that the scene does not have.
+    pub fn prescribed_factor(&self, step: usize) -> f64 {
+        let factors = Factors::of(&self.steps, step);
+        factors.expect("the step exists").dirichlet()
+    }
+
+    /// Number of load steps; 1 without [steps].
+    pub fn n_steps(&self) -> usize {
+        self.steps.as_ref().map_or(1, |s| s.times.len())
+    }
+
+    /// The mesh of subdomain `index`: nodes, which of them are free, values given at the last load step, ρ by element.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for ρ ≤ 0 or not finite, with body and point.
     pub fn subdomain_mesh(&self, index: usize) -> Result<SubdomainMesh> {
+        self.mesh_with(index, Factors::last(&self.steps))
+    }
+
+    fn mesh_with(&self, index: usize, factors: Factors<'_>) -> Result<SubdomainMesh> {
+        let scale = factors.dirichlet();
         let (body, block) = self.place(index);
         let whole = body.mesh();
         let [nx, ny] = block.elements;
@@ -142,7 +155,7 @@ impl Scene {
                 };
                 match given {
                     Some(value) => {
-                        mesh.prescribed[mesh.dof.len()] = value;
+                        mesh.prescribed[mesh.dof.len()] = value * scale;
                         mesh.dof.push(SubdomainMesh::PRESCRIBED);
                     }
                     None => {
@@ -192,10 +205,18 @@ impl Scene {
     }
 
     /// The nodal load, checked.
-    fn nodal_load(&self, body: &Body, block: &Block, mesh: &SubdomainMesh) -> Result<Vec<f64>> {
+    fn nodal_load(
+        &self,
+        body: &Body,
+        block: &Block,
+        mesh: &SubdomainMesh,
+        factors: Factors<'_>,
+    ) -> Result<Vec<f64>> {
         let load = &body.spec.load;
+        let scale = factors.load(body.spec.ramp.as_ref());
         let mut bad = None;
         let mut checked = |value: f64, point: [f64; 2]| {
+            let value = value * scale;
             if !value.is_finite() {
                 bad.get_or_insert((value, point));
             }

@@ -11,18 +11,26 @@
 //! what happens on the boundaries of bodies, O(boundary nodes), and is the same on every rank; matrices are made
 //! subdomain by subdomain, on the rank that owns the subdomain.
 
+mod bounds;
 mod document;
 mod dual;
+mod entries;
 mod expr;
 mod field;
 mod interface;
 mod joint;
+mod links;
 mod numbering;
+mod obstacles;
 mod plan;
 mod points;
+mod profile;
 mod read;
+mod rows;
+mod select;
 mod spec;
-mod ties;
+mod steps;
+mod union_find;
 mod validate;
 
 pub use dual::Dual;
@@ -30,12 +38,16 @@ pub use expr::{Expr, Variables};
 pub use field::{At, By, Field, Region};
 pub use interface::{Interface, Link, Shape, SharedNode};
 pub use numbering::Numbering;
+pub use obstacles::Obstacle;
 pub use plan::{BodyPlan, InterfacePlan, Plan};
-pub use points::{Member, Point, PointRow};
+pub use points::{Member, Point, PointBound, PointRow};
+pub use profile::{Limit, Limits, Profile};
+pub use rows::{RowLabel, RowSource};
 pub use spec::{
-    held_all_round, lee, BodySpec, Extent, Faces, GridSpec, Load, Pair, SceneSpec, Sides, TieSpec,
-    SIDES,
+    held_all_round, lee, BodySpec, ByDefault, ContactSpec, Extent, Faces, GridSpec, Load,
+    ObstacleSpec, Pair, SceneSpec, Sides, TieSpec, SIDES,
 };
+pub use steps::{Ramp, Steps, StepsSpec};
 
 use crate::error::{Error, Result};
 use crate::mesh::BoxMesh;
@@ -51,7 +63,7 @@ pub struct Body {
     /// Global index of its subdomain 0.
     pub first_subdomain: usize,
     /// Nodes with a given value, in increasing order: Dirichlet sides, and nodes that are tied to such a node of
-    /// another body.
+    /// another body. Values are those before any factor of a load step.
     pub prescribed: Vec<(usize, f64)>,
 }
 
@@ -79,8 +91,12 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// Pairs of bodies that touch, by increasing numbers, and the nodes at which they meet.
     pub interfaces: Vec<Interface>,
-    /// Points at which nodes of several bodies coincide, by increasing [`Point::block`].
+    /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`Point::block`].
     pub points: Vec<Point>,
+    /// Rigid obstacles, by body, side and bound.
+    pub obstacles: Vec<Obstacle>,
+    /// Load steps; `None`: everything is applied at once.
+    pub steps: Option<Steps>,
     /// The exact solution, if it is known.
     pub exact: Option<Expr>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
@@ -114,11 +130,12 @@ impl Scene {
     ///
     /// # Errors
     /// [`Error::Input`] for overlapping bodies, non-matching nodes on tied faces, values out of range, ….
-    pub fn new(spec: SceneSpec) -> Result<Scene> {
+    pub fn new(mut spec: SceneSpec) -> Result<Scene> {
         validate::check(&spec)?;
+        let steps = Steps::new(&spec)?;
         let mut bodies = Vec::with_capacity(spec.bodies.len());
         let (mut first_dof, mut first_subdomain) = (0, 0);
-        for body in spec.bodies {
+        for body in std::mem::take(&mut spec.bodies) {
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
                 prescribed: validate::dirichlet_nodes(&body)?,
@@ -129,14 +146,18 @@ impl Scene {
             first_dof += nodes as u64;
             first_subdomain += subdomains;
         }
-        let interfaces = ties::find(&bodies, spec.tied_by_default, &spec.ties)?;
-        let points = points::collect(&mut bodies, &interfaces)?;
+        let interfaces = entries::find(&bodies, &spec, &steps)?;
+        let obstacles = obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
+        let mut points = points::collect(&mut bodies, &interfaces)?;
+        bounds::Checks::new(&bodies, &interfaces, &obstacles, &spec, &steps).apply(&mut points)?;
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             title: spec.title,
             bodies,
             interfaces,
             points,
+            obstacles,
+            steps,
             exact: spec.exact,
             options: spec.options,
             n_subdomains: first_subdomain,

@@ -1,6 +1,7 @@
 //! What will be built for a scene, counted without building it.
 
 use super::interface::{Link, Shape};
+use super::points::PointRow;
 use super::Scene;
 use crate::error::Result;
 
@@ -40,6 +41,8 @@ pub struct InterfacePlan {
     pub unmatched: usize,
     /// Nodes that are tied.
     pub tied: usize,
+    /// Nodes that are in contact.
+    pub contact: usize,
 }
 
 /// The sizes of a scene.
@@ -63,10 +66,20 @@ pub struct Plan {
     pub primal: usize,
     /// Rows of B_loc.
     pub local_multipliers: usize,
-    /// Rows of B_gl that hold.
+    /// Rows of B_gl that hold to begin with, inequalities included.
     pub global_multipliers: usize,
     /// Rows of B_gl that do not hold: candidate contact nodes of faces that are tied in part.
     pub open_rows: usize,
+    /// Pairs of bodies in contact.
+    pub contact_pairs: usize,
+    /// Rows u_a − u_b ≤ g: candidate contact nodes.
+    pub contact_rows: usize,
+    /// Obstacles: sides of bodies with a bound, lower and upper ones counted apart.
+    pub obstacles: usize,
+    /// Rows of obstacles.
+    pub obstacle_rows: usize,
+    /// Load steps, `None` without [steps].
+    pub steps: Option<usize>,
 }
 
 impl Scene {
@@ -82,8 +95,10 @@ impl Scene {
                 nodes: i.shared.len(),
                 unmatched: i.unmatched.len(),
                 tied: i.shared.iter().filter(|s| s.link == Link::Tied).count(),
+                contact: i.shared.iter().filter(|s| s.link.is_contact()).count(),
             })
             .collect();
+        let bounds = || self.points.iter().flat_map(|p| &p.bounds);
         Plan {
             title: self.title.clone(),
             interfaces,
@@ -93,8 +108,13 @@ impl Scene {
             assembled: super::Numbering::new(self).len(),
             primal: bodies.iter().map(|b| b.primal).sum(),
             local_multipliers: bodies.iter().map(|b| b.local_multipliers).sum(),
-            global_multipliers: self.rows_that(true),
-            open_rows: self.rows_that(false),
+            global_multipliers: self.rows_that(|r| r.holds) + bounds().filter(|b| b.holds).count(),
+            open_rows: self.rows_that(|r| !r.holds),
+            contact_pairs: self.interfaces.iter().filter(|i| i.has_contact()).count(),
+            contact_rows: self.rows_that(|r| r.contact),
+            obstacles: self.obstacles.len(),
+            obstacle_rows: bounds().count(),
+            steps: self.steps.as_ref().map(|s| s.times.len()),
             bodies,
         }
     }
@@ -107,11 +127,11 @@ impl Scene {
         (0..self.n_subdomains()).try_for_each(|s| self.subdomain(s).map(drop))
     }
 
-    fn rows_that(&self, hold: bool) -> usize {
+    fn rows_that(&self, is: impl Fn(&PointRow) -> bool) -> usize {
         self.points
             .iter()
             .flat_map(|p| &p.rows)
-            .filter(|r| r.holds == hold)
+            .filter(|r| is(r))
             .count()
     }
 

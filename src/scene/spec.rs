@@ -3,6 +3,8 @@
 
 use super::expr::Expr;
 use super::field::{Field, Region};
+use super::profile::Profile;
+use super::steps::{Ramp, StepsSpec};
 use crate::fem::Quadrature;
 use crate::mesh::BoxMesh;
 
@@ -47,6 +49,8 @@ pub struct BodySpec {
     pub rho: Field,
     /// Load f.
     pub load: Load,
+    /// Factor of the load over the load steps; `None`: that of all loads.
+    pub ramp: Option<Ramp>,
     /// Dirichlet conditions.
     pub dirichlet: Sides,
     /// Column and row in its grid, (0, 0) outside a grid: the variables `bi` and `bj`.
@@ -63,6 +67,7 @@ impl BodySpec {
             mesh,
             rho: Field::constant(1.0),
             load: Load::constant(0.0),
+            ramp: None,
             dirichlet: [None, None, None, None],
             place: [0, 0],
             written: String::new(),
@@ -89,6 +94,8 @@ pub struct GridSpec {
     pub rho: Field,
     /// Load f.
     pub load: Load,
+    /// Factor of the load over the load steps; `None`: that of all loads.
+    pub ramp: Option<Ramp>,
     /// Dirichlet conditions on the outer sides of the whole grid.
     pub dirichlet: Sides,
     /// Where it was written, or empty.
@@ -107,6 +114,7 @@ impl GridSpec {
             subdomains,
             rho: Field::constant(1.0),
             load: Load::constant(1.0),
+            ramp: None,
             dirichlet: held_all_round(),
             written: String::new(),
         }
@@ -140,6 +148,7 @@ impl GridSpec {
                     },
                     rho: self.rho.clone(),
                     load: self.load.clone(),
+                    ramp: self.ramp.clone(),
                     dirichlet: [side(0), side(1), side(2), side(3)],
                     place,
                     written: self.written.clone(),
@@ -159,7 +168,7 @@ pub enum Pair {
     Named(String, String),
 }
 
-/// Which nodes of a common face are tied. The parameter t runs from 0 to 1 along the common face, in the direction
+/// Which nodes of a common face (or of a side) an entry speaks of. The parameter t runs from 0 to 1 along the common face, in the direction
 /// of increasing x or y.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Extent {
@@ -186,6 +195,52 @@ pub struct TieSpec {
     pub written: String,
 }
 
+/// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSpec {
+    /// The bodies; the order of the names is that of the inequality, the lower number is first where none are named.
+    pub pair: Pair,
+    /// The part of their common face.
+    pub extent: Extent,
+    /// The gap g, of either sign.
+    pub gap: Profile,
+    /// Factor of the gap over the load steps; `None`: that of all gaps.
+    pub ramp: Option<Ramp>,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// Rigid obstacles beside a body: below ≤ u ≤ above on (part of) its sides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObstacleSpec {
+    /// Name of the body; `None`: all bodies.
+    pub body: Option<String>,
+    /// Indices into [`SIDES`].
+    pub sides: Vec<usize>,
+    /// The part of each side; t runs from 0 to 1 along it in the direction of increasing x or y.
+    pub extent: Extent,
+    /// The lower bound, if there is one.
+    pub below: Option<Profile>,
+    /// The upper bound, if there is one.
+    pub above: Option<Profile>,
+    /// Factor of the bounds over the load steps; `None`: that of all gaps.
+    pub ramp: Option<Ramp>,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// What becomes of bodies that touch and that no entry speaks of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ByDefault {
+    /// They are tied, in corners too.
+    #[default]
+    Tied,
+    /// Nothing joins them.
+    Free,
+    /// Their faces are in contact with gap 0.
+    Contact,
+}
+
 /// A whole scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneSpec {
@@ -193,10 +248,17 @@ pub struct SceneSpec {
     pub title: String,
     /// The bodies, in the order of their numbers.
     pub bodies: Vec<BodySpec>,
-    /// Whether bodies that touch are tied where no entry of `ties` names them.
-    pub tied_by_default: bool,
+    /// Bodies that touch and that no entry of `ties` or `contacts` speaks of.
+    pub default: ByDefault,
     /// Entries for single pairs; entries for the same pair add up, and together they replace the default.
     pub ties: Vec<TieSpec>,
+    /// Unilateral contacts. An entry that names a pair beats the contacts of all pairs, and a contact that names it beats
+    /// the ties of all pairs.
+    pub contacts: Vec<ContactSpec>,
+    /// Rigid obstacles.
+    pub obstacles: Vec<ObstacleSpec>,
+    /// Load steps; `None`: everything is applied at once.
+    pub steps: Option<StepsSpec>,
     /// The exact solution, if it is known.
     pub exact: Option<Expr>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
@@ -209,8 +271,11 @@ impl SceneSpec {
         SceneSpec {
             title: title.into(),
             bodies,
-            tied_by_default: true,
+            default: ByDefault::Tied,
             ties: Vec::new(),
+            contacts: Vec::new(),
+            obstacles: Vec::new(),
+            steps: None,
             exact: None,
             options: Vec::new(),
         }
@@ -252,7 +317,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
     let title = format!("Lee, Table 1 ({column}): {bodies}, {subdomains}, {elements}");
     let mut spec = SceneSpec::tied(title, grid.expand());
     if faces == Faces::MiddleThird {
-        spec.tied_by_default = false;
+        spec.default = ByDefault::Free;
         // With a single body there is no pair to tie, and nothing to select from.
         if bodies > 1 {
             spec.ties.push(TieSpec {

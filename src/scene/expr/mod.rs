@@ -70,7 +70,12 @@ impl Expr {
     /// # Errors
     /// One clause that says what was found, at which character, and what was expected.
     pub fn parse(text: &str) -> Result<Expr, String> {
-        let root = parse::parse(text)?;
+        Expr::parse_in(text, &VARIABLES)
+    }
+
+    /// The expression written as `text`, with other names (at most six) for the variables.
+    pub(super) fn parse_in(text: &str, variables: &[&str]) -> Result<Expr, String> {
+        let root = parse::parse(text, variables)?;
         Ok(Expr {
             text: text.to_string(),
             root,

@@ -12,14 +12,15 @@
 //! ```
 
 use super::tokens::{tokenise, Token};
-use super::{Ast, Binary, Unary, VARIABLES};
+use super::{Ast, Binary, Unary};
 
 /// Nesting allowed in one expression: the parser recurses, and a scene must not be able to overflow the stack.
 const MAX_DEPTH: usize = 64;
 
-/// The tree of the expression `text`, or one clause that says what is wrong with it.
-pub(super) fn parse(text: &str) -> Result<Ast, String> {
+/// The tree of the expression `text` in `variables`, or one clause that says what is wrong with it.
+pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Ast, String> {
     let mut parser = Parser {
+        variables,
         tokens: tokenise(text)?,
         next: 0,
         depth: 0,
@@ -29,13 +30,14 @@ pub(super) fn parse(text: &str) -> Result<Ast, String> {
     Ok(root)
 }
 
-struct Parser {
+struct Parser<'a> {
+    variables: &'a [&'a str],
     tokens: Vec<(usize, Token)>,
     next: usize,
     depth: usize,
 }
 
-impl Parser {
+impl Parser<'_> {
     fn peek(&self) -> &Token {
         &self.tokens[self.next].1
     }
@@ -189,7 +191,7 @@ impl Parser {
                 if *self.peek() == Token::Symbol("(") {
                     return self.call(&name, place);
                 }
-                if let Some(k) = VARIABLES.iter().position(|v| *v == name) {
+                if let Some(k) = self.variables.iter().position(|v| *v == name) {
                     return Ok(Ast::Variable(k));
                 }
                 match name.as_str() {
@@ -197,7 +199,7 @@ impl Parser {
                     "e" | "E" => Ok(Ast::Number(std::f64::consts::E)),
                     _ => Err(format!(
                         "unknown name `{name}` at character {place} (variables are {})",
-                        VARIABLES.join(", ")
+                        self.variables.join(", ")
                     )),
                 }
             }

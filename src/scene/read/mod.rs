@@ -1,12 +1,13 @@
 //! From TOML to a [`SceneSpec`]: keys, types and shapes.
 
 mod fields;
+mod steps;
 mod ties;
 mod values;
 
 use super::document::{Item, Section, Source, Value};
 use super::field::{By, Field};
-use super::spec::{BodySpec, GridSpec, Load, SceneSpec, Sides};
+use super::spec::{BodySpec, ByDefault, GridSpec, Load, SceneSpec, Sides};
 use super::validate::MOST_BODIES;
 use crate::error::{Error, Result};
 use crate::mesh::BoxMesh;
@@ -37,14 +38,26 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
     for item in reader.tables(scene.take("body"))? {
         bodies.push(reader.body(item, bodies.len())?);
     }
-    let tied_by_default = match scene.take("interface") {
-        None => true,
+    let default = match scene.take("interface") {
+        None => ByDefault::default(),
         Some(item) => reader.interface(item)?,
     };
     let mut ties = Vec::new();
     for item in reader.tables(scene.take("tie"))? {
         ties.push(reader.tie(item, &bodies)?);
     }
+    let mut contacts = Vec::new();
+    for item in reader.tables(scene.take("contact"))? {
+        contacts.push(reader.contact(item, &bodies)?);
+    }
+    let mut obstacles = Vec::new();
+    for item in reader.tables(scene.take("obstacle"))? {
+        obstacles.push(reader.obstacle(item, &bodies)?);
+    }
+    let steps = match scene.take("steps") {
+        None => None,
+        Some(item) => Some(reader.steps(item)?),
+    };
     let exact = match scene.take("exact") {
         None => None,
         Some(item) => Some(reader.expression(item)?),
@@ -62,8 +75,11 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
     Ok(SceneSpec {
         title,
         bodies,
-        tied_by_default,
+        default,
         ties,
+        contacts,
+        obstacles,
+        steps,
         exact,
         options,
     })
@@ -108,6 +124,7 @@ impl<'a> Reader<'a> {
             subdomains,
         };
         let (rho, load, sides) = self.data(&mut section, &shape)?;
+        body.ramp = self.ramp(&mut section)?;
         (body.rho, body.load, body.dirichlet) = (rho, load, sides);
         section.finish()?;
         Ok(body)
@@ -145,6 +162,7 @@ impl<'a> Reader<'a> {
             subdomains,
         };
         let (rho, load, dirichlet) = self.data(&mut section, &shape)?;
+        let ramp = self.ramp(&mut section)?;
         section.finish()?;
         Ok(GridSpec {
             name,
@@ -155,6 +173,7 @@ impl<'a> Reader<'a> {
             subdomains,
             rho,
             load,
+            ramp,
             dirichlet,
             written: self.written(item),
         })

@@ -1,58 +1,150 @@
-//! [interface] and [[tie]].
+//! [interface], [[tie]], [[contact]] and [[obstacle]].
 
 use super::Reader;
 use crate::error::Result;
 use crate::scene::document::{Item, Section, Value};
-use crate::scene::spec::{BodySpec, Extent, Pair, TieSpec};
+use crate::scene::profile::Profile;
+use crate::scene::spec::{
+    BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec, SIDES,
+};
 
 impl<'a> Reader<'a> {
-    pub(super) fn interface(&self, item: &'a Item) -> Result<bool> {
+    pub(super) fn interface(&self, item: &'a Item) -> Result<ByDefault> {
         let mut section = Section::new(self.source, "[interface]", item)?;
-        let tied = match section.take("default") {
-            None => true,
+        let default = match section.take("default") {
+            None => ByDefault::Tied,
             Some(item) => match &item.value {
-                Value::Text(t) if t == "tied" => true,
-                Value::Text(t) if t == "free" => false,
-                _ => return self.expected(item, "\"tied\" or \"free\""),
+                Value::Text(t) if t == "tied" => ByDefault::Tied,
+                Value::Text(t) if t == "free" => ByDefault::Free,
+                Value::Text(t) if t == "contact" => ByDefault::Contact,
+                _ => return self.expected(item, "\"tied\", \"free\" or \"contact\""),
             },
         };
         section.finish()?;
-        Ok(tied)
+        Ok(default)
     }
 
     pub(super) fn tie(&self, item: &'a Item, bodies: &[BodySpec]) -> Result<TieSpec> {
         let mut section = Section::new(self.source, "[[tie]]", item)?;
+        let pair = self.bodies(&mut section, bodies)?;
+        let extent = self.extent(&mut section, item, "[[tie]]")?;
+        section.finish()?;
+        Ok(TieSpec {
+            pair,
+            extent,
+            written: self.written(item),
+        })
+    }
+
+    pub(super) fn contact(&self, item: &'a Item, bodies: &[BodySpec]) -> Result<ContactSpec> {
+        let mut section = Section::new(self.source, "[[contact]]", item)?;
+        let pair = self.bodies(&mut section, bodies)?;
+        let extent = self.extent(&mut section, item, "[[contact]]")?;
+        let gap = match section.take("gap") {
+            Some(item) => self.profile(item)?,
+            None => Profile::constant(0.0),
+        };
+        let ramp = self.ramp(&mut section)?;
+        section.finish()?;
+        Ok(ContactSpec {
+            pair,
+            extent,
+            gap,
+            ramp,
+            written: self.written(item),
+        })
+    }
+
+    pub(super) fn obstacle(&self, item: &'a Item, bodies: &[BodySpec]) -> Result<ObstacleSpec> {
+        let mut section = Section::new(self.source, "[[obstacle]]", item)?;
+        let wanted = "\"all\" or the name of a body";
+        let named = section.need("body", wanted)?;
+        let body = match &named.value {
+            Value::Text(text) if text == "all" => None,
+            _ => Some(self.body_name(named, bodies, wanted)?),
+        };
+        let sides =
+            self.obstacle_sides(section.need("side", "a side, a list of them or \"all\"")?)?;
+        let extent = self.extent(&mut section, item, "[[obstacle]]")?;
+        let mut bound = |key| section.take(key).map(|item| self.profile(item)).transpose();
+        let (below, above) = (bound("below")?, bound("above")?);
+        let ramp = self.ramp(&mut section)?;
+        section.finish()?;
+        if below.is_none() && above.is_none() {
+            return self.error(
+                item,
+                "[[obstacle]] without a bound (`below`, `above` or both were expected)",
+            );
+        }
+        Ok(ObstacleSpec {
+            body,
+            sides,
+            extent,
+            below,
+            above,
+            ramp,
+            written: self.written(item),
+        })
+    }
+
+    fn obstacle_sides(&self, item: &'a Item) -> Result<Vec<usize>> {
+        let wanted = "left, right, bottom, top, a list of them or \"all\"";
+        let side = |item: &Item| match &item.value {
+            Value::Text(text) => match SIDES.iter().position(|s| s == text) {
+                Some(s) => Ok(s),
+                None => self.expected(item, wanted),
+            },
+            _ => self.expected(item, wanted),
+        };
+        match &item.value {
+            Value::Text(text) if text == "all" => Ok((0..SIDES.len()).collect()),
+            Value::List(items) if !items.is_empty() => {
+                let mut sides = items.iter().map(side).collect::<Result<Vec<usize>>>()?;
+                sides.sort_unstable();
+                sides.dedup();
+                Ok(sides)
+            }
+            _ => Ok(vec![side(item)?]),
+        }
+    }
+
+    /// `bodies`: "all" or a pair.
+    fn bodies(&self, section: &mut Section<'a>, bodies: &[BodySpec]) -> Result<Pair> {
         let wanted = "\"all\" or a pair of names";
         let named = section.need("bodies", wanted)?;
-        let pair = match &named.value {
-            Value::Text(text) if text == "all" => Pair::All,
-            Value::List(items) if items.len() == 2 => {
-                let mut names = Vec::with_capacity(2);
-                for item in items {
-                    names.push(match &item.value {
-                        Value::Text(name) => name.clone(),
-                        Value::Integer(k) => {
-                            match bodies.get(usize::try_from(*k).unwrap_or(usize::MAX)) {
-                                Some(body) => body.name.clone(),
-                                None => {
-                                    return self.error(
-                                        item,
-                                        format_args!(
-                                            "body {k} where a number below {} was expected",
-                                            bodies.len()
-                                        ),
-                                    )
-                                }
-                            }
-                        }
-                        _ => return self.expected(item, "the name of a body"),
-                    });
+        match &named.value {
+            Value::Text(text) if text == "all" => Ok(Pair::All),
+            Value::List(items) => match items.as_slice() {
+                [first, second] => {
+                    let name = |item| self.body_name(item, bodies, "the name of a body");
+                    Ok(Pair::Named(name(first)?, name(second)?))
                 }
-                let second = names.pop().unwrap_or_default();
-                Pair::Named(names.pop().unwrap_or_default(), second)
-            }
-            _ => return self.expected(named, wanted),
-        };
+                _ => self.expected(named, wanted),
+            },
+            _ => self.expected(named, wanted),
+        }
+    }
+
+    /// A body by name or number.
+    fn body_name(&self, item: &Item, bodies: &[BodySpec], wanted: &str) -> Result<String> {
+        match &item.value {
+            Value::Text(name) => Ok(name.clone()),
+            Value::Integer(k) => match bodies.get(usize::try_from(*k).unwrap_or(usize::MAX)) {
+                Some(body) => Ok(body.name.clone()),
+                None => self.error(
+                    item,
+                    format_args!(
+                        "body {k} where a number below {} was expected",
+                        bodies.len()
+                    ),
+                ),
+            },
+            _ => self.expected(item, wanted),
+        }
+    }
+
+    /// `where`, `range`, `points` or `nodes`.
+    fn extent(&self, section: &mut Section<'a>, entry: &Item, what: &str) -> Result<Extent> {
         let mut extents = Vec::new();
         if let Some(item) = section.take("where") {
             extents.push(match &item.value {
@@ -91,21 +183,15 @@ impl<'a> Reader<'a> {
             }
             extents.push(Extent::Nodes(nodes));
         }
-        section.finish()?;
-        let extent = match extents.len() {
-            0 => Extent::All,
-            1 => extents.remove(0),
-            _ => {
-                return self.error(
-                    item,
-                    "[[tie]] has several of `where`, `range`, `points` and `nodes` where one was expected",
-                )
-            }
-        };
-        Ok(TieSpec {
-            pair,
-            extent,
-            written: self.written(item),
-        })
+        match extents.len() {
+            0 => Ok(Extent::All),
+            1 => Ok(extents.remove(0)),
+            _ => self.error(
+                entry,
+                format_args!(
+                    "{what} has several of `where`, `range`, `points` and `nodes` where one was expected"
+                ),
+            ),
+        }
     }
 }

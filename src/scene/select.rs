@@ -1,0 +1,136 @@
+//! Which nodes of a common face, or of a side, an entry selects.
+
+use super::entries::Entry;
+use super::interface::{Interface, Shape, TOLERANCE};
+use super::spec::{Extent, Pair};
+use super::Body;
+use crate::error::{Error, Result};
+
+/// Tolerance of the parameter t at the ends of a range.
+const T_TOLERANCE: f64 = 1e-9;
+
+/// What an entry asks for and a face or side does not have.
+pub(super) enum Missing {
+    /// A node at this t.
+    At(f64),
+    /// A node of this number.
+    Number(usize),
+}
+
+impl std::fmt::Display for Missing {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Missing::At(t) => write!(out, "t = {t}"),
+            Missing::Number(k) => write!(out, "number {k}"),
+        }
+    }
+}
+
+fn inside(t: f64, [low, high]: [f64; 2]) -> bool {
+    low - T_TOLERANCE <= t && t <= high + T_TOLERANCE
+}
+
+/// Whether `t` is an end of the range `extent`.
+pub(super) fn is_end(extent: &Extent, t: f64) -> bool {
+    match extent {
+        Extent::Range(ends) => ends.iter().any(|end| (t - end).abs() <= T_TOLERANCE),
+        _ => false,
+    }
+}
+
+/// The nodes that `extent` selects among nodes with parameters `t`, in increasing order.
+pub(super) fn pick(extent: &Extent, t: &[f64]) -> std::result::Result<Vec<usize>, Missing> {
+    let all = 0..t.len();
+    let mut out: Vec<usize> = match extent {
+        Extent::None => Vec::new(),
+        Extent::All => all.collect(),
+        Extent::Range(range) => all.filter(|&k| inside(t[k], *range)).collect(),
+        Extent::Points(points) => {
+            let near = |wanted: f64| t.iter().position(|t| (t - wanted).abs() <= TOLERANCE);
+            let found = points.iter().map(|&p| near(p).ok_or(Missing::At(p)));
+            found.collect::<std::result::Result<_, _>>()?
+        }
+        Extent::Nodes(nodes) => match nodes.iter().find(|k| !all.contains(k)) {
+            Some(&k) => return Err(Missing::Number(k)),
+            None => nodes.clone(),
+        },
+    };
+    out.sort_unstable();
+    out.dedup();
+    Ok(out)
+}
+
+/// The nodes of `interface` (indices into `shared`) that `entry` selects.
+pub(super) fn selected(
+    bodies: &[Body],
+    interface: &Interface,
+    entry: &Entry<'_>,
+) -> Result<Vec<usize>> {
+    let extent = entry.extent;
+    if interface.shape == Shape::Corner {
+        // A contact of all pairs means faces: in a corner it has to be asked for by name.
+        let meant = entry.contact.is_none() || *entry.pair != Pair::All;
+        return Ok(if *extent == Extent::All && meant {
+            vec![0]
+        } else {
+            Vec::new()
+        });
+    }
+    let lone = match extent {
+        Extent::None | Extent::Points(_) => None,
+        Extent::All => interface.unmatched.first(),
+        Extent::Range(range) => interface.unmatched.iter().find(|u| inside(u.0, *range)),
+        // Numbers count the nodes of the common face; they make sense only where both bodies have the same.
+        Extent::Nodes(_) => interface.unmatched.first(),
+    };
+    if let Some(lone) = lone {
+        return Err(unmatched(bodies, interface, entry, lone));
+    }
+    let t: Vec<f64> = interface.shared.iter().map(|s| s.t).collect();
+    pick(extent, &t).map_err(|missing| {
+        if let Missing::At(wanted) = missing {
+            let near = |u: &&(f64, usize, usize)| (u.0 - wanted).abs() <= TOLERANCE;
+            if let Some(lone) = interface.unmatched.iter().find(near) {
+                return unmatched(bodies, interface, entry, lone);
+            }
+        }
+        let [a, b] = interface.bodies.map(|k| &bodies[k].spec.name);
+        Error::Input(format!(
+            "{}the {} of bodies `{a}` and `{b}` names the node with {missing}, but their common face has {} nodes \
+             and none like that",
+            entry.written,
+            entry.what(),
+            interface.shared.len()
+        ))
+    })
+}
+
+fn unmatched(
+    bodies: &[Body],
+    interface: &Interface,
+    entry: &Entry<'_>,
+    &(t, side, node): &(f64, usize, usize),
+) -> Error {
+    let has = &bodies[interface.bodies[side]];
+    let other = &bodies[interface.bodies[1 - side]];
+    let [x, y] = has.mesh().position(has.mesh().place(node));
+    // The later of the two bodies is the one that was put beside the other.
+    let later = &bodies[interface.bodies[1]].spec.written;
+    let place = if entry.written.is_empty() {
+        later
+    } else {
+        entry.written
+    };
+    let (are, face) = match entry.contact {
+        None => ("are tied", "tied face"),
+        Some(_) => ("are in contact", "contact face"),
+    };
+    Error::Input(format!(
+        "{place}bodies `{}` and `{}` {are}, but node ({x}, {y}) of `{}` (t = {t}) meets no node of `{}` \
+         (matching nodes were expected on a {face})",
+        bodies[interface.bodies[0]].spec.name,
+        bodies[interface.bodies[1]].spec.name,
+        has.spec.name,
+        other.spec.name,
+    ))
+}
