@@ -96,21 +96,28 @@ impl<'a> System<'a> {
             .expect("a quasi-definite matrix has an LDLᵀ factorisation");
     }
 
-    /// ‖b − A x‖_∞ and the residual itself.
+    /// b − A x in twice the working precision, and its size: forces relative to the multipliers, rows relative to u.
     fn residual(&self, b: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let n = self.qp.f.len();
-        let mut r = vec![0.0; b.len()];
-        self.qp.k.mul(&x[..n], &mut r[..n]);
+        let mut r: Vec<Sum> = b.iter().map(|&b| Sum(b, 0.0)).collect();
+        for i in 0..n {
+            let (col, val) = self.qp.k.row(i);
+            for (&j, &v) in col.iter().zip(val) {
+                r[i].add(-v, x[j as usize]);
+            }
+        }
         for (k, row) in self.rows.iter().enumerate() {
-            row.terms.iter().for_each(|&(i, v)| r[i] += v * x[n + k]);
-            r[n + k] = row.times(&x[..n]) - self.t[k] * x[n + k];
+            for &(i, v) in &row.terms {
+                r[i].add(-v, x[n + k]);
+                r[n + k].add(-v, x[i]);
+            }
+            r[n + k].add(self.t[k], x[n + k]);
         }
-        let mut largest = 0.0f64;
-        for (r, b) in r.iter_mut().zip(b) {
-            *r = b - *r;
-            largest = largest.max(r.abs());
-        }
-        (r, largest)
+        let r: Vec<f64> = r.into_iter().map(|Sum(high, low)| high + low).collect();
+        let largest = |v: &[f64], least| v.iter().fold(least, |m: f64, v| m.max(v.abs()));
+        let forces = largest(&r[..n], 0.0) / largest(&x[n..], 1.0);
+        let rows = largest(&r[n..], 0.0) / largest(&x[..n], 1.0);
+        (r, forces.max(rows))
     }
 
     fn solve_in_place(&self, x: &mut Mat<f64>) {
@@ -124,7 +131,7 @@ impl<'a> System<'a> {
         );
     }
 
-    /// Improves x as a solution of A x = b until that stops paying; returns ‖b − A x‖_∞.
+    /// Improves x as a solution of A x = b until that stops paying; returns the size of the residual.
     pub fn refine(&self, b: &[f64], x: &mut [f64], most: usize) -> f64 {
         let (mut r, mut size) = self.residual(b, x);
         for _ in 0..most {
@@ -139,7 +146,7 @@ impl<'a> System<'a> {
                 .map(|(i, x)| x + step[(i, 0)])
                 .collect();
             let (r_next, size_next) = self.residual(b, &next);
-            if !(size_next < size) {
+            if size_next.is_nan() || size_next >= size {
                 break;
             }
             let slow = size_next > 0.9 * size;
@@ -150,5 +157,21 @@ impl<'a> System<'a> {
             }
         }
         size
+    }
+}
+
+/// A sum and what rounding took from it.
+#[derive(Clone, Copy)]
+struct Sum(f64, f64);
+
+impl Sum {
+    /// Adds a·b.
+    fn add(&mut self, a: f64, b: f64) {
+        let product = a * b;
+        let rest = a.mul_add(b, -product);
+        let sum = self.0 + product;
+        let part = sum - self.0;
+        self.1 += (self.0 - (sum - part)) + (product - part) + rest;
+        self.0 = sum;
     }
 }

@@ -79,7 +79,7 @@ pub struct Solved {
 #[derive(Debug, Clone)]
 pub enum Outcome {
     Solved(Solved),
-    /// A motion z with K z = 0, B_E z = 0, B_I z ≤ 0 and fᵀz > 0.
+    /// A motion z with K z = 0, B_E z = 0, B_I z ≤ 0 and fᵀz > 0, largest entry 1.
     Unbounded(Vec<f64>),
     /// Weights y, y_I ≥ 0, with Bᵀy = 0 and cᵀy < 0: equations, then inequalities.
     Infeasible(Vec<f64>),
@@ -311,8 +311,10 @@ impl Qp {
         }
         let mut z = vec![0.0; self.f.len()];
         for (column, a) in columns.iter().zip(&alpha) {
-            column.iter().for_each(|&(i, v)| z[i] += v * a / largest);
+            column.iter().for_each(|&(i, v)| z[i] += v * a);
         }
+        let top = z.iter().fold(0.0f64, |m, z| m.max(z.abs()));
+        z.iter_mut().for_each(|z| *z /= top);
         certificate::check_descent(self, &z);
         Some(z)
     }

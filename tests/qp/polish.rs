@@ -7,7 +7,7 @@ use std::collections::HashSet;
 
 const EPSILON: f64 = 1e-7;
 
-/// What counts as zero, relative to the largest entries of u and λ.
+/// What counts as zero, relative to the largest entries of u and λ, and to the data.
 const ZERO: f64 = 2e-12;
 
 /// The solution on the active set that `p` shows.
@@ -18,7 +18,8 @@ pub fn polish(qp: &Qp, mut p: Point) -> Point {
     let (n, ne, ni) = (qp.f.len(), qp.equal.len(), qp.below.len());
     let mut closed: Vec<bool> = (0..ni).map(|k| p.below[k] > p.slack[k]).collect();
     let mut seen = HashSet::new();
-    let largest = |v: &[f64]| v.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    // Data of size one, unit diagonal: what vanishes is compared with 1.
+    let largest = |v: &[f64]| v.iter().fold(1.0f64, |m, v| m.max(v.abs()));
     loop {
         assert!(
             seen.insert(closed.clone()),
