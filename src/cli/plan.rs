@@ -71,7 +71,10 @@ fn interfaces(plan: &Plan) -> String {
     if plan.interfaces.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(["touch", "nodes", "tied"]).align(0, Align::Left);
+    // Surplus cells of a row are dropped.
+    let columns = ["touch", "nodes", "tied", "contact"];
+    let shown = if plan.contact_pairs > 0 { 4 } else { 3 };
+    let mut table = Table::new(columns.into_iter().take(shown)).align(0, Align::Left);
     let faces = plan.interfaces.iter().filter(|i| !i.corner);
     for i in faces.clone().take(LIST) {
         let [a, b] = i.bodies.map(|b| plan.bodies[b].name.as_str());
@@ -79,6 +82,7 @@ fn interfaces(plan: &Plan) -> String {
             format!("{a} - {b}"),
             i.nodes.to_string(),
             i.tied.to_string(),
+            i.contact.to_string(),
         ]);
     }
     let more = faces.count().saturating_sub(LIST);
@@ -114,9 +118,15 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
         "outer loop",
         match sizes.inequalities {
             0 => "none: no inequality".into(),
-            n => format!("active set: {n} inequalities"),
+            n => format!("active set: {n} inequalities ({})", inequalities(plan)),
         },
     );
+    if let Some(steps) = plan.steps {
+        line(
+            "load steps",
+            format!("{steps}, each starts from the solution of the last"),
+        );
+    }
     let floating = sizes.defect.iter().filter(|d| **d > 0).count();
     line(
         "projector",
@@ -167,4 +177,24 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
         ),
     );
     out
+}
+
+/// What the inequalities are.
+fn inequalities(plan: &Plan) -> String {
+    let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
+    let contact = format!(
+        "{} in {}",
+        count(plan.contact_rows, "candidate node"),
+        count(plan.contact_pairs, "contact pair")
+    );
+    let obstacles = format!(
+        "{} beside {}",
+        count(plan.obstacle_rows, "node"),
+        count(plan.obstacles, "obstacle")
+    );
+    match (plan.contact_pairs, plan.obstacles) {
+        (_, 0) => contact,
+        (0, _) => obstacles,
+        _ => format!("{contact}, {obstacles}"),
+    }
 }
