@@ -104,6 +104,36 @@ fn a_hundred_bodies() {
     }
 }
 
+#[test]
+fn the_example_scenes_with_contact() {
+    let mut count = 0;
+    for entry in std::fs::read_dir("examples/scenes").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let scene = Scene::load(&path).unwrap();
+        if !scene.has_contact() {
+            continue;
+        }
+        count += 1;
+        let problem = Assembled::of_scene(&scene);
+        let s = problem.solve();
+        println!(
+            "{}: {} unknowns, {} of {} rows closed, force {:.6}, energy {:.9e}, {:?}",
+            path.display(),
+            problem.dofs.len(),
+            s.closed.len(),
+            problem.qp.below.len(),
+            s.contact_force,
+            s.energy,
+            s.solved.kkt
+        );
+        assert!(s.solved.kkt.largest() <= CERTIFIED);
+    }
+    assert!(count >= 5, "{count}");
+}
+
 /// The solution as an answer, with changes.
 fn judged(
     problem: &Assembled,

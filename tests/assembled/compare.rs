@@ -2,7 +2,7 @@
 //! problem determines them.
 
 use super::{Assembled, Place, Reference};
-use crate::qp::certificate::{self, Kkt};
+use crate::qp::certificate::{self, largest, relative, Kkt};
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
@@ -74,22 +74,6 @@ pub fn compare(
         }
     };
 
-    let length = largest(
-        answer
-            .u
-            .iter()
-            .chain(&reference.u)
-            .copied()
-            .chain(qp.below.iter().chain(&qp.equal).map(|r| r.rhs)),
-    );
-    let force = largest(answer.lambda.iter().chain(&reference.lambda).copied());
-    let work = largest(qp.f.iter().zip(&reference.u).map(|(f, u)| f * u));
-    let scale = reference.energy.abs().max(work);
-    out.energy = relative((answer.energy - reference.energy).abs(), scale);
-    limit("energy", out.energy, tolerances.energy);
-    let own = relative((qp.energy(answer.u) - answer.energy).abs(), scale);
-    limit("energy of the answer's own u", own, tolerances.energy);
-
     let (mut equal, mut below) = (vec![0.0; qp.equal.len()], vec![0.0; qp.below.len()]);
     let mut idle = 0.0f64;
     for (place, &l) in problem.place.iter().zip(answer.lambda) {
@@ -99,7 +83,14 @@ pub fn compare(
             Place::Nowhere => idle = idle.max(l.abs()),
         }
     }
+    let scale = energy_scale(problem, reference);
+    out.energy = relative((answer.energy - reference.energy).abs(), scale);
+    limit("energy", out.energy, tolerances.energy);
+    let own = relative((qp.energy(answer.u) - answer.energy).abs(), scale);
+    limit("energy of the answer's own u", own, tolerances.energy);
+
     limit("multiplier of a row that does not hold", idle, 0.0);
+    let (length, force) = certificate::sizes(qp, answer.u, &equal, &below);
     out.kkt = certificate::kkt(qp, answer.u, &equal, &below);
     limit("stationarity", out.kkt.stationarity, tolerances.kkt);
     limit("feasibility", out.kkt.feasibility, tolerances.kkt);
@@ -136,6 +127,24 @@ pub fn compare(
         Ok(out)
     } else {
         Err(format!("{}; {out:?}", wrong.join("; ")))
+    }
+}
+
+/// What errors of the energy are compared with: the energy and the work of the load, and where both vanish what the data could do
+/// on the diagonal of K.
+fn energy_scale(problem: &Assembled, reference: &Reference) -> f64 {
+    let qp = &problem.qp;
+    let stiffness = |i: usize| qp.k.get(i, i);
+    let softest = (0..qp.f.len()).map(stiffness).fold(f64::INFINITY, f64::min);
+    let alone = (0..qp.f.len()).map(|i| qp.f[i] * qp.f[i] / stiffness(i));
+    let rows = qp.equal.iter().chain(&qp.below);
+    let moved = rows.map(|r| (r.rhs / r.norm()).powi(2) * softest);
+    let work = (0..qp.f.len()).map(|i| qp.f[i] * reference.u[i]);
+    let scale = largest(alone.chain(moved).chain(work).chain([reference.energy]));
+    if scale > 0.0 {
+        scale
+    } else {
+        1.0
     }
 }
 
@@ -193,18 +202,4 @@ fn distance(
         pairs.iter().for_each(|&(j, v)| *d -= v * alpha[(j, 0)]);
     }
     (free.len(), largest(d))
-}
-
-fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values
-        .into_iter()
-        .fold(0.0, |m: f64, v| if v.abs() <= m { m } else { v.abs() })
-}
-
-fn relative(part: f64, whole: f64) -> f64 {
-    if part == 0.0 {
-        0.0
-    } else {
-        part / whole
-    }
 }

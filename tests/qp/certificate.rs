@@ -17,20 +17,29 @@ pub struct Kkt {
 
 impl Kkt {
     pub fn largest(&self) -> f64 {
-        // NaN must not pass for small.
-        let all = [
+        largest([
             self.stationarity,
             self.feasibility,
             self.sign,
             self.complementarity,
-        ];
-        all.into_iter()
-            .fold(0.0, |m: f64, v| if v <= m { m } else { v })
+        ])
     }
 }
 
+/// The largest magnitude; NaN if there is one.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    let larger = |m: f64, v: f64| {
+        if v.abs() <= m || m.is_nan() {
+            m
+        } else {
+            v.abs()
+        }
+    };
+    values.into_iter().fold(0.0, larger)
+}
+
 /// part/whole, 0 for 0/0.
-fn relative(part: f64, whole: f64) -> f64 {
+pub fn relative(part: f64, whole: f64) -> f64 {
     if part == 0.0 {
         0.0
     } else {
@@ -38,17 +47,26 @@ fn relative(part: f64, whole: f64) -> f64 {
     }
 }
 
-fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values
-        .into_iter()
-        .fold(0.0, |m: f64, v| if v.abs() <= m { m } else { v.abs() })
-}
-
 /// y ← y + Bᵀ λ.
 pub fn add_transposed(rows: &[Row], lambda: &[f64], y: &mut [f64]) {
     for (row, l) in rows.iter().zip(lambda) {
         row.terms.iter().for_each(|&(i, b)| y[i] += b * l);
     }
+}
+
+/// The largest entry of u and c, and the largest multiplier of a row of unit length.
+///
+/// Where u or λ vanish, that is what the data could cause: f on the diagonal of K, c times its smallest entry.
+pub fn sizes(qp: &Qp, u: &[f64], equal: &[f64], below: &[f64]) -> (f64, f64) {
+    let d = scaled::weights(qp);
+    let rows = || qp.equal.iter().chain(&qp.below);
+    let given = rows().map(|r| r.rhs / r.norm());
+    let caused = qp.f.iter().zip(&d).map(|(f, d)| f * d * d);
+    let length = largest(u.iter().copied().chain(given).chain(caused));
+    let forces = rows().zip(equal.iter().chain(below));
+    let softest = largest(d.iter().copied());
+    let force = largest(forces.map(|(row, l)| l * row.norm()));
+    (length, force.max(length / softest.powi(2)))
 }
 
 /// The KKT residuals of any u and λ.
@@ -63,12 +81,8 @@ pub fn kkt(qp: &Qp, u: &[f64], equal: &[f64], below: &[f64]) -> Kkt {
     let mut forces = vec![0.0; u.len()];
     add_transposed(&qp.equal, equal, &mut forces);
     add_transposed(&qp.below, below, &mut forces);
-    // Where u or λ vanish, what they are compared with is what the data could cause: f on the diagonal of K, c times it.
-    let rows = || qp.equal.iter().chain(&qp.below);
-    let given = rows().map(|r| r.rhs / r.norm());
-    let caused = qp.f.iter().zip(&d).map(|(f, d)| f * d * d);
-    let length = largest(u.iter().copied().chain(given).chain(caused));
     let softest = largest(d.iter().copied());
+    let (length, force) = sizes(qp, u, equal, below);
 
     let residual = |i: usize| (ku[i] + forces[i] - qp.f[i]) * d[i];
     let size = |i: usize| largest([ku[i], forces[i], qp.f[i]]) * d[i];
@@ -84,10 +98,10 @@ pub fn kkt(qp: &Qp, u: &[f64], equal: &[f64], below: &[f64]) -> Kkt {
             .map(over)
             .chain(qp.below.iter().map(|r| over(r).max(0.0))),
     );
-    let force = |(row, l): (&Row, &f64)| l * row.norm();
-    let of_below = || qp.below.iter().zip(below).map(force);
-    let of_rows = qp.equal.iter().zip(equal).map(force).chain(of_below());
-    let force = largest(of_rows.chain([length / softest.powi(2)]));
+    let of_below = || {
+        let rows = qp.below.iter().zip(below);
+        rows.map(|(row, l)| l * row.norm())
+    };
     let products = of_below().zip(&qp.below).map(|(l, r)| l * over(r));
     Kkt {
         stationarity,

@@ -5,9 +5,6 @@ use super::kkt::System;
 use super::scaled::Point;
 use super::{Qp, Row};
 
-/// Added to the diagonal of the Newton matrix.
-const EPSILON: f64 = 1e-7;
-
 const MOST_STEPS: usize = 100;
 
 struct Residual {
@@ -54,11 +51,12 @@ fn distance(p: &Point, r: &Residual) -> f64 {
     primal.max(dual).max(r.mu.abs() / (length * force))
 }
 
-/// A point close to the solution of the scaled problem, in the inner part of the solutions where there are many.
-pub fn solve(qp: &Qp) -> Point {
+/// A point close to the solution of the scaled problem, in the inner part of the solutions where there are many. `epsilon` is that of
+/// [`System`].
+pub fn solve(qp: &Qp, epsilon: f64) -> Point {
     let (n, ne, ni) = (qp.f.len(), qp.equal.len(), qp.below.len());
     let rows: Vec<&Row> = qp.equal.iter().chain(&qp.below).collect();
-    let mut system = System::new(qp, rows, EPSILON);
+    let mut system = System::new(qp, rows, epsilon);
     let mut t = vec![0.0; ne + ni];
 
     // Start: the problem with s = −λ, then both made positive.
@@ -87,7 +85,7 @@ pub fn solve(qp: &Qp) -> Point {
         if far < best.0 {
             best = (far, p.clone(), step);
         }
-        if far < 1e-15 || (step > best.2 + 10 && best.0 < 1e-8) {
+        if far < 1e-15 || step > best.2 + 15 {
             break;
         }
         for k in 0..ni {

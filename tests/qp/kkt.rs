@@ -100,10 +100,10 @@ impl<'a> System<'a> {
     fn residual(&self, b: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let n = self.qp.f.len();
         let mut r: Vec<Sum> = b.iter().map(|&b| Sum(b, 0.0)).collect();
-        for i in 0..n {
+        for (i, r) in r.iter_mut().enumerate().take(n) {
             let (col, val) = self.qp.k.row(i);
             for (&j, &v) in col.iter().zip(val) {
-                r[i].add(-v, x[j as usize]);
+                r.add(-v, x[j as usize]);
             }
         }
         for (k, row) in self.rows.iter().enumerate() {

@@ -5,32 +5,30 @@ use super::scaled::Point;
 use super::{Qp, Row};
 use std::collections::HashSet;
 
-const EPSILON: f64 = 1e-7;
-
 /// What counts as zero, relative to the largest entries of u and λ, and to the data.
 const ZERO: f64 = 2e-12;
 
 /// The solution on the active set that `p` shows.
 ///
 /// The equations are solved for the least change of `p`. Where rows depend on each other, many multipliers fit; those of an
-/// interior point method are positive on every row that can carry force, and stay so.
-pub fn polish(qp: &Qp, mut p: Point) -> Point {
+/// interior point method are positive on every row that can carry force, and stay so. `epsilon` is that of [`System`]. `None`: no
+/// active set near `p` fits.
+pub fn polish(qp: &Qp, mut p: Point, epsilon: f64) -> Option<Point> {
     let (n, ne, ni) = (qp.f.len(), qp.equal.len(), qp.below.len());
     let mut closed: Vec<bool> = (0..ni).map(|k| p.below[k] > p.slack[k]).collect();
     let mut seen = HashSet::new();
     // Data of size one, unit diagonal: what vanishes is compared with 1.
     let largest = |v: &[f64]| v.iter().fold(1.0f64, |m, v| m.max(v.abs()));
     loop {
-        assert!(
-            seen.insert(closed.clone()),
-            "the active sets of the reference cycle"
-        );
+        if !seen.insert(closed.clone()) {
+            return None; // the sets cycle
+        }
         let active: Vec<usize> = (0..ni).filter(|&k| closed[k]).collect();
         let held = active.iter().map(|&k| &qp.below[k]);
         let rows: Vec<&Row> = qp.equal.iter().chain(held).collect();
         let sides: Vec<f64> = rows.iter().map(|r| r.rhs).collect();
         let b: Vec<f64> = qp.f.iter().copied().chain(sides).collect();
-        let mut system = System::new(qp, rows, EPSILON);
+        let mut system = System::new(qp, rows, epsilon);
         system.factor(&vec![0.0; ne + active.len()]);
         // The smallest part of the multipliers to start from that leads to the right signs: rows that equations imply may carry
         // any force, and large ones that cancel cost digits.
@@ -69,7 +67,7 @@ pub fn polish(qp: &Qp, mut p: Point) -> Point {
                 p.slack[k] = qp.below[k].rhs - qp.below[k].times(&p.u);
             }
             p.closed = active;
-            return p;
+            return Some(p);
         }
         wrong.into_iter().for_each(|k| closed[k] = !closed[k]);
     }
