@@ -87,6 +87,7 @@
 
 pub mod baselines;
 pub mod cli;
+pub mod contact;
 pub mod error;
 pub mod fem;
 pub mod feti;

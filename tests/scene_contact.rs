@@ -121,9 +121,7 @@ fn an_entry_that_names_the_pair_beats_all() {
     assert_eq!(holding, 2);
     let scene = pair("[interface]\ndefault = \"contact\"\n");
     assert_eq!(kinds(&scene), [(true, true); 5]);
-    let tied = pair(&format!(
-        "[interface]\ndefault = \"contact\"\n[[tie]]\nbodies = [0, 1]\n"
-    ));
+    let tied = pair("[interface]\ndefault = \"contact\"\n[[tie]]\nbodies = [0, 1]\n");
     assert!(!tied.has_contact());
 }
 

@@ -1,6 +1,8 @@
 //! The command-line program: arguments, then run, then an exit code.
 
 pub mod args;
+mod contact;
+mod fields;
 mod plan;
 pub(crate) mod problem;
 mod solve;

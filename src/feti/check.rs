@@ -184,7 +184,10 @@ impl Check<'_> {
             .map(|(sub, local)| local.condense(&sub.f).1)
             .collect();
         let lambda = self.dual.multipliers()?;
-        natural.initial(self.session, self.problem, stiffness, &g, &lambda)?;
+        lambda.set(0.0)?;
+        let comm = self.session.comm();
+        let load = natural.kernel_load(comm, self.problem, &g);
+        natural.balance(comm, &load, &lambda)?;
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
         stiffness.dual_halo.fetch(&lambda, &mut ghost)?;
         let loads = g.iter().enumerate().map(|(j, g)| {

@@ -1,14 +1,18 @@
 //! The dual problem as PETSc sees it: a MatShell Pᵀ F P and a PCShell P M⁻¹ Pᵀ.
 //!
 //! The projector stands on both sides of both, so that every Krylov method, flexible or pipelined, left or right
-//! preconditioned, works in the space V = ker Gᵀ without knowing of it.
+//! preconditioned, works in the space V = ker Gᵀ without knowing of it. Between the steps of the contact loop Z^k changes, and with it
+//! G, the touched blocks of B_D, and nothing else.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
+use super::exchange::sum_all;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::stiffness::Stiffness;
 use crate::petsc::{Event, Mat, Session, ShellMat, ShellPc, Vec as PetscVec};
+use crate::substructures::Substructures;
 use crate::Result;
 
 /// F, M⁻¹ and P of one problem.
@@ -20,6 +24,8 @@ pub struct Dual {
     /// G and P.
     pub natural: NaturalCoarse,
     session: Session,
+    /// Whether G belongs to other rows than those that hold.
+    stale: bool,
     events: [Event; 3],
     /// Buffers for projected copies.
     x: PetscVec,
@@ -43,12 +49,34 @@ impl Dual {
                 event("FetiFetiP")?,
             ],
             session: session.clone(),
+            stale: false,
             y: x.duplicate()?,
             x,
             stiffness,
             preconditioner,
             natural,
         })
+    }
+
+    /// Changes Z^k to `active` (one per owned row): new blocks of B_D where rows changed, a new G. Nothing that depends on K
+    /// is touched. Returns the number of rows that changed over all ranks. Collective.
+    pub fn set_active(&mut self, problem: &Substructures, active: &[bool]) -> Result<usize> {
+        let comm = self.session.comm();
+        let mut changed = [self.stiffness.jump.set_active(comm, active) as f64];
+        sum_all(comm, &mut changed);
+        if changed[0] > 0.0 || self.stale {
+            let (stiffness, preconditioner) = (&self.stiffness, &self.preconditioner);
+            self.natural
+                .renew(&self.session, problem, stiffness, preconditioner)?;
+            self.stale = false;
+        }
+        Ok(changed[0] as usize)
+    }
+
+    /// Changes Z^k in B and B_D alone and leaves G behind: enough for M⁻¹ in a face of a bound-constrained problem. Collective.
+    pub fn set_face(&mut self, free: &[bool]) {
+        self.stiffness.jump.set_active(self.session.comm(), free);
+        self.stale = true;
     }
 
     /// A vector of multipliers.
@@ -122,47 +150,51 @@ impl Dual {
     }
 }
 
-struct Range(Rc<Dual>);
+/// The operators as PETSc's shells and the contact loop share them.
+pub type Shared = Rc<RefCell<Dual>>;
+
+struct Range(Shared);
 
 impl ShellMat for Range {
     /// y ← Π P x
     fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        let dual = &self.0;
+        let dual = self.0.borrow();
         dual.x.copy_from(x)?;
         dual.p(&dual.x)?;
         dual.stiffness.range_projection(&dual.x, y)
     }
     /// y ← Pᵀ Π x
     fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.stiffness.range_projection(x, y)?;
-        self.0.p_transpose(y)
+        let dual = self.0.borrow();
+        dual.stiffness.range_projection(x, y)?;
+        dual.p_transpose(y)
     }
 }
 
-struct Operator(Rc<Dual>);
-struct Projected(Rc<Dual>);
+struct Operator(Shared);
+struct Projected(Shared);
 
 impl ShellMat for Operator {
     fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.projected_f(x, y)
+        self.0.borrow().projected_f(x, y)
     }
     fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.projected_f(x, y)
+        self.0.borrow().projected_f(x, y)
     }
     fn symmetric(&self) -> bool {
         true
     }
     fn view(&self) -> String {
-        self.0.describe()
+        self.0.borrow().describe()
     }
 }
 
 impl ShellMat for Projected {
     fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.projected_m(x, y)
+        self.0.borrow().projected_m(x, y)
     }
     fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.projected_m(x, y)
+        self.0.borrow().projected_m(x, y)
     }
     fn symmetric(&self) -> bool {
         true
@@ -171,36 +203,36 @@ impl ShellMat for Projected {
 
 impl ShellPc for Projected {
     fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.projected_m(x, y)
+        self.0.borrow().projected_m(x, y)
     }
     fn apply_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.projected_m(x, y)
+        self.0.borrow().projected_m(x, y)
     }
     fn view(&self) -> String {
-        self.0.describe()
+        self.0.borrow().describe()
     }
 }
 
 /// Pᵀ F P as a matrix. Collective.
-pub fn operator(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
-    let n = dual.stiffness.jump.n_owned;
+pub fn operator(session: &Session, dual: &Shared) -> Result<Mat> {
+    let n = dual.borrow().stiffness.jump.n_owned;
     Mat::shell(session, n, n, Box::new(Operator(dual.clone())))
 }
 
 /// P M⁻¹ Pᵀ as a matrix. Collective.
-pub fn preconditioner_matrix(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
-    let n = dual.stiffness.jump.n_owned;
+pub fn preconditioner_matrix(session: &Session, dual: &Shared) -> Result<Mat> {
+    let n = dual.borrow().stiffness.jump.n_owned;
     Mat::shell(session, n, n, Box::new(Projected(dual.clone())))
 }
 
 /// E = Π P as a matrix, Π the orthogonal projection onto range B: F (I − Π) = 0 and P (I − Π) = I − Π make E a projection
 /// with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. Collective.
-pub fn range_matrix(session: &Session, dual: &Rc<Dual>) -> Result<Mat> {
-    let n = dual.stiffness.jump.n_owned;
+pub fn range_matrix(session: &Session, dual: &Shared) -> Result<Mat> {
+    let n = dual.borrow().stiffness.jump.n_owned;
     Mat::shell(session, n, n, Box::new(Range(dual.clone())))
 }
 
 /// P M⁻¹ Pᵀ as what a PCShell applies.
-pub fn preconditioner_shell(dual: &Rc<Dual>) -> Box<dyn ShellPc> {
+pub fn preconditioner_shell(dual: &Shared) -> Box<dyn ShellPc> {
     Box::new(Projected(dual.clone()))
 }

@@ -131,7 +131,7 @@ impl Gtg {
 }
 
 /// Vectors v with A v = 0, one per dropped column.
-fn null_vectors(a: &Dense, factor: &Semidefinite) -> Vec<Vec<f64>> {
+pub fn null_vectors(a: &Dense, factor: &Semidefinite) -> Vec<Vec<f64>> {
     let column = |&k: &usize| {
         let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
         factor.solve(&mut v);

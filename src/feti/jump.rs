@@ -4,13 +4,11 @@
 //! rank that provides a contact row owns that. A rank also sees *ghost* rows: all those that touch
 //! its subdomains. Entries are kept per subdomain on interface positions, B and B_D side by side.
 
-use std::ops::Range;
-
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::exchange::{exchange, offsets, sum_all, Record};
-use super::local::dense::Dense;
+use super::blocks::{self, Block, Entry};
+use super::exchange::{exchange, offsets, sum_all};
 use super::scaling;
 use super::sharing::{Copy, Sharing};
 use crate::substructures::{RowKind, Substructures};
@@ -26,6 +24,8 @@ pub struct JumpColumns {
     pub b: Vec<f64>,
     /// Entry of Z B_D.
     pub bd: Vec<f64>,
+    /// Entries of B_gl: where they stand in the lists above, and their value in B, whether or not the row holds.
+    pub contact: Vec<(u32, f64)>,
 }
 
 impl JumpColumns {
@@ -34,6 +34,23 @@ impl JumpColumns {
         v.fill(0.0);
         for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.b) {
             v[i as usize] += b * ghost[r as usize];
+        }
+    }
+
+    /// v ← Bᵀ λ with all rows of B_gl, those that do not hold included.
+    pub fn b_transpose_all(&self, ghost: &[f64], v: &mut [f64]) {
+        self.b_transpose(ghost, v);
+        for &(k, full) in &self.contact {
+            let k = k as usize;
+            v[self.at[k] as usize] += (full - self.b[k]) * ghost[self.row[k] as usize];
+        }
+    }
+
+    /// ghost ← ghost + B y on the rows of B_gl, those that do not hold included.
+    pub fn add_contact(&self, y: &[f64], ghost: &mut [f64]) {
+        for &(k, full) in &self.contact {
+            let k = k as usize;
+            ghost[self.row[k] as usize] += full * y[self.at[k] as usize];
         }
     }
 
@@ -60,19 +77,6 @@ impl JumpColumns {
     }
 }
 
-/// Rows of B_gl that share body dofs, on the rank that owns them.
-#[derive(Debug)]
-pub struct Block {
-    /// Owned rows of the block (indices among this rank's rows).
-    pub rows: Range<usize>,
-    /// Body dofs that the rows touch.
-    pub dofs: Vec<u64>,
-    /// B on (rows, dofs).
-    pub b: Dense,
-    /// D summed over the copies of each dof.
-    pub weights: Vec<f64>,
-}
-
 /// The dual space and its operators.
 #[derive(Debug, Default)]
 pub struct Jump {
@@ -92,12 +96,28 @@ pub struct Jump {
     pub ghost_is_contact: Vec<bool>,
     /// Right-hand side c of each owned row.
     pub gap: Vec<f64>,
+    /// The right-hand side that each owned row is held to: c, or the nearest that the rows of its block that hold can satisfy
+    /// together.
+    pub held: Vec<f64>,
     /// Whether each owned row may be switched off by the contact loop.
     pub inequality: Vec<bool>,
+    /// Z⁰ on the owned rows: whether the row holds to begin with.
+    pub initial: Vec<bool>,
     /// Z^k on the owned rows: whether the row holds.
     pub active: Vec<bool>,
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
+    /// For each owned row of B_gl, which of the rows that this rank provides it is.
+    pub order: Vec<usize>,
+    /// First owned local row of each local subdomain, and the end: a subdomain's rows are those of the dofs in which it is
+    /// the lowest.
+    pub local_start: Vec<usize>,
+    /// Rank that holds each subdomain.
+    pub(super) rank_of: Vec<u32>,
+    /// Global indices of the local subdomains, increasing.
+    pub(super) subdomains: Vec<u32>,
+    /// Where the entries of B_gl stand: (ghost row, local subdomain, its dof, entry), increasing.
+    pub(super) places: Vec<(u32, u32, u32, u32)>,
     /// Entries by local subdomain.
     pub columns: Vec<JumpColumns>,
     /// Dual interface dofs of each local subdomain, increasing.
@@ -107,36 +127,6 @@ pub struct Jump {
     pub primal: Vec<Vec<u32>>,
     /// How many of them are shared.
     pub n_shared: Vec<usize>,
-}
-
-/// One entry of B and B_D on its way to the rank of its subdomain.
-#[derive(Clone)]
-struct Entry {
-    row: u64,
-    subdomain: u32,
-    local: u32,
-    contact: bool,
-    b: f64,
-    bd: f64,
-}
-
-impl Record for Entry {
-    const WORDS: usize = 4;
-    fn pack(&self, out: &mut Vec<u64>) {
-        let place = u64::from(self.subdomain) << 32 | u64::from(self.local);
-        let row = self.row << 1 | u64::from(self.contact);
-        out.extend([row, place, self.b.to_bits(), self.bd.to_bits()]);
-    }
-    fn unpack(w: &[u64]) -> Self {
-        Entry {
-            row: w[0] >> 1,
-            subdomain: (w[1] >> 32) as u32,
-            local: (w[1] & u64::from(u32::MAX)) as u32,
-            contact: w[0] & 1 == 1,
-            b: f64::from_bits(w[2]),
-            bd: f64::from_bits(w[3]),
-        }
-    }
 }
 
 impl Jump {
@@ -149,7 +139,7 @@ impl Jump {
             outgoing[to as usize].push(entry);
         };
 
-        let own_local = local_groups(problem, sharing, rank);
+        let (own_local, per_subdomain) = local_groups(problem, sharing, rank);
         let n_owned_local = own_local.iter().map(|g| g.len() * (g.len() - 1) / 2).sum();
         let n_owned = n_owned_local + problem.rows.len();
         let (first, n_global) = offsets(comm, n_owned);
@@ -162,35 +152,22 @@ impl Jump {
                     for (c, copy) in group.iter().enumerate() {
                         let bd = scaling::pair_entry(&weights, (a, b), c);
                         let sign = f64::from(u8::from(c == a)) - f64::from(u8::from(c == b));
-                        send(Entry::new(row, copy, false, sign, bd));
+                        send(Entry::new(row, copy, false, [sign, sign, bd]));
                     }
                     row += 1;
                 }
             }
         }
 
-        let (order, blocks) = contact_blocks(problem, sharing, n_owned_local);
+        let (order, blocks) = blocks::collect(problem, sharing, n_owned_local);
         let locals_hold = std::iter::repeat_n(true, n_owned_local);
         let contacts_hold = order.iter().map(|&r| problem.rows[r].holds);
         let active: Vec<bool> = locals_hold.chain(contacts_hold).collect();
         for block in &blocks {
-            let holds: Vec<bool> = block.rows.clone().map(|r| active[r]).collect();
-            let bd = scaling::block(&block.b, &block.weights, &holds);
-            for (r, &on) in holds.iter().enumerate() {
-                let row = (first + block.rows.start + r) as u64;
-                for (j, dof) in block.dofs.iter().enumerate() {
-                    // A row acts on the weighted average of the copies of one body (method section 3);
-                    // B_Dᵀ λ is then the same on all of them, as a function in W̃ must be.
-                    for copy in &sharing.copies[dof] {
-                        let share = copy.weight / block.weights[j];
-                        let b = if on { block.b.get(r, j) * share } else { 0.0 };
-                        send(Entry::new(row, copy, true, b, bd.get(r, j)));
-                    }
-                }
-            }
+            block.entries(first, &active[block.rows.clone()], &mut send);
         }
 
-        let rows = order.iter().map(|&r| &problem.rows[r]);
+        let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
         let zeros = std::iter::repeat_n(0.0, n_owned_local);
         let never = std::iter::repeat_n(false, n_owned_local);
         let mut n_local = [n_owned_local as f64];
@@ -201,16 +178,38 @@ impl Jump {
             n_global,
             n_owned_local,
             n_local: n_local[0] as usize,
-            gap: zeros.chain(rows.clone().map(|r| r.gap)).collect(),
+            gap: zeros.chain(rows.iter().map(|r| r.gap)).collect(),
             inequality: never
-                .chain(rows.map(|r| r.kind == RowKind::Inequality))
+                .chain(rows.iter().map(|r| r.kind == RowKind::Inequality))
                 .collect(),
+            initial: active.clone(),
             active,
             blocks,
+            order,
+            local_start: per_subdomain,
+            rank_of: sharing.rank_of.clone(),
+            subdomains: problem.local.iter().map(|s| s.index as u32).collect(),
             ..Jump::default()
         };
+        jump.held = jump.gap.clone();
+        jump.reconcile(|_| true);
         jump.receive(problem, sharing, exchange(comm, &outgoing).concat());
         jump
+    }
+
+    /// Replaces c; `gaps` is in the order in which this rank provides its rows.
+    pub fn set_gaps(&mut self, gaps: &[f64]) {
+        let rows = &mut self.gap[self.n_owned_local..];
+        for (c, &r) in rows.iter_mut().zip(&self.order) {
+            *c = gaps[r];
+        }
+        self.held.clone_from(&self.gap);
+        self.reconcile(|_| true);
+    }
+
+    /// Whether owned row `i` may hold at all: open rows of faces that are tied in part may not.
+    pub fn is_candidate(&self, i: usize) -> bool {
+        self.inequality[i] || self.initial[i]
     }
 
     fn receive(&mut self, problem: &Substructures, sharing: &Sharing, mut entries: Vec<Entry>) {
@@ -226,7 +225,7 @@ impl Jump {
         }
         entries.sort_unstable_by_key(|e| (e.subdomain, e.local, e.row));
         let mut rest = &entries[..];
-        for sub in &problem.local {
+        for (j, sub) in problem.local.iter().enumerate() {
             let n = rest.partition_point(|e| e.subdomain as usize == sub.index);
             let (mine, others) = rest.split_at(n);
             rest = others;
@@ -235,9 +234,13 @@ impl Jump {
             let mut corners = Vec::new();
             for e in mine {
                 let row = self.ghosts.binary_search(&(e.row as u32));
-                columns
-                    .row
-                    .push(row.expect("every entry's row was collected") as u32);
+                let row = row.expect("every entry's row was collected") as u32;
+                if e.contact {
+                    let k = columns.row.len() as u32;
+                    columns.contact.push((k, e.full));
+                    self.places.push((row, j as u32, e.local, k));
+                }
+                columns.row.push(row);
                 columns.at.push(e.local);
                 columns.b.push(e.b);
                 columns.bd.push(e.bd);
@@ -261,6 +264,7 @@ impl Jump {
             self.delta.push(dual);
             self.primal.push(primal);
         }
+        self.places.sort_unstable();
     }
 
     /// Turns the entries' local dofs into positions in `interface` (the order of Γ) of subdomain `j`.
@@ -274,22 +278,16 @@ impl Jump {
     }
 }
 
-impl Entry {
-    fn new(row: u64, copy: &Copy, contact: bool, b: f64, bd: f64) -> Entry {
-        Entry {
-            row,
-            subdomain: copy.subdomain,
-            local: copy.local,
-            contact,
-            b,
-            bd,
-        }
-    }
-}
-
-/// The dual dofs shared inside a body whose lowest subdomain lives here, in a reproducible order.
-fn local_groups<'a>(problem: &Substructures, sharing: &'a Sharing, rank: u32) -> Vec<&'a [Copy]> {
+/// The dual dofs shared inside a body whose lowest subdomain lives here, in a reproducible order, and where the rows of each local
+/// subdomain start (and end).
+fn local_groups<'a>(
+    problem: &Substructures,
+    sharing: &'a Sharing,
+    rank: u32,
+) -> (Vec<&'a [Copy]>, Vec<usize>) {
     let mut groups = Vec::new();
+    let mut start = vec![0];
+    let mut rows = 0;
     for sub in problem.local.iter() {
         debug_assert_eq!(sharing.rank_of[sub.index], rank);
         for &dof in &sub.dofs {
@@ -299,48 +297,10 @@ fn local_groups<'a>(problem: &Substructures, sharing: &'a Sharing, rank: u32) ->
                 .is_some_and(|c| c.subdomain as usize == sub.index);
             if lowest && !Sharing::is_primal(copies) {
                 groups.push(copies);
+                rows += copies.len() * (copies.len() - 1) / 2;
             }
         }
+        start.push(rows);
     }
-    groups
-}
-
-/// Sorts this rank's rows by block: (order of the rows, blocks with `rows` counted after `first` local rows).
-fn contact_blocks(
-    problem: &Substructures,
-    sharing: &Sharing,
-    first: usize,
-) -> (Vec<usize>, Vec<Block>) {
-    let mut order: Vec<usize> = (0..problem.rows.len()).collect();
-    order.sort_by_key(|&r| problem.rows[r].block);
-    let mut blocks = Vec::new();
-    let mut start = first;
-    for rows in order.chunk_by(|&a, &b| problem.rows[a].block == problem.rows[b].block) {
-        let terms = rows.iter().flat_map(|&r| &problem.rows[r].terms);
-        let mut dofs: Vec<u64> = terms.map(|t| t.0).collect();
-        dofs.sort_unstable();
-        dofs.dedup();
-        let mut b = Dense::zeros(rows.len(), dofs.len());
-        for (i, &r) in rows.iter().enumerate() {
-            for (dof, coefficient) in &problem.rows[r].terms {
-                let j = dofs
-                    .binary_search(dof)
-                    .expect("every term's dof was collected");
-                b.set(i, j, b.get(i, j) + coefficient);
-            }
-        }
-        let weights = dofs
-            .iter()
-            .map(|dof| sharing.copies[dof].iter().map(|c| c.weight).sum())
-            .collect();
-        let end = start + rows.len();
-        blocks.push(Block {
-            rows: start..end,
-            dofs,
-            b,
-            weights,
-        });
-        start = end;
-    }
-    (order, blocks)
+    (groups, start)
 }

@@ -1,5 +1,6 @@
 //! The method, one file per operator, symbols as in the theory page.
 
+pub mod blocks;
 pub mod check;
 pub mod coarse;
 pub mod dual;
@@ -7,8 +8,10 @@ pub mod equal;
 pub mod exchange;
 pub mod gtg;
 pub mod halo;
+pub mod inner;
 pub mod jump;
 pub mod kernel;
+pub mod kkt;
 pub mod lifting;
 pub mod local;
 pub mod natural;
@@ -25,7 +28,8 @@ pub mod spectrum;
 pub mod stiffness;
 pub mod team;
 
-pub use recover::{Kkt, Solution};
+pub use kkt::Kkt;
+pub use recover::Solution;
 pub use settings::{PcType, ProjectorKind, Scaling, Settings};
 pub use solver::FetiFeti;
 pub use spectrum::Spectrum;

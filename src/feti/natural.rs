@@ -36,6 +36,16 @@ pub struct NaturalCoarse {
     /// Q G where it differs from G.
     qg: Option<Rows>,
     gtg: Option<Gtg>,
+    prefix: String,
+}
+
+/// What the loads do on the kernels: e = Rᵀ g, and the size of what may cancel in it.
+#[derive(Debug, Clone, Default)]
+pub struct KernelLoad {
+    /// e, length r.
+    pub e: Vec<f64>,
+    /// For each entry the largest |R| times Σ|f|: loads inside a subdomain cancel before they reach g.
+    pub size: Vec<f64>,
 }
 
 impl NaturalCoarse {
@@ -71,25 +81,57 @@ impl NaturalCoarse {
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
             gtg: None,
+            prefix: prefix.into(),
         };
-        if r == 0 {
-            return Ok(natural);
+        if r > 0 {
+            natural.projector = choose(comm, problem, stiffness, preconditioner, wanted);
+            natural.renew(session, problem, stiffness, preconditioner)?;
         }
-        natural.g = natural.assemble_g(comm, stiffness);
-        natural.projector = choose(comm, problem, stiffness, preconditioner, wanted);
-        natural.qg = match natural.projector {
-            ProjectorKind::Diagonal => Some(natural.superlumped(session, problem, stiffness)?),
-            ProjectorKind::Preconditioner => {
-                Some(natural.probe(session, stiffness, preconditioner)?)
-            }
-            _ => None,
-        };
-        natural.gtg = Some(Gtg::new(session, r, &natural.g, natural.qg(), prefix)?);
         Ok(natural)
     }
 
-    /// G = Z B R; rows of B_loc are left out, kernels are continuous inside a body.
+    /// Assembles G, Q G and Gᵀ Q G for the rows that hold now. Collective.
+    pub fn renew(
+        &mut self,
+        session: &Session,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        preconditioner: &Preconditioner,
+    ) -> Result<()> {
+        if self.r == 0 {
+            return Ok(());
+        }
+        self.g = self.assemble_g(session.comm(), stiffness);
+        self.qg = match self.projector {
+            ProjectorKind::Diagonal => {
+                let mut qg = self.g.clone();
+                qg.scale_rows(&self.superlumped(session, problem, stiffness)?);
+                Some(qg)
+            }
+            ProjectorKind::Preconditioner => {
+                Some(self.probe(session, stiffness, preconditioner)?)
+            }
+            _ => None,
+        };
+        self.gtg = Some(Gtg::new(session, self.r, &self.g, self.qg(), &self.prefix)?);
+        Ok(())
+    }
+
+    /// G = Z B R for the rows that hold.
     fn assemble_g(&self, comm: &SimpleCommunicator, stiffness: &Stiffness) -> Rows {
+        let mut g = self.all_rows(comm, stiffness);
+        let held = stiffness
+            .jump
+            .active
+            .iter()
+            .map(|&on| f64::from(u8::from(on)));
+        g.scale_rows(&held.collect::<Vec<f64>>());
+        g
+    }
+
+    /// B R with all rows of B_gl, those that do not hold included; rows of B_loc are left out, kernels are continuous inside a
+    /// body. Collective.
+    pub fn all_rows(&self, comm: &SimpleCommunicator, stiffness: &Stiffness) -> Rows {
         let jump = &stiffness.jump;
         let starts: Vec<u32> = gather_all(comm, &[jump.first as u64])
             .iter()
@@ -98,10 +140,8 @@ impl NaturalCoarse {
         let mut outgoing: Vec<Vec<PrimalEntry>> = vec![Vec::new(); comm.size() as usize];
         for (j, kernel) in self.kernels.iter().enumerate() {
             let columns = &jump.columns[j];
-            for (e, (&ghost, &at)) in columns.row.iter().zip(&columns.at).enumerate() {
-                if !jump.ghost_is_contact[ghost as usize] || columns.b[e] == 0.0 {
-                    continue;
-                }
+            for &(e, full) in &columns.contact {
+                let (ghost, at) = (columns.row[e as usize], columns.at[e as usize]);
                 let row = jump.ghosts[ghost as usize];
                 // The last rank that starts at or before the row: ranks without rows start where the next one does.
                 let to = starts.partition_point(|&s| s <= row) - 1;
@@ -109,7 +149,7 @@ impl NaturalCoarse {
                     outgoing[to].push(PrimalEntry {
                         row,
                         col: (self.first_column[j] + c) as u32,
-                        value: columns.b[e] * kernel.get(at as usize, c),
+                        value: full * kernel.get(at as usize, c),
                     });
                 }
             }
@@ -118,18 +158,17 @@ impl NaturalCoarse {
             .concat()
             .iter()
             .map(|e| (e.row - jump.first as u32, e.col, e.value))
-            .filter(|e| jump.active[e.0 as usize])
             .collect();
         Rows::from_triplets(jump.n_owned, entries)
     }
 
-    /// Q G with Q = diag(B_D diag(K) B_Dᵀ).
-    fn superlumped(
+    /// diag(B_D diag(K) B_Dᵀ) on the owned rows. Collective.
+    pub fn superlumped(
         &self,
         session: &Session,
         problem: &Substructures,
         stiffness: &Stiffness,
-    ) -> Result<Rows> {
+    ) -> Result<Vec<f64>> {
         let jump = &stiffness.jump;
         let mut ghost = vec![0.0; jump.ghosts.len()];
         for (j, columns) in jump.columns.iter().enumerate() {
@@ -141,10 +180,7 @@ impl NaturalCoarse {
         }
         let q = PetscVec::mpi(session, jump.n_owned)?;
         stiffness.dual_halo.sum(&ghost, &q)?;
-        let q = q.array()?;
-        let mut qg = self.g.clone();
-        qg.scale_rows(&q);
-        Ok(qg)
+        q.to_vec()
     }
 
     /// M⁻¹ G, one column after the other.
@@ -194,47 +230,71 @@ impl NaturalCoarse {
         }
     }
 
-    /// λ₀ = Q G (Gᵀ Q G)⁻¹ e, and an error if e is not in range: a load on a body that nothing holds. Collective.
-    pub fn initial(
+    /// e = Rᵀ g for condensed loads g. Collective.
+    pub fn kernel_load(
         &self,
-        session: &Session,
+        comm: &SimpleCommunicator,
         problem: &Substructures,
-        stiffness: &Stiffness,
         g: &[Vec<f64>],
-        lambda: &PetscVec,
-    ) -> Result<()> {
-        lambda.set(0.0)?;
-        let Some(solver) = &self.gtg else {
-            return Ok(());
-        };
-        // e = Rᵀ g, and the size of what may cancel in it: loads inside a subdomain do before they reach g.
+    ) -> KernelLoad {
         let mut e = vec![0.0; 2 * self.r];
         for (j, kernel) in self.kernels.iter().enumerate() {
             let load: f64 = problem.local[j].f.iter().map(|f| f.abs()).sum();
             for c in 0..kernel.cols {
                 let at = self.first_column[j] + c;
                 let largest = kernel.col(c).iter().fold(0.0f64, |a, r| a.max(r.abs()));
-                e[at] += kernel
-                    .col(c)
-                    .iter()
-                    .zip(&g[j])
-                    .map(|(r, g)| r * g)
-                    .sum::<f64>();
+                let work = kernel.col(c).iter().zip(&g[j]).map(|(r, g)| r * g);
+                e[at] += work.sum::<f64>();
                 e[self.r + at] += largest * load;
             }
         }
-        sum_all(session.comm(), &mut e);
-        let (e, size) = e.split_at_mut(self.r);
-        for motion in &solver.unheld {
-            let work: f64 = motion.iter().zip(&*e).map(|(m, e)| m * e).sum();
-            let scale: f64 = motion.iter().zip(&*size).map(|(m, s)| (m * s).abs()).sum();
+        sum_all(comm, &mut e);
+        let size = e.split_off(self.r);
+        KernelLoad { e, size }
+    }
+
+    /// An error if the load moves a body that no row holds: e is not in the range of Gᵀ.
+    pub fn check_held(
+        &self,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        load: &KernelLoad,
+    ) -> Result<()> {
+        for motion in self.unheld() {
+            let work: f64 = motion.iter().zip(&load.e).map(|(m, e)| m * e).sum();
+            let terms = motion.iter().zip(&load.size);
+            let scale: f64 = terms.map(|(m, s)| (m * s).abs()).sum();
             if work.abs() > 1e-10 * scale {
-                return Err(not_held(problem, &stiffness.space.kernel_start, motion));
+                let who = moving(problem, &stiffness.space.kernel_start, motion);
+                return Err(Error::input(format!(
+                    "{who} held by nothing (no Dirichlet side and no tie to a held body) and the load does not balance, expected a Dirichlet side or a tie"
+                )));
             }
         }
-        solver.solve(e, Side::Plain)?;
-        let qg = self.qg();
-        qg.add(1.0, e, &mut lambda.array_mut()?);
+        Ok(())
+    }
+
+    /// Combinations of kernel vectors that no row sees.
+    pub fn unheld(&self) -> &[Vec<f64>] {
+        self.gtg.as_ref().map_or(&[], |gtg| &gtg.unheld)
+    }
+
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): the forces on every floating body balance. λ₀ from λ = 0. Collective.
+    pub fn balance(
+        &self,
+        comm: &SimpleCommunicator,
+        load: &KernelLoad,
+        lambda: &PetscVec,
+    ) -> Result<()> {
+        let Some(solver) = &self.gtg else {
+            return Ok(());
+        };
+        let mut c = vec![0.0; self.r];
+        self.g.add_transpose(&lambda.array()?, &mut c);
+        sum_all(comm, &mut c);
+        c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
+        solver.solve(&mut c, Side::Plain)?;
+        self.qg().add(1.0, &c, &mut lambda.array_mut()?);
         Ok(())
     }
 
@@ -263,7 +323,8 @@ impl NaturalCoarse {
     }
 }
 
-fn not_held(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> Error {
+/// The bodies that a combination of kernel vectors moves, as the start of a sentence: "body "a" is".
+pub fn moving(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> String {
     let largest = motion.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let moves = |b: &usize| {
         let columns = &motion[kernel_start[*b]..kernel_start[*b + 1]];
@@ -273,14 +334,11 @@ fn not_held(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> 
         .filter(moves)
         .map(|b| format!("\"{}\"", problem.body_names[b]))
         .collect();
-    let who = match names.len() {
+    match names.len() {
         1 => format!("body {} is", names[0]),
         n if n > 4 => format!("bodies {} and {} more are", names[..3].join(", "), n - 3),
         _ => format!("bodies {} are", names.join(", ")),
-    };
-    Error::input(format!(
-        "{who} held by nothing (no Dirichlet side and no tie to a held body) and the load does not balance, expected a Dirichlet side or a tie"
-    ))
+    }
 }
 
 /// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness. Only called where some body floats.

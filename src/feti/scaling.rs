@@ -70,6 +70,14 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
     out
 }
 
+/// An orthonormal basis of range B for a few rows.
+pub fn range(b: &faer::Mat<f64>) -> faer::Mat<f64> {
+    let svd = b.svd().expect("an SVD of a tiny finite matrix converges");
+    let sigma = svd.S().column_vector();
+    let rank = (0..sigma.nrows()).filter(|&i| sigma[i] > RANK * sigma[0]);
+    svd.U().subcols(0, rank.count()).to_owned()
+}
+
 /// The connected part of each column where the rows only take differences inside them, so that ker B is spanned by the
 /// parts' indicators; `None` for other rows.
 fn connected_parts(b: &faer::Mat<f64>, rank: usize) -> Option<Vec<usize>> {

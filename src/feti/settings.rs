@@ -87,6 +87,8 @@ pub struct Settings {
     pub spectrum: bool,
     /// Relative residual of the dual problem to stop at, unless `fetifeti_ksp_rtol` says otherwise.
     pub rtol: f64,
+    /// `fetifeti_contact_`: the contact loop.
+    pub contact: crate::contact::Settings,
     /// Prefix of all options.
     pub prefix: String,
 }
@@ -102,6 +104,7 @@ impl Default for Settings {
             check: false,
             spectrum: false,
             rtol: 1e-6,
+            contact: crate::contact::Settings::default(),
             prefix: "fetifeti_".into(),
         }
     }
@@ -150,6 +153,7 @@ impl Settings {
         self.check = o.bool("check", self.check, help)?;
         let help = "exact extreme eigenvalues of the preconditioned operator";
         self.spectrum = o.bool("spectrum", self.spectrum, help)?;
+        self.contact = self.contact.with_options(&o)?;
         for (name, help) in [
             (
                 "ksp_",

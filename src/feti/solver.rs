@@ -1,11 +1,12 @@
 //! `FetiFeti`: from substructures to a solver that can be asked for solutions and spectra.
 
+use std::cell::{Ref, RefCell};
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::coarse::PrimalProblem;
-use super::dual::{self, Dual};
+use super::dual::{self, Dual, Shared};
 use super::equal;
 use super::halo::Halo;
 use super::jump::Jump;
@@ -20,6 +21,7 @@ use super::sharing::Sharing;
 use super::spectrum::{self, Spectrum};
 use super::stiffness::Stiffness;
 use super::team::Team;
+use crate::contact;
 use crate::petsc::{cite, Comm, Ksp, NormType, Session, Stage, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
@@ -41,6 +43,8 @@ pub struct Facts {
     pub multipliers_global: usize,
     /// Rows of B_gl that hold.
     pub multipliers_active: usize,
+    /// Rows of B_gl that are inequalities.
+    pub inequalities: usize,
     /// Bodies with a kernel.
     pub floating_bodies: usize,
     /// Dimension of all kernels, r.
@@ -62,7 +66,7 @@ pub struct FetiFeti {
     session: Session,
     problem: Substructures,
     settings: Settings,
-    dual: Rc<Dual>,
+    dual: Shared,
     ksp: Ksp,
     facts: Facts,
     solve_stage: Stage,
@@ -115,7 +119,8 @@ impl FetiFeti {
             &format!("{prefix}gtg_"),
         )?;
         let mut facts = facts(&stiffness, &natural, comm);
-        let dual = Rc::new(Dual::new(session, stiffness, preconditioner, natural)?);
+        let dual = Dual::new(session, stiffness, preconditioner, natural)?;
+        let dual = Rc::new(RefCell::new(dual));
         let ksp = krylov(session, &dual, &settings)?;
         facts.setup_seconds = clock.elapsed().as_secs_f64();
         Ok(FetiFeti {
@@ -129,12 +134,50 @@ impl FetiFeti {
         })
     }
 
-    /// Solves for the loads of the substructures. Collective.
+    /// Solves for the loads of the substructures: by the contact loop where rows are inequalities, at once where none is.
+    /// Collective.
     ///
-    /// A Krylov method that stops early is no error here: look at [`Solution::converged`].
+    /// An iteration that stops early is no error here: look at [`Solution::converged`].
+    ///
+    /// # Errors
+    /// A body that nothing holds or that is pushed away for ever, gaps that contradict each other; PETSc's own errors.
     pub fn solve(&self) -> Result<Solution> {
+        self.solve_from(None, &mut |_, _| Ok(()))
+    }
+
+    /// The same from a given state of the contact loop, with a call after each of its steps. Without inequalities the
+    /// state is not used. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::solve`], and what `observe` returns.
+    pub fn solve_from(
+        &self,
+        start: Option<&contact::State>,
+        observe: &mut contact::Observer,
+    ) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
-        recover::solve(&self.session, &self.problem, &self.dual, &self.ksp)
+        if self.facts.inequalities > 0 {
+            return contact::solve(self, start, observe);
+        }
+        recover::solve(&self.session, &self.problem, &self.dual(), &self.ksp)
+    }
+
+    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows (in the order in which this rank
+    /// provides them). Nothing is factored again.
+    ///
+    /// # Panics
+    /// If a length differs from what is there.
+    pub fn set_loads(&mut self, loads: Vec<Vec<f64>>, gaps: &[f64]) {
+        assert_eq!(loads.len(), self.problem.local.len());
+        assert_eq!(gaps.len(), self.problem.rows.len());
+        for (sub, f) in self.problem.local.iter_mut().zip(loads) {
+            assert_eq!(f.len(), sub.f.len());
+            sub.f = f;
+        }
+        for (row, &gap) in self.problem.rows.iter_mut().zip(gaps) {
+            row.gap = gap;
+        }
+        self.dual.borrow_mut().stiffness.jump.set_gaps(gaps);
     }
 
     /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Collective.
@@ -145,7 +188,7 @@ impl FetiFeti {
 
     /// The identities that the theory promises, each with its relative defect, which must be about rounding. Collective.
     pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
-        super::check::identities(&self.session, &self.problem, &self.dual)
+        super::check::identities(&self.session, &self.problem, &self.dual())
     }
 
     /// Facts about the problem.
@@ -164,8 +207,18 @@ impl FetiFeti {
     }
 
     /// The operators.
-    pub fn dual(&self) -> &Dual {
+    pub fn dual(&self) -> Ref<'_, Dual> {
+        self.dual.borrow()
+    }
+
+    /// The operators, for those that change Z^k.
+    pub(crate) fn shared(&self) -> &Shared {
         &self.dual
+    }
+
+    /// The session.
+    pub fn session(&self) -> &Session {
+        &self.session
     }
 
     /// The Krylov solver of the dual problem.
@@ -233,8 +286,10 @@ fn facts(
 ) -> Facts {
     let jump = &stiffness.jump;
     let contact = jump.active[jump.n_owned_local..].iter();
-    let mut active = [contact.filter(|a| **a).count() as f64];
-    super::exchange::sum_all(comm, &mut active);
+    let active = contact.filter(|a| **a).count();
+    let inequalities = jump.inequality.iter().filter(|i| **i).count();
+    let mut counts = [active as f64, inequalities as f64];
+    super::exchange::sum_all(comm, &mut counts);
     let mut kinds: Vec<&Arc<LocalProblem>> = stiffness.locals.iter().collect();
     kinds.sort_by_key(|l| Arc::as_ptr(l));
     kinds.dedup_by(|a, b| Arc::ptr_eq(a, b));
@@ -243,7 +298,8 @@ fn facts(
     Facts {
         multipliers_local: jump.n_local,
         multipliers_global: jump.n_global - jump.n_local,
-        multipliers_active: active[0] as usize,
+        multipliers_active: counts[0] as usize,
+        inequalities: counts[1] as usize,
         floating_bodies: stiffness.space.defect.iter().filter(|d| **d > 0).count(),
         kernel_dimension: natural.r,
         primal: stiffness.space.n_global,
@@ -255,7 +311,7 @@ fn facts(
 }
 
 /// CG on Pᵀ F P with P M⁻¹ Pᵀ, stopped by ‖r_n‖₂ / ‖r_0‖₂ as in the paper.
-fn krylov(session: &Session, dual: &Rc<Dual>, settings: &Settings) -> Result<Ksp> {
+fn krylov(session: &Session, dual: &Shared, settings: &Settings) -> Result<Ksp> {
     let a = dual::operator(session, dual)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_operators(&a, &a)?;

@@ -1,8 +1,6 @@
 //! Exact extreme eigenvalues of the preconditioned operator on V ∩ range B.
 
-use std::rc::Rc;
-
-use super::dual::{self, Dual};
+use super::dual::{self, Dual, Shared};
 use crate::petsc::{extreme_eigenvalues, Session};
 use crate::Result;
 
@@ -31,14 +29,14 @@ const TOLERANCE: f64 = 4e-7;
 ///
 /// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range of G
 /// are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
-pub fn exact(session: &Session, dual: &Rc<Dual>, prefix: &str) -> Result<Option<Spectrum>> {
-    if dual.stiffness.jump.n_global == 0 {
+pub fn exact(session: &Session, dual: &Shared, prefix: &str) -> Result<Option<Spectrum>> {
+    if dual.borrow().stiffness.jump.n_global == 0 {
         return Ok(None);
     }
     let a = dual::operator(session, dual)?;
     let c = dual::preconditioner_matrix(session, dual)?;
     let e = dual::range_matrix(session, dual)?;
-    let start = start_vector(dual)?;
+    let start = start_vector(&dual.borrow())?;
     let (lambda_min, lambda_max) =
         extreme_eigenvalues(session, &a, &c, Some(&e), &start, TOLERANCE, prefix)?;
     Ok(Some(Spectrum {

@@ -110,6 +110,18 @@ impl Stiffness {
         self.jump_of(work, out) /*                        out ← B y      */
     }
 
+    /// out ← B S̃⁺ Bᵀ λ with all rows of B_gl, those that do not hold included. Collective.
+    pub fn f_mult_all(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        self.dual_halo.fetch(lambda, ghost)?;
+        let columns = &self.jump.columns;
+        self.team.for_each(work, |j, w| {
+            columns[j].b_transpose_all(ghost, &mut w.v); /* v ← Bᵀ λ     */
+        });
+        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
+        self.jump_of_all(work, out) /*                    out ← B y      */
+    }
+
     /// out ← B B_Dᵀ λ, the orthogonal projection onto range B: redundant multipliers are removed. Collective.
     pub fn range_projection(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
@@ -125,6 +137,21 @@ impl Stiffness {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
         for (w, columns) in work.iter().zip(&self.jump.columns) {
             columns.add_b(&w.y, &mut sum);
+        }
+        self.dual_halo.sum(&sum, out)
+    }
+
+    /// out ← B y with all rows of B_gl, those that do not hold included. Collective.
+    pub fn jump_of_all(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+        let mut sum = vec![0.0; self.jump.ghosts.len()];
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_b(&w.y, &mut sum);
+        }
+        for (s, contact) in sum.iter_mut().zip(&self.jump.ghost_is_contact) {
+            *s = if *contact { 0.0 } else { *s };
+        }
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_contact(&w.y, &mut sum);
         }
         self.dual_halo.sum(&sum, out)
     }

@@ -167,6 +167,22 @@ pub fn text_width(text: &str, size: f64, bold: bool) -> f64 {
         .sum()
 }
 
+/// The text, or as much of its start and its end as fits into a width, with an ellipsis between: of the name of an interface
+/// both bodies are seen.
+pub fn shortened(text: &str, size: f64, bold: bool, width: f64) -> String {
+    if text_width(text, size, bold) <= width {
+        return text.to_string();
+    }
+    let letters: Vec<char> = text.chars().collect();
+    let cut = |kept: usize| -> String {
+        let start: String = letters[..kept.div_ceil(2)].iter().collect();
+        let end: String = letters[letters.len() - kept / 2..].iter().collect();
+        format!("{}…{}", start.trim_end(), end.trim_start())
+    };
+    let fits = |kept: &usize| text_width(&cut(*kept), size, bold) <= width;
+    cut((1..letters.len()).rev().find(fits).unwrap_or(0))
+}
+
 /// Points of a circle as a polygon, fine enough for markers.
 pub fn circle(centre: Point, radius: f64) -> Vec<Point> {
     (0..24)
@@ -189,6 +205,18 @@ mod tests {
         // DejaVu Sans: the digit zero is 1303 of 2048 units wide, the capital M 1767.
         assert!((text_width("0", 2048.0, false) - 1303.0).abs() < 1.0);
         assert!((text_width("0M", 1024.0, false) - (1303.0 + 1767.0) / 2.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn long_texts_are_shortened() {
+        assert_eq!(shortened("left|right", 10.0, true, 200.0), "left|right");
+        let short = shortened("a long name of a body | another one", 10.0, true, 80.0);
+        assert!(
+            short.starts_with("a long…") && short.ends_with("one"),
+            "{short}"
+        );
+        let width = text_width(&short, 10.0, true);
+        assert!(width <= 80.0 && width > 65.0, "{width}");
     }
 
     #[test]

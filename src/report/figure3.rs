@@ -139,6 +139,7 @@ fn panel(family: Family, rows: &[Table1Row]) -> Panel {
         x: family.axis().at(abscissas),
         y: Axis::new("condition number κ", Scale::Linear),
         series,
+        bands: Vec::new(),
     }
 }
 

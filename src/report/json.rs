@@ -2,6 +2,7 @@
 //!
 //! A number that is not known or not finite is written as `null`, never as NaN, and read back as `None` or NaN.
 
+use super::contact::ContactReport;
 use super::output;
 use crate::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -27,7 +28,7 @@ pub fn to_string<T: Serialize>(record: &T) -> Result<String> {
 }
 
 /// Reads `null` back as NaN; the serialiser writes NaN and the infinities as `null` by itself.
-mod number {
+pub(super) mod number {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub fn serialize<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
@@ -69,6 +70,9 @@ pub struct SolveReport {
     /// ½ uᵀKu − fᵀu.
     #[serde(with = "number")]
     pub energy: f64,
+    /// How contact was found and what it carries; absent where no sides may touch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactReport>,
     /// Error against the exact solution, where the scene has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorNorms>,
@@ -374,6 +378,7 @@ mod tests {
                 min_multiplier: None,
             },
             energy: f64::INFINITY,
+            contact: None,
             error: None,
             seconds: Seconds::default(),
             memory_mb: 12.5,
@@ -422,7 +427,7 @@ mod tests {
         for key in ["assemble", "setup", "solve", "recover", "total"] {
             assert!(value["seconds"][key].is_number(), "{key}");
         }
-        assert!(value.get("error").is_none());
+        assert!(value.get("error").is_none() && value.get("contact").is_none());
     }
 
     #[test]

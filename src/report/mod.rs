@@ -9,19 +9,33 @@
 //! | [`table`], [`summary`] | aligned text for terminals, CSV, and the tables of the three commands |
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
-//! | [`field`] | pictures of u and ρ on quadrilaterals |
-//! | [`vtu`] | ParaView files |
+//! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
+//! | [`contact`], [`contact_summary`] | the record of a contact solve, and what the terminal shows of it |
+//! | [`profile`], [`load_steps`] | multiplier and gap along interfaces; energy and force over load steps; both as CSV, too |
+//! | [`progress`] | the line that tells how far a contact solve is |
+//! | [`vtu`], [`contact_fields`], [`pvd`] | ParaView files, contact as point data, time series |
 
 pub mod canvas;
 pub mod colormap;
+pub mod contact;
+pub mod contact_fields;
+pub mod contact_summary;
 pub mod field;
 pub mod figure3;
 pub mod json;
+pub mod load_steps;
+mod marks;
 mod outline;
 pub mod output;
+mod paint;
+mod panel;
 pub mod paper;
 pub mod plot;
+pub mod profile;
+pub mod progress;
+pub mod pvd;
 pub mod raster;
+mod series;
 pub mod summary;
 pub mod svg;
 pub mod table;

@@ -136,6 +136,31 @@ impl Mesh<'_> {
     }
 }
 
+/// Joins segments to polylines; a segment that is listed twice, once for either side of an interface, counts once.
+pub(crate) fn joined(segments: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Vec<Vec<[f64; 2]>> {
+    let segments: Vec<_> = segments.collect();
+    let ends = || segments.iter().flat_map(|s| [s.0, s.1]);
+    let (low, high) = ends().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(l, h), p| {
+        let low = [l[0].min(p[0]), l[1].min(p[1])];
+        (low, [h[0].max(p[0]), h[1].max(p[1])])
+    });
+    let grid = f64::from(1 << 20) / (high[0] - low[0]).max(high[1] - low[1]).max(1e-300);
+    let key = |p: [f64; 2]| -> Key {
+        (
+            ((p[0] - low[0]) * grid).round() as i64,
+            ((p[1] - low[1]) * grid).round() as i64,
+        )
+    };
+    let position: HashMap<Key, [f64; 2]> = ends().map(|p| (key(p), p)).collect();
+    let mut edges: Vec<(Key, Key)> = segments
+        .iter()
+        .map(|&(a, b)| (key(a).min(key(b)), key(a).max(key(b))))
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    chains(edges, &position)
+}
+
 /// Joins edges to polylines: straight ahead where that is possible, so that grids become long straight lines.
 fn chains(mut edges: Vec<(Key, Key)>, position: &HashMap<Key, [f64; 2]>) -> Vec<Vec<[f64; 2]>> {
     edges.sort_unstable();
@@ -271,6 +296,29 @@ pub(crate) mod tests {
                 lines.bodies.len()
             );
         }
+    }
+
+    #[test]
+    fn segments_become_long_lines() {
+        let at = |k: i32| [1.0, 0.1 * f64::from(k)];
+        // Ten segments in any direction, the fourth missing, the sixth twice.
+        let segments = (0..10).filter(|&k| k != 3).map(|k| {
+            if k % 2 == 0 {
+                (at(k), at(k + 1))
+            } else {
+                (at(k + 1), at(k))
+            }
+        });
+        let mut lines = joined(segments.chain([(at(5), at(6))]));
+        lines.sort_by_key(Vec::len);
+        let ends = |line: &[[f64; 2]]| {
+            let (a, b) = (line[0][1], line[line.len() - 1][1]);
+            (a.min(b), a.max(b))
+        };
+        assert_eq!(lines.iter().map(Vec::len).collect::<Vec<_>>(), [4, 7]);
+        assert_eq!(ends(&lines[0]), (at(0)[1], at(3)[1]));
+        assert_eq!(ends(&lines[1]), (at(4)[1], at(10)[1]));
+        assert!(joined(std::iter::empty()).is_empty());
     }
 
     #[test]

@@ -1,153 +1,13 @@
 //! Line and scatter plots with one or more panels, as PNG and SVG. The legend stands below the panels, never on the data.
 
-use super::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use super::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use super::raster::Raster;
 use super::svg::Svg;
-use super::ticks::{self, Scale, Tick};
 use crate::Result;
 use std::path::{Path, PathBuf};
 
-/// Shape of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marker {
-    /// Nothing.
-    None,
-    /// A disc.
-    Circle,
-    /// A square.
-    Square,
-    /// A square on its corner.
-    Diamond,
-    /// A triangle.
-    Triangle,
-}
-
-/// How points are joined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
-    /// Not at all.
-    None,
-    /// By a full line.
-    Full,
-    /// By a dashed line.
-    Dashed,
-    /// By a dotted line.
-    Dotted,
-}
-
-/// Points that belong together.
-#[derive(Debug, Clone)]
-pub struct Series {
-    /// Name in the legend; series of equal name in several panels appear there once; empty: not in the legend.
-    pub label: String,
-    /// (x, y). A point that the axes cannot show (NaN, ≤ 0 on a log axis) is left out and interrupts the line.
-    pub points: Vec<(f64, f64)>,
-    /// Colour of line and markers.
-    pub colour: Colour,
-    /// Shape of the points.
-    pub marker: Marker,
-    /// Filled or hollow markers.
-    pub filled: bool,
-    /// Radius of the markers in logical pixels.
-    pub size: f64,
-    /// How the points are joined.
-    pub line: Line,
-}
-
-impl Series {
-    /// Filled discs joined by a full line.
-    pub fn new(label: impl Into<String>, points: Vec<(f64, f64)>, colour: Colour) -> Self {
-        Series {
-            label: label.into(),
-            points,
-            colour,
-            marker: Marker::Circle,
-            filled: true,
-            size: 4.0,
-            line: Line::Full,
-        }
-    }
-
-    /// Changes the marker.
-    #[must_use]
-    pub fn marker(mut self, marker: Marker, filled: bool, size: f64) -> Self {
-        (self.marker, self.filled, self.size) = (marker, filled, size);
-        self
-    }
-
-    /// Changes the line.
-    #[must_use]
-    pub fn line(mut self, line: Line) -> Self {
-        self.line = line;
-        self
-    }
-}
-
-/// One axis of a panel.
-#[derive(Debug, Clone)]
-pub struct Axis {
-    /// What it measures; `_{...}` and `^{...}` are sub- and superscripts.
-    pub label: String,
-    /// Linear or logarithmic.
-    pub scale: Scale,
-    /// Where the ticks go; found automatically when empty.
-    pub ticks: Vec<f64>,
-    /// What it shows; everything when `None`.
-    pub range: Option<(f64, f64)>,
-}
-
-impl Axis {
-    /// An axis with automatic range and ticks.
-    pub fn new(label: impl Into<String>, scale: Scale) -> Self {
-        Axis {
-            label: label.into(),
-            scale,
-            ticks: Vec::new(),
-            range: None,
-        }
-    }
-
-    /// Puts labelled ticks at these numbers.
-    #[must_use]
-    pub fn at(mut self, ticks: impl Into<Vec<f64>>) -> Self {
-        self.ticks = ticks.into();
-        self
-    }
-
-    fn limits(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
-        self.range
-            .unwrap_or_else(|| ticks::range(values.chain(self.ticks.iter().copied()), self.scale))
-    }
-
-    fn marks(&self, limits: (f64, f64), wanted: usize) -> Vec<Tick> {
-        if self.ticks.is_empty() {
-            return ticks::ticks(limits.0, limits.1, self.scale, wanted);
-        }
-        let inside = self
-            .ticks
-            .iter()
-            .filter(|&&t| t >= limits.0 && t <= limits.1);
-        inside
-            .map(|&at| Tick {
-                at,
-                label: ticks::number(at),
-            })
-            .collect()
-    }
-}
-
-/// One plot.
-#[derive(Debug, Clone)]
-pub struct Panel {
-    /// Written above; may be empty.
-    pub title: String,
-    /// Horizontal axis.
-    pub x: Axis,
-    /// Vertical axis.
-    pub y: Axis,
-    /// What is shown, later ones on top.
-    pub series: Vec<Series>,
-}
+pub use super::panel::{Axis, Band, Panel};
+pub use super::series::{Line, Marker, Series};
 
 /// Panels in a grid under one title and above one legend.
 #[derive(Debug, Clone)]
@@ -162,10 +22,10 @@ pub struct Figure {
     pub panel_size: (f64, f64),
 }
 
-const TEXT: f64 = 13.0;
-const TICK_TEXT: f64 = 12.0;
+pub(super) const TEXT: f64 = 13.0;
+pub(super) const TICK_TEXT: f64 = 12.0;
 const TITLE_TEXT: f64 = 15.0;
-const MARGIN: f64 = 14.0;
+pub(super) const MARGIN: f64 = 14.0;
 const LEGEND_LINE: f64 = 22.0;
 const SAMPLE: f64 = 34.0;
 
@@ -233,12 +93,14 @@ impl Figure {
         }
     }
 
-    /// The legend's entries: the first series of every name.
-    fn legend(&self) -> Vec<&Series> {
-        let mut out: Vec<&Series> = Vec::new();
-        for series in self.panels.iter().flat_map(|p| &p.series) {
-            if !series.label.is_empty() && out.iter().all(|s| s.label != series.label) {
-                out.push(series);
+    /// The legend's entries: the first series of every name, then the first band of every name.
+    fn legend(&self) -> Vec<Entry<'_>> {
+        let series = self.panels.iter().flat_map(|p| &p.series);
+        let bands = self.panels.iter().flat_map(|p| &p.bands);
+        let mut out: Vec<Entry> = Vec::new();
+        for entry in series.map(Entry::Series).chain(bands.map(Entry::Band)) {
+            if !entry.label().is_empty() && out.iter().all(|e| e.label() != entry.label()) {
+                out.push(entry);
             }
         }
         out
@@ -249,7 +111,7 @@ impl Figure {
         let entries = self.legend();
         let widest = entries
             .iter()
-            .map(|s| canvas::text_width(&s.label, TEXT, false))
+            .map(|s| canvas::text_width(s.label(), TEXT, false))
             .fold(0.0, f64::max);
         let column = SAMPLE + 8.0 + widest + 26.0;
         let columns = (((width - 2.0 * MARGIN) / column) as usize).clamp(1, entries.len().max(1));
@@ -278,209 +140,71 @@ impl Figure {
             );
         }
         let left = 0.5 * (width - self.columns.max(1) as f64 * self.panel_size.0 - MARGIN);
+        let mut label_width = vec![0.0_f64; self.columns.max(1)];
+        for (k, panel) in self.panels.iter().enumerate() {
+            let width = &mut label_width[k % self.columns.max(1)];
+            *width = width.max(panel.label_width());
+        }
         for (k, panel) in self.panels.iter().enumerate() {
             let (row, column) = (k / self.columns.max(1), k % self.columns.max(1));
             let x = left + column as f64 * self.panel_size.0;
             let y = self.title_height() + row as f64 * self.panel_size.1;
-            panel.draw(canvas, (x, y), self.panel_size);
+            panel.draw(canvas, (x, y), self.panel_size, label_width[column]);
         }
         let (columns, rows, column) = self.legend_grid(width);
         let top = height - 0.5 * MARGIN - rows as f64 * LEGEND_LINE;
         let start = 0.5 * (width - columns as f64 * column + 26.0);
-        for (k, series) in self.legend().into_iter().enumerate() {
+        for (k, entry) in self.legend().into_iter().enumerate() {
             // Down the columns: neighbours in the list stand under each other.
             let (c, r) = (k / rows, k % rows);
             let (x, y) = (
                 start + c as f64 * column,
                 top + (r as f64 + 0.5) * LEGEND_LINE,
             );
-            series.draw(
-                canvas,
-                &[vec![(x, y), (x + SAMPLE, y)]],
-                &[(x + 0.5 * SAMPLE, y)],
-            );
+            entry.draw(canvas, (x, y));
             canvas.text(
                 (x + SAMPLE + 8.0, y),
-                &series.label,
+                entry.label(),
                 &TextStyle::new(TEXT, Anchor::Start),
             );
         }
     }
 }
 
-impl Series {
-    fn draw(&self, canvas: &mut dyn Canvas, lines: &[Vec<Point>], points: &[Point]) {
-        let dash: &[f64] = match self.line {
-            Line::Dashed => &[7.0, 4.0],
-            Line::Dotted => &[2.0, 3.0],
-            _ => &[],
-        };
-        if self.line != Line::None {
-            for line in lines.iter().filter(|l| l.len() > 1) {
-                canvas.line(line, 1.6, self.colour, dash);
-            }
-        }
-        for &p in points {
-            for (radius, colour) in [(self.size, self.colour), (self.size - 1.6, Colour::WHITE)] {
-                if let Some(shape) = self.marker.shape(p, radius) {
-                    canvas.polygon(&shape, colour);
-                }
-                if self.filled {
-                    break;
-                }
-            }
-        }
-    }
+/// A line of the legend.
+enum Entry<'a> {
+    Series(&'a Series),
+    Band(&'a Band),
 }
 
-impl Marker {
-    fn shape(self, (x, y): Point, r: f64) -> Option<Vec<Point>> {
-        let r = r.max(0.1);
+impl Entry<'_> {
+    fn label(&self) -> &str {
         match self {
-            Marker::None => None,
-            Marker::Circle => Some(canvas::circle((x, y), r)),
-            Marker::Square => {
-                let s = 0.9 * r;
-                Some(vec![
-                    (x - s, y - s),
-                    (x + s, y - s),
-                    (x + s, y + s),
-                    (x - s, y + s),
-                ])
-            }
-            Marker::Diamond => {
-                let s = 1.25 * r;
-                Some(vec![(x, y - s), (x + s, y), (x, y + s), (x - s, y)])
-            }
-            Marker::Triangle => {
-                let s = 1.3 * r;
-                Some(vec![
-                    (x, y - s),
-                    (x + 0.87 * s, y + 0.5 * s),
-                    (x - 0.87 * s, y + 0.5 * s),
-                ])
-            }
+            Entry::Series(s) => &s.label,
+            Entry::Band(b) => &b.label,
         }
     }
-}
 
-impl Panel {
-    fn draw(&self, canvas: &mut dyn Canvas, at: Point, size: (f64, f64)) {
-        let all = || self.series.iter().flat_map(|s| &s.points);
-        let shown = |p: &&(f64, f64)| self.x.scale.shows(p.0) && self.y.scale.shows(p.1);
-        let x_range = self.x.limits(all().filter(shown).map(|p| p.0));
-        let y_range = self.y.limits(all().filter(shown).map(|p| p.1));
-        let (x_ticks, y_ticks) = (self.x.marks(x_range, 6), self.y.marks(y_range, 5));
-
-        let tick_width = y_ticks
-            .iter()
-            .map(|t| canvas::text_width(&t.label, TICK_TEXT, false))
-            .fold(0.0, f64::max);
-        let y_label = if self.y.label.is_empty() {
-            0.0
-        } else {
-            1.7 * TEXT
-        };
-        let title = if self.title.is_empty() {
-            10.0
-        } else {
-            2.0 * TEXT
-        };
-        let (x0, x1) = (
-            at.0 + MARGIN + y_label + tick_width + 9.0,
-            at.0 + size.0 - 4.0,
-        );
-        let (y0, y1) = (at.1 + title, at.1 + size.1 - 2.0 * TICK_TEXT - 2.2 * TEXT);
-        let place = |scale: Scale, range: (f64, f64), v: f64| {
-            (scale.forward(v) - scale.forward(range.0))
-                / (scale.forward(range.1) - scale.forward(range.0))
-        };
-        let px = |v: f64| x0 + (x1 - x0) * place(self.x.scale, x_range, v);
-        let py = |v: f64| y1 - (y1 - y0) * place(self.y.scale, y_range, v);
-
-        if !self.title.is_empty() {
-            let style = TextStyle {
-                bold: true,
-                ..TextStyle::new(TEXT, Anchor::Middle)
-            };
-            canvas.text((0.5 * (x0 + x1), at.1 + 0.8 * TEXT), &self.title, &style);
-        }
-        for t in &x_ticks {
-            if !t.label.is_empty() {
-                canvas.line(&[(px(t.at), y0), (px(t.at), y1)], 1.0, Colour::GRID, &[]);
+    /// A sample of `SAMPLE` pixels to the right of a point.
+    fn draw(&self, canvas: &mut dyn Canvas, (x, y): Point) {
+        let end = x + SAMPLE;
+        match self {
+            Entry::Series(s) => {
+                s.draw(canvas, &[vec![(x, y), (end, y)]], &[(x + 0.5 * SAMPLE, y)]);
             }
-        }
-        for t in &y_ticks {
-            if !t.label.is_empty() {
-                canvas.line(&[(x0, py(t.at)), (x1, py(t.at))], 1.0, Colour::GRID, &[]);
+            Entry::Band(b) => {
+                let (top, bottom) = (y - 0.5 * TEXT, y + 0.5 * TEXT);
+                let corners = [(x, top), (end, top), (end, bottom), (x, bottom)];
+                canvas.polygon(&corners, b.colour);
             }
-        }
-        // Labels that would touch their left neighbour are left out.
-        let mut free = f64::NEG_INFINITY;
-        for t in &x_ticks {
-            let (x, length) = (px(t.at), if t.label.is_empty() { 3.0 } else { 5.0 });
-            canvas.line(&[(x, y1), (x, y1 + length)], 1.0, Colour::INK, &[]);
-            let half = 0.5 * canvas::text_width(&t.label, TICK_TEXT, false);
-            if !t.label.is_empty() && x - half > free {
-                canvas.text(
-                    (x, y1 + 5.0 + 0.9 * TICK_TEXT),
-                    &t.label,
-                    &TextStyle::new(TICK_TEXT, Anchor::Middle),
-                );
-                free = x + half + 4.0;
-            }
-        }
-        let mut free = f64::INFINITY;
-        for t in &y_ticks {
-            let (y, length) = (py(t.at), if t.label.is_empty() { 3.0 } else { 5.0 });
-            canvas.line(&[(x0 - length, y), (x0, y)], 1.0, Colour::INK, &[]);
-            if !t.label.is_empty() && y + 0.5 * TICK_TEXT < free {
-                canvas.text(
-                    (x0 - 9.0, y),
-                    &t.label,
-                    &TextStyle::new(TICK_TEXT, Anchor::End),
-                );
-                free = y - 0.5 * TICK_TEXT - 1.0;
-            }
-        }
-        canvas.line(&[(x0, y0), (x0, y1), (x1, y1)], 1.2, Colour::INK, &[]);
-        let below = y1 + 5.0 + 1.8 * TICK_TEXT + 0.8 * TEXT;
-        canvas.text(
-            (0.5 * (x0 + x1), below),
-            &self.x.label,
-            &TextStyle::new(TEXT, Anchor::Middle),
-        );
-        let style = TextStyle {
-            upwards: true,
-            ..TextStyle::new(TEXT, Anchor::Middle)
-        };
-        canvas.text(
-            (at.0 + MARGIN + 0.4 * TEXT, 0.5 * (y0 + y1)),
-            &self.y.label,
-            &style,
-        );
-
-        let inside = |v: f64, r: (f64, f64)| v >= r.0 && v <= r.1;
-        for series in &self.series {
-            let mut lines = vec![Vec::new()];
-            for p in &series.points {
-                if shown(&p) && inside(p.0, x_range) && inside(p.1, y_range) {
-                    lines
-                        .last_mut()
-                        .expect("never empty")
-                        .push((px(p.0), py(p.1)));
-                } else {
-                    lines.push(Vec::new());
-                }
-            }
-            let points: Vec<Point> = lines.iter().flatten().copied().collect();
-            series.draw(canvas, &lines, &points);
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::Colour;
+    use super::super::ticks::Scale;
     use super::*;
 
     /// Writes down what is drawn.
@@ -511,6 +235,7 @@ mod tests {
             x: Axis::new("x", Scale::Linear),
             y: Axis::new("y", scale),
             series: vec![Series::new("data", points, RED)],
+            bands: Vec::new(),
         };
         Figure::new("both", vec![panel.clone(), panel])
     }
@@ -586,5 +311,37 @@ mod tests {
         assert!(paths
             .iter()
             .all(|p| std::fs::metadata(p).unwrap().len() > 500));
+    }
+
+    #[test]
+    fn bands_lie_under_their_part_of_the_axis() {
+        const BLUE: Colour = Colour(200, 220, 255);
+        let mut figure = figure(Scale::Linear, vec![(0.0, 1.0), (1.0, 3.0), (2.0, 2e4)]);
+        let band = |from: f64, to: f64| Band {
+            label: "zone".into(),
+            range: (from, to),
+            colour: BLUE,
+        };
+        figure.panels[0].bands = vec![band(1.0, 2.0), band(0.0, 0.0), band(-9.0, -5.0)];
+        figure.panels[1].series[0].points[2].1 = 4.0; // short labels: the axes would stand elsewhere
+        figure.columns = 1;
+        figure.panels.push(Panel::blank());
+        let mut drawn = Recorder::default();
+        figure.draw(&mut drawn);
+        let curves: Vec<_> = drawn.lines.iter().filter(|l| l.1 == RED).collect();
+        let at = |k: usize| curves[0].0[k].0;
+        let bands: Vec<_> = drawn.polygons.iter().filter(|p| p.1 == BLUE).collect();
+        assert_eq!(bands.len(), 3 + 1, "three in the panel, one in the legend");
+        let ends = |k: usize| (bands[k].0[0].0, bands[k].0[1].0);
+        assert!((ends(0).0 - at(1)).abs() < 1e-9 && (ends(0).1 - at(2)).abs() < 1e-9);
+        assert!(
+            ends(1).0 <= at(0) && ends(1).1 - ends(1).0 >= 1.5,
+            "a single point is seen"
+        );
+        assert_eq!(drawn.texts.iter().filter(|t| t.1 == "zone").count(), 1);
+        // Panels under each other share their axes' place.
+        for k in 0..3 {
+            assert!((curves[1].0[k].0 - at(k)).abs() < 1e-9);
+        }
     }
 }

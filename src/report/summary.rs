@@ -1,5 +1,6 @@
 //! The tables that the commands print, and their CSV forms.
 
+use super::contact_summary;
 use super::json::{CompareReport, CompareRow, SolveReport, Spectrum, Table1Row, Table1Side};
 use super::table::{count, fixed, scientific, Align, Table};
 
@@ -49,11 +50,15 @@ pub fn solve(r: &SolveReport) -> String {
     ];
     let inner = if r.outer_iterations > 1 {
         let each: Vec<String> = r.iterations.inner.iter().map(usize::to_string).collect();
+        // The table of outer steps has them where there are many.
+        let each = if each.len() > 12 {
+            String::new()
+        } else {
+            format!(" ({})", each.join(", "))
+        };
         format!(
-            "{} in {} contact steps ({})",
-            r.iterations.total,
-            r.outer_iterations,
-            each.join(", ")
+            "{} in {} contact steps{each}",
+            r.iterations.total, r.outer_iterations
         )
     } else {
         r.iterations.total.to_string()
@@ -69,23 +74,13 @@ pub fn solve(r: &SolveReport) -> String {
         lines.push(("estimate of the run", spectrum(r.condition.estimate)));
     }
     lines.push((
-        "residuals",
-        format!(
-            "stationarity {}, feasibility {}",
-            scientific(Some(r.kkt.stationarity)),
-            scientific(Some(r.kkt.feasibility))
-        ),
+        if r.kkt.min_multiplier.is_some() {
+            "KKT conditions"
+        } else {
+            "residuals"
+        },
+        contact_summary::certificate(&r.kkt),
     ));
-    if let Some(least) = r.kkt.min_multiplier {
-        let c = scientific(Some(r.kkt.complementarity));
-        lines.push((
-            "contact",
-            format!(
-                "complementarity {c}, smallest multiplier {}",
-                scientific(Some(least))
-            ),
-        ));
-    }
     lines.push(("energy", format!("{:.12e}", r.energy)));
     if let Some(e) = r.error {
         lines.push((
@@ -111,6 +106,9 @@ pub fn solve(r: &SolveReport) -> String {
         .iter()
         .map(|(name, value)| format!("{name:<width$}  {value}\n"))
         .collect();
+    if let Some(contact) = &r.contact {
+        text += &contact_summary::contact(contact);
+    }
     if let Some(identities) = &r.check {
         text += "identities (relative defects, to be about rounding)\n";
         for (name, defect) in identities {
@@ -329,7 +327,7 @@ pub fn compare_csv(rows: &[CompareRow]) -> Table {
 }
 
 /// The shortest text that reads back as the same number; empty when it is not known or not finite.
-fn exactly(x: Option<f64>) -> String {
+pub(super) fn exactly(x: Option<f64>) -> String {
     match x {
         Some(x) if x.is_finite() && (x == 0.0 || (1e-4..1e15).contains(&x.abs())) => format!("{x}"),
         Some(x) if x.is_finite() => format!("{x:e}"),
@@ -380,7 +378,7 @@ pub(crate) mod tests {
 
     #[test]
     fn solve_says_what_was_solved_and_leaves_out_what_is_not_known() {
-        let report: SolveReport = serde_json::from_value(serde_json::json!({
+        let mut report: SolveReport = serde_json::from_value(serde_json::json!({
             "scene": "four bodies", "ranks": 1, "threads": 2, "bodies": 4, "floating_bodies": 1, "subdomains": 16,
             "dofs": 225, "multipliers": {"local": 64, "global": 60, "active": 60}, "outer_iterations": 1,
             "iterations": {"inner": [9], "total": 9},
@@ -414,6 +412,14 @@ pub(crate) mod tests {
             (line("exact spectrum"), line("error"), line("contact")),
             (None, None, None)
         );
+        // With inequalities: the whole certificate in one line, and what is known about contact at the end.
+        report.kkt.min_multiplier = Some(0.5);
+        report.contact = Some(super::super::contact::ContactReport::default());
+        let text = solve(&report);
+        assert!(
+            text.contains("\nKKT conditions ") && text.contains("2.0e-10, complementarity 0.0e0")
+        );
+        assert!(text.find("\ncontact by ").unwrap() > text.find("\nmemory ").unwrap());
     }
 
     #[test]

@@ -124,7 +124,8 @@ impl fmt::Display for Table {
     }
 }
 
-fn quoted(cell: &str) -> String {
+/// A cell of a CSV file.
+pub(super) fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {
@@ -145,6 +146,19 @@ pub fn scientific(x: Option<f64>) -> String {
     match x {
         Some(x) if x.is_finite() => format!("{x:.1e}"),
         _ => "–".to_string(),
+    }
+}
+
+/// A force or a distance with four digits; a dash when it is not finite.
+pub fn value(x: f64) -> String {
+    match x.abs() {
+        _ if !x.is_finite() => "–".to_string(),
+        0.0 => "0".to_string(),
+        a if (1e-3..1e5).contains(&a) => {
+            let digits = (3 - a.log10().floor() as i32).max(0) as usize;
+            format!("{x:.digits$}")
+        }
+        _ => format!("{x:.3e}"),
     }
 }
 
@@ -192,6 +206,8 @@ mumps
         assert_eq!(fixed(Some(2.7549), 2), "2.75");
         assert_eq!(fixed(Some(f64::NAN), 2), "–");
         assert_eq!(scientific(Some(1.23e-9)), "1.2e-9");
+        assert_eq!(value(f64::INFINITY) + &value(0.0), "–0");
+        assert_eq!(value(-12.34567) + " " + &value(123456.0), "-12.35 1.235e5");
         assert_eq!(scientific(None) + &count(None) + &count(Some(3)), "––3");
     }
 }

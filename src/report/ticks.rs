@@ -99,7 +99,7 @@ fn linear(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
             let at = k as f64 * step;
             let label = match digits {
                 _ if k == 0 => "0".to_string(),
-                Some(d) if size < 1e5 && d <= 4 => {
+                Some(d) if size < 1e5 && d <= 5 => {
                     format!("{at:.0$}", d as usize).replace('-', "−")
                 }
                 _ => number(at),
@@ -205,6 +205,15 @@ mod tests {
             labels(&ticks(-0.8, 0.1, Scale::Linear, 4)),
             ["−0.75", "−0.50", "−0.25", "0"]
         );
+        assert_eq!(
+            labels(&ticks(0.0, 1e-3, Scale::Linear, 5)),
+            ["0", "0.0002", "0.0004", "0.0006", "0.0008", "0.0010"]
+        );
+        assert_eq!(
+            labels(&ticks(0.0, 6e-4, Scale::Linear, 3)),
+            ["0", "0.0002", "0.0004", "0.0006"]
+        );
+        assert_eq!(labels(&ticks(0.0, 1e-3, Scale::Linear, 4))[3], "0.00075");
         assert_eq!(
             labels(&ticks(0.0, 3e-7, Scale::Linear, 3)),
             ["0", "10^{−7}", "2·10^{−7}", "3·10^{−7}"]

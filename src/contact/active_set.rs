@@ -1,0 +1,327 @@
+//! The primal-dual active set of method section 6.
+//!
+//! ```text
+//!     solve the equations on A_k,    A_{k+1} = { j : λ_j + ρ (B u − c)_j > 0 }
+//! ```
+//!
+//! On A_k the second term vanishes and off it the first does, so that ρ plays no part. The loop starts from all candidates: a
+//! body that only contact holds makes every smaller guess singular. While the set changes, the inner problem is solved
+//! loosely and λ goes on from where it was; a set that stays is solved to the end, and only a set that stays then is
+//! the solution. A set that comes back is treated with growing [`Caution`].
+
+use std::time::Instant;
+
+use super::{judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
+use crate::feti::dual::Dual;
+use crate::feti::exchange::{gather_all, max_all, sum_all};
+use crate::feti::inner::{iterate, Inner, Loads, Residual};
+use crate::feti::rows::Rows;
+use crate::feti::{recover, FetiFeti, Solution, Spectrum};
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+/// Solves by the active-set loop. Collective.
+pub fn solve(solver: &FetiFeti, start: Option<&State>, observe: &mut Observer) -> Result<Solution> {
+    let clock = Instant::now();
+    let mut run = Run::new(solver, start)?;
+    let mut steps: Vec<Step> = Vec::new();
+    let (converged, reason) = loop {
+        if run.state.steps >= solver.settings().contact.max_it {
+            break (false, "DIVERGED_CONTACT_ITS".to_string());
+        }
+        if run.state.caution == Caution::Fallback {
+            let seconds = clock.elapsed().as_secs_f64();
+            return smalbe::take_over(solver, run.state, steps, seconds, observe);
+        }
+        let (step, inner, verdict) = run.step(solver)?;
+        observe(&step, &run.state)?;
+        steps.push(step);
+        if !inner.reason.converged() {
+            break (false, inner.reason.name);
+        }
+        if verdict == Verdict::Solved {
+            break (true, inner.reason.name);
+        }
+    };
+    let seconds = clock.elapsed().as_secs_f64();
+    run.finish(solver, steps, seconds, converged, reason)
+}
+
+/// What a step has shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// The set stays, at the tolerance of the user.
+    Solved,
+    /// There is more to do.
+    GoOn,
+}
+
+/// The loop's data.
+pub(super) struct Run {
+    pub state: State,
+    loads: Loads,
+    lambda: PetscVec,
+    residual: Residual,
+    /// Whether `residual` belongs to `lambda` and the set that holds.
+    fresh: bool,
+    /// Solve the next step to the end.
+    pub tight: bool,
+    /// B R with all candidate rows.
+    g: Rows,
+    /// Krylov residuals of the last step that iterated, and its spectrum.
+    last: (Vec<f64>, Option<Spectrum>),
+}
+
+impl Run {
+    pub fn new(solver: &FetiFeti, start: Option<&State>) -> Result<Run> {
+        let (session, problem) = (solver.session(), solver.problem());
+        let dual = solver.dual();
+        let jump = &dual.stiffness.jump;
+        let loads = Loads::new(session, problem, &dual);
+        let g = dual.natural.all_rows(session.comm(), &dual.stiffness);
+        motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
+        let state = start.cloned().unwrap_or_else(|| State::cold(jump));
+        let lambda = dual.multipliers()?;
+        let residual = Residual::new(&dual)?;
+        drop(dual);
+        let mut run = Run {
+            fresh: false,
+            tight: false,
+            state,
+            loads,
+            lambda,
+            residual,
+            g,
+            last: (Vec::new(), None),
+        };
+        if run.state.reference == 0.0 {
+            run.state.reference = run.reference(solver)?;
+            // A cold start stands just where the reference was taken.
+            run.fresh = start.is_none();
+        }
+        if !run.fresh {
+            run.lambda.array_mut()?.copy_from_slice(&run.state.lambda);
+        }
+        Ok(run)
+    }
+
+    /// ‖Pᵀ r‖ at λ₀ with all candidates holding: what tolerances are relative to, whatever λ the loop starts from.
+    fn reference(&mut self, solver: &FetiFeti) -> Result<f64> {
+        let (session, problem) = (solver.session(), solver.problem());
+        let all = State::cold(&solver.dual().stiffness.jump).active;
+        solver.shared().borrow_mut().set_active(problem, &all)?;
+        let dual = solver.dual();
+        dual.natural
+            .check_held(problem, &dual.stiffness, &self.loads.kernel)?;
+        self.lambda.set(0.0)?;
+        dual.natural
+            .balance(session.comm(), &self.loads.kernel, &self.lambda)?;
+        self.residual
+            .evaluate(session, &dual, &self.loads, &self.lambda)?;
+        dual.p_transpose(&self.residual.r)?;
+        self.residual.r.norm2()
+    }
+
+    /// One outer step: equations on the set, then the next set.
+    pub fn step(&mut self, solver: &FetiFeti) -> Result<(Step, Inner, Verdict)> {
+        let clock = Instant::now();
+        let (session, problem) = (solver.session(), solver.problem());
+        let settings = solver.settings();
+        let changed = solver
+            .shared()
+            .borrow_mut()
+            .set_active(problem, &self.state.active)?;
+        let dual = solver.dual();
+        if changed > 0 || !self.fresh {
+            for (l, on) in self.lambda.array_mut()?.iter_mut().zip(&self.state.active) {
+                *l = if *on { *l } else { 0.0 };
+            }
+            dual.natural
+                .balance(session.comm(), &self.loads.kernel, &self.lambda)?;
+            self.residual
+                .evaluate(session, &dual, &self.loads, &self.lambda)?;
+        }
+        dual.p_transpose(&self.residual.r)?;
+
+        let first = self.residual.r.norm2()?;
+        let (rtol, atol, _, _) = solver.ksp().tolerances()?;
+        let target = (rtol * self.state.reference).max(atol);
+        let reduction = match self.state.caution {
+            Caution::Loose => settings.contact.inner_rtol,
+            _ => 0.0,
+        };
+        let tolerance = if self.tight {
+            target
+        } else {
+            target.max(reduction * first)
+        };
+        let (r, size) = (&self.residual.r, self.residual.size);
+        let inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, Some(tolerance))?;
+        self.residual
+            .evaluate(session, &dual, &self.loads, &self.lambda)?;
+        let next = self.next(solver, &dual)?;
+        drop(dual);
+
+        let comm = session.comm();
+        let now = &self.state.active;
+        let n_local = solver.dual().stiffness.jump.n_owned_local;
+        let (was, now) = (&self.state.before[n_local..], &now[n_local..]);
+        let mut counts = [
+            count(was, now, |_, on| on),
+            count(was, now, |was, on| on && !was),
+            count(was, now, |was, on| was && !on),
+        ];
+        sum_all(comm, &mut counts);
+        let exact = if settings.spectrum {
+            solver.spectrum()?
+        } else {
+            None
+        };
+        let relative = |r: f64| match self.state.reference {
+            reference if reference > 0.0 => r / reference,
+            _ => r,
+        };
+        let step = Step {
+            method: ContactType::ActiveSet,
+            active: counts[0] as usize,
+            entered: counts[1] as usize,
+            left: counts[2] as usize,
+            iterations: inner.iterations,
+            estimate: inner.estimate,
+            exact,
+            residual: relative(*inner.residuals.last().unwrap_or(&first)),
+            tolerance: relative(tolerance),
+            wrong: next.wrong,
+            seconds: clock.elapsed().as_secs_f64(),
+        };
+        if inner.iterations > 0 || self.last.0.is_empty() {
+            self.last = (inner.residuals.clone(), inner.estimate);
+        }
+        let to_the_end = tolerance <= target;
+        let verdict = self.advance(solver, next, to_the_end)?;
+        Ok((step, inner, verdict))
+    }
+
+    /// The solution where the loop stands. Collective.
+    pub fn finish(
+        self,
+        solver: &FetiFeti,
+        steps: Vec<Step>,
+        solve_seconds: f64,
+        converged: bool,
+        reason: String,
+    ) -> Result<Solution> {
+        let dual = solver.dual();
+        let (session, problem) = (solver.session(), solver.problem());
+        let (loads, lambda, residual) = (self.loads, &self.lambda, self.residual);
+        let solution = recover::finish(session, problem, &dual, loads, lambda, residual)?;
+        let (residuals, estimate) = self.last;
+        Ok(Solution {
+            iterations: steps.iter().map(|s| s.iterations).sum(),
+            converged,
+            reason,
+            residuals,
+            estimate,
+            solve_seconds,
+            steps,
+            ..solution
+        })
+    }
+
+    /// Judges the rows at the λ and the displacements that are there.
+    fn next(&mut self, solver: &FetiFeti, dual: &Dual) -> Result<Next> {
+        let session = solver.session();
+        let comm = session.comm();
+        let (stiffness, jump) = (&dual.stiffness, &dual.stiffness.jump);
+        self.residual.add_rigid_motion(session, dual)?;
+        let gaps = dual.multipliers()?;
+        stiffness.jump_of_all(&self.residual.work, &gaps)?;
+        for (gap, c) in gaps.array_mut()?.iter_mut().zip(&jump.gap) {
+            *gap -= c;
+        }
+        let (gaps, lambda) = (gaps.array()?, self.lambda.array()?);
+        let y = self.residual.work.iter().flat_map(|w| &w.y);
+        let y = y.fold(0.0f64, |a, y| a.max(y.abs()));
+        let mut judged = judge::Rows::new(comm, jump, &gaps, &lambda, y);
+        let wrong = judged.wrong(comm);
+        if self.state.caution == Caution::Single {
+            judged.keep_worst(comm, jump);
+        }
+        let load = &self.loads.kernel;
+        let score = |r: usize| judged.score(lambda[r], gaps[r]);
+        let mut active = judged.active.clone();
+        let restored = motion::restore(comm, &self.g, jump, &mut active, &score, load);
+        Ok(Next {
+            active,
+            wrong,
+            contradictory: judged.contradictory,
+            restored,
+        })
+    }
+
+    /// Goes over to the next set.
+    fn advance(&mut self, solver: &FetiFeti, next: Next, to_the_end: bool) -> Result<Verdict> {
+        let comm = solver.session().comm();
+        let state = &mut self.state;
+        state.steps += 1;
+        state.lambda = self.lambda.to_vec()?;
+        state.before = std::mem::replace(&mut state.active, next.active);
+        let mut same = [f64::from(u8::from(state.active != state.before))];
+        max_all(comm, &mut same);
+        let stays = same[0] == 0.0;
+        self.fresh = stays;
+        self.tight = stays;
+        if stays {
+            if !to_the_end {
+                return Ok(Verdict::GoOn);
+            }
+            if next.restored == 0 && !next.contradictory {
+                return Ok(Verdict::Solved);
+            }
+            // Rows that pull are kept because nothing else holds a body, or rows cannot all be satisfied: the rule has no way on
+            // from here.
+            state.caution = Caution::Fallback;
+            return Ok(Verdict::GoOn);
+        }
+        let print = fingerprint(comm, solver.dual().stiffness.jump.first, &state.active);
+        if state.visited.contains(&print) {
+            state.caution = match state.caution {
+                Caution::Loose => Caution::Exact,
+                Caution::Exact => Caution::Single,
+                _ => Caution::Fallback,
+            };
+            state.visited.clear();
+        }
+        state.visited.push(print);
+        Ok(Verdict::GoOn)
+    }
+}
+
+/// The next set and how it came about.
+struct Next {
+    active: Vec<bool>,
+    /// Rows on the wrong side over all ranks.
+    wrong: usize,
+    /// Whether rows that hold contradict each other.
+    contradictory: bool,
+    /// Rows that were put back so that no body comes loose, over all ranks.
+    restored: usize,
+}
+
+fn count(before: &[bool], now: &[bool], test: impl Fn(bool, bool) -> bool) -> f64 {
+    let pairs = before.iter().zip(now);
+    pairs.filter(|(was, on)| test(**was, **on)).count() as f64
+}
+
+/// A number that tells sets apart, the same on every rank.
+fn fingerprint(comm: &mpi::topology::SimpleCommunicator, first: usize, active: &[bool]) -> u64 {
+    let on = active.iter().enumerate().filter(|(_, on)| **on);
+    let mine = on.fold(0u64, |sum, (r, _)| {
+        let mut x = ((first + r) as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        sum.wrapping_add(x ^ (x >> 31))
+    });
+    let all = gather_all(comm, &[mine]);
+    all.iter().fold(0, |sum, w| sum.wrapping_add(w[0]))
+}

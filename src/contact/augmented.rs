@@ -1,0 +1,185 @@
+//! A = Pᵀ F P + ϱ (I − P) on all candidate rows, and its preconditioner inside a face.
+//!
+//! Variables are x = S⁻¹ λ with S² = diag(B_D diag(K) B_Dᵀ), so that rows between stiff and soft bodies weigh alike; rows that are
+//! no candidates have S = 0. On the rows F that are free in a face, with G_F the rows of G there, N_F = G_FᵀG_F and P_F its
+//! projector,
+//!
+//! ```text
+//!     z = P_F S⁻¹ M_F⁻¹ S⁻¹ P_F v + ϱ⁻¹ G_F N_F⁺ N N_F⁺ G_Fᵀ v
+//! ```
+//!
+//! inverts A_FF up to what M_F⁻¹ leaves: on ker G_Fᵀ the operator is F alone, and the second term is the inverse of the penalty
+//! on range G_F.
+
+use std::rc::Rc;
+
+use super::balance::Balance;
+use super::mprgp::Bounded;
+use crate::feti::rows::Rows;
+use crate::feti::FetiFeti;
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+/// Steps of the power method: the norm is wanted to a few per cent, and ‖A‖ is one of the outer eigenvalues.
+const POWER_STEPS: usize = 15;
+
+/// ϱ relative to the largest eigenvalue of Pᵀ F P. The ascent of μ takes fewer steps where ϱ is larger (16 bodies in a row: 83 outer
+/// steps with 1, 13 with 10, 6 with 30), the expansion steps, of length 2/ϱ, more; 5 to 10 is a flat optimum.
+const PENALTY: f64 = 8.0;
+
+/// The operator of SMALBE's inner problems.
+pub struct Augmented<'a> {
+    solver: &'a FetiFeti,
+    /// S on the owned rows.
+    pub scale: Vec<f64>,
+    g: Rows,
+    /// The balance of forces, all rows.
+    pub balance: Rc<Balance>,
+    /// ϱ, which is also ‖A‖.
+    pub rho: f64,
+    precondition: bool,
+    face: Option<Balance>,
+    lambda: PetscVec,
+    image: PetscVec,
+}
+
+impl<'a> Augmented<'a> {
+    /// For all candidate rows, which must hold in the dual operators now. Collective.
+    pub fn new(solver: &'a FetiFeti, precondition: bool) -> Result<Augmented<'a>> {
+        let comm = solver.session().comm();
+        let dual = solver.dual();
+        let (stiffness, natural) = (&dual.stiffness, &dual.natural);
+        let diagonal = natural.superlumped(solver.session(), solver.problem(), stiffness)?;
+        let scale: Vec<f64> = (0..diagonal.len())
+            .map(|i| match stiffness.jump.is_candidate(i) {
+                true => diagonal[i].sqrt(),
+                false => 0.0,
+            })
+            .collect();
+        let mut g = natural.all_rows(comm, stiffness);
+        g.scale_rows(&scale);
+        let balance = Rc::new(Balance::new(comm, g.clone(), natural.r));
+        let (lambda, image) = (dual.multipliers()?, dual.multipliers()?);
+        drop(dual);
+        let mut a = Augmented {
+            solver,
+            scale,
+            g,
+            balance,
+            rho: 0.0,
+            precondition,
+            face: None,
+            lambda,
+            image,
+        };
+        a.rho = PENALTY * a.norm()?;
+        Ok(a)
+    }
+
+    /// λ = S x.
+    pub fn unscaled(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.scale).map(|(x, s)| x * s).collect()
+    }
+
+    /// x = S⁻¹ λ, zero where S is.
+    pub fn scaled(&self, lambda: &[f64]) -> Vec<f64> {
+        let rows = lambda.iter().zip(&self.scale);
+        rows.map(|(l, s)| if *s > 0.0 { l / s } else { 0.0 })
+            .collect()
+    }
+
+    /// y ← S F S x.
+    fn f(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        let lambda = self.unscaled(x);
+        self.lambda.array_mut()?.copy_from_slice(&lambda);
+        let dual = self.solver.dual();
+        dual.stiffness.f_mult_all(&self.lambda, &self.image)?;
+        for ((y, f), s) in y.iter_mut().zip(&*self.image.array()?).zip(&self.scale) {
+            *y = f * s;
+        }
+        Ok(())
+    }
+
+    /// The largest eigenvalue of Pᵀ F P by the power method, from below; a few per cent are added.
+    fn norm(&mut self) -> Result<f64> {
+        let solver = self.solver;
+        let comm = solver.session().comm();
+        let balance = self.balance.clone();
+        let first = solver.dual().stiffness.jump.first;
+        let mut x: Vec<f64> = (0..self.scale.len())
+            .map(|i| 2.0 * ((first + i + 1) as f64 * 0.618_033_988_749_894_9).fract() - 1.0)
+            .zip(&self.scale)
+            .map(|(v, s)| if *s > 0.0 { v } else { 0.0 })
+            .collect();
+        let mut y = vec![0.0; x.len()];
+        let mut largest = 0.0;
+        for _ in 0..POWER_STEPS {
+            balance.project(comm, &mut x);
+            let mut size = [x.iter().map(|x| x * x).sum::<f64>()];
+            crate::feti::exchange::sum_all(comm, &mut size);
+            if size[0] == 0.0 {
+                break;
+            }
+            let root = size[0].sqrt();
+            x.iter_mut().for_each(|x| *x /= root);
+            self.f(&x, &mut y)?;
+            balance.project(comm, &mut y);
+            let mut size = [y.iter().map(|y| y * y).sum::<f64>()];
+            crate::feti::exchange::sum_all(comm, &mut size);
+            largest = size[0].sqrt();
+            std::mem::swap(&mut x, &mut y);
+        }
+        Ok(if largest > 0.0 { 1.1 * largest } else { 1.0 })
+    }
+}
+
+impl Bounded for Augmented<'_> {
+    fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        let comm = self.solver.session().comm();
+        let balance = self.balance.clone();
+        let mut inside = x.to_vec();
+        let c = balance.project(comm, &mut inside); /*    P x             */
+        self.f(&inside, y)?;
+        balance.project(comm, y); /*                      Pᵀ F P x        */
+        balance.add(self.rho, &c, y); /*                  + ϱ (I − P) x   */
+        Ok(())
+    }
+
+    fn enter(&mut self, free: &[bool]) -> Result<()> {
+        if !self.precondition {
+            return Ok(());
+        }
+        let session = self.solver.session();
+        self.solver.shared().borrow_mut().set_face(free);
+        let mut g = self.g.clone();
+        let mask: Vec<f64> = free.iter().map(|&on| f64::from(u8::from(on))).collect();
+        g.scale_rows(&mask);
+        self.face = Some(Balance::new(session.comm(), g, self.balance.n.rows));
+        Ok(())
+    }
+
+    fn precondition(&mut self, v: &[f64], z: &mut [f64]) -> Result<()> {
+        let Some(face) = &self.face else {
+            z.copy_from_slice(v);
+            return Ok(());
+        };
+        let comm = self.solver.session().comm();
+        let mut inside = v.to_vec();
+        let c = face.project(comm, &mut inside); /*       c = N_F⁺ G_Fᵀ v */
+        let lambda = self.scaled(&inside);
+        self.lambda.array_mut()?.copy_from_slice(&lambda);
+        {
+            let dual = self.solver.dual();
+            dual.m(&self.lambda, &self.image)?;
+        }
+        let image = self.image.to_vec()?;
+        z.copy_from_slice(&self.scaled(&image));
+        face.project(comm, z);
+        let n = &self.balance.n;
+        let mut d = vec![0.0; n.rows];
+        n.add_mul(&c, &mut d);
+        face.solve(&mut d);
+        face.add(1.0 / self.rho, &d, z);
+        Ok(())
+    }
+}

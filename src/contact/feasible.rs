@@ -1,0 +1,71 @@
+//! Whether the rows can hold together at all: gaps that contradict each other.
+//!
+//! Rows of different blocks share no dof, and u may take any values at the dofs of a block, so that B_E u = c_E, B_I u ≤ c_I has a
+//! solution if and only if every block has one; by Farkas' lemma, unless some λ with λ_I ≥ 0 has B ᵀλ = 0 and cᵀλ < 0.
+
+use super::nnls::nnls;
+use crate::feti::dual::Dual;
+use crate::feti::local::dense::Dense;
+use crate::petsc::Session;
+use crate::substructures::Substructures;
+use crate::{Error, Result};
+
+/// A contradiction is found where NNLS comes this close to (Bᵀλ, cᵀλ) = (0, −1).
+const CONTRADICTION: f64 = 1e-8;
+
+/// An error that names the bodies and the place of the first contradiction. Collective.
+pub fn check(session: &Session, problem: &Substructures, dual: &Dual) -> Result<()> {
+    session.agree(check_mine(problem, dual))
+}
+
+fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
+    let jump = &dual.stiffness.jump;
+    for block in &jump.blocks {
+        let rows: Vec<usize> = (0..block.rows.len())
+            .filter(|&r| jump.is_candidate(block.rows.start + r))
+            .collect();
+        let gap = |r: usize| jump.gap[block.rows.start + r];
+        let equation = |r: usize| !jump.inequality[block.rows.start + r];
+        // u = 0 satisfies rows without interference.
+        if rows
+            .iter()
+            .all(|&r| gap(r) >= 0.0 && (gap(r) == 0.0 || !equation(r)))
+        {
+            continue;
+        }
+        let n = block.dofs.len();
+        let largest = rows.iter().fold(0.0f64, |a, &r| a.max(gap(r).abs()));
+        let mut a = Dense::zeros(n + 1, rows.len());
+        for (k, &r) in rows.iter().enumerate() {
+            (0..n).for_each(|j| a.set(j, k, block.b.get(r, j)));
+            a.set(n, k, gap(r) / largest);
+        }
+        let mut wanted = vec![0.0; n + 1];
+        wanted[n] = -1.0;
+        let free: Vec<bool> = rows.iter().map(|&r| equation(r)).collect();
+        let (_, rest) = nnls(&a, &wanted, &free);
+        if rest.iter().all(|v| v.abs() < CONTRADICTION) {
+            let mut bodies: Vec<String> = block
+                .bodies
+                .iter()
+                .map(|&b| format!("\"{}\"", problem.body_names[b as usize]))
+                .collect();
+            bodies.sort();
+            bodies.dedup();
+            let place = block.place(problem).map_or(String::new(), |[x, y, z]| {
+                if z == 0.0 {
+                    format!(" at ({x}, {y})")
+                } else {
+                    format!(" at ({x}, {y}, {z})")
+                }
+            });
+            return Err(Error::input(format!(
+                "the gaps of {} {}{place} contradict each other: no displacement satisfies all {} conditions there, expected gaps that leave room",
+                if bodies.len() == 1 { "body" } else { "bodies" },
+                bodies.join(", "),
+                rows.len()
+            )));
+        }
+    }
+    Ok(())
+}

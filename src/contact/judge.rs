@@ -1,0 +1,133 @@
+//! Which rows are on the wrong side: the rule of the active-set loop, row by row.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use crate::feti::exchange::{gather_all, max_all, sum_all};
+use crate::feti::jump::Jump;
+
+/// A gap counts as violated above this multiple of the largest jump that is left on the rows that hold: a row that depends on
+/// three others inherits the sum of theirs.
+const NOISE: f64 = 3.0;
+
+/// Multipliers above minus this, relative to the largest, do not pull; gaps below it, relative to the largest displacement, are
+/// closed: rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// The next set and why.
+pub struct Rows {
+    /// Whether each owned row is to hold.
+    pub active: Vec<bool>,
+    /// Whether rows that hold contradict each other on some rank.
+    pub contradictory: bool,
+    /// How wrong each owned row is, in units in which multipliers and gaps compare; 0: it is right.
+    wrong: Vec<f64>,
+    lambda_max: f64,
+    y_max: f64,
+}
+
+impl Rows {
+    /// Judges the owned rows by their gaps B u − c and multipliers; `y` is the largest displacement on this rank. Collective.
+    pub fn new(
+        comm: &SimpleCommunicator,
+        jump: &Jump,
+        gaps: &[f64],
+        lambda: &[f64],
+        y: f64,
+    ) -> Rows {
+        let contact = jump.n_owned_local..jump.n_owned;
+        // [largest jump left on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
+        let mut largest = [0.0f64, 0.0, y, 0.0];
+        for r in contact.clone().filter(|&r| jump.active[r]) {
+            let slack = jump.held[r] - jump.gap[r];
+            largest[0] = largest[0].max((gaps[r] - slack).abs());
+            largest[1] = largest[1].max(lambda[r].abs());
+            largest[3] = largest[3].max(f64::from(u8::from(slack != 0.0)));
+        }
+        max_all(comm, &mut largest);
+        let [jump_left, lambda_max, y_max, contradictory] = largest;
+        let mut rows = Rows {
+            active: jump.active.clone(),
+            contradictory: contradictory > 0.0,
+            wrong: vec![0.0; jump.n_owned],
+            lambda_max,
+            y_max,
+        };
+        let open = (NOISE * jump_left).max(ROUNDING * y_max);
+        let pull = ROUNDING * lambda_max;
+        for r in contact.filter(|&r| jump.inequality[r]) {
+            if jump.active[r] && lambda[r] < -pull {
+                rows.active[r] = false;
+                rows.wrong[r] = -lambda[r] / lambda_max;
+            } else if !jump.active[r] && gaps[r] > open {
+                rows.active[r] = true;
+                rows.wrong[r] = gaps[r] / y_max;
+            }
+        }
+        if rows.contradictory {
+            rows.resolve(jump, lambda);
+        }
+        rows
+    }
+
+    /// Blocks whose rows cannot hold together (they were held to the nearest right-hand sides that can): violated rows stay, and at
+    /// least the row that stands open the most goes.
+    fn resolve(&mut self, jump: &Jump, lambda: &[f64]) {
+        for block in &jump.blocks {
+            let slack = |r: usize| jump.held[r] - jump.gap[r];
+            let rows = || {
+                block
+                    .rows
+                    .clone()
+                    .filter(|&r| jump.active[r] && jump.inequality[r])
+            };
+            if rows().all(|r| slack(r) == 0.0) {
+                continue;
+            }
+            for r in rows().filter(|&r| slack(r) > 0.0) {
+                self.active[r] = true;
+                self.wrong[r] = 0.0;
+            }
+            let open = || rows().filter(|&r| slack(r) < 0.0);
+            if open().all(|r| self.active[r]) {
+                let most = open().min_by(|&a, &b| {
+                    let by_slack = slack(a).total_cmp(&slack(b));
+                    by_slack.then(lambda[a].total_cmp(&lambda[b]))
+                });
+                if let Some(r) = most {
+                    self.active[r] = false;
+                    self.wrong[r] = -slack(r) / self.y_max.max(f64::MIN_POSITIVE);
+                }
+            }
+        }
+    }
+
+    /// Number of rows on the wrong side over all ranks. Collective.
+    pub fn wrong(&self, comm: &SimpleCommunicator) -> usize {
+        let mut total = [self.wrong.iter().filter(|w| **w > 0.0).count() as f64];
+        sum_all(comm, &mut total);
+        total[0] as usize
+    }
+
+    /// λ + ρ (B u − c) with the ρ that makes both alike.
+    pub fn score(&self, lambda: f64, gap: f64) -> f64 {
+        let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
+        scale(lambda, self.lambda_max) + scale(gap, self.y_max)
+    }
+
+    /// Of all changes only the worst stays, the first of them where several are equal. Collective.
+    pub fn keep_worst(&mut self, comm: &SimpleCommunicator, jump: &Jump) {
+        let (old, new) = (&jump.active, &mut self.active);
+        let mut largest = [self.wrong.iter().fold(0.0f64, |a, w| a.max(*w))];
+        max_all(comm, &mut largest);
+        let worst = |&r: &usize| old[r] != new[r] && self.wrong[r] == largest[0];
+        let mine = (0..new.len()).find(worst);
+        let holders = gather_all(comm, &[u64::from(mine.is_some())]);
+        let here = holders.iter().position(|w| w[0] == 1) == Some(comm.rank() as usize);
+        for r in 0..new.len() {
+            if !(here && Some(r) == mine) {
+                new[r] = old[r];
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! MPRGP: modified proportioning with reduced gradient projections, for min ½ xᵀA x − bᵀx with x ≥ l (Dostál 2009, chapter 5),
+//! with a preconditioner in the free face.
+//!
+//! Conjugate gradients run inside a face until the next step would leave the feasible set (an expansion step follows: gradient
+//! projection with a fixed length) or the gradient says that the face is wrong (a proportioning step leaves it).
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::feti::exchange::{min_all, sum_all};
+use crate::Result;
+
+/// Γ: how much larger than the free gradient the chopped gradient may be before a face is left.
+const GAMMA: f64 = 1.0;
+
+/// The quadratic function and its bounds; vectors are this rank's part.
+pub trait Bounded {
+    /// y ← A x.
+    fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()>;
+    /// The face has changed: `free` marks the entries that may move.
+    fn enter(&mut self, free: &[bool]) -> Result<()>;
+    /// z ← an approximation of A⁻¹ v inside the face entered last; v and z vanish outside.
+    fn precondition(&mut self, v: &[f64], z: &mut [f64]) -> Result<()>;
+}
+
+/// Lower bounds and the rest of what stays the same.
+pub struct Setting<'a> {
+    /// The ranks.
+    pub comm: &'a SimpleCommunicator,
+    /// l: −∞ where there is no bound.
+    pub lower: &'a [f64],
+    /// Entries that stay what they are.
+    pub fixed: &'a [bool],
+    /// Length of the expansion step, at most 2/‖A‖.
+    pub length: f64,
+}
+
+/// What a run has come to.
+pub struct Run {
+    /// The minimiser so far.
+    pub x: Vec<f64>,
+    /// A x − b.
+    pub g: Vec<f64>,
+    /// Products with A.
+    pub products: usize,
+}
+
+impl Setting<'_> {
+    fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        let mut sum = [a.iter().zip(b).map(|(a, b)| a * b).sum()];
+        sum_all(self.comm, &mut sum);
+        sum[0]
+    }
+
+    fn free(&self, x: &[f64]) -> Vec<bool> {
+        let rows = x.iter().zip(self.lower).zip(self.fixed);
+        rows.map(|((x, l), fixed)| !fixed && x > l).collect()
+    }
+
+    /// Free and chopped gradient: φ where entries are free, the part that points into the feasible set where they are not.
+    fn split(&self, x: &[f64], g: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let free = self.free(x);
+        let part = |keep: &dyn Fn(usize) -> f64| (0..g.len()).map(keep).collect::<Vec<f64>>();
+        let phi = part(&|i| if free[i] { g[i] } else { 0.0 });
+        let beta = part(&|i| match free[i] || self.fixed[i] {
+            true => 0.0,
+            false => g[i].min(0.0),
+        });
+        (phi, beta)
+    }
+
+    /// Norm of the projected gradient.
+    pub fn projected_gradient(&self, x: &[f64], g: &[f64]) -> f64 {
+        let (phi, beta) = self.split(x, g);
+        (self.dot(&phi, &phi) + self.dot(&beta, &beta)).sqrt()
+    }
+
+    /// Minimises from `x` until `stop(x, ‖gᴾ‖)` is true or `max` products are spent. Collective.
+    pub fn minimise(
+        &self,
+        a: &mut dyn Bounded,
+        b: &[f64],
+        x: Vec<f64>,
+        stop: &mut dyn FnMut(&[f64], f64) -> bool,
+        max: usize,
+    ) -> Result<Run> {
+        let n = x.len();
+        let mut run = Run {
+            x,
+            g: vec![0.0; n],
+            products: 1,
+        };
+        let residual = |a: &mut dyn Bounded, x: &[f64], g: &mut Vec<f64>| -> Result<()> {
+            a.apply(x, g)?;
+            g.iter_mut().zip(b).for_each(|(g, b)| *g -= b);
+            Ok(())
+        };
+        residual(a, &run.x, &mut run.g)?;
+        let (mut ap, mut z) = (vec![0.0; n], vec![0.0; n]);
+        let (mut phi, mut beta) = self.split(&run.x, &run.g);
+        let mut p = self.restart(a, &run.x, &phi, &mut z)?;
+        while run.products < max {
+            let gradient = (self.dot(&phi, &phi) + self.dot(&beta, &beta)).sqrt();
+            if gradient == 0.0 || stop(&run.x, gradient) {
+                break;
+            }
+            let reduced: Vec<f64> = (0..n)
+                .map(|i| ((run.x[i] - self.lower[i]) / self.length).min(phi[i]))
+                .collect();
+            if self.dot(&beta, &beta) <= GAMMA * GAMMA * self.dot(&reduced, &phi) {
+                a.apply(&p, &mut ap)?;
+                run.products += 1;
+                let curvature = self.dot(&p, &ap);
+                let wish = self.dot(&run.g, &p) / curvature;
+                let mut room = [f64::INFINITY];
+                for i in (0..n).filter(|&i| p[i] > 0.0) {
+                    room[0] = room[0].min((run.x[i] - self.lower[i]) / p[i]);
+                }
+                min_all(self.comm, &mut room);
+                // No curvature: p is in the kernel of A, and only the bounds end the step.
+                let inside = curvature > 0.0 && wish <= room[0];
+                let step = if inside { wish } else { room[0] };
+                if !step.is_finite() {
+                    break;
+                }
+                for i in 0..n {
+                    // What the step takes to its bound shall stand on it, rounding or not.
+                    let reach = p[i] > 0.0 && (run.x[i] - self.lower[i]) <= step * p[i];
+                    run.x[i] -= step * p[i];
+                    run.g[i] -= step * ap[i];
+                    run.x[i] = if reach { self.lower[i] } else { run.x[i] };
+                }
+                if inside {
+                    (phi, beta) = self.split(&run.x, &run.g);
+                    a.precondition(&phi, &mut z)?;
+                    let along = self.dot(&z, &ap) / curvature;
+                    p.iter_mut().zip(&z).for_each(|(p, z)| *p = z - along * *p);
+                } else {
+                    let (phi_half, _) = self.split(&run.x, &run.g);
+                    for i in (0..n).filter(|&i| !self.fixed[i]) {
+                        run.x[i] = (run.x[i] - self.length * phi_half[i]).max(self.lower[i]);
+                    }
+                    residual(a, &run.x, &mut run.g)?;
+                    run.products += 1;
+                    (phi, beta) = self.split(&run.x, &run.g);
+                    p = self.restart(a, &run.x, &phi, &mut z)?;
+                }
+            } else {
+                a.apply(&beta, &mut ap)?;
+                run.products += 1;
+                let step = self.dot(&run.g, &beta) / self.dot(&beta, &ap);
+                for i in 0..n {
+                    run.x[i] -= step * beta[i];
+                    run.g[i] -= step * ap[i];
+                }
+                (phi, beta) = self.split(&run.x, &run.g);
+                p = self.restart(a, &run.x, &phi, &mut z)?;
+            }
+        }
+        Ok(run)
+    }
+
+    /// The first direction in a face.
+    fn restart(
+        &self,
+        a: &mut dyn Bounded,
+        x: &[f64],
+        phi: &[f64],
+        z: &mut [f64],
+    ) -> Result<Vec<f64>> {
+        a.enter(&self.free(x))?;
+        a.precondition(phi, z)?;
+        Ok(z.to_vec())
+    }
+}

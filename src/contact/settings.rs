@@ -1,0 +1,74 @@
+//! Options of the contact loop (prefix `fetifeti_contact_`).
+
+use crate::petsc::Options;
+use crate::{Error, Result};
+
+/// The method of the outer loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactType {
+    /// Primal-dual active set.
+    ActiveSet,
+    /// SMALBE-M with MPRGP.
+    Smalbe,
+}
+
+impl ContactType {
+    /// Names as the option takes them.
+    pub const NAMES: [&'static str; 2] = ["active_set", "smalbe"];
+
+    /// The name as the option takes it.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// What may be set about the contact loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// `fetifeti_contact_type`.
+    pub kind: ContactType,
+    /// `fetifeti_contact_max_it`: outer steps.
+    pub max_it: usize,
+    /// `fetifeti_contact_inner_rtol`: reduction of the residual in a step of the active-set method while the set still
+    /// changes, in (0, 1).
+    pub inner_rtol: f64,
+    /// `fetifeti_contact_face_pc`: whether M⁻¹ preconditions SMALBE inside the free face.
+    pub face_pc: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            kind: ContactType::ActiveSet,
+            max_it: 200,
+            inner_rtol: 0.1,
+            face_pc: true,
+        }
+    }
+}
+
+impl Settings {
+    /// These settings with what the options say on top.
+    pub(crate) fn with_options(mut self, o: &Options) -> Result<Settings> {
+        let names = ContactType::NAMES;
+        let help = "method of the contact loop";
+        self.kind = match o.choice("contact_type", &names, self.kind as usize, help)? {
+            0 => ContactType::ActiveSet,
+            _ => ContactType::Smalbe,
+        };
+        let help = "outer steps of the contact loop at most";
+        self.max_it = o.usize("contact_max_it", self.max_it, help)?;
+        let help = "reduction of the residual per contact step while the active set changes";
+        self.inner_rtol = o.f64("contact_inner_rtol", self.inner_rtol, help)?;
+        if !(self.inner_rtol > 0.0 && self.inner_rtol < 1.0) {
+            return Err(Error::input(format!(
+                "option {} is {}, expected a number between 0 and 1",
+                o.full_name("contact_inner_rtol"),
+                self.inner_rtol
+            )));
+        }
+        let help = "precondition SMALBE inside the free face";
+        self.face_pc = o.bool("contact_face_pc", self.face_pc, help)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,249 @@
+//! SMALBE-M: augmented Lagrangians for the balance of forces on floating bodies, MPRGP for the bounds (Dostál 2009, chapter 7).
+//!
+//! ```text
+//!     min ½ λᵀF λ − λᵀd    subject to   Gᵀ λ = e,  λ_I ≥ 0,     d = B S̃⁺ g − c, all candidate rows
+//!     L(λ, μ) = ½ λᵀ(Pᵀ F P + ϱ (I − P)) λ − … + μᵀ Gᵀ λ
+//! ```
+//!
+//! in the variables of [`Augmented`], shifted by a λ̃ with Gᵀ λ̃ = e. SMALBE finds the rows that hold; the equations on
+//! them are then solved to the tolerance of the user by steps of the active-set loop, which also judge the result: if they change the
+//! set, SMALBE goes on with a tenth of its tolerance.
+
+use std::time::Instant;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::active_set::{Run, Verdict};
+use super::augmented::Augmented;
+use super::mprgp::Setting;
+use super::{Caution, ContactType, Observer, State, Step};
+use crate::feti::exchange::sum_all;
+use crate::feti::inner::{Loads, Residual};
+use crate::feti::{FetiFeti, Solution};
+use crate::Result;
+
+/// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.
+const ETA: f64 = 0.1;
+/// M₀: the projected gradient that is allowed per violated balance, relative to ϱ, …
+const M_START: f64 = 0.1;
+/// … and the factor by which it shrinks when the Lagrangian does not grow enough.
+const M_SHRINK: f64 = 0.1;
+/// Products with A in one inner problem at most.
+const PRODUCTS: usize = 2_000;
+/// Active-set steps that may follow a set of SMALBE's before it goes on.
+const CLOSING_STEPS: usize = 5;
+
+/// Solves by SMALBE. Collective.
+pub fn solve(solver: &FetiFeti, start: Option<&State>, observe: &mut Observer) -> Result<Solution> {
+    let state = match start {
+        Some(state) => state.clone(),
+        None => State::cold(&solver.dual().stiffness.jump),
+    };
+    take_over(solver, state, Vec::new(), 0.0, observe)
+}
+
+/// Goes on from `state` after `steps` that took `seconds`. Collective.
+pub fn take_over(
+    solver: &FetiFeti,
+    mut state: State,
+    mut steps: Vec<Step>,
+    seconds: f64,
+    observe: &mut Observer,
+) -> Result<Solution> {
+    let clock = Instant::now();
+    let comm = solver.session().comm();
+    let rtol = solver.ksp().tolerances()?.0;
+    let mut search = Search::new(solver, &state)?;
+    state.mu.resize(search.a.balance.n.rows, 0.0);
+    // How far SMALBE itself goes; further when the set that it found does not stay.
+    let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
+    loop {
+        if state.steps >= solver.settings().contact.max_it {
+            let run = Run::new(solver, Some(&state))?;
+            let seconds = seconds + clock.elapsed().as_secs_f64();
+            return run.finish(solver, steps, seconds, false, "DIVERGED_CONTACT_ITS".into());
+        }
+        let (step, settled) = search.advance(comm, &mut state, accuracy)?;
+        observe(&step, &state)?;
+        steps.push(step);
+        if !settled {
+            continue;
+        }
+        let mut run = Run::new(
+            solver,
+            Some(&State {
+                caution: Caution::Loose,
+                visited: Vec::new(),
+                ..state.clone()
+            }),
+        )?;
+        state.reference = run.state.reference;
+        for _ in 0..CLOSING_STEPS {
+            run.tight = true;
+            let (step, inner, verdict) = run.step(solver)?;
+            state.steps += 1;
+            observe(&step, &run.state)?;
+            steps.push(step);
+            let solved = verdict == Verdict::Solved;
+            if solved || !inner.reason.converged() {
+                let seconds = seconds + clock.elapsed().as_secs_f64();
+                return run.finish(solver, steps, seconds, solved, inner.reason.name);
+            }
+        }
+        accuracy *= 0.1;
+        search.lagrangian = f64::NEG_INFINITY;
+    }
+}
+
+/// The dual problem in shifted and scaled variables, and where the search stands.
+struct Search<'a> {
+    a: Augmented<'a>,
+    /// Pᵀ S (d − F λ̃).
+    b: Vec<f64>,
+    /// ‖b‖, which tolerances are relative to.
+    size: f64,
+    shift: Vec<f64>,
+    lower: Vec<f64>,
+    fixed: Vec<bool>,
+    contact: std::ops::Range<usize>,
+    x: Vec<f64>,
+    /// M relative to ϱ.
+    m: f64,
+    lagrangian: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(solver: &'a FetiFeti, state: &State) -> Result<Search<'a>> {
+        let (session, problem) = (solver.session(), solver.problem());
+        let comm = session.comm();
+        let all: Vec<bool> = {
+            let jump = &solver.dual().stiffness.jump;
+            (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect()
+        };
+        solver.shared().borrow_mut().set_active(problem, &all)?;
+        let a = Augmented::new(solver, solver.settings().contact.face_pc)?;
+        let dual = solver.dual();
+        let jump = &dual.stiffness.jump;
+        let loads = Loads::new(session, problem, &dual);
+        let mut c = loads.kernel.e.clone();
+        a.balance.solve(&mut c);
+        let mut shift = vec![0.0; jump.n_owned];
+        a.balance.add(1.0, &c, &mut shift); /*            λ̃ = G N⁺ e      */
+        let lambda = dual.multipliers()?;
+        lambda.array_mut()?.copy_from_slice(&a.unscaled(&shift));
+        let mut residual = Residual::new(&dual)?;
+        residual.evaluate(session, &dual, &loads, &lambda)?;
+        let mut b = a.unscaled(&residual.r.to_vec()?); /* b = S(d − F λ̃)  */
+        a.balance.project(comm, &mut b);
+        let mut size = [b.iter().map(|b| b * b).sum::<f64>()];
+        sum_all(comm, &mut size);
+        let lower: Vec<f64> = (0..jump.n_owned)
+            .map(|i| match jump.inequality[i] {
+                true => -shift[i],
+                false => f64::NEG_INFINITY,
+            })
+            .collect();
+        let warm = state.lambda.iter().any(|l| *l != 0.0);
+        let mut warm = [f64::from(u8::from(warm))];
+        sum_all(comm, &mut warm);
+        let start = a.scaled(&state.lambda);
+        let x = (0..jump.n_owned).map(|i| match warm[0] > 0.0 {
+            true => (start[i] - shift[i]).max(lower[i]),
+            false => lower[i].max(0.0),
+        });
+        Ok(Search {
+            x: x.collect(),
+            fixed: all.iter().map(|on| !on).collect(),
+            contact: jump.n_owned_local..jump.n_owned,
+            a,
+            b,
+            size: size[0].sqrt(),
+            shift,
+            lower,
+            m: M_START,
+            lagrangian: f64::NEG_INFINITY,
+        })
+    }
+
+    /// One inner problem and one ascent of the multipliers μ: the step, and whether all is within `accuracy`. Collective.
+    fn advance(
+        &mut self,
+        comm: &SimpleCommunicator,
+        state: &mut State,
+        accuracy: f64,
+    ) -> Result<(Step, bool)> {
+        let clock = Instant::now();
+        let (rho, size) = (self.a.rho, self.size);
+        let mut b = self.b.clone();
+        self.a.balance.add(-1.0, &state.mu, &mut b); /*   b − G μ         */
+        let balance = self.a.balance.clone();
+        let setting = Setting {
+            comm,
+            lower: &self.lower,
+            fixed: &self.fixed,
+            length: 1.9 / rho,
+        };
+        let floor = accuracy * size;
+        let m = self.m;
+        let mut stop = |x: &[f64], gradient: f64| {
+            let allowed = m * rho * balance.violation(comm, x);
+            gradient <= allowed.min(ETA * size) || gradient <= 0.5 * floor
+        };
+        let start = std::mem::take(&mut self.x);
+        let run = setting.minimise(&mut self.a, &b, start, &mut stop, PRODUCTS)?;
+        let violation = balance.violation(comm, &run.x);
+        let gradient = setting.projected_gradient(&run.x, &run.g);
+        // L = ½ xᵀA x − bᵀx with A x = g + b
+        let terms = run.x.iter().zip(&run.g).zip(&b);
+        let mut value = [terms.map(|((x, g), b)| 0.5 * x * (g - b)).sum::<f64>()];
+        sum_all(comm, &mut value);
+        if value[0] < self.lagrangian + 0.5 * rho * violation * violation {
+            self.m *= M_SHRINK;
+        }
+        self.lagrangian = value[0];
+        let mut c = balance.forces(comm, &run.x);
+        balance.solve(&mut c);
+        state.mu.iter_mut().zip(&c).for_each(|(m, c)| *m += rho * c);
+
+        // Rows on their bound whose gradient wants them to leave it.
+        let wrong = (0..run.x.len())
+            .filter(|&i| !self.fixed[i] && run.x[i] <= self.lower[i] && run.g[i] < -floor);
+        let wrong = wrong.count();
+        self.x = run.x;
+        let free: Vec<bool> = (0..self.x.len())
+            .map(|i| !self.fixed[i] && self.x[i] > self.lower[i])
+            .collect();
+        state.steps += 1;
+        let sum: Vec<f64> = self.x.iter().zip(&self.shift).map(|(x, s)| x + s).collect();
+        state.lambda = self.a.unscaled(&sum);
+        state.before = std::mem::replace(&mut state.active, free);
+        let (was, on) = (&state.before, &state.active);
+        let contact = self.contact.clone();
+        let count = |test: &dyn Fn(usize) -> bool| contact.clone().filter(|&i| test(i)).count();
+        let mut counts = [
+            count(&|i| on[i]) as f64,
+            count(&|i| on[i] && !was[i]) as f64,
+            count(&|i| was[i] && !on[i]) as f64,
+            wrong as f64,
+        ];
+        sum_all(comm, &mut counts);
+        let residual = match size {
+            size if size > 0.0 => gradient.max(rho * violation) / size,
+            _ => 0.0,
+        };
+        let step = Step {
+            method: ContactType::Smalbe,
+            active: counts[0] as usize,
+            entered: counts[1] as usize,
+            left: counts[2] as usize,
+            iterations: run.products,
+            estimate: None,
+            exact: None,
+            residual,
+            tolerance: accuracy,
+            wrong: counts[3] as usize,
+            seconds: clock.elapsed().as_secs_f64(),
+        };
+        Ok((step, residual <= accuracy))
+    }
+}

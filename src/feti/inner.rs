@@ -1,0 +1,185 @@
+//! The inner problem: condensed loads, residuals, and the Krylov method that corrects λ.
+//!
+//! ```text
+//!     g = f_Γ − K_ΓI K_II⁻¹ f_I
+//!     r = B S̃⁺(g − Bᵀ λ) − c                 λ ← λ + P x,   Pᵀ F P x = Pᵀ r
+//! ```
+
+use super::dual::Dual;
+use super::exchange::sum_all;
+use super::natural::KernelLoad;
+use super::spectrum::Spectrum;
+use super::stiffness::Work;
+use crate::petsc::{ConvergedReason, Ksp, Session, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// A residual below this fraction of the displacements it was formed from is rounding: nothing is left to iterate on.
+const ROUNDING: f64 = 1e-14;
+
+/// The loads, condensed to the interfaces of the subdomains.
+pub struct Loads {
+    /// K_II⁻¹ f_I of each local subdomain, as [`LocalProblem::condense`](super::local::problem::LocalProblem) leaves it.
+    pub interiors: Vec<Vec<f64>>,
+    /// g of each local subdomain, length n_Γ.
+    pub g: Vec<Vec<f64>>,
+    /// e = Rᵀ g.
+    pub kernel: KernelLoad,
+}
+
+impl Loads {
+    /// Condenses the loads of the problem. Collective.
+    pub fn new(session: &Session, problem: &Substructures, dual: &Dual) -> Loads {
+        let stiffness = &dual.stiffness;
+        let locals = &stiffness.locals;
+        let condensed = stiffness
+            .team
+            .map(locals.len(), |j| locals[j].condense(&problem.local[j].f));
+        let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
+        let kernel = dual.natural.kernel_load(session.comm(), problem, &g);
+        Loads {
+            interiors,
+            g,
+            kernel,
+        }
+    }
+}
+
+/// Displacements that belong to a λ, and what is left of the jumps.
+pub struct Residual {
+    /// y = S̃⁺(g − Bᵀ λ) on every local subdomain.
+    pub work: Vec<Work>,
+    /// B y − c on the rows that hold, zero on the others.
+    pub r: PetscVec,
+    /// ‖y‖₂ over all ranks.
+    pub size: f64,
+}
+
+impl Residual {
+    /// Room for one.
+    pub fn new(dual: &Dual) -> Result<Residual> {
+        Ok(Residual {
+            work: dual.stiffness.work(),
+            r: dual.multipliers()?,
+            size: 0.0,
+        })
+    }
+
+    /// Computes it for `lambda`. Collective.
+    pub fn evaluate(
+        &mut self,
+        session: &Session,
+        dual: &Dual,
+        loads: &Loads,
+        lambda: &PetscVec,
+    ) -> Result<()> {
+        let stiffness = &dual.stiffness;
+        let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+        stiffness.dual_halo.fetch(lambda, &mut ghost)?;
+        let columns = &stiffness.jump.columns;
+        stiffness.team.for_each(&mut self.work, |j, w| {
+            columns[j].b_transpose(&ghost, &mut w.v); /*      v ← Bᵀ λ          */
+            for (v, g) in w.v.iter_mut().zip(&loads.g[j]) {
+                *v = g - *v; /*                               v ← g − v         */
+            }
+        });
+        stiffness.s_plus(&mut self.work)?; /*                 y ← S̃⁺ v          */
+        self.close(session, dual)
+    }
+
+    /// r ← B y − c and the size of y, for the y that is there. Collective.
+    fn close(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+        let stiffness = &dual.stiffness;
+        stiffness.jump_of(&self.work, &self.r)?; /*           r ← B y − c       */
+        {
+            let mut r = self.r.array_mut()?;
+            let rows = stiffness.jump.held.iter().zip(&stiffness.jump.active);
+            for (r, (c, on)) in r.iter_mut().zip(rows) {
+                *r -= if *on { *c } else { 0.0 };
+            }
+        }
+        let mut norm = [self.work.iter().flat_map(|w| &w.y).map(|y| y * y).sum()];
+        sum_all(session.comm(), &mut norm);
+        self.size = norm[0].sqrt();
+        Ok(())
+    }
+
+    /// y ← y + R α with the rigid motions α that close the jumps of the rows that hold, as far as those allow. Collective.
+    pub fn add_rigid_motion(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+        let alpha = dual.natural.alpha(session.comm(), &self.r)?;
+        for (j, w) in self.work.iter_mut().enumerate() {
+            dual.natural.add_kernel(j, &alpha, &mut w.y); /*  y ← y + R α       */
+        }
+        Ok(())
+    }
+}
+
+/// What one run of the Krylov method did.
+#[derive(Debug, Clone)]
+pub struct Inner {
+    /// Iterations.
+    pub iterations: usize,
+    /// Why it stopped.
+    pub reason: ConvergedReason,
+    /// ‖r_n‖₂ for n = 0, 1, …
+    pub residuals: Vec<f64>,
+    /// The method's own estimate of the spectrum.
+    pub estimate: Option<Spectrum>,
+}
+
+/// Adds the Krylov method's correction to `lambda`; `residual` is Pᵀ r on entry, `size` the size of the displacements it comes
+/// from. Stops at a residual of `target`, or relative to the first one as the options say where `target` is `None`.
+pub fn iterate(
+    dual: &Dual,
+    ksp: &Ksp,
+    residual: &PetscVec,
+    size: f64,
+    lambda: &PetscVec,
+    target: Option<f64>,
+) -> Result<Inner> {
+    let start = residual.norm2()?;
+    if start <= (ROUNDING * size).max(target.unwrap_or(0.0)) {
+        return Ok(Inner {
+            iterations: 0,
+            reason: ConvergedReason {
+                code: 1,
+                name: "CONVERGED_NOTHING_TO_DO".into(),
+            },
+            residuals: vec![start],
+            estimate: None,
+        });
+    }
+    let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
+    let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
+    let x = dual.multipliers()?;
+    ksp.record_residuals(max_it.min(100_000) + 1)?;
+    if let Some(target) = target {
+        rtol_of(target / start)?;
+    }
+    let solved = ksp.solve(residual, &x);
+    rtol_of(rtol)?;
+    solved?;
+    dual.p(&x)?;
+    lambda.axpy(1.0, &x)?;
+    let iterations = ksp.iterations()?;
+    let estimate = estimate(ksp, iterations)?;
+    Ok(Inner {
+        iterations,
+        reason: ksp.converged_reason()?,
+        residuals: ksp.residual_history()?,
+        estimate,
+    })
+}
+
+/// The ends of the spectrum by CG's Lanczos matrix. Other methods' singular values are not eigenvalues, and FCG of PETSc 3.18
+/// reads CG's data where it keeps its own.
+fn estimate(ksp: &Ksp, iterations: usize) -> Result<Option<Spectrum>> {
+    if ksp.type_name()? != "cg" || iterations == 0 {
+        return Ok(None);
+    }
+    let (lambda_max, lambda_min) = ksp.extreme_singular_values()?;
+    Ok((lambda_min > 0.0).then_some(Spectrum {
+        lambda_min,
+        lambda_max,
+    }))
+}

@@ -1,0 +1,94 @@
+//! Contact as point data of a VTU file: arrays over all points from what is known at the candidates.
+//!
+//! Every array is a number everywhere. ParaView would take NaN (VTK 9.7 reads it in base64 and in ascii, and leaves it out of
+//! the colour range), but filters that compute, such as contours and calculators, pass it on, and other readers of the format
+//! need not know it. So `multiplier`, `gap` and `contact` are 0 away from the interfaces, and `candidate` says where that 0
+//! means something: a threshold on `candidate` leaves the interfaces alone.
+
+use super::vtu::Vtu;
+use crate::{Error, Result};
+
+/// The four arrays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactFields {
+    /// Sum of the multipliers of the point's candidates; 0 elsewhere.
+    pub multiplier: Vec<f64>,
+    /// Smallest gap of the point's candidates; 0 elsewhere.
+    pub gap: Vec<f64>,
+    /// 1 where a candidate of the point is closed, else 0.
+    pub contact: Vec<i32>,
+    /// 1 where the point has a candidate, else 0.
+    pub candidate: Vec<i32>,
+}
+
+impl ContactFields {
+    /// A mesh of `points` points without candidates.
+    pub fn new(points: usize) -> Self {
+        ContactFields {
+            multiplier: vec![0.0; points],
+            gap: vec![0.0; points],
+            contact: vec![0; points],
+            candidate: vec![0; points],
+        }
+    }
+
+    /// Adds one candidate at one point; points where several interfaces meet have several.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the mesh has no such point or a number is not finite.
+    pub fn add(&mut self, point: usize, multiplier: f64, gap: f64, closed: bool) -> Result<()> {
+        if point >= self.multiplier.len() {
+            return Err(Error::input(format!(
+                "a contact candidate names point {point}, but the mesh has {} points",
+                self.multiplier.len()
+            )));
+        }
+        if !(multiplier.is_finite() && gap.is_finite()) {
+            return Err(Error::input(format!(
+                "the contact candidate at point {point} has the multiplier {multiplier} and the gap {gap}, expected finite numbers"
+            )));
+        }
+        let first = self.candidate[point] == 0;
+        self.multiplier[point] += multiplier;
+        self.gap[point] = if first { gap } else { self.gap[point].min(gap) };
+        self.contact[point] |= i32::from(closed);
+        self.candidate[point] = 1;
+        Ok(())
+    }
+
+    /// The grid with the four arrays as point data.
+    #[must_use]
+    pub fn on<'a>(&'a self, grid: Vtu<'a>) -> Vtu<'a> {
+        grid.point_data("multiplier", 1, &self.multiplier[..])
+            .point_data("gap", 1, &self.gap[..])
+            .point_data("contact", 1, &self.contact[..])
+            .point_data("candidate", 1, &self.candidate[..])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn candidates_of_one_point_are_joined() {
+        let mut fields = ContactFields::new(4);
+        fields.add(1, 2.0, 0.0, true).unwrap();
+        fields.add(1, 0.0, 0.5, false).unwrap();
+        fields.add(2, 0.0, 0.25, false).unwrap();
+        fields.add(2, 0.0, 0.125, false).unwrap();
+        assert_eq!(fields.multiplier, [0.0, 2.0, 0.0, 0.0]);
+        assert_eq!(fields.gap, [0.0, 0.0, 0.125, 0.0]);
+        assert_eq!(fields.contact, [0, 1, 0, 0]);
+        assert_eq!(fields.candidate, [0, 1, 1, 0]);
+    }
+
+    #[test]
+    fn bad_candidates_are_refused() {
+        let mut fields = ContactFields::new(4);
+        let message = |e: Result<()>| e.unwrap_err().to_string();
+        assert!(message(fields.add(4, 0.0, 0.0, false)).contains("point 4"));
+        assert!(message(fields.add(0, f64::NAN, 0.0, false)).contains("NaN"));
+        assert_eq!(fields, ContactFields::new(4));
+    }
+}
