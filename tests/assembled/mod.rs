@@ -168,30 +168,31 @@ impl Assembled {
         find(&self.dofs, dof)
     }
 
-    /// By unknown, from values by local dof of every subdomain, which have to agree inside a body up to `tolerance` relative
-    /// to the largest.
+    /// By unknown, from (body dof, value) pairs of all copies; those of one body dof have to agree up to `tolerance` relative to
+    /// the largest value.
     pub fn gather(
         &self,
-        problem: &Substructures,
-        u: &[Vec<f64>],
+        copies: impl IntoIterator<Item = (u64, f64)>,
         tolerance: f64,
     ) -> Result<Vec<f64>, String> {
-        let mut out = vec![f64::NAN; self.dofs.len()];
-        let largest = u.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
-        for (s, u) in problem.local.iter().zip(u) {
-            for (&dof, &v) in s.dofs.iter().zip(u) {
-                let at = self.unknown(dof);
-                let off = (out[at] - v).abs();
-                if off > tolerance * largest {
-                    return Err(format!(
-                        "copies of body dof {dof} in body {} differ by {off:.1e}",
-                        s.body
-                    ));
-                }
-                out[at] = v;
+        let mut range = vec![[f64::NAN; 2]; self.dofs.len()];
+        for (dof, v) in copies {
+            let [low, high] = range[self.unknown(dof)];
+            range[self.unknown(dof)] = [low.min(v), high.max(v)];
+        }
+        let largest = range.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
+        for (i, [low, high]) in range.iter().enumerate() {
+            if (high - low).is_nan() || high - low > tolerance * largest {
+                return Err(format!(
+                    "copies of body dof {} in body {} run from {low} to {high}",
+                    self.dofs[i], self.body[i]
+                ));
             }
         }
-        Ok(out)
+        Ok(range
+            .into_iter()
+            .map(|[low, high]| 0.5 * (low + high))
+            .collect())
     }
 }
 
