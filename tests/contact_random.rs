@@ -185,6 +185,7 @@ fn on_ranks() {
         }
         Ok(())
     });
+    drop(session);
     std::process::exit(code);
 }
 
