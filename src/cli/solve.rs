@@ -7,6 +7,7 @@ use std::time::Instant;
 use mpi::traits::Communicator;
 
 use super::args::Solve;
+use super::checkpoint::Checkpoints;
 use super::{not_converged, problem};
 use crate::feti::exchange::{exchange_words, sum_all};
 use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
@@ -23,12 +24,13 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let clock = Instant::now();
     let scene = problem::load(session, &args.scene)?;
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
+    let checkpoints = Checkpoints::new(session, args, &scene)?;
     let start = Instant::now();
     let substructures = problem::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
     let solver = FetiFeti::new(session, substructures, Settings::default())?;
-    let solution = solver.solve()?;
+    let solution = contact_loop(session, &solver, checkpoints)?;
     let exact = if solver.settings().spectrum {
         solver.spectrum()?
     } else {
@@ -58,6 +60,22 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
             solution.iterations,
         ))
     }
+}
+
+/// Solves, from the checkpoint if there is one, and leaves one after every outer step.
+fn contact_loop(
+    session: &Session,
+    solver: &FetiFeti,
+    checkpoints: Checkpoints,
+) -> Result<Solution> {
+    let mut checkpoints = checkpoints.attach(session, solver)?;
+    let (load_step, records, start) = match checkpoints.start() {
+        Some((load_step, records, state)) => (load_step, records, Some(state)),
+        None => (0, String::new(), None),
+    };
+    solver.solve_from(start.as_ref(), &mut |_, state| {
+        checkpoints.save(session, load_step, &records, state)
+    })
 }
 
 /// Finds out before the work whether results can be written. Collective.
