@@ -358,3 +358,29 @@ fn a_million_unknowns_are_solved() {
     println!("set-up {setup:.2} s, solve {solve:.2} s, recover {recover:.2} s");
     assert!(number(&report["kkt"]["stationarity"]) < 1e-4);
 }
+
+#[test]
+fn the_plan_counts_inequalities_and_load_steps() {
+    for (name, expected) in [
+        (
+            "model_contact",
+            "outer loop            active set: 33 inequalities (33 candidate nodes in 1 contact pair)",
+        ),
+        (
+            "obstacle",
+            "outer loop            active set: 79 inequalities (17 candidate nodes in 1 contact pair, 62 nodes beside 4 \
+             obstacles)",
+        ),
+        (
+            "press_ramp",
+            "load steps            10, each starts from the solution of the last",
+        ),
+        ("model_tied", "outer loop            none: no inequality"),
+    ] {
+        let out = fetifeti(&["plan", &format!("examples/scenes/{name}.toml")]);
+        assert_eq!(out.code, 0, "{}", out.all());
+        assert!(out.stdout.lines().any(|l| l == expected), "{}", out.stdout);
+        let steps = out.stdout.contains("load steps");
+        assert_eq!(steps, name == "press_ramp", "{}", out.stdout);
+    }
+}

@@ -535,6 +535,9 @@ fn damaged_files_never_panic() {
         "partly_tied",
         "lee_column_2",
         "jump_checkerboard",
+        "obstacle",
+        "press_ramp",
+        "contact_gap_table",
     ];
     let mut random = Random(1);
     let (mut accepted, mut refused) = (0, 0);

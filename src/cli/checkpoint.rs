@@ -5,12 +5,15 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use super::args::Solve;
 use crate::contact::checkpoint::{Checkpoint, Layout};
 use crate::contact::State;
 use crate::feti::exchange::exchange_words;
 use crate::feti::FetiFeti;
 use crate::petsc::Session;
+use crate::report::contact::{LoadStep, OuterStep};
 use crate::report::{checkpoint, output};
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -34,6 +37,44 @@ pub struct Attached {
     asked: Checkpoints,
     layout: Option<Layout>,
     start: Option<State>,
+}
+
+/// Where to go on; a run that starts afresh goes on at the beginning.
+#[derive(Debug, Default)]
+pub struct Resumed {
+    /// Load step, from 0.
+    pub load_step: usize,
+    /// What was done before.
+    pub records: Records,
+    /// Where the load step stands.
+    pub state: Option<State>,
+}
+
+/// What the report of a run says of the time before a checkpoint.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Records {
+    /// Steps of the contact loop.
+    pub outer: Vec<OuterStep>,
+    /// Load steps that are finished.
+    pub load_steps: Vec<LoadStep>,
+    /// Krylov iterations of each outer step of the load steps that are finished.
+    pub iterations: Vec<usize>,
+}
+
+impl Records {
+    /// Takes out the outer steps of the load step that is under way.
+    pub fn take(&mut self, load_step: usize) -> Vec<OuterStep> {
+        let finished = self.outer.iter().take_while(|s| s.load_step != load_step);
+        let n = finished.count();
+        self.outer.split_off(n)
+    }
+
+    /// With the outer steps of the load step that is under way.
+    pub fn followed_by(&self, outer: &[OuterStep]) -> Records {
+        let mut all = self.clone();
+        all.outer.extend_from_slice(outer);
+        all
+    }
 }
 
 impl Checkpoints {
@@ -140,14 +181,30 @@ impl Checkpoints {
 }
 
 impl Attached {
-    /// The load step to go on in, the records and the state of the file to resume from; `None` without one. To be called once.
-    pub fn start(&mut self) -> Option<(usize, String, State)> {
-        let (load_step, records) = self.asked.before.take()?;
-        Some((load_step, records, self.start.take()?))
+    /// Where the run goes on. Collective.
+    ///
+    /// # Errors
+    /// Records that are not ours.
+    pub fn resume(&self, session: &Session) -> Result<Resumed> {
+        let (Some((load_step, records)), Some(file)) = (&self.asked.before, &self.asked.resume)
+        else {
+            return Ok(Resumed::default());
+        };
+        let records = serde_json::from_str(records).map_err(|e| {
+            Error::input(format!(
+                "{}: the records of the checkpoint cannot be read: {e}",
+                file.display()
+            ))
+        });
+        Ok(Resumed {
+            load_step: *load_step,
+            records: session.agree(records)?,
+            state: self.start.clone(),
+        })
     }
 
-    /// Writes where load step `load_step` stands and what the caller wants to find again; nothing where no file was asked for.
-    /// Between two load steps: the next one, with [`State::next_load_step`]. Collective.
+    /// Writes where load step `load_step` stands and what was done so far; nothing where no file was asked for. Between two
+    /// load steps that is the beginning of the next one. Collective.
     ///
     /// # Errors
     /// [`Error::Environment`] when the disk refuses; the old file is then untouched.
@@ -155,26 +212,25 @@ impl Attached {
         &self,
         session: &Session,
         load_step: usize,
-        records: &str,
+        records: impl FnOnce() -> Records,
         state: &State,
     ) -> Result<()> {
         let (Some(file), Some(layout)) = (&self.asked.file, &self.layout) else {
             return Ok(());
         };
-        let written = match layout.gather(session, state) {
-            Some(state) => checkpoint::write(
-                file,
-                &Checkpoint {
-                    title: self.asked.title.clone(),
-                    scene: self.asked.scene,
-                    load_step,
-                    records: records.into(),
-                    state,
-                },
-            ),
-            None => Ok(()),
+        let write = |state| {
+            let records = serde_json::to_string(&records())
+                .map_err(|e| Error::environment(format!("{}: {e}", file.display())))?;
+            let content = Checkpoint {
+                title: self.asked.title.clone(),
+                scene: self.asked.scene,
+                load_step,
+                records,
+                state,
+            };
+            checkpoint::write(file, &content)
         };
-        session.agree(written)
+        session.agree(layout.gather(session, state).map_or(Ok(()), write))
     }
 }
 

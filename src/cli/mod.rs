@@ -2,6 +2,8 @@
 
 pub mod args;
 mod checkpoint;
+mod contact;
+mod fields;
 mod plan;
 pub(crate) mod problem;
 mod solve;

@@ -49,15 +49,21 @@ impl Distribution {
     }
 }
 
-/// This rank's part of the scene, assembled. Collective.
-pub fn substructures(session: &Session, scene: &Scene) -> Result<Substructures> {
+/// Which subdomains belong to this rank, as the options deal them.
+pub fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -> bool> {
     let deal = Distribution::from_options(session)?;
     let (n, rank, size) = (scene.n_subdomains(), session.rank(), session.size());
-    let threads = if size == 1 { 0 } else { 1 };
+    Ok(move |s| deal.owns(s, n, rank, size))
+}
+
+/// This rank's part of the scene, assembled. Collective.
+pub fn substructures(session: &Session, scene: &Scene) -> Result<Substructures> {
+    let owns = owner(session, scene)?;
+    let threads = if session.size() == 1 { 0 } else { 1 };
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|e| crate::Error::environment(format!("cannot start threads: {e}")))?;
-    let built = pool.install(|| scene.substructures(&|s| deal.owns(s, n, rank, size)));
+    let built = pool.install(|| scene.substructures(&owns));
     session.agree(built)
 }

@@ -4,18 +4,21 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use mpi::traits::Communicator;
-
 use super::args::Solve;
-use super::checkpoint::Checkpoints;
+use super::checkpoint::{Checkpoints, Resumed};
+use super::contact::{self, ContactRow};
+use super::fields::Gathered;
 use super::{not_converged, problem};
-use crate::feti::exchange::{exchange_words, sum_all};
+use crate::contact::State;
+use crate::feti::exchange::sum_all;
+use crate::feti::local::problem::factorisations;
 use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
 use crate::petsc::{max_memory, Session};
-use crate::report::field::{self, Mesh};
+use crate::report::contact::{ContactReport, LoadStep, OuterStep};
 use crate::report::json::{self, SolveReport};
-use crate::report::vtu::{Shape, Vtu};
-use crate::report::{output, summary};
+use crate::report::progress::Progress;
+use crate::report::pvd::Pvd;
+use crate::report::{load_steps, output, profile, summary};
 use crate::scene::Scene;
 use crate::Result;
 
@@ -29,20 +32,21 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let substructures = problem::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
-    let solver = FetiFeti::new(session, substructures, Settings::default())?;
-    let solution = contact_loop(session, &solver, checkpoints)?;
-    let exact = if solver.settings().spectrum {
-        solver.spectrum()?
-    } else {
-        None
+    let mut solver = FetiFeti::new(session, substructures, Settings::default())?;
+    let course = follow(session, &scene, &mut solver, args, checkpoints)?;
+    let solution = &course.solution;
+    let exact = match (solver.settings().spectrum, solution.steps.last()) {
+        (false, _) => None,
+        (true, Some(step)) if step.exact.is_some() => step.exact,
+        (true, _) => solver.spectrum()?,
     };
-    let mut report = report(session, &scene, &solver, &solution, exact)?;
+    let mut report = report(session, &scene, &solver, &course, exact)?;
     if solver.settings().check {
         report.check = Some(checks(&solver)?);
     }
     report.seconds.assemble = assemble;
     if let Some(dir) = &args.out {
-        write_fields(session, &scene, &solution, &solver, dir)?;
+        write_fields(session, &scene, &solver, &course, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
     let written = if session.rank() == 0 {
@@ -54,28 +58,183 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     if solution.converged {
         Ok(())
     } else {
+        let what = if solver.facts().inequalities > 0 {
+            "the contact problem"
+        } else {
+            "the dual problem"
+        };
         Err(not_converged(
-            &format!("the dual problem of {}", args.scene.display()),
+            &format!("{what} of {}", args.scene.display()),
             &solution.reason,
             solution.iterations,
         ))
     }
 }
 
-/// Solves, from the checkpoint if there is one, and leaves one after every outer step.
-fn contact_loop(
+/// What happened over the load steps.
+struct Course {
+    /// The last solution.
+    solution: Solution,
+    /// Load step that it belongs to.
+    step: usize,
+    outer: Vec<OuterStep>,
+    load_steps: Vec<LoadStep>,
+    /// Krylov iterations per outer step, or per load step without inequalities.
+    iterations: Vec<usize>,
+    solve_seconds: f64,
+    recover_seconds: f64,
+    /// Rows of B_gl on rank 0.
+    rows: Vec<ContactRow>,
+}
+
+/// Solves the load steps one after the other, each from where the last one ended, the first from the checkpoint if there is one.
+/// Collective.
+fn follow(
     session: &Session,
-    solver: &FetiFeti,
+    scene: &Scene,
+    solver: &mut FetiFeti,
+    args: &Solve,
     checkpoints: Checkpoints,
-) -> Result<Solution> {
-    let mut checkpoints = checkpoints.attach(session, solver)?;
-    let (load_step, records, start) = match checkpoints.start() {
-        Some((load_step, records, state)) => (load_step, records, Some(state)),
-        None => (0, String::new(), None),
-    };
-    solver.solve_from(start.as_ref(), &mut |_, state| {
-        checkpoints.save(session, load_step, &records, state)
+) -> Result<Course> {
+    let n = scene.n_steps();
+    let times = scene.steps.as_ref().map(|s| s.times.clone());
+    let owns = problem::owner(session, scene)?;
+    let mut progress = Progress::new(session.rank() == 0 && !args.quiet);
+    let mut course: Option<Course> = None;
+    let mut pvd = args
+        .out
+        .as_ref()
+        .map(|dir| Pvd::new(dir.join("solution.pvd")));
+    let checkpoints = checkpoints.attach(session, solver)?;
+    let Resumed {
+        load_step: first,
+        mut records,
+        mut state,
+    } = checkpoints.resume(session)?;
+    if let (Some(dir), Some(pvd), Some(times)) = (&args.out, &mut pvd, &times) {
+        session.agree(list_before(session, dir, &times[..first], pvd))?;
+    }
+    let mut seconds = [0.0; 2];
+    for step in first..n {
+        if n > 1 {
+            let (loads, gaps) = session.agree(boundary_values(scene, solver, &owns, step))?;
+            solver.set_loads(loads, &gaps);
+        }
+        let load_step = if times.is_some() { step + 1 } else { 0 };
+        let mut outer = records.take(load_step);
+        let solution = solver.solve_from(state.as_ref(), &mut |done, state| {
+            outer.push(contact::outer_step(load_step, outer.len() + 1, done));
+            progress.step(outer.len(), done.active);
+            progress.residual(done.residual, done.tolerance, done.iterations);
+            checkpoints.save(session, step, || records.followed_by(&outer), state)
+        })?;
+        progress.finish();
+        let rows = contact::rows(session, scene, solver, &solution)?;
+        seconds[0] += solution.solve_seconds;
+        seconds[1] += solution.recover_seconds;
+        let mut now = Course {
+            step,
+            iterations: if outer.is_empty() {
+                vec![solution.iterations]
+            } else {
+                outer.iter().map(|s| s.iterations).collect()
+            },
+            outer,
+            load_steps: Vec::new(),
+            solve_seconds: seconds[0],
+            recover_seconds: seconds[1],
+            solution,
+            rows,
+        };
+        if let Some(times) = &times {
+            now.load_steps.push(load_step_record(times[step], &now));
+            if let (Some(dir), Some(pvd)) = (&args.out, &mut pvd) {
+                write_step(session, scene, solver, &now, dir, times[step], pvd)?;
+            }
+        }
+        let done = course.insert(now);
+        records.outer.append(&mut done.outer);
+        records.load_steps.append(&mut done.load_steps);
+        records.iterations.append(&mut done.iterations);
+        if !done.solution.converged {
+            break;
+        }
+        if step + 1 < n {
+            let next = State::warm(&done.solution);
+            checkpoints.save(session, step + 1, || records.clone(), &next)?;
+            state = Some(next);
+        }
+    }
+    let last = course.expect("a scene has at least one load step");
+    Ok(Course {
+        outer: records.outer,
+        load_steps: records.load_steps,
+        iterations: records.iterations,
+        ..last
     })
+}
+
+/// Puts what an interrupted run has left of the time series at its front.
+fn list_before(session: &Session, dir: &Path, times: &[f64], pvd: &mut Pvd) -> Result<()> {
+    if session.rank() > 0 {
+        return Ok(());
+    }
+    for (step, &t) in times.iter().enumerate() {
+        let file = dir.join(format!("{}.vtu", step_name(step)));
+        if file.is_file() {
+            pvd.add(t, &file)?;
+        }
+    }
+    Ok(())
+}
+
+/// Name of the file of load step `step`, without its ending.
+fn step_name(step: usize) -> String {
+    format!("step_{:04}", step + 1)
+}
+
+/// Loads of this rank's subdomains and right-hand sides of its rows at a load step.
+fn boundary_values(
+    scene: &Scene,
+    solver: &FetiFeti,
+    owns: &dyn Fn(usize) -> bool,
+    step: usize,
+) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
+    let local = solver.problem().local.iter();
+    let loads: Result<Vec<Vec<f64>>> = local.map(|s| scene.loads(s.index, step)).collect();
+    Ok((loads?, scene.gaps(owns, step)?))
+}
+
+/// The record of a load step; forces are known on rank 0.
+fn load_step_record(t: f64, course: &Course) -> LoadStep {
+    let inequalities = || course.rows.iter().filter(|r| r.inequality);
+    LoadStep {
+        t,
+        outer_iterations: course.iterations.len(),
+        iterations: course.iterations.iter().sum(),
+        active: inequalities().filter(|r| r.active).count(),
+        energy: course.solution.energy,
+        contact_force: inequalities().map(|r| r.multiplier).sum(),
+    }
+}
+
+/// Adds one load step to the time series. Collective.
+fn write_step(
+    session: &Session,
+    scene: &Scene,
+    solver: &FetiFeti,
+    course: &Course,
+    dir: &Path,
+    t: f64,
+    pvd: &mut Pvd,
+) -> Result<()> {
+    let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
+    let written = gathered.map_or(Ok(()), |g| {
+        let name = step_name(course.step);
+        g.write_vtu(scene, &course.rows, dir, &name)?;
+        pvd.add(t, &dir.join(format!("{name}.vtu")))
+    });
+    session.agree(written)
 }
 
 /// Finds out before the work whether results can be written. Collective.
@@ -104,12 +263,25 @@ fn write_report(args: &Solve, report: &SolveReport) -> Result<()> {
         json::write(&dir.join("report.json"), report)?;
         if !args.quiet && !to_stdout {
             output::print(&format!(
-                "written: solution.vtu, solution.png, report.json in {}\n",
+                "written: {} in {}\n",
+                files(report).join(", "),
                 dir.display()
             ))?;
         }
     }
     Ok(())
+}
+
+/// What a directory of results holds.
+fn files(report: &SolveReport) -> Vec<&'static str> {
+    let mut out = vec!["solution.vtu", "solution.png", "report.json"];
+    if let Some(contact) = &report.contact {
+        out.extend(["interfaces.png", "interfaces.svg", "interfaces.csv"]);
+        if !contact.load_steps.is_empty() {
+            out.extend(["solution.pvd", "steps.png", "steps.svg", "steps.csv"]);
+        }
+    }
+    out
 }
 
 /// The identities, and λ_min ≥ 1 by the exact spectrum.
@@ -136,9 +308,11 @@ fn report(
     session: &Session,
     scene: &Scene,
     solver: &FetiFeti,
-    solution: &Solution,
+    course: &Course,
     exact: Option<Spectrum>,
 ) -> Result<SolveReport> {
+    let solution = &course.solution;
+    let contact = contact_report(session, scene, solver, course)?;
     let facts = solver.facts();
     let dual = solver.dual();
     let mut memory = [max_memory() / 1e6];
@@ -153,7 +327,10 @@ fn report(
     sum_all(session.comm(), &mut errors);
     let [l2, h1, energy] = errors.map(f64::sqrt);
     let floating = dual.natural.r > 0;
-    let inequalities = false;
+    let inequalities = facts.inequalities > 0;
+    let held = &solution.active[dual.stiffness.jump.n_owned_local..];
+    let mut active = [held.iter().filter(|on| **on).count() as f64];
+    sum_all(session.comm(), &mut active);
     Ok(SolveReport {
         scene: scene.title.clone(),
         ranks: session.size(),
@@ -165,10 +342,10 @@ fn report(
         multipliers: json::Multipliers {
             local: facts.multipliers_local,
             global: facts.multipliers_global,
-            active: facts.multipliers_active,
+            active: active[0] as usize,
         },
-        outer_iterations: 1,
-        iterations: json::Iterations::new(vec![solution.iterations]),
+        outer_iterations: course.iterations.len(),
+        iterations: json::Iterations::new(course.iterations.clone()),
         condition: json::Condition {
             exact: exact.map(spectrum),
             estimate: solution.estimate.map(spectrum),
@@ -180,7 +357,7 @@ fn report(
             min_multiplier: inequalities.then_some(solution.kkt.min_multiplier),
         },
         energy: solution.energy,
-        contact: None,
+        contact,
         error: scene
             .exact
             .is_some()
@@ -188,8 +365,8 @@ fn report(
         seconds: json::Seconds {
             assemble: 0.0,
             setup: facts.setup_seconds,
-            solve: solution.solve_seconds,
-            recover: solution.recover_seconds,
+            solve: course.solve_seconds,
+            recover: course.recover_seconds,
             total: 0.0,
         },
         memory_mb: memory[0],
@@ -207,93 +384,52 @@ fn report(
     })
 }
 
-/// u, ρ, body and subdomain as VTU and PNG; rank 0 writes for all. Collective.
+/// The fields, the pictures and the profiles along the interfaces; rank 0 writes for all. Collective.
 fn write_fields(
     session: &Session,
     scene: &Scene,
-    solution: &Solution,
     solver: &FetiFeti,
+    course: &Course,
     dir: &Path,
 ) -> Result<()> {
-    // [subdomain, n, u × n] to rank 0
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.comm().size() as usize];
-    for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
-        outgoing[0].extend([sub.index as u64, u.len() as u64]);
-        outgoing[0].extend(u.iter().map(|v| v.to_bits()));
-    }
-    let received = exchange_words(session.comm(), outgoing).concat();
-    let written = if session.rank() == 0 {
-        Gathered::new(scene, &received).and_then(|g| g.write(&scene.title, dir))
-    } else {
+    let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
+    let written = gathered.map_or(Ok(()), |g| {
+        g.write_vtu(scene, &course.rows, dir, "solution")?;
+        g.write_picture(&scene.title, &contact::marks(&course.rows), dir)?;
+        if solver.facts().inequalities > 0 {
+            profile::write(&contact::profiles(scene, &course.rows), &scene.title, dir)?;
+        }
+        if !course.load_steps.is_empty() {
+            load_steps::write(&course.load_steps, &scene.title, dir)?;
+        }
         Ok(())
-    };
+    });
     session.agree(written)
 }
 
-/// The whole solution on rank 0, subdomain after subdomain.
-#[derive(Default)]
-struct Gathered {
-    points: Vec<[f64; 2]>,
-    quads: Vec<[u32; 4]>,
-    body: Vec<u32>,
-    subdomain: Vec<u32>,
-    u: Vec<f64>,
-    rho: Vec<f64>,
-}
-
-impl Gathered {
-    fn new(scene: &Scene, words: &[u64]) -> Result<Gathered> {
-        let mut parts: Vec<(usize, &[u64])> = Vec::new();
-        let mut rest = words;
-        while let [index, n, tail @ ..] = rest {
-            let (values, tail) = tail.split_at(*n as usize);
-            parts.push((*index as usize, values));
-            rest = tail;
-        }
-        parts.sort_unstable_by_key(|p| p.0);
-        let mut all = Gathered::default();
-        for (index, values) in parts {
-            let mesh = scene.subdomain_mesh(index)?;
-            let u: Vec<f64> = values.iter().map(|&w| f64::from_bits(w)).collect();
-            let first = all.points.len();
-            all.u.extend(mesh.nodal(&u));
-            all.points.extend(&mesh.points);
-            let quads = mesh.quads();
-            all.body
-                .extend(std::iter::repeat_n(mesh.body as u32, quads.len()));
-            all.subdomain
-                .extend(std::iter::repeat_n(index as u32, quads.len()));
-            all.quads
-                .extend(quads.iter().map(|q| q.map(|p| (first + p) as u32)));
-            all.rho.extend(&mesh.rho);
-        }
-        Ok(all)
+/// Key `contact`. Collective.
+fn contact_report(
+    session: &Session,
+    scene: &Scene,
+    solver: &FetiFeti,
+    course: &Course,
+) -> Result<Option<ContactReport>> {
+    let facts = solver.facts();
+    if facts.inequalities == 0 {
+        return Ok(None);
     }
-
-    fn write(&self, title: &str, dir: &Path) -> Result<()> {
-        let points: Vec<[f64; 3]> = self.points.iter().map(|p| [p[0], p[1], 0.0]).collect();
-        let cells = self.quads.as_flattened();
-        let body: Vec<i32> = self.body.iter().map(|&b| b as i32).collect();
-        let subdomain: Vec<i32> = self.subdomain.iter().map(|&s| s as i32).collect();
-        Vtu::new(&points, Shape::Quad, cells)
-            .point_data("u", 1, &self.u[..])
-            .cell_data("rho", 1, &self.rho[..])
-            .cell_data("body", 1, &body[..])
-            .cell_data("subdomain", 1, &subdomain[..])
-            .write(&dir.join("solution.vtu"))?;
-        let mesh = Mesh {
-            points: &self.points,
-            quads: &self.quads,
-            body: &self.body,
-            subdomain: &self.subdomain,
-        };
-        field::write_solution(
-            &mesh,
-            &self.u,
-            &self.rho,
-            &[],
-            title,
-            &dir.join("solution.png"),
-        )
-    }
+    let mut counts = [factorisations() as f64, facts.kinds as f64];
+    sum_all(session.comm(), &mut counts);
+    let inequalities = || course.rows.iter().filter(|r| r.inequality);
+    Ok(Some(ContactReport {
+        method: contact::method(&course.outer),
+        candidates: facts.inequalities,
+        active: inequalities().filter(|r| r.active).count(),
+        factorisations: counts[0] as usize,
+        distinct_subdomains: counts[1] as usize,
+        steps: course.outer.clone(),
+        interfaces: contact::forces(scene, &course.rows),
+        bodies: contact::balance(session, scene, solver, &course.solution, course.step)?,
+        load_steps: course.load_steps.clone(),
+    }))
 }

@@ -60,22 +60,6 @@ pub struct Checkpoint {
     pub state: GlobalState,
 }
 
-impl State {
-    /// Where the next load step starts when this is the end of one: the same multipliers and set, nothing else.
-    pub fn next_load_step(&self) -> State {
-        State {
-            lambda: self.lambda.clone(),
-            active: self.active.clone(),
-            before: self.active.clone(),
-            reference: 0.0,
-            steps: 0,
-            visited: Vec::new(),
-            caution: Caution::Loose,
-            mu: self.mu.clone(),
-        }
-    }
-}
-
 /// The blocks of the rows that this rank owns: their numbers, and their rows among the owned ones.
 pub(super) fn blocks<'a>(
     problem: &'a Substructures,

@@ -75,6 +75,20 @@ pub struct State {
 }
 
 impl State {
+    /// Where a loop starts for other loads: the multipliers and the set of a solution.
+    pub fn warm(solution: &Solution) -> State {
+        State {
+            lambda: solution.lambda.clone(),
+            active: solution.active.clone(),
+            before: solution.active.clone(),
+            reference: 0.0,
+            steps: 0,
+            visited: Vec::new(),
+            caution: Caution::Loose,
+            mu: Vec::new(),
+        }
+    }
+
     /// Where the loop starts: λ = 0, and all rows hold that may.
     pub fn cold(jump: &Jump) -> State {
         State {

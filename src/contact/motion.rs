@@ -56,7 +56,7 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
     // [free, n, (column, value) × n] of each direction
     let mut mine: Vec<Vec<u64>> = Vec::new();
     for i in jump.n_owned_local..jump.n_owned {
-        if !jump.inequality[i] && !jump.active[i] {
+        if !jump.is_candidate(i) {
             continue;
         }
         let largest = g.row(i).fold(0.0f64, |a, (_, v)| a.max(v.abs()));
@@ -108,7 +108,6 @@ pub fn restore(
     if r == 0 {
         return 0;
     }
-    let candidate = |i: usize| jump.inequality[i] || jump.active[i];
     let driven = |v: &Vec<f64>| {
         let work: f64 = v.iter().zip(&load.e).map(|(v, e)| v * e).sum();
         let scale: f64 = v.iter().zip(&load.size).map(|(v, s)| (v * s).abs()).sum();
@@ -131,7 +130,7 @@ pub fn restore(
             })
         };
         let mine = (jump.n_owned_local..jump.n_owned)
-            .filter(|&i| candidate(i) && !active[i] && sees(i))
+            .filter(|&i| jump.is_candidate(i) && !active[i] && sees(i))
             .max_by(|&i, &j| score(i).total_cmp(&score(j)).then(j.cmp(&i)));
         let words = mine.map_or(vec![], |i| vec![score(i).to_bits()]);
         let offers = gather_all(comm, &words);

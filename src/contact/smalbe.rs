@@ -25,7 +25,7 @@ use crate::Result;
 /// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.
 const ETA: f64 = 0.1;
 /// M₀: the projected gradient that is allowed per violated balance, relative to ϱ, …
-const M_START: f64 = 1.0;
+const M_START: f64 = 0.1;
 /// … and the factor by which it shrinks when the Lagrangian does not grow enough.
 const M_SHRINK: f64 = 0.1;
 /// Products with A in one inner problem at most.
@@ -116,7 +116,10 @@ impl<'a> Search<'a> {
     fn new(solver: &'a FetiFeti, state: &State) -> Result<Search<'a>> {
         let (session, problem) = (solver.session(), solver.problem());
         let comm = session.comm();
-        let all = State::cold(&solver.dual().stiffness.jump).active;
+        let all: Vec<bool> = {
+            let jump = &solver.dual().stiffness.jump;
+            (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect()
+        };
         solver.shared().borrow_mut().set_active(problem, &all)?;
         let a = Augmented::new(solver, solver.settings().contact.face_pc)?;
         let dual = solver.dual();

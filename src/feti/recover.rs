@@ -24,7 +24,7 @@ pub struct Solution {
     pub lambda: Vec<f64>,
     /// B u − c on these rows, those that do not hold included.
     pub gaps: Vec<f64>,
-    /// Whether each of these rows holds at the end.
+    /// Whether each of these rows holds at the end, those included that follow from others that do.
     pub active: Vec<bool>,
     /// Krylov iterations, of all steps of the contact loop.
     pub iterations: usize,
@@ -95,7 +95,7 @@ pub(crate) fn finish(
         u,
         lambda: lambda.to_vec()?,
         gaps: certificate.gaps,
-        active: dual.stiffness.jump.active.clone(),
+        active: dual.stiffness.jump.implied(),
         iterations: 0,
         converged: false,
         reason: String::new(),

@@ -49,6 +49,10 @@ pub struct OuterStep {
     pub iterations: usize,
     /// Spectrum as the inner iteration estimates it; `null` where it gives none.
     pub estimate: Option<Spectrum>,
+    /// Spectrum with these rows by the eigenvalue solver; `null` where it was not asked for.
+    pub exact: Option<Spectrum>,
+    /// Rows on the wrong side at the end of the step: violated, or pulling.
+    pub wrong: usize,
     /// Residual at the end of the step, relative to the start of the first step.
     #[serde(with = "number")]
     pub residual: f64,
@@ -175,7 +179,7 @@ mod tests {
         let value = serde_json::to_value(&report).unwrap();
         let step = json!({
             "load_step": 0, "step": 0, "method": "", "active": 0, "entered": 0, "left": 0, "iterations": 0,
-            "estimate": null, "residual": 0.0, "tolerance": 0.0, "seconds": 0.0,
+            "estimate": null, "exact": null, "wrong": 0, "residual": 0.0, "tolerance": 0.0, "seconds": 0.0,
         });
         let interface = json!({
             "name": "", "kind": "obstacle", "candidates": 0, "active": 0, "force": 0.0, "largest_gap": 0.0,

@@ -122,7 +122,7 @@ impl<'a> Entry<'a> {
 
 /// The entries by pair.
 struct Entries<'a> {
-    /// Those of all pairs, each with whether it has selected a node.
+    /// Those of all pairs, each with whether it has selected a node or was beaten.
     all: Vec<(Entry<'a>, bool)>,
     /// Those of single pairs, each with the pair's order in the file.
     named: HashMap<[usize; 2], Vec<(Entry<'a>, [usize; 2])>>,
@@ -204,8 +204,9 @@ impl<'a> Entries<'a> {
         // Ties first: contacts find out what is tied already.
         for contact in [false, true] {
             for (entry, used) in &mut self.all {
-                if entry.contact.is_some() == contact && speaks(entry) {
-                    *used |= links.add(*entry, None)? > 0;
+                if entry.contact.is_some() == contact {
+                    // An entry that is beaten everywhere is no mistake.
+                    *used |= !speaks(entry) || links.add(*entry, None)? > 0;
                 }
             }
             for (entry, order) in named {

@@ -91,7 +91,7 @@ impl Scene {
         })
     }
 
-    /// The load f of subdomain `index` at load step `step` (0 is the only one without [steps]), given values eliminated;
+    /// The load f of subdomain `index` at load step `step` (0 is the only one without `[steps]`), given values eliminated;
     /// at the last step that of [`Scene::subdomain`] to the last bit.
     ///
     /// # Errors
@@ -104,6 +104,17 @@ impl Scene {
         Ok(fem::free_load(&mesh, &load))
     }
 
+    /// ∫ f over subdomain `index` at load step `step`, by the quadrature of its load.
+    ///
+    /// # Errors
+    /// As [`Scene::loads`].
+    pub fn resultant(&self, index: usize, step: usize) -> Result<f64> {
+        let factors = Factors::of(&self.steps, step)?;
+        let mesh = self.mesh_with(index, factors)?;
+        let (body, block) = self.place(index);
+        Ok(self.nodal_load(body, &block, &mesh, factors)?.iter().sum())
+    }
+
     /// The factor of given values at load step `step` ([`SubdomainMesh::prescribed`] has that of the last step).
     ///
     /// # Panics
@@ -113,7 +124,7 @@ impl Scene {
         factors.expect("the step exists").dirichlet()
     }
 
-    /// Number of load steps; 1 without [steps].
+    /// Number of load steps; 1 without `[steps]`.
     pub fn n_steps(&self) -> usize {
         self.steps.as_ref().map_or(1, |s| s.times.len())
     }

@@ -78,7 +78,7 @@ pub struct Plan {
     pub obstacles: usize,
     /// Rows of obstacles.
     pub obstacle_rows: usize,
-    /// Load steps, `None` without [steps].
+    /// Load steps, `None` without `[steps]`.
     pub steps: Option<usize>,
 }
 

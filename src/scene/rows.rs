@@ -105,7 +105,7 @@ impl Scene {
         })
     }
 
-    /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (0 is the only one without [steps]).
+    /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (0 is the only one without `[steps]`).
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a step that the scene does not have.

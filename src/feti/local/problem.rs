@@ -8,6 +8,7 @@
 //!     Σ = Ψᵀ S Ψ = S_ΠΠ − S_ΠΔ T S_ΔΠ
 //! ```
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
 use super::dense::{self, Dense, Scratch};
@@ -21,6 +22,14 @@ const WEAKLY_HELD: f64 = 1e-6;
 /// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
 /// has a bad pivot then is not semidefinite at all, and trying on would cost a factorisation per dof.
 const MOST_FREE: usize = 12;
+
+/// Factorisations in this process so far.
+static FACTORISATIONS: AtomicUsize = AtomicUsize::new(0);
+
+/// How many subdomains this process has factored so far: a contact loop must not add to it.
+pub fn factorisations() -> usize {
+    FACTORISATIONS.load(Ordering::Relaxed)
+}
 
 /// One subdomain, factored.
 #[derive(Debug)]
@@ -56,7 +65,10 @@ impl LocalProblem {
             let interface = [&delta[..], primal].concat();
             let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
             match PartialCholesky::new(k, symbolic) {
-                Ok((factor, s)) => break (interface, factor, s),
+                Ok((factor, s)) => {
+                    FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
+                    break (interface, factor, s);
+                }
                 // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
                 Err(e) if delta.len() < given + MOST_FREE => delta.push(e.dof),
                 Err(e) => return Err(e),

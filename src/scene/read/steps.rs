@@ -1,4 +1,4 @@
-//! [steps], `ramp`, and gaps and bounds in all their forms.
+//! `[steps]`, `ramp`, and gaps and bounds in all their forms.
 
 use super::Reader;
 use crate::error::Result;
