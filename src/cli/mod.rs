@@ -1,6 +1,7 @@
 //! The command-line program: arguments, then run, then an exit code.
 
 pub mod args;
+mod checkpoint;
 mod contact;
 mod fields;
 mod plan;

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::Solve;
+use super::checkpoint::{Checkpoints, Resumed};
 use super::contact::{self, ContactRow};
 use super::fields::Gathered;
 use super::{not_converged, problem};
@@ -26,12 +27,13 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let clock = Instant::now();
     let scene = problem::load(session, &args.scene)?;
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
+    let checkpoints = Checkpoints::new(session, args, &scene)?;
     let start = Instant::now();
     let substructures = problem::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
     let mut solver = FetiFeti::new(session, substructures, Settings::default())?;
-    let course = follow(session, &scene, &mut solver, args)?;
+    let course = follow(session, &scene, &mut solver, args, checkpoints)?;
     let solution = &course.solution;
     let exact = match (solver.settings().spectrum, solution.steps.last()) {
         (false, _) => None,
@@ -85,8 +87,15 @@ struct Course {
     rows: Vec<ContactRow>,
 }
 
-/// Solves the load steps one after the other, each from where the last one ended. Collective.
-fn follow(session: &Session, scene: &Scene, solver: &mut FetiFeti, args: &Solve) -> Result<Course> {
+/// Solves the load steps one after the other, each from where the last one ended, the first from the checkpoint if there is one.
+/// Collective.
+fn follow(
+    session: &Session,
+    scene: &Scene,
+    solver: &mut FetiFeti,
+    args: &Solve,
+    checkpoints: Checkpoints,
+) -> Result<Course> {
     let n = scene.n_steps();
     let times = scene.steps.as_ref().map(|s| s.times.clone());
     let owns = problem::owner(session, scene)?;
@@ -96,22 +105,33 @@ fn follow(session: &Session, scene: &Scene, solver: &mut FetiFeti, args: &Solve)
         .out
         .as_ref()
         .map(|dir| Pvd::new(dir.join("solution.pvd")));
-    for step in 0..n {
+    let checkpoints = checkpoints.attach(session, solver)?;
+    let Resumed {
+        load_step: first,
+        mut records,
+        mut state,
+    } = checkpoints.resume(session)?;
+    if let (Some(dir), Some(pvd), Some(times)) = (&args.out, &mut pvd, &times) {
+        session.agree(list_before(session, dir, &times[..first], pvd))?;
+    }
+    let mut seconds = [0.0; 2];
+    for step in first..n {
         if n > 1 {
             let (loads, gaps) = session.agree(boundary_values(scene, solver, &owns, step))?;
             solver.set_loads(loads, &gaps);
         }
         let load_step = if times.is_some() { step + 1 } else { 0 };
-        let start = course.as_ref().map(|c| State::warm(&c.solution));
-        let mut outer = Vec::new();
-        let solution = solver.solve_from(start.as_ref(), &mut |done, _| {
+        let mut outer = records.take(load_step);
+        let solution = solver.solve_from(state.as_ref(), &mut |done, state| {
             outer.push(contact::outer_step(load_step, outer.len() + 1, done));
             progress.step(outer.len(), done.active);
             progress.residual(done.residual, done.tolerance, done.iterations);
-            Ok(())
+            checkpoints.save(session, step, || records.followed_by(&outer), state)
         })?;
         progress.finish();
         let rows = contact::rows(session, scene, solver, &solution)?;
+        seconds[0] += solution.solve_seconds;
+        seconds[1] += solution.recover_seconds;
         let mut now = Course {
             step,
             iterations: if outer.is_empty() {
@@ -121,8 +141,8 @@ fn follow(session: &Session, scene: &Scene, solver: &mut FetiFeti, args: &Solve)
             },
             outer,
             load_steps: Vec::new(),
-            solve_seconds: solution.solve_seconds,
-            recover_seconds: solution.recover_seconds,
+            solve_seconds: seconds[0],
+            recover_seconds: seconds[1],
             solution,
             rows,
         };
@@ -132,27 +152,45 @@ fn follow(session: &Session, scene: &Scene, solver: &mut FetiFeti, args: &Solve)
                 write_step(session, scene, solver, &now, dir, times[step], pvd)?;
             }
         }
-        if let Some(before) = course.take() {
-            now = before.followed_by(now);
-        }
-        let converged = now.solution.converged;
-        course = Some(now);
-        if !converged {
+        let done = course.insert(now);
+        records.outer.append(&mut done.outer);
+        records.load_steps.append(&mut done.load_steps);
+        records.iterations.append(&mut done.iterations);
+        if !done.solution.converged {
             break;
         }
+        if step + 1 < n {
+            let next = State::warm(&done.solution);
+            checkpoints.save(session, step + 1, || records.clone(), &next)?;
+            state = Some(next);
+        }
     }
-    Ok(course.expect("a scene has at least one load step"))
+    let last = course.expect("a scene has at least one load step");
+    Ok(Course {
+        outer: records.outer,
+        load_steps: records.load_steps,
+        iterations: records.iterations,
+        ..last
+    })
 }
 
-impl Course {
-    fn followed_by(self, mut next: Course) -> Course {
-        next.outer.splice(0..0, self.outer);
-        next.load_steps.splice(0..0, self.load_steps);
-        next.iterations.splice(0..0, self.iterations);
-        next.solve_seconds += self.solve_seconds;
-        next.recover_seconds += self.recover_seconds;
-        next
+/// Puts what an interrupted run has left of the time series at its front.
+fn list_before(session: &Session, dir: &Path, times: &[f64], pvd: &mut Pvd) -> Result<()> {
+    if session.rank() > 0 {
+        return Ok(());
     }
+    for (step, &t) in times.iter().enumerate() {
+        let file = dir.join(format!("{}.vtu", step_name(step)));
+        if file.is_file() {
+            pvd.add(t, &file)?;
+        }
+    }
+    Ok(())
+}
+
+/// Name of the file of load step `step`, without its ending.
+fn step_name(step: usize) -> String {
+    format!("step_{:04}", step + 1)
 }
 
 /// Loads of this rank's subdomains and right-hand sides of its rows at a load step.
@@ -192,7 +230,7 @@ fn write_step(
 ) -> Result<()> {
     let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
     let written = gathered.map_or(Ok(()), |g| {
-        let name = format!("step_{:04}", course.step + 1);
+        let name = step_name(course.step);
         g.write_vtu(scene, &course.rows, dir, &name)?;
         pvd.add(t, &dir.join(format!("{name}.vtu")))
     });

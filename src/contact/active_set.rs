@@ -11,7 +11,7 @@
 
 use std::time::Instant;
 
-use super::{judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
+use super::{checkpoint, judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
 use crate::feti::dual::Dual;
 use crate::feti::exchange::{gather_all, max_all, sum_all};
 use crate::feti::inner::{iterate, Inner, Loads, Residual};
@@ -336,7 +336,7 @@ impl Run {
             state.caution = Caution::Fallback;
             return Ok(Verdict::GoOn);
         }
-        let print = fingerprint(comm, solver.dual().stiffness.jump.first, &state.active);
+        let print = fingerprint(solver, &state.active);
         if state.visited.contains(&print) {
             state.caution = match state.caution {
                 Caution::Loose => Caution::Exact,
@@ -378,15 +378,21 @@ fn count(before: &[bool], now: &[bool], test: impl Fn(bool, bool) -> bool) -> f6
     pairs.filter(|(was, on)| test(**was, **on)).count() as f64
 }
 
-/// A number that tells sets apart, the same on every rank.
-fn fingerprint(comm: &mpi::topology::SimpleCommunicator, first: usize, active: &[bool]) -> u64 {
-    let on = active.iter().enumerate().filter(|(_, on)| **on);
-    let mine = on.fold(0u64, |sum, (r, _)| {
-        let mut x = ((first + r) as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        sum.wrapping_add(x ^ (x >> 31))
-    });
-    let all = gather_all(comm, &[mine]);
+/// A number that tells sets apart, the same on every rank and for every number of ranks. Collective.
+fn fingerprint(solver: &FetiFeti, active: &[bool]) -> u64 {
+    let mix = |x: u64| {
+        let x = x.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        x ^ (x >> 31)
+    };
+    let mut mine = 0u64;
+    for (block, rows) in checkpoint::blocks(solver.problem(), &solver.dual().stiffness.jump) {
+        let on = rows.enumerate().filter(|(_, r)| active[*r]);
+        for (k, _) in on {
+            mine = mine.wrapping_add(mix(mix(block + 1).wrapping_add(k as u64)));
+        }
+    }
+    let all = gather_all(solver.session().comm(), &[mine]);
     all.iter().fold(0, |sum, w| sum.wrapping_add(w[0]))
 }
