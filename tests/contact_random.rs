@@ -1,75 +1,20 @@
 //! Random contact scenes by the method, with both contact loops and on several ranks, against the assembled reference.
 
 mod assembled;
+mod contact_judge;
 mod mpi;
 mod qp;
 mod random_scene;
 mod rng;
 
-use assembled::compare::{compare, Agreement, Candidate, Tolerances};
+use assembled::compare::Agreement;
 use fetifeti::contact::ContactType;
-use fetifeti::feti::exchange::gather_all;
-use fetifeti::feti::{FetiFeti, Settings};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
-use fetifeti::{Error, Result};
+use fetifeti::Error;
 use random_scene::{Case, Collection, Fate};
-use std::collections::HashMap;
 
 const KINDS: [ContactType; 2] = [ContactType::ActiveSet, ContactType::Smalbe];
-
-fn settings(kind: ContactType) -> Settings {
-    let mut settings = Settings {
-        rtol: 1e-11,
-        ..Settings::default()
-    };
-    settings.contact.kind = kind;
-    settings
-}
-
-/// The answer of the method, on every rank the whole of it: u by unknown, λ by row of the scene, energy.
-fn answer(session: &Session, case: &Case, kind: ContactType) -> Result<(Vec<f64>, Vec<f64>, f64)> {
-    let (rank, size) = (session.rank(), session.size());
-    // Runs of subdomains, or dealt like cards.
-    let share = fetifeti::share(session, case.scene.n_subdomains());
-    let mine = |s: usize| match case.seed % 2 {
-        0 => share.contains(&s),
-        _ => s % size == rank,
-    };
-    let solver = FetiFeti::new(session, case.scene.substructures(&mine)?, settings(kind))?;
-    let solution = solver.solve()?;
-    if !solution.converged {
-        let reason = format!("not converged: {}", solution.reason);
-        return Err(Error::input(reason));
-    }
-
-    let comm = session.comm();
-    let all = |values: Vec<u64>| gather_all(comm, &values).concat();
-    let subdomains = &solver.problem().local;
-    let dofs = subdomains.iter().flat_map(|s| s.dofs.iter().copied());
-    let values = solution.u.iter().flatten().map(|u| u.to_bits());
-    let (dofs, values) = (all(dofs.collect()), all(values.collect()));
-    let copies = dofs.iter().zip(values.into_iter().map(f64::from_bits));
-    let u = case.problem.gather(copies.map(|(&d, u)| (d, u)), 1e-8);
-
-    // The rows that a rank provides are those of the scene at its points, in the same order.
-    let places = case.scene.points.iter().map(|p| (p.block, p.subdomain));
-    let places: HashMap<u64, usize> = places.collect();
-    let provided: Vec<u64> = (0..case.problem.rows.len())
-        .filter(|&r| mine(places[&case.problem.rows[r].block]))
-        .map(|r| r as u64)
-        .collect();
-    let dual = solver.dual();
-    let jump = &dual.stiffness.jump;
-    let contact = &solution.lambda[jump.n_owned_local..];
-    let rows = all(jump.order.iter().map(|&k| provided[k]).collect());
-    let values = all(contact.iter().map(|l| l.to_bits()).collect());
-    let mut lambda = vec![f64::NAN; case.problem.rows.len()];
-    for (row, value) in rows.into_iter().zip(values) {
-        lambda[row as usize] = f64::from_bits(value);
-    }
-    Ok((u.map_err(Error::input)?, lambda, solution.energy))
-}
 
 fn judge(
     session: &Session,
@@ -79,13 +24,13 @@ fn judge(
     let Fate::Solvable(reference) = &case.fate else {
         panic!("seed {} has no solution", case.seed)
     };
-    let (u, lambda, energy) = answer(session, case, kind).map_err(|e| e.to_string())?;
-    let answer = Candidate {
-        u: &u,
-        lambda: &lambda,
-        energy,
-    };
-    compare(&case.problem, reference, &answer, &Tolerances::default())
+    let cards = case.seed % 2 == 1;
+    contact_judge::judge(
+        session,
+        (&case.scene, &case.problem, reference),
+        cards,
+        kind,
+    )
 }
 
 /// Solves all cases and says which fail, and the worst that was let pass.
@@ -160,7 +105,7 @@ fn scenes_without_a_solution_are_refused() {
                     let mut blamed = bodies.filter(|(b, _)| moves(*b));
                     blamed.any(|(_, body)| why.contains(&body.spec.name))
                 };
-                match answer(session, case, kind) {
+                match contact_judge::answer(session, &case.scene, &case.problem, false, kind) {
                     Err(Error::Input(why)) if named(&why) => {}
                     Err(why) => wrong.push(format!("seed {}, {kind:?}: {why}", case.seed)),
                     Ok(_) => wrong.push(format!("seed {}, {kind:?}: solved", case.seed)),
