@@ -75,8 +75,8 @@ pub(super) struct Run {
     pub pull: f64,
     /// B R with all candidate rows.
     g: Rows,
-    /// A rigid motion of bodies that nothing holds, from where the last step left them to where nothing is violated.
-    settled: Option<Vec<f64>>,
+    /// Whether `residual` has the displacements that belong to `lambda`, rigid motions included.
+    placed: bool,
     /// √m.
     sqrt_rows: f64,
     /// B u − c on the owned rows after the last step, and which of them held in it.
@@ -110,7 +110,7 @@ impl Run {
             residual,
             g,
             sqrt_rows,
-            settled: None,
+            placed: false,
             gaps: Vec::new(),
             held: Vec::new(),
             last: (Vec::new(), None),
@@ -255,8 +255,8 @@ impl Run {
         let dual = solver.dual();
         let (session, problem) = (solver.session(), solver.problem());
         let (loads, lambda, residual) = (self.loads, &self.lambda, self.residual);
-        let shift = self.settled.as_deref();
-        let solution = recover::finish(session, problem, &dual, loads, lambda, residual, shift)?;
+        let placed = self.placed;
+        let solution = recover::finish(session, problem, &dual, loads, lambda, residual, placed)?;
         let (residuals, estimate) = self.last;
         Ok(Solution {
             iterations: steps.iter().map(|s| s.iterations).sum(),
@@ -276,11 +276,12 @@ impl Run {
         let comm = session.comm();
         let jump = &dual.stiffness.jump;
         self.residual.add_rigid_motion(session, dual)?;
+        self.placed = true;
         self.gaps = all_gaps(dual, &self.residual)?;
         let unheld = dual.natural.unheld();
-        self.settled = motion::settle(comm, &self.g, jump, &self.gaps, unheld);
-        if let Some(alpha) = &self.settled {
-            self.residual.shift(dual, alpha);
+        // Bodies that nothing holds go to where nothing is violated.
+        if let Some(alpha) = motion::settle(comm, &self.g, jump, &self.gaps, unheld) {
+            self.residual.shift(dual, &alpha);
             self.gaps = all_gaps(dual, &self.residual)?;
         }
         self.held.clone_from(&jump.active);

@@ -66,7 +66,7 @@ pub(super) fn solve(
     dual.p_transpose(&residual.r)?;
     let inner = iterate(dual, ksp, &residual.r, residual.size, &lambda, None)?;
     let solve_seconds = clock.elapsed().as_secs_f64();
-    let solution = finish(session, problem, dual, loads, &lambda, residual, None)?;
+    let solution = finish(session, problem, dual, loads, &lambda, residual, false)?;
     Ok(Solution {
         iterations: inner.iterations,
         converged: inner.reason.converged(),
@@ -78,7 +78,7 @@ pub(super) fn solve(
     })
 }
 
-/// u from λ and a motion of bodies that nothing holds, with the certificate; what only the iterations know is left empty. Collective.
+/// u from λ, with the certificate; `placed` says that `residual` has the displacements of λ, rigid motions included; what only the iterations know is left empty. Collective.
 pub(crate) fn finish(
     session: &Session,
     problem: &Substructures,
@@ -86,10 +86,10 @@ pub(crate) fn finish(
     loads: Loads,
     lambda: &PetscVec,
     mut residual: Residual,
-    shift: Option<&[f64]>,
+    placed: bool,
 ) -> Result<Solution> {
     let clock = Instant::now();
-    let u = back(session, dual, loads, lambda, &mut residual, shift)?;
+    let u = back(session, dual, loads, lambda, &mut residual, placed)?;
     let recover_seconds = clock.elapsed().as_secs_f64();
     let certificate = certify(session, problem, dual, &u, lambda)?;
     Ok(Solution {
@@ -117,13 +117,12 @@ fn back(
     loads: Loads,
     lambda: &PetscVec,
     residual: &mut Residual,
-    shift: Option<&[f64]>,
+    placed: bool,
 ) -> Result<Vec<Vec<f64>>> {
     let stiffness = &dual.stiffness;
-    residual.evaluate(session, dual, &loads, lambda)?;
-    residual.add_rigid_motion(session, dual)?;
-    if let Some(alpha) = shift {
-        residual.shift(dual, alpha);
+    if !placed {
+        residual.evaluate(session, dual, &loads, lambda)?;
+        residual.add_rigid_motion(session, dual)?;
     }
 
     // What is left of the jumps inside a body is averaged away: u ← u − B_D,locᵀ B_loc u.
