@@ -3,6 +3,7 @@
 pub mod args;
 mod checkpoint;
 mod contact;
+mod course;
 mod fields;
 mod plan;
 pub(crate) mod problem;
