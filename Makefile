@@ -36,12 +36,18 @@ setup: ## Install the Debian packages that are missing
 build: setup ## Build the program in release mode
 	cargo build --release
 
-run: build ## Solve the model problems, compare with PETSc's solvers, redo Table 1
+run: build ## Solve the model problems with contact and without, compare with PETSc's solvers, redo Table 1
 	@mkdir -p "$(OUT)"
+	$(FETIFETI) solve examples/scenes/model_contact.toml --out "$(OUT)/model_contact"
+	$(FETIFETI) solve examples/scenes/press_ramp.toml --out "$(OUT)/press_ramp"
+	$(FETIFETI) compare examples/scenes/model_contact.toml --json "$(OUT)/compare_contact.json"
 	$(FETIFETI) solve examples/scenes/poisson_2x2.toml --out "$(OUT)/poisson"
 	$(FETIFETI) compare examples/scenes/poisson_2x2.toml --json "$(OUT)/compare.json"
 	$(FETIFETI) table1 --out "$(OUT)/table1" --json "$(OUT)/table1/table1.json"
 	@echo
+	@echo "The model contact problem (report, pictures, ParaView): $(abspath $(OUT))/model_contact"
+	@echo "Load steps (report, pictures, ParaView series):         $(abspath $(OUT))/press_ramp"
+	@echo "Contact compared with PETSc's solvers:                  $(abspath $(OUT))/compare_contact.json"
 	@echo "Solution of the 2x2 scene (report, picture, ParaView):  $(abspath $(OUT))/poisson"
 	@echo "Comparison with PETSc's solvers:                        $(abspath $(OUT))/compare.json"
 	@echo "Table 1 and Figure 3 (CSV, JSON, PNG, SVG):             $(abspath $(OUT))/table1"

@@ -3,8 +3,9 @@
 //! # The problem
 //!
 //! Bodies Ω_i, i = 1..N, are each cut into subdomains Ω_ij. Every body carries −∇·(ρ∇u) = f with Dirichlet conditions on
-//! some of its sides, or on none: then it *floats*. On the faces where bodies meet, their displacements are tied, B_gl u = c.
-//! That is the linear problem inside every step of a contact algorithm; \[Lee\] (3.1)–(3.3) is the model.
+//! some of its sides, or on none: then it *floats*. On the faces where bodies meet, their displacements are tied, B_gl u = c,
+//! or in contact, B_gl u ≤ c with λ ≥ 0: \[Lee\] (3.1)–(3.3) is the model. [`contact`] is the loop around the equations; it
+//! changes Z and nothing that depends on K.
 //!
 //! After condensation to the interface Γ the unknowns are torn twice, inside the bodies and between them, and tied again by
 //! multipliers λ. What is solved is \[Lee\] (2.11), (3.8)
@@ -50,6 +51,7 @@
 //! | one subdomain per body | B_loc, Z_c; the primal problem shrinks to the fixing dofs of floating bodies | one-level FETI, \[Lee\] section 2.2 |
 //! | one body | B_gl, G, Z_c | FETI-DP, \[Lee\] section 2.3 |
 //! | no floating body | G, P | |
+//! | no inequality | the outer loop | one linear problem |
 //! | `-fetifeti_pc_type dirichlet` | Z_c | the method whose κ ≤ C (H_b/H_s)(1 + log H_s/h)² is Theorem 3.10 of \[Lee\] |
 //!
 //! These are sizes that come out as zero, not branches of their own: there is one code path. `fetifeti plan` prints what a

@@ -10,6 +10,8 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
 
   fetifeti solve SCENE [--out DIR] [--json FILE] [--quiet] [PETSc options]
       solve a scene; write solution.vtu, solution.png and report.json to DIR
+  fetifeti solve SCENE [--checkpoint FILE] [--resume FILE] ...
+      write the state of the contact loop to FILE after every step; go on from such a file, on any number of ranks
   fetifeti plan SCENE
       validate a scene; say what the solver will build and why, with sizes and memory
   fetifeti compare SCENE [--with bddc,fetidp,gamg,hypre,mumps] [--json FILE] [--out DIR] [--quiet] [PETSc options]
@@ -61,6 +63,10 @@ pub struct Solve {
     pub json: Option<PathBuf>,
     /// No summary.
     pub quiet: bool,
+    /// File for the state of the contact loop.
+    pub checkpoint: Option<PathBuf>,
+    /// File with a state to go on from.
+    pub resume: Option<PathBuf>,
 }
 
 /// Arguments of `table1`.
@@ -137,9 +143,18 @@ fn known(name: &str) -> Result<()> {
     )))
 }
 
+/// Flags of ours that take a value.
+const WITH_VALUE: [&str; 6] = [
+    "--out",
+    "--json",
+    "--rows",
+    "--with",
+    "--checkpoint",
+    "--resume",
+];
+
 /// Ours (plain words and --flags with their values, in order) and PETSc's.
 fn split(args: &[String]) -> Result<(Vec<String>, Vec<String>)> {
-    const WITH_VALUE: [&str; 4] = ["--out", "--json", "--rows", "--with"];
     let (mut ours, mut petsc) = (Vec::new(), Vec::new());
     let mut args = args.iter().peekable();
     while let Some(arg) = args.next() {
@@ -173,7 +188,7 @@ impl Words {
         let mut at = 0;
         while at < self.rest.len() {
             match self.rest[at].as_str() {
-                "--out" | "--json" | "--rows" | "--with" => at += 2,
+                word if WITH_VALUE.contains(&word) => at += 2,
                 word if word.starts_with("--") => at += 1,
                 _ => return Some(self.rest.remove(at)),
             }
@@ -213,6 +228,8 @@ impl Words {
                 out: self.path("--out"),
                 json: self.path("--json"),
                 quiet: self.flag("--quiet"),
+                checkpoint: self.path("--checkpoint"),
+                resume: self.path("--resume"),
             }),
             "plan" => Command::Plan {
                 scene: self.scene(name)?,
@@ -310,6 +327,18 @@ mod tests {
     }
 
     #[test]
+    fn a_run_is_resumed_and_goes_on_writing() {
+        let out = read("solve --resume=a.ckpt --checkpoint b.ckpt a.toml").expect("fine");
+        let solve = Solve {
+            scene: "a.toml".into(),
+            checkpoint: Some("b.ckpt".into()),
+            resume: Some("a.ckpt".into()),
+            ..Solve::default()
+        };
+        assert_eq!(out.command, Command::Solve(solve));
+    }
+
+    #[test]
     fn rows_repeat_and_are_checked() {
         let out = read("table1 --rows 2,4,2 --rows=2,2,8 --json -").expect("fine");
         let Command::Table1(table) = out.command else {
@@ -329,6 +358,8 @@ mod tests {
             ("solve a.toml b.toml", "b.toml"),
             ("solve a.toml --jsn x", "--jsn"),
             ("solve a.toml --json", "--json"),
+            ("solve a.toml --resume", "--resume"),
+            ("plan a.toml --checkpoint c", "--checkpoint"),
         ] {
             let message = read(line).expect_err(line).to_string();
             assert!(message.contains(part), "{line}: {message}");

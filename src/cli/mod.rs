@@ -1,7 +1,9 @@
 //! The command-line program: arguments, then run, then an exit code.
 
 pub mod args;
+mod checkpoint;
 mod contact;
+mod course;
 mod fields;
 mod plan;
 pub(crate) mod problem;

@@ -5,18 +5,17 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::Solve;
-use super::contact::{self, ContactRow};
+use super::checkpoint::Checkpoints;
+use super::contact;
+use super::course::{follow, Course};
 use super::fields::Gathered;
 use super::{not_converged, problem};
-use crate::contact::State;
 use crate::feti::exchange::sum_all;
 use crate::feti::local::problem::factorisations;
-use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
+use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
 use crate::petsc::{max_memory, Session};
-use crate::report::contact::{ContactReport, LoadStep, OuterStep};
+use crate::report::contact::ContactReport;
 use crate::report::json::{self, SolveReport};
-use crate::report::progress::Progress;
-use crate::report::pvd::Pvd;
 use crate::report::{load_steps, output, profile, summary};
 use crate::scene::Scene;
 use crate::Result;
@@ -26,12 +25,13 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let clock = Instant::now();
     let scene = problem::load(session, &args.scene)?;
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
+    let checkpoints = Checkpoints::new(session, args, &scene)?;
     let start = Instant::now();
     let substructures = problem::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
     let mut solver = FetiFeti::new(session, substructures, Settings::default())?;
-    let course = follow(session, &scene, &mut solver, args)?;
+    let course = follow(session, &scene, &mut solver, args, checkpoints)?;
     let solution = &course.solution;
     let exact = match (solver.settings().spectrum, solution.steps.last()) {
         (false, _) => None,
@@ -67,136 +67,6 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
             solution.iterations,
         ))
     }
-}
-
-/// What happened over the load steps.
-struct Course {
-    /// The last solution.
-    solution: Solution,
-    /// Load step that it belongs to.
-    step: usize,
-    outer: Vec<OuterStep>,
-    load_steps: Vec<LoadStep>,
-    /// Krylov iterations per outer step, or per load step without inequalities.
-    iterations: Vec<usize>,
-    solve_seconds: f64,
-    recover_seconds: f64,
-    /// Rows of B_gl on rank 0.
-    rows: Vec<ContactRow>,
-}
-
-/// Solves the load steps one after the other, each from where the last one ended. Collective.
-fn follow(session: &Session, scene: &Scene, solver: &mut FetiFeti, args: &Solve) -> Result<Course> {
-    let n = scene.n_steps();
-    let times = scene.steps.as_ref().map(|s| s.times.clone());
-    let owns = problem::owner(session, scene)?;
-    let mut progress = Progress::new(session.rank() == 0 && !args.quiet);
-    let mut course: Option<Course> = None;
-    let mut pvd = args
-        .out
-        .as_ref()
-        .map(|dir| Pvd::new(dir.join("solution.pvd")));
-    for step in 0..n {
-        if n > 1 {
-            let (loads, gaps) = session.agree(boundary_values(scene, solver, &owns, step))?;
-            solver.set_loads(loads, &gaps);
-        }
-        let load_step = if times.is_some() { step + 1 } else { 0 };
-        let start = course.as_ref().map(|c| State::warm(&c.solution));
-        let mut outer = Vec::new();
-        let solution = solver.solve_from(start.as_ref(), &mut |done, _| {
-            outer.push(contact::outer_step(load_step, outer.len() + 1, done));
-            progress.step(outer.len(), done.active);
-            progress.residual(done.residual, done.tolerance, done.iterations);
-            Ok(())
-        })?;
-        progress.finish();
-        let rows = contact::rows(session, scene, solver, &solution)?;
-        let mut now = Course {
-            step,
-            iterations: if outer.is_empty() {
-                vec![solution.iterations]
-            } else {
-                outer.iter().map(|s| s.iterations).collect()
-            },
-            outer,
-            load_steps: Vec::new(),
-            solve_seconds: solution.solve_seconds,
-            recover_seconds: solution.recover_seconds,
-            solution,
-            rows,
-        };
-        if let Some(times) = &times {
-            now.load_steps.push(load_step_record(times[step], &now));
-            if let (Some(dir), Some(pvd)) = (&args.out, &mut pvd) {
-                write_step(session, scene, solver, &now, dir, times[step], pvd)?;
-            }
-        }
-        if let Some(before) = course.take() {
-            now = before.followed_by(now);
-        }
-        let converged = now.solution.converged;
-        course = Some(now);
-        if !converged {
-            break;
-        }
-    }
-    Ok(course.expect("a scene has at least one load step"))
-}
-
-impl Course {
-    fn followed_by(self, mut next: Course) -> Course {
-        next.outer.splice(0..0, self.outer);
-        next.load_steps.splice(0..0, self.load_steps);
-        next.iterations.splice(0..0, self.iterations);
-        next.solve_seconds += self.solve_seconds;
-        next.recover_seconds += self.recover_seconds;
-        next
-    }
-}
-
-/// Loads of this rank's subdomains and right-hand sides of its rows at a load step.
-fn boundary_values(
-    scene: &Scene,
-    solver: &FetiFeti,
-    owns: &dyn Fn(usize) -> bool,
-    step: usize,
-) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
-    let local = solver.problem().local.iter();
-    let loads: Result<Vec<Vec<f64>>> = local.map(|s| scene.loads(s.index, step)).collect();
-    Ok((loads?, scene.gaps(owns, step)?))
-}
-
-/// The record of a load step; forces are known on rank 0.
-fn load_step_record(t: f64, course: &Course) -> LoadStep {
-    let inequalities = || course.rows.iter().filter(|r| r.inequality);
-    LoadStep {
-        t,
-        outer_iterations: course.iterations.len(),
-        iterations: course.iterations.iter().sum(),
-        active: inequalities().filter(|r| r.active).count(),
-        energy: course.solution.energy,
-        contact_force: inequalities().map(|r| r.multiplier).sum(),
-    }
-}
-
-/// Adds one load step to the time series. Collective.
-fn write_step(
-    session: &Session,
-    scene: &Scene,
-    solver: &FetiFeti,
-    course: &Course,
-    dir: &Path,
-    t: f64,
-    pvd: &mut Pvd,
-) -> Result<()> {
-    let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
-    let written = gathered.map_or(Ok(()), |g| {
-        let name = format!("step_{:04}", course.step + 1);
-        g.write_vtu(scene, &course.rows, dir, &name)?;
-        pvd.add(t, &dir.join(format!("{name}.vtu")))
-    });
-    session.agree(written)
 }
 
 /// Finds out before the work whether results can be written. Collective.

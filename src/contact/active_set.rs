@@ -11,7 +11,7 @@
 
 use std::time::Instant;
 
-use super::{judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
+use super::{checkpoint, judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
 use crate::feti::dual::Dual;
 use crate::feti::exchange::{gather_all, max_all, sum_all};
 use crate::feti::inner::{iterate, Inner, Loads, Residual};
@@ -47,6 +47,9 @@ pub fn solve(solver: &FetiFeti, start: Option<&State>, observe: &mut Observer) -
     run.finish(solver, steps, seconds, converged, reason)
 }
 
+/// Jumps on the rows that hold may be this many times the residual in V: it does not see the part that rigid motions close.
+const CLOSED: f64 = 1e3;
+
 /// What a step has shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
@@ -64,10 +67,21 @@ pub(super) struct Run {
     residual: Residual,
     /// Whether `residual` belongs to `lambda` and the set that holds.
     fresh: bool,
+    /// The largest displacement in the last step.
+    length: f64,
     /// Solve the next step to the end.
     pub tight: bool,
+    /// Multipliers above minus this, relative to the largest, do not pull.
+    pub pull: f64,
     /// B R with all candidate rows.
     g: Rows,
+    /// Whether `residual` has the displacements that belong to `lambda`, rigid motions included.
+    placed: bool,
+    /// √m.
+    sqrt_rows: f64,
+    /// B u − c on the owned rows after the last step, and which of them held in it.
+    pub gaps: Vec<f64>,
+    pub held: Vec<bool>,
     /// Krylov residuals of the last step that iterated, and its spectrum.
     last: (Vec<f64>, Option<Spectrum>),
 }
@@ -82,18 +96,32 @@ impl Run {
         motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
         let lambda = dual.multipliers()?;
+        let sqrt_rows = (jump.n_global as f64).sqrt();
         let residual = Residual::new(&dual)?;
         drop(dual);
         let mut run = Run {
             fresh: false,
             tight: false,
+            pull: judge::ROUNDING,
+            length: 0.0,
             state,
             loads,
             lambda,
             residual,
             g,
+            sqrt_rows,
+            placed: false,
+            gaps: Vec::new(),
+            held: Vec::new(),
             last: (Vec::new(), None),
         };
+        if start.is_some() {
+            let dual = solver.dual();
+            let jump = &dual.stiffness.jump;
+            let (active, lambda) = (&mut run.state.active, &run.state.lambda);
+            let load = &run.loads.kernel;
+            motion::restore(session.comm(), &run.g, jump, active, &|r| lambda[r], load);
+        }
         if run.state.reference == 0.0 {
             run.state.reference = run.reference(solver)?;
             // A cold start stands just where the reference was taken.
@@ -122,6 +150,17 @@ impl Run {
         self.residual.r.norm2()
     }
 
+    /// The residual to end with. Where stiff and soft bodies meet, λ₀ may stand for displacements far larger than those of the
+    /// solution; jumps are to be small beside these.
+    fn target(&self, solver: &FetiFeti) -> Result<f64> {
+        let (rtol, atol, _, _) = solver.ksp().tolerances()?;
+        let reference = match self.length {
+            length if length > 0.0 => self.state.reference.min(length * self.sqrt_rows),
+            _ => self.state.reference,
+        };
+        Ok((rtol * reference).max(atol))
+    }
+
     /// One outer step: equations on the set, then the next set.
     pub fn step(&mut self, solver: &FetiFeti) -> Result<(Step, Inner, Verdict)> {
         let clock = Instant::now();
@@ -144,8 +183,7 @@ impl Run {
         dual.p_transpose(&self.residual.r)?;
 
         let first = self.residual.r.norm2()?;
-        let (rtol, atol, _, _) = solver.ksp().tolerances()?;
-        let target = (rtol * self.state.reference).max(atol);
+        let target = self.target(solver)?;
         let reduction = match self.state.caution {
             Caution::Loose => settings.contact.inner_rtol,
             _ => 0.0,
@@ -197,8 +235,11 @@ impl Run {
         if inner.iterations > 0 || self.last.0.is_empty() {
             self.last = (inner.residuals.clone(), inner.estimate);
         }
-        let to_the_end = tolerance <= target;
-        let verdict = self.advance(solver, next, to_the_end)?;
+        // The target of the displacements that have come out.
+        let target = self.target(solver)?;
+        let to_the_end = tolerance <= 1.01 * target;
+        let closed = next.jump_left <= CLOSED * target + 1e3 * judge::ROUNDING * self.length;
+        let verdict = self.advance(solver, next, to_the_end, closed)?;
         Ok((step, inner, verdict))
     }
 
@@ -214,7 +255,8 @@ impl Run {
         let dual = solver.dual();
         let (session, problem) = (solver.session(), solver.problem());
         let (loads, lambda, residual) = (self.loads, &self.lambda, self.residual);
-        let solution = recover::finish(session, problem, &dual, loads, lambda, residual)?;
+        let placed = self.placed;
+        let solution = recover::finish(session, problem, &dual, loads, lambda, residual, placed)?;
         let (residuals, estimate) = self.last;
         Ok(Solution {
             iterations: steps.iter().map(|s| s.iterations).sum(),
@@ -232,17 +274,22 @@ impl Run {
     fn next(&mut self, solver: &FetiFeti, dual: &Dual) -> Result<Next> {
         let session = solver.session();
         let comm = session.comm();
-        let (stiffness, jump) = (&dual.stiffness, &dual.stiffness.jump);
+        let jump = &dual.stiffness.jump;
         self.residual.add_rigid_motion(session, dual)?;
-        let gaps = dual.multipliers()?;
-        stiffness.jump_of_all(&self.residual.work, &gaps)?;
-        for (gap, c) in gaps.array_mut()?.iter_mut().zip(&jump.gap) {
-            *gap -= c;
+        self.placed = true;
+        self.gaps = all_gaps(dual, &self.residual)?;
+        let unheld = dual.natural.unheld();
+        // Bodies that nothing holds go to where nothing is violated.
+        if let Some(alpha) = motion::settle(comm, &self.g, jump, &self.gaps, unheld) {
+            self.residual.shift(dual, &alpha);
+            self.gaps = all_gaps(dual, &self.residual)?;
         }
-        let (gaps, lambda) = (gaps.array()?, self.lambda.array()?);
+        self.held.clone_from(&jump.active);
+        let (gaps, lambda) = (&self.gaps, self.lambda.array()?);
         let y = self.residual.work.iter().flat_map(|w| &w.y);
         let y = y.fold(0.0f64, |a, y| a.max(y.abs()));
-        let mut judged = judge::Rows::new(comm, jump, &gaps, &lambda, y);
+        let mut judged = judge::Rows::new(comm, jump, gaps, &lambda, y, self.pull);
+        self.length = judged.y_max;
         let wrong = judged.wrong(comm);
         if self.state.caution == Caution::Single {
             judged.keep_worst(comm, jump);
@@ -255,12 +302,19 @@ impl Run {
             active,
             wrong,
             contradictory: judged.contradictory,
+            jump_left: judged.jump_left,
             restored,
         })
     }
 
     /// Goes over to the next set.
-    fn advance(&mut self, solver: &FetiFeti, next: Next, to_the_end: bool) -> Result<Verdict> {
+    fn advance(
+        &mut self,
+        solver: &FetiFeti,
+        next: Next,
+        to_the_end: bool,
+        closed: bool,
+    ) -> Result<Verdict> {
         let comm = solver.session().comm();
         let state = &mut self.state;
         state.steps += 1;
@@ -275,15 +329,15 @@ impl Run {
             if !to_the_end {
                 return Ok(Verdict::GoOn);
             }
-            if next.restored == 0 && !next.contradictory {
+            if next.restored == 0 && !next.contradictory && closed {
                 return Ok(Verdict::Solved);
             }
-            // Rows that pull are kept because nothing else holds a body, or rows cannot all be satisfied: the rule has no way on
-            // from here.
+            // Rows that pull are kept because nothing else holds a body, or rows cannot all be satisfied, or no motion closes their
+            // jumps: the rule has no way on from here.
             state.caution = Caution::Fallback;
             return Ok(Verdict::GoOn);
         }
-        let print = fingerprint(comm, solver.dual().stiffness.jump.first, &state.active);
+        let print = fingerprint(solver, &state.active);
         if state.visited.contains(&print) {
             state.caution = match state.caution {
                 Caution::Loose => Caution::Exact,
@@ -297,6 +351,16 @@ impl Run {
     }
 }
 
+/// B y − c on the owned rows, those that do not hold included. Collective.
+fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
+    let gaps = dual.multipliers()?;
+    dual.stiffness.jump_of_all(&residual.work, &gaps)?;
+    let mut gaps = gaps.to_vec()?;
+    let c = &dual.stiffness.jump.gap;
+    gaps.iter_mut().zip(c).for_each(|(gap, c)| *gap -= c);
+    Ok(gaps)
+}
+
 /// The next set and how it came about.
 struct Next {
     active: Vec<bool>,
@@ -304,6 +368,8 @@ struct Next {
     wrong: usize,
     /// Whether rows that hold contradict each other.
     contradictory: bool,
+    /// Largest jump that is left on rows that hold.
+    jump_left: f64,
     /// Rows that were put back so that no body comes loose, over all ranks.
     restored: usize,
 }
@@ -313,15 +379,21 @@ fn count(before: &[bool], now: &[bool], test: impl Fn(bool, bool) -> bool) -> f6
     pairs.filter(|(was, on)| test(**was, **on)).count() as f64
 }
 
-/// A number that tells sets apart, the same on every rank.
-fn fingerprint(comm: &mpi::topology::SimpleCommunicator, first: usize, active: &[bool]) -> u64 {
-    let on = active.iter().enumerate().filter(|(_, on)| **on);
-    let mine = on.fold(0u64, |sum, (r, _)| {
-        let mut x = ((first + r) as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        sum.wrapping_add(x ^ (x >> 31))
-    });
-    let all = gather_all(comm, &[mine]);
+/// A number that tells sets apart, the same on every rank and for every number of ranks. Collective.
+fn fingerprint(solver: &FetiFeti, active: &[bool]) -> u64 {
+    let mix = |x: u64| {
+        let x = x.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        x ^ (x >> 31)
+    };
+    let mut mine = 0u64;
+    for (block, rows) in checkpoint::blocks(solver.problem(), &solver.dual().stiffness.jump) {
+        let on = rows.enumerate().filter(|(_, r)| active[*r]);
+        for (k, _) in on {
+            mine = mine.wrapping_add(mix(mix(block + 1).wrapping_add(k as u64)));
+        }
+    }
+    let all = gather_all(solver.session().comm(), &[mine]);
     all.iter().fold(0, |sum, w| sum.wrapping_add(w[0]))
 }

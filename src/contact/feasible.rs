@@ -22,10 +22,7 @@ fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
     let jump = &dual.stiffness.jump;
     for block in &jump.blocks {
         let rows: Vec<usize> = (0..block.rows.len())
-            .filter(|&r| {
-                let i = block.rows.start + r;
-                jump.inequality[i] || jump.initial[i]
-            })
+            .filter(|&r| jump.is_candidate(block.rows.start + r))
             .collect();
         let gap = |r: usize| jump.gap[block.rows.start + r];
         let equation = |r: usize| !jump.inequality[block.rows.start + r];

@@ -10,9 +10,8 @@ use crate::feti::jump::Jump;
 /// three others inherits the sum of theirs.
 const NOISE: f64 = 3.0;
 
-/// Multipliers above minus this, relative to the largest, do not pull; gaps below it, relative to the largest displacement, are
-/// closed: rounding.
-const ROUNDING: f64 = 1e-14;
+/// Rounding of multipliers, relative to the largest, and of gaps, relative to the largest displacement.
+pub const ROUNDING: f64 = 1e-14;
 
 /// The next set and why.
 pub struct Rows {
@@ -22,18 +21,23 @@ pub struct Rows {
     pub contradictory: bool,
     /// How wrong each owned row is, in units in which multipliers and gaps compare; 0: it is right.
     wrong: Vec<f64>,
+    /// Largest jump that is left on rows that hold.
+    pub jump_left: f64,
     lambda_max: f64,
-    y_max: f64,
+    /// The largest displacement over all ranks.
+    pub y_max: f64,
 }
 
 impl Rows {
-    /// Judges the owned rows by their gaps B u − c and multipliers; `y` is the largest displacement on this rank. Collective.
+    /// Judges the owned rows by their gaps B u − c and multipliers; `y` is the largest displacement on this rank, and multipliers above
+    /// minus `pull`, relative to the largest, do not pull. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         jump: &Jump,
         gaps: &[f64],
         lambda: &[f64],
         y: f64,
+        pull: f64,
     ) -> Rows {
         let contact = jump.n_owned_local..jump.n_owned;
         // [largest jump left on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
@@ -50,11 +54,12 @@ impl Rows {
             active: jump.active.clone(),
             contradictory: contradictory > 0.0,
             wrong: vec![0.0; jump.n_owned],
+            jump_left,
             lambda_max,
             y_max,
         };
         let open = (NOISE * jump_left).max(ROUNDING * y_max);
-        let pull = ROUNDING * lambda_max;
+        let pull = pull * lambda_max;
         for r in contact.filter(|&r| jump.inequality[r]) {
             if jump.active[r] && lambda[r] < -pull {
                 rows.active[r] = false;

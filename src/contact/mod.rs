@@ -11,6 +11,7 @@
 pub mod active_set;
 pub mod augmented;
 pub mod balance;
+pub mod checkpoint;
 pub mod feasible;
 pub mod judge;
 pub mod motion;
@@ -114,6 +115,16 @@ pub enum Caution {
     Single,
     /// And again: SMALBE takes over.
     Fallback,
+}
+
+impl Caution {
+    /// All of them, each at its number.
+    pub const ALL: [Caution; 4] = [
+        Caution::Loose,
+        Caution::Exact,
+        Caution::Single,
+        Caution::Fallback,
+    ];
 }
 
 /// Called after each outer step.

@@ -4,6 +4,8 @@
 //! A solution exists if and only if no motion v = R α that the rows allow (B_E v = 0, B_I v ≤ 0) gains energy, eᵀα ≤ 0 for all of
 //! them; by Farkas' lemma, if and only if Gᵀ λ = e has a solution with λ_I ≥ 0.
 
+use std::collections::BTreeMap;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
@@ -56,7 +58,7 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
     // [free, n, (column, value) × n] of each direction
     let mut mine: Vec<Vec<u64>> = Vec::new();
     for i in jump.n_owned_local..jump.n_owned {
-        if !jump.inequality[i] && !jump.active[i] {
+        if !jump.is_candidate(i) {
             continue;
         }
         let largest = g.row(i).fold(0.0f64, |a, (_, v)| a.max(v.abs()));
@@ -94,8 +96,9 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
     (columns, all.iter().map(|w| w[0] == 1).collect())
 }
 
-/// Puts rows back into `active` until the active rows hold all rigid motions that the load drives: for every loose motion that gains
-/// energy the row with the largest `score` among those that see it. Returns how many were put back. Collective.
+/// Puts rows back into `active` until the active rows hold all rigid motions that the load drives: for every loose motion along which
+/// the load gains energy, the row with the largest `score` among those that stand against it. Returns how many were put back.
+/// Collective.
 pub fn restore(
     comm: &SimpleCommunicator,
     g: &Rows,
@@ -108,30 +111,28 @@ pub fn restore(
     if r == 0 {
         return 0;
     }
-    let candidate = |i: usize| jump.inequality[i] || jump.active[i];
-    let driven = |v: &Vec<f64>| {
-        let work: f64 = v.iter().zip(&load.e).map(|(v, e)| v * e).sum();
-        let scale: f64 = v.iter().zip(&load.size).map(|(v, s)| (v * s).abs()).sum();
-        work.abs() > BALANCE * scale
-    };
     let mut restored = 0;
     loop {
-        let mut motions = loose(comm, g, r, &|i| active[i]);
-        motions.retain(driven);
-        if motions.is_empty() {
+        let motions = loose(comm, g, r, &|i| active[i]);
+        let driven: Vec<Vec<f64>> = motions.into_iter().filter_map(|v| along(v, load)).collect();
+        if driven.is_empty() {
             return restored;
         }
-        // The best row over all ranks that sees some loose motion.
-        let sees = |i: usize| {
-            motions.iter().any(|v| {
+        // The largest work of row i on a motion that the load drives: positive where the row stands in its way.
+        let against = |i: usize| {
+            let size: f64 = g.row(i).map(|(_, x)| x.abs()).sum();
+            let work = driven.iter().map(|v| {
                 let largest = v.iter().fold(0.0f64, |a, x| a.max(x.abs()));
                 let work: f64 = g.row(i).map(|(c, x)| x * v[c]).sum();
-                let size: f64 = g.row(i).map(|(_, x)| x.abs()).sum();
-                work.abs() > 1e-8 * size * largest
-            })
+                match jump.inequality[i] {
+                    true => work / (size * largest),
+                    false => work.abs() / (size * largest),
+                }
+            });
+            work.fold(f64::NEG_INFINITY, f64::max)
         };
         let mine = (jump.n_owned_local..jump.n_owned)
-            .filter(|&i| candidate(i) && !active[i] && sees(i))
+            .filter(|&i| jump.is_candidate(i) && !active[i] && against(i) > 1e-8)
             .max_by(|&i, &j| score(i).total_cmp(&score(j)).then(j.cmp(&i)));
         let words = mine.map_or(vec![], |i| vec![score(i).to_bits()]);
         let offers = gather_all(comm, &words);
@@ -140,6 +141,7 @@ pub fn restore(
             .enumerate()
             .filter_map(|(rank, w)| w.first().map(|&w| (rank, f64::from_bits(w))))
             .reduce(|a, b| if b.1 > a.1 { b } else { a });
+        // The load stands against such a row for every driven motion, or `check` would have refused the problem.
         let Some((rank, _)) = best else {
             return restored;
         };
@@ -148,6 +150,83 @@ pub fn restore(
         }
         restored += 1;
     }
+}
+
+/// The motion in the direction in which the load gains energy; `None` where it neither gains nor loses.
+fn along(v: Vec<f64>, load: &KernelLoad) -> Option<Vec<f64>> {
+    let work: f64 = v.iter().zip(&load.e).map(|(v, e)| v * e).sum();
+    let scale: f64 = v.iter().zip(&load.size).map(|(v, s)| (v * s).abs()).sum();
+    if work.abs() <= BALANCE * scale {
+        return None;
+    }
+    Some(v.into_iter().map(|v| v * work.signum()).collect())
+}
+
+/// The smallest rigid motion, out of those in `motions` that nothing holds or drives, that takes the bodies to where no row of an
+/// inequality is violated, as coefficients of the kernel vectors; `None` where there is none. Collective.
+pub fn settle(
+    comm: &SimpleCommunicator,
+    g: &Rows,
+    jump: &Jump,
+    gaps: &[f64],
+    motions: &[Vec<f64>],
+) -> Option<Vec<f64>> {
+    let n = motions.len();
+    if n == 0 {
+        return None;
+    }
+    // Rows a z ≤ b with a scaled to a largest entry of 1; of those with the same a only the smallest b counts.
+    let mut tightest: BTreeMap<Vec<u64>, f64> = BTreeMap::new();
+    let mut meet = |a: Vec<u64>, b: f64| {
+        let least = tightest.entry(a).or_insert(f64::INFINITY);
+        *least = least.min(b);
+    };
+    for i in (jump.n_owned_local..jump.n_owned).filter(|&i| jump.inequality[i]) {
+        let work = |v: &Vec<f64>| g.row(i).map(|(c, x)| x * v[c]).sum::<f64>();
+        let a: Vec<f64> = motions.iter().map(work).collect();
+        let largest = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let size: f64 = g.row(i).map(|(_, x)| x.abs()).sum();
+        if largest > 1e-10 * size {
+            let rounded = a.iter().map(|x| (x / largest * 1e12).round() / 1e12 + 0.0);
+            meet(rounded.map(f64::to_bits).collect(), -gaps[i] / largest);
+        }
+    }
+    let mine = tightest.iter().flat_map(|(a, b)| {
+        let mut words = a.clone();
+        words.push(b.to_bits());
+        words
+    });
+    let words = gather_all(comm, &mine.collect::<Vec<u64>>()).concat();
+    let mut all: BTreeMap<Vec<u64>, f64> = BTreeMap::new();
+    for one in words.chunks_exact(n + 1) {
+        let least = all.entry(one[..n].to_vec()).or_insert(f64::INFINITY);
+        *least = least.min(f64::from_bits(one[n]));
+    }
+    if all.values().all(|b| *b >= 0.0) {
+        return None;
+    }
+    // Least distance programming by NNLS (Lawson and Hanson, chapter 23): min ‖z‖ with −A z ≥ −b.
+    let scale = all.values().fold(0.0f64, |m, b| m.max(b.abs()));
+    let mut e = Dense::zeros(n + 1, all.len());
+    for (k, (a, b)) in all.iter().enumerate() {
+        for (j, &x) in a.iter().enumerate() {
+            e.set(j, k, -f64::from_bits(x));
+        }
+        e.set(n, k, -b / scale);
+    }
+    let mut wanted = vec![0.0; n + 1];
+    wanted[n] = 1.0;
+    let (_, rest) = nnls(&e, &wanted, &vec![false; all.len()]);
+    if rest[n].abs() < 1e-9 {
+        return None;
+    }
+    let mut alpha = vec![0.0; motions[0].len()];
+    for (j, v) in motions.iter().enumerate() {
+        let z = -rest[j] / rest[n] * scale;
+        // `rest` is b − A x here, the negative of the book's residual; the quotient does not mind.
+        alpha.iter_mut().zip(v).for_each(|(a, v)| *a += z * v);
+    }
+    Some(alpha)
 }
 
 /// Motions that none of the chosen rows sees. Collective.

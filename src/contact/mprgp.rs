@@ -12,6 +12,9 @@ use crate::Result;
 /// Γ: how much larger than the free gradient the chopped gradient may be before a face is left.
 const GAMMA: f64 = 1.0;
 
+/// Curvature below this, relative to ‖A‖, is none.
+const FLAT: f64 = 1e-13;
+
 /// The quadratic function and its bounds; vectors are this rank's part.
 pub trait Bounded {
     /// y ← A x.
@@ -109,15 +112,21 @@ impl Setting<'_> {
             if self.dot(&beta, &beta) <= GAMMA * GAMMA * self.dot(&reduced, &phi) {
                 a.apply(&p, &mut ap)?;
                 run.products += 1;
-                let curvature = self.dot(&p, &ap);
-                let wish = self.dot(&run.g, &p) / curvature;
+                let (curvature, along) = (self.dot(&p, &ap), self.dot(&run.g, &p));
+                let (pp, gg) = (self.dot(&p, &p), self.dot(&run.g, &run.g));
+                // Dependent rows have directions without curvature, and what rounding leaves of it must not set the step: along
+                // them x goes to a bound if that lowers the function, and nowhere otherwise.
+                let flat = curvature <= FLAT * pp / self.length;
+                if flat && along <= FLAT.sqrt() * (pp * gg).sqrt() {
+                    break;
+                }
+                let wish = along / curvature;
                 let mut room = [f64::INFINITY];
                 for i in (0..n).filter(|&i| p[i] > 0.0) {
                     room[0] = room[0].min((run.x[i] - self.lower[i]) / p[i]);
                 }
                 min_all(self.comm, &mut room);
-                // No curvature: p is in the kernel of A, and only the bounds end the step.
-                let inside = curvature > 0.0 && wish <= room[0];
+                let inside = !flat && wish <= room[0];
                 let step = if inside { wish } else { room[0] };
                 if !step.is_finite() {
                     break;

@@ -25,11 +25,19 @@ use crate::Result;
 /// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.
 const ETA: f64 = 0.1;
 /// M₀: the projected gradient that is allowed per violated balance, relative to ϱ, …
-const M_START: f64 = 1.0;
+const M_START: f64 = 0.1;
 /// … and the factor by which it shrinks when the Lagrangian does not grow enough.
 const M_SHRINK: f64 = 0.1;
 /// Products with A in one inner problem at most.
 const PRODUCTS: usize = 2_000;
+/// Steps without a change after which a set is tried.
+const PATIENCE: usize = 3;
+/// How often the search goes on from where such a trial ended; later it keeps its own course, which is the one that is proved to
+/// converge.
+const JUMPS: usize = 4;
+/// Multipliers above minus this many tolerances, relative to the largest, do not pull in such a trial: SMALBE leaves rows that carry
+/// nothing on either side of zero.
+const PULL: f64 = 10.0;
 /// Active-set steps that may follow a set of SMALBE's before it goes on.
 const CLOSING_STEPS: usize = 5;
 
@@ -57,6 +65,7 @@ pub fn take_over(
     state.mu.resize(search.a.balance.n.rows, 0.0);
     // How far SMALBE itself goes; further when the set that it found does not stay.
     let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
+    let (mut unchanged, mut jumps) = (0, 0);
     loop {
         if state.steps >= solver.settings().contact.max_it {
             let run = Run::new(solver, Some(&state))?;
@@ -64,9 +73,14 @@ pub fn take_over(
             return run.finish(solver, steps, seconds, false, "DIVERGED_CONTACT_ITS".into());
         }
         let (step, settled) = search.advance(comm, &mut state, accuracy)?;
+        unchanged = match step.entered + step.left {
+            0 => unchanged + 1,
+            _ => 0,
+        };
         observe(&step, &state)?;
         steps.push(step);
-        if !settled {
+        // A set that stays is tried, though μ may still be far: its ascent is slow where stiff bodies hang on soft ones.
+        if !settled && unchanged != PATIENCE {
             continue;
         }
         let mut run = Run::new(
@@ -78,6 +92,7 @@ pub fn take_over(
             }),
         )?;
         state.reference = run.state.reference;
+        run.pull = PULL * rtol;
         for _ in 0..CLOSING_STEPS {
             run.tight = true;
             let (step, inner, verdict) = run.step(solver)?;
@@ -90,7 +105,13 @@ pub fn take_over(
                 return run.finish(solver, steps, seconds, solved, inner.reason.name);
             }
         }
-        accuracy *= 0.1;
+        if settled {
+            accuracy = (0.1 * accuracy).max(1e-13);
+        }
+        if jumps < JUMPS {
+            jumps += 1;
+            search.restart(comm, &run, &mut state)?;
+        }
         search.lagrangian = f64::NEG_INFINITY;
     }
 }
@@ -116,7 +137,10 @@ impl<'a> Search<'a> {
     fn new(solver: &'a FetiFeti, state: &State) -> Result<Search<'a>> {
         let (session, problem) = (solver.session(), solver.problem());
         let comm = session.comm();
-        let all = State::cold(&solver.dual().stiffness.jump).active;
+        let all: Vec<bool> = {
+            let jump = &solver.dual().stiffness.jump;
+            (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect()
+        };
         solver.shared().borrow_mut().set_active(problem, &all)?;
         let a = Augmented::new(solver, solver.settings().contact.face_pc)?;
         let dual = solver.dual();
@@ -130,7 +154,12 @@ impl<'a> Search<'a> {
         lambda.array_mut()?.copy_from_slice(&a.unscaled(&shift));
         let mut residual = Residual::new(&dual)?;
         residual.evaluate(session, &dual, &loads, &lambda)?;
-        let mut b = a.unscaled(&residual.r.to_vec()?); /* b = S(d − F λ̃)  */
+        let mut r = residual.r.to_vec()?;
+        // With all candidates in force rows may contradict each other and be held to other values: here c itself counts.
+        for (r, (held, c)) in r.iter_mut().zip(jump.held.iter().zip(&jump.gap)) {
+            *r += held - c;
+        }
+        let mut b = a.unscaled(&r); /*                    b = S(d − F λ̃)  */
         a.balance.project(comm, &mut b);
         let mut size = [b.iter().map(|b| b * b).sum::<f64>()];
         sum_all(comm, &mut size);
@@ -160,6 +189,24 @@ impl<'a> Search<'a> {
             m: M_START,
             lagrangian: f64::NEG_INFINITY,
         })
+    }
+
+    /// Goes on from the λ of an active-set step and the μ that belongs to it: with w = S (c − B u) on the rows that do not hold, the
+    /// optimality of L reads G μ = (I − P) w. Collective.
+    fn restart(&mut self, comm: &SimpleCommunicator, run: &Run, state: &mut State) -> Result<()> {
+        let scaled = self.a.scaled(&run.state.lambda);
+        for (i, x) in self.x.iter_mut().enumerate() {
+            *x = (scaled[i] - self.shift[i]).max(self.lower[i]);
+        }
+        let w: Vec<f64> = (0..self.x.len())
+            .map(|i| match self.fixed[i] || run.held[i] {
+                true => 0.0,
+                false => -run.gaps[i] * self.a.scale[i],
+            })
+            .collect();
+        state.mu = self.a.balance.forces(comm, &w);
+        self.a.balance.solve(&mut state.mu);
+        Ok(())
     }
 
     /// One inner problem and one ascent of the multipliers μ: the step, and whether all is within `accuracy`. Collective.

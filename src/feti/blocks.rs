@@ -141,6 +141,33 @@ impl Block {
     }
 }
 
+impl Block {
+    /// Rows that hold because the active ones do: they depend on them, and their right-hand side `c` is what follows.
+    fn implied(&self, active: &[bool], c: &[f64]) -> Vec<usize> {
+        let mut held = active.to_vec();
+        let mut out = Vec::new();
+        let rank = |on: &[bool]| {
+            let rows: Vec<usize> = (0..on.len()).filter(|&r| on[r]).collect();
+            let b = faer::Mat::from_fn(rows.len(), self.dofs.len(), |i, j| self.b.get(rows[i], j));
+            if rows.is_empty() {
+                0
+            } else {
+                scaling::range(&b).ncols()
+            }
+        };
+        let known = rank(active);
+        for r in (0..active.len()).filter(|&r| !active[r]) {
+            held[r] = true;
+            let follows = known > 0 && rank(&held) == known;
+            if follows && self.consistent(&held, c) == c {
+                out.push(r);
+            }
+            held[r] = false;
+        }
+        out
+    }
+}
+
 /// Sorts this rank's rows by block: (order of the rows, blocks with `rows` counted after `first` local rows).
 pub(super) fn collect(
     problem: &Substructures,
@@ -188,6 +215,22 @@ pub(super) fn collect(
 }
 
 impl Jump {
+    /// Z^k with the inequality rows that hold because others do: around a cross point several sets of rows say the same.
+    pub fn implied(&self) -> Vec<bool> {
+        let mut out = self.active.clone();
+        for block in self.blocks.iter().filter(|b| b.rows.len() > 1) {
+            let (active, c) = (
+                &self.active[block.rows.clone()],
+                &self.gap[block.rows.clone()],
+            );
+            for r in block.implied(active, c) {
+                let r = block.rows.start + r;
+                out[r] |= self.inequality[r];
+            }
+        }
+        out
+    }
+
     /// Right-hand sides that the rows that hold can satisfy together, from c and Z^k; of all blocks, or of those that `which` names.
     pub(super) fn reconcile(&mut self, which: impl Fn(&Block) -> bool) {
         for block in self.blocks.iter().filter(|b| which(b)) {

@@ -56,14 +56,11 @@ impl Gtg {
                 a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
             }
         }
-        let factor = Semidefinite::new(&a);
-        let unheld: Vec<Vec<f64>> = null_vectors(&a, &factor)
-            .into_iter()
-            .map(|v| v.iter().zip(&scale).map(|(v, s)| v * s).collect())
-            .collect();
+        // Which bodies are held is a question to G alone: with Q = M⁻¹ two stiff bodies that soft ones hold look as if nothing did.
+        let (dropped, unheld) = dependent(session, r, g);
         // Holding one dependent column of each unheld motion makes the matrix regular without changing what it does to
         // right-hand sides in its range.
-        for i in factor.dropped() {
+        for i in dropped {
             a.set(i, i, a.get(i, i) + 1.0);
         }
         let triplets: Vec<(i32, i32, f64)> = (0..r)
@@ -128,6 +125,21 @@ impl Gtg {
         along.add(-1.0, &c, &mut x.array_mut()?);
         Ok(())
     }
+}
+
+/// Columns of G that depend on the others, and the combinations of columns that vanish. Collective.
+fn dependent(session: &Session, r: usize, g: &Rows) -> (Vec<usize>, Vec<Vec<f64>>) {
+    let mut a = Dense::zeros(r, r);
+    for i in 0..g.n() {
+        for (p, gp) in g.row(i) {
+            for (q, gq) in g.row(i) {
+                a.data[p + q * r] += gp * gq;
+            }
+        }
+    }
+    sum_all(session.comm(), &mut a.data);
+    let factor = Semidefinite::new(&a);
+    (factor.dropped(), null_vectors(&a, &factor))
 }
 
 /// Vectors v with A v = 0, one per dropped column.

@@ -104,12 +104,17 @@ impl Residual {
         Ok(())
     }
 
+    /// y ← y + R α for given α.
+    pub fn shift(&mut self, dual: &Dual, alpha: &[f64]) {
+        for (j, w) in self.work.iter_mut().enumerate() {
+            dual.natural.add_kernel(j, alpha, &mut w.y);
+        }
+    }
+
     /// y ← y + R α with the rigid motions α that close the jumps of the rows that hold, as far as those allow. Collective.
     pub fn add_rigid_motion(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         let alpha = dual.natural.alpha(session.comm(), &self.r)?;
-        for (j, w) in self.work.iter_mut().enumerate() {
-            dual.natural.add_kernel(j, &alpha, &mut w.y); /*  y ← y + R α       */
-        }
+        self.shift(dual, &alpha); /*                          y ← y + R α       */
         Ok(())
     }
 }

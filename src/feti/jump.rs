@@ -207,6 +207,11 @@ impl Jump {
         self.reconcile(|_| true);
     }
 
+    /// Whether owned row `i` may hold at all: open rows of faces that are tied in part may not.
+    pub fn is_candidate(&self, i: usize) -> bool {
+        self.inequality[i] || self.initial[i]
+    }
+
     fn receive(&mut self, problem: &Substructures, sharing: &Sharing, mut entries: Vec<Entry>) {
         let mut ghosts: Vec<(u32, bool)> =
             entries.iter().map(|e| (e.row as u32, e.contact)).collect();

@@ -109,7 +109,8 @@ impl NaturalCoarse {
                 Some(qg)
             }
             ProjectorKind::Preconditioner => {
-                Some(self.probe(session, stiffness, preconditioner)?)
+                let rigid = self.rigid_rows(session, problem, stiffness)?;
+                Some(self.probe(session, stiffness, preconditioner, &rigid)?)
             }
             _ => None,
         };
@@ -183,12 +184,32 @@ impl NaturalCoarse {
         q.to_vec()
     }
 
-    /// M⁻¹ G, one column after the other.
+    /// What Q has besides M⁻¹: the superlumped diagonal on rows of a single term, zero on the others. On the other side of such a
+    /// row stands something rigid, of which M⁻¹ knows nothing; for a floating body that touches nothing else M⁻¹ G vanishes.
+    fn rigid_rows(
+        &self,
+        session: &Session,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+    ) -> Result<Vec<f64>> {
+        let mut out = self.superlumped(session, problem, stiffness)?;
+        let jump = &stiffness.jump;
+        out[..jump.n_owned_local].fill(0.0);
+        for (q, &r) in out[jump.n_owned_local..].iter_mut().zip(&jump.order) {
+            if problem.rows[r].terms.len() > 1 {
+                *q = 0.0;
+            }
+        }
+        Ok(out)
+    }
+
+    /// Q G with Q = M⁻¹ + diag(`rigid`), one column after the other.
     fn probe(
         &self,
         session: &Session,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
+        rigid: &[f64],
     ) -> Result<Rows> {
         let n = stiffness.jump.n_owned;
         let column = PetscVec::mpi(session, n)?;
@@ -202,6 +223,12 @@ impl NaturalCoarse {
                 }
             }
             preconditioner.apply(stiffness, &column, &image)?;
+            {
+                let (mut values, column) = (image.array_mut()?, column.array()?);
+                for ((v, q), g) in values.iter_mut().zip(rigid).zip(&*column) {
+                    *v += q * g;
+                }
+            }
             let values = image.array()?;
             let rows = values.iter().enumerate().filter(|(_, v)| **v != 0.0);
             entries.extend(rows.map(|(i, &v)| (i as u32, c as u32, v)));
@@ -289,12 +316,15 @@ impl NaturalCoarse {
         let Some(solver) = &self.gtg else {
             return Ok(());
         };
-        let mut c = vec![0.0; self.r];
-        self.g.add_transpose(&lambda.array()?, &mut c);
-        sum_all(comm, &mut c);
-        c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
-        solver.solve(&mut c, Side::Plain)?;
-        self.qg().add(1.0, &c, &mut lambda.array_mut()?);
+        // Once more for the digits that a badly conditioned Gᵀ Q G costs.
+        for _ in 0..2 {
+            let mut c = vec![0.0; self.r];
+            self.g.add_transpose(&lambda.array()?, &mut c);
+            sum_all(comm, &mut c);
+            c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
+            solver.solve(&mut c, Side::Plain)?;
+            self.qg().add(1.0, &c, &mut lambda.array_mut()?);
+        }
         Ok(())
     }
 

@@ -24,7 +24,7 @@ pub struct Solution {
     pub lambda: Vec<f64>,
     /// B u − c on these rows, those that do not hold included.
     pub gaps: Vec<f64>,
-    /// Whether each of these rows holds at the end.
+    /// Whether each of these rows holds at the end, those included that follow from others that do.
     pub active: Vec<bool>,
     /// Krylov iterations, of all steps of the contact loop.
     pub iterations: usize,
@@ -66,7 +66,7 @@ pub(super) fn solve(
     dual.p_transpose(&residual.r)?;
     let inner = iterate(dual, ksp, &residual.r, residual.size, &lambda, None)?;
     let solve_seconds = clock.elapsed().as_secs_f64();
-    let solution = finish(session, problem, dual, loads, &lambda, residual)?;
+    let solution = finish(session, problem, dual, loads, &lambda, residual, false)?;
     Ok(Solution {
         iterations: inner.iterations,
         converged: inner.reason.converged(),
@@ -78,7 +78,7 @@ pub(super) fn solve(
     })
 }
 
-/// u from λ, with the certificate; what only the iterations know is left empty. Collective.
+/// u from λ, with the certificate; `placed` says that `residual` has the displacements of λ, rigid motions included; what only the iterations know is left empty. Collective.
 pub(crate) fn finish(
     session: &Session,
     problem: &Substructures,
@@ -86,16 +86,17 @@ pub(crate) fn finish(
     loads: Loads,
     lambda: &PetscVec,
     mut residual: Residual,
+    placed: bool,
 ) -> Result<Solution> {
     let clock = Instant::now();
-    let u = back(session, dual, loads, lambda, &mut residual)?;
+    let u = back(session, dual, loads, lambda, &mut residual, placed)?;
     let recover_seconds = clock.elapsed().as_secs_f64();
     let certificate = certify(session, problem, dual, &u, lambda)?;
     Ok(Solution {
         u,
         lambda: lambda.to_vec()?,
         gaps: certificate.gaps,
-        active: dual.stiffness.jump.active.clone(),
+        active: dual.stiffness.jump.implied(),
         iterations: 0,
         converged: false,
         reason: String::new(),
@@ -116,10 +117,13 @@ fn back(
     loads: Loads,
     lambda: &PetscVec,
     residual: &mut Residual,
+    placed: bool,
 ) -> Result<Vec<Vec<f64>>> {
     let stiffness = &dual.stiffness;
-    residual.evaluate(session, dual, &loads, lambda)?;
-    residual.add_rigid_motion(session, dual)?;
+    if !placed {
+        residual.evaluate(session, dual, &loads, lambda)?;
+        residual.add_rigid_motion(session, dual)?;
+    }
 
     // What is left of the jumps inside a body is averaged away: u ← u − B_D,locᵀ B_loc u.
     let work = &mut residual.work;

@@ -16,6 +16,7 @@
 //! | [`vtu`], [`contact_fields`], [`pvd`] | ParaView files, contact as point data, time series |
 
 pub mod canvas;
+pub mod checkpoint;
 pub mod colormap;
 pub mod compare;
 pub mod contact;

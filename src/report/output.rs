@@ -14,6 +14,22 @@ pub fn write_file(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<()> {
+    replace(path, false, fill)
+}
+
+/// [`write_file`] for bytes that must survive a crash of the machine: they are on the disk before the old file goes.
+///
+/// # Errors
+/// As [`write_file`].
+pub fn write_durably(path: &Path, bytes: &[u8]) -> Result<()> {
+    replace(path, true, |out| out.write_all(bytes))
+}
+
+fn replace(
+    path: &Path,
+    durable: bool,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<()> {
     let refused =
         |e: std::io::Error| Error::Environment(format!("cannot write {}: {e}", shown(path)));
     if is_stdout(path) {
@@ -47,6 +63,9 @@ pub fn write_file(
         let mut out = BufWriter::new(file);
         fill(&mut out)?;
         out.flush()?;
+        if durable {
+            out.get_ref().sync_all()?;
+        }
         drop(out);
         fs::rename(&temporary, &target)
     });

@@ -1,0 +1,183 @@
+//! The course of a solve over the load steps of its scene.
+
+use std::path::Path;
+
+use super::args::Solve;
+use super::checkpoint::{Checkpoints, Resumed};
+use super::contact::{self, ContactRow};
+use super::fields::Gathered;
+use super::problem;
+use crate::contact::State;
+use crate::feti::{FetiFeti, Solution};
+use crate::petsc::Session;
+use crate::report::contact::{LoadStep, OuterStep};
+use crate::report::progress::Progress;
+use crate::report::pvd::Pvd;
+use crate::scene::Scene;
+use crate::Result;
+
+/// What happened over the load steps.
+pub(super) struct Course {
+    /// The last solution.
+    pub solution: Solution,
+    /// Load step that it belongs to.
+    pub step: usize,
+    pub outer: Vec<OuterStep>,
+    pub load_steps: Vec<LoadStep>,
+    /// Krylov iterations per outer step, or per load step without inequalities.
+    pub iterations: Vec<usize>,
+    pub solve_seconds: f64,
+    pub recover_seconds: f64,
+    /// Rows of B_gl on rank 0.
+    pub rows: Vec<ContactRow>,
+}
+
+/// Solves the load steps one after the other, each from where the last one ended, the first from the checkpoint if there is one.
+/// Collective.
+pub(super) fn follow(
+    session: &Session,
+    scene: &Scene,
+    solver: &mut FetiFeti,
+    args: &Solve,
+    checkpoints: Checkpoints,
+) -> Result<Course> {
+    let n = scene.n_steps();
+    let times = scene.steps.as_ref().map(|s| s.times.clone());
+    let owns = problem::owner(session, scene)?;
+    let mut progress = Progress::new(session.rank() == 0 && !args.quiet);
+    let mut course: Option<Course> = None;
+    let mut pvd = args
+        .out
+        .as_ref()
+        .map(|dir| Pvd::new(dir.join("solution.pvd")));
+    let checkpoints = checkpoints.attach(session, solver)?;
+    let Resumed {
+        load_step: first,
+        mut records,
+        mut state,
+    } = checkpoints.resume(session)?;
+    if let (Some(dir), Some(pvd), Some(times)) = (&args.out, &mut pvd, &times) {
+        session.agree(list_before(session, dir, &times[..first], pvd))?;
+    }
+    let mut seconds = [0.0; 2];
+    for step in first..n {
+        if n > 1 {
+            let (loads, gaps) = session.agree(boundary_values(scene, solver, &owns, step))?;
+            solver.set_loads(loads, &gaps);
+        }
+        let load_step = if times.is_some() { step + 1 } else { 0 };
+        let mut outer = records.take(load_step);
+        let solution = solver.solve_from(state.as_ref(), &mut |done, state| {
+            outer.push(contact::outer_step(load_step, outer.len() + 1, done));
+            progress.step(outer.len(), done.active);
+            progress.residual(done.residual, done.tolerance, done.iterations);
+            checkpoints.save(session, step, || records.followed_by(&outer), state)
+        })?;
+        progress.finish();
+        let rows = contact::rows(session, scene, solver, &solution)?;
+        seconds[0] += solution.solve_seconds;
+        seconds[1] += solution.recover_seconds;
+        let mut now = Course {
+            step,
+            iterations: if outer.is_empty() {
+                vec![solution.iterations]
+            } else {
+                outer.iter().map(|s| s.iterations).collect()
+            },
+            outer,
+            load_steps: Vec::new(),
+            solve_seconds: seconds[0],
+            recover_seconds: seconds[1],
+            solution,
+            rows,
+        };
+        if let Some(times) = &times {
+            now.load_steps.push(load_step_record(times[step], &now));
+            if let (Some(dir), Some(pvd)) = (&args.out, &mut pvd) {
+                write_step(session, scene, solver, &now, dir, times[step], pvd)?;
+            }
+        }
+        let done = course.insert(now);
+        records.outer.append(&mut done.outer);
+        records.load_steps.append(&mut done.load_steps);
+        records.iterations.append(&mut done.iterations);
+        if !done.solution.converged {
+            break;
+        }
+        if step + 1 < n {
+            let next = State::warm(&done.solution);
+            checkpoints.save(session, step + 1, || records.clone(), &next)?;
+            state = Some(next);
+        }
+    }
+    let last = course.expect("a scene has at least one load step");
+    Ok(Course {
+        outer: records.outer,
+        load_steps: records.load_steps,
+        iterations: records.iterations,
+        ..last
+    })
+}
+
+/// Puts what an interrupted run has left of the time series at its front.
+fn list_before(session: &Session, dir: &Path, times: &[f64], pvd: &mut Pvd) -> Result<()> {
+    if session.rank() > 0 {
+        return Ok(());
+    }
+    for (step, &t) in times.iter().enumerate() {
+        let file = dir.join(format!("{}.vtu", step_name(step)));
+        if file.is_file() {
+            pvd.add(t, &file)?;
+        }
+    }
+    Ok(())
+}
+
+/// Name of the file of load step `step`, without its ending.
+fn step_name(step: usize) -> String {
+    format!("step_{:04}", step + 1)
+}
+
+/// Loads of this rank's subdomains and right-hand sides of its rows at a load step.
+fn boundary_values(
+    scene: &Scene,
+    solver: &FetiFeti,
+    owns: &dyn Fn(usize) -> bool,
+    step: usize,
+) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
+    let local = solver.problem().local.iter();
+    let loads: Result<Vec<Vec<f64>>> = local.map(|s| scene.loads(s.index, step)).collect();
+    Ok((loads?, scene.gaps(owns, step)?))
+}
+
+/// The record of a load step; forces are known on rank 0.
+fn load_step_record(t: f64, course: &Course) -> LoadStep {
+    let inequalities = || course.rows.iter().filter(|r| r.inequality);
+    LoadStep {
+        t,
+        outer_iterations: course.iterations.len(),
+        iterations: course.iterations.iter().sum(),
+        active: inequalities().filter(|r| r.active).count(),
+        energy: course.solution.energy,
+        contact_force: inequalities().map(|r| r.multiplier).sum(),
+    }
+}
+
+/// Adds one load step to the time series. Collective.
+fn write_step(
+    session: &Session,
+    scene: &Scene,
+    solver: &FetiFeti,
+    course: &Course,
+    dir: &Path,
+    t: f64,
+    pvd: &mut Pvd,
+) -> Result<()> {
+    let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
+    let written = gathered.map_or(Ok(()), |g| {
+        let name = step_name(course.step);
+        g.write_vtu(scene, &course.rows, dir, &name)?;
+        pvd.add(t, &dir.join(format!("{name}.vtu")))
+    });
+    session.agree(written)
+}

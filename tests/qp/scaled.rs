@@ -1,0 +1,92 @@
+//! The problem with unit diagonal, unit rows and data of size one: what the algorithm works on.
+
+use super::{Qp, Row};
+use fetifeti::sparse::Csr;
+
+/// A point of the scaled problem.
+#[derive(Debug, Clone)]
+pub struct Point {
+    pub u: Vec<f64>,
+    pub equal: Vec<f64>,
+    pub below: Vec<f64>,
+    /// c − B u of the inequality rows, as far as it is a variable of its own.
+    pub slack: Vec<f64>,
+    pub closed: Vec<usize>,
+}
+
+/// u = size · d · û, λ = size · λ̂ / norm.
+pub struct Scales {
+    size: f64,
+    d: Vec<f64>,
+    equal: Vec<f64>,
+    below: Vec<f64>,
+}
+
+/// diag(K)^(−1/2); where the diagonal is zero, that of the mean of the others.
+pub fn weights(qp: &Qp) -> Vec<f64> {
+    let diagonal: Vec<f64> = (0..qp.f.len()).map(|i| qp.k.get(i, i)).collect();
+    let positive: Vec<f64> = diagonal.iter().copied().filter(|&v| v > 0.0).collect();
+    let mean = if positive.is_empty() {
+        1.0
+    } else {
+        positive.iter().sum::<f64>() / positive.len() as f64
+    };
+    let weight = |v: f64| if v > 0.0 { v } else { mean }.powf(-0.5);
+    diagonal.into_iter().map(weight).collect()
+}
+
+pub fn scale(qp: &Qp) -> (Qp, Scales) {
+    let d = weights(qp);
+    let rows = |rows: &[Row]| -> (Vec<Row>, Vec<f64>) {
+        let scaled = |row: &Row| {
+            let terms: Vec<_> = row.terms.iter().map(|&(i, b)| (i, b * d[i])).collect();
+            let norm = Row::new(terms.clone(), 0.0).norm();
+            let terms: Vec<_> = terms.into_iter().map(|(i, b)| (i, b / norm)).collect();
+            (Row::new(terms, row.rhs / norm), norm)
+        };
+        rows.iter().map(scaled).unzip()
+    };
+    let (mut equal, equal_norms) = rows(&qp.equal);
+    let (mut below, below_norms) = rows(&qp.below);
+    let mut f: Vec<f64> = qp.f.iter().zip(&d).map(|(f, d)| f * d).collect();
+    let all = equal.iter().chain(&below).map(|r| r.rhs.abs());
+    let size = f.iter().map(|f| f.abs()).chain(all).fold(0.0, f64::max);
+    let size = if size > 0.0 { size } else { 1.0 };
+    f.iter_mut().for_each(|f| *f /= size);
+    let divide = |row: &mut Row| row.rhs /= size;
+    equal.iter_mut().for_each(divide);
+    below.iter_mut().for_each(divide);
+    let mut k: Csr = qp.k.clone();
+    for i in 0..d.len() {
+        for at in k.row_ptr[i]..k.row_ptr[i + 1] {
+            k.val[at] *= d[i] * d[k.col[at] as usize];
+        }
+    }
+    let scaled = Qp {
+        k,
+        f,
+        equal,
+        below,
+        kernel: Vec::new(),
+    };
+    let scales = Scales {
+        size,
+        d,
+        equal: equal_norms,
+        below: below_norms,
+    };
+    (scaled, scales)
+}
+
+impl Scales {
+    /// u, λ_E and λ_I in the units of the problem.
+    pub fn back(&self, point: &Point) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let times = |(v, d): (&f64, &f64)| self.size * v * d;
+        let over = |(v, norm): (&f64, &f64)| self.size * v / norm;
+        (
+            point.u.iter().zip(&self.d).map(times).collect(),
+            point.equal.iter().zip(&self.equal).map(over).collect(),
+            point.below.iter().zip(&self.below).map(over).collect(),
+        )
+    }
+}
