@@ -56,16 +56,12 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     if solution.converged {
         Ok(())
     } else {
-        let what = if solver.facts().inequalities > 0 {
-            "the contact problem"
-        } else {
-            "the dual problem"
+        let scene = args.scene.display();
+        let what = match (solver.facts().inequalities, solution.steps.len()) {
+            (0, _) => format!("the dual problem of {scene}"),
+            (_, n) => format!("the contact problem of {scene} ({n} contact steps)"),
         };
-        Err(not_converged(
-            &format!("{what} of {}", args.scene.display()),
-            &solution.reason,
-            solution.iterations,
-        ))
+        Err(not_converged(&what, &solution.reason, solution.iterations))
     }
 }
 

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 /// How the contact was found, and what holds it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactReport {
-    /// `active_set`, `smalbe`, or `active_set, then smalbe` where the first had to give up.
+    /// The methods that made the steps, in the order in which they came: `active_set`, or `active_set, then smalbe` where the first
+    /// gave up, or `smalbe, then active_set`, whose steps close what SMALBE has found.
     pub method: String,
     /// Inequalities: pairs of nodes, or nodes at an obstacle, that may touch.
     pub candidates: usize,
