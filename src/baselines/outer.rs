@@ -241,12 +241,12 @@ impl Judged {
             lambda,
             gaps,
         };
-        for r in 0..rows.len() {
+        for (r, &on) in active.iter().enumerate() {
             let (l, gap) = (scale(out.lambda[r], lambda_max), scale(out.gaps[r], u_max));
             out.score[r] = l + gap;
-            if active[r] && l < -ROUNDING {
+            if on && l < -ROUNDING {
                 (out.next[r], out.wrong[r]) = (false, -l);
-            } else if !active[r] && gap > ROUNDING {
+            } else if !on && gap > ROUNDING {
                 (out.next[r], out.wrong[r]) = (true, gap);
             }
         }

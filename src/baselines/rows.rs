@@ -33,11 +33,11 @@ pub struct Rows {
     pub initial: Vec<bool>,
     /// Bodies that ties hold together move as one class, named by one of its bodies; the number of bodies stands for ground. Classes are
     /// below this number.
-    classes: usize,
+    pub(super) classes: usize,
     /// The class that cannot move.
-    still: usize,
+    pub(super) still: usize,
     /// For every row of the scene its subdomain, and its place in `rows` if it is an inequality.
-    from: Vec<(usize, Option<usize>)>,
+    pub(super) from: Vec<(usize, Option<usize>)>,
 }
 
 impl Rows {

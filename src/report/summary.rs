@@ -220,7 +220,7 @@ pub(super) fn exactly(x: Option<f64>) -> String {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use super::super::json::{CoarseCorrected, CompareSeconds, PaperSide};
+    use super::super::json::{CoarseCorrected, PaperSide};
     use super::*;
 
     /// A row whose numbers are simple functions of the size.
