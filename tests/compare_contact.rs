@@ -117,7 +117,7 @@ bodies = [2, 2]
 size = [2, 2]
 elements = 6
 subdomains = [1, 2]
-load = [[-1, -2], [-3, "-2 - x"]]
+load = [[-1, -2], [-3, -4]]
 [interface]
 default = "contact"
 [[contact]]
