@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 
 use fetifeti::feti::exchange::max_all;
-use fetifeti::scene::{Field, GridSpec, Scene};
+use fetifeti::scene::{free_all_round, Field, GridSpec, Scene};
 use fetifeti::{FetiFeti, Result, Session, Settings};
 
 fn main() -> ExitCode {
@@ -17,11 +17,13 @@ fn main() -> ExitCode {
 }
 
 fn run(session: &Session) -> Result<()> {
-    let zero = || Some(Field::constant(0.0));
-    let grid = GridSpec {
-        dirichlet: [zero(), zero(), None, None], // left, right, bottom, top
+    let mut grid = GridSpec {
+        dirichlet: free_all_round(),
         ..GridSpec::unit_square([4, 4], [1, 1], [8, 8])
     };
+    for side in [0, 1] {
+        grid.dirichlet[side][0] = Some(Field::constant(0.0)); // left and right, the only component
+    }
     let scene = Scene::grid("One-level FETI", &grid)?;
     let mine = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| mine.contains(&s))?;

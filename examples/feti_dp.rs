@@ -22,20 +22,15 @@ fn main() -> ExitCode {
 }
 
 fn run(session: &Session) -> Result<()> {
-    let mesh = BoxMesh {
-        origin: [0.0, 0.0],
-        size: [1.0, 1.0],
-        elements: [32, 32],
-        subdomains: [4, 4],
-    };
+    let mesh = BoxMesh::plane([0.0, 0.0], [1.0, 1.0], [32, 32], [4, 4]);
     let mut body = BodySpec::new("plate", mesh);
     // One row of values for each row of subdomains.
     body.rho = Field::Table {
-        rows: vec![RHO.to_vec(); 4],
+        layers: vec![vec![RHO.to_vec(); 4]],
         by: By::Subdomain,
     };
-    body.dirichlet[0] = Some(Field::constant(0.0));
-    body.dirichlet[1] = Some(Field::constant(1.0));
+    body.dirichlet[0][0] = Some(Field::constant(0.0));
+    body.dirichlet[1][0] = Some(Field::constant(1.0));
     let scene = Scene::new(SceneSpec::tied("FETI-DP", vec![body]))?;
 
     let mine = fetifeti::share(session, scene.n_subdomains());

@@ -25,11 +25,11 @@ fn run(session: &Session) -> Result<()> {
     let expression = |text: &str| Expr::parse(text).map_err(Error::input);
     let mut grid = GridSpec::unit_square([2, 2], [4, 4], [N / 2, N / 2]);
     grid.load = Load {
-        field: Field::Expression(expression("2*pi^2*sin(pi*x)*sin(pi*y)")?),
+        fields: vec![Field::Expression(expression("2*pi^2*sin(pi*x)*sin(pi*y)")?)],
         quadrature: Quadrature::Gauss,
     };
     let mut spec = SceneSpec::tied("Poisson on 2 x 2 bodies", grid.expand());
-    spec.exact = Some(expression("sin(pi*x)*sin(pi*y)")?);
+    spec.exact = Some(vec![expression("sin(pi*x)*sin(pi*y)")?]);
     let scene = Scene::new(spec)?;
 
     // Each rank assembles its own subdomains; which ones they are is free.

@@ -211,7 +211,7 @@ fn the_model_problem_agrees_with_an_independent_solution() {
             assert!((s.energy - energy).abs() < 1e-9, "{} {energy}", s.energy);
             // The nodes in contact are the lowest ones of the face.
             for (label, lambda) in problem.labels.iter().zip(&s.lambda) {
-                let k = (label.t * elements as f64).round() as usize;
+                let k = (label.t[0] * elements as f64).round() as usize;
                 assert_eq!(
                     *lambda > 1e-7,
                     k < nodes,

@@ -150,7 +150,8 @@ fn rows_at(point: [f64; 2], entries: &str) -> usize {
     let at = |p: &&fetifeti::scene::Point| {
         let first = p.members[0];
         let mesh = scene.bodies[first.body].mesh();
-        mesh.position(mesh.place(first.node)) == point
+        let [x, y, _] = mesh.position(mesh.place(first.node));
+        [x, y] == point
     };
     let points: Vec<_> = scene.points.iter().filter(at).collect();
     assert!(points.len() <= 1);

@@ -473,19 +473,19 @@ fn scenes_built_by_programs_are_checked_too() {
         refuse(SceneSpec::tied("", vec![body]))
     };
     assert_eq!(
-        with(&|b| b.mesh.elements = [0, 2]),
+        with(&|b| b.mesh.elements = [0, 2, 0]),
         "body `b`: zero elements in x where at least one was expected"
     );
     assert_eq!(
-        with(&|b| b.mesh.subdomains = [1, 0]),
+        with(&|b| b.mesh.subdomains = [1, 0, 1]),
         "body `b`: zero subdomains in y where at least one was expected"
     );
     assert_eq!(
-        with(&|b| b.mesh.size = [1.0, f64::NAN]),
+        with(&|b| b.mesh.size = [1.0, f64::NAN, 0.0]),
         "body `b`: size NaN in y where a positive number was expected"
     );
     assert_eq!(
-        with(&|b| b.mesh.origin = [f64::INFINITY, 0.0]),
+        with(&|b| b.mesh.origin = [f64::INFINITY, 0.0, 0.0]),
         "body `b`: origin inf in x where a finite number was expected"
     );
     assert_eq!(

@@ -176,7 +176,7 @@ fn the_numbering_is_a_bijection_that_merges_exactly_what_is_tied() {
                     (0..2).all(|d| (known[d] - point[d]).abs() < 1e-12),
                     "{name}"
                 );
-                let [x, y] = numbering.coordinates(global);
+                let [x, y, _] = numbering.coordinates(&scene, global);
                 assert!(
                     (x - point[0]).abs() + (y - point[1]).abs() < 1e-12,
                     "{name}"

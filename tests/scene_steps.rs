@@ -92,7 +92,7 @@ fn the_last_step_is_that_of_the_subdomains_to_the_bit() {
             let block = body.mesh().block(index - body.first_subdomain);
             for (k, &dof) in mesh.dof.iter().enumerate() {
                 let width = mesh.elements[0] + 1;
-                let place = [block.first[0] + k % width, block.first[1] + k / width];
+                let place = [block.first[0] + k % width, block.first[1] + k / width, 0];
                 let given = body.prescribed_at(body.mesh().node(place));
                 assert_eq!(given.is_some(), dof == u32::MAX);
                 let scaled = given.unwrap_or(0.0) * scene.prescribed_factor(last);
@@ -113,7 +113,7 @@ fn gaps_follow_their_ramp_and_given_values() {
         let gaps = scene.gaps(&|_| true, step).unwrap();
         let (mut contacts, mut given, mut bounds) = (0, 0, 0);
         for (label, gap) in labels.iter().zip(gaps) {
-            let [x, y] = label.point;
+            let [x, y, _] = label.point;
             let expected = match label.members[1] {
                 // The obstacle follows its own ramp, the contact the factor of all gaps.
                 None => {

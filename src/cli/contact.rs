@@ -19,9 +19,9 @@ use crate::Result;
 pub struct ContactRow {
     /// 0: an interface, 1: an obstacle; and its number in the scene.
     source: (u64, usize),
-    /// Parameter along the face or side.
-    t: f64,
-    point: [f64; 2],
+    /// Parameters along the face or side; the second is 0 in the plane.
+    t: [f64; 2],
+    point: [f64; 3],
     /// λ.
     pub multiplier: f64,
     /// c − B u: how far apart the sides are.
@@ -34,20 +34,19 @@ pub struct ContactRow {
     pub members: [Option<(usize, usize)>; 2],
 }
 
-const WORDS: usize = 13;
+const WORDS: usize = 14;
 
 impl ContactRow {
     fn pack(&self, out: &mut Vec<u64>) {
         let flags = u64::from(self.active) | u64::from(self.inequality) << 1;
         out.extend([self.source.0, self.source.1 as u64, flags]);
-        let numbers = [self.t, self.point[0], self.point[1]];
-        out.extend(numbers.map(f64::to_bits));
+        out.extend(self.t.map(f64::to_bits));
+        out.extend(self.point.map(f64::to_bits));
         out.extend([self.multiplier, self.distance].map(f64::to_bits));
         for member in self.members {
             let (body, node) = member.unwrap_or((usize::MAX, usize::MAX));
             out.extend([body as u64, node as u64]);
         }
-        out.push(0);
     }
 
     fn unpack(w: &[u64]) -> ContactRow {
@@ -57,11 +56,11 @@ impl ContactRow {
             source: (w[0], w[1] as usize),
             active: w[2] & 1 == 1,
             inequality: w[2] & 2 == 2,
-            t: number(3),
-            point: [number(4), number(5)],
-            multiplier: number(6),
-            distance: number(7),
-            members: [member(8), member(10)],
+            t: [3, 4].map(number),
+            point: [5, 6, 7].map(number),
+            multiplier: number(8),
+            distance: number(9),
+            members: [member(10), member(12)],
         }
     }
 }
@@ -101,7 +100,11 @@ pub fn rows(
         .chunks_exact(WORDS)
         .map(ContactRow::unpack)
         .collect();
-    rows.sort_by(|a, b| a.source.cmp(&b.source).then(a.t.total_cmp(&b.t)));
+    let t = |r: &ContactRow| [r.t[1], r.t[0]];
+    rows.sort_by(|a, b| {
+        let by_t = t(a)[0].total_cmp(&t(b)[0]).then(t(a)[1].total_cmp(&t(b)[1]));
+        a.source.cmp(&b.source).then(by_t)
+    });
     Ok(rows)
 }
 
@@ -158,7 +161,7 @@ pub fn profiles(scene: &Scene, rows: &[ContactRow]) -> Vec<Profile> {
             let along = match kind {
                 1 => usize::from(scene.obstacles[k].side < 2),
                 _ => match scene.interfaces[k].shape {
-                    Shape::Face { along } => along,
+                    Shape::Face => usize::from(scene.interfaces[k].sides[0] < 2),
                     Shape::Corner => 0,
                 },
             };
@@ -166,8 +169,8 @@ pub fn profiles(scene: &Scene, rows: &[ContactRow]) -> Vec<Profile> {
             Profile {
                 name: name(scene, rows[0].source),
                 label: ["x", "y"][along].into(),
-                t: column(|r| r.t),
-                points: rows.iter().map(|r| r.point).collect(),
+                t: column(|r| r.t[0]),
+                points: rows.iter().map(|r| [r.point[0], r.point[1]]).collect(),
                 gap: column(|r| r.distance),
                 multiplier: column(|r| r.multiplier),
                 active: rows.iter().map(|r| r.active).collect(),
@@ -183,14 +186,14 @@ pub fn marks(rows: &[ContactRow]) -> Vec<ContactMark> {
         let rows: Vec<&ContactRow> = rows.iter().filter(|r| r.inequality).collect();
         if let [only] = rows[..] {
             out.push(ContactMark {
-                from: only.point,
-                to: only.point,
+                from: [only.point[0], only.point[1]],
+                to: [only.point[0], only.point[1]],
                 closed: only.active,
             });
         }
         out.extend(rows.windows(2).map(|pair| ContactMark {
-            from: pair[0].point,
-            to: pair[1].point,
+            from: [pair[0].point[0], pair[0].point[1]],
+            to: [pair[1].point[0], pair[1].point[1]],
             closed: pair[0].active && pair[1].active,
         }));
     }
@@ -209,7 +212,7 @@ pub fn balance(
     // [load, contact, Σ |multiplier|] by body
     let mut sums = vec![0.0; 3 * n];
     for sub in &solver.problem().local {
-        sums[sub.body] += scene.resultant(sub.index, step)?;
+        sums[sub.body] += scene.resultant(sub.index, step)?[0];
     }
     let dual = solver.dual();
     let jump = &dual.stiffness.jump;

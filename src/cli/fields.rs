@@ -16,8 +16,9 @@ use crate::Result;
 /// The whole solution, subdomain after subdomain.
 #[derive(Default)]
 pub struct Gathered {
-    points: Vec<[f64; 2]>,
-    quads: Vec<[u32; 4]>,
+    points: Vec<[f64; 3]>,
+    /// Corners of each cell as VTK numbers them, one cell after the other.
+    cells: Vec<u32>,
     body: Vec<u32>,
     subdomain: Vec<u32>,
     u: Vec<f64>,
@@ -73,13 +74,13 @@ impl Gathered {
             all.points.extend(&mesh.points);
             let owner = std::iter::repeat_n(mesh.body as u32, mesh.points.len());
             all.owner.extend(owner);
-            let quads = mesh.quads();
-            let body = std::iter::repeat_n(mesh.body as u32, quads.len());
+            let cells = mesh.n_elements();
+            let body = std::iter::repeat_n(mesh.body as u32, cells);
             all.body.extend(body);
-            let subdomain = std::iter::repeat_n(index as u32, quads.len());
+            let subdomain = std::iter::repeat_n(index as u32, cells);
             all.subdomain.extend(subdomain);
-            let shifted = quads.iter().map(|q| q.map(|p| (first + p) as u32));
-            all.quads.extend(shifted);
+            let shifted = mesh.cells().into_iter().map(|p| (first + p) as u32);
+            all.cells.extend(shifted);
             all.rho.extend(&mesh.rho);
         }
         Ok(all)
@@ -90,16 +91,16 @@ impl Gathered {
         if rows.iter().all(|r| !r.inequality) {
             return Ok(None);
         }
-        let key = |body: u32, [x, y]: [f64; 2]| (body, x.to_bits(), y.to_bits());
-        let mut copies: HashMap<(u32, u64, u64), Vec<usize>> = HashMap::new();
+        let key = |body: u32, point: [f64; 3]| (body, point.map(f64::to_bits));
+        let mut copies: HashMap<(u32, [u64; 3]), Vec<usize>> = HashMap::new();
         for (p, (&body, &point)) in self.owner.iter().zip(&self.points).enumerate() {
             copies.entry(key(body, point)).or_default().push(p);
         }
         let mut fields = ContactFields::new(self.points.len());
         for row in rows.iter().filter(|r| r.inequality) {
             for &(body, node) in row.members.iter().flatten() {
-                let mesh = scene.bodies[body].mesh();
-                let point = mesh.position(mesh.place(node));
+                let spec = &scene.bodies[body].spec;
+                let point = spec.position(spec.mesh.place(node));
                 for &p in copies.get(&key(body as u32, point)).into_iter().flatten() {
                     fields.add(p, row.multiplier, row.distance, row.active)?;
                 }
@@ -116,12 +117,12 @@ impl Gathered {
         dir: &Path,
         name: &str,
     ) -> Result<()> {
-        let points: Vec<[f64; 3]> = self.points.iter().map(|p| [p[0], p[1], 0.0]).collect();
-        let cells = self.quads.as_flattened();
+        let shape = [Shape::Quad, Shape::Hexahedron][scene.dim() - 2];
+        let c = scene.components();
         let body: Vec<i32> = self.body.iter().map(|&b| b as i32).collect();
         let subdomain: Vec<i32> = self.subdomain.iter().map(|&s| s as i32).collect();
         let contact = self.contact_fields(scene, rows)?;
-        let mut grid = Vtu::new(&points, Shape::Quad, cells).point_data("u", 1, &self.u[..]);
+        let mut grid = Vtu::new(&self.points, shape, &self.cells).point_data("u", c, &self.u[..]);
         if let Some(contact) = &contact {
             grid = contact.on(grid);
         }
@@ -133,9 +134,15 @@ impl Gathered {
 
     /// Writes `solution.png` into `dir`.
     pub fn write_picture(&self, title: &str, marks: &[ContactMark], dir: &Path) -> Result<()> {
+        let points: Vec<[f64; 2]> = self.points.iter().map(|p| [p[0], p[1]]).collect();
+        let quads: Vec<[u32; 4]> = self
+            .cells
+            .chunks_exact(4)
+            .map(|q| [q[0], q[1], q[2], q[3]])
+            .collect();
         let mesh = Mesh {
-            points: &self.points,
-            quads: &self.quads,
+            points: &points,
+            quads: &quads,
             body: &self.body,
             subdomain: &self.subdomain,
         };

@@ -1,88 +1,62 @@
-//! Stiffness and load of one subdomain.
+//! Stiffness of one subdomain, and the loads that follow from given values.
 
-use super::q1;
-use crate::mesh::SubdomainMesh;
+use super::cells::Cells;
+use crate::mesh::{places, SubdomainMesh};
 use crate::sparse::Csr;
 
-/// How loads are integrated over an element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Quadrature {
-    /// One point in the middle: regions that follow element borders are exact.
-    #[default]
-    Midpoint,
-    /// The 2 × 2 Gauss rule.
-    Gauss,
-}
-
-/// The nodal load ∫ f N_a over the subdomain, length (nx + 1)(ny + 1); `f` is given element and point.
-pub fn load_vector<F>(mesh: &SubdomainMesh, quadrature: Quadrature, mut f: F) -> Vec<f64>
-where
-    F: FnMut([usize; 2], [f64; 2]) -> f64,
-{
-    let [dx, dy] = mesh.step;
-    let [nx, ny] = mesh.elements;
-    let mut out = vec![0.0; mesh.points.len()];
-    for place in (0..ny).flat_map(|j| (0..nx).map(move |i| [i, j])) {
-        let nodes = mesh.element_nodes(place);
-        let [x, y] = mesh.points[nodes[0]];
-        match quadrature {
-            Quadrature::Midpoint => {
-                let quarter = f(place, [x + 0.5 * dx, y + 0.5 * dy]) * (0.25 * dx * dy);
-                for node in nodes {
-                    out[node] += quarter;
-                }
-            }
-            Quadrature::Gauss => {
-                for (t, wt) in q1::GAUSS2 {
-                    for (s, ws) in q1::GAUSS2 {
-                        let value = f(place, [x + s * dx, y + t * dy]) * (ws * wt * dx * dy);
-                        for (node, shape) in nodes.into_iter().zip(q1::shape(s, t)) {
-                            out[node] += value * shape;
-                        }
-                    }
-                }
-            }
-        }
-    }
-    out
-}
+/// Couplings of one node with itself and its neighbours: block o of C × C belongs to the neighbour at offset
+/// (o mod 3 − 1, o/3 mod 3 − 1, o/9 − 1).
+type Stencil<const C: usize> = [[[f64; C]; C]; 27];
 
 /// K^(ij) on the free dofs, and the load with the prescribed values eliminated: f_F − K_FD u_D.
 ///
-/// `load` is nodal, length (nx + 1)(ny + 1). A node's row is the sum over the (at most four) elements around it, so
-/// the rows come out in order and sorted, and nothing has to be searched.
+/// `load` has an entry per degree of freedom. A node's rows are the sum over the elements around it, so the rows come out in order and
+/// sorted, and nothing has to be searched.
 pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
-    let [dx, dy] = mesh.step;
-    let [nx, ny] = mesh.elements;
-    let width = nx + 1;
-    let element = q1::stiffness(dx, dy);
+    match mesh.components() {
+        1 => rows::<1>(mesh, load),
+        2 => rows::<2>(mesh, load),
+        _ => rows::<3>(mesh, load),
+    }
+}
+
+/// The load of [`assemble`] alone, to the last bit.
+pub fn free_load(mesh: &SubdomainMesh, load: &[f64]) -> Vec<f64> {
+    match mesh.components() {
+        1 => loads::<1>(mesh, load),
+        2 => loads::<2>(mesh, load),
+        _ => loads::<3>(mesh, load),
+    }
+}
+
+fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
+    let cells = Cells::new(mesh);
     let n = mesh.n_free();
+    let width = C * 3_usize.pow(mesh.dim as u32);
     let mut k = Csr {
         row_ptr: Vec::with_capacity(n + 1),
-        col: Vec::with_capacity(9 * n),
-        val: Vec::with_capacity(9 * n),
+        col: Vec::with_capacity(width * n),
+        val: Vec::with_capacity(width * n),
     };
     k.row_ptr.push(0);
     let mut f = Vec::with_capacity(n);
-    for j in 0..=ny {
-        for i in 0..=nx {
-            let node = j * width + i;
-            if mesh.dof[node] == SubdomainMesh::PRESCRIBED {
-                continue;
-            }
-            let stencil = stencil(mesh, &element, [i, j]);
-            let mut load_here = load[node];
-            for (q, &value) in stencil.iter().enumerate() {
-                let (p, q) = (i + q % 3, j + q / 3);
-                if p < 1 || q < 1 || p > nx + 1 || q > ny + 1 {
-                    continue;
-                }
-                let other = (q - 1) * width + (p - 1);
-                if mesh.dof[other] == SubdomainMesh::PRESCRIBED {
-                    load_here -= value * mesh.prescribed[other];
-                } else {
-                    k.col.push(mesh.dof[other]);
-                    k.val.push(value);
+    for (node, place) in places(mesh.nodes()).enumerate() {
+        let dofs = &mesh.dof[C * node..C * (node + 1)];
+        if dofs.iter().all(|&d| d == SubdomainMesh::PRESCRIBED) {
+            continue;
+        }
+        let stencil = stencil::<C>(mesh, &cells, place);
+        for (c, _) in dofs.iter().enumerate().filter(|d| *d.1 != SubdomainMesh::PRESCRIBED) {
+            let mut load_here = load[C * node + c];
+            for (block, other) in neighbours(mesh, &stencil, place) {
+                for (j, &value) in block[c].iter().enumerate() {
+                    let at = C * other + j;
+                    if mesh.dof[at] == SubdomainMesh::PRESCRIBED {
+                        load_here -= value * mesh.prescribed[at];
+                    } else {
+                        k.col.push(mesh.dof[at]);
+                        k.val.push(value);
+                    }
                 }
             }
             k.row_ptr.push(k.col.len());
@@ -92,62 +66,96 @@ pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
     (k, f)
 }
 
-/// The load of [`assemble`] alone, to the last bit.
-pub fn free_load(mesh: &SubdomainMesh, load: &[f64]) -> Vec<f64> {
-    let element = q1::stiffness(mesh.step[0], mesh.step[1]);
-    let [nx, ny] = mesh.elements;
-    let width = nx + 1;
+fn loads<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> Vec<f64> {
+    let mut cells = None;
+    let given = |k: usize| mesh.dof[k] == SubdomainMesh::PRESCRIBED;
     let mut f = Vec::with_capacity(mesh.n_free());
-    let given = |node: usize| mesh.dof[node] == SubdomainMesh::PRESCRIBED;
-    for node in (0..mesh.dof.len()).filter(|&n| !given(n)) {
-        let (i, j) = (node % width, node / width);
-        let mut load_here = load[node];
-        // The stencil is wanted beside given nodes only.
-        let mut values = None;
-        for q in 0..9 {
-            let (p, r) = (i + q % 3, j + q / 3);
-            if p < 1 || r < 1 || p > nx + 1 || r > ny + 1 {
-                continue;
+    let empty = [[[0.0; C]; C]; 27];
+    for (node, place) in places(mesh.nodes()).enumerate() {
+        // The stencil is wanted beside given values only.
+        let beside = neighbours(mesh, &empty, place).any(|(_, other)| {
+            (0..C).any(|j| given(C * other + j) && mesh.prescribed[C * other + j] != 0.0)
+        });
+        let stencil = beside.then(|| {
+            let cells = cells.get_or_insert_with(|| Cells::new(mesh));
+            stencil::<C>(mesh, cells, place)
+        });
+        for c in (0..C).filter(|c| !given(C * node + c)) {
+            let mut load_here = load[C * node + c];
+            if let Some(stencil) = &stencil {
+                for (block, other) in neighbours(mesh, stencil, place) {
+                    for (j, &value) in block[c].iter().enumerate() {
+                        if given(C * other + j) {
+                            load_here -= value * mesh.prescribed[C * other + j];
+                        }
+                    }
+                }
             }
-            let other = (r - 1) * width + (p - 1);
-            if given(other) {
-                let values = values.get_or_insert_with(|| stencil(mesh, &element, [i, j]));
-                load_here -= values[q] * mesh.prescribed[other];
-            }
+            f.push(load_here);
         }
-        f.push(load_here);
     }
     f
 }
 
-/// Entry 3 (1 + Δj) + (1 + Δi) is the coupling of node (i, j) with the node at offset (Δi, Δj).
+/// The nodes around a node (itself included) in increasing order, each with its block of the stencil.
+fn neighbours<'s, const C: usize>(
+    mesh: &SubdomainMesh,
+    stencil: &'s Stencil<C>,
+    [i, j, k]: [usize; 3],
+) -> impl Iterator<Item = (&'s [[f64; C]; C], usize)> {
+    let ([nx, ny, nz], dim) = (mesh.nodes(), mesh.dim);
+    let layers = if dim == 3 { 0..27 } else { 9..18 };
+    layers.filter_map(move |o| {
+        let (p, q, r) = (i + o % 3, j + o / 3 % 3, k + o / 9);
+        if p < 1 || q < 1 || r < 1 || p > nx || q > ny || r > nz {
+            return None;
+        }
+        Some((&stencil[o], ((r - 1) * ny + (q - 1)) * nx + (p - 1)))
+    })
+}
+
+/// The rows of K at a node.
 #[inline]
-fn stencil(mesh: &SubdomainMesh, element: &[[f64; 4]; 4], [i, j]: [usize; 2]) -> [f64; 9] {
-    let [nx, ny] = mesh.elements;
-    let mut stencil = [0.0; 9];
-    for (a, coupling) in element.iter().enumerate() {
-        // In the element below and to the left of the node (a = 3) the node is local node 3, and so on.
-        let (ax, ay) = (a % 2, a / 2);
-        if i < ax || j < ay || i - ax >= nx || j - ay >= ny {
+fn stencil<const C: usize>(
+    mesh: &SubdomainMesh,
+    cells: &Cells<'_>,
+    place: [usize; 3],
+) -> Stencil<C> {
+    let mut out = [[[0.0; C]; C]; 27];
+    let corners = mesh.corners();
+    let n = corners * C;
+    let counts = mesh.elements.map(|n| n.max(1));
+    for a in 0..corners {
+        // The node is corner a of the cell at place − offset(a).
+        let offset = [a & 1, a >> 1 & 1, a >> 2];
+        if (0..3).any(|d| place[d] < offset[d] || place[d] - offset[d] >= counts[d]) {
             continue;
         }
-        let rho = mesh.rho[(j - ay) * nx + (i - ax)];
-        for (b, value) in coupling.iter().enumerate() {
-            let (bx, by) = (b % 2, b / 2);
-            stencil[3 * (1 + by - ay) + (1 + bx - ax)] += rho * value;
+        let cell = [0, 1, 2].map(|d| place[d] - offset[d]);
+        let (matrix, scale) = cells.at((cell[2] * counts[1] + cell[1]) * counts[0] + cell[0]);
+        for b in 0..corners {
+            let shift = |d: usize| 1 + (b >> d & 1) - (a >> d & 1);
+            let block = &mut out[9 * shift(2) + 3 * shift(1) + shift(0)];
+            for (c, row) in block.iter_mut().enumerate() {
+                let from = (a * C + c) * n + b * C;
+                for (entry, value) in row.iter_mut().zip(&matrix[from..from + C]) {
+                    *entry += scale * value;
+                }
+            }
         }
     }
-    stencil
+    out
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::{load_vector, q1, Form, Quadrature};
 
     /// A 3 × 2 mesh of elements 0.5 × 0.25 with varying ρ; the nodes in `fixed` carry the given values.
     fn mesh(fixed: &[(usize, f64)]) -> SubdomainMesh {
-        let elements = [3, 2];
-        let step = [0.5, 0.25];
+        let elements = [3, 2, 0];
+        let step = [0.5, 0.25, 0.0];
         let n = 12;
         let mut dof = vec![0; n];
         let mut prescribed = vec![0.0; n];
@@ -165,14 +173,17 @@ mod tests {
         SubdomainMesh {
             index: 0,
             body: 0,
+            dim: 2,
+            form: Form::default(),
             elements,
-            step,
+            step: Some(step),
             points: (0..n)
-                .map(|k| [(k % 4) as f64 * step[0], (k / 4) as f64 * step[1]])
+                .map(|k| [(k % 4) as f64 * step[0], (k / 4) as f64 * step[1], 0.0])
                 .collect(),
             dof,
             prescribed,
             rho: (0..6).map(|e| 1.0 + e as f64).collect(),
+            poisson: Vec::new(),
         }
     }
 
@@ -183,7 +194,7 @@ mod tests {
         let mut dense = [[0.0; 12]; 12];
         let element = q1::stiffness(0.5, 0.25);
         for e in 0..6 {
-            let nodes = m.element_nodes([e % 3, e / 3]);
+            let nodes = m.element_nodes([e % 3, e / 3, 0]);
             for a in 0..4 {
                 for b in 0..4 {
                     dense[nodes[a]][nodes[b]] += m.rho[e] * element[a][b];
@@ -212,7 +223,7 @@ mod tests {
     #[test]
     fn linear_functions_pass_the_patch_test() {
         // ρ = 1: with u = 1 + 2x − 3y prescribed on the boundary, K_FF u_F = f_F for the two inner nodes.
-        let linear = |p: [f64; 2]| 1.0 + 2.0 * p[0] - 3.0 * p[1];
+        let linear = |p: [f64; 3]| 1.0 + 2.0 * p[0] - 3.0 * p[1];
         let plain = mesh(&[]);
         let fixed: Vec<(usize, f64)> = (0..12)
             .filter(|k| ![5, 6].contains(k))
@@ -234,12 +245,12 @@ mod tests {
         let m = mesh(&[]);
         let area = 1.5 * 0.5;
         for rule in [Quadrature::Midpoint, Quadrature::Gauss] {
-            let total: f64 = load_vector(&m, rule, |_, _| 2.0).iter().sum();
+            let total: f64 = load_vector(&m, rule, |_, _| [2.0, 0.0, 0.0]).iter().sum();
             assert!((total - 2.0 * area).abs() < 1e-14);
         }
         // ∫ x² over [0, 1.5] × [0, 0.5], exact with two Gauss points only.
         let exact = 1.5_f64.powi(3) / 3.0 * 0.5;
-        let total: f64 = load_vector(&m, Quadrature::Gauss, |_, p| p[0] * p[0])
+        let total: f64 = load_vector(&m, Quadrature::Gauss, |_, p| [p[0] * p[0], 0.0, 0.0])
             .iter()
             .sum();
         assert!((total - exact).abs() < 1e-14);

@@ -1,8 +1,14 @@
-//! Finite elements: Q1 rectangles for −∇·(ρ∇u) = f [Lee (2.1)–(2.2)], assembly of one subdomain, error norms.
+//! Finite elements: cells of two and three dimensions, scalar and elastic; assembly of one subdomain, loads, error norms.
 
 mod assemble;
+pub mod cell;
+mod cells;
+mod form;
+mod loads;
 mod norms;
 pub mod q1;
 
-pub use assemble::{assemble, free_load, load_vector, Quadrature};
+pub use assemble::{assemble, free_load};
+pub use form::{Form, Physics};
+pub use loads::{add_side_load, load_vector, Quadrature};
 pub use norms::{error_squares, ErrorNorms};

@@ -1,6 +1,6 @@
-//! Distance between a Q1 function and an exact solution.
+//! Distance between a finite element function and an exact solution.
 
-use super::q1;
+use super::cell;
 use crate::mesh::SubdomainMesh;
 
 /// Error norms over the whole problem.
@@ -22,39 +22,26 @@ impl ErrorNorms {
     }
 }
 
-/// Squares of the L² norm, the H¹ seminorm and the energy norm of the error on one subdomain, by the 4 × 4 Gauss rule.
+/// Squares of the L² norm, the H¹ seminorm and the energy norm of the error on one subdomain, by four Gauss points in each direction.
 ///
-/// `nodal` has an entry per node; `exact` returns u and ∇u at a point.
+/// `nodal` has an entry per degree of freedom; `exact` returns u and ∇u at a point: row i of the gradient belongs to component i.
 pub fn error_squares<F>(mesh: &SubdomainMesh, nodal: &[f64], mut exact: F) -> [f64; 3]
 where
-    F: FnMut([f64; 2]) -> (f64, [f64; 2]),
+    F: FnMut([f64; 3]) -> ([f64; 3], [[f64; 3]; 3]),
 {
-    let [dx, dy] = mesh.step;
-    let [nx, ny] = mesh.elements;
+    let (c, corners) = (mesh.components(), mesh.corners());
     let mut squares = [0.0; 3];
-    for (e, place) in (0..ny)
-        .flat_map(|j| (0..nx).map(move |i| [i, j]))
-        .enumerate()
-    {
+    let mut local = vec![0.0; corners * c];
+    for (e, place) in mesh.element_places().enumerate() {
         let nodes = mesh.element_nodes(place);
-        let [x, y] = mesh.points[nodes[0]];
-        for (t, wt) in q1::GAUSS4 {
-            for (s, ws) in q1::GAUSS4 {
-                let (u, gradient) = exact([x + s * dx, y + t * dy]);
-                let (mut value, mut gx, mut gy) = (-u, -gradient[0], -gradient[1]);
-                let shapes = q1::shape(s, t).into_iter().zip(q1::shape_gradient(s, t));
-                for (&node, (shape, [by_s, by_t])) in nodes.iter().zip(shapes) {
-                    value += nodal[node] * shape;
-                    gx += nodal[node] * by_s / dx;
-                    gy += nodal[node] * by_t / dy;
-                }
-                let weight = ws * wt * dx * dy;
-                let slope = weight * (gx * gx + gy * gy);
-                squares[0] += weight * value * value;
-                squares[1] += slope;
-                squares[2] += slope * mesh.rho[e];
-            }
+        for (values, &node) in local.chunks_exact_mut(c).zip(&nodes) {
+            values.copy_from_slice(&nodal[c * node..c * (node + 1)]);
         }
+        let points = mesh.element_points(place);
+        let (element, material) = (mesh.form.element, mesh.material(e));
+        let points = &points[..corners];
+        let here = cell::error_squares(mesh.dim, points, element, &material, &local, &mut exact);
+        (0..3).for_each(|k| squares[k] += here[k]);
     }
     squares
 }
@@ -62,6 +49,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::Form;
 
     #[test]
     fn norms_of_a_known_difference() {
@@ -69,21 +57,27 @@ mod tests {
         let mesh = SubdomainMesh {
             index: 0,
             body: 0,
-            elements: [2, 1],
-            step: [1.0, 1.0],
-            points: (0..6).map(|k| [(k % 3) as f64, (k / 3) as f64]).collect(),
+            dim: 2,
+            form: Form::default(),
+            elements: [2, 1, 0],
+            step: Some([1.0, 1.0, 0.0]),
+            points: (0..6)
+                .map(|k| [(k % 3) as f64, (k / 3) as f64, 0.0])
+                .collect(),
             dof: (0..6).collect(),
             prescribed: vec![0.0; 6],
             rho: vec![3.0; 2],
+            poisson: Vec::new(),
         };
-        let squares = error_squares(&mesh, &[0.0; 6], |[x, y]| (x * y, [y, x]));
+        let exact = |[x, y, _]: [f64; 3]| ([x * y, 0.0, 0.0], [[y, x, 0.0], [0.0; 3], [0.0; 3]]);
+        let squares = error_squares(&mesh, &[0.0; 6], exact);
         let norms = ErrorNorms::from_squares(squares);
         assert!((norms.l2 - (8.0_f64 / 9.0).sqrt()).abs() < 1e-14);
         assert!((norms.h1 - (10.0_f64 / 3.0).sqrt()).abs() < 1e-14);
         assert!((norms.energy - 10.0_f64.sqrt()).abs() < 1e-14);
         // The bilinear interpolant of x y is x y itself.
         let nodal: Vec<f64> = mesh.points.iter().map(|p| p[0] * p[1]).collect();
-        let squares = error_squares(&mesh, &nodal, |[x, y]| (x * y, [y, x]));
+        let squares = error_squares(&mesh, &nodal, exact);
         assert!(squares.iter().all(|s| *s < 1e-28));
     }
 }

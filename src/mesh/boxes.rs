@@ -1,96 +1,155 @@
-//! A body: an axis-aligned box cut into equal rectangles and partitioned into a grid of subdomains.
+//! A body: an axis-aligned box cut into equal rectangles or bricks and partitioned into a grid of subdomains.
+//!
+//! Two and three dimensions are one code: a plane box has no elements in z, one layer of nodes and one of subdomains.
 
 use std::ops::RangeInclusive;
 
-/// A box of `elements[0]` × `elements[1]` rectangles in `subdomains[0]` × `subdomains[1]` equal blocks.
+/// A box of `elements[0]` × `elements[1]` (× `elements[2]`) equal cells in `subdomains[0]` × `subdomains[1]` (× `subdomains[2]`)
+/// equal blocks.
 ///
-/// Nodes are numbered row by row from the lower left corner, x running fastest; so are elements and subdomains.
+/// Nodes are numbered layer by layer and row by row from the lower left corner, x running fastest; so are elements and subdomains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoxMesh {
-    /// Lower left corner.
-    pub origin: [f64; 2],
-    /// Width and height, > 0.
-    pub size: [f64; 2],
-    /// Elements in x and y, each a multiple of `subdomains`.
-    pub elements: [usize; 2],
-    /// Subdomains in x and y, ≥ 1.
-    pub subdomains: [usize; 2],
+    /// Lower left corner; z is 0 in the plane.
+    pub origin: [f64; 3],
+    /// Edge lengths, > 0; 0 in z in the plane.
+    pub size: [f64; 3],
+    /// Elements in x, y and z, each a multiple of `subdomains`; 0 in z in the plane.
+    pub elements: [usize; 3],
+    /// Subdomains in x, y and z, ≥ 1.
+    pub subdomains: [usize; 3],
 }
 
 /// The elements of one subdomain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Block {
-    /// Column and row of the subdomain in the body.
-    pub place: [usize; 2],
-    /// Its first element (and first node) in x and y.
-    pub first: [usize; 2],
-    /// Its number of elements in x and y.
-    pub elements: [usize; 2],
+    /// Place of the subdomain in the body.
+    pub place: [usize; 3],
+    /// Its first element (and first node) in x, y and z.
+    pub first: [usize; 3],
+    /// Its number of elements in x, y and z (0 in the plane).
+    pub elements: [usize; 3],
+}
+
+impl Block {
+    /// Nodes in x, y and z.
+    pub fn nodes(&self) -> [usize; 3] {
+        self.elements.map(|n| n + 1)
+    }
+
+    /// The nodes of the block, as places in the body, x running fastest.
+    pub fn places(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
+        places(self.nodes()).map(|p| [0, 1, 2].map(|d| self.first[d] + p[d]))
+    }
+}
+
+/// All places of a grid of `counts` points, x running fastest.
+pub fn places(counts: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let [nx, ny, nz] = counts;
+    (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
 }
 
 impl BoxMesh {
-    /// Width and height of an element.
-    pub fn step(&self) -> [f64; 2] {
-        [0, 1].map(|d| self.size[d] / self.elements[d] as f64)
+    /// A plane box.
+    pub fn plane(
+        origin: [f64; 2],
+        size: [f64; 2],
+        elements: [usize; 2],
+        subdomains: [usize; 2],
+    ) -> BoxMesh {
+        BoxMesh {
+            origin: [origin[0], origin[1], 0.0],
+            size: [size[0], size[1], 0.0],
+            elements: [elements[0], elements[1], 0],
+            subdomains: [subdomains[0], subdomains[1], 1],
+        }
     }
 
-    /// Nodes in x and y.
-    pub fn nodes(&self) -> [usize; 2] {
+    /// The dimension, 2 or 3.
+    pub fn dim(&self) -> usize {
+        if self.elements[2] > 0 {
+            3
+        } else {
+            2
+        }
+    }
+
+    /// Edge lengths of an element; 0 in z in the plane.
+    pub fn step(&self) -> [f64; 3] {
+        [0, 1, 2].map(|d| match self.elements[d] {
+            0 => 0.0,
+            n => self.size[d] / n as f64,
+        })
+    }
+
+    /// Nodes in x, y and z.
+    pub fn nodes(&self) -> [usize; 3] {
         self.elements.map(|n| n + 1)
     }
 
     /// Number of nodes.
     pub fn n_nodes(&self) -> usize {
-        let [nx, ny] = self.nodes();
-        nx * ny
+        self.nodes().iter().product()
+    }
+
+    /// Number of elements.
+    pub fn n_elements(&self) -> usize {
+        self.elements.iter().map(|&n| n.max(1)).product()
     }
 
     /// Number of subdomains.
     pub fn n_subdomains(&self) -> usize {
-        self.subdomains[0] * self.subdomains[1]
+        self.subdomains.iter().product()
     }
 
-    /// Elements of a subdomain in x and y.
-    pub fn block_elements(&self) -> [usize; 2] {
-        [0, 1].map(|d| self.elements[d] / self.subdomains[d])
+    /// Elements of a subdomain in x, y and z.
+    pub fn block_elements(&self) -> [usize; 3] {
+        [0, 1, 2].map(|d| self.elements[d] / self.subdomains[d])
     }
 
     /// The elements of subdomain `s`, in 0..n_subdomains.
     pub fn block(&self, s: usize) -> Block {
         let elements = self.block_elements();
-        let place = [s % self.subdomains[0], s / self.subdomains[0]];
+        let [sx, sy, _] = self.subdomains;
+        let place = [s % sx, s / sx % sy, s / (sx * sy)];
         Block {
             place,
-            first: [place[0] * elements[0], place[1] * elements[1]],
+            first: [0, 1, 2].map(|d| place[d] * elements[d]),
             elements,
         }
     }
 
-    /// Number of the node in column `i` and row `j`.
-    pub fn node(&self, [i, j]: [usize; 2]) -> usize {
-        j * (self.elements[0] + 1) + i
+    /// Number of the node at a place.
+    pub fn node(&self, [i, j, k]: [usize; 3]) -> usize {
+        let [nx, ny, _] = self.nodes();
+        (k * ny + j) * nx + i
     }
 
-    /// Column and row of node `node`.
-    pub fn place(&self, node: usize) -> [usize; 2] {
-        let width = self.elements[0] + 1;
-        [node % width, node / width]
+    /// Place of node `node`.
+    pub fn place(&self, node: usize) -> [usize; 3] {
+        let [nx, ny, _] = self.nodes();
+        [node % nx, node / nx % ny, node / (nx * ny)]
     }
 
-    /// Position of the node in column `i` and row `j`. The last column and row lie on the box's far sides exactly.
-    pub fn position(&self, place: [usize; 2]) -> [f64; 2] {
-        [0, 1].map(|d| self.origin[d] + self.size[d] * (place[d] as f64 / self.elements[d] as f64))
+    /// Position of the node at a place. The last ones lie on the box's far sides exactly.
+    pub fn position(&self, place: [usize; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|d| match self.elements[d] {
+            0 => self.origin[d],
+            n => self.origin[d] + self.size[d] * (place[d] as f64 / n as f64),
+        })
     }
 
-    /// Upper right corner.
-    pub fn end(&self) -> [f64; 2] {
-        [0, 1].map(|d| self.origin[d] + self.size[d])
+    /// The corner of greatest coordinates.
+    pub fn end(&self) -> [f64; 3] {
+        [0, 1, 2].map(|d| self.origin[d] + self.size[d])
     }
 
-    /// The subdomain columns (d = 0) or rows (d = 1) that contain node column or row `k`: one, or two on a line
-    /// between them.
+    /// The subdomains along direction `d` that contain node line `k`: one, or two on a line between them.
     fn touching(&self, d: usize, k: usize) -> RangeInclusive<usize> {
         let each = self.block_elements()[d];
+        if each == 0 {
+            return 0..=0;
+        }
         let last = self.subdomains[d] - 1;
         let high = (k / each).min(last);
         let low = if k % each == 0 && k > 0 {
@@ -102,35 +161,55 @@ impl BoxMesh {
     }
 
     /// The subdomain of lowest number that contains the node.
-    pub fn owner(&self, [i, j]: [usize; 2]) -> usize {
-        *self.touching(1, j).start() * self.subdomains[0] + *self.touching(0, i).start()
+    pub fn owner(&self, place: [usize; 3]) -> usize {
+        let [sx, sy, _] = self.subdomains;
+        let [i, j, k] = [0, 1, 2].map(|d| *self.touching(d, place[d]).start());
+        (k * sy + j) * sx + i
     }
 
-    /// Number of subdomains that contain the node: 1, 2 or 4.
-    pub fn multiplicity(&self, [i, j]: [usize; 2]) -> usize {
-        self.touching(0, i).count() * self.touching(1, j).count()
+    /// Number of subdomains that contain the node: 1, 2, 4 or 8.
+    pub fn multiplicity(&self, place: [usize; 3]) -> usize {
+        (0..3)
+            .map(|d| self.touching(d, place[d]).count())
+            .product()
     }
 
     /// Whether the node is a corner of a subdomain: the ends of subdomain edges on the body's boundary and the corners of
     /// the body included. Continuity inside the body is primal where [`BoxMesh::multiplicity`] > 1; a corner of the body belongs
     /// to one subdomain only, but matters where bodies meet.
-    pub fn is_vertex(&self, place: [usize; 2]) -> bool {
+    pub fn is_vertex(&self, place: [usize; 3]) -> bool {
         let each = self.block_elements();
-        (0..2).all(|d| place[d] % each[d] == 0)
+        (0..self.dim()).all(|d| place[d] % each[d] == 0)
     }
 
-    /// The sides on which the node lies, as indices into `left, right, bottom, top`.
-    pub fn sides(&self, [i, j]: [usize; 2]) -> impl Iterator<Item = usize> {
-        let on = [i == 0, i == self.elements[0], j == 0, j == self.elements[1]];
-        (0..4).filter(move |&s| on[s])
+    /// The sides on which the node lies, as indices into `left, right, bottom, top, back, front`.
+    pub fn sides(&self, place: [usize; 3]) -> impl Iterator<Item = usize> {
+        let (elements, n) = (self.elements, 2 * self.dim());
+        (0..n).filter(move |s| place[s / 2] == [0, elements[s / 2]][s % 2])
+    }
+
+    /// The nodes on a side, x running fastest.
+    pub fn side_nodes(&self, side: usize) -> impl Iterator<Item = [usize; 3]> {
+        let d = side / 2;
+        let mut counts = self.nodes();
+        counts[d] = 1;
+        let level = [0, self.elements[d]][side % 2];
+        places(counts).map(move |mut p| {
+            p[d] = level;
+            p
+        })
     }
 
     /// The nodes on the boundary of the box, in increasing order.
-    pub fn boundary(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
-        let [nx, ny] = self.elements;
-        (0..=ny).flat_map(move |j| {
-            let step = if j == 0 || j == ny { 1 } else { nx };
-            (0..=nx).step_by(step).map(move |i| [i, j])
+    pub fn boundary(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
+        let ([nx, ny, nz], dim) = (self.elements, self.dim());
+        (0..=nz).flat_map(move |k| {
+            let end = dim == 3 && (k == 0 || k == nz);
+            (0..=ny).flat_map(move |j| {
+                let whole = end || j == 0 || j == ny;
+                let step = if whole { 1 } else { nx };
+                (0..=nx).step_by(step).map(move |i| [i, j, k])
+            })
         })
     }
 }
@@ -140,12 +219,7 @@ mod tests {
     use super::*;
 
     fn mesh() -> BoxMesh {
-        BoxMesh {
-            origin: [1.0, -1.0],
-            size: [3.0, 2.0],
-            elements: [6, 4],
-            subdomains: [3, 2],
-        }
+        BoxMesh::plane([1.0, -1.0], [3.0, 2.0], [6, 4], [3, 2])
     }
 
     #[test]
@@ -157,7 +231,7 @@ mod tests {
             let holders: Vec<usize> = (0..m.n_subdomains())
                 .filter(|&s| {
                     let b = m.block(s);
-                    (0..2).all(|d| (b.first[d]..=b.first[d] + b.elements[d]).contains(&place[d]))
+                    (0..3).all(|d| (b.first[d]..=b.first[d] + b.elements[d]).contains(&place[d]))
                 })
                 .collect();
             assert_eq!(m.owner(place), holders[0]);
@@ -168,24 +242,24 @@ mod tests {
     #[test]
     fn vertices_are_shared_except_at_the_corners_of_the_body() {
         let m = mesh();
-        let vertices = |shared: bool| -> Vec<[usize; 2]> {
+        let vertices = |shared: bool| -> Vec<[usize; 3]> {
             (0..m.n_nodes())
                 .map(|n| m.place(n))
                 .filter(|&p| m.is_vertex(p) && (m.multiplicity(p) > 1) == shared)
                 .collect()
         };
         let shared = [
-            [2, 0],
-            [4, 0],
-            [0, 2],
-            [2, 2],
-            [4, 2],
-            [6, 2],
-            [2, 4],
-            [4, 4],
+            [2, 0, 0],
+            [4, 0, 0],
+            [0, 2, 0],
+            [2, 2, 0],
+            [4, 2, 0],
+            [6, 2, 0],
+            [2, 4, 0],
+            [4, 4, 0],
         ];
         assert_eq!(vertices(true), shared);
-        assert_eq!(vertices(false), [[0, 0], [6, 0], [0, 4], [6, 4]]);
+        assert_eq!(vertices(false), [[0, 0, 0], [6, 0, 0], [0, 4, 0], [6, 4, 0]]);
     }
 
     #[test]
@@ -196,7 +270,37 @@ mod tests {
             .filter(|&n| m.sides(m.place(n)).next().is_some())
             .collect();
         assert_eq!(walked, expected);
-        assert_eq!(m.position([6, 4]), [4.0, 1.0]);
-        assert_eq!(m.sides([6, 0]).collect::<Vec<_>>(), vec![1, 2]);
+        assert_eq!(m.position([6, 4, 0]), [4.0, 1.0, 0.0]);
+        assert_eq!(m.sides([6, 0, 0]).collect::<Vec<_>>(), vec![1, 2]);
+    }
+
+    #[test]
+    fn a_solid_is_walked_like_a_plane() {
+        let m = BoxMesh {
+            origin: [0.0; 3],
+            size: [1.0; 3],
+            elements: [4, 2, 3],
+            subdomains: [2, 2, 1],
+        };
+        assert_eq!((m.dim(), m.n_nodes(), m.n_elements()), (3, 60, 24));
+        for node in 0..m.n_nodes() {
+            let place = m.place(node);
+            assert_eq!(m.node(place), node);
+            let holders: Vec<usize> = (0..m.n_subdomains())
+                .filter(|&s| m.block(s).places().any(|p| p == place))
+                .collect();
+            assert_eq!((m.owner(place), m.multiplicity(place)), (holders[0], holders.len()));
+        }
+        let walked: Vec<usize> = m.boundary().map(|p| m.node(p)).collect();
+        let expected: Vec<usize> = (0..m.n_nodes())
+            .filter(|&n| m.sides(m.place(n)).next().is_some())
+            .collect();
+        assert_eq!(walked, expected);
+        for side in 0..6 {
+            let nodes: Vec<usize> = m.side_nodes(side).map(|p| m.node(p)).collect();
+            let on = |n: &usize| m.sides(m.place(*n)).any(|s| s == side);
+            assert_eq!(nodes, (0..60).filter(on).collect::<Vec<_>>());
+        }
+        assert_eq!((0..60).filter(|&n| m.is_vertex(m.place(n))).count(), 18);
     }
 }

@@ -3,7 +3,7 @@
 mod boxes;
 mod subdomain;
 
-pub use boxes::{Block, BoxMesh};
+pub use boxes::{places, Block, BoxMesh};
 pub use subdomain::SubdomainMesh;
 
 use std::ops::Range;

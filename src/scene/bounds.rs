@@ -69,32 +69,34 @@ impl<'a> Checks<'a> {
         let limits = self.interfaces[row.interface].limits.at(row.node);
         let [a, b] = row.members;
         let members = row.members.map(|m| point.members[m]);
-        let given = members.map(|m| m.given(self.bodies));
+        let direction = row.vector(self.interfaces);
+        let sides = members.map(|m| m.along(self.bodies, direction));
+        let fixed = sides.iter().all(|s| s.terms.is_empty());
+        let distance = self.interfaces[row.interface].distances[row.node];
         let tied = point.tied_to[a] == point.tied_to[b];
         for factors in &self.factors {
             let (gap, entry) = self.finite(factors, limits, members[0])?;
+            let gap = gap + distance;
             let fail = |why: String| {
                 let [a, b] = members.map(|m| &self.bodies[m.body].spec.name);
-                let [x, y] = members[0].position(self.bodies);
+                let at = members[0].spot(self.bodies);
                 Err(Error::Input(format!(
-                    "{}bodies `{a}` and `{b}` {why} at ({x}, {y}){}, which contradicts their contact \
+                    "{}bodies `{a}` and `{b}` {why} at {at}{}, which contradicts their contact \
                      (u of `{a}` − u of `{b}` ≤ {gap} was expected)",
                     self.place(entry, members[1]),
                     factors.when()
                 )))
             };
-            match given {
-                [Some(v), Some(w)] => {
-                    let [v, w] = [v, w].map(|v| v * factors.dirichlet());
-                    if exceeds(v - w, gap) {
-                        return fail(format!("have the given values {v} and {w}"));
-                    }
+            if fixed {
+                let [v, w] = [0, 1].map(|k| sides[k].given * factors.dirichlet());
+                if exceeds(v - w, gap) {
+                    return fail(format!("have the given values {v} and {w}"));
                 }
-                _ if tied && exceeds(0.0, gap) => return fail("are tied through others".into()),
-                _ => {}
+            } else if tied && exceeds(0.0, gap) {
+                return fail("are tied through others".into());
             }
         }
-        Ok(!tied && given.contains(&None))
+        Ok(!tied && !fixed)
     }
 
     /// The tightest bound at a step, which must be finite with its factor.
@@ -109,11 +111,11 @@ impl<'a> Checks<'a> {
         if value.is_finite() {
             return Ok((value, entry));
         }
-        let [x, y] = member.position(self.bodies);
         Err(Error::Input(format!(
-            "{}the bound of body `{}` with its factor is {value} at ({x}, {y}){} where a finite number was expected",
+            "{}the bound of body `{}` with its factor is {value} at {}{} where a finite number was expected",
             self.place(entry, member),
             self.bodies[member.body].spec.name,
+            member.spot(self.bodies),
             factors.when()
         )))
     }
@@ -139,8 +141,10 @@ impl<'a> Checks<'a> {
             for same in obstacle.limits.all().chunk_by(|a, b| a.node == b.node) {
                 let node = same[0].node;
                 let member = Member { body, node };
-                if let Some(given) = member.given(self.bodies) {
-                    self.check_given(obstacle, member, given)?;
+                let (distance, direction) = self.ahead(obstacle, member);
+                let side = member.along(self.bodies, direction);
+                if side.terms.is_empty() {
+                    self.check_given(obstacle, member, side.given, distance)?;
                     continue;
                 }
                 let &mut (p, m) = index.entry(member).or_insert_with(|| {
@@ -148,16 +152,19 @@ impl<'a> Checks<'a> {
                     (points.len() - 1, 0)
                 });
                 let bounds = &mut points[p].bounds;
-                let upper = obstacle.upper;
                 let beside = |b: &&mut PointBound| {
-                    b.member == m && self.obstacles[b.obstacle].upper == upper
+                    let other = &self.obstacles[b.obstacle];
+                    b.member == m && other.upper == obstacle.upper && other.rigid == obstacle.rigid
                 };
                 match bounds.iter_mut().find(beside) {
-                    Some(bound) => bound.other = Some(o),
+                    Some(bound) => {
+                        let room = bound.others.iter_mut().find(|other| other.is_none());
+                        *room.expect("a node lies on three sides at most") = Some(o);
+                    }
                     None => bounds.push(PointBound {
                         member: m,
                         obstacle: o,
-                        other: None,
+                        others: [None; 2],
                         holds: true,
                     }),
                 }
@@ -168,27 +175,37 @@ impl<'a> Checks<'a> {
                 .bounds
                 .sort_by_key(|b| (b.member, self.obstacles[b.obstacle].upper));
             for k in 1..point.bounds.len() {
-                point.bounds[k].holds = point.bounds[k].member != point.bounds[k - 1].member;
+                let same = point.bounds[k].member == point.bounds[k - 1].member;
+                let rigid = self.obstacles[point.bounds[k].obstacle].rigid.is_some();
+                point.bounds[k].holds = rigid || !same;
             }
         }
         points.sort_by_key(|p| p.block);
         Ok(())
     }
 
-    fn check_given(&self, obstacle: &Obstacle, member: Member, given: f64) -> Result<()> {
+    fn check_given(
+        &self,
+        obstacle: &Obstacle,
+        member: Member,
+        given: f64,
+        distance: f64,
+    ) -> Result<()> {
         for factors in &self.factors {
             let (bound, entry) = self.finite(factors, obstacle.limits.at(member.node), member)?;
-            let value = given * factors.dirichlet();
-            let signed = if obstacle.upper { value } else { 0.0 - value };
+            let bound = bound + distance;
+            // `given` is along the row's direction already; messages speak of u.
+            let signed = given * factors.dirichlet();
+            let value = if obstacle.upper { signed } else { 0.0 - signed };
             if exceeds(signed, bound) {
-                let [x, y] = member.position(self.bodies);
+                let at = member.spot(self.bodies);
                 let (relation, bound) = if obstacle.upper {
                     ("≤", bound)
                 } else {
                     ("≥", 0.0 - bound)
                 };
                 return Err(Error::Input(format!(
-                    "{}body `{}` has the given value {value} at ({x}, {y}){}, beyond its obstacle (u {relation} {bound} was \
+                    "{}body `{}` has the given value {value} at {at}{}, beyond its obstacle (u {relation} {bound} was \
                      expected)",
                     self.place(entry, member),
                     self.bodies[member.body].spec.name,
@@ -208,15 +225,18 @@ impl<'a> Checks<'a> {
                 .find(|other| other.member == bound.member);
             for factors in &self.factors {
                 let (above, entry) = self.finite(factors, self.limits(point, bound), member)?;
-                let Some(partner) = partner else { continue };
+                let rigid = self.obstacles[bound.obstacle].rigid.is_some();
+                let Some(partner) = partner.filter(|_| !rigid) else {
+                    continue;
+                };
                 let (below, _) = self.finite(factors, self.limits(point, partner), member)?;
                 if exceeds(0.0, below + above) {
-                    let [x, y] = member.position(self.bodies);
                     return Err(Error::Input(format!(
-                        "{}the obstacles of body `{}` leave nothing at ({x}, {y}){}: below = {} and above = {above} \
+                        "{}the obstacles of body `{}` leave nothing at {}{}: below = {} and above = {above} \
                          (below ≤ above was expected)",
                         self.place(entry, member),
                         self.bodies[member.body].spec.name,
+                        member.spot(self.bodies),
                         factors.when(),
                         0.0 - below
                     )));
@@ -224,6 +244,11 @@ impl<'a> Checks<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Distance and direction of the row of an obstacle at a member.
+    fn ahead(&self, obstacle: &Obstacle, member: Member) -> (f64, [f64; 3]) {
+        ahead(self.bodies, obstacle, member)
     }
 
     fn limits<'l>(
@@ -242,11 +267,19 @@ pub(super) fn limits<'l>(
     bound: &PointBound,
 ) -> impl Iterator<Item = &'l super::profile::Limit> {
     let node = point.members[bound.member].node;
-    let both = [Some(bound.obstacle), bound.other].into_iter().flatten();
-    both.flat_map(move |o| obstacles[o].limits.at(node))
+    let [other, third] = bound.others;
+    let all = [Some(bound.obstacle), other, third].into_iter().flatten();
+    all.flat_map(move |o| obstacles[o].limits.at(node))
 }
 
 /// Whether `value` lies above `bound` by more than rounding.
+/// Distance and direction of the row of an obstacle at a member: u ≤ g and −u ≤ −g are rows along ±1.
+pub(super) fn ahead(bodies: &[Body], obstacle: &Obstacle, member: Member) -> (f64, [f64; 3]) {
+    let sign = if obstacle.upper { 1.0 } else { -1.0 };
+    let found = obstacle.ahead(&bodies[member.body], member.node);
+    found.unwrap_or((0.0, [sign, 0.0, 0.0]))
+}
+
 fn exceeds(value: f64, bound: f64) -> bool {
     value - bound > 1e-10 * 1.0_f64.max(value.abs()).max(bound.abs())
 }

@@ -30,13 +30,13 @@ impl Real for f64 {
     }
 }
 
-/// A value with its derivatives by x and y.
+/// A value with its derivatives by x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual {
     /// The value.
     pub value: f64,
-    /// ∂/∂x and ∂/∂y.
-    pub gradient: [f64; 2],
+    /// ∂/∂x, ∂/∂y, ∂/∂z.
+    pub gradient: [f64; 3],
 }
 
 /// a·b, where 0·∞ counts as 0: a constant operand contributes no derivative, whatever the slope.
@@ -52,7 +52,7 @@ impl Real for Dual {
     fn constant(value: f64) -> Self {
         Dual {
             value,
-            gradient: [0.0; 2],
+            gradient: [0.0; 3],
         }
     }
     fn value(self) -> f64 {
@@ -69,7 +69,7 @@ impl Real for Dual {
             |k: usize| product(by_self, self.gradient[k]) + product(by_other, other.gradient[k]);
         Dual {
             value: g,
-            gradient: [part(0), part(1)],
+            gradient: [0, 1, 2].map(part),
         }
     }
 }

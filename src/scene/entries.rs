@@ -2,6 +2,7 @@
 
 use super::interface::{touching, Interface, Link, Shape};
 use super::links::Links;
+use super::normals::opposite;
 use super::profile::Profile;
 use super::spec::{ByDefault, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
 use super::steps::{Factors, Steps};
@@ -16,6 +17,7 @@ pub(super) fn find(
     steps: &Option<Steps>,
 ) -> Result<Vec<Interface>> {
     let mut interfaces = touching(bodies)?;
+    facing(bodies, &spec.contacts, &mut interfaces)?;
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
     let zero = Profile::constant(0.0);
@@ -39,6 +41,42 @@ pub(super) fn find(
     entries.check_used(&interfaces)?;
     release_corners(&mut interfaces, &weak);
     Ok(interfaces)
+}
+
+/// Pairs of which a contact names the sides that face each other: these sides take the place of what touches.
+fn facing(
+    bodies: &[Body],
+    contacts: &[ContactSpec],
+    interfaces: &mut Vec<Interface>,
+) -> Result<()> {
+    for spec in contacts {
+        let (Some(sides), Pair::Named(first, second)) = (spec.sides, &spec.pair) else {
+            continue;
+        };
+        let find = |name: &String| bodies.iter().position(|b| b.spec.name == *name);
+        let (Some(a), Some(b)) = (find(first), find(second)) else {
+            // Reported with the entries that name bodies.
+            continue;
+        };
+        let (pair, sides) = match a < b {
+            true => ([a, b], sides),
+            false => ([b, a], [sides[1], sides[0]]),
+        };
+        let Some(interface) = opposite(bodies, pair, sides) else {
+            return Err(Error::Input(format!(
+                "{}the sides of bodies `{first}` and `{second}` have different numbers of nodes (equal numbers were expected, so that \
+                 each node has one opposite)",
+                spec.written
+            )));
+        };
+        interfaces.retain(|i| i.bodies != pair || i.apart);
+        interfaces.push(Interface {
+            apart: true,
+            ..interface
+        });
+    }
+    interfaces.sort_by_key(|i| i.bodies);
+    Ok(())
 }
 
 /// Corner pairs in `weak` are tied only because all pairs are. Where one of the two is in contact there, this is not what

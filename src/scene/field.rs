@@ -11,13 +11,15 @@ pub enum By {
     Subdomain,
 }
 
-/// A rectangle [x0, x1) × [y0, y1) with its own value.
+/// A box [x0, x1) × [y0, y1) (× [z0, z1)) with its own value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// x0 and x1; `None`: all x.
     pub x: Option<[f64; 2]>,
     /// y0 and y1; `None`: all y.
     pub y: Option<[f64; 2]>,
+    /// z0 and z1; `None`: all z.
+    pub z: Option<[f64; 2]>,
     /// The value inside.
     pub value: Expr,
 }
@@ -25,7 +27,7 @@ pub struct Region {
 /// A scalar function on the bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Field {
-    /// A number or an expression in x, y, bi, bj, si, sj.
+    /// A number or an expression in x, y, z, bi, bj, bk, si, sj, sk.
     Expression(Expr),
     /// `values[0]` and `values[1]` in turns, `values[0]` in the lower left corner.
     Checkerboard {
@@ -34,10 +36,10 @@ pub enum Field {
         /// What they follow.
         by: By,
     },
-    /// `rows[j][i]` in column i and row j of bodies or subdomains, j counted upwards.
+    /// `layers[k][j][i]` in column i, row j and layer k of bodies or subdomains, j counted upwards; one layer in the plane.
     Table {
-        /// The values, row by row from the bottom.
-        rows: Vec<Vec<f64>>,
+        /// The values, layer by layer and row by row from the lower left corner.
+        layers: Vec<Vec<Vec<f64>>>,
         /// Whether the place is that of the body in its grid or of the subdomain in its body.
         by: By,
     },
@@ -55,8 +57,8 @@ pub enum Field {
 pub struct At {
     /// Point and places.
     pub variables: Variables,
-    /// Subdomains of the body in x and y.
-    pub subdomains: [usize; 2],
+    /// Subdomains of the body in x, y and z.
+    pub subdomains: [usize; 3],
 }
 
 impl Field {
@@ -71,7 +73,7 @@ impl Field {
         match self {
             Field::Expression(e) => e.eval(v),
             Field::Checkerboard { values, by } => {
-                let parity: usize = (0..2)
+                let parity: usize = (0..3)
                     .map(|d| match by {
                         By::Body => v.body[d],
                         By::Subdomain => v.body[d] * at.subdomains[d] + v.subdomain[d],
@@ -79,13 +81,15 @@ impl Field {
                     .sum();
                 values[parity % 2]
             }
-            Field::Table { rows, by } => {
-                let [i, j] = match by {
+            Field::Table { layers, by } => {
+                let [i, j, k] = match by {
                     By::Body => v.body,
                     By::Subdomain => v.subdomain,
                 };
                 // The shape was checked against the grid; NaN is reported as a bad value if it ever was not.
-                rows.get(j)
+                layers
+                    .get(k)
+                    .and_then(|rows| rows.get(j))
                     .and_then(|row| row.get(i))
                     .copied()
                     .unwrap_or(f64::NAN)
@@ -121,7 +125,7 @@ impl Field {
         match self {
             Field::Expression(e) => e.as_constant().into_iter().collect(),
             Field::Checkerboard { values, .. } => values.to_vec(),
-            Field::Table { rows, .. } => rows.concat(),
+            Field::Table { layers, .. } => layers.concat().concat(),
             Field::Regions { list, otherwise } => list
                 .iter()
                 .map(|r| &r.value)
@@ -134,12 +138,15 @@ impl Field {
 
 impl Region {
     /// Half-open, so that a point on the border of two regions belongs to the right or upper one.
-    fn contains(&self, point: [f64; 2]) -> bool {
+    fn contains(&self, point: [f64; 3]) -> bool {
         let inside = |range: &Option<[f64; 2]>, v: f64| match range {
             Some([low, high]) => *low <= v && v < *high,
             None => true,
         };
-        inside(&self.x, point[0]) && inside(&self.y, point[1])
+        [&self.x, &self.y, &self.z]
+            .into_iter()
+            .zip(point)
+            .all(|(range, v)| inside(range, v))
     }
 }
 
@@ -147,14 +154,14 @@ impl Region {
 mod tests {
     use super::*;
 
-    fn at(point: [f64; 2], body: [usize; 2], subdomain: [usize; 2]) -> At {
+    fn at([x, y]: [f64; 2], [bi, bj]: [usize; 2], [si, sj]: [usize; 2]) -> At {
         At {
             variables: Variables {
-                point,
-                body,
-                subdomain,
+                point: [x, y, 0.0],
+                body: [bi, bj, 0],
+                subdomain: [si, sj, 0],
             },
-            subdomains: [3, 3],
+            subdomains: [3, 3, 1],
         }
     }
 
@@ -181,16 +188,19 @@ mod tests {
                 Region {
                     x: Some([0.0, 0.5]),
                     y: None,
+                    z: None,
                     value: number(1.0),
                 },
                 Region {
                     x: Some([0.5, 1.0]),
                     y: None,
+                    z: None,
                     value: number(2.0),
                 },
                 Region {
                     x: None,
                     y: Some([0.9, 1.0]),
+                    z: None,
                     value: number(3.0),
                 },
             ],
@@ -206,7 +216,7 @@ mod tests {
     #[test]
     fn tables_are_read_upwards() {
         let table = Field::Table {
-            rows: vec![vec![1.0, 2.0], vec![3.0, 4.0]],
+            layers: vec![vec![vec![1.0, 2.0], vec![3.0, 4.0]]],
             by: By::Body,
         };
         assert_eq!(table.eval(&at([0.0; 2], [1, 0], [0, 0])), 2.0);

@@ -2,7 +2,9 @@
 
 use super::field::{At, Field};
 use super::steps::Factors;
-use super::validate::{bad_load, checked_rho};
+use super::spec::Force;
+use super::topology::{entities, rigid_motions};
+use super::validate::{bad_load, checked_poisson, checked_rho};
 use super::{Body, Scene, Variables};
 use crate::error::Result;
 use crate::fem;
@@ -50,43 +52,45 @@ impl Scene {
         let (k, f) = fem::assemble(mesh, &load);
         let whole = body.mesh();
         let n = f.len();
-        let (mut dofs, mut rho, mut coordinates) = (
-            Vec::with_capacity(n),
-            Vec::with_capacity(n),
-            Vec::with_capacity(n),
-        );
+        let c = body.components;
+        let mut dofs = Vec::with_capacity(n);
+        let mut rho = Vec::with_capacity(n);
+        let mut coordinates = Vec::with_capacity(n);
         let mut primal = Vec::new();
-        let [nx, ny] = mesh.elements;
-        for (node, &dof) in mesh.dof.iter().enumerate() {
-            if dof == SubdomainMesh::PRESCRIBED {
+        for (node, place) in block.places().enumerate() {
+            let own = &mesh.dof[c * node..c * (node + 1)];
+            if own.iter().all(|&d| d == SubdomainMesh::PRESCRIBED) {
                 continue;
             }
-            let (i, j) = (node % (nx + 1), node / (nx + 1));
-            let place = [block.first[0] + i, block.first[1] + j];
-            dofs.push(body.first_dof + whole.node(place) as u64);
-            // All blocks of a body are equal, so that vertices of the body's partition are corners of its blocks.
-            if (i == 0 || i == nx) && (j == 0 || j == ny) {
-                primal.push(dof);
-            }
-            let mut largest = 0.0_f64;
-            for e in j.saturating_sub(1)..=j.min(ny - 1) {
-                for &value in &mesh.rho[e * nx + i.saturating_sub(1)..=e * nx + i.min(nx - 1)] {
-                    largest = largest.max(value);
+            let stiffest = stiffest(mesh, [0, 1, 2].map(|d| place[d] - block.first[d]));
+            let first = body.first_dof + (whole.node(place) * c) as u64;
+            for (component, &dof) in own.iter().enumerate() {
+                if dof == SubdomainMesh::PRESCRIBED {
+                    continue;
                 }
+                dofs.push(first + component as u64);
+                // All blocks of a body are equal, so that vertices of the body's partition are corners of its blocks.
+                if whole.is_vertex(place) {
+                    primal.push(dof);
+                }
+                rho.push(stiffest);
+                coordinates.push(mesh.points[node]);
             }
-            rho.push(largest);
-            let [x, y] = mesh.points[node];
-            coordinates.push([x, y, 0.0]);
         }
+        let near_kernel = match c {
+            1 => vec![vec![1.0; n]],
+            _ => rigid_motions(body, mesh),
+        };
         Ok(Subdomain {
             index: mesh.index,
             body: mesh.body,
+            entities: entities(mesh, &dofs),
             k,
             f,
             dofs,
             rho,
             primal,
-            near_kernel: Some(vec![vec![1.0; n]]),
+            near_kernel: Some(near_kernel),
             coordinates: Some(coordinates),
         })
     }
@@ -104,15 +108,20 @@ impl Scene {
         Ok(fem::free_load(&mesh, &load))
     }
 
-    /// ∫ f over subdomain `index` at load step `step`, by the quadrature of its load.
+    /// The sum of all loads on subdomain `index` at load step `step`, by components; those of its sides included.
     ///
     /// # Errors
     /// As [`Scene::loads`].
-    pub fn resultant(&self, index: usize, step: usize) -> Result<f64> {
+    pub fn resultant(&self, index: usize, step: usize) -> Result<[f64; 3]> {
         let factors = Factors::of(&self.steps, step)?;
         let mesh = self.mesh_with(index, factors)?;
         let (body, block) = self.place(index);
-        Ok(self.nodal_load(body, &block, &mesh, factors)?.iter().sum())
+        let load = self.nodal_load(body, &block, &mesh, factors)?;
+        let mut sum = [0.0; 3];
+        for node in load.chunks_exact(body.components) {
+            sum.iter_mut().zip(node).for_each(|(s, f)| *s += f);
+        }
+        Ok(sum)
     }
 
     /// The factor of given values at load step `step` ([`SubdomainMesh::prescribed`] has that of the last step).
@@ -141,28 +150,29 @@ impl Scene {
         let scale = factors.dirichlet();
         let (body, block) = self.place(index);
         let whole = body.mesh();
-        let [nx, ny] = block.elements;
-        let step = whole.step();
-        let n = (nx + 1) * (ny + 1);
+        let c = body.components;
+        let n = block.nodes().iter().product::<usize>();
         let mut mesh = SubdomainMesh {
             index,
             body: self.body_of(index).0,
+            dim: whole.dim(),
+            form: self.form,
             elements: block.elements,
-            step,
+            step: body.spec.map.is_none().then(|| whole.step()),
             points: Vec::with_capacity(n),
-            dof: Vec::with_capacity(n),
-            prescribed: vec![0.0; n],
-            rho: Vec::with_capacity(nx * ny),
+            dof: Vec::with_capacity(c * n),
+            prescribed: vec![0.0; c * n],
+            rho: Vec::new(),
+            poisson: Vec::new(),
         };
         let mut next = 0;
-        for j in block.first[1]..=block.first[1] + ny {
-            for i in block.first[0]..=block.first[0] + nx {
-                let place = [i, j];
-                let on_boundary = whole.sides(place).next().is_some();
-                let given = if on_boundary {
-                    body.prescribed_at(whole.node(place))
-                } else {
-                    None
+        for place in block.places() {
+            let on_boundary = whole.sides(place).next().is_some();
+            let first = whole.node(place) * c;
+            for component in 0..c {
+                let given = match on_boundary {
+                    true => body.prescribed_at(first + component),
+                    false => None,
                 };
                 match given {
                     Some(value) => {
@@ -174,26 +184,16 @@ impl Scene {
                         next += 1;
                     }
                 }
-                mesh.points.push(whole.position(place));
             }
+            mesh.points.push(body.spec.position(place));
         }
-        let rho = &body.spec.rho;
-        let middle = |i: usize, j: usize| {
-            let [x, y] = mesh.points[j * (nx + 1) + i];
-            [x + 0.5 * step[0], y + 0.5 * step[1]]
-        };
-        if rho.is_constant_by_subdomain() {
-            let point = middle(0, 0);
-            let value = checked_rho(&body.spec, evaluate(body, &block, rho, point), point)?;
-            mesh.rho = vec![value; nx * ny];
-        } else {
-            for j in 0..ny {
-                for i in 0..nx {
-                    let point = middle(i, j);
-                    let value = evaluate(body, &block, rho, point);
-                    mesh.rho.push(checked_rho(&body.spec, value, point)?);
-                }
-            }
+        mesh.rho = by_element(body, &block, &mesh, &body.spec.rho, |value, point| {
+            checked_rho(&body.spec, &self.form, value, point)
+        })?;
+        if self.form.is_elastic() {
+            mesh.poisson = by_element(body, &block, &mesh, &body.spec.poisson, |value, point| {
+                checked_poisson(&body.spec, value, point)
+            })?;
         }
         Ok(mesh)
     }
@@ -204,8 +204,13 @@ impl Scene {
         let exact = self.exact.as_ref()?;
         let (body, block) = self.place(mesh.index);
         Some(fem::error_squares(mesh, nodal, |point| {
-            let value = exact.eval_gradient(&at(body, &block, point).variables);
-            (value.value, value.gradient)
+            let at = at(body, &block, point).variables;
+            let mut out = ([0.0; 3], [[0.0; 3]; 3]);
+            for (i, e) in exact.iter().enumerate() {
+                let value = e.eval_gradient(&at);
+                (out.0[i], out.1[i]) = (value.value, value.gradient);
+            }
+            out
         }))
     }
 
@@ -215,7 +220,7 @@ impl Scene {
         (body, body.mesh().block(inside))
     }
 
-    /// The nodal load, checked.
+    /// The nodal load, checked: what acts inside, and on the sides of the body.
     fn nodal_load(
         &self,
         body: &Body,
@@ -226,26 +231,40 @@ impl Scene {
         let load = &body.spec.load;
         let scale = factors.load(body.spec.ramp.as_ref());
         let mut bad = None;
-        let mut checked = |value: f64, point: [f64; 2]| {
-            let value = value * scale;
-            if !value.is_finite() {
-                bad.get_or_insert((value, point));
+        let mut value = |fields: &[Field], point: [f64; 3]| {
+            let mut out = [0.0; 3];
+            for (o, field) in out.iter_mut().zip(fields) {
+                *o = evaluate(body, block, field, point) * scale;
+                if !o.is_finite() {
+                    bad.get_or_insert((*o, point));
+                }
             }
-            value
+            out
         };
-        let out = if load.field.is_constant_by_subdomain() {
-            let point = mesh.points[0];
-            let value = checked(evaluate(body, block, &load.field, point), point);
-            if value == 0.0 {
-                vec![0.0; mesh.points.len()]
+        let fields = &load.fields;
+        let mut out = if fields.iter().all(Field::is_constant_by_subdomain) {
+            let constant = value(fields, mesh.points[0]);
+            if constant == [0.0; 3] {
+                vec![0.0; mesh.dof.len()]
             } else {
-                fem::load_vector(mesh, load.quadrature, |_, _| value)
+                fem::load_vector(mesh, load.quadrature, |_, _| constant)
             }
         } else {
-            fem::load_vector(mesh, load.quadrature, |_, point| {
-                checked(evaluate(body, block, &load.field, point), point)
-            })
+            fem::load_vector(mesh, load.quadrature, |_, point| value(fields, point))
         };
+        for load in &body.spec.surface {
+            if !reaches(body, block, load.side) {
+                continue;
+            }
+            let force = |point: [f64; 3], normal: [f64; 3]| match &load.force {
+                Force::Traction(fields) => value(fields, point),
+                Force::Pressure(p) => {
+                    let [p, ..] = value(std::slice::from_ref(p), point);
+                    normal.map(|n| 0.0 - p * n)
+                }
+            };
+            fem::add_side_load(mesh, load.side, force, &mut out);
+        }
         match bad {
             Some((value, point)) => bad_load(&body.spec, value, point),
             None => Ok(out),
@@ -253,7 +272,61 @@ impl Scene {
     }
 }
 
-fn at(body: &Body, block: &Block, point: [f64; 2]) -> At {
+/// Whether a subdomain has elements at a side of its body.
+fn reaches(body: &Body, block: &Block, side: usize) -> bool {
+    let d = side / 2;
+    block.place[d] == [0, body.mesh().subdomains[d] - 1][side % 2]
+}
+
+/// A coefficient in the middle of every element.
+fn by_element(
+    body: &Body,
+    block: &Block,
+    mesh: &SubdomainMesh,
+    field: &Field,
+    check: impl Fn(f64, [f64; 3]) -> Result<f64>,
+) -> Result<Vec<f64>> {
+    let middle = |place: [usize; 3]| match mesh.step {
+        Some(step) => {
+            let first = mesh.points[mesh.element_nodes(place)[0]];
+            [0, 1, 2].map(|d| first[d] + 0.5 * step[d])
+        }
+        None => {
+            // In the plane the last four corners repeat the first.
+            let corners = mesh.element_points(place);
+            [0, 1, 2].map(|d| corners.iter().map(|p| p[d]).sum::<f64>() / 8.0)
+        }
+    };
+    if field.is_constant_by_subdomain() {
+        let point = middle([0; 3]);
+        let value = check(evaluate(body, block, field, point), point)?;
+        return Ok(vec![value; mesh.n_elements()]);
+    }
+    let value = |place| {
+        let point = middle(place);
+        check(evaluate(body, block, field, point), point)
+    };
+    mesh.element_places().map(value).collect()
+}
+
+/// The largest coefficient in the elements around the node at a place of the subdomain.
+fn stiffest(mesh: &SubdomainMesh, place: [usize; 3]) -> f64 {
+    let counts = mesh.elements.map(|n| n.max(1));
+    let range = |d: usize| place[d].saturating_sub(1)..=place[d].min(counts[d] - 1);
+    let mut largest = 0.0_f64;
+    for k in range(2) {
+        for j in range(1) {
+            let row = (k * counts[1] + j) * counts[0];
+            let around = range(0);
+            for &value in &mesh.rho[row + around.start()..=row + around.end()] {
+                largest = largest.max(value);
+            }
+        }
+    }
+    largest
+}
+
+fn at(body: &Body, block: &Block, point: [f64; 3]) -> At {
     At {
         variables: Variables {
             point,
@@ -264,6 +337,6 @@ fn at(body: &Body, block: &Block, point: [f64; 2]) -> At {
     }
 }
 
-fn evaluate(body: &Body, block: &Block, field: &Field, point: [f64; 2]) -> f64 {
+fn evaluate(body: &Body, block: &Block, field: &Field, point: [f64; 3]) -> f64 {
     field.eval(&at(body, block, point))
 }

@@ -3,7 +3,7 @@
 use super::entries::{Contact, Entry};
 use super::interface::{Interface, Link};
 use super::profile::{Limit, Limits};
-use super::select::{is_end, selected};
+use super::select::{is_end, selected, Parameters};
 use super::spec::Extent;
 use super::steps::Factors;
 use super::{Body, Variables};
@@ -74,9 +74,10 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
                 }
                 let [a, b] = self.names();
                 return Err(Error::Input(format!(
-                    "{}the contact of bodies `{a}` and `{b}` selects the node at t = {t}, which the tie of {} selects too \
+                    "{}the contact of bodies `{a}` and `{b}` selects the node at t = {}, which the tie of {} selects too \
                      (ranges that share no more than their ends were expected)",
                     entry.written,
+                    Parameters(t),
                     tie.line()
                 )));
             }
@@ -121,21 +122,19 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         } = &*self.interface;
         let node = shared[k];
         let body = &self.bodies[bodies[order[0]]];
-        let point = body
-            .mesh()
-            .position(body.mesh().place(node.nodes[order[0]]));
+        let place = body.mesh().place(node.nodes[order[0]]);
         let at = Variables {
-            point,
+            point: body.spec.position(place),
             body: body.spec.place,
-            subdomain: [0, 0],
+            subdomain: [0; 3],
         };
-        let value = contact.gap.eval(node.t, &at);
+        let value = contact.gap.eval(node.t[0], &at);
         if value.is_finite() {
             return Ok(value);
         }
-        let ([a, b], [x, y]) = (self.names(), point);
+        let ([a, b], at) = (self.names(), body.spec.spot(place));
         Err(Error::Input(format!(
-            "{}the gap of bodies `{a}` and `{b}` is {value} at ({x}, {y}) where a finite number was expected",
+            "{}the gap of bodies `{a}` and `{b}` is {value} at {at} where a finite number was expected",
             entry.written
         )))
     }

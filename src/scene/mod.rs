@@ -20,16 +20,20 @@ mod field;
 mod interface;
 mod joint;
 mod links;
+mod map;
+mod normals;
 mod numbering;
 mod obstacles;
 mod plan;
 mod points;
 mod profile;
 mod read;
+mod rigid;
 mod rows;
 mod select;
 mod spec;
 mod steps;
+mod topology;
 mod union_find;
 mod validate;
 
@@ -37,19 +41,22 @@ pub use dual::Dual;
 pub use expr::{Expr, Variables};
 pub use field::{At, By, Field, Region};
 pub use interface::{Interface, Link, Shape, SharedNode};
+pub use map::{BodyShape, Map, Round};
 pub use numbering::Numbering;
 pub use obstacles::Obstacle;
 pub use plan::{BodyPlan, InterfacePlan, Plan};
-pub use points::{Member, Point, PointBound, PointRow};
+pub use points::{Direction, Member, Point, PointBound, PointRow};
 pub use profile::{Limit, Limits, Profile};
+pub use rigid::Rigid;
 pub use rows::{RowLabel, RowSource};
 pub use spec::{
-    held_all_round, lee, BodySpec, ByDefault, ContactSpec, Extent, Faces, GridSpec, Load,
-    ObstacleSpec, Pair, SceneSpec, Sides, TieSpec, SIDES,
+    free_all_round, held_all_round, lee, BodySpec, ByDefault, ContactSpec, Extent, Faces, Force,
+    GridSpec, Load, ObstacleSpec, Pair, SceneSpec, Sides, SurfaceLoad, TieSpec, SIDES,
 };
 pub use steps::{Ramp, Steps, StepsSpec};
 
 use crate::error::{Error, Result};
+use crate::fem::Form;
 use crate::mesh::BoxMesh;
 use std::path::Path;
 
@@ -58,13 +65,17 @@ use std::path::Path;
 pub struct Body {
     /// What was written about it.
     pub spec: BodySpec,
-    /// Body dof of its node 0; its node k has the number `first_dof + k`.
+    /// Number C of components of the field.
+    pub components: usize,
+    /// Body dof of its first degree of freedom; component c of its node k has the number `first_dof + C k + c`.
     pub first_dof: u64,
     /// Global index of its subdomain 0.
     pub first_subdomain: usize,
-    /// Nodes with a given value, in increasing order: Dirichlet sides, and nodes that are tied to such a node of
+    /// Degrees of freedom C k + c with a given value, in increasing order: Dirichlet sides, and nodes that are tied to such a node of
     /// another body. Values are those before any factor of a load step.
     pub prescribed: Vec<(usize, f64)>,
+    /// Least and greatest coordinates of its nodes.
+    pub bounds: [[f64; 3]; 2],
 }
 
 impl Body {
@@ -73,10 +84,10 @@ impl Body {
         &self.spec.mesh
     }
 
-    /// The given value at `node`, if there is one.
-    pub fn prescribed_at(&self, node: usize) -> Option<f64> {
+    /// The given value of degree of freedom `dof` = C k + c, if there is one.
+    pub fn prescribed_at(&self, dof: usize) -> Option<f64> {
         self.prescribed
-            .binary_search_by_key(&node, |&(n, _)| n)
+            .binary_search_by_key(&dof, |&(n, _)| n)
             .ok()
             .map(|k| self.prescribed[k].1)
     }
@@ -87,6 +98,8 @@ impl Body {
 pub struct Scene {
     /// Title for reports.
     pub title: String,
+    /// What is solved, and by which elements.
+    pub form: Form,
     /// The bodies.
     pub bodies: Vec<Body>,
     /// Pairs of bodies that touch, by increasing numbers, and the nodes at which they meet.
@@ -97,8 +110,8 @@ pub struct Scene {
     pub obstacles: Vec<Obstacle>,
     /// Load steps; `None`: everything is applied at once.
     pub steps: Option<Steps>,
-    /// The exact solution, if it is known.
-    pub exact: Option<Expr>,
+    /// The exact solution by components, if it is known.
+    pub exact: Option<Vec<Expr>>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
     pub options: Vec<(String, String)>,
     /// Number of subdomains.
@@ -136,14 +149,17 @@ impl Scene {
         let mut bodies = Vec::with_capacity(spec.bodies.len());
         let (mut first_dof, mut first_subdomain) = (0, 0);
         for body in std::mem::take(&mut spec.bodies) {
+            let components = spec.form.components(body.mesh.dim());
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
-                prescribed: validate::dirichlet_nodes(&body)?,
+                components,
+                prescribed: validate::dirichlet_dofs(&body, components)?,
+                bounds: bounds_of(&body),
                 spec: body,
                 first_dof,
                 first_subdomain,
             });
-            first_dof += nodes as u64;
+            first_dof += (nodes * components) as u64;
             first_subdomain += subdomains;
         }
         let interfaces = entries::find(&bodies, &spec, &steps)?;
@@ -153,6 +169,7 @@ impl Scene {
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             title: spec.title,
+            form: spec.form,
             bodies,
             interfaces,
             points,
@@ -180,6 +197,16 @@ impl Scene {
         Scene::new(SceneSpec::tied(title, grid.expand()))
     }
 
+    /// The dimension, 2 or 3.
+    pub fn dim(&self) -> usize {
+        self.bodies[0].mesh().dim()
+    }
+
+    /// Number C of components of the field.
+    pub fn components(&self) -> usize {
+        self.bodies[0].components
+    }
+
     /// Number of bodies.
     pub fn n_bodies(&self) -> usize {
         self.bodies.len()
@@ -198,4 +225,20 @@ impl Scene {
             .saturating_sub(1);
         (body, index - self.bodies[body].first_subdomain)
     }
+}
+
+/// Least and greatest coordinates of the nodes of a body.
+fn bounds_of(body: &BodySpec) -> [[f64; 3]; 2] {
+    if body.map.is_none() {
+        return [body.mesh.origin, body.mesh.end()];
+    }
+    let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for place in body.mesh.boundary() {
+        let point = body.position(place);
+        for d in 0..3 {
+            out[0][d] = out[0][d].min(point[d]);
+            out[1][d] = out[1][d].max(point[d]);
+        }
+    }
+    out
 }

@@ -18,7 +18,9 @@ pub struct Numbering {
     bodies: Vec<(BoxMesh, u64, usize)>,
     /// First unknown of every subdomain, and the total.
     starts: Vec<u64>,
-    /// Body dofs without an own number, as (owning subdomain, rank among the nodes it owns), sorted.
+    /// Number C of components.
+    components: usize,
+    /// Body dofs without an own number, as (owning subdomain, rank among the dofs it owns), sorted.
     holes: Vec<(usize, usize)>,
     /// Where the holes of every subdomain start in `holes`.
     hole_starts: Vec<usize>,
@@ -34,26 +36,30 @@ impl Numbering {
             .iter()
             .map(|b| (*b.mesh(), b.first_dof, b.first_subdomain))
             .collect();
+        let components = scene.components();
         let mut shared = HashMap::new();
         let mut holes = Vec::new();
-        let mut hole = |body: usize, node: usize| {
+        let mut hole = |body: usize, dof: usize| {
             let (mesh, _, first) = &bodies[body];
-            let (owner, rank) = owned_rank(mesh, mesh.place(node));
-            holes.push((first + owner, rank));
+            let (owner, rank) = owned_rank(mesh, mesh.place(dof / components));
+            holes.push((first + owner, rank * components + dof % components));
         };
         for (b, body) in scene.bodies.iter().enumerate() {
-            for &(node, _) in &body.prescribed {
-                hole(b, node);
+            for &(dof, _) in &body.prescribed {
+                hole(b, dof);
             }
         }
         for point in &scene.points {
             for (m, member) in point.members.iter().enumerate() {
                 let to = &point.members[point.tied_to[m]];
-                let given = scene.bodies[member.body].prescribed_at(member.node);
-                if point.tied_to[m] != m && given.is_none() {
-                    hole(member.body, member.node);
-                    let dof = |body: usize, node: usize| bodies[body].1 + node as u64;
-                    shared.insert(dof(member.body, member.node), dof(to.body, to.node));
+                if point.tied_to[m] == m {
+                    continue;
+                }
+                for c in 0..components {
+                    if member.given(&scene.bodies, c).is_none() {
+                        hole(member.body, member.node * components + c);
+                        shared.insert(member.dof(&scene.bodies, c), to.dof(&scene.bodies, c));
+                    }
                 }
             }
         }
@@ -66,8 +72,8 @@ impl Numbering {
         let mut starts = vec![0; n + 1];
         for (mesh, _, first) in &bodies {
             for s in 0..mesh.n_subdomains() {
-                let [width, height] = owned_box(mesh, s).1;
-                starts[first + s + 1] = (width * height) as u64;
+                let nodes: usize = owned_box(mesh, s).1.iter().product();
+                starts[first + s + 1] = (nodes * components) as u64;
             }
         }
         for s in 0..n {
@@ -78,6 +84,7 @@ impl Numbering {
         Numbering {
             bodies,
             starts,
+            components,
             holes,
             hole_starts,
             shared,
@@ -105,8 +112,9 @@ impl Numbering {
         let dof = self.shared.get(&body_dof).copied().unwrap_or(body_dof);
         let body = self.bodies.partition_point(|b| b.1 <= dof) - 1;
         let (mesh, first_dof, first_subdomain) = &self.bodies[body];
-        let place = mesh.place((dof - first_dof) as usize);
-        let (owner, rank) = owned_rank(mesh, place);
+        let inside = (dof - first_dof) as usize;
+        let (owner, rank) = owned_rank(mesh, mesh.place(inside / self.components));
+        let rank = rank * self.components + inside % self.components;
         let s = first_subdomain + owner;
         let holes = &self.holes[self.hole_starts[s]..self.hole_starts[s + 1]];
         let before = holes.partition_point(|&(_, h)| h < rank);
@@ -114,7 +122,13 @@ impl Numbering {
     }
 
     /// Position of unknown `global` < N.
-    pub fn coordinates(&self, global: u64) -> [f64; 2] {
+    pub fn coordinates(&self, scene: &Scene, global: u64) -> [f64; 3] {
+        let (body, place, _) = self.place(global);
+        scene.bodies[body].spec.position(place)
+    }
+
+    /// Body, place of the node in it, and component of unknown `global` < N.
+    pub fn place(&self, global: u64) -> (usize, [usize; 3], usize) {
         let s = self.starts.partition_point(|&start| start <= global) - 1;
         let holes = &self.holes[self.hole_starts[s]..self.hole_starts[s + 1]];
         // The rank r with r − (holes below r) = number, r itself no hole.
@@ -126,17 +140,19 @@ impl Numbering {
         }
         let body = self.bodies.partition_point(|b| b.2 <= s) - 1;
         let (mesh, _, first) = &self.bodies[body];
-        let (low, [width, _]) = owned_box(mesh, s - first);
-        mesh.position([low[0] + rank % width, low[1] + rank / width])
+        let (low, [width, height, _]) = owned_box(mesh, s - first);
+        let (node, component) = (rank / self.components, rank % self.components);
+        let at = [node % width, node / width % height, node / (width * height)];
+        (body, [0, 1, 2].map(|d| low[d] + at[d]), component)
     }
 }
 
-/// First node, and the numbers of node columns and rows, that subdomain `s` owns: its left column and lower row belong to the
+/// First node, and the numbers of nodes along each direction, that subdomain `s` owns: its lower ends belong to the
 /// neighbours of lower number.
-fn owned_box(mesh: &BoxMesh, s: usize) -> ([usize; 2], [usize; 2]) {
+fn owned_box(mesh: &BoxMesh, s: usize) -> ([usize; 3], [usize; 3]) {
     let block = mesh.block(s);
-    let (mut first, mut count) = ([0; 2], [0; 2]);
-    for d in 0..2 {
+    let (mut first, mut count) = ([0; 3], [0; 3]);
+    for d in 0..3 {
         let inner = usize::from(block.place[d] > 0);
         first[d] = block.first[d] + inner;
         count[d] = block.elements[d] + 1 - inner;
@@ -145,8 +161,9 @@ fn owned_box(mesh: &BoxMesh, s: usize) -> ([usize; 2], [usize; 2]) {
 }
 
 /// The owning subdomain of a node and the node's rank among those it owns.
-fn owned_rank(mesh: &BoxMesh, place: [usize; 2]) -> (usize, usize) {
+fn owned_rank(mesh: &BoxMesh, place: [usize; 3]) -> (usize, usize) {
     let owner = mesh.owner(place);
-    let (first, [width, _]) = owned_box(mesh, owner);
-    (owner, (place[1] - first[1]) * width + (place[0] - first[0]))
+    let (first, [width, height, _]) = owned_box(mesh, owner);
+    let at = [0, 1, 2].map(|d| place[d] - first[d]);
+    (owner, (at[2] * height + at[1]) * width + at[0])
 }

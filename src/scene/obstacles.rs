@@ -2,11 +2,12 @@
 
 use super::entries::some_names;
 use super::profile::{Limit, Limits};
+use super::normals::parameters;
+use super::rigid::Rigid;
 use super::select::pick;
 use super::spec::{Extent, ObstacleSpec, SIDES};
 use super::{Body, Variables};
 use crate::error::{Error, Result};
-use crate::mesh::BoxMesh;
 use std::collections::BTreeMap;
 
 /// One bound beside one side of a body.
@@ -22,31 +23,24 @@ pub struct Obstacle {
     pub name: String,
     /// Right-hand sides of the rows u ≤ above and −u ≤ −below, by node of the body.
     pub limits: Limits,
+    /// In elasticity the body that cannot be entered: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
+    pub rigid: Option<Rigid>,
 }
 
 impl Obstacle {
-    /// Parameter of a node of the body along the side, 0 ≤ t ≤ 1.
-    pub fn t(&self, mesh: &BoxMesh, node: usize) -> f64 {
-        let along = along(self.side);
-        mesh.place(node)[along] as f64 / mesh.elements[along] as f64
+    /// Parameters of a node of the body along the side, 0 ≤ t ≤ 1.
+    pub fn t(&self, body: &Body, node: usize) -> [f64; 2] {
+        parameters(&body.spec, self.side, body.mesh().place(node))
     }
-}
 
-/// The direction of a side: left and right run along y.
-fn along(side: usize) -> usize {
-    usize::from(side < 2)
-}
-
-/// The nodes of a side by increasing x or y.
-fn nodes(mesh: &BoxMesh, side: usize) -> Vec<usize> {
-    let along = along(side);
-    let mut place = [0; 2];
-    place[1 - along] = [0, mesh.elements[1 - along]][side % 2];
-    let node = |k: usize| {
-        place[along] = k;
-        mesh.node(place)
-    };
-    (0..=mesh.elements[along]).map(node).collect()
+    /// The distance of a node from the rigid body and the direction in which the body must not move further; `None` where
+    /// the obstacle bounds u itself.
+    pub fn ahead(&self, body: &Body, node: usize) -> Option<(f64, [f64; 3])> {
+        let rigid = self.rigid?;
+        let found = rigid.distance(body.spec.position(body.mesh().place(node)));
+        // Nodes without a nearest point were refused.
+        found.map(|(distance, normal)| (distance, normal.map(|v| 0.0 - v)))
+    }
 }
 
 /// The obstacles of a scene, by body, side and bound; `first` is the number of the first entry.
@@ -55,14 +49,19 @@ pub(super) fn find(
     entries: &[ObstacleSpec],
     first: usize,
 ) -> Result<Vec<Obstacle>> {
-    let mut found: BTreeMap<(usize, usize, bool), Vec<Limit>> = BTreeMap::new();
+    // Bounds on u from several entries add up; every rigid body stands for itself.
+    let mut found: BTreeMap<(usize, usize, usize, bool), Vec<Limit>> = BTreeMap::new();
     for (k, entry) in entries.iter().enumerate() {
         let fail = |message: String| Err(Error::Input(format!("{}{message}", entry.written)));
-        if entry.below.is_none() && entry.above.is_none() {
+        if entry.below.is_none() && entry.above.is_none() && entry.rigid.is_none() {
             return fail(
                 "an obstacle without a bound (`below`, `above` or both were expected)".into(),
             );
         }
+        let bounds = match entry.rigid {
+            None => [(false, entry.below.as_ref()), (true, entry.above.as_ref())],
+            Some(_) => [(false, None), (true, Some(&entry.gap))],
+        };
         let chosen = match &entry.body {
             None => 0..bodies.len(),
             Some(name) => match bodies.iter().position(|b| b.spec.name == *name) {
@@ -78,24 +77,36 @@ pub(super) fn find(
         for b in chosen {
             for &side in &entry.sides {
                 let selected = select(&bodies[b], side, entry)?;
-                for (upper, bound) in [(false, &entry.below), (true, &entry.above)] {
+                let number = if entry.rigid.is_some() { k + 1 } else { 0 };
+                for (upper, bound) in bounds {
                     let Some(bound) = bound else { continue };
-                    let list = found.entry((b, side, upper)).or_default();
+                    let list = found.entry((b, side, number, upper)).or_default();
                     for &(node, t) in &selected {
                         let spec = &bodies[b].spec;
-                        let point = spec.mesh.position(spec.mesh.place(node));
+                        let place = spec.mesh.place(node);
                         let at = Variables {
-                            point,
+                            point: spec.position(place),
                             body: spec.place,
-                            subdomain: [0, 0],
+                            subdomain: [0; 3],
                         };
-                        let value = bound.eval(t, &at);
+                        if let Some(rigid) = &entry.rigid {
+                            if rigid.distance(at.point).is_none() {
+                                return fail(format!(
+                                    "no point of the obstacle is nearest to the node {} of body `{}` (on its axis or in its centre)",
+                                    spec.spot(place),
+                                    spec.name
+                                ));
+                            }
+                        }
+                        let value = bound.eval(t[0], &at);
                         if !value.is_finite() {
-                            let key = ["below", "above"][usize::from(upper)];
-                            let ([x, y], name) = (point, &spec.name);
+                            let key = match entry.rigid {
+                                Some(_) => "gap",
+                                None => ["below", "above"][usize::from(upper)],
+                            };
+                            let (at, name) = (spec.spot(place), &spec.name);
                             return fail(format!(
-                                "the bound `{key}` of body `{name}` is {value} at ({x}, {y}) where a finite number was \
-                                 expected"
+                                "the bound `{key}` of body `{name}` is {value} at {at} where a finite number was expected"
                             ));
                         }
                         list.push(Limit {
@@ -108,26 +119,34 @@ pub(super) fn find(
             }
         }
     }
-    let named = |((body, side, upper), list): ((usize, usize, bool), Vec<Limit>)| Obstacle {
-        body,
-        side,
-        upper,
-        name: format!(
-            "{}.{} {}",
-            bodies[body].spec.name,
-            SIDES[side],
-            if upper { "above" } else { "below" }
-        ),
-        limits: Limits::new(list),
+    let named = |(key, list): ((usize, usize, usize, bool), Vec<Limit>)| {
+        let (body, side, number, upper) = key;
+        let what = match (number, upper) {
+            (0, false) => "below".to_string(),
+            (0, true) => "above".to_string(),
+            (k, _) => format!("obstacle {k}"),
+        };
+        Obstacle {
+            body,
+            side,
+            upper,
+            name: format!("{}.{} {what}", bodies[body].spec.name, SIDES[side]),
+            limits: Limits::new(list),
+            rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
+        }
     };
     Ok(found.into_iter().map(named).collect())
 }
 
 /// The nodes that `entry` selects on a side, with their t.
-fn select(body: &Body, side: usize, entry: &ObstacleSpec) -> Result<Vec<(usize, f64)>> {
-    let nodes = nodes(body.mesh(), side);
-    let last = (nodes.len() - 1) as f64;
-    let t: Vec<f64> = (0..nodes.len()).map(|k| k as f64 / last).collect();
+fn select(body: &Body, side: usize, entry: &ObstacleSpec) -> Result<Vec<(usize, [f64; 2])>> {
+    let mesh = body.mesh();
+    let places: Vec<[usize; 3]> = mesh.side_nodes(side).collect();
+    let nodes: Vec<usize> = places.iter().map(|&p| mesh.node(p)).collect();
+    let t: Vec<[f64; 2]> = places
+        .iter()
+        .map(|&p| parameters(&body.spec, side, p))
+        .collect();
     let (name, side) = (&body.spec.name, SIDES[side]);
     let picked = pick(&entry.extent, &t).map_err(|missing| {
         Error::Input(format!(

@@ -2,28 +2,32 @@
 
 use super::interface::{Link, Shape};
 use super::points::PointRow;
-use super::Scene;
+use super::{Body, Scene};
 use crate::error::Result;
+use crate::mesh::{places, BoxMesh};
+use std::collections::HashSet;
 
 /// The sizes of one body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPlan {
     /// Its name.
     pub name: String,
-    /// Lower left corner.
-    pub origin: [f64; 2],
-    /// Width and height.
-    pub size: [f64; 2],
-    /// Elements in x and y.
-    pub elements: [usize; 2],
-    /// Subdomains in x and y.
-    pub subdomains: [usize; 2],
-    /// Free nodes.
+    /// Lower left corner of its box.
+    pub origin: [f64; 3],
+    /// Edge lengths of its box.
+    pub size: [f64; 3],
+    /// Elements in x, y and z (0 in the plane).
+    pub elements: [usize; 3],
+    /// Subdomains in x, y and z.
+    pub subdomains: [usize; 3],
+    /// Free degrees of freedom.
     pub dofs: usize,
-    /// Nodes with a given value.
+    /// Degrees of freedom with a given value.
     pub prescribed: usize,
-    /// Free vertices that subdomains share: primal constraints.
+    /// Free degrees of freedom at vertices that subdomains share: primal constraints. Those of edges come on top.
     pub primal: usize,
+    /// Edges with free degrees of freedom that subdomains share, by component: primal averages of a solid.
+    pub edges: usize,
     /// Rows of B_loc.
     pub local_multipliers: usize,
 }
@@ -58,7 +62,7 @@ pub struct Plan {
     pub subdomains: usize,
     /// Number of elements.
     pub elements: usize,
-    /// Free nodes, counted once in every body.
+    /// Free degrees of freedom, counted once in every body.
     pub dofs: usize,
     /// Unknowns of the assembled problem.
     pub assembled: u64,
@@ -103,7 +107,7 @@ impl Scene {
             title: self.title.clone(),
             interfaces,
             subdomains: self.n_subdomains(),
-            elements: bodies.iter().map(|b| b.elements[0] * b.elements[1]).sum(),
+            elements: self.bodies.iter().map(|b| b.mesh().n_elements()).sum(),
             dofs: bodies.iter().map(|b| b.dofs).sum(),
             assembled: super::Numbering::new(self).len(),
             primal: bodies.iter().map(|b| b.primal).sum(),
@@ -138,23 +142,66 @@ impl Scene {
     fn body_plan(&self, b: usize) -> BodyPlan {
         let body = &self.bodies[b];
         let mesh = body.mesh();
-        let [sx, sy] = mesh.subdomains;
-        let [m, n] = mesh.block_elements();
-        let corners = (0..=sy).flat_map(|j| (0..=sx).map(move |i| [i * m, j * n]));
-        let primal = corners
-            .filter(|&p| mesh.multiplicity(p) > 1 && body.prescribed_at(mesh.node(p)).is_none())
-            .count();
+        let mut counts = Counts::default();
+        for place in mesh_lines(mesh) {
+            counts.add(body, place);
+        }
         BodyPlan {
             name: body.spec.name.clone(),
             origin: mesh.origin,
             size: mesh.size,
             elements: mesh.elements,
             subdomains: mesh.subdomains,
-            dofs: mesh.n_nodes() - body.prescribed.len(),
+            dofs: mesh.n_nodes() * body.components - body.prescribed.len(),
             prescribed: body.prescribed.len(),
-            primal,
-            // Edges inside the body: every node of their interior has two copies, one row. Their ends are vertices.
-            local_multipliers: (sx - 1) * sy * (n - 1) + sx * (sy - 1) * (m - 1),
+            primal: counts.primal,
+            edges: counts.edges.len(),
+            local_multipliers: counts.multipliers,
         }
     }
+}
+
+/// What is shared inside a body.
+#[derive(Default)]
+struct Counts {
+    primal: usize,
+    multipliers: usize,
+    edges: HashSet<([usize; 3], usize)>,
+}
+
+impl Counts {
+    fn add(&mut self, body: &Body, place: [usize; 3]) {
+        let mesh = body.mesh();
+        let copies = mesh.multiplicity(place);
+        if copies < 2 {
+            return;
+        }
+        let each = mesh.block_elements();
+        let vertex = mesh.is_vertex(place);
+        let inner: Vec<usize> = (0..mesh.dim()).filter(|&d| place[d] % each[d] != 0).collect();
+        for c in 0..body.components {
+            if body.prescribed_at(mesh.node(place) * body.components + c).is_some() {
+                continue;
+            }
+            if vertex {
+                self.primal += 1;
+                continue;
+            }
+            self.multipliers += copies * (copies - 1) / 2;
+            if let (3, &[along]) = (mesh.dim(), &inner[..]) {
+                let mut edge = place;
+                edge[along] = place[along] / each[along] * each[along];
+                // Edges along different directions may start at one vertex.
+                edge[along] = edge[along] * 3 + along;
+                self.edges.insert((edge, c));
+            }
+        }
+    }
+}
+
+/// The places of a body on lines (planes) between subdomains.
+fn mesh_lines(mesh: &BoxMesh) -> impl Iterator<Item = [usize; 3]> + '_ {
+    let each = mesh.block_elements();
+    places(mesh.nodes())
+        .filter(move |p| (0..mesh.dim()).any(|d| p[d] % each[d] == 0))
 }

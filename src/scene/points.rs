@@ -45,10 +45,21 @@ pub struct PointRow {
     pub holds: bool,
     /// Whether it is an inequality.
     pub contact: bool,
+    /// Of what the row takes the difference.
+    pub direction: Direction,
     /// The interface that it comes from.
     pub interface: usize,
     /// Index into its `shared`.
     pub node: usize,
+}
+
+/// What a row looks at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// One component of u.
+    Component(usize),
+    /// n·u with the normal of the interface or obstacle there.
+    Normal,
 }
 
 /// A member of a point with a row u ≤ g (upper bound) or −u ≤ g (lower bound).
@@ -58,8 +69,8 @@ pub struct PointBound {
     pub member: usize,
     /// The obstacle, an index into [`Scene::obstacles`](super::Scene::obstacles).
     pub obstacle: usize,
-    /// In a corner, the obstacle beside the other side; the tighter bound counts.
-    pub other: Option<usize>,
+    /// At a corner or an edge, the obstacles beside the other sides; the tightest bound counts.
+    pub others: [Option<usize>; 2],
     /// Whether the row holds to begin with: of two bounds at one node only the lower one can.
     pub holds: bool,
 }
@@ -69,41 +80,101 @@ pub(super) fn collect(bodies: &mut [Body], interfaces: &[Interface]) -> Result<V
     let mut points = coinciding(bodies, interfaces);
     let mut inherited = Vec::new();
     for (point, links) in &mut points {
-        close(point, links);
-        prescribe(bodies, point, &mut inherited)?;
+        let components = bodies[point.members[0].body].components;
+        close(point, links, components);
+        for c in 0..components {
+            prescribe(bodies, point, c, &mut inherited)?;
+        }
     }
-    for (Member { body, node }, value) in inherited {
-        bodies[body].prescribed.push((node, value));
+    for (Member { body, node }, component, value) in inherited {
+        let body = &mut bodies[body];
+        body.prescribed
+            .push((node * body.components + component, value));
     }
     for body in bodies.iter_mut() {
-        body.prescribed.sort_by_key(|&(node, _)| node);
+        body.prescribed.sort_by_key(|&(dof, _)| dof);
     }
     let mut out: Vec<Point> = points.into_iter().map(|(point, _)| point).collect();
     for point in &mut out {
         let Point { members, rows, .. } = point;
         rows.retain(|row| {
-            let given = |m: usize| members[m].given(bodies).is_some();
+            let Direction::Component(c) = row.direction else {
+                return true;
+            };
+            let given = |m: usize| members[m].given(bodies, c).is_some();
             row.contact || !row.members.into_iter().any(given)
         });
     }
     Ok(out)
 }
 
+/// What u does at a member along a direction: the free degrees of freedom with their coefficients, and the sum of the given ones.
+pub(super) struct Along {
+    pub terms: Vec<(u64, f64)>,
+    pub given: f64,
+}
+
+impl PointRow {
+    /// The unit vector along which the row looks, in the order of the inequality.
+    pub(super) fn vector(&self, interfaces: &[Interface]) -> [f64; 3] {
+        let interface = &interfaces[self.interface];
+        match self.direction {
+            Direction::Component(c) => unit(c),
+            Direction::Normal if interface.order == [0, 1] => interface.normals[self.node],
+            Direction::Normal => interface.normals[self.node].map(|v| 0.0 - v),
+        }
+    }
+}
+
+/// The unit vector along component `c`.
+pub(super) fn unit(c: usize) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[c] = 1.0;
+    out
+}
+
 impl Member {
+    /// u along `direction` at this member.
+    pub(super) fn along(&self, bodies: &[Body], direction: [f64; 3]) -> Along {
+        let mut out = Along {
+            terms: Vec::new(),
+            given: 0.0,
+        };
+        for (c, n) in direction.into_iter().enumerate() {
+            // Normals of curved sides come with the rounding of their computation.
+            if c >= bodies[self.body].components || n.abs() < 1e-14 {
+                continue;
+            }
+            match self.given(bodies, c) {
+                Some(value) => out.given += n * value,
+                None => out.terms.push((self.dof(bodies, c), n)),
+            }
+        }
+        out
+    }
+
     /// The given value, if there is one.
-    pub(super) fn given(&self, bodies: &[Body]) -> Option<f64> {
-        bodies[self.body].prescribed_at(self.node)
+    pub(super) fn given(&self, bodies: &[Body], component: usize) -> Option<f64> {
+        let body = &bodies[self.body];
+        body.prescribed_at(self.node * body.components + component)
     }
 
     /// Its position.
-    pub(super) fn position(&self, bodies: &[Body]) -> [f64; 2] {
-        let mesh = bodies[self.body].mesh();
-        mesh.position(mesh.place(self.node))
+    pub(super) fn position(&self, bodies: &[Body]) -> [f64; 3] {
+        let spec = &bodies[self.body].spec;
+        spec.position(spec.mesh.place(self.node))
     }
 
     /// Its body dof.
-    pub(super) fn dof(&self, bodies: &[Body]) -> u64 {
-        bodies[self.body].first_dof + self.node as u64
+    pub(super) fn dof(&self, bodies: &[Body], component: usize) -> u64 {
+        let body = &bodies[self.body];
+        body.first_dof + (self.node * body.components + component) as u64
+    }
+
+    /// The position as messages name it.
+    pub(super) fn spot(&self, bodies: &[Body]) -> String {
+        let spec = &bodies[self.body].spec;
+        spec.spot(spec.mesh.place(self.node))
     }
 
     /// The point of these members, the lowest body first.
@@ -112,7 +183,7 @@ impl Member {
         let body = &bodies[first.body];
         let place = body.mesh().place(first.node);
         Point {
-            block: first.dof(bodies),
+            block: first.dof(bodies, 0),
             subdomain: body.first_subdomain + body.mesh().owner(place),
             tied_to: (0..members.len()).collect(),
             rows: Vec::new(),
@@ -146,7 +217,7 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Pair
                     body: interface.bodies[k],
                     node: shared.nodes[k],
                 };
-                *index.entry(member.dof(bodies)).or_insert_with(|| {
+                *index.entry(member.dof(bodies, 0)).or_insert_with(|| {
                     nodes.push(member);
                     sets.add()
                 })
@@ -190,7 +261,7 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Pair
 }
 
 /// Finds what is tied to what, and the pairs that get a row; contacts that say nothing are dropped later.
-fn close(point: &mut Point, links: &mut [PairLink]) {
+fn close(point: &mut Point, links: &mut [PairLink], components: usize) {
     point.tied_to = joined(point.members.len(), links, |l| l == Link::Tied);
     let may_join = joined(point.members.len(), links, |l| {
         matches!(l, Link::Tied | Link::Open)
@@ -205,17 +276,25 @@ fn close(point: &mut Point, links: &mut [PairLink]) {
         let open =
             (pair.link == Link::Open || by(&may_join)) && point.tied_to[a] != point.tied_to[b];
         if holds || open {
-            point.rows.push(PointRow {
-                members: if contact {
-                    pair.order.map(|k| pair.members[k])
-                } else {
-                    pair.members
-                },
+            let members = if contact {
+                pair.order.map(|k| pair.members[k])
+            } else {
+                pair.members
+            };
+            let row = |direction| PointRow {
+                members,
                 holds,
                 contact,
+                direction,
                 interface: pair.from[0],
                 node: pair.from[1],
-            });
+            };
+            if contact && components > 1 {
+                point.rows.push(row(Direction::Normal));
+            } else {
+                let each = (0..components).map(Direction::Component);
+                point.rows.extend(each.map(row));
+            }
         }
     }
 }
@@ -233,7 +312,12 @@ fn joined(n: usize, links: &[PairLink], counts: impl Fn(Link) -> bool) -> Vec<us
 }
 
 /// A node that is tied to a given value is given itself: adds it to `inherited`.
-fn prescribe(bodies: &[Body], point: &Point, inherited: &mut Vec<(Member, f64)>) -> Result<()> {
+fn prescribe(
+    bodies: &[Body],
+    point: &Point,
+    component: usize,
+    inherited: &mut Vec<(Member, usize, f64)>,
+) -> Result<()> {
     for root in 0..point.members.len() {
         if point.tied_to[root] != root {
             continue;
@@ -242,7 +326,7 @@ fn prescribe(bodies: &[Body], point: &Point, inherited: &mut Vec<(Member, f64)>)
             .filter(|&m| point.tied_to[m] == root)
             .map(|m| point.members[m])
             .collect();
-        let given: Vec<Option<f64>> = tied.iter().map(|m| m.given(bodies)).collect();
+        let given: Vec<Option<f64>> = tied.iter().map(|m| m.given(bodies, component)).collect();
         let Some((k, value)) = given
             .iter()
             .enumerate()
@@ -253,17 +337,17 @@ fn prescribe(bodies: &[Body], point: &Point, inherited: &mut Vec<(Member, f64)>)
         for (m, &own) in tied.iter().zip(&given) {
             match own {
                 Some(other) if !agree(value, other) => {
-                    let [x, y] = m.position(bodies);
                     return Err(Error::Input(format!(
-                        "{}bodies `{}` and `{}` are tied at ({x}, {y}), where they prescribe {value} and {other} \
+                        "{}bodies `{}` and `{}` are tied at {}, where they prescribe {value} and {other} \
                          (equal values were expected)",
                         bodies[m.body].spec.written,
                         bodies[tied[k].body].spec.name,
                         bodies[m.body].spec.name,
+                        m.spot(bodies),
                     )));
                 }
                 Some(_) => {}
-                None => inherited.push((*m, value)),
+                None => inherited.push((*m, component, value)),
             }
         }
     }

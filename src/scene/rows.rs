@@ -1,6 +1,6 @@
 //! B_gl: ties, contacts and obstacles row by row, and what they are called.
 
-use super::bounds::limits;
+use super::bounds::{ahead, limits};
 use super::points::{Member, Point, PointBound, PointRow};
 use super::steps::Factors;
 use super::Scene;
@@ -24,9 +24,11 @@ pub struct RowLabel {
     /// The nodes in the order of the inequality, also those whose value is given; an obstacle has one.
     pub members: [Option<Member>; 2],
     /// Their position.
-    pub point: [f64; 2],
-    /// Parameter along the common face or the side, 0 ≤ t ≤ 1.
-    pub t: f64,
+    pub point: [f64; 3],
+    /// Parameters along the common face or the side, 0 ≤ t ≤ 1; the second is 0 in the plane.
+    pub t: [f64; 2],
+    /// The vector n along which the row takes differences, in the order of the inequality.
+    pub direction: [f64; 3],
     /// The block of the row.
     pub block: u64,
 }
@@ -45,22 +47,15 @@ impl Scene {
     pub fn rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<InterfaceRow> {
         let last = Factors::last(&self.steps);
         self.each_row(owns, |point, row| {
-            let dof = |m: usize| point.members[m].dof(&self.bodies);
+            let (direction, _) = self.direction(point, &row);
+            let along = |m: usize| point.members[m].along(&self.bodies, direction).terms;
             let (terms, holds, inequality) = match row {
                 Row::Pair(r) => {
-                    let signs = r.members.into_iter().zip([1.0, -1.0]);
-                    let free =
-                        signs.filter(|&(m, _)| point.members[m].given(&self.bodies).is_none());
-                    (free.map(|(m, c)| (dof(m), c)).collect(), r.holds, r.contact)
+                    let [a, b] = r.members.map(along);
+                    let minus = b.into_iter().map(|(dof, n)| (dof, -n));
+                    (a.into_iter().chain(minus).collect(), r.holds, r.contact)
                 }
-                Row::Bound(b) => {
-                    let sign = if self.obstacles[b.obstacle].upper {
-                        1.0
-                    } else {
-                        -1.0
-                    };
-                    (vec![(dof(b.member), sign)], b.holds, true)
-                }
+                Row::Bound(b) => (along(b.member), b.holds, true),
             };
             InterfaceRow {
                 terms,
@@ -87,19 +82,20 @@ impl Scene {
                 ),
                 Row::Bound(b) => {
                     let member = point.members[b.member];
-                    let mesh = self.bodies[member.body].mesh();
                     (
                         RowSource::Obstacle(b.obstacle),
                         [Some(member), None],
-                        self.obstacles[b.obstacle].t(mesh, member.node),
+                        self.obstacles[b.obstacle].t(&self.bodies[member.body], member.node),
                     )
                 }
             };
+            let first = members[0].expect("every row has a first member");
             RowLabel {
                 source,
                 members,
-                point: point.members[0].position(&self.bodies),
+                point: first.position(&self.bodies),
                 t,
+                direction: self.direction(point, &row).0,
                 block: point.block,
             }
         })
@@ -137,19 +133,47 @@ impl Scene {
     }
 
     fn right_hand_side(&self, point: &Point, row: &Row<'_>, factors: &Factors<'_>) -> f64 {
+        let (direction, distance) = self.direction(point, row);
         let bound = match row {
             Row::Pair(r) if !r.contact => return 0.0,
             Row::Pair(r) => factors.tightest(self.interfaces[r.interface].limits.at(r.node)),
             Row::Bound(b) => factors.tightest(limits(&self.obstacles, point, b)),
         };
         let (mut g, _) = bound.expect("a row of an inequality has a bound");
-        if let Row::Pair(r) = row {
+        g += distance;
+        let given = |m: usize| {
+            let side = point.members[m].along(&self.bodies, direction);
+            side.given * factors.dirichlet()
+        };
+        match row {
             // u_a ≤ g + u_b, −u_b ≤ g − u_a
-            let [a, b] = r.members.map(|m| point.members[m].given(&self.bodies));
-            let d = factors.dirichlet();
-            g -= a.map_or(0.0, |v| v * d);
-            g += b.map_or(0.0, |v| v * d);
+            Row::Pair(r) => {
+                g -= given(r.members[0]);
+                g += given(r.members[1]);
+            }
+            Row::Bound(b) => g -= given(b.member),
         }
         g
+    }
+
+    /// The vector along which a row takes differences, and the distance that there is to begin with.
+    fn direction(&self, point: &Point, row: &Row<'_>) -> ([f64; 3], f64) {
+        match row {
+            Row::Pair(r) => {
+                let interface = &self.interfaces[r.interface];
+                let distance = if r.contact {
+                    interface.distances[r.node]
+                } else {
+                    0.0
+                };
+                (r.vector(&self.interfaces), distance)
+            }
+            Row::Bound(b) => {
+                let obstacle = &self.obstacles[b.obstacle];
+                let (distance, direction) =
+                    ahead(&self.bodies, obstacle, point.members[b.member]);
+                (direction, distance)
+            }
+        }
     }
 }

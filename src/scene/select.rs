@@ -12,7 +12,7 @@ const T_TOLERANCE: f64 = 1e-9;
 /// What an entry asks for and a face or side does not have.
 pub(super) enum Missing {
     /// A node at this t.
-    At(f64),
+    At([f64; 2]),
     /// A node of this number.
     Number(usize),
 }
@@ -20,34 +20,56 @@ pub(super) enum Missing {
 impl std::fmt::Display for Missing {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Missing::At(t) => write!(out, "t = {t}"),
+            Missing::At(t) => write!(out, "t = {}", Parameters(*t)),
             Missing::Number(k) => write!(out, "number {k}"),
         }
     }
 }
 
-fn inside(t: f64, [low, high]: [f64; 2]) -> bool {
-    low - T_TOLERANCE <= t && t <= high + T_TOLERANCE
+fn inside(t: [f64; 2], range: [[f64; 2]; 2]) -> bool {
+    t.into_iter()
+        .zip(range)
+        .all(|(t, [low, high])| low - T_TOLERANCE <= t && t <= high + T_TOLERANCE)
+}
+
+/// Parameters along a face as a user writes them: one number in the plane.
+pub(super) struct Parameters(pub [f64; 2]);
+
+impl std::fmt::Display for Parameters {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            [s, 0.0] => write!(out, "{s}"),
+            [s, t] => write!(out, "({s}, {t})"),
+        }
+    }
+}
+
+fn near(t: [f64; 2], wanted: [f64; 2]) -> bool {
+    (0..2).all(|k| (t[k] - wanted[k]).abs() <= TOLERANCE)
 }
 
 /// Whether `t` is an end of the range `extent`.
-pub(super) fn is_end(extent: &Extent, t: f64) -> bool {
+pub(super) fn is_end(extent: &Extent, t: [f64; 2]) -> bool {
     match extent {
-        Extent::Range(ends) => ends.iter().any(|end| (t - end).abs() <= T_TOLERANCE),
+        Extent::Range(ranges) => {
+            let at_end = |k: usize| ranges[k].iter().any(|end| (t[k] - end).abs() <= T_TOLERANCE);
+            // In the plane the second parameter is always 0.
+            at_end(0) || (t[1] != 0.0 && at_end(1))
+        }
         _ => false,
     }
 }
 
 /// The nodes that `extent` selects among nodes with parameters `t`, in increasing order.
-pub(super) fn pick(extent: &Extent, t: &[f64]) -> std::result::Result<Vec<usize>, Missing> {
+pub(super) fn pick(extent: &Extent, t: &[[f64; 2]]) -> std::result::Result<Vec<usize>, Missing> {
     let all = 0..t.len();
     let mut out: Vec<usize> = match extent {
         Extent::None => Vec::new(),
         Extent::All => all.collect(),
         Extent::Range(range) => all.filter(|&k| inside(t[k], *range)).collect(),
         Extent::Points(points) => {
-            let near = |wanted: f64| t.iter().position(|t| (t - wanted).abs() <= TOLERANCE);
-            let found = points.iter().map(|&p| near(p).ok_or(Missing::At(p)));
+            let find = |wanted| t.iter().position(|&t| near(t, wanted));
+            let found = points.iter().map(|&p| find(p).ok_or(Missing::At(p)));
             found.collect::<std::result::Result<_, _>>()?
         }
         Extent::Nodes(nodes) => match nodes.iter().find(|k| !all.contains(k)) {
@@ -71,7 +93,7 @@ pub(super) fn selected(
         // A contact of all pairs means faces: in a corner it has to be asked for by name.
         let meant = entry.contact.is_none() || *entry.pair != Pair::All;
         return Ok(if *extent == Extent::All && meant {
-            vec![0]
+            (0..interface.shared.len()).collect()
         } else {
             Vec::new()
         });
@@ -86,11 +108,10 @@ pub(super) fn selected(
     if let Some(lone) = lone {
         return Err(unmatched(bodies, interface, entry, lone));
     }
-    let t: Vec<f64> = interface.shared.iter().map(|s| s.t).collect();
+    let t: Vec<[f64; 2]> = interface.shared.iter().map(|s| s.t).collect();
     pick(extent, &t).map_err(|missing| {
         if let Missing::At(wanted) = missing {
-            let near = |u: &&(f64, usize, usize)| (u.0 - wanted).abs() <= TOLERANCE;
-            if let Some(lone) = interface.unmatched.iter().find(near) {
+            if let Some(lone) = interface.unmatched.iter().find(|u| near(u.0, wanted)) {
                 return unmatched(bodies, interface, entry, lone);
             }
         }
@@ -109,11 +130,12 @@ fn unmatched(
     bodies: &[Body],
     interface: &Interface,
     entry: &Entry<'_>,
-    &(t, side, node): &(f64, usize, usize),
+    &(t, side, node): &([f64; 2], usize, usize),
 ) -> Error {
     let has = &bodies[interface.bodies[side]];
     let other = &bodies[interface.bodies[1 - side]];
-    let [x, y] = has.mesh().position(has.mesh().place(node));
+    let at = has.spec.spot(has.mesh().place(node));
+    let t = Parameters(t);
     // The later of the two bodies is the one that was put beside the other.
     let later = &bodies[interface.bodies[1]].spec.written;
     let place = if entry.written.is_empty() {
@@ -126,7 +148,7 @@ fn unmatched(
         Some(_) => ("are in contact", "contact face"),
     };
     Error::Input(format!(
-        "{place}bodies `{}` and `{}` {are}, but node ({x}, {y}) of `{}` (t = {t}) meets no node of `{}` \
+        "{place}bodies `{}` and `{}` {are}, but node {at} of `{}` (t = {t}) meets no node of `{}` \
          (matching nodes were expected on a {face})",
         bodies[interface.bodies[0]].spec.name,
         bodies[interface.bodies[1]].spec.name,

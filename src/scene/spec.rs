@@ -6,36 +6,68 @@ use super::field::{Field, Region};
 use super::profile::Profile;
 use super::steps::{Ramp, StepsSpec};
 use crate::fem::Quadrature;
-use crate::mesh::BoxMesh;
+use super::map::Map;
+use super::rigid::Rigid;
+use crate::fem::Form;
+use crate::mesh::{places, BoxMesh};
 
-/// The load f of a body.
+/// The load of a body: a source, or a force per volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// f(x, y).
-    pub field: Field,
+    /// f(x, y, z), one field per component; one alone stands for the first component.
+    pub fields: Vec<Field>,
     /// How ∫ f N_a is computed.
     pub quadrature: Quadrature,
 }
 
 impl Load {
-    /// The constant load `value`.
+    /// The constant scalar load `value`.
     pub fn constant(value: f64) -> Load {
+        Load::scalar(Field::constant(value))
+    }
+
+    /// A scalar load, by the midpoint rule.
+    pub fn scalar(field: Field) -> Load {
         Load {
-            field: Field::constant(value),
+            fields: vec![field],
             quadrature: Quadrature::Midpoint,
         }
     }
 }
 
-/// Dirichlet values on the sides left, right, bottom, top; `None`: the side is free.
-pub type Sides = [Option<Field>; 4];
+/// What acts on a side of a body: a flux, or a force per area.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceLoad {
+    /// Index into [`SIDES`].
+    pub side: usize,
+    /// The force.
+    pub force: Force,
+}
 
-/// Names of the sides, in the order of [`Sides`].
-pub const SIDES: [&str; 4] = ["left", "right", "bottom", "top"];
+/// A force per area.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Force {
+    /// By components; of a scalar problem the flux into the body.
+    Traction(Vec<Field>),
+    /// Against the outer normal.
+    Pressure(Field),
+}
 
-/// u = 0 on all four sides.
+/// Given values on the sides left, right, bottom, top, back, front, by component; `None`: this component is free there. A scalar
+/// has the first component only.
+pub type Sides = [[Option<Field>; 3]; 6];
+
+/// Names of the sides, in the order of [`Sides`]; the last two only in three dimensions.
+pub const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
+
+/// No side is held.
+pub fn free_all_round() -> Sides {
+    [const { [const { None }; 3] }; 6]
+}
+
+/// u = 0 on all sides, in all components.
 pub fn held_all_round() -> Sides {
-    [(); 4].map(|()| Some(Field::constant(0.0)))
+    [(); 6].map(|()| [(); 3].map(|()| Some(Field::constant(0.0))))
 }
 
 /// One body.
@@ -45,56 +77,93 @@ pub struct BodySpec {
     pub name: String,
     /// Box, elements and subdomains.
     pub mesh: BoxMesh,
-    /// Coefficient ρ, > 0; taken at element midpoints.
+    /// How the box is bent into shape; `None`: not at all.
+    pub map: Option<Map>,
+    /// Coefficient ρ, in elasticity Young's modulus, > 0; taken at element midpoints.
     pub rho: Field,
+    /// Poisson's ratio, between −1 and ½; of no account in scalar problems.
+    pub poisson: Field,
     /// Load f.
     pub load: Load,
-    /// Factor of the load over the load steps; `None`: that of all loads.
+    /// Loads on its sides.
+    pub surface: Vec<SurfaceLoad>,
+    /// Factor of the loads over the load steps; `None`: that of all loads.
     pub ramp: Option<Ramp>,
     /// Dirichlet conditions.
     pub dirichlet: Sides,
-    /// Column and row in its grid, (0, 0) outside a grid: the variables `bi` and `bj`.
-    pub place: [usize; 2],
+    /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
+    pub place: [usize; 3],
     /// Where it was written ("scene.toml:12: "), or empty.
     pub written: String,
 }
 
 impl BodySpec {
-    /// A body with ρ = 1, no load and no Dirichlet side.
+    /// A body with ρ = 1 (ν = 0.3), no load and no Dirichlet side.
     pub fn new(name: impl Into<String>, mesh: BoxMesh) -> BodySpec {
         BodySpec {
             name: name.into(),
             mesh,
+            map: None,
             rho: Field::constant(1.0),
+            poisson: Field::constant(POISSON),
             load: Load::constant(0.0),
+            surface: Vec::new(),
             ramp: None,
-            dirichlet: [None, None, None, None],
-            place: [0, 0],
+            dirichlet: free_all_round(),
+            place: [0; 3],
             written: String::new(),
+        }
+    }
+
+    /// Position of the node at a place.
+    pub fn position(&self, place: [usize; 3]) -> [f64; 3] {
+        let point = self.mesh.position(place);
+        self.map.as_ref().map_or(point, |map| map.apply(point))
+    }
+
+    /// The position of the node at a place as messages name it: "(x, y)" or "(x, y, z)".
+    pub(super) fn spot(&self, place: [usize; 3]) -> String {
+        self.spot_at(self.position(place))
+    }
+
+    /// A point as messages name it.
+    pub(super) fn spot_at(&self, [x, y, z]: [f64; 3]) -> String {
+        match self.mesh.dim() {
+            2 => format!("({x}, {y})"),
+            _ => format!("({x}, {y}, {z})"),
         }
     }
 }
 
-/// A rectangle cut into `bodies[0]` × `bodies[1]` equal bodies.
+/// Poisson's ratio where none is given.
+pub const POISSON: f64 = 0.3;
+
+/// A box cut into `bodies[0]` × `bodies[1]` (× `bodies[2]`) equal bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridSpec {
-    /// Bodies are named `<name><i>_<j>`, column i and row j.
+    /// Bodies are named `<name><i>_<j>` (`<name><i>_<j>_<k>` in three dimensions), column i, row j and layer k.
     pub name: String,
-    /// Bodies in x and y.
-    pub bodies: [usize; 2],
+    /// Bodies in x, y and z.
+    pub bodies: [usize; 3],
     /// Lower left corner of the whole grid.
-    pub origin: [f64; 2],
-    /// Width and height of the whole grid.
-    pub size: [f64; 2],
-    /// Elements of every body.
-    pub elements: [usize; 2],
+    pub origin: [f64; 3],
+    /// Edge lengths of the whole grid; 0 in z in the plane.
+    pub size: [f64; 3],
+    /// How the whole grid is bent into shape.
+    pub map: Option<Map>,
+    /// Elements of every body; 0 in z in the plane.
+    pub elements: [usize; 3],
     /// Subdomains of every body.
-    pub subdomains: [usize; 2],
-    /// Coefficient ρ.
+    pub subdomains: [usize; 3],
+    /// Coefficient ρ, or Young's modulus.
     pub rho: Field,
+    /// Poisson's ratio.
+    pub poisson: Field,
     /// Load f.
     pub load: Load,
-    /// Factor of the load over the load steps; `None`: that of all loads.
+    /// Loads on the outer sides of the whole grid.
+    pub surface: Vec<SurfaceLoad>,
+    /// Factor of the loads over the load steps; `None`: that of all loads.
     pub ramp: Option<Ramp>,
     /// Dirichlet conditions on the outer sides of the whole grid.
     pub dirichlet: Sides,
@@ -106,56 +175,73 @@ impl GridSpec {
     /// The unit square, held all round, with ρ = 1 and f = 1.
     pub fn unit_square(bodies: [usize; 2], subdomains: [usize; 2], elements: [usize; 2]) -> Self {
         GridSpec {
+            bodies: [bodies[0], bodies[1], 1],
+            size: [1.0, 1.0, 0.0],
+            elements: [elements[0], elements[1], 0],
+            subdomains: [subdomains[0], subdomains[1], 1],
+            ..GridSpec::unit_cube([1; 3], [1; 3], [1; 3])
+        }
+    }
+
+    /// The unit cube, held all round, with ρ = 1 and f = 1.
+    pub fn unit_cube(bodies: [usize; 3], subdomains: [usize; 3], elements: [usize; 3]) -> Self {
+        GridSpec {
             name: "b".into(),
             bodies,
-            origin: [0.0, 0.0],
-            size: [1.0, 1.0],
+            origin: [0.0; 3],
+            size: [1.0; 3],
+            map: None,
             elements,
             subdomains,
             rho: Field::constant(1.0),
+            poisson: Field::constant(POISSON),
             load: Load::constant(1.0),
+            surface: Vec::new(),
             ramp: None,
             dirichlet: held_all_round(),
             written: String::new(),
         }
     }
 
-    /// Its bodies, row by row.
+    /// Its bodies, layer by layer and row by row.
     pub fn expand(&self) -> Vec<BodySpec> {
         // The same bits for every body: equal subdomains then have equal matrices.
-        let size = [0, 1].map(|d| self.size[d] / self.bodies[d] as f64);
-        let mut out = Vec::with_capacity(self.bodies[0] * self.bodies[1]);
-        for j in 0..self.bodies[1] {
-            for i in 0..self.bodies[0] {
-                let place = [i, j];
-                let outer = [
-                    i == 0,
-                    i + 1 == self.bodies[0],
-                    j == 0,
-                    j + 1 == self.bodies[1],
-                ];
-                let side = |s: usize| self.dirichlet[s].clone().filter(|_| outer[s]);
-                out.push(BodySpec {
-                    name: format!("{}{i}_{j}", self.name),
-                    mesh: BoxMesh {
-                        origin: [0, 1].map(|d| {
-                            self.origin[d]
-                                + self.size[d] * (place[d] as f64 / self.bodies[d] as f64)
-                        }),
-                        size,
-                        elements: self.elements,
-                        subdomains: self.subdomains,
-                    },
-                    rho: self.rho.clone(),
-                    load: self.load.clone(),
-                    ramp: self.ramp.clone(),
-                    dirichlet: [side(0), side(1), side(2), side(3)],
-                    place,
-                    written: self.written.clone(),
-                });
+        let size = [0, 1, 2].map(|d| self.size[d] / self.bodies[d] as f64);
+        let solid = self.elements[2] > 0;
+        let body = |place: [usize; 3]| {
+            let outer = |s: usize| place[s / 2] == [0, self.bodies[s / 2] - 1][s % 2];
+            let mut dirichlet = self.dirichlet.clone();
+            for (s, side) in dirichlet.iter_mut().enumerate() {
+                if !outer(s) {
+                    *side = [const { None }; 3];
+                }
             }
-        }
-        out
+            let [i, j, k] = place;
+            BodySpec {
+                name: match solid {
+                    false => format!("{}{i}_{j}", self.name),
+                    true => format!("{}{i}_{j}_{k}", self.name),
+                },
+                mesh: BoxMesh {
+                    origin: [0, 1, 2].map(|d| {
+                        self.origin[d] + self.size[d] * (place[d] as f64 / self.bodies[d] as f64)
+                    }),
+                    size,
+                    elements: self.elements,
+                    subdomains: self.subdomains,
+                },
+                map: self.map.clone(),
+                rho: self.rho.clone(),
+                poisson: self.poisson.clone(),
+                load: self.load.clone(),
+                surface: self.surface.iter().filter(|l| outer(l.side)).cloned().collect(),
+                ramp: self.ramp.clone(),
+                dirichlet,
+                place,
+                written: self.written.clone(),
+            }
+        };
+        places(self.bodies).map(body).collect()
     }
 }
 
@@ -168,18 +254,18 @@ pub enum Pair {
     Named(String, String),
 }
 
-/// Which nodes of a common face (or of a side) an entry speaks of. The parameter t runs from 0 to 1 along the common face, in the direction
-/// of increasing x or y.
+/// Which nodes of a common face (or of a side) an entry speaks of. The parameters run from 0 to 1 along the common face, in the
+/// directions of increasing x, y or z: one (t) in the plane, two in three dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Extent {
     /// All nodes, and corners at which bodies only meet in a point.
     All,
     /// None.
     None,
-    /// Nodes with t0 ≤ t ≤ t1.
-    Range([f64; 2]),
-    /// The nodes at these t.
-    Points(Vec<f64>),
+    /// Nodes with t0 ≤ t ≤ t1, for each parameter.
+    Range([[f64; 2]; 2]),
+    /// The nodes at these parameters (the second is 0 in the plane).
+    Points(Vec<[f64; 2]>),
     /// The nodes with these numbers, counted from 0 along the common face.
     Nodes(Vec<usize>),
 }
@@ -195,14 +281,17 @@ pub struct TieSpec {
     pub written: String,
 }
 
-/// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the first.
+/// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the first; in
+/// elasticity n·(u_first − u_second) ≤ g with the normal n that points out of the first body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSpec {
     /// The bodies; the order of the names is that of the inequality, the lower number is first where none are named.
     pub pair: Pair,
+    /// The sides that face each other, in the order of the names, where the bodies do not touch; `None`: their common faces.
+    pub sides: Option<[usize; 2]>,
     /// The part of their common face.
     pub extent: Extent,
-    /// The gap g, of either sign.
+    /// The gap g, of either sign; it adds to the distance of the sides.
     pub gap: Profile,
     /// Factor of the gap over the load steps; `None`: that of all gaps.
     pub ramp: Option<Ramp>,
@@ -223,6 +312,10 @@ pub struct ObstacleSpec {
     pub below: Option<Profile>,
     /// The upper bound, if there is one.
     pub above: Option<Profile>,
+    /// In elasticity, the rigid body that the sides cannot enter.
+    pub rigid: Option<Rigid>,
+    /// What is added to the distance from the rigid body.
+    pub gap: Profile,
     /// Factor of the bounds over the load steps; `None`: that of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, or empty.
@@ -246,6 +339,8 @@ pub enum ByDefault {
 pub struct SceneSpec {
     /// A title for reports.
     pub title: String,
+    /// What is solved, and by which elements.
+    pub form: Form,
     /// The bodies, in the order of their numbers.
     pub bodies: Vec<BodySpec>,
     /// Bodies that touch and that no entry of `ties` or `contacts` speaks of.
@@ -259,8 +354,8 @@ pub struct SceneSpec {
     pub obstacles: Vec<ObstacleSpec>,
     /// Load steps; `None`: everything is applied at once.
     pub steps: Option<StepsSpec>,
-    /// The exact solution, if it is known.
-    pub exact: Option<Expr>,
+    /// The exact solution by components, if it is known.
+    pub exact: Option<Vec<Expr>>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
     pub options: Vec<(String, String)>,
 }
@@ -270,6 +365,7 @@ impl SceneSpec {
     pub fn tied(title: impl Into<String>, bodies: Vec<BodySpec>) -> SceneSpec {
         SceneSpec {
             title: title.into(),
+            form: Form::default(),
             bodies,
             default: ByDefault::Tied,
             ties: Vec::new(),
@@ -298,16 +394,17 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
     let region = |x, y, value| Region {
         x: Some(x),
         y: Some(y),
+        z: None,
         value: Expr::constant(value),
     };
     grid.load = Load {
-        field: Field::Regions {
+        fields: vec![Field::Regions {
             list: vec![
                 region([0.0, 0.5], [0.75, 1.0], -3.0),
                 region([0.5, 1.0], [0.0, 0.25], -1.0),
             ],
             otherwise: Expr::constant(0.0),
-        },
+        }],
         quadrature: Quadrature::Midpoint,
     };
     let column = match faces {
@@ -322,7 +419,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
         if bodies > 1 {
             spec.ties.push(TieSpec {
                 pair: Pair::All,
-                extent: Extent::Range([1.0 / 3.0, 2.0 / 3.0]),
+                extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0]; 2]),
                 written: String::new(),
             });
         }

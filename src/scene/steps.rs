@@ -28,7 +28,7 @@ impl Ramp {
     pub fn at(&self, t: f64) -> f64 {
         // The expression was parsed with t as its first variable.
         self.0.eval(&Variables {
-            point: [t, 0.0],
+            point: [t, 0.0, 0.0],
             ..Variables::default()
         })
     }

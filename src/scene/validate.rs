@@ -1,10 +1,12 @@
 //! Checks of a scene that look at one body at a time.
 
 use super::field::{At, Field};
-use super::spec::{BodySpec, SceneSpec, SIDES};
+use super::spec::{BodySpec, Force, SceneSpec, SIDES};
 use super::{Body, Variables};
 use crate::error::{Error, Result};
-use crate::mesh::BoxMesh;
+use crate::fem::cell::jacobian_is_positive;
+use crate::fem::Form;
+use crate::mesh::{places, BoxMesh};
 use std::collections::HashMap;
 
 /// Largest number of bodies: a scene keeps a record for each of them.
@@ -26,9 +28,20 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
     }
     let mut names: HashMap<&str, &BodySpec> = HashMap::with_capacity(spec.bodies.len());
     let mut subdomains = 0;
+    let dim = spec.bodies[0].mesh.dim();
     for body in &spec.bodies {
+        if body.mesh.dim() != dim {
+            return fail(
+                body,
+                format_args!(
+                    "{} dimensions where {dim} were expected, as in the bodies before",
+                    body.mesh.dim()
+                ),
+            );
+        }
         check_mesh(body)?;
-        check_values(body)?;
+        check_values(body, &spec.form)?;
+        check_shape(body, &spec.form)?;
         if names.insert(&body.name, body).is_some() {
             return fail(body, "a second body of this name (names must be unique)");
         }
@@ -57,8 +70,8 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
         elements,
         subdomains,
     } = body.mesh;
-    for d in 0..2 {
-        let axis = ["x", "y"][d];
+    for d in 0..body.mesh.dim() {
+        let axis = ["x", "y", "z"][d];
         if !origin[d].is_finite() {
             return fail(
                 body,
@@ -107,29 +120,62 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
         }
     }
     let block = body.mesh.block_elements();
-    if (block[0] + 1).saturating_mul(block[1] + 1) >= u32::MAX as usize {
+    let nodes = block.iter().fold(3_usize, |n, b| n.saturating_mul(b + 1));
+    if nodes >= u32::MAX as usize {
+        let counts: Vec<String> = block[..body.mesh.dim()]
+            .iter()
+            .map(|n| n.to_string())
+            .collect();
         return fail(
             body,
             format_args!(
-                "a subdomain of {} × {} elements is too large (more subdomains were expected)",
-                block[0], block[1]
+                "a subdomain of {} elements is too large (more subdomains were expected)",
+                counts.join(" × ")
             ),
         );
     }
     Ok(())
 }
 
-/// Values that are written down are checked here, values that have to be computed are checked when they are.
-fn check_values(body: &BodySpec) -> Result<()> {
+/// Values that do not depend on the point.
+fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
     for value in body.rho.known_values() {
         if !is_coefficient(value) {
+            let name = coefficient(form);
             return fail(
                 body,
-                format_args!("ρ = {value} where a positive number was expected"),
+                format_args!("{name} = {value} where a positive number was expected"),
             );
         }
     }
-    for value in body.load.field.known_values() {
+    for value in body.poisson.known_values() {
+        if form.is_elastic() && !is_ratio(value) {
+            return fail(body, format_args!("ν = {value} where {RATIO} was expected"));
+        }
+    }
+    let components = form.components(body.mesh.dim());
+    let count = |n: usize, what: &str| match n == components || n == 1 && components == 1 {
+        true => Ok(()),
+        false => fail(
+            body,
+            format_args!("{what} of {n} components where {components} were expected"),
+        ),
+    };
+    let none = body.load.fields.len() == 1 && body.load.fields[0].as_constant() == Some(0.0);
+    if !none {
+        count(body.load.fields.len(), "a load")?;
+    }
+    let mut fields: Vec<&Field> = body.load.fields.iter().collect();
+    for load in &body.surface {
+        match &load.force {
+            Force::Traction(list) => {
+                count(list.len(), "a traction")?;
+                fields.extend(list);
+            }
+            Force::Pressure(p) => fields.push(p),
+        }
+    }
+    for value in fields.into_iter().flat_map(Field::known_values) {
         if !value.is_finite() {
             return fail(
                 body,
@@ -140,90 +186,157 @@ fn check_values(body: &BodySpec) -> Result<()> {
     Ok(())
 }
 
+/// Whether a bent body has positive elements everywhere.
+fn check_shape(body: &BodySpec, form: &Form) -> Result<()> {
+    if body.map.is_none() {
+        return Ok(());
+    }
+    let mesh = &body.mesh;
+    let corners = 1 << mesh.dim();
+    for place in places(mesh.elements.map(|n| n.max(1))) {
+        let points: Vec<[f64; 3]> = (0..corners)
+            .map(|a| body.position([0, 1, 2].map(|d| place[d] + (a >> d & 1))))
+            .collect();
+        if let Some(p) = points.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
+            return fail(
+                body,
+                format_args!("its shape puts a node at {} where finite numbers were expected", body.spot_at(*p)),
+            );
+        }
+        if !jacobian_is_positive(mesh.dim(), &points, form.element) {
+            return fail(
+                body,
+                format_args!(
+                    "its shape turns the element at {} inside out (a map that keeps the orientation was expected)",
+                    body.spot_at(points[0])
+                ),
+            );
+        }
+    }
+    Ok(())
+}
+
+const RATIO: &str = "a number above -1 and below 1/2";
+
+fn is_ratio(value: f64) -> bool {
+    value > -1.0 && value < 0.5
+}
+
+/// What the coefficient is called.
+fn coefficient(form: &Form) -> &'static str {
+    match form.is_elastic() {
+        true => "E",
+        false => "ρ",
+    }
+}
+
 fn is_coefficient(value: f64) -> bool {
     value.is_finite() && value > 0.0
 }
 
-/// ρ in an element with midpoint `point`, checked.
-pub(super) fn checked_rho(body: &BodySpec, value: f64, point: [f64; 2]) -> Result<f64> {
+/// A value of ρ or E at a point, checked.
+pub(super) fn checked_rho(
+    body: &BodySpec,
+    form: &Form,
+    value: f64,
+    point: [f64; 3],
+) -> Result<f64> {
     if is_coefficient(value) {
-        Ok(value)
-    } else {
-        let [x, y] = point;
-        fail(
-            body,
-            format_args!("ρ = {value} at ({x}, {y}) where a positive number was expected"),
-        )
+        return Ok(value);
     }
-}
-
-/// An error for a load that is not finite.
-pub(super) fn bad_load<T>(body: &BodySpec, value: f64, [x, y]: [f64; 2]) -> Result<T> {
+    let (name, at) = (coefficient(form), body.spot_at(point));
     fail(
         body,
-        format_args!("load {value} at ({x}, {y}) where a finite number was expected"),
+        format_args!("{name} = {value} at {at} where a positive number was expected"),
     )
 }
 
-/// The nodes on Dirichlet sides with their values, in increasing order.
+/// A value of Poisson's ratio at a point, checked.
+pub(super) fn checked_poisson(body: &BodySpec, value: f64, point: [f64; 3]) -> Result<f64> {
+    if is_ratio(value) {
+        return Ok(value);
+    }
+    let at = body.spot_at(point);
+    fail(
+        body,
+        format_args!("ν = {value} at {at} where {RATIO} was expected"),
+    )
+}
+
+/// The error for a load that is not finite.
+pub(super) fn bad_load<T>(body: &BodySpec, value: f64, point: [f64; 3]) -> Result<T> {
+    let at = body.spot_at(point);
+    fail(
+        body,
+        format_args!("load {value} at {at} where a finite number was expected"),
+    )
+}
+
+/// Degrees of freedom with a value given by a side, in increasing order: C k + c for component c of node k.
 ///
-/// Two sides must agree at their common corner: a jump of the boundary values has infinite energy.
-pub(super) fn dirichlet_nodes(body: &BodySpec) -> Result<Vec<(usize, f64)>> {
+/// # Errors
+/// A value that is not finite, or two sides that disagree where they meet.
+pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(usize, f64)>> {
     let mesh = &body.mesh;
     let mut out: Vec<(usize, f64)> = Vec::new();
-    if body.dirichlet.iter().all(Option::is_none) {
+    if body.dirichlet.iter().flatten().all(Option::is_none) {
         return Ok(out);
     }
-    let side_value = |field: &Field, place| {
-        field.eval(&At {
+    for place in mesh.boundary() {
+        let at = At {
             variables: Variables {
-                point: mesh.position(place),
+                point: body.position(place),
                 body: body.place,
-                subdomain: [0, 0],
+                subdomain: [0; 3],
             },
             subdomains: mesh.subdomains,
-        })
-    };
-    for place in mesh.boundary() {
-        let mut found: Option<(usize, f64)> = None;
-        for side in mesh.sides(place) {
-            let Some(field) = &body.dirichlet[side] else {
-                continue;
-            };
-            let value = side_value(field, place);
-            let [x, y] = mesh.position(place);
-            if !value.is_finite() {
-                return fail(
-                    body,
-                    format_args!("Dirichlet value {value} at ({x}, {y}) on side {} where a finite number was expected", SIDES[side]),
-                );
-            }
-            match found {
-                Some((other, given)) if !agree(given, value) => {
+        };
+        for component in 0..components {
+            let mut found: Option<(usize, f64)> = None;
+            for side in mesh.sides(place) {
+                let Some(field) = &body.dirichlet[side][component] else {
+                    continue;
+                };
+                let value = field.eval(&at);
+                if !value.is_finite() {
                     return fail(
                         body,
                         format_args!(
-                            "sides {} and {} prescribe {given} and {value} at their common corner ({x}, {y}) (equal values were expected)",
-                            SIDES[other], SIDES[side]
+                            "Dirichlet value {value} at {} on side {} where a finite number was expected",
+                            body.spot(place),
+                            SIDES[side]
                         ),
                     );
                 }
-                Some(_) => {}
-                None => found = Some((side, value)),
+                match found {
+                    Some((other, given)) if !agree(given, value) => {
+                        return fail(
+                            body,
+                            format_args!(
+                                "sides {} and {} prescribe {given} and {value} at their common corner {} (equal values were expected)",
+                                SIDES[other],
+                                SIDES[side],
+                                body.spot(place)
+                            ),
+                        );
+                    }
+                    Some(_) => {}
+                    None => found = Some((side, value)),
+                }
             }
-        }
-        if let Some((_, value)) = found {
-            out.push((mesh.node(place), value));
+            if let Some((_, value)) = found {
+                out.push((mesh.node(place) * components + component, value));
+            }
         }
     }
     Ok(out)
 }
 
-/// An error when no unknown is left in the whole scene.
+/// An error if no degree of freedom is free.
 pub(super) fn check_unknowns(bodies: &[Body]) -> Result<()> {
     if bodies
         .iter()
-        .any(|b| b.prescribed.len() < b.mesh().n_nodes())
+        .any(|b| b.prescribed.len() < b.mesh().n_nodes() * b.components)
     {
         return Ok(());
     }

@@ -176,14 +176,14 @@ fn bodies(rng: &mut Rng, shape: [usize; 2]) -> Vec<BodySpec> {
     let mut out = Vec::new();
     for (j, row) in rows.iter().enumerate() {
         for (i, column) in columns.iter().enumerate() {
-            let mesh = BoxMesh {
-                origin: [column.0, row.0],
-                size: [column.1, row.1],
-                elements: [column.2, row.2],
-                subdomains: [column.3, row.3],
-            };
+            let mesh = BoxMesh::plane(
+                [column.0, row.0],
+                [column.1, row.1],
+                [column.2, row.2],
+                [column.3, row.3],
+            );
             let mut body = BodySpec::new(format!("b{i}_{j}"), mesh);
-            body.place = [i, j];
+            body.place = [i, j, 0];
             body.rho = rho(rng, jumps);
             if !quiet || out.is_empty() {
                 body.load = load(rng, &mesh, down);
@@ -196,7 +196,7 @@ fn bodies(rng: &mut Rng, shape: [usize; 2]) -> Vec<BodySpec> {
                 sides.push(rng.below(4));
             }
             for side in sides {
-                body.dirichlet[side] = Some(match rng.below(4) {
+                body.dirichlet[side][0] = Some(match rng.below(4) {
                     0 => Field::constant(number(rng, -0.2, 0.2)),
                     1 => Field::Expression(expression("0.1*sin(3*x + 2*y)")),
                     _ => Field::constant(0.0),
@@ -226,8 +226,8 @@ fn rho(rng: &mut Rng, jumps: bool) -> Field {
 
 /// A load: mostly downwards, or of mean value about zero.
 fn load(rng: &mut Rng, mesh: &BoxMesh, down: bool) -> Load {
-    let [x, y] = mesh.origin;
-    let [w, h] = mesh.size;
+    let [x, y, _] = mesh.origin;
+    let [w, h, _] = mesh.size;
     let mean = if down {
         -number(rng, 0.2, 2.0)
     } else {
@@ -245,6 +245,7 @@ fn load(rng: &mut Rng, mesh: &BoxMesh, down: bool) -> Load {
             list: vec![Region {
                 x: None,
                 y: Some([y, y + h / 2.0]),
+                z: None,
                 value: Expr::constant(2.0 * mean),
             }],
             otherwise: Expr::constant(0.0),
@@ -254,9 +255,13 @@ fn load(rng: &mut Rng, mesh: &BoxMesh, down: bool) -> Load {
         _ => Field::Expression(expression(&format!("{mean} + 0.5*sin(5*x + 7*y)"))),
     };
     Load {
-        field,
+        fields: vec![field],
         quadrature: *rng.pick(&[Quadrature::Midpoint, Quadrature::Gauss]),
     }
+}
+
+fn range(low: f64, high: f64) -> Extent {
+    Extent::Range([[low, high], [0.0, 1.0]])
 }
 
 /// A gap: zero, of one sign, a table or an expression of either sign. `tame`: never negative on a whole face.
@@ -276,7 +281,7 @@ fn gap(rng: &mut Rng, tame: bool) -> Profile {
 /// What joins two bodies on their common face.
 fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, tame: bool) {
     let names = pair.map(|k| spec.bodies[k].name.clone());
-    let (low, high) = (Extent::Range([0.0, 0.4]), Extent::Range([0.4, 1.0]));
+    let (low, high) = (range(0.0, 0.4), range(0.4, 1.0));
     let tie = |spec: &mut SceneSpec, extent: Extent| {
         let [a, b] = names.clone();
         spec.ties.push(TieSpec {
@@ -344,12 +349,14 @@ fn obstacles(rng: &mut Rng, spec: &mut SceneSpec, tame: bool) {
                 vec![rng.below(4)]
             },
             extent: if rng.one_in(3) {
-                Extent::Range([0.25, 0.8])
+                range(0.25, 0.8)
             } else {
                 Extent::All
             },
             below,
             above,
+            rigid: None,
+            gap: Profile::constant(0.0),
             ramp: None,
             written: String::new(),
         });

@@ -10,20 +10,20 @@ use super::dual::{Dual, Real};
 use std::fmt;
 
 /// Names of the variables, in the order of [`Variables`].
-const VARIABLES: [&str; 6] = ["x", "y", "bi", "bj", "si", "sj"];
+const VARIABLES: [&str; 9] = ["x", "y", "z", "bi", "bj", "bk", "si", "sj", "sk"];
 
 /// Where an expression is evaluated.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Variables {
-    /// The point (x, y).
-    pub point: [f64; 2],
-    /// Column and row of the body in its grid (`bi`, `bj`); zero for a body outside a grid.
-    pub body: [usize; 2],
-    /// Column and row of the subdomain in its body (`si`, `sj`).
-    pub subdomain: [usize; 2],
+    /// The point (x, y, z).
+    pub point: [f64; 3],
+    /// Place of the body in its grid (`bi`, `bj`, `bk`); zero for a body outside a grid.
+    pub body: [usize; 3],
+    /// Place of the subdomain in its body (`si`, `sj`, `sk`).
+    pub subdomain: [usize; 3],
 }
 
-/// An expression in x, y, bi, bj, si, sj.
+/// An expression in x, y, z, bi, bj, bk, si, sj, sk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expr {
     text: String,
@@ -73,7 +73,7 @@ impl Expr {
         Expr::parse_in(text, &VARIABLES)
     }
 
-    /// The expression written as `text`, with other names (at most six) for the variables.
+    /// The expression written as `text`, with other names (at most nine) for the variables.
     pub(super) fn parse_in(text: &str, variables: &[&str]) -> Result<Expr, String> {
         let root = parse::parse(text, variables)?;
         Ok(Expr {
@@ -114,33 +114,40 @@ impl Expr {
             &[
                 at.point[0],
                 at.point[1],
+                at.point[2],
                 at.body[0] as f64,
                 at.body[1] as f64,
+                at.body[2] as f64,
                 at.subdomain[0] as f64,
                 at.subdomain[1] as f64,
+                at.subdomain[2] as f64,
             ],
         )
     }
 
-    /// The value and the gradient by (x, y) at `at`.
+    /// The value and the gradient by (x, y, z) at `at`.
     pub fn eval_gradient(&self, at: &Variables) -> Dual {
-        let [x, y] = at.point;
+        let along = |d: usize| {
+            let mut gradient = [0.0; 3];
+            gradient[d] = 1.0;
+            Dual {
+                value: at.point[d],
+                gradient,
+            }
+        };
         let constant = |k: usize| Dual::constant(k as f64);
         evaluate(
             &self.root,
             &[
-                Dual {
-                    value: x,
-                    gradient: [1.0, 0.0],
-                },
-                Dual {
-                    value: y,
-                    gradient: [0.0, 1.0],
-                },
+                along(0),
+                along(1),
+                along(2),
                 constant(at.body[0]),
                 constant(at.body[1]),
+                constant(at.body[2]),
                 constant(at.subdomain[0]),
                 constant(at.subdomain[1]),
+                constant(at.subdomain[2]),
             ],
         )
     }
@@ -152,7 +159,7 @@ impl fmt::Display for Expr {
     }
 }
 
-fn evaluate<T: Real>(ast: &Ast, variables: &[T; 6]) -> T {
+fn evaluate<T: Real>(ast: &Ast, variables: &[T; 9]) -> T {
     match ast {
         Ast::Number(value) => T::constant(*value),
         Ast::Variable(k) => variables[*k],
@@ -259,9 +266,9 @@ mod tests {
 
     fn at(x: f64, y: f64) -> Variables {
         Variables {
-            point: [x, y],
-            body: [2, 3],
-            subdomain: [4, 5],
+            point: [x, y, 0.0],
+            body: [2, 3, 0],
+            subdomain: [4, 5, 0],
         }
     }
 

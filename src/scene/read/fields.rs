@@ -6,16 +6,15 @@ use crate::fem::Quadrature;
 use crate::scene::document::{Item, Section, Value};
 use crate::scene::expr::Expr;
 use crate::scene::field::{By, Field, Region};
-use crate::scene::spec::{held_all_round, Sides, SIDES};
 
 /// What tables of values are checked against.
 pub(super) struct Shape {
     /// What a bare list of lists follows.
     pub bare: By,
     /// Bodies of the grid, `None` outside a grid.
-    pub bodies: Option<[usize; 2]>,
+    pub bodies: Option<[usize; 3]>,
     /// Subdomains of each body.
-    pub subdomains: [usize; 2],
+    pub subdomains: [usize; 3],
 }
 
 impl<'a> Reader<'a> {
@@ -76,11 +75,7 @@ impl<'a> Reader<'a> {
         }
         let quadrature = match section.take("quadrature") {
             None => None,
-            Some(item) => match &item.value {
-                Value::Text(t) if t == "midpoint" => Some(Quadrature::Midpoint),
-                Value::Text(t) if t == "gauss" => Some(Quadrature::Gauss),
-                _ => return self.expected(item, "\"midpoint\" or \"gauss\""),
-            },
+            Some(item) => Some(self.quadrature(item)?),
         };
         section.finish()?;
         match found.len() {
@@ -108,16 +103,17 @@ impl<'a> Reader<'a> {
                 },
             };
             let (x, y) = (range("x")?, range("y")?);
+            let z = if self.dim == 3 { range("z")? } else { None };
             let value = self.expression(section.need("value", "a number or an expression")?)?;
             section.finish()?;
-            list.push(Region { x, y, value });
+            list.push(Region { x, y, z, value });
         }
         Ok(Field::Regions { list, otherwise })
     }
 
     /// Rows of numbers, the first at the bottom.
     pub(super) fn table(&self, item: &'a Item, shape: &Shape, by: By) -> Result<Field> {
-        let (what, [columns, height]) = match (by, shape.bodies) {
+        let (what, [columns, height, depth]) = match (by, shape.bodies) {
             (By::Body, Some(bodies)) => ("bodies", bodies),
             (By::Body, None) => {
                 return self.error(item, "`per_body` outside a [grid], where one number serves")
@@ -130,56 +126,93 @@ impl<'a> Reader<'a> {
             count(height, "row"),
             count(columns, "number")
         );
-        let rows = self.list(item, &wanted)?;
-        if rows.len() != height {
-            return self.error(
-                item,
-                format_args!("{} where {wanted} were expected", count(rows.len(), "row")),
-            );
-        }
-        let mut table = Vec::with_capacity(height);
-        for row in rows {
-            let entries = self.list(row, &wanted)?;
-            if entries.len() != columns {
+        let rows = |item: &'a Item| -> Result<Vec<Vec<f64>>> {
+            let rows = self.list(item, &wanted)?;
+            if rows.len() != height {
                 return self.error(
-                    row,
-                    format_args!("a row of {} where {wanted} were expected", entries.len()),
+                    item,
+                    format_args!("{} where {wanted} were expected", count(rows.len(), "row")),
                 );
             }
-            let numbers: Result<Vec<f64>> = entries.iter().map(|i| self.number(i)).collect();
-            table.push(numbers?);
+            let mut table = Vec::with_capacity(height);
+            for row in rows {
+                let entries = self.list(row, &wanted)?;
+                if entries.len() != columns {
+                    return self.error(
+                        row,
+                        format_args!("a row of {} where {wanted} were expected", entries.len()),
+                    );
+                }
+                let numbers: Result<Vec<f64>> = entries.iter().map(|i| self.number(i)).collect();
+                table.push(numbers?);
+            }
+            Ok(table)
+        };
+        if self.dim == 2 {
+            let layers = vec![rows(item)?];
+            return Ok(Field::Table { layers, by });
         }
-        Ok(Field::Table { rows: table, by })
+        let list = self.list(item, "a list of layers")?;
+        if list.len() != depth {
+            return self.error(
+                item,
+                format_args!(
+                    "{} where {} of {wanted} were expected",
+                    count(list.len(), "layer"),
+                    count(depth, "layer")
+                ),
+            );
+        }
+        let layers: Result<Vec<Vec<Vec<f64>>>> = list.iter().map(rows).collect();
+        Ok(Field::Table {
+            layers: layers?,
+            by,
+        })
     }
 
-    pub(super) fn sides(&self, item: &'a Item) -> Result<Sides> {
-        let mut sides: Sides = [None, None, None, None];
-        let wanted =
-            "\"all\", a list of sides (left, right, bottom, top) or a table of their values";
-        let find = |name: &str| SIDES.iter().position(|s| *s == name);
+    /// One field for each component: a scalar has one; displacements a list, or a table with the keys x, y (and z).
+    pub(super) fn vector_field(
+        &self,
+        item: &'a Item,
+        shape: &Shape,
+    ) -> Result<(Vec<Field>, Option<Quadrature>)> {
+        let c = self.form.components(self.dim);
+        if c == 1 {
+            let (field, quadrature) = self.field(item, shape, 0.0)?;
+            return Ok((vec![field], quadrature));
+        }
+        let wanted = format!("a list of {c} components or a table of x, y{}", ["", " and z"][c - 2]);
         match &item.value {
-            Value::Text(text) if text == "all" => sides = held_all_round(),
-            Value::Text(text) if text == "none" => {}
-            Value::List(items) => {
-                for item in items {
-                    let name = self.text(item, "a side (left, right, bottom, top)")?;
-                    match find(&name) {
-                        Some(s) => sides[s] = Some(Field::constant(0.0)),
-                        None => return self.expected(item, "left, right, bottom or top"),
-                    }
-                }
+            Value::List(items) if items.len() == c => {
+                let each = |i| Ok(Field::Expression(self.expression(i)?));
+                Ok((items.iter().map(each).collect::<Result<_>>()?, None))
             }
             Value::Table(_) => {
-                let mut section = Section::new(self.source, "`dirichlet`", item)?;
-                for (side, name) in sides.iter_mut().zip(SIDES) {
-                    if let Some(value) = section.take(name) {
-                        *side = Some(Field::Expression(self.expression(value)?));
+                let mut section = Section::new(self.source, "this table", item)?;
+                let mut out = vec![Field::constant(0.0); c];
+                let mut rule = None;
+                for (field, key) in out.iter_mut().zip(["x", "y", "z"]) {
+                    if let Some(item) = section.take(key) {
+                        let (value, quadrature) = self.field(item, shape, 0.0)?;
+                        *field = value;
+                        rule = rule.or(quadrature);
                     }
                 }
+                if let Some(item) = section.take("quadrature") {
+                    rule = Some(self.quadrature(item)?);
+                }
                 section.finish()?;
+                Ok((out, rule))
             }
-            _ => return self.expected(item, wanted),
+            _ => self.expected(item, &wanted),
         }
-        Ok(sides)
+    }
+
+    pub(super) fn quadrature(&self, item: &Item) -> Result<Quadrature> {
+        match &item.value {
+            Value::Text(t) if t == "midpoint" => Ok(Quadrature::Midpoint),
+            Value::Text(t) if t == "gauss" => Ok(Quadrature::Gauss),
+            _ => self.expected(item, "\"midpoint\" or \"gauss\""),
+        }
     }
 }

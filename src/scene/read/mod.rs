@@ -1,15 +1,21 @@
 //! From TOML to a [`SceneSpec`]: keys, types and shapes.
 
 mod fields;
+mod form;
+mod shape;
+mod sides;
 mod steps;
 mod ties;
 mod values;
 
 use super::document::{Item, Section, Source, Value};
 use super::field::{By, Field};
-use super::spec::{BodySpec, ByDefault, GridSpec, Load, SceneSpec, Sides};
+use super::spec::{
+    free_all_round, BodySpec, ByDefault, GridSpec, Load, SceneSpec, Sides, SurfaceLoad, POISSON,
+};
 use super::validate::MOST_BODIES;
 use crate::error::{Error, Result};
+use crate::fem::Form;
 use crate::mesh::BoxMesh;
 use fields::Shape;
 use values::MOST;
@@ -17,20 +23,14 @@ use values::MOST;
 /// The scene in `text`; `file` names it in messages.
 pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
     let source = Source { file, text };
-    let reader = Reader { source: &source };
     let root = source.parse()?;
     let mut scene = Section::new(&source, "the scene", &root)?;
+    let reader = Reader::new(&source, &mut scene)?;
 
     let title = match (scene.take("name"), scene.take("title")) {
         (_, Some(item)) | (Some(item), None) => reader.text(item, "a title")?,
         (None, None) => stem(file),
     };
-    if let Some(item) = scene.take("physics") {
-        let physics = reader.text(item, "\"scalar\"")?;
-        if physics != "scalar" {
-            return reader.expected(item, "\"scalar\"");
-        }
-    }
     let mut bodies = Vec::new();
     for item in reader.tables(scene.take("grid"))? {
         bodies.extend(reader.grid(item)?.expand());
@@ -60,7 +60,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
     };
     let exact = match scene.take("exact") {
         None => None,
-        Some(item) => Some(reader.expression(item)?),
+        Some(item) => Some(reader.exact(item)?),
     };
     let options = match scene.take("options") {
         None => Vec::new(),
@@ -74,6 +74,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
     }
     Ok(SceneSpec {
         title,
+        form: reader.form,
         bodies,
         default,
         ties,
@@ -93,6 +94,19 @@ fn stem(file: &str) -> String {
 
 struct Reader<'a> {
     source: &'a Source<'a>,
+    /// The dimension of the scene.
+    dim: usize,
+    /// What is solved.
+    form: Form,
+}
+
+/// What bodies and grids have in common.
+struct Data {
+    rho: Field,
+    poisson: Field,
+    load: Load,
+    surface: Vec<SurfaceLoad>,
+    dirichlet: Sides,
 }
 
 impl<'a> Reader<'a> {
@@ -102,11 +116,13 @@ impl<'a> Reader<'a> {
             Some(item) => self.text(item, "a name")?,
             None => format!("body{index}"),
         };
-        let origin = match section.take("origin") {
-            Some(item) => self.pair(item, "a point [x, y]")?,
-            None => [0.0, 0.0],
+        let origin = self.origin(&mut section)?;
+        let bent = section.take("shape");
+        let size = match (section.take("size"), bent) {
+            (Some(item), _) => self.size(item)?,
+            (None, Some(_)) => self.unit(),
+            (None, None) => self.size(section.need("size", "a width and a height")?)?,
         };
-        let size = self.size(section.need("size", "a width and a height")?)?;
         let (elements, subdomains) = self.partition(&mut section, item, &name)?;
         let mut body = BodySpec::new(
             name,
@@ -117,15 +133,17 @@ impl<'a> Reader<'a> {
                 subdomains,
             },
         );
+        body.map = bent.map(|item| self.map(item, origin, size)).transpose()?;
         body.written = self.written(item);
         let shape = Shape {
             bare: By::Subdomain,
             bodies: None,
             subdomains,
         };
-        let (rho, load, sides) = self.data(&mut section, &shape)?;
+        let data = self.data(&mut section, &shape)?;
         body.ramp = self.ramp(&mut section)?;
-        (body.rho, body.load, body.dirichlet) = (rho, load, sides);
+        (body.rho, body.poisson) = (data.rho, data.poisson);
+        (body.load, body.surface, body.dirichlet) = (data.load, data.surface, data.dirichlet);
         section.finish()?;
         Ok(body)
     }
@@ -137,31 +155,28 @@ impl<'a> Reader<'a> {
             None => "b".into(),
         };
         let counts = section.need("bodies", "the number of bodies in x and y")?;
-        let bodies = self.counts(counts)?;
-        if bodies[0] * bodies[1] > MOST_BODIES {
+        let bodies = self.counts(counts, 1)?;
+        let n = bodies.iter().fold(1_usize, |n, b| n.saturating_mul(*b));
+        if n > MOST_BODIES {
             return self.error(
                 counts,
-                format_args!(
-                    "{} bodies where at most {MOST_BODIES} were expected",
-                    bodies[0] * bodies[1]
-                ),
+                format_args!("{n} bodies where at most {MOST_BODIES} were expected"),
             );
         }
-        let origin = match section.take("origin") {
-            Some(item) => self.pair(item, "a point [x, y]")?,
-            None => [0.0, 0.0],
-        };
+        let origin = self.origin(&mut section)?;
         let size = match section.take("size") {
             Some(item) => self.size(item)?,
-            None => [1.0, 1.0],
+            None => self.unit(),
         };
+        let bent = section.take("shape");
+        let map = bent.map(|item| self.map(item, origin, size)).transpose()?;
         let (elements, subdomains) = self.partition(&mut section, item, "of the grid")?;
         let shape = Shape {
             bare: By::Body,
             bodies: Some(bodies),
             subdomains,
         };
-        let (rho, load, dirichlet) = self.data(&mut section, &shape)?;
+        let data = self.data(&mut section, &shape)?;
         let ramp = self.ramp(&mut section)?;
         section.finish()?;
         Ok(GridSpec {
@@ -169,12 +184,15 @@ impl<'a> Reader<'a> {
             bodies,
             origin,
             size,
+            map,
             elements,
             subdomains,
-            rho,
-            load,
+            rho: data.rho,
+            poisson: data.poisson,
+            load: data.load,
+            surface: data.surface,
             ramp,
-            dirichlet,
+            dirichlet: data.dirichlet,
             written: self.written(item),
         })
     }
@@ -185,19 +203,19 @@ impl<'a> Reader<'a> {
         section: &mut Section<'a>,
         item: &Item,
         name: &str,
-    ) -> Result<([usize; 2], [usize; 2])> {
+    ) -> Result<([usize; 3], [usize; 3])> {
         let subdomains = match section.take("subdomains") {
-            Some(item) => self.counts(item)?,
-            None => [1, 1],
+            Some(item) => self.counts(item, 1)?,
+            None => [1; 3],
         };
         match (
             section.take("elements"),
             section.take("elements_per_subdomain"),
         ) {
-            (Some(item), None) => Ok((self.counts(item)?, subdomains)),
+            (Some(item), None) => Ok((self.counts(item, 0)?, subdomains)),
             (None, Some(item)) => {
-                let each = self.counts(item)?;
-                let elements = [0, 1].map(|d| each[d] * subdomains[d]);
+                let each = self.counts(item, 0)?;
+                let elements = [0, 1, 2].map(|d| each[d] * subdomains[d]);
                 match elements.iter().find(|n| **n > MOST) {
                     None => Ok((elements, subdomains)),
                     Some(n) => self.error(
@@ -224,27 +242,38 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `rho`, `load` and `dirichlet`.
-    fn data(&self, section: &mut Section<'a>, shape: &Shape) -> Result<(Field, Load, Sides)> {
-        let rho = match section.take("rho") {
+    /// Coefficients, loads and Dirichlet conditions.
+    fn data(&self, section: &mut Section<'a>, shape: &Shape) -> Result<Data> {
+        let elastic = self.form.is_elastic();
+        let key = if elastic { "young" } else { "rho" };
+        let rho = match section.take(key) {
             Some(item) => self.field(item, shape, 1.0)?.0,
             None => Field::constant(1.0),
         };
+        let poisson = match section.take("poisson").filter(|_| elastic) {
+            Some(item) => self.field(item, shape, POISSON)?.0,
+            None => Field::constant(POISSON),
+        };
         let load = match section.take("load") {
             Some(item) => {
-                let (field, quadrature) = self.field(item, shape, 0.0)?;
+                let (fields, quadrature) = self.vector_field(item, shape)?;
                 Load {
-                    field,
+                    fields,
                     quadrature: quadrature.unwrap_or_default(),
                 }
             }
             None => Load::constant(0.0),
         };
-        let dirichlet = match section.take("dirichlet") {
-            Some(item) => self.sides(item)?,
-            None => [None, None, None, None],
-        };
-        Ok((rho, load, dirichlet))
+        Ok(Data {
+            rho,
+            poisson,
+            load,
+            surface: self.surface_loads(section)?,
+            dirichlet: match section.take("dirichlet") {
+                Some(item) => self.sides(item)?,
+                None => free_all_round(),
+            },
+        })
     }
 
     /// PETSc options, with or without the leading dash.

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::scene::document::{Item, Section, Value};
 use crate::scene::profile::Profile;
 use crate::scene::spec::{
-    BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec, SIDES,
+    BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec,
 };
 
 impl<'a> Reader<'a> {
@@ -39,6 +39,16 @@ impl<'a> Reader<'a> {
     pub(super) fn contact(&self, item: &'a Item, bodies: &[BodySpec]) -> Result<ContactSpec> {
         let mut section = Section::new(self.source, "[[contact]]", item)?;
         let pair = self.bodies(&mut section, bodies)?;
+        let sides = match section.take("sides") {
+            None => None,
+            Some(item) => match (self.list(item, "a pair of sides")?, &pair) {
+                (_, Pair::All) => {
+                    return self.error(item, "`sides` for all pairs, where two named bodies were expected")
+                }
+                ([a, b], _) => Some([self.side(a)?, self.side(b)?]),
+                _ => return self.expected(item, "a pair of sides"),
+            },
+        };
         let extent = self.extent(&mut section, item, "[[contact]]")?;
         let gap = match section.take("gap") {
             Some(item) => self.profile(item)?,
@@ -48,6 +58,7 @@ impl<'a> Reader<'a> {
         section.finish()?;
         Ok(ContactSpec {
             pair,
+            sides,
             extent,
             gap,
             ramp,
@@ -67,13 +78,22 @@ impl<'a> Reader<'a> {
             self.obstacle_sides(section.need("side", "a side, a list of them or \"all\"")?)?;
         let extent = self.extent(&mut section, item, "[[obstacle]]")?;
         let mut bound = |key| section.take(key).map(|item| self.profile(item)).transpose();
-        let (below, above) = (bound("below")?, bound("above")?);
+        let elastic = self.form.is_elastic();
+        let (below, above, gap, rigid) = if elastic {
+            (None, None, bound("gap")?, self.rigid(&mut section, item)?)
+        } else {
+            (bound("below")?, bound("above")?, None, None)
+        };
         let ramp = self.ramp(&mut section)?;
         section.finish()?;
-        if below.is_none() && above.is_none() {
+        if below.is_none() && above.is_none() && rigid.is_none() {
             return self.error(
                 item,
-                "[[obstacle]] without a bound (`below`, `above` or both were expected)",
+                if elastic {
+                    "[[obstacle]] without a rigid body (`plane`, `cylinder` or `sphere` was expected)"
+                } else {
+                    "[[obstacle]] without a bound (`below`, `above` or both were expected)"
+                },
             );
         }
         Ok(ObstacleSpec {
@@ -82,22 +102,19 @@ impl<'a> Reader<'a> {
             extent,
             below,
             above,
+            rigid,
+            gap: gap.unwrap_or_else(|| Profile::constant(0.0)),
             ramp,
             written: self.written(item),
         })
     }
 
     fn obstacle_sides(&self, item: &'a Item) -> Result<Vec<usize>> {
-        let wanted = "left, right, bottom, top, a list of them or \"all\"";
-        let side = |item: &Item| match &item.value {
-            Value::Text(text) => match SIDES.iter().position(|s| s == text) {
-                Some(s) => Ok(s),
-                None => self.expected(item, wanted),
-            },
-            _ => self.expected(item, wanted),
-        };
+        let names = self.sides_list().replace(" or ", ", ");
+        let wanted = format!("{names}, a list of them or \"all\"");
+        let side = |item: &Item| self.side(item).or_else(|_| self.expected(item, &wanted));
         match &item.value {
-            Value::Text(text) if text == "all" => Ok((0..SIDES.len()).collect()),
+            Value::Text(text) if text == "all" => Ok((0..2 * self.dim).collect()),
             Value::List(items) if !items.is_empty() => {
                 let mut sides = items.iter().map(side).collect::<Result<Vec<usize>>>()?;
                 sides.sort_unstable();
@@ -144,6 +161,27 @@ impl<'a> Reader<'a> {
     }
 
     /// `where`, `range`, `points` or `nodes`.
+    /// One range of t in the plane; on the face of a solid one for each parameter, or one for the first of them.
+    fn range(&self, item: &'a Item) -> Result<[[f64; 2]; 2]> {
+        let one = |item: &'a Item| -> Result<[f64; 2]> {
+            let [low, high] = self.pair(item, "a pair of numbers between 0 and 1")?;
+            if !(0.0 <= low && low <= high && high <= 1.0) {
+                return self.error(
+                    item,
+                    format_args!("the range [{low}, {high}] where 0 ≤ t0 ≤ t1 ≤ 1 was expected"),
+                );
+            }
+            Ok([low, high])
+        };
+        match &item.value {
+            Value::List(list) if self.dim == 3 => match list.as_slice() {
+                [a, b] if matches!(a.value, Value::List(_)) => Ok([one(a)?, one(b)?]),
+                _ => Ok([one(item)?, [0.0, 1.0]]),
+            },
+            _ => Ok([one(item)?, [0.0, 1.0]]),
+        }
+    }
+
     fn extent(&self, section: &mut Section<'a>, entry: &Item, what: &str) -> Result<Extent> {
         let mut extents = Vec::new();
         if let Some(item) = section.take("where") {
@@ -159,18 +197,15 @@ impl<'a> Reader<'a> {
             });
         }
         if let Some(item) = section.take("range") {
-            let [low, high] = self.pair(item, "a pair of numbers between 0 and 1")?;
-            if !(0.0 <= low && low <= high && high <= 1.0) {
-                return self.error(
-                    item,
-                    format_args!("the range [{low}, {high}] where 0 ≤ t0 ≤ t1 ≤ 1 was expected"),
-                );
-            }
-            extents.push(Extent::Range([low, high]));
+            extents.push(Extent::Range(self.range(item)?));
         }
         if let Some(item) = section.take("points") {
             let list = self.list(item, "a list of numbers between 0 and 1")?;
-            let points: Result<Vec<f64>> = list.iter().map(|i| self.number(i)).collect();
+            let point = |i: &'a Item| match self.dim {
+                2 => Ok([self.number(i)?, 0.0]),
+                _ => self.pair(i, "a pair of numbers between 0 and 1"),
+            };
+            let points: Result<Vec<[f64; 2]>> = list.iter().map(point).collect();
             extents.push(Extent::Points(points?));
         }
         if let Some(item) = section.take("nodes") {

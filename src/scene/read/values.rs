@@ -4,6 +4,7 @@ use super::Reader;
 use crate::error::{Error, Result};
 use crate::scene::document::{Item, Value};
 use crate::scene::expr::Expr;
+use crate::scene::spec::SIDES;
 
 /// Largest number of elements or subdomains along one side of a body: a slip of the pen must not exhaust the memory
 /// before anything can be said about it.
@@ -90,33 +91,104 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// One count for both directions, or a pair.
-    pub(super) fn counts(&self, item: &Item) -> Result<[usize; 2]> {
-        match &item.value {
-            Value::List(items) => match items.as_slice() {
-                [a, b] => Ok([
-                    self.count(a, "a positive whole number")?,
-                    self.count(b, "a positive whole number")?,
-                ]),
-                _ => self.expected(item, "a pair of positive whole numbers"),
-            },
-            _ => Ok([self.count(item, "a positive whole number or a pair of them")?; 2]),
+    /// One number for each dimension; the rest is zero.
+    pub(super) fn vector(&self, item: &'a Item, wanted: &str) -> Result<[f64; 3]> {
+        let list = self.list(item, wanted)?;
+        if list.len() != self.dim {
+            return self.error(
+                item,
+                format_args!(
+                    "a list of {} where {wanted} was expected{}",
+                    list.len(),
+                    self.hint(list.len())
+                ),
+            );
+        }
+        let mut out = [0.0; 3];
+        for (value, item) in out.iter_mut().zip(list) {
+            *value = self.number(item)?;
+        }
+        Ok(out)
+    }
+
+    /// What to do about a list that fits the other dimension.
+    fn hint(&self, n: usize) -> &'static str {
+        match (self.dim, n) {
+            (2, 3) => " (`dimension = 3` at the top makes the scene solid)",
+            _ => "",
         }
     }
 
-    /// A positive size, or a pair.
-    pub(super) fn size(&self, item: &'a Item) -> Result<[f64; 2]> {
+    /// A positive whole number for each dimension, or one for all of them; `flat` stands for z in the plane.
+    pub(super) fn counts(&self, item: &Item, flat: usize) -> Result<[usize; 3]> {
+        let mut out = [flat; 3];
+        match &item.value {
+            Value::List(items) if items.len() == self.dim => {
+                for (count, item) in out.iter_mut().zip(items) {
+                    *count = self.count(item, "a positive whole number")?;
+                }
+            }
+            Value::List(items) => {
+                let wanted = match self.dim {
+                    2 => "a pair of positive whole numbers",
+                    _ => "three positive whole numbers",
+                };
+                return self.error(
+                    item,
+                    format_args!(
+                        "{} where {wanted} was expected{}",
+                        item.value.kind(),
+                        self.hint(items.len())
+                    ),
+                );
+            }
+            _ => {
+                let one = self.count(item, "a positive whole number or a pair of them")?;
+                out[..self.dim].fill(one);
+            }
+        }
+        Ok(out)
+    }
+
+    /// Edge lengths, one for each dimension or one for all.
+    pub(super) fn size(&self, item: &'a Item) -> Result<[f64; 3]> {
         let size = match &item.value {
-            Value::List(_) => self.pair(item, "a width and a height")?,
-            _ => [self.number(item)?; 2],
+            Value::List(_) => {
+                let wanted = ["a width and a height", "three edge lengths"][self.dim - 2];
+                self.vector(item, wanted)?
+            }
+            _ => {
+                let mut size = [0.0; 3];
+                size[..self.dim].fill(self.number(item)?);
+                size
+            }
         };
-        match size.iter().find(|s| **s <= 0.0) {
+        match size[..self.dim].iter().find(|s| **s <= 0.0) {
             None => Ok(size),
             Some(s) => self.error(
                 item,
                 format_args!("the size {s} where a positive number was expected"),
             ),
         }
+    }
+
+    /// The index of a side of this scene's bodies.
+    pub(super) fn side(&self, item: &Item) -> Result<usize> {
+        let names = &SIDES[..2 * self.dim];
+        let found = match &item.value {
+            Value::Text(text) => names.iter().position(|s| s == text),
+            _ => None,
+        };
+        match found {
+            Some(s) => Ok(s),
+            None => self.expected(item, &self.sides_list()),
+        }
+    }
+
+    /// "left, right, bottom or top".
+    pub(super) fn sides_list(&self) -> String {
+        let names = &SIDES[..2 * self.dim];
+        format!("{} or {}", names[..names.len() - 1].join(", "), names[names.len() - 1])
     }
 
     pub(super) fn written(&self, item: &Item) -> String {

@@ -1,0 +1,134 @@
+//! Nodal loads of one subdomain: ∫ f N_a, and forces on its sides.
+
+use super::cell::{self, Element, Side};
+use super::q1;
+use crate::mesh::SubdomainMesh;
+
+/// How loads are integrated over an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Quadrature {
+    /// One point in the middle: regions that follow element borders are exact.
+    #[default]
+    Midpoint,
+    /// The 2 × 2 (× 2) Gauss rule.
+    Gauss,
+}
+
+/// The nodal load ∫ f N_a over the subdomain, an entry per degree of freedom; `f` is given element and point and returns as many components
+/// as the field has.
+pub fn load_vector<F>(mesh: &SubdomainMesh, quadrature: Quadrature, mut f: F) -> Vec<f64>
+where
+    F: FnMut([usize; 3], [f64; 3]) -> [f64; 3],
+{
+    let c = mesh.components();
+    let mut out = vec![0.0; c * mesh.points.len()];
+    let box_step = mesh.step.filter(|_| mesh.form.element == Element::Q1);
+    let corners = mesh.corners();
+    let mut local = vec![0.0; corners * c];
+    for place in mesh.element_places() {
+        let nodes = mesh.element_nodes(place);
+        local.fill(0.0);
+        match box_step {
+            Some(step) => {
+                let first = mesh.points[nodes[0]];
+                box_load(mesh.dim, c, step, quadrature, &mut local, |s| {
+                    f(place, [0, 1, 2].map(|d| first[d] + s[d] * step[d]))
+                });
+            }
+            None => {
+                let points = mesh.element_points(place);
+                cell::body_load(
+                    mesh.dim,
+                    &points[..corners],
+                    mesh.form.element,
+                    quadrature,
+                    c,
+                    |x| f(place, x),
+                    &mut local,
+                );
+            }
+        }
+        for (node, values) in nodes.iter().zip(local.chunks_exact(c)) {
+            for (entry, value) in out[c * node..].iter_mut().zip(values) {
+                *entry += value;
+            }
+        }
+    }
+    out
+}
+
+/// ∫ f N_a over a box; `f` is given the point of the unit cell.
+fn box_load(
+    dim: usize,
+    components: usize,
+    step: [f64; 3],
+    quadrature: Quadrature,
+    out: &mut [f64],
+    mut f: impl FnMut([f64; 3]) -> [f64; 3],
+) {
+    let volume: f64 = step[..dim].iter().product();
+    let corners = 1 << dim;
+    match quadrature {
+        Quadrature::Midpoint => {
+            let middle = [0, 1, 2].map(|d| if d < dim { 0.5 } else { 0.0 });
+            let share = f(middle).map(|v| v * (volume / corners as f64));
+            for node in out.chunks_exact_mut(components) {
+                node.iter_mut().zip(share).for_each(|(o, v)| *o += v);
+            }
+        }
+        Quadrature::Gauss => {
+            for q in 0..corners {
+                let mut s = [0.0; 3];
+                let mut weight = volume;
+                for d in 0..dim {
+                    let (point, w) = q1::GAUSS2[q >> d & 1];
+                    s[d] = point;
+                    weight *= w;
+                }
+                let value = f(s).map(|v| v * weight);
+                for (a, node) in out.chunks_exact_mut(components).enumerate() {
+                    let factor = |d: usize| if a >> d & 1 == 1 { s[d] } else { 1.0 - s[d] };
+                    let shape: f64 = (0..dim).map(factor).product();
+                    node.iter_mut()
+                        .zip(value)
+                        .for_each(|(o, v)| *o += shape * v);
+                }
+            }
+        }
+    }
+}
+
+/// Adds ∫ t N_a over the part of side `side` of the body in which the subdomain has elements to the nodal load `out`; `f` is given
+/// the point and the unit normal out of the body. The subdomain must reach that side.
+pub fn add_side_load<F>(mesh: &SubdomainMesh, side: usize, mut f: F, out: &mut [f64])
+where
+    F: FnMut([f64; 3], [f64; 3]) -> [f64; 3],
+{
+    let c = mesh.components();
+    let side = Side {
+        axis: side / 2,
+        upper: side % 2 == 1,
+    };
+    let level = if side.upper {
+        mesh.elements[side.axis] - 1
+    } else {
+        0
+    };
+    let corners: Vec<usize> = side.corners(mesh.dim).collect();
+    let mut local = vec![0.0; corners.len() * c];
+    for place in mesh.element_places().filter(|p| p[side.axis] == level) {
+        let nodes = mesh.element_nodes(place);
+        let points: Vec<[f64; 3]> = corners.iter().map(|&a| mesh.points[nodes[a]]).collect();
+        local.fill(0.0);
+        let outward = side.outward(mesh.dim);
+        let element = mesh.form.element;
+        cell::side_load(
+            mesh.dim, &points, outward, element, c, &mut f, &mut local,
+        );
+        for (&a, values) in corners.iter().zip(local.chunks_exact(c)) {
+            for (entry, value) in out[c * nodes[a]..].iter_mut().zip(values) {
+                *entry += value;
+            }
+        }
+    }
+}

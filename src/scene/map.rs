@@ -1,0 +1,159 @@
+//! Curved bodies: maps that bend a box into shape. Only nodes are mapped; elements stay bilinear (trilinear) between them.
+
+use super::expr::{Expr, Variables};
+
+/// A map of a box.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    /// Lower left corner of the box.
+    pub origin: [f64; 3],
+    /// Its edge lengths; 0 in z in the plane.
+    pub size: [f64; 3],
+    /// What becomes of it.
+    pub shape: BodyShape,
+}
+
+/// What a box becomes. Angles are in radians.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BodyShape {
+    /// The new coordinates as expressions in the old ones.
+    Expressions([Expr; 3]),
+    /// A sector of an annulus: x runs from the inner to the outer radius, y along the angle, counter-clockwise; z stays, so that
+    /// a solid box becomes a sector of a hollow cylinder.
+    Annulus {
+        /// Centre in x and y.
+        centre: [f64; 2],
+        /// Inner and outer radius, 0 < inner < outer.
+        radii: [f64; 2],
+        /// First and last angle.
+        angles: [f64; 2],
+    },
+    /// A round body that stands on its pole: half a disc in the plane (half a cylinder along z as a solid), half a ball. The side
+    /// `bottom` and the lower parts of the others become its surface.
+    Round(Round),
+}
+
+/// Half a disc or ball, or the quarter of it beside its axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Round {
+    /// Its centre.
+    pub centre: [f64; 3],
+    /// Its radius, > 0.
+    pub radius: f64,
+    /// Only x ≥ 0 (and z ≥ 0 of a ball).
+    pub quarter: bool,
+    /// A ball; otherwise a disc, or a cylinder along z.
+    pub ball: bool,
+    /// The pole is the highest point, not the lowest.
+    pub upwards: bool,
+    /// Elements shrink towards the pole with this power of the distance; 1: not at all.
+    pub grading: f64,
+}
+
+impl Map {
+    /// Where a point of the box goes.
+    pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
+        // Where in the box: 0 to 1 in each direction.
+        let s = [0, 1, 2].map(|d| match self.size[d] {
+            0.0 => 0.0,
+            size => (point[d] - self.origin[d]) / size,
+        });
+        match &self.shape {
+            BodyShape::Expressions(e) => {
+                let at = Variables {
+                    point,
+                    ..Variables::default()
+                };
+                [0, 1, 2].map(|d| e[d].eval(&at))
+            }
+            BodyShape::Annulus {
+                centre,
+                radii,
+                angles,
+            } => {
+                let r = radii[0] + (radii[1] - radii[0]) * s[0];
+                let angle = angles[0] + (angles[1] - angles[0]) * s[1];
+                [
+                    centre[0] + r * angle.cos(),
+                    centre[1] + r * angle.sin(),
+                    point[2],
+                ]
+            }
+            BodyShape::Round(round) => round.apply(s, point[2]),
+        }
+    }
+}
+
+impl Round {
+    /// A square is mapped onto a disc by (u √(1 − v²/2), v √(1 − u²/2)), a cube onto a ball alike; half of it is used.
+    fn apply(&self, s: [f64; 3], z: f64) -> [f64; 3] {
+        let across = |s: f64| {
+            let u = if self.quarter { s } else { 2.0 * s - 1.0 };
+            // Exact at the axis and the rim.
+            u.signum() * u.abs().powf(self.grading)
+        };
+        let (u, v) = (across(s[0]), s[1].powf(self.grading) - 1.0);
+        let w = if self.ball { across(s[2]) } else { 0.0 };
+        let stretch =
+            |a: f64, b: f64| (1.0 - a * a / 2.0 - b * b / 2.0 + a * a * b * b / 3.0).sqrt();
+        let [x, y, w] = [u * stretch(v, w), v * stretch(u, w), w * stretch(u, v)];
+        let y = if self.upwards { -y } else { y };
+        let [cx, cy, cz] = self.centre;
+        [
+            cx + self.radius * x,
+            cy + self.radius * y,
+            if self.ball { cz + self.radius * w } else { z },
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn round(ball: bool, quarter: bool) -> Map {
+        Map {
+            origin: [0.0; 3],
+            size: [1.0; 3],
+            shape: BodyShape::Round(Round {
+                centre: [1.0, 2.0, 3.0],
+                radius: 2.0,
+                quarter,
+                ball,
+                upwards: false,
+                grading: 1.5,
+            }),
+        }
+    }
+
+    #[test]
+    fn bottoms_are_round_and_tops_are_flat() {
+        for (ball, quarter) in [(false, false), (true, false), (true, true)] {
+            let map = round(ball, quarter);
+            for (s, r) in [(0.0, 0.0), (0.3, 0.9), (1.0, 0.5), (0.5, 0.5)] {
+                let [x, y, z] = map.apply([s, 0.0, r]);
+                let depth = if ball { z - 3.0 } else { 0.0 };
+                let distance = (x - 1.0).hypot(y - 2.0).hypot(depth);
+                assert!((distance - 2.0).abs() < 1e-14, "{distance}");
+                assert!((map.apply([s, 1.0, r])[1] - 2.0).abs() < 1e-15);
+            }
+        }
+        assert_eq!(round(true, false).apply([0.5, 0.0, 0.5]), [1.0, 0.0, 3.0]);
+    }
+
+    #[test]
+    fn an_annulus_is_walked_around() {
+        let map = Map {
+            origin: [-1.0, 0.0, 0.0],
+            size: [2.0, 1.0, 0.0],
+            shape: BodyShape::Annulus {
+                centre: [0.0, 1.0],
+                radii: [1.0, 3.0],
+                angles: [0.0, std::f64::consts::FRAC_PI_2],
+            },
+        };
+        let [x, y, z] = map.apply([0.0, 1.0, 0.0]);
+        assert!(x.abs() < 1e-15 && (y - 3.0).abs() < 1e-15 && z == 0.0);
+        assert_eq!(map.apply([1.0, 0.0, 0.0]), [3.0, 1.0, 0.0]);
+    }
+}
