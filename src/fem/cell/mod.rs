@@ -16,17 +16,29 @@
 //! Units: lengths as the points, stresses as Young's modulus; a 2D cell has thickness one. The strain is ε = (∇u + ∇uᵀ)/2,
 //! so that the shear strain is half the engineering one.
 
+mod errors;
+mod loads;
 mod map;
 mod material;
 mod reference;
+mod rigid;
+mod sides;
 mod stiffness;
+mod stress;
 
+#[cfg(test)]
+mod locking_tests;
 #[cfg(test)]
 mod stiffness_tests;
 #[cfg(test)]
 mod testing;
 
+pub use errors::error_squares;
+pub use loads::body_load;
 pub use map::jacobian_is_positive;
 pub use material::{Cure, Material, Plane};
 pub use reference::Element;
+pub use rigid::{rigid_count, rigid_motions};
+pub use sides::{side_load, side_weights, Side, SideWeights};
 pub use stiffness::stiffness;
+pub use stress::{centre_stress, CellStress};

@@ -255,24 +255,12 @@ fn it_is_symmetric_to_the_last_bit_and_its_kernel_is_the_rigid_motions() {
                 for mode in 0..kernel {
                     let u = Mat::from_fn(n, 1, |dof, _| {
                         let (p, i) = (cell[dof / components], dof % components);
-                        rigid_mode(dim, mode, p)[i]
+                        rigid_motions(dim, [0.5; 3], 1.0, p)[mode][i]
                     });
                     assert!((&k * &u).norm_max() < noise);
                 }
             }
         }
-    }
-}
-
-/// Translations, then rotations.
-fn rigid_mode(dim: usize, mode: usize, [x, y, z]: [f64; 3]) -> [f64; 3] {
-    match (dim, mode) {
-        (_, 0) => [1.0, 0.0, 0.0],
-        (_, 1) => [0.0, 1.0, 0.0],
-        (2, _) | (3, 5) => [-y, x, 0.0],
-        (_, 2) => [0.0, 0.0, 1.0],
-        (_, 3) => [0.0, -z, y],
-        _ => [z, 0.0, -x],
     }
 }
 
