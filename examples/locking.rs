@@ -49,8 +49,8 @@ impl Block {
         let mut out = [0.0; 3];
         for (a, corner) in self.corners.iter().enumerate() {
             let mut shape = 1.0;
-            for d in 0..self.dim {
-                let s = at[d] as f64 / self.cells[d] as f64;
+            for (d, (&i, &n)) in at.iter().zip(&self.cells).enumerate().take(self.dim) {
+                let s = i as f64 / n as f64;
                 shape *= if a >> d & 1 == 1 { s } else { 1.0 - s };
             }
             for i in 0..3 {

@@ -16,6 +16,9 @@
 //! Units: lengths as the points, stresses as Young's modulus; a 2D cell has thickness one. The strain is ε = (∇u + ∇uᵀ)/2,
 //! so that the shear strain is half the engineering one.
 
+// Tensors are written by their indices, as on paper.
+#![allow(clippy::needless_range_loop)]
+
 mod errors;
 mod loads;
 mod map;
