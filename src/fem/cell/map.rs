@@ -1,0 +1,200 @@
+//! The map from the unit cell to a cell: gradients and volumes at quadrature points.
+
+use super::reference::{for_each, q1_point, Element, ReferencePoint, Rule};
+
+/// A quadrature point of a cell.
+pub(super) struct Sample<const D: usize, const N: usize> {
+    pub point: [f64; 3],
+    /// N_a.
+    pub shape: [f64; N],
+    /// `[i][a]` = ∂N_a/∂x_i.
+    pub gradient: [[f64; N]; D],
+    /// Weight of the rule times det J: the weights sum to the volume.
+    pub weight: f64,
+}
+
+/// Calls `f` with every quadrature point of the cell.
+#[inline]
+pub(super) fn for_each_sample<const D: usize, const N: usize>(
+    points: &[[f64; 3]],
+    element: Element,
+    rule: Rule,
+    mut f: impl FnMut(&Sample<D, N>),
+) {
+    let points = corners::<N>(points);
+    for_each::<D, N>(element, rule, |reference| {
+        f(&sample(points, reference));
+    });
+}
+
+/// The middle of the unit cell, for Q1.
+pub(super) fn centre_sample<const D: usize, const N: usize>(points: &[[f64; 3]]) -> Sample<D, N> {
+    sample(corners::<N>(points), &q1_point([0.5; D], 1.0))
+}
+
+fn corners<const N: usize>(points: &[[f64; 3]]) -> &[[f64; 3]; N] {
+    points
+        .try_into()
+        .unwrap_or_else(|_| panic!("a cell of {N} corners got {} points", points.len()))
+}
+
+#[inline]
+fn sample<const D: usize, const N: usize>(
+    points: &[[f64; 3]; N],
+    reference: &ReferencePoint<D, N>,
+) -> Sample<D, N> {
+    let (det, inverse) = invert(&jacobian(points, reference));
+    let mut gradient = [[0.0; N]; D];
+    for (i, row) in gradient.iter_mut().enumerate() {
+        for (j, slope) in reference.slope.iter().enumerate() {
+            for a in 0..N {
+                row[a] += inverse[j][i] * slope[a]; // ∇N = J⁻ᵀ ∇̂N
+            }
+        }
+    }
+    Sample {
+        point: place(points, &reference.shape),
+        shape: reference.shape,
+        gradient,
+        weight: reference.weight * det,
+    }
+}
+
+/// Σ N_a x_a.
+#[inline]
+pub(super) fn place<const N: usize>(points: &[[f64; 3]; N], shape: &[f64; N]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    for (point, n) in points.iter().zip(shape) {
+        for i in 0..3 {
+            out[i] += n * point[i];
+        }
+    }
+    out
+}
+
+/// `[i][j]` = ∂x_i/∂s_j.
+#[inline]
+fn jacobian<const D: usize, const N: usize>(
+    points: &[[f64; 3]; N],
+    reference: &ReferencePoint<D, N>,
+) -> [[f64; D]; D] {
+    let mut j = [[0.0; D]; D];
+    for (i, row) in j.iter_mut().enumerate() {
+        for (entry, slope) in row.iter_mut().zip(&reference.slope) {
+            for a in 0..N {
+                *entry += points[a][i] * slope[a];
+            }
+        }
+    }
+    j
+}
+
+/// Determinant and inverse of a 2 × 2 or 3 × 3 matrix.
+#[inline]
+fn invert<const D: usize>(j: &[[f64; D]; D]) -> (f64, [[f64; D]; D]) {
+    let mut adjugate = [[0.0; D]; D];
+    if D == 2 {
+        adjugate[0][0] = j[1][1];
+        adjugate[0][1] = -j[0][1];
+        adjugate[1][0] = -j[1][0];
+        adjugate[1][1] = j[0][0];
+    } else {
+        for i in 0..3 {
+            for k in 0..3 {
+                let (p, q, r, s) = ((k + 1) % 3, (k + 2) % 3, (i + 1) % 3, (i + 2) % 3);
+                adjugate[i][k] = j[p][r] * j[q][s] - j[p][s] * j[q][r];
+            }
+        }
+    }
+    let det: f64 = (0..D).map(|i| j[0][i] * adjugate[i][0]).sum();
+    let factor = 1.0 / det;
+    for entry in adjugate.iter_mut().flatten() {
+        *entry *= factor;
+    }
+    (det, adjugate)
+}
+
+/// Whether det J is positive (and finite) wherever it is evaluated, and at the corners: a cell that fails is folded, flat or
+/// numbered the wrong way round. For P1 all simplices must have positive volume.
+///
+/// # Panics
+/// When `dim` is not 2 or 3, or there are not 2^`dim` points.
+pub fn jacobian_is_positive(dim: usize, points: &[[f64; 3]], element: Element) -> bool {
+    match dim {
+        2 => is_positive::<2, 4>(points, element),
+        3 => is_positive::<3, 8>(points, element),
+        _ => panic!("cells have dimension 2 or 3, not {dim}"),
+    }
+}
+
+fn is_positive<const D: usize, const N: usize>(points: &[[f64; 3]], element: Element) -> bool {
+    let points = corners::<N>(points);
+    let mut good = true;
+    let mut look = |reference: &ReferencePoint<D, N>| {
+        let (det, _) = invert(&jacobian(points, reference));
+        good &= det > 0.0 && det.is_finite();
+    };
+    match element {
+        Element::P1 => for_each(element, Rule::Stiffness, look),
+        Element::Q1 => {
+            for a in 0..N {
+                let corner = std::array::from_fn(|i| (a >> i & 1) as f64);
+                look(&q1_point(corner, 1.0));
+            }
+            for_each(element, Rule::Stiffness, &mut look);
+            for_each(element, Rule::Error, &mut look);
+        }
+    }
+    good
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{distorted, unit};
+    use super::*;
+
+    #[test]
+    fn distorted_cells_are_positive_and_mirrored_or_folded_ones_are_not() {
+        for dim in [2, 3] {
+            for element in [Element::Q1, Element::P1] {
+                for seed in 0..20 {
+                    let mut cell = distorted(dim, seed);
+                    assert!(jacobian_is_positive(dim, &cell, element));
+                    cell.swap(0, 1);
+                    assert!(!jacobian_is_positive(dim, &cell, element));
+                }
+                let flat: Vec<_> = unit(dim).iter().map(|p| [p[0], 0.0, p[2]]).collect();
+                assert!(!jacobian_is_positive(dim, &flat, element));
+                let mut lost = unit(dim);
+                lost[1][0] = f64::NAN;
+                assert!(!jacobian_is_positive(dim, &lost, element));
+            }
+        }
+        // One corner drawn in beyond the opposite diagonal: positive at the centre, folded at that corner.
+        let mut dart = unit(2);
+        dart[3] = [0.4, 0.4, 0.0];
+        assert!(!jacobian_is_positive(2, &dart, Element::Q1));
+    }
+
+    #[test]
+    fn the_rules_find_the_volume_and_linear_functions_have_their_gradient() {
+        // The quadrilateral with corners (0,0), (2,0), (0,1), (3,3) has area 4.5 by the shoelace formula.
+        let quad = [
+            [0.0, 0.0, 9.0],
+            [2.0, 0.0, 9.0],
+            [0.0, 1.0, 9.0],
+            [3.0, 3.0, 9.0],
+        ];
+        for element in [Element::Q1, Element::P1] {
+            for rule in [Rule::Stiffness, Rule::Load, Rule::Error] {
+                let mut area = 0.0;
+                for_each_sample::<2, 4>(&quad, element, rule, |s| {
+                    area += s.weight;
+                    let slope: f64 = (0..4).map(|a| s.gradient[1][a] * quad[a][1]).sum();
+                    assert!((slope - 1.0).abs() < 1e-14);
+                });
+                assert!((area - 4.5).abs() < 1e-13, "{element:?} {rule:?} {area}");
+            }
+        }
+    }
+}
