@@ -332,6 +332,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
     let error = |spec: SceneSpec| Scene::new(spec).unwrap_err().to_string();
     let mut contact = spec();
     contact.contacts.push(ContactSpec {
+        sides: None,
         pair: Pair::Named("b0_0".into(), "b1_0".into()),
         extent: Extent::All,
         gap: Profile::Table(Vec::new()),
@@ -344,6 +345,8 @@ fn scenes_that_a_program_builds_are_checked_too() {
     );
     let mut obstacle = spec();
     obstacle.obstacles.push(ObstacleSpec {
+        rigid: None,
+        gap: Profile::constant(0.0),
         body: None,
         sides: vec![0],
         extent: Extent::All,

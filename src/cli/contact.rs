@@ -102,7 +102,9 @@ pub fn rows(
         .collect();
     let t = |r: &ContactRow| [r.t[1], r.t[0]];
     rows.sort_by(|a, b| {
-        let by_t = t(a)[0].total_cmp(&t(b)[0]).then(t(a)[1].total_cmp(&t(b)[1]));
+        let by_t = t(a)[0]
+            .total_cmp(&t(b)[0])
+            .then(t(a)[1].total_cmp(&t(b)[1]));
         a.source.cmp(&b.source).then(by_t)
     });
     Ok(rows)

@@ -46,7 +46,11 @@ fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
             continue;
         }
         let stencil = stencil::<C>(mesh, &cells, place);
-        for (c, _) in dofs.iter().enumerate().filter(|d| *d.1 != SubdomainMesh::PRESCRIBED) {
+        for (c, _) in dofs
+            .iter()
+            .enumerate()
+            .filter(|d| *d.1 != SubdomainMesh::PRESCRIBED)
+        {
             let mut load_here = load[C * node + c];
             for (block, other) in neighbours(mesh, &stencil, place) {
                 for (j, &value) in block[c].iter().enumerate() {

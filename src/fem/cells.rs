@@ -13,10 +13,7 @@ pub struct Cells<'m> {
 
 enum Kind {
     /// Equal boxes: one matrix with coefficient 1 for each Poisson's ratio, and which of them each element has (empty: the first).
-    Boxes {
-        unit: Vec<Vec<f64>>,
-        of: Vec<u32>,
-    },
+    Boxes { unit: Vec<Vec<f64>>, of: Vec<u32> },
     /// Curved bodies: every element its own, one after the other.
     Each { n: usize, all: Vec<f64> },
 }
@@ -91,13 +88,7 @@ fn each(mesh: &SubdomainMesh, n: usize) -> Kind {
         let points = mesh.element_points(place);
         let material = mesh.material(e);
         let element = mesh.form.element;
-        cell::stiffness(
-            mesh.dim,
-            &points[..mesh.corners()],
-            element,
-            &material,
-            out,
-        );
+        cell::stiffness(mesh.dim, &points[..mesh.corners()], element, &material, out);
     }
     Kind::Each { n, all }
 }

@@ -122,9 +122,7 @@ where
         local.fill(0.0);
         let outward = side.outward(mesh.dim);
         let element = mesh.form.element;
-        cell::side_load(
-            mesh.dim, &points, outward, element, c, &mut f, &mut local,
-        );
+        cell::side_load(mesh.dim, &points, outward, element, c, &mut f, &mut local);
         for (&a, values) in corners.iter().zip(local.chunks_exact(c)) {
             for (entry, value) in out[c * nodes[a]..].iter_mut().zip(values) {
                 *entry += value;

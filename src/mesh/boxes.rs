@@ -169,9 +169,7 @@ impl BoxMesh {
 
     /// Number of subdomains that contain the node: 1, 2, 4 or 8.
     pub fn multiplicity(&self, place: [usize; 3]) -> usize {
-        (0..3)
-            .map(|d| self.touching(d, place[d]).count())
-            .product()
+        (0..3).map(|d| self.touching(d, place[d]).count()).product()
     }
 
     /// Whether the node is a corner of a subdomain: the ends of subdomain edges on the body's boundary and the corners of
@@ -259,7 +257,10 @@ mod tests {
             [4, 4, 0],
         ];
         assert_eq!(vertices(true), shared);
-        assert_eq!(vertices(false), [[0, 0, 0], [6, 0, 0], [0, 4, 0], [6, 4, 0]]);
+        assert_eq!(
+            vertices(false),
+            [[0, 0, 0], [6, 0, 0], [0, 4, 0], [6, 4, 0]]
+        );
     }
 
     #[test]
@@ -289,7 +290,10 @@ mod tests {
             let holders: Vec<usize> = (0..m.n_subdomains())
                 .filter(|&s| m.block(s).places().any(|p| p == place))
                 .collect();
-            assert_eq!((m.owner(place), m.multiplicity(place)), (holders[0], holders.len()));
+            assert_eq!(
+                (m.owner(place), m.multiplicity(place)),
+                (holders[0], holders.len())
+            );
         }
         let walked: Vec<usize> = m.boundary().map(|p| m.node(p)).collect();
         let expected: Vec<usize> = (0..m.n_nodes())

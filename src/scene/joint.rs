@@ -1,8 +1,8 @@
 //! From a scene to [`Substructures`]: subdomain by subdomain, row by row.
 
 use super::field::{At, Field};
-use super::steps::Factors;
 use super::spec::Force;
+use super::steps::Factors;
 use super::topology::{entities, rigid_motions};
 use super::validate::{bad_load, checked_poisson, checked_rho};
 use super::{Body, Scene, Variables};

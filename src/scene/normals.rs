@@ -276,9 +276,8 @@ impl<'a> Grid<'a> {
             let y = self.body.position(self.body.mesh.place(node));
             (0..3).all(|d| (x[d] - y[d]).abs() <= near)
         };
-        let corner = |c: usize| {
-            [0, 1, 2].map(|d| x[d] + if c >> d & 1 == 1 { near } else { -near })
-        };
+        let corner =
+            |c: usize| [0, 1, 2].map(|d| x[d] + if c >> d & 1 == 1 { near } else { -near });
         (0..8).find_map(|c| {
             let list = self.cells.get(&self.cell(corner(c)))?;
             list.iter().copied().find(close)

@@ -1,8 +1,8 @@
 //! Rigid obstacles: one-sided bounds on u at the boundary of a body.
 
 use super::entries::some_names;
-use super::profile::{Limit, Limits};
 use super::normals::parameters;
+use super::profile::{Limit, Limits};
 use super::rigid::Rigid;
 use super::select::pick;
 use super::spec::{Extent, ObstacleSpec, SIDES};

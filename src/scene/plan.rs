@@ -178,9 +178,14 @@ impl Counts {
         }
         let each = mesh.block_elements();
         let vertex = mesh.is_vertex(place);
-        let inner: Vec<usize> = (0..mesh.dim()).filter(|&d| place[d] % each[d] != 0).collect();
+        let inner: Vec<usize> = (0..mesh.dim())
+            .filter(|&d| place[d] % each[d] != 0)
+            .collect();
         for c in 0..body.components {
-            if body.prescribed_at(mesh.node(place) * body.components + c).is_some() {
+            if body
+                .prescribed_at(mesh.node(place) * body.components + c)
+                .is_some()
+            {
                 continue;
             }
             if vertex {
@@ -202,6 +207,5 @@ impl Counts {
 /// The places of a body on lines (planes) between subdomains.
 fn mesh_lines(mesh: &BoxMesh) -> impl Iterator<Item = [usize; 3]> + '_ {
     let each = mesh.block_elements();
-    places(mesh.nodes())
-        .filter(move |p| (0..mesh.dim()).any(|d| p[d] % each[d] == 0))
+    places(mesh.nodes()).filter(move |p| (0..mesh.dim()).any(|d| p[d] % each[d] == 0))
 }

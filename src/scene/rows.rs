@@ -170,8 +170,7 @@ impl Scene {
             }
             Row::Bound(b) => {
                 let obstacle = &self.obstacles[b.obstacle];
-                let (distance, direction) =
-                    ahead(&self.bodies, obstacle, point.members[b.member]);
+                let (distance, direction) = ahead(&self.bodies, obstacle, point.members[b.member]);
                 (direction, distance)
             }
         }

@@ -52,7 +52,11 @@ fn near(t: [f64; 2], wanted: [f64; 2]) -> bool {
 pub(super) fn is_end(extent: &Extent, t: [f64; 2]) -> bool {
     match extent {
         Extent::Range(ranges) => {
-            let at_end = |k: usize| ranges[k].iter().any(|end| (t[k] - end).abs() <= T_TOLERANCE);
+            let at_end = |k: usize| {
+                ranges[k]
+                    .iter()
+                    .any(|end| (t[k] - end).abs() <= T_TOLERANCE)
+            };
             // In the plane the second parameter is always 0.
             at_end(0) || (t[1] != 0.0 && at_end(1))
         }

@@ -3,12 +3,12 @@
 
 use super::expr::Expr;
 use super::field::{Field, Region};
-use super::profile::Profile;
-use super::steps::{Ramp, StepsSpec};
-use crate::fem::Quadrature;
 use super::map::Map;
+use super::profile::Profile;
 use super::rigid::Rigid;
+use super::steps::{Ramp, StepsSpec};
 use crate::fem::Form;
+use crate::fem::Quadrature;
 use crate::mesh::{places, BoxMesh};
 
 /// The load of a body: a source, or a force per volume.
@@ -234,7 +234,12 @@ impl GridSpec {
                 rho: self.rho.clone(),
                 poisson: self.poisson.clone(),
                 load: self.load.clone(),
-                surface: self.surface.iter().filter(|l| outer(l.side)).cloned().collect(),
+                surface: self
+                    .surface
+                    .iter()
+                    .filter(|l| outer(l.side))
+                    .cloned()
+                    .collect(),
                 ramp: self.ramp.clone(),
                 dirichlet,
                 place,

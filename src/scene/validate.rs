@@ -200,7 +200,10 @@ fn check_shape(body: &BodySpec, form: &Form) -> Result<()> {
         if let Some(p) = points.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
             return fail(
                 body,
-                format_args!("its shape puts a node at {} where finite numbers were expected", body.spot_at(*p)),
+                format_args!(
+                    "its shape puts a node at {} where finite numbers were expected",
+                    body.spot_at(*p)
+                ),
             );
         }
         if !jacobian_is_positive(mesh.dim(), &points, form.element) {

@@ -91,11 +91,14 @@ impl Direct {
     pub fn energy(&self, nodal: &[Vec<f64>]) -> f64 {
         let mut sum = 0.0;
         for (mesh, u) in self.meshes.iter().zip(nodal) {
-            let k = q1::stiffness(mesh.step[0], mesh.step[1]);
-            let [nx, ny] = mesh.elements;
+            let k = {
+                let [dx, dy, _] = mesh.step.expect("a box");
+                q1::stiffness(dx, dy)
+            };
+            let [nx, ny, _] = mesh.elements;
             for (e, rho) in mesh.rho.iter().enumerate() {
                 assert!(e < nx * ny);
-                let nodes = mesh.element_nodes([e % nx, e / nx]);
+                let nodes = mesh.element_nodes([e % nx, e / nx, 0]);
                 for (a, row) in k.iter().enumerate() {
                     for (b, entry) in row.iter().enumerate() {
                         // Rows of the element matrix add up to zero: energies of differences lose nothing to a large mean.

@@ -142,6 +142,7 @@ pub fn spec(seed: u64) -> SceneSpec {
     }
     if rng.one_in(12) {
         spec.contacts.push(ContactSpec {
+            sides: None,
             pair: Pair::All,
             extent: Extent::All,
             gap: Profile::constant(number(rng, 0.0, 0.1)),
@@ -294,6 +295,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
     let contact = |rng: &mut Rng, spec: &mut SceneSpec, extent: Extent| {
         let [a, b] = names.clone();
         spec.contacts.push(ContactSpec {
+            sides: None,
             pair: if turned {
                 Pair::Named(b, a)
             } else {
@@ -320,7 +322,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             contact(rng, spec, high);
         }
         5 | 6 => {} // whatever the default says
-        7 => contact(rng, spec, Extent::Points(vec![0.0, 1.0])),
+        7 => contact(rng, spec, Extent::Points(vec![[0.0, 0.0], [1.0, 0.0]])),
         _ => contact(rng, spec, Extent::All),
     }
 }

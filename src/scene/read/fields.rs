@@ -181,7 +181,10 @@ impl<'a> Reader<'a> {
             let (field, quadrature) = self.field(item, shape, 0.0)?;
             return Ok((vec![field], quadrature));
         }
-        let wanted = format!("a list of {c} components or a table of x, y{}", ["", " and z"][c - 2]);
+        let wanted = format!(
+            "a list of {c} components or a table of x, y{}",
+            ["", " and z"][c - 2]
+        );
         match &item.value {
             Value::List(items) if items.len() == c => {
                 let each = |i| Ok(Field::Expression(self.expression(i)?));

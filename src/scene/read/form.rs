@@ -34,7 +34,10 @@ impl<'a> Reader<'a> {
         let plane = match scene.take("plane") {
             None => Plane::Strain,
             Some(item) if !elastic || reader.dim == 3 => {
-                return reader.error(item, "`plane` outside plane elasticity, where it says nothing")
+                return reader.error(
+                    item,
+                    "`plane` outside plane elasticity, where it says nothing",
+                )
             }
             Some(item) => match reader.choice(item, &["strain", "stress"])? {
                 0 => Plane::Strain,

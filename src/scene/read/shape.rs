@@ -82,7 +82,9 @@ impl<'a> Reader<'a> {
         if !(from < to && to - from <= 360.0) {
             return self.error(
                 item,
-                format_args!("angles from {from} to {to} degrees where from < to ≤ from + 360 was expected"),
+                format_args!(
+                    "angles from {from} to {to} degrees where from < to ≤ from + 360 was expected"
+                ),
             );
         }
         Ok(BodyShape::Annulus {

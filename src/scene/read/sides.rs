@@ -70,7 +70,11 @@ impl<'a> Reader<'a> {
     pub(super) fn surface_loads(&self, section: &mut Section<'a>) -> Result<Vec<SurfaceLoad>> {
         let mut out = Vec::new();
         let elastic = self.form.is_elastic();
-        for (key, meant) in [("flux", !elastic), ("traction", elastic), ("pressure", elastic)] {
+        for (key, meant) in [
+            ("flux", !elastic),
+            ("traction", elastic),
+            ("pressure", elastic),
+        ] {
             let Some(item) = (if meant { section.take(key) } else { None }) else {
                 continue;
             };

@@ -4,9 +4,7 @@ use super::Reader;
 use crate::error::Result;
 use crate::scene::document::{Item, Section, Value};
 use crate::scene::profile::Profile;
-use crate::scene::spec::{
-    BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec,
-};
+use crate::scene::spec::{BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec};
 
 impl<'a> Reader<'a> {
     pub(super) fn interface(&self, item: &'a Item) -> Result<ByDefault> {
@@ -43,7 +41,10 @@ impl<'a> Reader<'a> {
             None => None,
             Some(item) => match (self.list(item, "a pair of sides")?, &pair) {
                 (_, Pair::All) => {
-                    return self.error(item, "`sides` for all pairs, where two named bodies were expected")
+                    return self.error(
+                        item,
+                        "`sides` for all pairs, where two named bodies were expected",
+                    )
                 }
                 ([a, b], _) => Some([self.side(a)?, self.side(b)?]),
                 _ => return self.expected(item, "a pair of sides"),

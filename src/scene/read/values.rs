@@ -188,7 +188,11 @@ impl<'a> Reader<'a> {
     /// "left, right, bottom or top".
     pub(super) fn sides_list(&self) -> String {
         let names = &SIDES[..2 * self.dim];
-        format!("{} or {}", names[..names.len() - 1].join(", "), names[names.len() - 1])
+        format!(
+            "{} or {}",
+            names[..names.len() - 1].join(", "),
+            names[names.len() - 1]
+        )
     }
 
     pub(super) fn written(&self, item: &Item) -> String {
