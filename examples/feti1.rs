@@ -39,7 +39,7 @@ fn run(session: &Session) -> Result<()> {
     let mut worst = [0.0f64];
     for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
         let mesh = scene.subdomain_mesh(sub.index)?;
-        for (value, [x, _]) in mesh.nodal(u).iter().zip(&mesh.points) {
+        for (value, [x, ..]) in mesh.nodal(u).iter().zip(&mesh.points) {
             worst[0] = worst[0].max((value - 0.5 * x * (1.0 - x)).abs());
         }
     }

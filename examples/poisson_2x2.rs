@@ -54,7 +54,7 @@ fn run(session: &Session) -> Result<()> {
     for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
         let mesh = scene.subdomain_mesh(sub.index)?;
         let nodal = mesh.nodal(u);
-        for (value, [x, y]) in nodal.iter().zip(&mesh.points) {
+        for (value, [x, y, _]) in nodal.iter().zip(&mesh.points) {
             let expected = factor * (PI * x).sin() * (PI * y).sin();
             worst[0] = worst[0].max((value - expected).abs());
         }

@@ -142,7 +142,7 @@ fn sets_and_displacements() {
                 let mut touching = Vec::new();
                 for (k, &r) in jump.order.iter().enumerate() {
                     if solution.active[jump.n_owned_local + k] {
-                        touching.push((labels[r].t * n as f64).round() as u64);
+                        touching.push((labels[r].t[0] * n as f64).round() as u64);
                     }
                 }
                 touching.sort_unstable();

@@ -49,7 +49,7 @@ fn a_row_says_that_the_second_body_stays_above_the_first() {
         let labels = scene.row_labels(&|_| true);
         let first = labels[1].members.map(|m| m.unwrap().body);
         assert_eq!(first, interface.order);
-        assert_eq!((labels[1].point, labels[1].t), ([1.0, 0.25], 0.25));
+        assert_eq!((labels[1].point, labels[1].t), ([1.0, 0.25, 0.0], [0.25, 0.0]));
         assert_eq!(labels[1].source, RowSource::Interface(0));
     }
 }
@@ -134,7 +134,7 @@ fn cross(entries: &str) -> Vec<([usize; 2], bool)> {
     let here = labels
         .iter()
         .zip(&rows)
-        .filter(|(l, _)| l.point == [1.0, 1.0]);
+        .filter(|(l, _)| l.point == [1.0, 1.0, 0.0]);
     here.map(|(l, r)| {
         (
             l.members.map(|m| m.unwrap().body),
@@ -222,7 +222,7 @@ fn obstacles_bound_the_nodes_of_a_side() {
     // Of two bounds at a node only one holds to begin with.
     assert!(at[0].0.holds && !at[1].0.holds);
     assert_eq!(at[1].1.source, RowSource::Obstacle(1));
-    assert_eq!((at[1].1.t, at[1].1.point), (0.25, [0.25, 1.0]));
+    assert_eq!((at[1].1.t, at[1].1.point), ([0.25, 0.0], [0.25, 1.0, 0.0]));
     assert_eq!(at[1].1.members[0].unwrap().node, 21);
     assert_eq!(at[1].1.members[1], None);
     assert_eq!((at[1].1.block, at[1].0.block), (21, 21));

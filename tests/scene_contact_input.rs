@@ -32,7 +32,7 @@ fn contacts() {
     let with = |lines: &str| pair(&format!("[[contact]]\nbodies = [\"a\", \"b\"]\n{lines}\n"));
     check(
         &with("gapp = 1"),
-        "s.toml:13: unknown key `gapp` in [[contact]] (known keys are bodies, where, range, points, nodes, gap, ramp)",
+        "s.toml:13: unknown key `gapp` in [[contact]] (known keys are bodies, sides, where, range, points, nodes, gap, ramp)",
     );
     check(
         &pair("[[contact]]\ngap = 1\n"),

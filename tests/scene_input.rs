@@ -72,12 +72,12 @@ fn files_and_syntax() {
 fn keys_and_types() {
     check(
         &body("a", "[0, 0]", "elements = 4\nrhoo = 2"),
-        "s.toml:6: unknown key `rhoo` in [[body]] (known keys are name, origin, size, subdomains, elements, \
-         elements_per_subdomain, rho, load, dirichlet, ramp)",
+        "s.toml:6: unknown key `rhoo` in [[body]] (known keys are name, origin, shape, size, subdomains, elements, \
+         elements_per_subdomain, rho, load, flux, dirichlet, ramp)",
     );
     let e = message(&format!("colour = 1\n{}", pair("")));
     assert!(
-        e.starts_with("s.toml:1: unknown key `colour` in the scene (known keys are name, title,"),
+        e.starts_with("s.toml:1: unknown key `colour` in the scene (known keys are dimension, physics,"),
         "{e}"
     );
     let e = message(&pair("[[tie]]\nbodies = \"all\"\nrang = [0, 1]\n"));

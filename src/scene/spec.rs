@@ -424,7 +424,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
         if bodies > 1 {
             spec.ties.push(TieSpec {
                 pair: Pair::All,
-                extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0]; 2]),
+                extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0], [0.0, 1.0]]),
                 written: String::new(),
             });
         }

@@ -73,6 +73,12 @@ impl Expr {
         Expr::parse_in(text, &VARIABLES)
     }
 
+    /// The expression written as `text` for a plane scene, where there is no z.
+    pub(super) fn parse_plane(text: &str) -> Result<Expr, String> {
+        let names = VARIABLES.map(|v| if ["z", "bk", "sk"].contains(&v) { "" } else { v });
+        Expr::parse_in(text, &names)
+    }
+
     /// The expression written as `text`, with other names (at most nine) for the variables.
     pub(super) fn parse_in(text: &str, variables: &[&str]) -> Result<Expr, String> {
         let root = parse::parse(text, variables)?;
@@ -314,7 +320,7 @@ mod tests {
 
     #[test]
     fn mistakes_are_named_with_their_place() {
-        let message = |text: &str| Expr::parse(text).unwrap_err();
+        let message = |text: &str| Expr::parse_plane(text).unwrap_err();
         assert_eq!(
             message("sin(x"),
             "the end at character 6 where `,` or `)` was expected"

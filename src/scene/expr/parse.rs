@@ -197,10 +197,15 @@ impl Parser<'_> {
                 match name.as_str() {
                     "pi" | "PI" | "π" => Ok(Ast::Number(std::f64::consts::PI)),
                     "e" | "E" => Ok(Ast::Number(std::f64::consts::E)),
-                    _ => Err(format!(
-                        "unknown name `{name}` at character {place} (variables are {})",
-                        self.variables.join(", ")
-                    )),
+                    _ => {
+                        // Empty names hold the places of variables that there are only in space.
+                        let known = self.variables.iter().filter(|v| !v.is_empty());
+                        let known: Vec<&str> = known.copied().collect();
+                        Err(format!(
+                            "unknown name `{name}` at character {place} (variables are {})",
+                            known.join(", ")
+                        ))
+                    }
                 }
             }
             _ => self.unexpected("a number, a name or `(`"),

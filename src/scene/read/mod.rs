@@ -250,7 +250,12 @@ impl<'a> Reader<'a> {
             Some(item) => self.field(item, shape, 1.0)?.0,
             None => Field::constant(1.0),
         };
-        let poisson = match section.take("poisson").filter(|_| elastic) {
+        let given = if elastic {
+            section.take("poisson")
+        } else {
+            None
+        };
+        let poisson = match given {
             Some(item) => self.field(item, shape, POISSON)?.0,
             None => Field::constant(POISSON),
         };

@@ -66,7 +66,11 @@ impl<'a> Reader<'a> {
         match &item.value {
             Value::Integer(v) => Ok(Expr::constant(*v as f64)),
             Value::Number(v) => Ok(Expr::constant(*v)),
-            Value::Text(text) => Expr::parse(text).or_else(|message| {
+            Value::Text(text) => match self.dim {
+                2 => Expr::parse_plane(text),
+                _ => Expr::parse(text),
+            }
+            .or_else(|message| {
                 self.error(item, format_args!("bad expression \"{text}\": {message}"))
             }),
             _ => self.expected(item, "a number or an expression"),
