@@ -167,6 +167,7 @@ fn half(index: usize) -> Subdomain {
         dofs: nodes.iter().map(|&node| dof(board, node)).collect(),
         rho: vec![1.0; n],
         primal,
+        entities: Vec::new(),
         near_kernel: None,
         coordinates: None,
     }

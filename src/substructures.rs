@@ -26,11 +26,38 @@ pub struct Subdomain {
     /// Local dofs at subdomain vertices (strictly increasing). Continuity inside the body is primal at those that subdomains
     /// share; corners of the body count too, they matter where bodies meet.
     pub primal: Vec<u32>,
+    /// Edges and faces that this subdomain shares with others of its body, for primal averages; see [`Entity`]. Empty: there are none.
+    pub entities: Vec<Entity>,
     /// Columns that span every kernel that this subdomain's matrix could have before it is held (constants; rigid
-    /// body modes), each of length n. `None`: nothing is known, kernels are found from the matrices alone.
+    /// body modes about the body's own centre), entries of order one, each of length n. `None`: nothing is known, kernels are found from the matrices alone.
     pub near_kernel: Option<Vec<Vec<f64>>>,
     /// Position of each local dof, if known: used for nested dissection. Length n.
     pub coordinates: Option<Vec<[f64; 3]>>,
+}
+
+/// What an [`Entity`] is: the constraints are chosen by kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum EntityKind {
+    /// An open edge: without the vertices at its ends.
+    Edge,
+    /// An open face: without its edges and vertices.
+    Face,
+}
+
+/// An edge or a face of a subdomain, one component of the field on it: the body may be held together in the average over its dofs.
+///
+/// Every subdomain of the body that holds the dofs lists the entity with the same key and its dofs in the same order of body dof; a
+/// face that another kind of edge or vertex lies in has been cut before. The edges in which the face between two subdomains meets
+/// the surface of their body are entities too, held dofs left out. Entities of a subdomain have no dof in common. What one subdomain
+/// alone lists ties nothing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entity {
+    /// Edge or face.
+    pub kind: EntityKind,
+    /// Unique over bodies, entities and components; any number.
+    pub key: u64,
+    /// Local dofs; not empty.
+    pub dofs: Vec<u32>,
 }
 
 /// How a row holds: as an equation, or as an inequality that the contact loop may switch off.

@@ -86,6 +86,7 @@ impl Scene {
             dofs,
             rho,
             primal,
+            entities: Vec::new(),
             near_kernel: Some(vec![vec![1.0; n]]),
             coordinates: Some(coordinates),
         })

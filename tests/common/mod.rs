@@ -119,6 +119,7 @@ impl Grid {
             dofs,
             rho: vec![rho; n],
             primal,
+            entities: Vec::new(),
             near_kernel: Some(vec![vec![1.0; n]]),
             coordinates: Some(number.keys().map(place).collect()),
         }
