@@ -102,11 +102,11 @@ pub mod sparse;
 pub mod substructures;
 
 pub use error::{Error, Result};
-pub use feti::{FetiFeti, PcType, ProjectorKind, Scaling, Settings, Solution, Spectrum};
+pub use feti::{FetiFeti, PcType, Primal, ProjectorKind, Scaling, Settings, Solution, Spectrum};
 pub use petsc::Session;
 pub use scene::Scene;
 pub use sparse::Csr;
-pub use substructures::{InterfaceRow, RowKind, Subdomain, Substructures};
+pub use substructures::{Entity, EntityKind, InterfaceRow, RowKind, Subdomain, Substructures};
 
 /// Runs `work` as the whole program: starts PETSc with the process's arguments (so that PETSc options work), ends it
 /// afterwards, prints an error as one sentence and turns it into the exit code of [`Error::exit_code`].

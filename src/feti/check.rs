@@ -53,7 +53,7 @@ fn noise(seed: u64) -> f64 {
 }
 
 impl Check<'_> {
-    /// work.y: a function in W̃, torn in the dual dofs, continuous in the primal ones.
+    /// work.y: a function in W̃, torn in the dual dofs, continuous in the vertices and averages.
     fn torn(&self) -> Vec<Work> {
         let stiffness = &self.dual.stiffness;
         let mut work = stiffness.work();
@@ -66,6 +66,10 @@ impl Check<'_> {
                     0
                 };
                 w.y[i] = noise(sub.dofs[dof as usize] ^ (copy << 40));
+            }
+            local.basis.remove_means(&mut w.y);
+            for (dofs, average) in local.basis.averages.iter().zip(&stiffness.jump.averages[j]) {
+                dofs.iter().for_each(|&i| w.y[i] += noise(average.key));
             }
         }
         work

@@ -1,6 +1,6 @@
 //! Equal subdomains share one factorisation.
 //!
-//! Two subdomains are equal when matrix and interface are the same, bit for bit; where they lie does not matter. On a
+//! Two subdomains are equal when matrix, interface and averages are the same, bit for bit; where they lie does not matter. On a
 //! regular grid with one coefficient a handful of different ones remain, and their dense operators stay in the cache.
 
 use std::collections::hash_map::DefaultHasher;
@@ -41,15 +41,18 @@ fn hash(problem: &Substructures, jump: &Jump, j: usize) -> u64 {
 }
 
 fn same(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> bool {
+    let averaged = |j: usize| jump.averages[j].iter().map(|a| &a.dofs);
     // Equality of floats is meant: -0.0 against 0.0 would only cost a factorisation.
     jump.delta[i] == jump.delta[j]
         && jump.primal[i] == jump.primal[j]
+        && averaged(i).eq(averaged(j))
         && problem.local[i].k == problem.local[j].k
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::feti::settings::Primal;
     use crate::feti::sharing::Sharing;
     use crate::petsc::testing::with_session;
     use crate::scene::{Faces, Scene};
@@ -60,7 +63,8 @@ mod tests {
             let scene = Scene::lee(3, 4, 3, Faces::Whole).expect("a scene");
             let problem = scene.substructures(&|_| true).expect("substructures");
             let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
-            let sharing = Sharing::new(session.comm(), &problem, &weights).expect("shared");
+            let sharing = Sharing::new(session.comm(), &problem, &weights, Primal::default())
+                .expect("shared");
             let jump = Jump::new(session.comm(), &problem, &sharing);
             let first = representatives(&problem, &jump);
             let mut kinds = first.clone();

@@ -9,6 +9,7 @@ use mpi::traits::Communicator;
 
 use super::blocks::{self, Block, Entry};
 use super::exchange::{exchange, offsets, sum_all};
+use super::entities::Average;
 use super::scaling;
 use super::sharing::{Copy, Sharing};
 use crate::substructures::{RowKind, Substructures};
@@ -59,6 +60,16 @@ impl JumpColumns {
         v.fill(0.0);
         for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
             v[i as usize] += b * ghost[r as usize];
+        }
+    }
+
+    /// v ← B_Dᵀ λ with some of the ghost rows.
+    pub fn bd_transpose_of(&self, ghost: &[f64], v: &mut [f64], rows: impl Fn(usize) -> bool) {
+        v.fill(0.0);
+        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
+            if rows(r as usize) {
+                v[i as usize] += b * ghost[r as usize];
+            }
         }
     }
 
@@ -127,6 +138,8 @@ pub struct Jump {
     pub primal: Vec<Vec<u32>>,
     /// How many of them are shared.
     pub n_shared: Vec<usize>,
+    /// Averages over dual dofs of each local subdomain that are primal too: shared ones first.
+    pub averages: Vec<Vec<Average>>,
 }
 
 impl Jump {
@@ -244,7 +257,7 @@ impl Jump {
                 columns.at.push(e.local);
                 columns.b.push(e.b);
                 columns.bd.push(e.bd);
-                let vertex = sub.primal.binary_search(&e.local).is_ok();
+                let vertex = sharing.vertices && sub.primal.binary_search(&e.local).is_ok();
                 let alone = sharing.shared(sub.dofs[e.local as usize]).is_empty();
                 if e.contact && vertex && alone && subdomains_of[sub.body] > 1 {
                     corners.push(e.local);
@@ -259,6 +272,16 @@ impl Jump {
             dual.dedup();
             dual.retain(|i| primal.binary_search(i).is_err());
             self.n_shared.push(primal.len());
+            let mut averages = sharing.averages[j].clone();
+            if subdomains_of[sub.body] < 2 {
+                averages.clear();
+            }
+            for average in &mut averages {
+                // Dofs of a private edge count where they may touch other bodies.
+                average.dofs.retain(|i| dual.binary_search(i).is_ok());
+            }
+            averages.retain(|a| !a.dofs.is_empty());
+            self.averages.push(averages);
             primal.extend(corners);
             self.columns.push(columns);
             self.delta.push(dual);

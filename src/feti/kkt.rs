@@ -10,7 +10,7 @@ use crate::Result;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kkt {
     /// ‖K u − f + Bᵀ λ‖ / (‖f‖ + ‖Bᵀ λ‖) in the norm of diag(K)⁻¹, in which stiff and soft parts count alike; residuals of
-    /// primal dofs are summed over their copies.
+    /// primal dofs and averages are summed over their copies.
     pub stationarity: f64,
     /// Largest violation of B u = c (≤ c) over the largest |u|; inequality rows count whether or not they hold.
     pub feasibility: f64,
@@ -64,11 +64,20 @@ pub fn certify(
             r[i as usize] += v;
             sums[2] += v * v / d[i as usize];
         }
-        for (p, &i) in local.interface[local.n_delta..].iter().enumerate() {
-            let at = stiffness.space.of_subdomain[j][p] as usize;
-            primal[at] += r[i as usize];
-            primal_d[at] += d[i as usize];
-            r[i as usize] = 0.0;
+        let places = &stiffness.space.of_subdomain[j];
+        let fixing = places[local.n_pi() - local.fixing.len()..].iter();
+        // Fixing dofs take nothing over: no residual, any divisor.
+        fixing.for_each(|&at| primal_d[at as usize] = 1.0);
+        let vertices = local.interface[local.n_delta..].iter().map(|i| vec![*i]);
+        let averages = local.basis.averages.iter();
+        let averages = averages.map(|a| a.iter().map(|&p| local.interface[p]).collect());
+        for (dofs, &at) in vertices.chain(averages).zip(places.iter()) {
+            // What a copy takes over from another one: a force at a vertex, an even one along an edge.
+            let force: f64 = dofs.iter().map(|&i| r[i as usize]).sum();
+            primal[at as usize] += force;
+            primal_d[at as usize] += dofs.iter().map(|&i| d[i as usize]).sum::<f64>();
+            let even = force / dofs.len() as f64;
+            dofs.iter().for_each(|&i| r[i as usize] -= even);
         }
         sums[0] += r.iter().zip(&d).map(|(r, d)| r * r / d).sum::<f64>();
         for (y, &i) in work[j].y.iter_mut().zip(&local.interface) {

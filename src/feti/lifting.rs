@@ -1,6 +1,6 @@
 //! Z_c: coarse functions of the bodies that vanish where bodies may touch (method section 5).
 //!
-//! Columns of Z_c are the columns of Ψ at vertices that subdomains of the body share, their copies averaged inside the body with the scaling weights, set to zero on
+//! Columns of Z_c are the columns of Ψ at vertices and averages that subdomains of the body share, their copies averaged inside the body with the scaling weights, set to zero on
 //! candidate contact nodes. Removing their span S̃-orthogonally from what B_Dᵀ lifts,
 //!
 //! ```text
@@ -195,7 +195,7 @@ fn average_copies(
     let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
     for (j, sub) in problem.local.iter().enumerate() {
         let local = &stiffness.locals[j];
-        let n_columns = stiffness.jump.n_shared[j];
+        let shared = shared_columns(stiffness, j);
         for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
             let copies = sharing.shared(sub.dofs[dof as usize]);
             let total: f64 = copies.iter().map(|c| c.weight).sum();
@@ -207,9 +207,9 @@ fn average_copies(
                 list.extend([
                     u64::from(to.subdomain),
                     u64::from(to.local),
-                    n_columns as u64,
+                    shared.len() as u64,
                 ]);
-                for p in 0..n_columns {
+                for &p in &shared {
                     let value = own.weight / total * local.psi.get(i, p);
                     list.extend([u64::from(global(j, p)), value.to_bits()]);
                 }
@@ -246,6 +246,16 @@ fn average_copies(
             let candidate = candidates(stiffness, j);
             gather(local.interface.as_slice(), &rows[j], &candidate)
         })
+        .collect()
+}
+
+/// The primal dofs of local subdomain `j` that it shares: vertices and averages.
+fn shared_columns(stiffness: &Stiffness, j: usize) -> Vec<usize> {
+    let jump = &stiffness.jump;
+    let first = stiffness.locals[j].n_vertices();
+    let averages = jump.averages[j].iter().filter(|a| a.shared).count();
+    (0..jump.n_shared[j])
+        .chain(first..first + averages)
         .collect()
 }
 

@@ -4,6 +4,7 @@ pub mod blocks;
 pub mod check;
 pub mod coarse;
 pub mod dual;
+pub mod entities;
 pub mod equal;
 pub mod exchange;
 pub mod gtg;
@@ -30,6 +31,6 @@ pub mod team;
 
 pub use kkt::Kkt;
 pub use recover::Solution;
-pub use settings::{PcType, ProjectorKind, Scaling, Settings};
+pub use settings::{PcType, Primal, ProjectorKind, Scaling, Settings};
 pub use solver::FetiFeti;
 pub use spectrum::Spectrum;

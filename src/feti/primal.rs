@@ -8,6 +8,7 @@ use std::ops::Range;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::entities::Average;
 use super::exchange::{exchange, exchange_words, offsets, sum_all, Record};
 use super::kernel;
 use super::local::dense::Dense;
@@ -85,18 +86,19 @@ pub struct PrimalSpace {
 }
 
 impl PrimalSpace {
-    /// Numbers the primal dofs, assembles S_Π and finds the kernels. Collective.
+    /// Numbers the primal dofs (`averages` are those of every local subdomain), assembles S_Π and finds the kernels. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         problem: &Substructures,
         sharing: &Sharing,
+        averages: &[Vec<Average>],
         locals: &[impl AsRef<LocalProblem>],
     ) -> PrimalSpace {
         let mut space = PrimalSpace {
             owner: owners(problem, sharing),
             ..PrimalSpace::default()
         };
-        let asked = space.number(comm, problem, locals);
+        let asked = space.number(comm, problem, averages, locals);
         let mut entries: Vec<Vec<PrimalEntry>> = vec![Vec::new(); comm.size() as usize];
         for (j, local) in locals.iter().enumerate() {
             let to = space.owner[problem.local[j].body] as usize;
@@ -122,20 +124,21 @@ impl PrimalSpace {
         &mut self,
         comm: &SimpleCommunicator,
         problem: &Substructures,
+        averages: &[Vec<Average>],
         locals: &[impl AsRef<LocalProblem>],
     ) -> Vec<Vec<u32>> {
         let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
-        for (sub, local) in problem.local.iter().zip(locals) {
+        for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
             let local = local.as_ref();
-            let n_vertices = local.n_pi() - local.n_fixing;
-            for (p, &dof) in local.interface[local.n_delta..].iter().enumerate() {
-                // A fixing dof belongs to its subdomain alone; the top bit keeps its key apart from body dofs.
-                let key = if p < n_vertices {
-                    sub.dofs[dof as usize]
-                } else {
-                    1 << 63 | (sub.index as u64) << 32 | u64::from(dof)
-                };
-                requests[self.owner[sub.body] as usize].extend([sub.body as u64, key]);
+            // A vertex is known by its body dof, an average by its entity; a fixing dof belongs to its subdomain alone.
+            let vertices = local.interface[local.n_delta..].iter();
+            let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
+            let averages = averages[j].iter().map(|a| (1, a.key));
+            let fixing = local.fixing.iter();
+            let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
+            for (kind, key) in vertices.chain(averages).chain(fixing) {
+                let body = (sub.body as u64) << 2 | kind;
+                requests[self.owner[sub.body] as usize].extend([body, key]);
             }
         }
         let sent: Vec<usize> = requests.iter().map(|r| r.len() / 2).collect();
@@ -150,9 +153,9 @@ impl PrimalSpace {
         (self.first, self.n_global) = offsets(comm, all.len());
         let first = self.first;
         let mut start = 0;
-        for group in all.chunk_by(|a, b| a.0 == b.0) {
+        for group in all.chunk_by(|a, b| a.0 >> 2 == b.0 >> 2) {
             self.owned.push(OwnedBody {
-                body: group[0].0 as usize,
+                body: (group[0].0 >> 2) as usize,
                 range: start..start + group.len(),
                 z: Dense::default(),
                 fixing: Vec::new(),
@@ -226,10 +229,15 @@ impl PrimalSpace {
             if columns.is_empty() {
                 continue;
             }
-            for (p, &dof) in local.interface[local.n_delta..].iter().enumerate() {
-                let number = self.ghosts[self.of_subdomain[j][p] as usize];
+            let on_gamma = |c: &Vec<f64>| {
+                let values = local.interface.iter().map(|&i| c[i as usize]);
+                local.primal_values(&values.collect::<Vec<f64>>())
+            };
+            let primal: Vec<Vec<f64>> = columns.iter().map(on_gamma).collect();
+            for (p, &place) in self.of_subdomain[j].iter().enumerate() {
+                let number = self.ghosts[place as usize];
                 values[to].extend([u64::from(number), columns.len() as u64]);
-                values[to].extend(columns.iter().map(|c| c[dof as usize].to_bits()));
+                values[to].extend(primal.iter().map(|c| c[p].to_bits()));
             }
         }
         let factors = exchange_words(comm, factors).concat();

@@ -1,6 +1,7 @@
 //! What a user may choose, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
 use crate::petsc::{Options, Session};
+use crate::substructures::EntityKind;
 use crate::{Error, Result};
 
 /// The preconditioner of the dual problem.
@@ -25,6 +26,67 @@ pub enum Scaling {
     Rho,
     /// D = diag(K).
     Stiffness,
+    /// D = S on every edge and face inside a body, as a matrix; diag(K) where bodies meet.
+    Deluxe,
+}
+
+/// The constraints that hold the subdomains of a body together, any of them or none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Primal {
+    /// Values at vertices.
+    pub vertices: bool,
+    /// Averages over edges.
+    pub edges: bool,
+    /// Averages over faces.
+    pub faces: bool,
+}
+
+impl Default for Primal {
+    fn default() -> Self {
+        Primal {
+            vertices: true,
+            edges: true,
+            faces: false,
+        }
+    }
+}
+
+impl Primal {
+    const NAMES: [&'static str; 3] = ["vertices", "edges", "faces"];
+
+    /// Whether averages over entities of this kind are primal.
+    pub fn takes(self, kind: EntityKind) -> bool {
+        match kind {
+            EntityKind::Edge => self.edges,
+            EntityKind::Face => self.faces,
+        }
+    }
+
+    /// As the option takes it.
+    pub fn name(self) -> String {
+        let chosen = [self.vertices, self.edges, self.faces];
+        let names = Self::NAMES.iter().zip(chosen).filter(|n| n.1).map(|n| *n.0);
+        let names = names.collect::<Vec<_>>();
+        if names.is_empty() {
+            return "none".into();
+        }
+        names.join(",")
+    }
+
+    /// From a list with commas, or `none`; nothing where a word is wrong.
+    pub fn parse(text: &str) -> Option<Primal> {
+        let mut chosen = [false; 3];
+        for word in text.split(',').filter(|_| text != "none") {
+            let word = word.trim().to_ascii_lowercase();
+            chosen[Self::NAMES.iter().position(|n| *n == word)?] = true;
+        }
+        let [vertices, edges, faces] = chosen;
+        Some(Primal {
+            vertices,
+            edges,
+            faces,
+        })
+    }
 }
 
 /// The weight Q of the projector P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ.
@@ -59,7 +121,7 @@ macro_rules! names {
 }
 
 names!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
-names!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness" });
+names!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness", Deluxe = "deluxe" });
 names!(ProjectorKind {
     Identity = "identity",
     Diagonal = "diagonal",
@@ -77,6 +139,8 @@ pub struct Settings {
     pub scaling: Scaling,
     /// `fetifeti_scaling_gamma`, γ ∈ [1/2, ∞).
     pub gamma: f64,
+    /// `fetifeti_primal`.
+    pub primal: Primal,
     /// `fetifeti_projector`.
     pub projector: ProjectorKind,
     /// `fetifeti_threads`: threads of this rank; `None`: all cores where one rank runs, else one.
@@ -99,6 +163,7 @@ impl Default for Settings {
             pc_type: None,
             scaling: Scaling::Rho,
             gamma: 1.0,
+            primal: Primal::default(),
             projector: ProjectorKind::Auto,
             threads: None,
             check: false,
@@ -142,8 +207,15 @@ impl Settings {
             help,
         )?;
         self.projector = ProjectorKind::from_index(i);
-        let help = "primal constraints inside the bodies";
-        o.choice("primal", &["vertices"], 0, help)?;
+        let help = "primal constraints inside the bodies (some of vertices, edges, faces, or none)";
+        let text = o.string("primal", &self.primal.name(), help)?;
+        self.primal = Primal::parse(&text).ok_or_else(|| {
+            Error::input(format!(
+                "option {} is \"{text}\", expected some of {} with commas between them, or none",
+                o.full_name("primal"),
+                Primal::NAMES.join(", ")
+            ))
+        })?;
         let help = "threads per rank; 0: all cores where one rank runs, else 1";
         self.threads = match o.usize("threads", self.threads.unwrap_or(0), help)? {
             0 => None,

@@ -9,7 +9,9 @@ use std::collections::HashMap;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::entities::{self, Average};
 use super::exchange::{exchange, exchange_words, gather_all, Record};
+use super::settings::Primal;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
@@ -36,6 +38,10 @@ pub struct Sharing {
     pub rank_of: Vec<u32>,
     /// Body of each subdomain; length n_subdomains.
     pub body_of: Vec<u32>,
+    /// The averages that are primal in each local subdomain.
+    pub averages: Vec<Vec<Average>>,
+    /// Whether vertices are primal.
+    pub vertices: bool,
 }
 
 impl Record for (u64, Copy) {
@@ -62,11 +68,13 @@ impl Record for (u64, Copy) {
 }
 
 impl Sharing {
-    /// Finds the copies. `weights[j]` holds D of local subdomain j, by local dof. Collective.
+    /// Finds the copies, and the averages among the chosen constraints. `weights[j]` holds D of local subdomain j, by local
+    /// dof. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         problem: &Substructures,
         weights: &[Vec<f64>],
+        constraints: Primal,
     ) -> Result<Sharing> {
         let size = comm.size() as usize;
         let home = |dof: u64| (dof % size as u64) as usize;
@@ -75,7 +83,9 @@ impl Sharing {
         let mut reports: Vec<Vec<(u64, Copy)>> = vec![Vec::new(); size];
         for (sub, weight) in problem.local.iter().zip(weights) {
             let mut primal = vec![false; sub.dofs.len()];
-            sub.primal.iter().for_each(|&i| primal[i as usize] = true);
+            if constraints.vertices {
+                sub.primal.iter().for_each(|&i| primal[i as usize] = true);
+            }
             for (i, &dof) in sub.dofs.iter().enumerate() {
                 let copy = Copy {
                     subdomain: sub.index as u32,
@@ -106,6 +116,8 @@ impl Sharing {
             copies: HashMap::new(),
             rank_of,
             body_of,
+            averages: Vec::new(),
+            vertices: constraints.vertices,
         };
         sharing.absorb(exchange(comm, &replies).concat());
 
@@ -134,7 +146,9 @@ impl Sharing {
             })
             .collect();
         sharing.absorb(exchange(comm, &answers).concat());
+        let averages = entities::averages(comm, problem, &sharing, constraints);
         sharing.check(problem)?;
+        sharing.averages = averages?;
         Ok(sharing)
     }
 

@@ -9,6 +9,7 @@ use super::jump::Jump;
 use super::kernel;
 use super::local::dense::Dense;
 use super::local::multifrontal::Symbolic;
+use super::settings::Primal;
 use super::sharing::Sharing;
 use super::team::Team;
 use crate::substructures::Substructures;
@@ -25,7 +26,7 @@ pub struct Sizes {
     pub multipliers_active: usize,
     /// Rows of B_gl that are inequalities.
     pub inequalities: usize,
-    /// Primal dofs of all bodies, fixing dofs left out.
+    /// Primal dofs of all bodies, averages included, fixing dofs left out.
     pub primal: usize,
     /// Largest primal problem of a body.
     pub largest_primal: usize,
@@ -42,10 +43,20 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Counts. Collective.
+    /// Counts with the default constraints. Collective.
     pub fn new(comm: &SimpleCommunicator, problem: &Substructures, team: &Team) -> Result<Sizes> {
+        Sizes::with(comm, problem, team, Primal::default())
+    }
+
+    /// Counts with the chosen constraints. Collective.
+    pub fn with(
+        comm: &SimpleCommunicator,
+        problem: &Substructures,
+        team: &Team,
+        constraints: Primal,
+    ) -> Result<Sizes> {
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
-        let sharing = Sharing::new(comm, problem, &weights)?;
+        let sharing = Sharing::new(comm, problem, &weights, constraints)?;
         let jump = Jump::new(comm, problem, &sharing);
         let first = equal::representatives(problem, &jump);
         let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
@@ -61,16 +72,20 @@ impl Sizes {
         let mut sums = [0.0; 5];
         sums[4] = kinds.len() as f64;
         for (&j, &entries) in kinds.iter().zip(&entries) {
-            let (n_delta, n_pi) = (jump.delta[j].len() as f64, jump.primal[j].len() as f64);
+            let n_delta = jump.delta[j].len() as f64;
+            let n_gamma = n_delta + jump.primal[j].len() as f64;
+            let n_pi = (jump.primal[j].len() + jump.averages[j].len()) as f64;
             sums[0] += 8.0 * entries as f64;
-            sums[1] += 8.0 * ((n_delta + n_pi).powi(2) + n_delta * (n_delta + n_pi));
+            // S, T, Ψ and Σ.
+            sums[1] += 8.0 * (n_gamma.powi(2) + n_delta * (n_delta + n_pi) + n_pi.powi(2));
         }
         let mut largest = [0.0f64];
         for (j, sub) in problem.local.iter().enumerate() {
             let n_gamma = jump.delta[j].len() + jump.primal[j].len();
             largest[0] = largest[0].max(n_gamma as f64);
-            for &i in &jump.primal[j] {
-                // Every primal dof is counted by its lowest subdomain.
+            let averages = jump.averages[j].iter().map(|a| &a.dofs[0]);
+            for &i in jump.primal[j].iter().chain(averages) {
+                // Every primal dof is counted by its lowest subdomain; an average is where its dofs are.
                 let copies = sharing.shared(sub.dofs[i as usize]);
                 let first = copies
                     .first()

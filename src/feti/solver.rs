@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use super::coarse::PrimalProblem;
 use super::dual::{self, Dual, Shared};
+use super::entities;
 use super::equal;
 use super::halo::Halo;
 use super::jump::Jump;
@@ -87,7 +88,12 @@ impl FetiFeti {
         let prefix = settings.prefix.clone();
 
         let weights = weights(&problem, &settings);
-        let sharing = session.agree(Sharing::new(comm, &problem, &weights))?;
+        let sharing = session.agree(Sharing::new(
+            comm,
+            &problem,
+            &weights,
+            settings.primal,
+        ))?;
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
@@ -95,7 +101,7 @@ impl FetiFeti {
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
         }
-        let space = PrimalSpace::new(comm, &problem, &sharing, &locals);
+        let space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
         let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
         let layout = PetscVec::mpi(session, jump.n_owned)?;
         let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
@@ -234,8 +240,24 @@ fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
             Scaling::Multiplicity => vec![1.0; sub.k.n()],
             Scaling::Rho if settings.gamma == 1.0 => sub.rho.clone(),
             Scaling::Rho => sub.rho.iter().map(|r| r.powf(settings.gamma)).collect(),
-            Scaling::Stiffness => (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect(),
+            Scaling::Stiffness | Scaling::Deluxe => {
+                (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect()
+            }
         }
+    };
+    // One number on an entity with an average: otherwise B_Dᵀ would lead out of W̃.
+    let of = |sub: &crate::substructures::Subdomain| -> Vec<f64> {
+        let mut d = of(sub);
+        for entity in entities::chosen(sub, settings.primal) {
+            let inside = entity.dofs.iter().filter(|&&i| (i as usize) < d.len());
+            let mean = inside.map(|&i| d[i as usize]).sum::<f64>() / entity.dofs.len() as f64;
+            for &i in &entity.dofs {
+                if let Some(d) = d.get_mut(i as usize) {
+                    *d = mean;
+                }
+            }
+        }
+        d
     };
     problem.local.iter().map(of).collect()
 }
@@ -254,7 +276,15 @@ fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<L
     let factored = team.map(kinds.len(), |k| {
         let sub = &problem.local[kinds[k]];
         let (delta, primal) = (&jump.delta[kinds[k]], &jump.primal[kinds[k]]);
-        LocalProblem::new(&sub.k, delta, primal, sub.coordinates.as_deref())
+        let averages = jump.averages[kinds[k]].iter();
+        let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
+        LocalProblem::new(
+            &sub.k,
+            delta,
+            primal,
+            &averages,
+            sub.coordinates.as_deref(),
+        )
             .map(Arc::new)
             .map_err(|e| {
                 Error::input(format!(

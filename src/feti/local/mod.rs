@@ -1,5 +1,6 @@
 //! Local work: everything that one subdomain does by itself.
 
+pub mod basis;
 pub mod dense;
 pub mod dissection;
 pub mod multifrontal;

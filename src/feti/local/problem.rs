@@ -1,16 +1,21 @@
 //! The operators of one subdomain on its interface: S, T, Ψ and Σ of method section 2.
 //!
-//! The interface Γ is ordered [Δ, Π]: dual dofs, then primal ones. From the Schur complement S on Γ follow
+//! The interface Γ is ordered [Δ, vertices]. Without averages the vertices are the primal dofs Π, and from the Schur complement S on Γ
+//! follow
 //!
 //! ```text
 //!     T = S_ΔΔ⁻¹          local solve with the primal dofs held
 //!     Ψ = [−T S_ΔΠ; I]    energy-minimal functions with value 1 at one primal dof, 0 at the others
 //!     Σ = Ψᵀ S Ψ = S_ΠΠ − S_ΠΔ T S_ΔΠ
 //! ```
+//!
+//! An average over dual dofs is made a coordinate first ([`Basis`]), and so are the dofs that have to be held to make S_ΔΔ regular: the
+//! formulas hold in that basis, and only T and Ψ know of it. Everything outside sees nodal dofs.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
 
+use super::basis::Basis;
 use super::dense::{self, Dense, Scratch};
 use super::multifrontal::{PartialCholesky, SingularInterior, Symbolic};
 use crate::sparse::Csr;
@@ -34,17 +39,19 @@ pub fn factorisations() -> usize {
 /// One subdomain, factored.
 #[derive(Debug)]
 pub struct LocalProblem {
-    /// Local dofs of the interface in the order [Δ, Π]; length n_Γ.
+    /// Local dofs of the interface in the order [Δ, vertices]; length n_Γ.
     pub interface: Vec<u32>,
-    /// Number of dual interface dofs.
+    /// Number of dual interface dofs. Those of averages and the fixing dofs are among them.
     pub n_delta: usize,
-    /// How many of the primal dofs (the last ones of `interface`) were added here to make S_ΔΔ regular.
-    pub n_fixing: usize,
+    /// Averages over dual dofs that are primal.
+    pub basis: Basis,
+    /// Positions in Γ of the coordinates that were added here to the primal dofs to make S_ΔΔ regular.
+    pub fixing: Vec<usize>,
     /// S on Γ, n_Γ × n_Γ, both triangles.
     pub s: Dense,
-    /// T = S_ΔΔ⁻¹, n_Δ × n_Δ, both triangles.
+    /// T, n_Δ × n_Δ, both triangles.
     pub t: Dense,
-    /// Ψ on Δ, n_Δ × n_Π (on Π it is the identity).
+    /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
     pub psi: Dense,
     /// Σ, n_Π × n_Π.
     pub sigma: Dense,
@@ -52,16 +59,18 @@ pub struct LocalProblem {
 }
 
 impl LocalProblem {
-    /// Factors subdomain matrix `k` with the given dual and primal interface dofs.
+    /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists dual dofs whose means
+    /// are primal.
     pub fn new(
         k: &Csr,
         delta: &[u32],
         primal: &[u32],
+        averages: &[&[u32]],
         coordinates: Option<&[[f64; 3]]>,
     ) -> Result<LocalProblem, SingularInterior> {
         let given = delta.len();
         let mut delta = delta.to_vec();
-        let (mut interface, factor, mut s) = loop {
+        let (interface, factor, s) = loop {
             let interface = [&delta[..], primal].concat();
             let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
             match PartialCholesky::new(k, symbolic) {
@@ -74,38 +83,72 @@ impl LocalProblem {
                 Err(e) => return Err(e),
             }
         };
+        let n_delta = delta.len();
         let stiff: Vec<f64> = interface
             .iter()
             .map(|&i| k.get(i as usize, i as usize))
             .collect();
-        let mut n_delta = delta.len();
+        let basis = basis(&interface[..given], averages);
+        let mut out = LocalProblem {
+            interface,
+            n_delta,
+            basis,
+            fixing: Vec::new(),
+            s,
+            t: Dense::default(),
+            psi: Dense::default(),
+            sigma: Dense::default(),
+            factor,
+        };
+        out.condense_dual(&stiff)?;
+        Ok(out)
+    }
+
+    /// T, Ψ and Σ from S: in the basis in which averages are coordinates, in the order [Δ, vertices, averages, fixing dofs], and
+    /// back to the nodal dofs.
+    fn condense_dual(&mut self, stiff: &[f64]) -> Result<(), SingularInterior> {
+        let (n_delta, n_gamma) = (self.n_delta, self.n_gamma());
+        let pivots = self.basis.pivots();
+        let mut order = moved_to_the_end(n_gamma, n_delta, &pivots);
+        let mut n = n_delta - pivots.len();
+        let changed = (!pivots.is_empty()).then(|| {
+            let mut s = self.s.clone();
+            self.basis.apply_left(&mut s);
+            self.basis.apply_right(&mut s);
+            permuted(&s, &order)
+        });
+        let mut s = changed.as_ref().unwrap_or(&self.s);
+        let stiff: Vec<f64> = order.iter().map(|&i| stiff[i]).collect();
         let mut scratch = Scratch::default();
-        let mut l = match try_cholesky(&s, &stiff, n_delta, &mut scratch) {
+        let held;
+        let mut l = match try_cholesky(s, &stiff, n, &mut scratch) {
             Some(l) => l,
             None => {
-                // Hold what keeps S_ΔΔ from being definite; Γ's order changes, the factor's does not.
-                let fixing = weakest(&s, &stiff, n_delta);
-                let order = moved_to_the_end(interface.len(), n_delta, &fixing);
-                interface = order.iter().map(|&i| interface[i]).collect();
-                let stiff: Vec<f64> = order.iter().map(|&i| stiff[i]).collect();
-                s = permuted(&s, &order);
-                n_delta -= fixing.len();
-                try_cholesky(&s, &stiff, n_delta, &mut scratch).ok_or(SingularInterior {
-                    dof: interface[n_delta],
-                })?
+                // Hold what keeps S_ΔΔ from being definite.
+                let fixing = weakest(s, &stiff, n);
+                let moved = moved_to_the_end(n_gamma, n, &fixing);
+                self.fixing = fixing.iter().map(|&i| order[i]).collect();
+                order = moved.iter().map(|&i| order[i]).collect();
+                let stiff: Vec<f64> = moved.iter().map(|&i| stiff[i]).collect();
+                held = permuted(s, &moved);
+                s = &held;
+                n -= fixing.len();
+                let singular = SingularInterior {
+                    dof: self.interface[order[n]],
+                };
+                try_cholesky(s, &stiff, n, &mut scratch).ok_or(singular)?
             }
         };
-        let n_fixing = delta.len() - n_delta;
-        let n_pi = interface.len() - n_delta;
+        let n_pi = n_gamma - n;
         let t = dense::inverse_from_cholesky(l.view(), &mut scratch);
         l.data = Vec::new();
 
-        let s_delta_pi = s.view().submatrix(0, n_delta, n_delta, n_pi);
-        let mut psi = Dense::zeros(n_delta, n_pi);
+        let s_delta_pi = s.view().submatrix(0, n, n, n_pi);
+        let mut psi = Dense::zeros(n, n_pi);
         dense::multiply(psi.view_mut(), false, -1.0, t.view(), s_delta_pi);
         let mut sigma = Dense::zeros(n_pi, n_pi);
         for j in 0..n_pi {
-            let column = s.col(n_delta + j)[n_delta..].to_vec();
+            let column = s.col(n + j)[n..].to_vec();
             sigma.col_mut(j).copy_from_slice(&column);
         }
         dense::multiply(
@@ -116,16 +159,48 @@ impl LocalProblem {
             psi.view(),
         );
         symmetrise(&mut sigma);
-        Ok(LocalProblem {
-            interface,
-            n_delta,
-            n_fixing,
-            s,
-            t,
-            psi,
-            sigma,
-            factor,
-        })
+        self.sigma = sigma;
+        if n == n_delta {
+            (self.t, self.psi) = (t, psi);
+        } else {
+            self.back_to_nodes(&t, &psi, &order);
+        }
+        Ok(())
+    }
+
+    /// T and Ψ on the nodal dofs of Δ, primal values in units of averages.
+    fn back_to_nodes(&mut self, t: &Dense, psi: &Dense, order: &[usize]) {
+        let (n_delta, n) = (self.n_delta, t.rows);
+        let mut nodal = Dense::zeros(n_delta, n_delta);
+        for (j, &oj) in order[..n].iter().enumerate() {
+            for (i, &oi) in order[..n].iter().enumerate() {
+                nodal.set(oi, oj, t.get(i, j));
+            }
+        }
+        self.basis.apply_left(&mut nodal);
+        self.basis.apply_right(&mut nodal);
+        self.t = nodal;
+        let mut nodal = Dense::zeros(n_delta, psi.cols);
+        for p in 0..psi.cols {
+            for (i, &oi) in order[..n].iter().enumerate() {
+                nodal.set(oi, p, psi.get(i, p));
+            }
+            if order[n + p] < n_delta {
+                nodal.set(order[n + p], p, 1.0);
+            }
+        }
+        let first = self.n_vertices();
+        for k in 0..self.basis.averages.len() {
+            let (p, factor) = (first + k, self.basis.factor(k));
+            nodal.col_mut(p).iter_mut().for_each(|v| *v *= factor);
+            self.sigma.col_mut(p).iter_mut().for_each(|v| *v *= factor);
+            for q in 0..self.sigma.cols {
+                let value = factor * self.sigma.get(p, q);
+                self.sigma.set(p, q, value);
+            }
+        }
+        self.basis.apply_left(&mut nodal);
+        self.psi = nodal;
     }
 
     /// Number of interface dofs n_Γ.
@@ -133,9 +208,26 @@ impl LocalProblem {
         self.interface.len()
     }
 
-    /// Number of primal dofs n_Π.
-    pub fn n_pi(&self) -> usize {
+    /// Number of vertices: the primal dofs that are single dofs of Γ, the first ones.
+    pub fn n_vertices(&self) -> usize {
         self.interface.len() - self.n_delta
+    }
+
+    /// Number of primal dofs n_Π: vertices, averages, fixing dofs.
+    pub fn n_pi(&self) -> usize {
+        self.n_vertices() + self.basis.averages.len() + self.fixing.len()
+    }
+
+    /// The primal dofs of a function on Γ.
+    pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
+        let mut changed = u.to_vec();
+        if !self.fixing.is_empty() {
+            self.basis.apply(&mut changed);
+        }
+        let vertices = u[self.n_delta..].iter().copied();
+        let averages = (0..self.basis.averages.len()).map(|k| self.basis.mean(k, u));
+        let fixing = self.fixing.iter().map(|&i| changed[i]);
+        vertices.chain(averages).chain(fixing).collect()
     }
 
     /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
@@ -158,11 +250,13 @@ impl LocalProblem {
 
     /// p ← Ψᵀ v, v on Γ.
     pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
-        p.copy_from_slice(&v[self.n_delta..]);
+        let (vertices, others) = p.split_at_mut(self.n_vertices());
+        vertices.copy_from_slice(&v[self.n_delta..]);
+        others.fill(0.0);
         self.psi.add_mul_transpose(&v[..self.n_delta], p);
     }
 
-    /// y ← T v on Δ, zero on Π.
+    /// y ← T v on Δ, zero at the vertices.
     pub fn t_apply(&self, v: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         self.t.add_mul(&v[..self.n_delta], &mut y[..self.n_delta]);
@@ -231,9 +325,23 @@ fn weakest(s: &Dense, stiff: &[f64], n: usize) -> Vec<usize> {
     left
 }
 
-/// The order [Δ without `moved`, Π, moved].
+/// Averages with their dofs as positions in Γ; all of them are dual.
+fn basis(delta: &[u32], averages: &[&[u32]]) -> Basis {
+    let mut place: Vec<(u32, usize)> = delta.iter().copied().zip(0..).collect();
+    place.sort_unstable();
+    let position = |i: &u32| {
+        let at = place.binary_search_by_key(i, |p| p.0);
+        place[at.expect("dofs of an average are dual")].1
+    };
+    let averages = averages.iter().map(|a| a.iter().map(position).collect());
+    Basis {
+        averages: averages.collect(),
+    }
+}
+
+/// The order [Δ without `moved`, the rest, moved].
 fn moved_to_the_end(n: usize, n_delta: usize, moved: &[usize]) -> Vec<usize> {
-    let stays = (0..n_delta).filter(|i| moved.binary_search(i).is_err());
+    let stays = (0..n_delta).filter(|i| !moved.contains(i));
     stays
         .chain(n_delta..n)
         .chain(moved.iter().copied())
@@ -270,8 +378,8 @@ mod tests {
         // With one subdomain, S̃⁺ = T + Ψ Σ⁻¹ Ψᵀ is S⁻¹; interiors come back through condense and recover.
         let (k, x) = grid_laplacian(9, 9, 0.1);
         let delta: Vec<u32> = (1..8).collect();
-        let local = LocalProblem::new(&k, &delta, &[0, 8], Some(&x)).expect("definite");
-        assert_eq!(local.n_fixing, 0);
+        let local = LocalProblem::new(&k, &delta, &[0, 8], &[], Some(&x)).expect("definite");
+        assert!(local.fixing.is_empty());
         let u = random(k.n(), 5);
         let mut f = vec![0.0; k.n()];
         k.mul(&u, &mut f);
@@ -311,7 +419,7 @@ mod tests {
             }
             let delta: Vec<u32> = (0..12).collect();
             assert!(
-                LocalProblem::new(&k, &delta, &[], Some(&x)).is_err(),
+                LocalProblem::new(&k, &delta, &[], &[], Some(&x)).is_err(),
                 "{value}"
             );
         }
@@ -321,8 +429,8 @@ mod tests {
     fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
         let (k, x) = grid_laplacian(8, 6, 0.0);
         let delta: Vec<u32> = (0..8).collect();
-        let local = LocalProblem::new(&k, &delta, &[], Some(&x)).expect("one dof is held");
-        assert_eq!((local.n_fixing, local.n_pi()), (1, 1));
+        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x)).expect("one dof is held");
+        assert_eq!((local.fixing.len(), local.n_pi()), (1, 1));
         assert!(local.sigma.get(0, 0).abs() < 1e-13);
         assert!(local.psi.data.iter().all(|v| (v - 1.0).abs() < 1e-12));
     }
