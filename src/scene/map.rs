@@ -28,8 +28,8 @@ pub enum BodyShape {
         /// First and last angle.
         angles: [f64; 2],
     },
-    /// A round body that stands on its pole: half a disc in the plane (half a cylinder along z as a solid), half a ball. The side
-    /// `bottom` and the lower parts of the others become its surface.
+    /// Half a disc in the plane (half a cylinder along z as a solid), half a ball. The side `bottom`, with the pole in its middle, and
+    /// the sides beside it become the round surface, `top` the flat one; with the pole upwards the other way round.
     Round(Round),
 }
 
@@ -92,12 +92,16 @@ impl Round {
             // Exact at the axis and the rim.
             u.signum() * u.abs().powf(self.grading)
         };
-        let (u, v) = (across(s[0]), s[1].powf(self.grading) - 1.0);
+        // From the pole at −1 to the flat side at 0, or from the flat side up to the pole.
+        let v = match self.upwards {
+            false => s[1].powf(self.grading) - 1.0,
+            true => 1.0 - (1.0 - s[1]).powf(self.grading),
+        };
+        let u = across(s[0]);
         let w = if self.ball { across(s[2]) } else { 0.0 };
         let stretch =
             |a: f64, b: f64| (1.0 - a * a / 2.0 - b * b / 2.0 + a * a * b * b / 3.0).sqrt();
         let [x, y, w] = [u * stretch(v, w), v * stretch(u, w), w * stretch(u, v)];
-        let y = if self.upwards { -y } else { y };
         let [cx, cy, cz] = self.centre;
         [
             cx + self.radius * x,
@@ -139,6 +143,18 @@ mod tests {
             }
         }
         assert_eq!(round(true, false).apply([0.5, 0.0, 0.5]), [1.0, 0.0, 3.0]);
+    }
+
+    #[test]
+    fn a_pole_on_top_has_its_round_side_there() {
+        let mut map = round(false, false);
+        if let BodyShape::Round(r) = &mut map.shape {
+            r.upwards = true;
+        }
+        assert_eq!(map.apply([0.5, 1.0, 0.0]), [1.0, 4.0, 0.0]);
+        assert_eq!(map.apply([0.2, 0.0, 0.0])[1], 2.0);
+        // x to the right, y upwards: the orientation stays.
+        assert!(map.apply([0.9, 0.5, 0.0])[0] > map.apply([0.1, 0.5, 0.0])[0]);
     }
 
     #[test]
