@@ -41,12 +41,19 @@ fn explore() {
             (Solid::new(3, [2, 4, 2], elastic(0.3), Rows::Normals), 3.11, 7.86),
             (Solid::new(3, [2, 5, 3], SCALAR, Rows::Tied), 3.88, 11.4),
         ];
+        let e2 = std::env::var("E2").is_ok();
+        let nc = std::env::var("NC").is_ok();
+        let list: Option<Vec<usize>> = std::env::var("CASES").ok().map(|c| c.split(',').map(|c| c.parse().unwrap()).collect());
         let only: Option<usize> = std::env::var("CASE").ok().map(|c| c.parse().unwrap());
-        for (i, (solid, corrected, dirichlet)) in cases.into_iter().enumerate() {
+        for (i, (mut solid, corrected, dirichlet)) in cases.into_iter().enumerate() {
+            solid.plane_edges = e2;
+            solid.cross_points = !nc;
+            if list.as_ref().is_some_and(|l| !l.contains(&i)) { continue; }
+
             if only.is_some_and(|o| i > o) { continue; }
             println!("{:?} want M_C {corrected}, M_D {dirichlet}", [solid.dim, solid.bodies, solid.subdomains, solid.elements]);
             for pc in [PcType::CoarseCorrected, PcType::Dirichlet] {
-                let settings = Settings { pc_type: Some(pc), ..Settings::default() };
+                let settings = Settings { pc_type: Some(pc), scaling: if std::env::var("DELUXE").is_ok() { Scaling::Deluxe } else { Scaling::Rho }, ..Settings::default() };
                 kappa(session, &solid, settings);
             }
         }

@@ -52,6 +52,10 @@ pub struct Solid {
     pub held: Held,
     /// Stiffness of a body and of a subdomain in it, by place; 1 if `None`.
     pub stiffness: Option<fn([usize; 3], [usize; 3]) -> f64>,
+    /// Whether the edges of squares in 2D are entities; those of cubes always are.
+    pub plane_edges: bool,
+    /// Whether normals are tied at points where more than two bodies meet.
+    pub cross_points: bool,
 }
 
 impl Solid {
@@ -66,6 +70,8 @@ impl Solid {
             rows,
             held: Held::AllRound,
             stiffness: None,
+            plane_edges: false,
+            cross_points: true,
         }
     }
 
@@ -193,6 +199,7 @@ impl Solid {
                     continue;
                 }
                 (3, 2) => EntityKind::Edge,
+                (2, 1) if self.plane_edges => EntityKind::Edge,
                 (3, 1) => EntityKind::Face,
                 _ => continue,
             };
@@ -286,6 +293,9 @@ impl Solid {
                 let apart: Vec<usize> = (0..self.dim).filter(|&d| a[d] != b[d]).collect();
                 let components: Vec<usize> = match self.rows {
                     Rows::Tied => (0..self.components()).collect(),
+                    Rows::Normals if bodies.len() > 2 && !self.cross_points => continue,
+                    Rows::Normals if bodies.len() > 4 && std::env::var("V5").is_ok() => continue,
+                    Rows::Normals if bodies.len() > 2 && std::env::var("V4").is_ok() && (bodies[0][apart[0]] == bodies[bodies.len()-1][apart[0]] || (0..apart[0]).any(|d| bodies[0][d] != bodies[bodies.len()-1][d])) => continue,
                     Rows::Normals if apart.len() == 1 => apart,
                     Rows::Normals => continue,
                 };
