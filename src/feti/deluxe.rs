@@ -70,7 +70,10 @@ pub fn apply(
         while let [to, from, name, n, tail @ ..] = rest {
             let (data, tail) = tail.split_at(*n as usize);
             let data = data.iter().map(|&w| f64::from_bits(w)).collect();
-            received.entry((*to, *name)).or_default().insert(*from, data);
+            received
+                .entry((*to, *name))
+                .or_default()
+                .insert(*from, data);
             rest = tail;
         }
     }

@@ -54,8 +54,6 @@ pub struct Solid {
     pub stiffness: Option<fn([usize; 3], [usize; 3]) -> f64>,
     /// Whether the edges of squares in 2D are entities; those of cubes always are.
     pub plane_edges: bool,
-    /// Whether normals are tied at points where more than two bodies meet.
-    pub cross_points: bool,
 }
 
 impl Solid {
@@ -71,7 +69,6 @@ impl Solid {
             held: Held::AllRound,
             stiffness: None,
             plane_edges: false,
-            cross_points: true,
         }
     }
 
@@ -215,10 +212,7 @@ impl Solid {
             index,
             body,
             k: Csr::from_triplets(n, &triplets),
-            f: nodes
-                .iter()
-                .map(|&(x, c)| self.load(body, x, c))
-                .collect(),
+            f: nodes.iter().map(|&(x, c)| self.load(body, x, c)).collect(),
             dofs: nodes.iter().map(|&(x, c)| self.dof(body, x, c)).collect(),
             rho: vec![stiffness; n],
             primal,
@@ -293,9 +287,6 @@ impl Solid {
                 let apart: Vec<usize> = (0..self.dim).filter(|&d| a[d] != b[d]).collect();
                 let components: Vec<usize> = match self.rows {
                     Rows::Tied => (0..self.components()).collect(),
-                    Rows::Normals if bodies.len() > 2 && !self.cross_points => continue,
-                    Rows::Normals if bodies.len() > 4 && std::env::var("V5").is_ok() => continue,
-                    Rows::Normals if bodies.len() > 2 && std::env::var("V4").is_ok() && (bodies[0][apart[0]] == bodies[bodies.len()-1][apart[0]] || (0..apart[0]).any(|d| bodies[0][d] != bodies[bodies.len()-1][d])) => continue,
                     Rows::Normals if apart.len() == 1 => apart,
                     Rows::Normals => continue,
                 };
