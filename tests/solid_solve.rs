@@ -231,9 +231,13 @@ fn wrong_entities_are_refused() {
 
 /// One rank's share of a problem, its subdomains dealt out in turn; prints what must not depend on their number.
 fn on_a_rank(session: &Session, scaling: Scaling) {
-    let solid = Solid {
-        held: Held::Left,
-        ..Solid::new(3, [2, 2, 2], ELASTIC, Rows::Tied)
+    let solid = match scaling {
+        Scaling::Deluxe => Solid::new(3, [2, 2, 3], Physics::Scalar, Rows::Tied),
+        _ => Solid {
+            held: Held::Left,
+            plane_edges: true,
+            ..Solid::new(2, [2, 3, 3], ELASTIC, Rows::Tied)
+        },
     };
     let (size, rank) = (session.size(), session.rank());
     let problem = solid.substructures(|s| s % size == rank);
@@ -272,6 +276,7 @@ fn on_ranks() {
         on_a_rank(session, scaling);
         Ok(())
     });
+    drop(session);
     std::process::exit(code);
 }
 

@@ -40,6 +40,9 @@ pub enum Held {
     Rolling,
 }
 
+/// Stiffness by place of the body and of the subdomain in it.
+pub type Stiffness = fn([usize; 3], [usize; 3]) -> f64;
+
 /// N_b bodies of N_s subdomains of N_e elements in every direction on the unit square or cube.
 #[derive(Clone, Copy)]
 pub struct Solid {
@@ -51,7 +54,7 @@ pub struct Solid {
     pub rows: Rows,
     pub held: Held,
     /// Stiffness of a body and of a subdomain in it, by place; 1 if `None`.
-    pub stiffness: Option<fn([usize; 3], [usize; 3]) -> f64>,
+    pub stiffness: Option<Stiffness>,
     /// Whether the edges of squares in 2D are entities; those of cubes always are.
     pub plane_edges: bool,
 }
