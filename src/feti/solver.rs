@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::coarse::PrimalProblem;
+use super::deluxe;
 use super::dual::{self, Dual, Shared};
 use super::entities;
 use super::equal;
@@ -88,18 +89,16 @@ impl FetiFeti {
         let prefix = settings.prefix.clone();
 
         let weights = weights(&problem, &settings);
-        let sharing = session.agree(Sharing::new(
-            comm,
-            &problem,
-            &weights,
-            settings.primal,
-        ))?;
+        let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
         let locals = session.agree(factor(&problem, &jump, &team))?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
+        }
+        if settings.scaling == Scaling::Deluxe {
+            deluxe::apply(comm, &problem, &sharing, &mut jump, &locals);
         }
         let space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
         let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
