@@ -23,7 +23,8 @@ fn all_agree(
 ) -> std::result::Result<[usize; 3], String> {
     let mut wrong = Vec::new();
     let mut fates = [0; 3];
-    for case in seeds.map(|seed| case(seed).expect("the generator writes scenes that can be read")) {
+    // Given values beyond an obstacle are refused before anything is solved.
+    for case in seeds.filter_map(|seed| case(seed).ok()) {
         let index = match case.fate {
             Fate::Solvable(_) => 0,
             Fate::Unbounded => 1,
@@ -59,9 +60,9 @@ fn judge(session: &Session, case: &Case, kind: ContactType) -> std::result::Resu
 #[test]
 fn random_scenes_agree_with_the_reference() {
     with_session(|session| {
-        let fates = all_agree(session, 0..150).unwrap_or_else(|why| panic!("{why}"));
+        let fates = all_agree(session, 0..400).unwrap_or_else(|why| panic!("{why}"));
         println!("solvable, unbounded, infeasible: {fates:?}");
-        assert!(fates[0] > 75, "{fates:?}");
+        assert!(fates[0] > 200, "{fates:?}");
     });
 }
 
@@ -72,7 +73,11 @@ fn on_ranks() {
         return;
     }
     let session = Session::new(&[], "").expect("PETSc starts");
-    let code = session.run(|session| all_agree(session, 1000..1015).map_err(Error::input).map(|_| ()));
+    let code = session.run(|session| {
+        all_agree(session, 1000..1015)
+            .map_err(Error::input)
+            .map(|_| ())
+    });
     drop(session);
     std::process::exit(code);
 }

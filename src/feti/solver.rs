@@ -36,6 +36,9 @@ const CITATION: &str = "@techreport{Lee2010,
 }
 ";
 
+/// KKT residuals may be this many times the tolerance of the iteration, which measures another norm.
+const CREDIBLE: f64 = 1e4;
+
 /// Facts about the problem as the solver sees it.
 #[derive(Debug, Clone, Default)]
 pub struct Facts {
@@ -161,10 +164,28 @@ impl FetiFeti {
         observe: &mut contact::Observer,
     ) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
-        if self.facts.inequalities > 0 {
-            return contact::solve(self, start, observe);
+        let solution = if self.facts.inequalities > 0 {
+            contact::solve(self, start, observe)?
+        } else {
+            recover::solve(&self.session, &self.problem, &self.dual(), &self.ksp)?
+        };
+        self.believe(solution)
+    }
+
+    /// The certificate has the last word: whatever the iteration says, displacements that are far from equilibrium, or rows that are far
+    /// from holding, are no solution.
+    fn believe(&self, mut solution: Solution) -> Result<Solution> {
+        let rtol = self.ksp.tolerances()?.0;
+        let bound = (CREDIBLE * rtol).clamp(1e-3, 0.5);
+        let kkt = &solution.kkt;
+        let worst = kkt.stationarity.max(kkt.feasibility);
+        // Written so that NaN is not believed either.
+        let credible = worst <= bound;
+        if solution.converged && !credible {
+            solution.converged = false;
+            solution.reason = "DIVERGED_CERTIFICATE".into();
         }
-        recover::solve(&self.session, &self.problem, &self.dual(), &self.ksp)
+        Ok(solution)
     }
 
     /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows (in the order in which this rank

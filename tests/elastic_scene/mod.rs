@@ -184,10 +184,18 @@ fn obstacle(rng: &mut Rng, out: &mut String, dim: usize, count: usize) {
     let mut point = vec![0.5; dim];
     point[d] = if upper { far + distance } else { -distance };
     let what = match rng.below(3) {
-        0 => format!("plane = {{ point = {}, normal = {} }}", list(point), list(normal)),
+        0 => format!(
+            "plane = {{ point = {}, normal = {} }}",
+            list(point),
+            list(normal)
+        ),
         1 => {
             normal[1 - d] = 0.1;
-            format!("plane = {{ point = {}, normal = {} }}", list(point), list(normal))
+            format!(
+                "plane = {{ point = {}, normal = {} }}",
+                list(point),
+                list(normal)
+            )
         }
         _ => {
             point[d] += if upper { 3.0 } else { -3.0 };
@@ -195,7 +203,11 @@ fn obstacle(rng: &mut Rng, out: &mut String, dim: usize, count: usize) {
             format!("{kind} = {{ centre = {}, radius = 3 }}", list(point))
         }
     };
-    writeln!(out, "[[obstacle]]\nbody = \"b{b}\"\nside = \"{side}\"\n{what}").expect("a text");
+    writeln!(
+        out,
+        "[[obstacle]]\nbody = \"b{b}\"\nside = \"{side}\"\n{what}"
+    )
+    .expect("a text");
 }
 
 /// Half discs on planes or on each other, a sector of an annulus around a cylinder.
@@ -204,7 +216,11 @@ fn round(rng: &mut Rng) -> String {
     let grading = *rng.pick(&[1.0, 1.5]);
     let push = number(rng, -0.1, -0.01);
     let free = rng.one_in(3);
-    let hold = if free { "" } else { "dirichlet = { top = { x = 0 } }\n" };
+    let hold = if free {
+        ""
+    } else {
+        "dirichlet = { top = { x = 0 } }\n"
+    };
     let disc = |name: &str, y: f64, pole: &str, rest: &str| {
         format!(
             "[[body]]\nname = \"{name}\"\nshape = {{ half_disc = {{ radius = 1, centre = [0, {y}], grading = {grading}, \
@@ -214,13 +230,23 @@ fn round(rng: &mut Rng) -> String {
     let gap = number(rng, -0.01, 0.02);
     match rng.below(3) {
         0 => {
-            out += &disc("disc", 1.0, "bottom", &format!("{hold}traction = {{ top = [0, {push}] }}\n"));
+            out += &disc(
+                "disc",
+                1.0,
+                "bottom",
+                &format!("{hold}traction = {{ top = [0, {push}] }}\n"),
+            );
             out += "[[obstacle]]\nbody = \"disc\"\nside = \"bottom\"\nplane = { point = [0, 0], normal = [0, 1] }\n";
             writeln!(out, "gap = {gap}").expect("a text");
         }
         1 => {
             out += &disc("lower", -1.0, "top", "dirichlet = { bottom = 0 }\n");
-            out += &disc("upper", 1.0, "bottom", &format!("{hold}traction = {{ top = [0, {push}] }}\n"));
+            out += &disc(
+                "upper",
+                1.0,
+                "bottom",
+                &format!("{hold}traction = {{ top = [0, {push}] }}\n"),
+            );
             writeln!(
                 out,
                 "[[contact]]\nbodies = [\"upper\", \"lower\"]\nsides = [\"bottom\", \"top\"]\ngap = {gap}"
