@@ -5,11 +5,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::Solve;
+use super::balance;
 use super::checkpoint::Checkpoints;
 use super::contact;
 use super::course::{follow, Course};
 use super::fields::Gathered;
-use super::{not_converged, problem};
+use super::{not_converged, physics, problem};
 use crate::feti::exchange::sum_all;
 use crate::feti::local::problem::factorisations;
 use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
@@ -161,6 +162,15 @@ fn report(
     sum_all(session.comm(), &mut active);
     Ok(SolveReport {
         scene: scene.title.clone(),
+        dimension: scene.dim(),
+        physics: if scene.form.is_elastic() {
+            "elasticity"
+        } else {
+            "scalar"
+        }
+        .into(),
+        components: scene.components(),
+        form: physics::form(scene),
         ranks: session.size(),
         threads: dual.stiffness.team.threads(),
         bodies: scene.n_bodies(),
@@ -257,7 +267,7 @@ fn contact_report(
         distinct_subdomains: counts[1] as usize,
         steps: course.outer.clone(),
         interfaces: contact::forces(scene, &course.rows),
-        bodies: contact::balance(session, scene, solver, &course.solution, course.step)?,
+        bodies: balance::bodies(session, scene, solver, &course.solution, course.step)?,
         load_steps: course.load_steps.clone(),
     }))
 }

@@ -10,6 +10,7 @@
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
 //! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
+//! | [`solid`] | pictures of fields on the surface of solids, with the contact zone |
 //! | [`contact`], [`contact_summary`] | the record of a contact solve, and what the terminal shows of it |
 //! | [`profile`], [`load_steps`] | multiplier and gap along interfaces; energy and force over load steps; both as CSV, too |
 //! | [`progress`] | the line that tells how far a contact solve is |
@@ -38,7 +39,10 @@ pub mod progress;
 pub mod pvd;
 pub mod raster;
 mod series;
+pub mod solid;
+mod space;
 pub mod summary;
+mod surface;
 pub mod svg;
 pub mod table;
 pub mod ticks;
