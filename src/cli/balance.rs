@@ -1,7 +1,8 @@
 //! Equilibrium of every body: loads, forces on interfaces and obstacles, reactions; in elasticity by components and with moments.
 
+use super::contact::ContactRow;
 use crate::feti::exchange::sum_all;
-use crate::feti::{FetiFeti, Solution};
+use crate::feti::FetiFeti;
 use crate::petsc::Session;
 use crate::report::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Scene};
@@ -40,12 +41,12 @@ impl Sums {
     }
 }
 
-/// Loads, forces of contact and reactions of every body. Collective.
+/// Loads, forces of contact and reactions of every body; `rows` are all rows on rank 0. Collective.
 pub(super) fn bodies(
     session: &Session,
     scene: &Scene,
     solver: &FetiFeti,
-    solution: &Solution,
+    rows: &[ContactRow],
     step: usize,
 ) -> Result<Vec<BodyBalance>> {
     let mut sums = vec![Sums::default(); scene.n_bodies()];
@@ -59,20 +60,18 @@ pub(super) fn bodies(
         }
         to.moment_size[1] += norm(moment);
     }
-    let dual = solver.dual();
-    let jump = &dual.stiffness.jump;
-    for (k, &r) in jump.order.iter().enumerate() {
-        let lambda = solution.lambda[jump.n_owned_local + k];
-        for &(dof, coefficient) in &solver.problem().rows[r].terms {
-            let b = scene.bodies.partition_point(|b| b.first_dof <= dof) - 1;
+    // Rank 0 has all rows, those of the others are empty.
+    for row in rows {
+        for (sign, &(b, node)) in [-1.0, 1.0].into_iter().zip(row.members.iter().flatten()) {
             let body = &scene.bodies[b];
-            let local = (dof - body.first_dof) as usize;
-            let (node, component) = (local / body.components, local % body.components);
-            let mut force = [0.0; 3];
-            force[component] = -coefficient * lambda;
+            let n = match body.components {
+                1 => [row.direction.iter().sum(), 0.0, 0.0],
+                _ => row.direction,
+            };
+            let force = n.map(|n| sign * row.multiplier * n);
             let to = &mut sums[b];
-            to.contact[component] += force[component];
-            to.size += force[component].abs();
+            (0..3).for_each(|d| to.contact[d] += force[d]);
+            to.size += norm(force);
             let centre = centre(body);
             let at = body.spec.position(body.mesh().place(node));
             let moment = cross([0, 1, 2].map(|d| at[d] - centre[d]), force);
@@ -82,7 +81,7 @@ pub(super) fn bodies(
     }
     let mut words: Vec<f64> = sums.iter().flat_map(Sums::words).collect();
     sum_all(session.comm(), &mut words);
-    let floating = &dual.stiffness.space.defect;
+    let floating = &solver.dual().stiffness.space.defect;
     let each = scene.bodies.iter().zip(words.chunks_exact(WORDS));
     let out = each.enumerate().map(|(b, (body, words))| {
         let sums = Sums::from_words(words);
@@ -136,10 +135,7 @@ fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
         load: vector(&|d| sums.load[d]),
         contact: vector(&|d| sums.contact[d]),
         reaction: (!loose).then(|| vector(&|d| if held[d] { -rest[d] } else { 0.0 })),
-        imbalance: relative(
-            norm([0, 1, 2].map(free)),
-            norm(sums.load).max(sums.size),
-        ),
+        imbalance: relative(norm([0, 1, 2].map(free)), norm(sums.load).max(sums.size)),
         moment_imbalance: loose.then(|| relative(norm(sums.moment), lever)),
     }
 }

@@ -8,7 +8,6 @@ use crate::feti::exchange::exchange_words;
 use crate::feti::{FetiFeti, Solution};
 use crate::petsc::Session;
 use crate::report::contact::{InterfaceForce, InterfaceKind, OuterStep};
-use crate::report::field::ContactMark;
 use crate::report::json;
 use crate::report::profile::Profile;
 use crate::scene::{Member, RowSource, Scene, Shape};
@@ -211,10 +210,14 @@ pub fn profiles(scene: &Scene, rows: &[ContactRow]) -> Vec<Profile> {
                     Shape::Corner => 0,
                 },
             };
+            // Along a curved side no coordinate grows steadily.
+            let curved =
+                rows[0].members[0].is_some_and(|(b, _)| scene.bodies[b].spec.map.is_some());
+            let label = if curved { "t" } else { ["x", "y"][along] };
             let column = |f: fn(&ContactRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
             Profile {
                 name: name(scene, rows[0].source),
-                label: ["x", "y"][along].into(),
+                label: label.into(),
                 t: column(|r| r.t[0]),
                 points: rows.iter().map(|r| [r.point[0], r.point[1]]).collect(),
                 gap: column(|r| r.distance),
@@ -228,27 +231,6 @@ pub fn profiles(scene: &Scene, rows: &[ContactRow]) -> Vec<Profile> {
             }
         })
         .collect()
-}
-
-/// Where bodies may touch and do, from node to node.
-pub fn marks(rows: &[ContactRow]) -> Vec<ContactMark> {
-    let mut out = Vec::new();
-    for rows in by_source(rows) {
-        let rows: Vec<&ContactRow> = rows.iter().filter(|r| r.inequality).collect();
-        if let [only] = rows[..] {
-            out.push(ContactMark {
-                from: [only.point[0], only.point[1]],
-                to: [only.point[0], only.point[1]],
-                closed: only.active,
-            });
-        }
-        out.extend(rows.windows(2).map(|pair| ContactMark {
-            from: [pair[0].point[0], pair[0].point[1]],
-            to: [pair[1].point[0], pair[1].point[1]],
-            closed: pair[0].active && pair[1].active,
-        }));
-    }
-    out
 }
 
 /// One outer step as the report has it.

@@ -203,7 +203,11 @@ fn kernels(scene: &Scene, sizes: &Sizes) -> String {
     }
     let all = rigid_count(scene.dim());
     let freely = sizes.defect.iter().filter(|d| **d == all).count();
-    let partly = sizes.defect.iter().filter(|d| (1..all).contains(*d)).count();
+    let partly = sizes
+        .defect
+        .iter()
+        .filter(|d| (1..all).contains(*d))
+        .count();
     let part = |n: usize, text: String| (n > 0).then(|| format!("{n} {text}"));
     let parts = [
         part(freely, format!("in all {all} rigid motions")),
@@ -220,9 +224,9 @@ fn constraints(scene: &Scene, plan: &Plan, primal: usize) -> String {
     let edges: usize = plan.bodies.iter().map(|b| b.edges).sum();
     match (plain, averages) {
         (true, _) => format!("{primal} vertices"),
-        (_, 0) if edges > 0 => format!(
-            "{primal} dofs at vertices (none of the {edges} averages on edges)"
-        ),
+        (_, 0) if edges > 0 => {
+            format!("{primal} dofs at vertices (none of the {edges} averages on edges)")
+        }
         (_, 0) => format!("{primal} dofs at vertices"),
         _ => format!(
             "{} dofs at vertices, {averages} averages ({edges} edges, by component)",

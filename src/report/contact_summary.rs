@@ -250,7 +250,10 @@ fn balance(r: &ContactReport) -> String {
             scientific(Some(b.imbalance)),
         ];
         if moments {
-            cells.push(b.moment_imbalance.map_or("–".into(), |m| scientific(Some(m))));
+            cells.push(
+                b.moment_imbalance
+                    .map_or("–".into(), |m| scientific(Some(m))),
+            );
         }
         table.row(cells);
     }

@@ -12,7 +12,7 @@
 //! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
 //! | [`solid`] | pictures of fields on the surface of solids, with the contact zone |
 //! | [`contact`], [`contact_summary`] | the record of a contact solve, and what the terminal shows of it |
-//! | [`profile`], [`load_steps`] | multiplier and gap along interfaces; energy and force over load steps; both as CSV, too |
+//! | [`profile`], [`contact_map`], [`load_steps`] | multiplier and gap along interfaces, pressure on faces of solids; energy and force over load steps; all as CSV, too |
 //! | [`progress`] | the line that tells how far a contact solve is |
 //! | [`vtu`], [`contact_fields`], [`pvd`] | ParaView files, contact as point data, time series |
 
@@ -22,6 +22,7 @@ pub mod colormap;
 pub mod compare;
 pub mod contact;
 pub mod contact_fields;
+pub mod contact_map;
 pub mod contact_summary;
 pub mod field;
 pub mod figure3;

@@ -16,6 +16,8 @@ const SHOWN: usize = 12;
 const MARKED: usize = 40;
 /// A gap below this part of an interface's length is rounding.
 const CLOSED: f64 = 1e-11;
+/// The same for displacements in space: their scale is not that of the interface, and iterations end at a tolerance.
+const CLOSED_IN_SPACE: f64 = 1e-6;
 /// Ground of the contact zone.
 const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
 
@@ -164,8 +166,12 @@ impl Profile {
         // Rounding is not blown up to the size of the panel, and zero is always shown: touching means zero.
         let (low, high) = extremes(&self.gap);
         let length = x.1 - x.0;
-        let y = if low > high || low.abs().max(high.abs()) <= CLOSED * length {
-            let top = if largest_gap > CLOSED * length {
+        let closed = match self.has_pressure() {
+            true => CLOSED_IN_SPACE * length,
+            false => CLOSED * length,
+        };
+        let y = if low > high || low.abs().max(high.abs()) <= closed {
+            let top = if largest_gap > closed {
                 largest_gap
             } else {
                 length

@@ -166,7 +166,7 @@ fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
         let marked = surface.faces.iter().filter(|f| f.mark.is_some());
         marked
             .map(|f| {
-                let ([u, v], _) = diagonals(f.corners.map(|p| solid.shown[p as usize]));
+                let ([u, v], _) = diagonals(f.corners.map(|p| solid.points[p as usize]));
                 let n = [0, 1, 2].map(|d| {
                     let (e, g) = ((d + 1) % 3, (d + 2) % 3);
                     u[e] * v[g] - u[g] * v[e]
@@ -192,7 +192,10 @@ fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
 
 /// The diagonals of a quadrilateral, and its middle.
 fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]) {
-    let across = [[0, 1, 2].map(|i| c[i] - a[i]), [0, 1, 2].map(|i| d[i] - b[i])];
+    let across = [
+        [0, 1, 2].map(|i| c[i] - a[i]),
+        [0, 1, 2].map(|i| d[i] - b[i]),
+    ];
     let middle = [0, 1, 2].map(|i| 0.25 * (a[i] + b[i] + c[i] + d[i]));
     (across, middle)
 }
@@ -329,7 +332,7 @@ fn light(normal: [f64; 3], camera: &Camera) -> f64 {
     let seen = camera.project(normal);
     let from = [-0.35, 0.65, 0.67];
     let facing: f64 = (0..3).map(|d| seen[d] * from[d]).sum();
-    0.78 + 0.22 * facing.clamp(0.0, 1.0)
+    0.82 + 0.18 * facing.clamp(0.0, 1.0)
 }
 
 /// The directions of the axes.
@@ -350,7 +353,12 @@ fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
     let [low, high] = Solid::bounds(solid.points);
     let range = |d: usize| {
         let number = super::ticks::number;
-        format!("{} {} … {}", ["x", "y", "z"][d], number(low[d]), number(high[d]))
+        format!(
+            "{} {} … {}",
+            ["x", "y", "z"][d],
+            number(low[d]),
+            number(high[d])
+        )
     };
     let text = [0, 1, 2].map(range).join("    ");
     raster.text(at, &text, &TextStyle::new(SMALL_TEXT, Anchor::Start));
@@ -359,17 +367,25 @@ fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
 /// What the colours of marked faces mean.
 fn key(raster: &mut Raster, marks: &[FaceMark], middle: (f64, f64)) {
     const SAMPLE: f64 = 18.0;
-    let shown: Vec<(Colour, &str)> = [(true, CLOSED, "in contact"), (false, OPEN, "may touch, open")]
-        .into_iter()
-        .filter(|l| marks.iter().any(|m| m.closed == l.0))
-        .map(|l| (l.1, l.2))
-        .collect();
+    let shown: Vec<(Colour, &str)> = [
+        (true, CLOSED, "in contact"),
+        (false, OPEN, "may touch, open"),
+    ]
+    .into_iter()
+    .filter(|l| marks.iter().any(|m| m.closed == l.0))
+    .map(|l| (l.1, l.2))
+    .collect();
     let width = |label: &str| SAMPLE + 8.0 + canvas::text_width(label, TEXT, false);
     let total: f64 = shown.iter().map(|l| width(l.1)).sum();
     let mut x = middle.0 - 0.5 * (total + 26.0 * (shown.len() as f64 - 1.0));
     for (colour, label) in shown {
         let (top, bottom) = (middle.1 - 6.0, middle.1 + 6.0);
-        let square = [(x, top), (x + SAMPLE, top), (x + SAMPLE, bottom), (x, bottom)];
+        let square = [
+            (x, top),
+            (x + SAMPLE, top),
+            (x + SAMPLE, bottom),
+            (x, bottom),
+        ];
         raster.polygon(&square, colour);
         let style = TextStyle::new(TEXT, Anchor::Start);
         raster.text((x + SAMPLE + 8.0, middle.1), label, &style);

@@ -118,7 +118,8 @@ impl Solid<'_> {
         let [low, high] = Self::bounds(self.points);
         let size = (0..3).fold(1e-300_f64, |a, d| a.max(high[d] - low[d]));
         let grid = f64::from(1 << 20) / size;
-        let key = |p: [f64; 3]| -> Key { [0, 1, 2].map(|d| ((p[d] - low[d]) * grid).round() as i64) };
+        let key =
+            |p: [f64; 3]| -> Key { [0, 1, 2].map(|d| ((p[d] - low[d]) * grid).round() as i64) };
         // Four times the middle of a face.
         let middle = |corners: [[f64; 3]; 4]| {
             let mut sum = [0; 3];
@@ -195,7 +196,10 @@ impl Solid<'_> {
         }
         let normal = |f: usize| {
             let [a, b, c, d] = faces[f].corners.map(|p| self.points[p as usize]);
-            let (u, v) = ([0, 1, 2].map(|i| c[i] - a[i]), [0, 1, 2].map(|i| d[i] - b[i]));
+            let (u, v) = (
+                [0, 1, 2].map(|i| c[i] - a[i]),
+                [0, 1, 2].map(|i| d[i] - b[i]),
+            );
             unit_cross(u, v)
         };
         let mut out = Vec::new();
@@ -244,7 +248,11 @@ pub(super) mod tests {
                 let first = out.points.len() as u32;
                 let nodes = [n / 2 + 1, n + 1, n + 1];
                 for k in 0..nodes[0] * nodes[1] * nodes[2] {
-                    let at = [k % nodes[0] + half * n / 2, k / nodes[0] % nodes[1], k / nodes[0] / nodes[1]];
+                    let at = [
+                        k % nodes[0] + half * n / 2,
+                        k / nodes[0] % nodes[1],
+                        k / nodes[0] / nodes[1],
+                    ];
                     let mut p = at.map(|i| f64::from(i) / f64::from(n));
                     p[1] += f64::from(body);
                     out.points.push(p);
@@ -255,7 +263,8 @@ pub(super) mod tests {
                     let a = first + at[0] + row * at[1] + layer * at[2];
                     let ring = [a, a + 1, a + 1 + row, a + row];
                     let [p, q, r, s] = ring.map(|k| k + layer);
-                    out.hexahedra.push([ring[0], ring[1], ring[2], ring[3], p, q, r, s]);
+                    out.hexahedra
+                        .push([ring[0], ring[1], ring[2], ring[3], p, q, r, s]);
                     out.body.push(body);
                     out.subdomain.push(2 * body + half);
                 }
@@ -279,34 +288,63 @@ pub(super) mod tests {
         let blocks = Blocks::new(2, 4);
         let mark = FaceMark {
             body: 1,
-            corners: [[0.0, 1.0, 0.0], [0.25, 1.0, 0.0], [0.25, 1.0, 0.25], [0.0, 1.0, 0.25]],
+            corners: [
+                [0.0, 1.0, 0.0],
+                [0.25, 1.0, 0.0],
+                [0.25, 1.0, 0.25],
+                [0.0, 1.0, 0.25],
+            ],
             closed: true,
         };
         let surface = blocks.view().surface(&[mark]);
         assert_eq!(surface.faces.len(), 2 * 6 * 16);
         // Normals point outwards: the volume by the divergence theorem.
-        let volume: f64 = surface.faces.iter().map(|f| {
-            let [a, b, c, d] = f.corners.map(|p| blocks.points[p as usize]);
-            let (u, v) = ([0, 1, 2].map(|i| c[i] - a[i]), [0, 1, 2].map(|i| d[i] - b[i]));
-            let n = unit_cross(u, v);
-            (0..3).map(|i| n[i] * 0.25 * (a[i] + b[i] + c[i] + d[i])).sum::<f64>() / 16.0 / 3.0
-        }).sum();
+        let volume: f64 = surface
+            .faces
+            .iter()
+            .map(|f| {
+                let [a, b, c, d] = f.corners.map(|p| blocks.points[p as usize]);
+                let (u, v) = (
+                    [0, 1, 2].map(|i| c[i] - a[i]),
+                    [0, 1, 2].map(|i| d[i] - b[i]),
+                );
+                let n = unit_cross(u, v);
+                (0..3)
+                    .map(|i| n[i] * 0.25 * (a[i] + b[i] + c[i] + d[i]))
+                    .sum::<f64>()
+                    / 16.0
+                    / 3.0
+            })
+            .sum();
         assert!((volume - 2.0).abs() < 1e-12, "{volume}");
         // Twelve edges of four cells each around a cube; the line between its subdomains runs around four sides.
         let creases = surface.edges.iter().filter(|e| e.crease).count();
-        assert_eq!((creases, surface.edges.len() - creases), (2 * 48, 2 * 16 - 2 * 0));
+        assert_eq!(
+            (creases, surface.edges.len() - creases),
+            (2 * 48, 2 * 16 - 2 * 0)
+        );
         let marked: Vec<_> = surface.faces.iter().filter(|f| f.mark.is_some()).collect();
         assert_eq!(marked.len(), 1);
-        assert_eq!((marked[0].mark, blocks.body[marked[0].cell as usize]), (Some(true), 1));
+        assert_eq!(
+            (marked[0].mark, blocks.body[marked[0].cell as usize]),
+            (Some(true), 1)
+        );
     }
 
     #[test]
     fn misfits_are_refused() {
         let blocks = Blocks::new(1, 2);
         let view = blocks.view();
-        let short = Solid { body: &blocks.body[1..], ..view };
+        let short = Solid {
+            body: &blocks.body[1..],
+            ..view
+        };
         assert!(short.check().unwrap_err().to_string().contains("7 bodies"));
-        let far = Solid { points: &blocks.points[1..], shown: &blocks.points[1..], ..view };
+        let far = Solid {
+            points: &blocks.points[1..],
+            shown: &blocks.points[1..],
+            ..view
+        };
         assert!(far.check().unwrap_err().to_string().contains("names point"));
         view.check().unwrap();
     }
