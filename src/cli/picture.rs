@@ -17,12 +17,14 @@ use crate::Result;
 const LARGEST: f64 = 0.1;
 /// They are shown as they are between these parts of it.
 const VISIBLE: [f64; 2] = [0.03, 0.3];
+/// … and beside contact already from this part on: magnified, bodies that touch overlap.
+const VISIBLE_CONTACT: f64 = 0.01;
 
 /// Writes `solution.png` into `dir`.
 pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[ContactRow], dir: &Path) -> Result<()> {
     let path = dir.join("solution.png");
     let elastic = scene.form.is_elastic();
-    let moved = Moved::new(scene, all);
+    let moved = Moved::new(scene, all, rows.iter().any(|r| r.inequality));
     let size = all.u.chunks_exact(scene.components());
     let u: Vec<f64> = size
         .map(|u| match u {
@@ -101,7 +103,7 @@ struct Moved {
 }
 
 impl Moved {
-    fn new(scene: &Scene, all: &Gathered) -> Moved {
+    fn new(scene: &Scene, all: &Gathered, contact: bool) -> Moved {
         if !scene.form.is_elastic() {
             return Moved {
                 points: all.points.clone(),
@@ -116,7 +118,8 @@ impl Moved {
             .fold(0.0, f64::max);
         let [low, high] = bounds(&all.points);
         let size = norm([0, 1, 2].map(|d| high[d] - low[d]));
-        let factor = factor(largest, size);
+        let from = if contact { VISIBLE_CONTACT } else { VISIBLE[0] };
+        let factor = factor(largest, size, from);
         let moved = |(p, u): (&[f64; 3], [f64; 3])| [0, 1, 2].map(|d| p[d] + factor * u[d]);
         Moved {
             points: all.points.iter().zip(each()).map(moved).collect(),
@@ -125,9 +128,9 @@ impl Moved {
     }
 }
 
-/// 1 where the largest displacement is visible beside the scene's size, else 1, 2 or 5 times a power of ten.
-fn factor(largest: f64, size: f64) -> f64 {
-    if largest == 0.0 || (VISIBLE[0]..=VISIBLE[1]).contains(&(largest / size)) {
+/// 1 where the largest displacement is visible beside the scene's size, from the part `from` of it on, else 1, 2 or 5 times a power of ten.
+fn factor(largest: f64, size: f64, from: f64) -> f64 {
+    if largest == 0.0 || (from..=VISIBLE[1]).contains(&(largest / size)) {
         return 1.0;
     }
     let wanted = LARGEST * size / largest;
@@ -211,10 +214,9 @@ fn face_marks(scene: &Scene, rows: &[ContactRow]) -> Vec<FaceMark> {
 
 #[cfg(test)]
 mod tests {
-    use super::factor;
-
     #[test]
     fn displacements_become_visible_and_stay_inside() {
+        let factor = |largest, size| super::factor(largest, size, super::VISIBLE[0]);
         assert_eq!(factor(0.0, 1.0), 1.0);
         assert_eq!(factor(0.05, 1.0), 1.0);
         assert_eq!(factor(1e-3, 1.0), 100.0);
@@ -226,5 +228,6 @@ mod tests {
             assert!((0.03..0.3).contains(&part), "{largest} {part}");
         }
         assert!(factor(1e-320, 1.0).is_finite());
+        assert_eq!(super::factor(0.02, 1.0, super::VISIBLE_CONTACT), 1.0);
     }
 }

@@ -155,11 +155,7 @@ fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {
         "primal problem",
         match sizes.primal {
             0 => "none: every body is one subdomain".into(),
-            n => format!(
-                "{}, at most {} in a body",
-                constraints(scene, plan, n),
-                sizes.largest_primal
-            ),
+            n => constraints(scene, plan, n, sizes.largest_primal),
         },
     );
     let method = match (n_bodies, n_subdomains == n_bodies) {
@@ -217,22 +213,20 @@ fn kernels(scene: &Scene, sizes: &Sizes) -> String {
     format!(", {}", parts.join(", "))
 }
 
-/// The primal constraints by kind: what is not at a vertex is an average.
-fn constraints(scene: &Scene, plan: &Plan, primal: usize) -> String {
-    let plain = scene.dim() == 2 && !scene.form.is_elastic();
-    let averages = primal.saturating_sub(plan.primal);
-    let edges: usize = plan.bodies.iter().map(|b| b.edges).sum();
-    match (plain, averages) {
-        (true, _) => format!("{primal} vertices"),
-        (_, 0) if edges > 0 => {
-            format!("{primal} dofs at vertices (none of the {edges} averages on edges)")
-        }
-        (_, 0) => format!("{primal} dofs at vertices"),
-        _ => format!(
-            "{} dofs at vertices, {averages} averages ({edges} edges, by component)",
-            plan.primal
-        ),
+/// The primal constraints: vertices that subdomains share, corners where bodies may touch, averages.
+fn constraints(scene: &Scene, plan: &Plan, primal: usize, largest: usize) -> String {
+    if scene.dim() == 2 && !scene.form.is_elastic() {
+        return format!("{primal} vertices, at most {largest} in a body");
     }
+    let edges: usize = plan.bodies.iter().map(|b| b.edges).sum();
+    let averages = match edges {
+        0 => String::new(),
+        n => format!("; subdomains share {n} edges, counted by component"),
+    };
+    format!(
+        "{primal} constraints, at most {largest} in a body; {} at vertices inside bodies{averages}",
+        plan.primal
+    )
 }
 
 /// What the inequalities are.

@@ -24,11 +24,14 @@ const MARGIN: f64 = 16.0;
 const LABELS: f64 = 74.0;
 /// Room for the axes below a picture.
 const AXES: f64 = 62.0;
-/// So far bodies are moved apart, relative to the distances of their centres from the middle.
-const APART: f64 = 0.5;
+/// So far two or three bodies are moved apart, and more, relative to the distances of their centres from the middle.
+const APART: [f64; 2] = [0.75, 0.5];
 
 const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
-const OPEN: Colour = Colour(0xd2, 0xd2, 0xd2);
+/// How much of the white ground shines through faces that may touch and do not.
+const PALE: f64 = 0.45;
+/// So much more of the marked area another place has to show before it is taken.
+const BETTER: f64 = 1.6;
 
 /// Writes two fields as PNG: the first on the bodies as they are, the second on bodies moved apart, or on the other side of a single
 /// one, seen from where most of the faces in `marks` are seen.
@@ -146,12 +149,13 @@ fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
         }
     }
     let [low, high] = Solid::bounds(solid.points);
+    let apart = APART[usize::from(n > 3)];
     let shift = |[a, b]: [[f64; 3]; 2]| {
         [0, 1, 2].map(|d| {
             let away = 0.5 * (a[d] + b[d]) - 0.5 * (low[d] + high[d]);
             // A body number without cells.
             if away.is_finite() {
-                APART * away
+                apart * away
             } else {
                 0.0
             }
@@ -183,7 +187,7 @@ fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
         return cameras[3];
     }
     for camera in &cameras[1..] {
-        if seen(camera) > 1.05 * seen(&best) {
+        if seen(camera) > BETTER * seen(&best) {
             best = *camera;
         }
     }
@@ -296,7 +300,7 @@ impl<'a> Scene<'a> {
             let shade = |v: f64| {
                 let ink = match face.mark {
                     Some(true) => CLOSED,
-                    Some(false) => OPEN,
+                    Some(false) => pale(colour(v)),
                     None => colour(v),
                 };
                 let dim = |c: u8| (f64::from(c) * light).round() as u8;
@@ -325,6 +329,12 @@ impl<'a> Scene<'a> {
         }
         buffer.copy(raster, at);
     }
+}
+
+/// The colour of a face that may touch and does not.
+fn pale(Colour(r, g, b): Colour) -> Colour {
+    let mix = |c: u8| (f64::from(c) * (1.0 - PALE) + 255.0 * PALE).round() as u8;
+    Colour(mix(r), mix(g), mix(b))
 }
 
 /// How light a face is: the light comes from above the viewer's left shoulder and leaves no side dark, because colours have to be read.
@@ -367,9 +377,10 @@ fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
 /// What the colours of marked faces mean.
 fn key(raster: &mut Raster, marks: &[FaceMark], middle: (f64, f64)) {
     const SAMPLE: f64 = 18.0;
+    let open = pale(viridis(0.25));
     let shown: Vec<(Colour, &str)> = [
         (true, CLOSED, "in contact"),
-        (false, OPEN, "may touch, open"),
+        (false, open, "may touch, open (pale)"),
     ]
     .into_iter()
     .filter(|l| marks.iter().any(|m| m.closed == l.0))

@@ -16,7 +16,7 @@ impl Camera {
     /// From the front and the right (`behind`: from the back and the left), from above or below.
     pub fn new(behind: bool, below: bool) -> Camera {
         let turn = 34_f64.to_radians() + if behind { std::f64::consts::PI } else { 0.0 };
-        let tilt = 27_f64.to_radians() * if below { -1.0 } else { 1.0 };
+        let tilt = if below { -38_f64 } else { 27.0 }.to_radians();
         let ((s, c), (t, d)) = (turn.sin_cos(), tilt.sin_cos());
         Camera {
             right: [c, 0.0, -s],
