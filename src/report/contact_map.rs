@@ -139,10 +139,10 @@ pub fn write(maps: &[ContactMap], title: &str, dir: &Path) -> Result<Vec<PathBuf
         writeln!(out, "name,t,s,x,y,z,gap,multiplier,active,pressure,area")?;
         for m in maps {
             let (name, pressure) = (quoted(&m.name), m.pressure());
-            for k in 0..m.at.len() {
+            for (k, pressure) in pressure.into_iter().enumerate() {
                 let ([t, s], [x, y, z]) = (m.t[k], m.points[k]);
                 let first = [t, s, x, y, z, m.gap[k], m.multiplier[k]].map(|v| exactly(Some(v)));
-                let last = [pressure[k], m.area[k]].map(|v| exactly(Some(v)));
+                let last = [pressure, m.area[k]].map(|v| exactly(Some(v)));
                 let active = u8::from(m.active[k]);
                 writeln!(
                     out,

@@ -42,6 +42,7 @@ pub mod raster;
 mod series;
 pub mod solid;
 mod space;
+mod stage;
 pub mod summary;
 mod surface;
 pub mod svg;

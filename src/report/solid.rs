@@ -8,8 +8,9 @@ use super::colormap::viridis;
 use super::field::{Field, Values};
 use super::paint::{colour_bar, colour_range, BAR};
 use super::raster::Raster;
-use super::space::{Buffer, Camera};
-use super::surface::{unit_cross, Surface};
+use super::space::Camera;
+use super::stage::{diagonals, pale, Stage, CLOSED};
+use super::surface::Surface;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -18,8 +19,6 @@ pub use super::surface::{FaceMark, Solid};
 const TEXT: f64 = 13.0;
 const TITLE_TEXT: f64 = 15.0;
 const SMALL_TEXT: f64 = 11.5;
-/// Largest size of one picture.
-const PANEL: (f64, f64) = (470.0, 440.0);
 const MARGIN: f64 = 16.0;
 const LABELS: f64 = 74.0;
 /// Room for the axes below a picture.
@@ -27,9 +26,6 @@ const AXES: f64 = 62.0;
 /// So far two or three bodies are moved apart, and more, relative to the distances of their centres from the middle.
 const APART: [f64; 2] = [0.75, 0.5];
 
-const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
-/// How much of the white ground shines through faces that may touch and do not.
-const PALE: f64 = 0.45;
 /// So much more of the marked area another place has to show before it is taken.
 const BETTER: f64 = 1.6;
 
@@ -69,8 +65,8 @@ fn draw(solid: &Solid, fields: &[Field; 2], marks: &[FaceMark], title: &str) -> 
     let none = vec![[0.0; 3]; shifts.len()];
     let second = second_camera(solid, &surface, several);
     let scenes = [
-        Scene::new(solid, &surface, Camera::new(false, false), &none),
-        Scene::new(solid, &surface, second, &shifts),
+        Stage::new(solid, &surface, Camera::new(false, false), &none),
+        Stage::new(solid, &surface, second, &shifts),
     ];
     let notes = [
         String::new(),
@@ -83,7 +79,7 @@ fn draw(solid: &Solid, fields: &[Field; 2], marks: &[FaceMark], title: &str) -> 
         },
     ];
     let panel_height = scenes.iter().map(|s| s.size().1).fold(90.0, f64::max);
-    let width = |s: &Scene| MARGIN + s.size().0.max(150.0) + MARGIN + BAR + LABELS;
+    let width = |s: &Stage| MARGIN + s.size().0.max(150.0) + MARGIN + BAR + LABELS;
     let total: f64 = scenes.iter().map(width).sum();
     let total = total.max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
     let top = if title.is_empty() {
@@ -194,157 +190,6 @@ fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
     best
 }
 
-/// The diagonals of a quadrilateral, and its middle.
-fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]) {
-    let across = [
-        [0, 1, 2].map(|i| c[i] - a[i]),
-        [0, 1, 2].map(|i| d[i] - b[i]),
-    ];
-    let middle = [0, 1, 2].map(|i| 0.25 * (a[i] + b[i] + c[i] + d[i]));
-    (across, middle)
-}
-
-/// A solid seen from one place, its bodies shifted.
-struct Scene<'a> {
-    solid: &'a Solid<'a>,
-    surface: &'a Surface,
-    camera: Camera,
-    shifts: &'a [[f64; 3]],
-    low: [f64; 2],
-    high: [f64; 2],
-    /// Logical pixels per unit of length.
-    scale: f64,
-}
-
-impl<'a> Scene<'a> {
-    fn new(
-        solid: &'a Solid<'a>,
-        surface: &'a Surface,
-        camera: Camera,
-        shifts: &'a [[f64; 3]],
-    ) -> Scene<'a> {
-        let mut scene = Scene {
-            solid,
-            surface,
-            camera,
-            shifts,
-            low: [f64::INFINITY; 2],
-            high: [f64::NEG_INFINITY; 2],
-            scale: 1.0,
-        };
-        for face in &surface.faces {
-            for p in face.corners {
-                let at = scene.projected(p, solid.body[face.cell as usize]);
-                for d in 0..2 {
-                    scene.low[d] = scene.low[d].min(at[d]);
-                    scene.high[d] = scene.high[d].max(at[d]);
-                }
-            }
-        }
-        if scene.low[0] > scene.high[0] {
-            (scene.low, scene.high) = ([0.0; 2], [1.0; 2]);
-        }
-        let size = [0, 1].map(|d| (scene.high[d] - scene.low[d]).max(1e-300));
-        scene.scale = (PANEL.0 / size[0]).min(PANEL.1 / size[1]);
-        scene
-    }
-
-    fn projected(&self, p: u32, body: u32) -> [f64; 3] {
-        let (at, shift) = (self.solid.shown[p as usize], self.shifts[body as usize]);
-        self.camera.project([0, 1, 2].map(|d| at[d] + shift[d]))
-    }
-
-    /// Logical pixels, with room for the lines around.
-    fn size(&self) -> (f64, f64) {
-        let [w, h] = [0, 1].map(|d| self.scale * (self.high[d] - self.low[d]) + 6.0);
-        (w, h)
-    }
-
-    fn paint(&self, raster: &mut Raster, field: &Field, range: (f64, f64), at: (f64, f64)) {
-        let (w, h) = self.size();
-        let (mut buffer, fine) = Buffer::new(w, h, raster);
-        let unit = fine * self.scale;
-        let place = |p: u32, body: u32| {
-            let [x, y, near] = self.projected(p, body);
-            [
-                fine * 3.0 + unit * (x - self.low[0]),
-                fine * 3.0 + unit * (self.high[1] - y),
-                unit * near,
-            ]
-        };
-        let (low, high) = (field.scale.forward(range.0), field.scale.forward(range.1));
-        let colour = |v: f64| {
-            if field.scale.shows(v) {
-                viridis((field.scale.forward(v) - low) / (high - low))
-            } else {
-                viridis(f64::NAN)
-            }
-        };
-        for face in &self.surface.faces {
-            let body = self.solid.body[face.cell as usize];
-            let positions = face.corners.map(|p| self.solid.shown[p as usize]);
-            let ([u, v], _) = diagonals(positions);
-            let normal = unit_cross(u, v);
-            let facing: f64 = (0..3).map(|d| normal[d] * self.camera.towards[d]).sum();
-            if facing <= 0.0 {
-                continue;
-            }
-            let light = light(normal, &self.camera);
-            let values = match field.values {
-                Values::Nodal(v) => face.corners.map(|p| v[p as usize]),
-                Values::Cell(v) => [v[face.cell as usize]; 4],
-            };
-            let corners = face.corners.map(|p| place(p, body));
-            let (_, centre) = diagonals(corners);
-            let mean = values.iter().sum::<f64>() / 4.0;
-            let shade = |v: f64| {
-                let ink = match face.mark {
-                    Some(true) => CLOSED,
-                    Some(false) => pale(colour(v)),
-                    None => colour(v),
-                };
-                let dim = |c: u8| (f64::from(c) * light).round() as u8;
-                Colour(dim(ink.0), dim(ink.1), dim(ink.2))
-            };
-            for k in 0..4 {
-                let l = (k + 1) % 4;
-                let triangle = [corners[k], corners[l], centre];
-                buffer.triangle(triangle, [values[k], values[l], mean], &shade);
-            }
-        }
-        // Where bodies or subdomains are only a few pixels wide their lines would hide the field.
-        let spacing = |numbers: &[u32]| {
-            let n = numbers.iter().max().map_or(1, |&m| m + 1);
-            (w * h * (w * h).sqrt() / f64::from(n)).cbrt()
-        };
-        let subdomains = spacing(self.solid.subdomain);
-        let bodies = (0.012 * spacing(self.solid.body)).clamp(0.5, 1.3);
-        for edge in &self.surface.edges {
-            let ends = edge.ends.map(|p| place(p, edge.body));
-            if edge.crease {
-                buffer.line(ends, fine * bodies, 2.0 * fine, Colour(0, 0, 0));
-            } else if subdomains > 12.0 {
-                buffer.line(ends, fine * 0.55, 1.5 * fine, Colour::WHITE);
-            }
-        }
-        buffer.copy(raster, at);
-    }
-}
-
-/// The colour of a face that may touch and does not.
-fn pale(Colour(r, g, b): Colour) -> Colour {
-    let mix = |c: u8| (f64::from(c) * (1.0 - PALE) + 255.0 * PALE).round() as u8;
-    Colour(mix(r), mix(g), mix(b))
-}
-
-/// How light a face is: the light comes from above the viewer's left shoulder and leaves no side dark, because colours have to be read.
-fn light(normal: [f64; 3], camera: &Camera) -> f64 {
-    let seen = camera.project(normal);
-    let from = [-0.35, 0.65, 0.67];
-    let facing: f64 = (0..3).map(|d| seen[d] * from[d]).sum();
-    0.82 + 0.18 * facing.clamp(0.0, 1.0)
-}
-
 /// The directions of the axes.
 fn triad(raster: &mut Raster, at: (f64, f64), camera: &Camera) {
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
@@ -361,8 +206,11 @@ fn triad(raster: &mut Raster, at: (f64, f64), camera: &Camera) {
 /// The lengths of the undeformed scene.
 fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
     let [low, high] = Solid::bounds(solid.points);
+    let size = (0..3).fold(0.0_f64, |a, d| a.max(high[d] - low[d]));
     let range = |d: usize| {
-        let number = super::ticks::number;
+        // The ends of curved bodies come with rounding.
+        let round = |x: f64| if x.abs() < 1e-9 * size { 0.0 } else { x };
+        let number = |x: f64| super::ticks::number(round(x));
         format!(
             "{} {} … {}",
             ["x", "y", "z"][d],
