@@ -1,0 +1,148 @@
+//! How far a load lies outside the cone of the forces that rows can exert, for many rigid motions: by MPRGP, where the exact method
+//! of [`super::nnls`] would take too long.
+
+use mpi::topology::SimpleCommunicator;
+
+use super::mprgp::{Bounded, Setting};
+use crate::feti::local::dense::Dense;
+use crate::Result;
+
+/// Products with GᵀG at most.
+const PRODUCTS: usize = 20_000;
+
+/// min ½ ‖G x − e‖² with x_j ≥ 0 where column j is of an inequality.
+struct Cone {
+    columns: Vec<Vec<(usize, f64)>>,
+    r: usize,
+    free: Vec<bool>,
+}
+
+impl Cone {
+    /// G x.
+    fn force(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.r];
+        for (column, &x) in self.columns.iter().zip(x).filter(|(_, x)| **x != 0.0) {
+            column.iter().for_each(|&(i, g)| out[i] += g * x);
+        }
+        out
+    }
+
+    /// Gᵀ v.
+    fn work(&self, v: &[f64]) -> Vec<f64> {
+        let of = |column: &Vec<(usize, f64)>| column.iter().map(|&(i, g)| g * v[i]).sum();
+        self.columns.iter().map(of).collect()
+    }
+
+    /// A bound of ‖GᵀG‖: ‖G‖₁ ‖G‖_∞.
+    fn norm(&self) -> f64 {
+        let mut rows = vec![0.0; self.r];
+        let mut largest = 0.0f64;
+        for column in &self.columns {
+            column.iter().for_each(|&(i, g)| rows[i] += f64::abs(g));
+            largest = largest.max(column.iter().map(|e| e.1.abs()).sum());
+        }
+        largest * rows.into_iter().fold(0.0, f64::max)
+    }
+}
+
+impl Bounded for Cone {
+    fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
+        y.copy_from_slice(&self.work(&self.force(x)));
+        Ok(())
+    }
+
+    fn enter(&mut self, free: &[bool]) -> Result<()> {
+        self.free.copy_from_slice(free);
+        Ok(())
+    }
+
+    fn precondition(&mut self, v: &[f64], z: &mut [f64]) -> Result<()> {
+        for ((z, v), free) in z.iter_mut().zip(v).zip(&self.free) {
+            *z = if *free { *v } else { 0.0 };
+        }
+        Ok(())
+    }
+}
+
+/// What is left of `e` outside the cone of the columns of `g` (nonnegative combinations, any where `equation` is true), and whether it is
+/// known well: smaller than `enough`, or of a minimiser. Every rank computes the same for itself.
+pub fn outside(g: &Dense, e: &[f64], equation: &[bool], enough: f64) -> Result<(Vec<f64>, bool)> {
+    let n = g.cols;
+    let entries = |j: usize| {
+        let column = g.col(j).iter().copied().enumerate();
+        column.filter(|e| e.1 != 0.0).collect()
+    };
+    let mut cone = Cone {
+        columns: (0..n).map(entries).collect(),
+        r: g.rows,
+        free: vec![false; n],
+    };
+    let rest = |cone: &Cone, x: &[f64]| -> Vec<f64> {
+        let force = cone.force(x);
+        e.iter().zip(force).map(|(e, f)| e - f).collect()
+    };
+    let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let bound = cone.norm();
+    if n == 0 || bound == 0.0 {
+        return Ok((e.to_vec(), true));
+    }
+    let lower: Vec<f64> = equation
+        .iter()
+        .map(|&eq| if eq { f64::NEG_INFINITY } else { 0.0 })
+        .collect();
+    let comm = SimpleCommunicator::self_comm();
+    let setting = Setting {
+        comm: &comm,
+        lower: &lower,
+        fixed: &vec![false; n],
+        length: 1.9 / bound,
+    };
+    let b = cone.work(e);
+    // Forces that reach the load are found to `enough`; else what is left is a minimiser when the gradient is far smaller.
+    let checker = Cone {
+        columns: cone.columns.clone(),
+        r: cone.r,
+        free: Vec::new(),
+    };
+    let scale = bound.sqrt();
+    let mut known = false;
+    let mut stop = |x: &[f64], gradient: f64| {
+        let left = norm(&rest(&checker, x));
+        known = left <= enough || gradient <= 1e-4 * scale * left;
+        known
+    };
+    let run = setting.minimise(&mut cone, &b, vec![0.0; n], &mut stop, PRODUCTS)?;
+    Ok((rest(&cone, &run.x), known))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::nnls::nnls;
+    use crate::petsc::testing::with_session;
+
+    #[test]
+    fn agrees_with_lawson_and_hanson() {
+        with_session(|_| {
+            // A chain of bodies, each pushing at the next; the load is inside or outside the cone.
+            let r = 12;
+            let mut g = Dense::zeros(r, r);
+            for j in 0..r {
+                g.set(j, j, 1.0);
+                if j > 0 {
+                    g.set(j - 1, j, -1.0);
+                }
+            }
+            for (pull, inside) in [(0.0, true), (20.0, false)] {
+                let mut e = vec![1.0; r];
+                e[3] -= pull;
+                let (rest, known) = outside(&g, &e, &[false; 12], 1e-10).expect("runs");
+                let (_, exact) = nnls(&g, &e, &[false; 12]);
+                assert!(known);
+                let far = rest.iter().zip(&exact).map(|(a, b)| (a - b).abs());
+                assert!(far.fold(0.0, f64::max) < 1e-3, "{rest:?} {exact:?}");
+                assert_eq!(rest.iter().all(|v| v.abs() < 1e-9), inside);
+            }
+        });
+    }
+}
