@@ -1,0 +1,88 @@
+//! `fetifeti study`: arguments and files; the studies themselves are in [`crate::study`].
+
+use std::path::Path;
+
+use super::args::{Study, StudyName};
+use super::solve::prepare;
+use crate::petsc::Session;
+use crate::report::{json, output};
+use crate::study::hertz;
+use crate::{Error, Result};
+
+/// Runs a study and writes what was asked for.
+pub fn run(session: &Session, args: &Study) -> Result<()> {
+    prepare(session, args.out.as_deref(), args.json.as_deref())?;
+    match args.name {
+        StudyName::Hertz => run_hertz(session, args),
+    }
+}
+
+fn run_hertz(session: &Session, args: &Study) -> Result<()> {
+    let report = hertz::run(session, args.quick, &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        let mut files = vec!["hertz.csv".to_string()];
+        hertz::table(&report).write_csv(&dir.join("hertz.csv"))?;
+        for case in &report.cases {
+            let stem = format!("hertz_{}", case.case);
+            hertz::figure(case).save(&dir.join(&stem))?;
+            hertz::csv(case).write_csv(&dir.join(format!("{stem}.csv")))?;
+            files.extend(["png", "svg", "csv"].map(|end| format!("{stem}.{end}")));
+        }
+        Ok(files)
+    };
+    finish(session, args, &report, &hertz::text(&report), write)?;
+    match report.cases.iter().find(|c| !c.holds()) {
+        None => Ok(()),
+        Some(case) => Err(Error::NotConverged(format!(
+            "hertz, {}: half-width and peak are not within 2 % of the theory on the finest mesh, or do not come nearer to it",
+            case.case
+        ))),
+    }
+}
+
+/// Prints and writes on rank 0; `write` puts tables and pictures into the directory and says which. Collective.
+fn finish<T: serde::Serialize>(
+    session: &Session,
+    args: &Study,
+    report: &T,
+    text: &str,
+    write: impl FnOnce(&Path) -> Result<Vec<String>>,
+) -> Result<()> {
+    let name = args.name.name();
+    let all = || -> Result<()> {
+        let quiet = args.quiet || args.json.as_deref().is_some_and(output::is_stdout);
+        if !quiet {
+            output::print(text)?;
+        }
+        if let Some(file) = &args.json {
+            json::write(file, report)?;
+        }
+        if let Some(dir) = &args.out {
+            let json = format!("{name}.json");
+            json::write(&dir.join(&json), report)?;
+            let mut files = vec![json];
+            files.extend(write(dir)?);
+            if !quiet {
+                let list = files.join(", ");
+                output::print(&format!("written: {list} in {}\n", dir.display()))?;
+            }
+        }
+        Ok(())
+    };
+    session.agree(if session.rank() == 0 { all() } else { Ok(()) })
+}
+
+/// One line on stderr that overwrites itself, on a terminal only.
+fn progress(session: &Session, args: &Study, what: &str) {
+    use std::io::IsTerminal;
+    if session.rank() == 0 && !args.quiet && std::io::stderr().is_terminal() {
+        let text = match what {
+            "" => String::new(),
+            what => format!("{}: {what}", args.name.name()),
+        };
+        eprint!("\r\x1b[K{text}");
+    }
+}

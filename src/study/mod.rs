@@ -1,0 +1,12 @@
+//! Studies: questions about the method that take many runs, with the tables and pictures that answer them.
+//!
+//! A study is library code that returns data; `fetifeti study NAME` writes it to files. Every scene of a study is text as a user
+//! would write it.
+
+pub mod hertz;
+mod solved;
+
+/// a · b.
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
