@@ -19,8 +19,9 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
   fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
-  fetifeti study hertz [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
-      hertz: contact half-width and peak pressure against Hertz's theory
+  fetifeti study hertz|hard-cases [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
+      hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
+      hard for the method against direct solutions, exit code 1 where an answer is wrong;
       --quick: coarser meshes, smaller cases, a few seconds
   mpirun -n N fetifeti solve SCENE ...
       the same answer on N ranks
@@ -107,16 +108,19 @@ pub struct Compare {
 pub enum StudyName {
     /// Half-width and peak pressure against Hertz's theory.
     Hertz,
+    /// Problems that are hard for the method, against direct solutions.
+    HardCases,
 }
 
 impl StudyName {
     /// All of them.
-    pub const ALL: [StudyName; 1] = [StudyName::Hertz];
+    pub const ALL: [StudyName; 2] = [StudyName::Hertz, StudyName::HardCases];
 
     /// As it is written.
     pub fn name(self) -> &'static str {
         match self {
             StudyName::Hertz => "hertz",
+            StudyName::HardCases => "hard-cases",
         }
     }
 }

@@ -6,7 +6,7 @@ use super::args::{Study, StudyName};
 use super::solve::prepare;
 use crate::petsc::Session;
 use crate::report::{json, output};
-use crate::study::hertz;
+use crate::study::{hard_cases, hertz};
 use crate::{Error, Result};
 
 /// Runs a study and writes what was asked for.
@@ -14,6 +14,7 @@ pub fn run(session: &Session, args: &Study) -> Result<()> {
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
     match args.name {
         StudyName::Hertz => run_hertz(session, args),
+        StudyName::HardCases => run_hard_cases(session, args),
     }
 }
 
@@ -41,6 +42,26 @@ fn run_hertz(session: &Session, args: &Study) -> Result<()> {
             case.case
         ))),
     }
+}
+
+fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
+    let report = hard_cases::run(session, args.quick, &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        hard_cases::table(&report).write_csv(&dir.join("hard-cases.csv"))?;
+        Ok(vec!["hard-cases.csv".to_string()])
+    };
+    finish(session, args, &report, &hard_cases::text(&report), write)?;
+    let wrong: Vec<&str> = report.wrong().map(|c| c.case.as_str()).collect();
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    Err(Error::NotConverged(format!(
+        "hard-cases: wrong answers were called solutions: {}",
+        wrong.join(", ")
+    )))
 }
 
 /// Prints and writes on rank 0; `write` puts tables and pictures into the directory and says which. Collective.

@@ -3,6 +3,8 @@
 //! A study is library code that returns data; `fetifeti study NAME` writes it to files. Every scene of a study is text as a user
 //! would write it.
 
+mod direct;
+pub mod hard_cases;
 pub mod hertz;
 mod solved;
 
