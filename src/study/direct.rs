@@ -28,8 +28,6 @@ pub struct Direct {
     pub u: Vec<f64>,
     /// How well it satisfies the conditions of optimality.
     pub certificate: Certificate,
-    /// Active sets that it took; 1 without inequalities.
-    pub steps: usize,
     /// Inequalities that hold.
     pub active: usize,
 }
@@ -106,13 +104,12 @@ impl Direct {
                 gap: r.gap,
             })
             .collect();
-        let (u, certificate, steps, active) = solve(&k, &f, &rows)?;
+        let (u, certificate, active) = solve(&k, &f, &rows)?;
         Ok(Direct {
             numbering,
             k,
             u,
             certificate,
-            steps,
             active,
         })
     }
@@ -208,7 +205,8 @@ fn factor(
     matrix.sp_cholesky(Side::Lower).ok()
 }
 
-type Found = (Vec<f64>, Certificate, usize, usize);
+/// The solution, its certificate, the number of rows that hold.
+type Found = (Vec<f64>, Certificate, usize);
 
 fn solve(k: &[Vec<(usize, f64)>], f: &[f64], rows: &[Row]) -> Result<Found> {
     const MOST: usize = 100;
@@ -221,7 +219,7 @@ fn solve(k: &[Vec<(usize, f64)>], f: &[f64], rows: &[Row]) -> Result<Found> {
     let (mut u, mut lambda) = (vec![0.0; n], vec![0.0; rows.len()]);
     let mut active = vec![true; rows.len()];
     let mut seen: Vec<Vec<bool>> = Vec::new();
-    for step in 1..=MOST {
+    for _ in 0..MOST {
         // A set that does not hold a body is a stage on the way: a trace of stiffness holds it until contact does.
         let llt = factor(k, rows, &gamma, &active, 0.0)
             .or_else(|| factor(k, rows, &gamma, &active, 1e-10))
@@ -294,7 +292,7 @@ fn solve(k: &[Vec<(usize, f64)>], f: &[f64], rows: &[Row]) -> Result<Found> {
                 )));
             }
             let n_active = active.iter().filter(|a| **a).count();
-            return Ok((u, certificate, step, n_active));
+            return Ok((u, certificate, n_active));
         }
         if seen.contains(&next) {
             return Err(Error::NotConverged(
