@@ -112,6 +112,7 @@ impl Bodies {
                 gap: shape.iter().map(|v| 0.01 * (-v).max(0.0)).collect(),
                 multiplier: shape.iter().map(|v| scale * v.max(0.0)).collect(),
                 active: shape.iter().map(|&v| v > 0.0).collect(),
+                area: Vec::new(),
             }
         };
         faces.map(profile).collect()

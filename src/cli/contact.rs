@@ -2,13 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::problem;
+use super::{areas, problem};
 use crate::contact::Step;
-use crate::feti::exchange::{exchange_words, sum_all};
+use crate::feti::exchange::exchange_words;
 use crate::feti::{FetiFeti, Solution};
 use crate::petsc::Session;
-use crate::report::contact::{BodyBalance, InterfaceForce, InterfaceKind, OuterStep};
-use crate::report::field::ContactMark;
+use crate::report::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::json;
 use crate::report::profile::Profile;
 use crate::scene::{Member, RowSource, Scene, Shape};
@@ -18,10 +17,12 @@ use crate::Result;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactRow {
     /// 0: an interface, 1: an obstacle; and its number in the scene.
-    source: (u64, usize),
+    pub(super) source: (u64, usize),
     /// Parameters along the face or side; the second is 0 in the plane.
-    t: [f64; 2],
-    point: [f64; 3],
+    pub(super) t: [f64; 2],
+    pub(super) point: [f64; 3],
+    /// n: along it the row takes differences; the first member presses the second one that way.
+    pub direction: [f64; 3],
     /// λ.
     pub multiplier: f64,
     /// c − B u: how far apart the sides are.
@@ -32,9 +33,11 @@ pub struct ContactRow {
     pub inequality: bool,
     /// (body, node) on either side.
     pub members: [Option<(usize, usize)>; 2],
+    /// The area of the side that belongs to the node; 0 where it has none, and in plane scalar problems, which do not speak of pressure.
+    pub area: f64,
 }
 
-const WORDS: usize = 14;
+const WORDS: usize = 17;
 
 impl ContactRow {
     fn pack(&self, out: &mut Vec<u64>) {
@@ -42,6 +45,7 @@ impl ContactRow {
         out.extend([self.source.0, self.source.1 as u64, flags]);
         out.extend(self.t.map(f64::to_bits));
         out.extend(self.point.map(f64::to_bits));
+        out.extend(self.direction.map(f64::to_bits));
         out.extend([self.multiplier, self.distance].map(f64::to_bits));
         for member in self.members {
             let (body, node) = member.unwrap_or((usize::MAX, usize::MAX));
@@ -58,11 +62,23 @@ impl ContactRow {
             inequality: w[2] & 2 == 2,
             t: [3, 4].map(number),
             point: [5, 6, 7].map(number),
-            multiplier: number(8),
-            distance: number(9),
-            members: [member(10), member(12)],
+            direction: [8, 9, 10].map(number),
+            multiplier: number(11),
+            distance: number(12),
+            members: [member(13), member(15)],
+            area: 0.0,
         }
     }
+
+    /// Force per area; `None` where there is no area.
+    pub fn pressure(&self) -> Option<f64> {
+        (self.area > 0.0).then(|| self.multiplier / self.area)
+    }
+}
+
+/// Whether multipliers are reported as pressures, too: everywhere but in plane scalar problems.
+pub fn has_pressure(scene: &Scene) -> bool {
+    scene.dim() == 3 || scene.form.is_elastic()
 }
 
 /// All rows on rank 0, by interface and t; empty on the others. Collective.
@@ -90,8 +106,10 @@ pub fn rows(
             multiplier: solution.lambda[i],
             distance: -solution.gaps[i],
             active: solution.active[i],
+            direction: label.direction,
             inequality: jump.inequality[i],
             members: label.members.map(member),
+            area: 0.0,
         };
         row.pack(&mut outgoing[0]);
     }
@@ -107,14 +125,17 @@ pub fn rows(
             .then(t(a)[1].total_cmp(&t(b)[1]));
         a.source.cmp(&b.source).then(by_t)
     });
+    if has_pressure(scene) {
+        areas::assign(scene, &mut rows);
+    }
     Ok(rows)
 }
 
-fn by_source(rows: &[ContactRow]) -> impl Iterator<Item = &[ContactRow]> {
+pub(super) fn by_source(rows: &[ContactRow]) -> impl Iterator<Item = &[ContactRow]> {
     rows.chunk_by(|a, b| a.source == b.source)
 }
 
-fn name(scene: &Scene, (kind, k): (u64, usize)) -> String {
+pub(super) fn name(scene: &Scene, (kind, k): (u64, usize)) -> String {
     if kind == 1 {
         return scene.obstacles[k].name.clone();
     }
@@ -149,9 +170,31 @@ pub fn forces(scene: &Scene, rows: &[ContactRow]) -> Vec<InterfaceForce> {
                 smallest_gap: least(|r| r.distance),
                 min_multiplier: least(|r| r.multiplier),
                 max_multiplier: most(|r| r.multiplier),
+                resultant: scene.form.is_elastic().then(|| resultant(scene, rows)),
+                max_pressure: pressures(scene, rows).map(|p| p.fold(0.0, f64::max)),
+                area: pressures(scene, rows).map(|_| {
+                    let touching = rows.iter().filter(|r| r.inequality && r.active);
+                    touching.map(|r| r.area).sum()
+                }),
             }
         })
         .collect()
+}
+
+/// Σ λ n: what the first body, or the only one, presses with on what is opposite.
+fn resultant(scene: &Scene, rows: &[ContactRow]) -> Vec<f64> {
+    let component = |c: usize| rows.iter().map(|r| r.multiplier * r.direction[c]).sum();
+    (0..scene.dim()).map(component).collect()
+}
+
+/// The pressures of the inequalities, where multipliers are reported as such and some sides may touch.
+fn pressures<'a>(
+    scene: &Scene,
+    rows: &'a [ContactRow],
+) -> Option<impl Iterator<Item = f64> + use<'a>> {
+    let contact = || rows.iter().filter(|r| r.inequality);
+    let some = has_pressure(scene) && contact().next().is_some();
+    some.then(|| contact().filter_map(ContactRow::pressure))
 }
 
 /// Multiplier and gap along every interface that has inequalities.
@@ -167,90 +210,27 @@ pub fn profiles(scene: &Scene, rows: &[ContactRow]) -> Vec<Profile> {
                     Shape::Corner => 0,
                 },
             };
+            // Along a curved side no coordinate grows steadily.
+            let curved =
+                rows[0].members[0].is_some_and(|(b, _)| scene.bodies[b].spec.map.is_some());
+            let label = if curved { "t" } else { ["x", "y"][along] };
             let column = |f: fn(&ContactRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
             Profile {
                 name: name(scene, rows[0].source),
-                label: ["x", "y"][along].into(),
+                label: label.into(),
                 t: column(|r| r.t[0]),
                 points: rows.iter().map(|r| [r.point[0], r.point[1]]).collect(),
                 gap: column(|r| r.distance),
                 multiplier: column(|r| r.multiplier),
                 active: rows.iter().map(|r| r.active).collect(),
+                area: if has_pressure(scene) {
+                    column(|r| r.area)
+                } else {
+                    Vec::new()
+                },
             }
         })
         .collect()
-}
-
-/// Where bodies may touch and do, from node to node.
-pub fn marks(rows: &[ContactRow]) -> Vec<ContactMark> {
-    let mut out = Vec::new();
-    for rows in by_source(rows) {
-        let rows: Vec<&ContactRow> = rows.iter().filter(|r| r.inequality).collect();
-        if let [only] = rows[..] {
-            out.push(ContactMark {
-                from: [only.point[0], only.point[1]],
-                to: [only.point[0], only.point[1]],
-                closed: only.active,
-            });
-        }
-        out.extend(rows.windows(2).map(|pair| ContactMark {
-            from: [pair[0].point[0], pair[0].point[1]],
-            to: [pair[1].point[0], pair[1].point[1]],
-            closed: pair[0].active && pair[1].active,
-        }));
-    }
-    out
-}
-
-/// Loads, forces of contact and reactions of every body. Collective.
-pub fn balance(
-    session: &Session,
-    scene: &Scene,
-    solver: &FetiFeti,
-    solution: &Solution,
-    step: usize,
-) -> Result<Vec<BodyBalance>> {
-    let n = scene.n_bodies();
-    // [load, contact, Σ |multiplier|] by body
-    let mut sums = vec![0.0; 3 * n];
-    for sub in &solver.problem().local {
-        sums[sub.body] += scene.resultant(sub.index, step)?[0];
-    }
-    let dual = solver.dual();
-    let jump = &dual.stiffness.jump;
-    let body_of = |dof: u64| {
-        let after = scene.bodies.partition_point(|b| b.first_dof <= dof);
-        after - 1
-    };
-    for (k, &r) in jump.order.iter().enumerate() {
-        let lambda = solution.lambda[jump.n_owned_local + k];
-        for &(dof, coefficient) in &solver.problem().rows[r].terms {
-            let body = body_of(dof);
-            sums[n + body] -= coefficient * lambda;
-            sums[2 * n + body] += (coefficient * lambda).abs();
-        }
-    }
-    sum_all(session.comm(), &mut sums);
-    let floating = &dual.stiffness.space.defect;
-    let out = scene.bodies.iter().enumerate().map(|(b, body)| {
-        let (load, contact, size) = (sums[b], sums[n + b], sums[2 * n + b]);
-        let rest = load + contact;
-        let floats = floating[b] > 0;
-        let scale = load.abs().max(size);
-        BodyBalance {
-            name: body.spec.name.clone(),
-            floating: floats,
-            load,
-            contact,
-            reaction: (!floats).then_some(-rest),
-            imbalance: if floats && scale > 0.0 {
-                rest.abs() / scale
-            } else {
-                0.0
-            },
-        }
-    });
-    Ok(out.collect())
 }
 
 /// One outer step as the report has it.

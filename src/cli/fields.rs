@@ -1,14 +1,15 @@
-//! The solution as VTU and PNG, gathered on rank 0.
+//! The solution gathered on rank 0, and as VTU.
 
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::contact::ContactRow;
+use super::contact::{has_pressure, ContactRow};
+use crate::fem::cell::{centre_stress, CellStress};
 use crate::feti::exchange::exchange_words;
 use crate::feti::{FetiFeti, Solution};
+use crate::mesh::SubdomainMesh;
 use crate::petsc::Session;
 use crate::report::contact_fields::ContactFields;
-use crate::report::field::{self, ContactMark, Mesh};
 use crate::report::vtu::{Shape, Vtu};
 use crate::scene::Scene;
 use crate::Result;
@@ -16,13 +17,18 @@ use crate::Result;
 /// The whole solution, subdomain after subdomain.
 #[derive(Default)]
 pub struct Gathered {
-    points: Vec<[f64; 3]>,
+    pub(super) points: Vec<[f64; 3]>,
     /// Corners of each cell as VTK numbers them, one cell after the other.
-    cells: Vec<u32>,
-    body: Vec<u32>,
-    subdomain: Vec<u32>,
-    u: Vec<f64>,
-    rho: Vec<f64>,
+    pub(super) cells: Vec<u32>,
+    pub(super) body: Vec<u32>,
+    pub(super) subdomain: Vec<u32>,
+    /// C components per point.
+    pub(super) u: Vec<f64>,
+    /// ρ, or Young's modulus.
+    pub(super) rho: Vec<f64>,
+    /// Poisson's ratio and stress by cell, in elasticity.
+    poisson: Vec<f64>,
+    pub(super) stress: Vec<CellStress>,
     /// Body of each point.
     owner: Vec<u32>,
 }
@@ -70,7 +76,12 @@ impl Gathered {
             }
             let u: Vec<f64> = values.iter().map(|&w| f64::from_bits(w)).collect();
             let first = all.points.len();
-            all.u.extend(mesh.nodal(&u));
+            let nodal = mesh.nodal(&u);
+            if scene.form.is_elastic() {
+                all.stress.extend(stresses(&mesh, &nodal));
+                all.poisson.extend(&mesh.poisson);
+            }
+            all.u.extend(nodal);
             all.points.extend(&mesh.points);
             let owner = std::iter::repeat_n(mesh.body as u32, mesh.points.len());
             all.owner.extend(owner);
@@ -86,27 +97,68 @@ impl Gathered {
         Ok(all)
     }
 
+    /// The displacement of a point; in scalar problems none.
+    pub(super) fn displacement(&self, scene: &Scene, point: usize) -> [f64; 3] {
+        let mut out = [0.0; 3];
+        let c = scene.components();
+        if c > 1 {
+            out[..c].copy_from_slice(&self.u[c * point..c * (point + 1)]);
+        }
+        out
+    }
+
+    /// The points that are copies of (body, node), for the nodes of the rows.
+    pub(super) fn copies(
+        &self,
+        scene: &Scene,
+        rows: &[ContactRow],
+    ) -> HashMap<(usize, usize), Vec<usize>> {
+        let key = |body: u32, point: [f64; 3]| (body, point.map(f64::to_bits));
+        let mut wanted = HashMap::new();
+        for &(body, node) in rows.iter().flat_map(|r| r.members.iter().flatten()) {
+            let spec = &scene.bodies[body].spec;
+            let point = spec.position(spec.mesh.place(node));
+            wanted.insert(key(body as u32, point), (body, node));
+        }
+        let mut out: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
+        for (p, (&body, &point)) in self.owner.iter().zip(&self.points).enumerate() {
+            if let Some(&member) = wanted.get(&key(body, point)) {
+                out.entry(member).or_default().push(p);
+            }
+        }
+        out
+    }
+
     /// Multiplier, gap and contact at the points, on every copy of a node.
     fn contact_fields(&self, scene: &Scene, rows: &[ContactRow]) -> Result<Option<ContactFields>> {
         if rows.iter().all(|r| !r.inequality) {
             return Ok(None);
         }
-        let key = |body: u32, point: [f64; 3]| (body, point.map(f64::to_bits));
-        let mut copies: HashMap<(u32, [u64; 3]), Vec<usize>> = HashMap::new();
-        for (p, (&body, &point)) in self.owner.iter().zip(&self.points).enumerate() {
-            copies.entry(key(body, point)).or_default().push(p);
-        }
+        let copies = self.copies(scene, rows);
         let mut fields = ContactFields::new(self.points.len());
         for row in rows.iter().filter(|r| r.inequality) {
-            for &(body, node) in row.members.iter().flatten() {
-                let spec = &scene.bodies[body].spec;
-                let point = spec.position(spec.mesh.place(node));
-                for &p in copies.get(&key(body as u32, point)).into_iter().flatten() {
+            for member in row.members.iter().flatten() {
+                for &p in copies.get(member).into_iter().flatten() {
                     fields.add(p, row.multiplier, row.distance, row.active)?;
+                    if has_pressure(scene) {
+                        fields.add_area(p, row.area)?;
+                    }
                 }
             }
         }
+        fields.divide();
         Ok(Some(fields))
+    }
+
+    /// u as VTK takes it: a number, or three components.
+    fn vectors(&self, scene: &Scene) -> (usize, Vec<f64>) {
+        match scene.components() {
+            1 => (1, self.u.clone()),
+            c => {
+                let three = |u: &[f64]| [u[0], u[1], u.get(2).copied().unwrap_or(0.0)];
+                (3, self.u.chunks_exact(c).flat_map(three).collect())
+            }
+        }
     }
 
     /// Writes `NAME.vtu` into `dir`.
@@ -118,35 +170,54 @@ impl Gathered {
         name: &str,
     ) -> Result<()> {
         let shape = [Shape::Quad, Shape::Hexahedron][scene.dim() - 2];
-        let c = scene.components();
         let body: Vec<i32> = self.body.iter().map(|&b| b as i32).collect();
         let subdomain: Vec<i32> = self.subdomain.iter().map(|&s| s as i32).collect();
         let contact = self.contact_fields(scene, rows)?;
-        let mut grid = Vtu::new(&self.points, shape, &self.cells).point_data("u", c, &self.u[..]);
+        let (c, u) = self.vectors(scene);
+        let by_cell = |f: fn(&CellStress) -> f64| self.stress.iter().map(f).collect::<Vec<f64>>();
+        let von_mises = by_cell(CellStress::von_mises);
+        let pressure = by_cell(CellStress::pressure);
+        let stress: Vec<f64> = self.stress.iter().flat_map(symmetric).collect();
+        let mut grid = Vtu::new(&self.points, shape, &self.cells).point_data("u", c, &u[..]);
         if let Some(contact) = &contact {
             grid = contact.on(grid);
         }
-        grid.cell_data("rho", 1, &self.rho[..])
-            .cell_data("body", 1, &body[..])
+        grid = if scene.form.is_elastic() {
+            grid.cell_data("young", 1, &self.rho[..])
+                .cell_data("poisson", 1, &self.poisson[..])
+                .cell_data("von_mises", 1, &von_mises[..])
+                .cell_data("pressure", 1, &pressure[..])
+                .cell_data("stress", 6, &stress[..])
+        } else {
+            grid.cell_data("rho", 1, &self.rho[..])
+        };
+        grid.cell_data("body", 1, &body[..])
             .cell_data("subdomain", 1, &subdomain[..])
             .write(&dir.join(format!("{name}.vtu")))
     }
+}
 
-    /// Writes `solution.png` into `dir`.
-    pub fn write_picture(&self, title: &str, marks: &[ContactMark], dir: &Path) -> Result<()> {
-        let points: Vec<[f64; 2]> = self.points.iter().map(|p| [p[0], p[1]]).collect();
-        let quads: Vec<[u32; 4]> = self
-            .cells
-            .chunks_exact(4)
-            .map(|q| [q[0], q[1], q[2], q[3]])
+/// Stress at the centres of the cells of a subdomain.
+fn stresses<'a>(
+    mesh: &'a SubdomainMesh,
+    nodal: &'a [f64],
+) -> impl Iterator<Item = CellStress> + use<'a> {
+    let (n, c) = (mesh.corners(), mesh.components());
+    mesh.element_places().enumerate().map(move |(e, place)| {
+        let nodes = mesh.element_nodes(place);
+        let points = mesh.element_points(place);
+        let u: Vec<f64> = nodes[..n]
+            .iter()
+            .flat_map(|&k| &nodal[c * k..c * (k + 1)])
+            .copied()
             .collect();
-        let mesh = Mesh {
-            points: &points,
-            quads: &quads,
-            body: &self.body,
-            subdomain: &self.subdomain,
-        };
-        let path = dir.join("solution.png");
-        field::write_solution(&mesh, &self.u, &self.rho, marks, title, &path)
-    }
+        let element = mesh.form.element;
+        centre_stress(mesh.dim, &points[..n], element, &mesh.material(e), &u)
+    })
+}
+
+/// The order in which ParaView names six components: xx, yy, zz, xy, yz, xz.
+fn symmetric(s: &CellStress) -> [f64; 6] {
+    let s = &s.stress;
+    [s[0][0], s[1][1], s[2][2], s[0][1], s[1][2], s[0][2]]
 }

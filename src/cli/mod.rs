@@ -1,10 +1,15 @@
 //! The command-line program: arguments, then run, then an exit code.
 
+mod areas;
 pub mod args;
+mod balance;
 mod checkpoint;
 mod contact;
 mod course;
 mod fields;
+mod maps;
+mod physics;
+mod picture;
 mod plan;
 pub(crate) mod problem;
 mod solve;

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::problem;
+use super::{physics, problem};
+use crate::fem::cell::rigid_count;
 use crate::feti::sizes::Sizes;
 use crate::feti::team::Team;
 use crate::petsc::Session;
@@ -29,7 +30,10 @@ fn text(scene: &Scene, sizes: &Sizes) -> String {
     let mut out = format!("{}\n\n", plan.title);
     out += &bodies(&plan, sizes);
     out += &interfaces(&plan);
-    out += &decisions(&plan, sizes);
+    if scene.dim() == 3 || scene.form.is_elastic() {
+        let _ = writeln!(out, "{:<22}{}", "physics", physics::form(scene));
+    }
+    out += &decisions(scene, &plan, sizes);
     out
 }
 
@@ -44,11 +48,13 @@ fn bodies(plan: &Plan, sizes: &Sizes) -> String {
         "kernel",
     ];
     let mut table = Table::new(header).align(0, Align::Left);
+    // Only solids have elements in z.
+    let dim = if plan.bodies[0].elements[2] > 0 { 3 } else { 2 };
     for (b, defect) in plan.bodies.iter().zip(&sizes.defect).take(LIST) {
         table.row([
             b.name.clone(),
-            format!("{} x {}", b.elements[0], b.elements[1]),
-            format!("{} x {}", b.subdomains[0], b.subdomains[1]),
+            grid(b.elements, dim),
+            grid(b.subdomains, dim),
             b.dofs.to_string(),
             b.prescribed.to_string(),
             b.primal.to_string(),
@@ -65,6 +71,12 @@ fn bodies(plan: &Plan, sizes: &Sizes) -> String {
         String::new()
     };
     format!("{table}{rest}\n")
+}
+
+/// Counts in x, y and z, such as "16 x 16 x 16".
+fn grid(counts: [usize; 3], dim: usize) -> String {
+    let each: Vec<String> = counts[..dim].iter().map(usize::to_string).collect();
+    each.join(" x ")
 }
 
 fn interfaces(plan: &Plan) -> String {
@@ -94,7 +106,7 @@ fn interfaces(plan: &Plan) -> String {
     format!("{table}{rest}\n")
 }
 
-fn decisions(plan: &Plan, sizes: &Sizes) -> String {
+fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {
     let mut out = String::new();
     let mut line = |what: &str, text: String| {
         let _ = writeln!(out, "{what:<22}{text}");
@@ -133,8 +145,9 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
         match floating {
             0 => "none: no body floats".into(),
             n => format!(
-                "natural coarse problem of size {}: {n} of {n_bodies} bodies float",
-                sizes.defect.iter().sum::<usize>()
+                "natural coarse problem of size {}: {n} of {n_bodies} bodies float{}",
+                sizes.defect.iter().sum::<usize>(),
+                kernels(scene, sizes)
             ),
         },
     );
@@ -142,7 +155,7 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
         "primal problem",
         match sizes.primal {
             0 => "none: every body is one subdomain".into(),
-            n => format!("{n} vertices, at most {} in a body", sizes.largest_primal),
+            n => constraints(scene, plan, n, sizes.largest_primal),
         },
     );
     let method = match (n_bodies, n_subdomains == n_bodies) {
@@ -177,6 +190,43 @@ fn decisions(plan: &Plan, sizes: &Sizes) -> String {
         ),
     );
     out
+}
+
+/// How many bodies float in all their rigid motions, and how many in some of them.
+fn kernels(scene: &Scene, sizes: &Sizes) -> String {
+    if !scene.form.is_elastic() {
+        return String::new();
+    }
+    let all = rigid_count(scene.dim());
+    let freely = sizes.defect.iter().filter(|d| **d == all).count();
+    let partly = sizes
+        .defect
+        .iter()
+        .filter(|d| (1..all).contains(*d))
+        .count();
+    let part = |n: usize, text: String| (n > 0).then(|| format!("{n} {text}"));
+    let parts = [
+        part(freely, format!("in all {all} rigid motions")),
+        part(partly, "in some".into()),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    format!(", {}", parts.join(", "))
+}
+
+/// The primal constraints: vertices that subdomains share, corners where bodies may touch, averages.
+fn constraints(scene: &Scene, plan: &Plan, primal: usize, largest: usize) -> String {
+    if scene.dim() == 2 && !scene.form.is_elastic() {
+        return format!("{primal} vertices, at most {largest} in a body");
+    }
+    let edges: usize = plan.bodies.iter().map(|b| b.edges).sum();
+    let averages = match edges {
+        0 => String::new(),
+        n => format!("; subdomains share {n} edges, counted by component"),
+    };
+    format!(
+        "{primal} constraints, at most {largest} in a body; {} at vertices inside bodies{averages}",
+        plan.primal
+    )
 }
 
 /// What the inequalities are.

@@ -5,18 +5,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::Solve;
+use super::balance;
 use super::checkpoint::Checkpoints;
 use super::contact;
 use super::course::{follow, Course};
 use super::fields::Gathered;
-use super::{not_converged, problem};
+use super::{maps, not_converged, physics, picture, problem};
 use crate::feti::exchange::sum_all;
 use crate::feti::local::problem::factorisations;
 use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
 use crate::petsc::{max_memory, Session};
 use crate::report::contact::ContactReport;
 use crate::report::json::{self, SolveReport};
-use crate::report::{load_steps, output, profile, summary};
+use crate::report::{contact_map, load_steps, output, profile, summary};
 use crate::scene::Scene;
 use crate::Result;
 
@@ -104,7 +105,12 @@ fn write_report(args: &Solve, report: &SolveReport) -> Result<()> {
 fn files(report: &SolveReport) -> Vec<&'static str> {
     let mut out = vec!["solution.vtu", "solution.png", "report.json"];
     if let Some(contact) = &report.contact {
-        out.extend(["interfaces.png", "interfaces.svg", "interfaces.csv"]);
+        out.push("interfaces.png");
+        // Maps of whole faces would be too many shapes for a drawing.
+        if report.dimension < 3 {
+            out.push("interfaces.svg");
+        }
+        out.push("interfaces.csv");
         if !contact.load_steps.is_empty() {
             out.extend(["solution.pvd", "steps.png", "steps.svg", "steps.csv"]);
         }
@@ -161,6 +167,15 @@ fn report(
     sum_all(session.comm(), &mut active);
     Ok(SolveReport {
         scene: scene.title.clone(),
+        dimension: scene.dim(),
+        physics: if scene.form.is_elastic() {
+            "elasticity"
+        } else {
+            "scalar"
+        }
+        .into(),
+        components: scene.components(),
+        form: physics::form(scene),
         ranks: session.size(),
         threads: dual.stiffness.team.threads(),
         bodies: scene.n_bodies(),
@@ -223,9 +238,12 @@ fn write_fields(
     let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
     let written = gathered.map_or(Ok(()), |g| {
         g.write_vtu(scene, &course.rows, dir, "solution")?;
-        g.write_picture(&scene.title, &contact::marks(&course.rows), dir)?;
+        picture::write(scene, &g, &course.rows, dir)?;
         if solver.facts().inequalities > 0 {
-            profile::write(&contact::profiles(scene, &course.rows), &scene.title, dir)?;
+            match scene.dim() {
+                2 => profile::write(&contact::profiles(scene, &course.rows), &scene.title, dir)?,
+                _ => contact_map::write(&maps::of(scene, &course.rows), &scene.title, dir)?,
+            };
         }
         if !course.load_steps.is_empty() {
             load_steps::write(&course.load_steps, &scene.title, dir)?;
@@ -257,7 +275,7 @@ fn contact_report(
         distinct_subdomains: counts[1] as usize,
         steps: course.outer.clone(),
         interfaces: contact::forces(scene, &course.rows),
-        bodies: contact::balance(session, scene, solver, &course.solution, course.step)?,
+        bodies: balance::bodies(session, scene, solver, &course.rows, course.step)?,
         load_steps: course.load_steps.clone(),
     }))
 }

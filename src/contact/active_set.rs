@@ -93,7 +93,9 @@ impl Run {
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(session, problem, &dual);
         let g = dual.natural.all_rows(session.comm(), &dual.stiffness);
-        motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
+        if dual.natural.r <= motion::AT_ONCE {
+            motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
+        }
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
         let lambda = dual.multipliers()?;
         let sqrt_rows = (jump.n_global as f64).sqrt();

@@ -22,6 +22,7 @@ pub mod smalbe;
 
 pub use settings::{ContactType, Settings};
 
+use crate::feti::inner::Loads;
 use crate::feti::jump::Jump;
 use crate::feti::{FetiFeti, Solution, Spectrum};
 use crate::Result;
@@ -136,8 +137,17 @@ pub type Observer<'a> = dyn FnMut(&Step, &State) -> Result<()> + 'a;
 /// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and what `observe` returns.
 pub fn solve(solver: &FetiFeti, start: Option<&State>, observe: &mut Observer) -> Result<Solution> {
     feasible::check(solver.session(), solver.problem(), &solver.dual())?;
-    match solver.settings().contact.kind {
+    let solution = match solver.settings().contact.kind {
         ContactType::ActiveSet => active_set::solve(solver, start, observe),
         ContactType::Smalbe => smalbe::solve(solver, start, observe),
+    };
+    let stuck = !matches!(&solution, Ok(s) if s.converged);
+    if stuck && solver.dual().natural.r > motion::AT_ONCE {
+        let (session, problem) = (solver.session(), solver.problem());
+        let dual = solver.dual();
+        let loads = Loads::new(session, problem, &dual);
+        let g = dual.natural.all_rows(session.comm(), &dual.stiffness);
+        motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
     }
+    solution
 }

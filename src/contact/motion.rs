@@ -21,6 +21,10 @@ use crate::feti::rows::Rows;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
+/// Up to this many rigid motions are checked before the loop starts. The check grows with their cube and more: beyond, the loop is let run,
+/// and asked for the reason when it comes to no end.
+pub const AT_ONCE: usize = 150;
+
 /// What is left of e outside the cone, relative to the loads, may be rounding below this.
 const BALANCE: f64 = 1e-9;
 

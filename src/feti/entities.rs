@@ -14,15 +14,13 @@ use super::sharing::Sharing;
 use crate::substructures::{Entity, Subdomain, Substructures};
 use crate::{Error, Result};
 
-/// The mean over some dofs of one subdomain as a primal constraint.
+/// The mean over some dofs as a primal constraint that several subdomains of a body share.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Average {
     /// Key of the entity.
     pub key: u64,
     /// Local dofs, none of them a shared vertex.
     pub dofs: Vec<u32>,
-    /// Whether other subdomains of the body have the same constraint.
-    pub shared: bool,
 }
 
 /// Words of a report: key, body, subdomain, number of dofs, hash of the body dofs.
@@ -33,7 +31,7 @@ pub fn chosen(sub: &Subdomain, primal: Primal) -> impl Iterator<Item = &Entity> 
     sub.entities.iter().filter(move |e| primal.takes(e.kind))
 }
 
-/// The averages of every local subdomain: shared ones, then those of one subdomain alone. Collective.
+/// The averages of every local subdomain, those that other subdomains have too. Collective.
 pub fn averages(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -93,13 +91,12 @@ pub fn averages(
             next[home] += 1;
             mine.extend(average(problem, sharing, sub, entity, count)?);
         }
-        mine.sort_by_key(|a: &Average| !a.shared);
         out.push(mine);
     }
     Ok(out)
 }
 
-/// The constraint that an entity of `count` subdomains is; `None` where all its dofs are vertices.
+/// The constraint that an entity of `count` subdomains is; `None` for one, or where all its dofs are vertices.
 fn average(
     problem: &Substructures,
     sharing: &Sharing,
@@ -123,10 +120,9 @@ fn average(
         }
         dofs.push(i);
     }
-    Ok((!dofs.is_empty()).then_some(Average {
+    Ok((count > 1 && !dofs.is_empty()).then_some(Average {
         key: entity.key,
         dofs,
-        shared: count > 1,
     }))
 }
 

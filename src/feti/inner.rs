@@ -142,6 +142,9 @@ pub fn iterate(
     lambda: &PetscVec,
     target: Option<f64>,
 ) -> Result<Inner> {
+    // Once more: what the first projection of a large jump leaves behind by rounding is out of reach for the iteration, which would
+    // stall on it and go astray. Of the small residual that is left the second one leaves nothing to speak of.
+    dual.p_transpose(residual)?;
     let start = residual.norm2()?;
     if start <= (ROUNDING * size).max(target.unwrap_or(0.0)) {
         return Ok(Inner {

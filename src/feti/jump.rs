@@ -8,8 +8,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::blocks::{self, Block, Entry};
-use super::exchange::{exchange, offsets, sum_all};
 use super::entities::Average;
+use super::exchange::{exchange, offsets, sum_all};
 use super::scaling;
 use super::sharing::{Copy, Sharing};
 use crate::substructures::{RowKind, Substructures};
@@ -138,7 +138,7 @@ pub struct Jump {
     pub primal: Vec<Vec<u32>>,
     /// How many of them are shared.
     pub n_shared: Vec<usize>,
-    /// Averages over dual dofs of each local subdomain that are primal too: shared ones first.
+    /// Averages over dual dofs of each local subdomain that are primal too.
     pub averages: Vec<Vec<Average>>,
 }
 
@@ -196,6 +196,7 @@ impl Jump {
                 .chain(rows.iter().map(|r| r.kind == RowKind::Inequality))
                 .collect(),
             initial: active.clone(),
+            averages: sharing.averages.clone(),
             active,
             blocks,
             order,
@@ -243,6 +244,10 @@ impl Jump {
             let (mine, others) = rest.split_at(n);
             rest = others;
             let mut columns = JumpColumns::default();
+            // Corners of a body of several subdomains are primal too, but not those of a solid: with ν near 1/2, holding a
+            // corner makes the coarse functions stiffer than the cut that it saves.
+            let scalar = sub.near_kernel.as_ref().is_none_or(|n| n.len() < 2);
+            let pinned = scalar && subdomains_of[sub.body] > 1;
             let mut dual = Vec::new();
             let mut corners = Vec::new();
             for e in mine {
@@ -259,7 +264,7 @@ impl Jump {
                 columns.bd.push(e.bd);
                 let vertex = sharing.vertices && sub.primal.binary_search(&e.local).is_ok();
                 let alone = sharing.shared(sub.dofs[e.local as usize]).is_empty();
-                if e.contact && vertex && alone && subdomains_of[sub.body] > 1 {
+                if e.contact && vertex && alone && pinned {
                     corners.push(e.local);
                 } else {
                     dual.push(e.local);
@@ -272,16 +277,6 @@ impl Jump {
             dual.dedup();
             dual.retain(|i| primal.binary_search(i).is_err());
             self.n_shared.push(primal.len());
-            let mut averages = sharing.averages[j].clone();
-            if subdomains_of[sub.body] < 2 {
-                averages.clear();
-            }
-            for average in &mut averages {
-                // Dofs of a private edge count where they may touch other bodies.
-                average.dofs.retain(|i| dual.binary_search(i).is_ok());
-            }
-            averages.retain(|a| !a.dofs.is_empty());
-            self.averages.push(averages);
             primal.extend(corners);
             self.columns.push(columns);
             self.delta.push(dual);

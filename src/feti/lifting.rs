@@ -253,9 +253,8 @@ fn average_copies(
 fn shared_columns(stiffness: &Stiffness, j: usize) -> Vec<usize> {
     let jump = &stiffness.jump;
     let first = stiffness.locals[j].n_vertices();
-    let averages = jump.averages[j].iter().filter(|a| a.shared).count();
     (0..jump.n_shared[j])
-        .chain(first..first + averages)
+        .chain(first..first + jump.averages[j].len())
         .collect()
 }
 

@@ -10,7 +10,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::exchange::{exchange, gather_all, sum_all};
+use super::exchange::{exchange, gather_all, max_all, sum_all};
 use super::gtg::{Gtg, Side};
 use super::local::dense::Dense;
 use super::preconditioner::Preconditioner;
@@ -21,6 +21,9 @@ use super::stiffness::Stiffness;
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
+
+/// Entries of R below this part of their column's largest are rounding.
+const STILL: f64 = 1e-12;
 
 /// G, Q G and the factored Gᵀ Q G; nothing where no body floats.
 pub struct NaturalCoarse {
@@ -139,6 +142,7 @@ impl NaturalCoarse {
             .map(|w| w[0] as u32)
             .collect();
         let mut outgoing: Vec<Vec<PrimalEntry>> = vec![Vec::new(); comm.size() as usize];
+        let largest = self.largest(comm);
         for (j, kernel) in self.kernels.iter().enumerate() {
             let columns = &jump.columns[j];
             for &(e, full) in &columns.contact {
@@ -147,11 +151,16 @@ impl NaturalCoarse {
                 // The last rank that starts at or before the row: ranks without rows start where the next one does.
                 let to = starts.partition_point(|&s| s <= row) - 1;
                 for c in 0..kernel.cols {
-                    outgoing[to].push(PrimalEntry {
-                        row,
-                        col: (self.first_column[j] + c) as u32,
-                        value: full * kernel.get(at as usize, c),
-                    });
+                    let col = self.first_column[j] + c;
+                    let value = kernel.get(at as usize, c);
+                    // A body that cannot move along a row's normal moves there by rounding: such a row would hold it.
+                    if value.abs() > STILL * largest[col] {
+                        outgoing[to].push(PrimalEntry {
+                            row,
+                            col: col as u32,
+                            value: full * value,
+                        });
+                    }
                 }
             }
         }
@@ -161,6 +170,19 @@ impl NaturalCoarse {
             .map(|e| (e.row - jump.first as u32, e.col, e.value))
             .collect();
         Rows::from_triplets(jump.n_owned, entries)
+    }
+
+    /// The largest entry of each column of R. Collective.
+    fn largest(&self, comm: &SimpleCommunicator) -> Vec<f64> {
+        let mut largest = vec![0.0_f64; self.r];
+        for (kernel, first) in self.kernels.iter().zip(&self.first_column) {
+            for c in 0..kernel.cols {
+                let size = kernel.col(c).iter().fold(0.0f64, |a, v| a.max(v.abs()));
+                largest[first + c] = largest[first + c].max(size);
+            }
+        }
+        max_all(comm, &mut largest);
+        largest
     }
 
     /// diag(B_D diag(K) B_Dᵀ) on the owned rows. Collective.

@@ -30,7 +30,7 @@ pub enum Scaling {
     Deluxe,
 }
 
-/// The constraints that hold the subdomains of a body together, any of them or none.
+/// The constraints that hold the subdomains of a body together, at least one of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Primal {
     /// Values at vertices.
@@ -66,17 +66,13 @@ impl Primal {
     pub fn name(self) -> String {
         let chosen = [self.vertices, self.edges, self.faces];
         let names = Self::NAMES.iter().zip(chosen).filter(|n| n.1).map(|n| *n.0);
-        let names = names.collect::<Vec<_>>();
-        if names.is_empty() {
-            return "none".into();
-        }
-        names.join(",")
+        names.collect::<Vec<_>>().join(",")
     }
 
-    /// From a list with commas, or `none`; nothing where a word is wrong.
+    /// From a list with commas; `None` where a word is wrong.
     pub fn parse(text: &str) -> Option<Primal> {
         let mut chosen = [false; 3];
-        for word in text.split(',').filter(|_| text != "none") {
+        for word in text.split(',') {
             let word = word.trim().to_ascii_lowercase();
             chosen[Self::NAMES.iter().position(|n| *n == word)?] = true;
         }
@@ -207,11 +203,11 @@ impl Settings {
             help,
         )?;
         self.projector = ProjectorKind::from_index(i);
-        let help = "primal constraints inside the bodies (some of vertices, edges, faces, or none)";
+        let help = "primal constraints inside the bodies (some of vertices, edges, faces)";
         let text = o.string("primal", &self.primal.name(), help)?;
         self.primal = Primal::parse(&text).ok_or_else(|| {
             Error::input(format!(
-                "option {} is \"{text}\", expected some of {} with commas between them, or none",
+                "option {} is \"{text}\", expected some of {} with commas between them",
                 o.full_name("primal"),
                 Primal::NAMES.join(", ")
             ))

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::coarse::PrimalProblem;
+use super::deluxe;
 use super::dual::{self, Dual, Shared};
 use super::entities;
 use super::equal;
@@ -34,6 +35,9 @@ const CITATION: &str = "@techreport{Lee2010,
   year   = {2010}
 }
 ";
+
+/// KKT residuals may be this many times the tolerance of the iteration, which measures another norm.
+const CREDIBLE: f64 = 1e4;
 
 /// Facts about the problem as the solver sees it.
 #[derive(Debug, Clone, Default)]
@@ -88,18 +92,16 @@ impl FetiFeti {
         let prefix = settings.prefix.clone();
 
         let weights = weights(&problem, &settings);
-        let sharing = session.agree(Sharing::new(
-            comm,
-            &problem,
-            &weights,
-            settings.primal,
-        ))?;
+        let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
         let locals = session.agree(factor(&problem, &jump, &team))?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
+        }
+        if settings.scaling == Scaling::Deluxe {
+            deluxe::apply(comm, &problem, &sharing, &mut jump, &locals);
         }
         let space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
         let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
@@ -162,10 +164,28 @@ impl FetiFeti {
         observe: &mut contact::Observer,
     ) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
-        if self.facts.inequalities > 0 {
-            return contact::solve(self, start, observe);
+        let solution = if self.facts.inequalities > 0 {
+            contact::solve(self, start, observe)?
+        } else {
+            recover::solve(&self.session, &self.problem, &self.dual(), &self.ksp)?
+        };
+        self.believe(solution)
+    }
+
+    /// The certificate has the last word: whatever the iteration says, displacements that are far from equilibrium, or rows that are far
+    /// from holding, are no solution.
+    fn believe(&self, mut solution: Solution) -> Result<Solution> {
+        let rtol = self.ksp.tolerances()?.0;
+        let bound = (CREDIBLE * rtol).clamp(1e-3, 0.5);
+        let kkt = &solution.kkt;
+        let worst = kkt.stationarity.max(kkt.feasibility);
+        // Written so that NaN is not believed either.
+        let credible = worst <= bound;
+        if solution.converged && !credible {
+            solution.converged = false;
+            solution.reason = "DIVERGED_CERTIFICATE".into();
         }
-        recover::solve(&self.session, &self.problem, &self.dual(), &self.ksp)
+        Ok(solution)
     }
 
     /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows (in the order in which this rank

@@ -1,10 +1,11 @@
 //! The record of a contact solve: key `contact` of [`super::json::SolveReport`].
 //!
 //! Forces are sums of multipliers, in the units of the loads; a multiplier of an inequality is positive where the bodies press
-//! against each other. As in [`super::json`], a number that is not known or not finite is `null` and never NaN.
+//! against each other. In elasticity forces have directions: `force` is still the sum of the multipliers, `resultant` their vector
+//! sum. As in [`super::json`], a number that is not known or not finite is `null` and never NaN.
 
 use super::json::{number, Spectrum};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// How the contact was found, and what holds it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -118,6 +119,55 @@ pub struct InterfaceForce {
     /// Largest multiplier.
     #[serde(with = "number")]
     pub max_multiplier: f64,
+    /// Elasticity: Σ λ n by components, the force with which the first body presses on the second, or on the obstacle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resultant: Option<Vec<f64>>,
+    /// Elasticity and solids, where sides may touch: the largest multiplier over its nodal area.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_pressure: Option<f64>,
+    /// Elasticity and solids, where sides may touch: sum of the nodal areas of the rows that hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area: Option<f64>,
+}
+
+/// A force: a number in scalar problems, a list of components in elasticity.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Amount(pub Vec<f64>);
+
+impl From<f64> for Amount {
+    fn from(x: f64) -> Amount {
+        Amount(vec![x])
+    }
+}
+
+/// An [`Amount`] as JSON has it.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Number(Option<f64>),
+    List(Vec<Option<f64>>),
+}
+
+impl Serialize for Amount {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        let finite = |x: &f64| x.is_finite().then_some(*x);
+        match &self.0[..] {
+            [] => Written::Number(Some(0.0)),
+            [x] => Written::Number(finite(x)),
+            list => Written::List(list.iter().map(finite).collect()),
+        }
+        .serialize(s)
+    }
+}
+
+impl<'de> Deserialize<'de> for Amount {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
+        Ok(match Written::deserialize(d)? {
+            Written::Number(x) => number(x).into(),
+            Written::List(list) => Amount(list.into_iter().map(number).collect()),
+        })
+    }
 }
 
 /// Equilibrium of one body.
@@ -128,16 +178,18 @@ pub struct BodyBalance {
     /// Whether nothing but its neighbours holds it.
     pub floating: bool,
     /// Resultant of its loads.
-    #[serde(with = "number")]
-    pub load: f64,
+    pub load: Amount,
     /// Resultant of the forces on its interfaces and at its obstacles.
-    #[serde(with = "number")]
-    pub contact: f64,
-    /// Resultant of the reactions at given displacements; `null` for a floating body.
-    pub reaction: Option<f64>,
-    /// What is missing to equilibrium, relative to the forces.
+    pub contact: Amount,
+    /// Resultant of the reactions at given displacements; `null` for a body without any.
+    pub reaction: Option<Amount>,
+    /// What is missing to equilibrium, relative to the forces; in elasticity in the components that are given nowhere.
     #[serde(with = "number")]
     pub imbalance: f64,
+    /// Elasticity, bodies without given displacements: what is missing to equilibrium of the moments about the body's centre, relative to
+    /// the moments of the single forces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moment_imbalance: Option<f64>,
 }
 
 /// One load step.
@@ -217,7 +269,8 @@ mod tests {
                 ..OuterStep::default()
             }],
             bodies: vec![BodyBalance {
-                reaction: Some(f64::NAN),
+                reaction: Some(f64::NAN.into()),
+                load: Amount(vec![1.5, f64::NAN]),
                 imbalance: f64::NAN,
                 ..BodyBalance::default()
             }],
@@ -232,6 +285,8 @@ mod tests {
         assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
         let back: ContactReport = serde_json::from_str(&text).unwrap();
         assert!(back.steps[0].residual.is_nan() && back.steps[0].tolerance.is_nan());
+        let load = &back.bodies[0].load.0;
+        assert!(load[0] == 1.5 && load[1].is_nan() && load.len() == 2);
         assert!(back.bodies[0].reaction.is_none() && back.bodies[0].imbalance.is_nan());
         assert!(back.load_steps[0].energy.is_nan() && back.load_steps[0].t == 0.5);
     }

@@ -8,7 +8,7 @@
 use super::vtu::Vtu;
 use crate::{Error, Result};
 
-/// The four arrays.
+/// The four arrays, and pressures where nodes have areas.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactFields {
     /// Sum of the multipliers of the point's candidates; 0 elsewhere.
@@ -19,6 +19,10 @@ pub struct ContactFields {
     pub contact: Vec<i32>,
     /// 1 where the point has a candidate, else 0.
     pub candidate: Vec<i32>,
+    /// Sum of the areas of the point's candidates; empty where forces are not reported as pressures.
+    area: Vec<f64>,
+    /// `multiplier` over `area`.
+    pressure: Vec<f64>,
 }
 
 impl ContactFields {
@@ -29,6 +33,8 @@ impl ContactFields {
             gap: vec![0.0; points],
             contact: vec![0; points],
             candidate: vec![0; points],
+            area: Vec::new(),
+            pressure: Vec::new(),
         }
     }
 
@@ -56,9 +62,45 @@ impl ContactFields {
         Ok(())
     }
 
-    /// The grid with the four arrays as point data.
+    /// Adds the area that belongs to a candidate of a point that has been added.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the mesh has no such point or the area is negative or not finite.
+    pub fn add_area(&mut self, point: usize, area: f64) -> Result<()> {
+        let n = self.multiplier.len();
+        if point >= n || !(area >= 0.0 && area.is_finite()) {
+            return Err(Error::input(format!(
+                "a contact candidate at point {point} of {n} has the area {area}, expected a number that is not negative"
+            )));
+        }
+        self.area.resize(n, 0.0);
+        self.pressure.resize(n, 0.0);
+        self.area[point] += area;
+        Ok(())
+    }
+
+    /// Divides forces by areas, once all candidates have been added; where there is no area the pressure is 0.
+    pub fn divide(&mut self) {
+        for (p, pressure) in self.pressure.iter_mut().enumerate() {
+            if self.area[p] > 0.0 {
+                *pressure = self.multiplier[p] / self.area[p];
+            }
+        }
+    }
+
+    /// Force per area by point; empty where no areas were added.
+    pub fn pressure(&self) -> &[f64] {
+        &self.pressure
+    }
+
+    /// The grid with the arrays as point data.
     #[must_use]
     pub fn on<'a>(&'a self, grid: Vtu<'a>) -> Vtu<'a> {
+        let grid = if self.pressure.is_empty() {
+            grid
+        } else {
+            grid.point_data("contact_pressure", 1, &self.pressure[..])
+        };
         grid.point_data("multiplier", 1, &self.multiplier[..])
             .point_data("gap", 1, &self.gap[..])
             .point_data("contact", 1, &self.contact[..])
@@ -81,6 +123,19 @@ mod tests {
         assert_eq!(fields.gap, [0.0, 0.0, 0.125, 0.0]);
         assert_eq!(fields.contact, [0, 1, 0, 0]);
         assert_eq!(fields.candidate, [0, 1, 1, 0]);
+    }
+
+    #[test]
+    fn pressure_is_force_over_area() {
+        let mut fields = ContactFields::new(3);
+        assert!(fields.pressure().is_empty());
+        for (point, force, area) in [(0, 3.0, 0.5), (0, 1.0, 1.5), (1, 4.0, 0.0)] {
+            fields.add(point, force, 0.0, true).unwrap();
+            fields.add_area(point, area).unwrap();
+        }
+        fields.divide();
+        assert_eq!(fields.pressure(), [2.0, 0.0, 0.0]);
+        assert!(fields.add_area(3, 1.0).is_err() && fields.add_area(0, -1.0).is_err());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What `solve` prints about contact: outer steps, certificate, forces per interface, equilibrium per body.
 
-use super::contact::{ContactReport, InterfaceForce, OuterStep};
+use super::contact::{BodyBalance, ContactReport, InterfaceForce, OuterStep};
 use super::json::Kkt;
 use super::table::{fixed, scientific, value, Align, Table};
 
@@ -165,22 +165,36 @@ fn forces(r: &ContactReport) -> String {
         }
     };
     order.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let names = "interface,kind,rows,active,force,least mult.,largest mult.,least gap,largest gap";
-    let mut table = Table::new(names.split(','))
+    // Pressures take the place of multipliers where they are known.
+    let pressures = order.iter().any(|f| f.max_pressure.is_some());
+    let names = if pressures {
+        "interface,kind,rows,active,force,resultant,area,largest pressure,least gap,largest gap"
+    } else {
+        "interface,kind,rows,active,force,least mult.,largest mult.,least gap,largest gap"
+    };
+    let directed = order.iter().any(|f| f.resultant.is_some());
+    let shown = |name: &&str| directed || *name != "resultant";
+    let mut table = Table::new(names.split(',').filter(shown))
         .align(0, Align::Left)
         .align(1, Align::Left);
     for f in order.iter().take(INTERFACES) {
-        table.row([
+        let mut cells = vec![
             f.name.clone(),
             f.kind.name().to_string(),
             f.candidates.to_string(),
             f.active.to_string(),
             value(f.force),
-            value(f.min_multiplier),
-            value(f.max_multiplier),
-            value(f.smallest_gap),
-            value(f.largest_gap),
-        ]);
+        ];
+        if pressures {
+            if directed {
+                cells.push(f.resultant.as_deref().map_or("–".into(), vector));
+            }
+            cells.extend([f.area, f.max_pressure].map(|x| x.map_or("–".into(), value)));
+        } else {
+            cells.extend([f.min_multiplier, f.max_multiplier].map(value));
+        }
+        cells.extend([f.smallest_gap, f.largest_gap].map(value));
+        table.row(cells);
     }
     let rest = &order[order.len().min(INTERFACES)..];
     let more = match rest {
@@ -195,28 +209,53 @@ fn forces(r: &ContactReport) -> String {
     format!("{table}{more}")
 }
 
+/// A number, or components in brackets; what is rounding beside the others is 0.
+fn vector(components: &[f64]) -> String {
+    if let [x] = components {
+        return value(*x);
+    }
+    let size = components.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+    let each: Vec<String> = components
+        .iter()
+        .map(|&x| value(if x.abs() < 1e-9 * size { 0.0 } else { x }))
+        .collect();
+    format!("({})", each.join(", "))
+}
+
 fn balance(r: &ContactReport) -> String {
     if r.bodies.is_empty() {
         return String::new();
     }
     let size = |x: f64| if x.is_nan() { f64::INFINITY } else { x.abs() };
     let mut order: Vec<_> = r.bodies.iter().collect();
-    order.sort_by(|a, b| size(b.imbalance).total_cmp(&size(a.imbalance)));
+    let worst = |b: &BodyBalance| size(b.imbalance).max(b.moment_imbalance.map_or(0.0, size));
+    order.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
+    let moments = order.iter().any(|b| b.moment_imbalance.is_some());
     let shown = &order[..order.len().min(BODIES)];
-    let mut table =
-        Table::new(["body", "load", "contact", "reaction", "imbalance"]).align(0, Align::Left);
+    let mut header = vec!["body", "load", "contact", "reaction", "imbalance"];
+    if moments {
+        header.push("of moments");
+    }
+    let mut table = Table::new(header).align(0, Align::Left);
     for b in shown {
-        table.row([
+        let mut cells = vec![
             b.name.clone(),
-            value(b.load),
-            value(b.contact),
-            match b.reaction {
-                _ if b.floating => "floating".to_string(),
-                Some(reaction) => value(reaction),
+            vector(&b.load.0),
+            vector(&b.contact.0),
+            match &b.reaction {
+                Some(reaction) => vector(&reaction.0),
+                None if b.floating => "floating".to_string(),
                 None => "–".to_string(),
             },
             scientific(Some(b.imbalance)),
-        ]);
+        ];
+        if moments {
+            cells.push(
+                b.moment_imbalance
+                    .map_or("–".into(), |m| scientific(Some(m))),
+            );
+        }
+        table.row(cells);
     }
     let more = match order.len() - shown.len() {
         0 => String::new(),
@@ -227,7 +266,7 @@ fn balance(r: &ContactReport) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::contact::{BodyBalance, InterfaceKind, LoadStep};
+    use super::super::contact::{InterfaceKind, LoadStep};
     use super::super::json::Spectrum;
     use super::*;
 
@@ -271,10 +310,11 @@ mod tests {
                 .map(|k| BodyBalance {
                     name: format!("b{k}"),
                     floating: k > 0,
-                    load: -1.0,
-                    contact: 1.0,
-                    reaction: (k == 0).then_some(123456.0),
+                    load: (-1.0).into(),
+                    contact: 1.0.into(),
+                    reaction: (k == 0).then(|| 123456.0.into()),
                     imbalance: 1e-12 * k as f64,
+                    moment_imbalance: None,
                 })
                 .collect(),
             load_steps: Vec::new(),

@@ -5,6 +5,7 @@
 
 use super::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
 use super::marks;
+use super::outline::Lines;
 use super::paint::{axes, colour_bar, colour_range, paint, View, BAR};
 use super::raster::Raster;
 use super::ticks::Scale;
@@ -86,6 +87,36 @@ pub fn write(mesh: &Mesh, fields: &[Field], title: &str, path: &Path) -> Result<
     draw(mesh, fields, &[], title).write_png(path)
 }
 
+/// As [`write()`] for bodies that have been displaced: `mesh` as it was, `shown` where its points are drawn; bodies are outlined each for
+/// itself, and thinly as they were. `contact` is marked where it is drawn.
+///
+/// # Errors
+/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
+pub fn write_displaced(
+    mesh: &Mesh,
+    shown: &[[f64; 2]],
+    fields: &[Field],
+    contact: &[ContactMark],
+    title: &str,
+    path: &Path,
+) -> Result<()> {
+    check(mesh, fields)?;
+    if shown.len() != mesh.points.len() {
+        return Err(Error::input(format!(
+            "the picture's mesh lists {} displaced points, expected {}",
+            shown.len(),
+            mesh.points.len()
+        )));
+    }
+    let moved = Mesh {
+        points: shown,
+        ..*mesh
+    };
+    let before = mesh.lines_at(mesh.points, true).bodies;
+    let lines = mesh.lines_at(shown, true);
+    draw_lines(&moved, fields, contact, title, &lines, &before).write_png(path)
+}
+
 fn check(mesh: &Mesh, fields: &[Field]) -> Result<()> {
     mesh.check()?;
     for field in fields {
@@ -109,9 +140,29 @@ const TITLE_TEXT: f64 = 15.0;
 const LEFT: f64 = 52.0;
 const BAR_GAP: f64 = 12.0;
 const LABELS: f64 = 74.0;
+/// Outlines of bodies before they moved.
+const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
 fn draw(mesh: &Mesh, fields: &[Field], contact: &[ContactMark], title: &str) -> Raster {
-    let (low, high) = mesh.bounds();
+    draw_lines(mesh, fields, contact, title, &mesh.lines(), &[])
+}
+
+/// Draws the fields with `lines` on them and `before`, the outlines of bodies before they moved, below.
+fn draw_lines(
+    mesh: &Mesh,
+    fields: &[Field],
+    contact: &[ContactMark],
+    title: &str,
+    lines: &Lines,
+    before: &[Vec<[f64; 2]>],
+) -> Raster {
+    let (mut low, mut high) = mesh.bounds();
+    for p in before.iter().flatten() {
+        for d in 0..2 {
+            low[d] = low[d].min(p[d]);
+            high[d] = high[d].max(p[d]);
+        }
+    }
     let size = [
         (high[0] - low[0]).max(1e-300),
         (high[1] - low[1]).max(1e-300),
@@ -146,7 +197,6 @@ fn draw(mesh: &Mesh, fields: &[Field], contact: &[ContactMark], title: &str) -> 
         };
         raster.text((0.5 * width, 1.25 * TITLE_TEXT), title, &style);
     }
-    let lines = mesh.lines();
     for (k, field) in fields.iter().enumerate() {
         let at = if wide {
             (0.0, top + k as f64 * cell.1)
@@ -169,6 +219,10 @@ fn draw(mesh: &Mesh, fields: &[Field], contact: &[ContactMark], title: &str) -> 
         );
 
         let range = colour_range(field);
+        for line in before {
+            let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
+            raster.line(&line, 0.7, BEFORE, &[]);
+        }
         paint(&mut raster, mesh, field, range, &view);
 
         // Where subdomains are only a few pixels wide their lines would hide the field.

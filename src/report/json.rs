@@ -45,6 +45,18 @@ pub(super) mod number {
 pub struct SolveReport {
     /// The scene's name or file.
     pub scene: String,
+    /// 2 or 3.
+    #[serde(default)]
+    pub dimension: usize,
+    /// `scalar` or `elasticity`.
+    #[serde(default)]
+    pub physics: String,
+    /// Components of the field.
+    #[serde(default)]
+    pub components: usize,
+    /// Equation and elements in words, such as `plane strain elasticity, Q1, no cure of locking`.
+    #[serde(default)]
+    pub form: String,
     /// MPI ranks.
     pub ranks: usize,
     /// Threads per rank.
@@ -392,6 +404,10 @@ mod tests {
     fn report() -> SolveReport {
         SolveReport {
             scene: "two bodies".into(),
+            dimension: 2,
+            physics: "scalar".into(),
+            components: 1,
+            form: "plane scalar, Q1".into(),
             ranks: 2,
             threads: 1,
             bodies: 2,
@@ -434,6 +450,9 @@ mod tests {
         let value: Value = serde_json::from_str(&to_string(&report()).unwrap()).unwrap();
         let promised = [
             "scene",
+            "dimension",
+            "physics",
+            "components",
             "ranks",
             "bodies",
             "floating_bodies",

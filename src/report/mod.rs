@@ -10,8 +10,9 @@
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
 //! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
+//! | [`solid`] | pictures of fields on the surface of solids, with the contact zone |
 //! | [`contact`], [`contact_summary`] | the record of a contact solve, and what the terminal shows of it |
-//! | [`profile`], [`load_steps`] | multiplier and gap along interfaces; energy and force over load steps; both as CSV, too |
+//! | [`profile`], [`contact_map`], [`load_steps`] | multiplier and gap along interfaces, pressure on faces of solids; energy and force over load steps; all as CSV, too |
 //! | [`progress`] | the line that tells how far a contact solve is |
 //! | [`vtu`], [`contact_fields`], [`pvd`] | ParaView files, contact as point data, time series |
 
@@ -21,6 +22,7 @@ pub mod colormap;
 pub mod compare;
 pub mod contact;
 pub mod contact_fields;
+pub mod contact_map;
 pub mod contact_summary;
 pub mod field;
 pub mod figure3;
@@ -38,7 +40,11 @@ pub mod progress;
 pub mod pvd;
 pub mod raster;
 mod series;
+pub mod solid;
+mod space;
+mod stage;
 pub mod summary;
+mod surface;
 pub mod svg;
 pub mod table;
 pub mod ticks;

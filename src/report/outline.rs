@@ -80,6 +80,12 @@ impl Mesh<'_> {
 
     /// The lines around bodies and between subdomains.
     pub(crate) fn lines(&self) -> Lines {
+        self.lines_at(self.points, false)
+    }
+
+    /// The lines where the points have moved to `shown`; with `apart` around every body for itself, because bodies that touched
+    /// need not do so any more.
+    pub(crate) fn lines_at(&self, shown: &[[f64; 2]], apart: bool) -> Lines {
         // Edges by point numbers: those that one subdomain has twice lie inside it and are most of all.
         let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.quads.len());
         for (cell, quad) in self.quads.iter().enumerate() {
@@ -95,10 +101,12 @@ impl Mesh<'_> {
         // The rest by position: copies of one edge meet again.
         let (low, high) = self.bounds();
         let grid = f64::from(1 << 20) / (high[0] - low[0]).max(high[1] - low[1]).max(1e-300);
-        let key = |p: u32| -> Key {
+        let key_in = |p: u32, body: u32| -> Key {
             let q = self.points[p as usize];
+            // Bodies that are kept apart have keys far from each other; inside one differences are as they were.
+            let far = if apart { i64::from(body) << 24 } else { 0 };
             (
-                ((q[0] - low[0]) * grid).round() as i64,
+                ((q[0] - low[0]) * grid).round() as i64 + far,
                 ((q[1] - low[1]) * grid).round() as i64,
             )
         };
@@ -110,9 +118,10 @@ impl Mesh<'_> {
                 continue;
             }
             let (a, b) = ((group[0].0 >> 32) as u32, group[0].0 as u32);
+            let key = |p: u32| key_in(p, self.body[group[0].1 as usize]);
             let ends = (key(a).min(key(b)), key(a).max(key(b)));
-            position.insert(key(a), self.points[a as usize]);
-            position.insert(key(b), self.points[b as usize]);
+            position.insert(key(a), shown[a as usize]);
+            position.insert(key(b), shown[b as usize]);
             for e in group {
                 let body = self.body[e.1 as usize];
                 let entry = at.entry(ends).or_insert((true, body, 0));

@@ -16,6 +16,8 @@ const SHOWN: usize = 12;
 const MARKED: usize = 40;
 /// A gap below this part of an interface's length is rounding.
 const CLOSED: f64 = 1e-11;
+/// The same for displacements in space: their scale is not that of the interface, and iterations end at a tolerance.
+const CLOSED_IN_SPACE: f64 = 1e-6;
 /// Ground of the contact zone.
 const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
 
@@ -36,6 +38,8 @@ pub struct Profile {
     pub multiplier: Vec<f64>,
     /// Whether the sides touch.
     pub active: Vec<bool>,
+    /// The area (in the plane a length) of the side that belongs to the node; empty: forces are not reported as pressures.
+    pub area: Vec<f64>,
 }
 
 impl Profile {
@@ -46,6 +50,14 @@ impl Profile {
             (self.gap.len(), "gaps"),
             (self.multiplier.len(), "multipliers"),
             (self.active.len(), "states"),
+            (
+                if self.has_pressure() {
+                    self.area.len()
+                } else {
+                    n
+                },
+                "areas",
+            ),
         ] {
             if found != n {
                 return Err(Error::input(format!(
@@ -55,6 +67,18 @@ impl Profile {
             }
         }
         Ok(())
+    }
+
+    /// Whether there are areas.
+    fn has_pressure(&self) -> bool {
+        !self.area.is_empty()
+    }
+
+    /// Force per area, node by node; NaN where a node has no area.
+    pub fn pressure(&self) -> Vec<f64> {
+        let each = self.multiplier.iter().zip(&self.area);
+        each.map(|(&force, &area)| if area > 0.0 { force / area } else { f64::NAN })
+            .collect()
     }
 
     /// Sum of the multipliers.
@@ -142,8 +166,12 @@ impl Profile {
         // Rounding is not blown up to the size of the panel, and zero is always shown: touching means zero.
         let (low, high) = extremes(&self.gap);
         let length = x.1 - x.0;
-        let y = if low > high || low.abs().max(high.abs()) <= CLOSED * length {
-            let top = if largest_gap > CLOSED * length {
+        let closed = match self.has_pressure() {
+            true => CLOSED_IN_SPACE * length,
+            false => CLOSED * length,
+        };
+        let y = if low > high || low.abs().max(high.abs()) <= closed {
+            let top = if largest_gap > closed {
                 largest_gap
             } else {
                 length
@@ -153,9 +181,14 @@ impl Profile {
             let (low, high) = ticks::range([0.0, low, high].into_iter(), Scale::Linear);
             (low.min(-0.05 * (high - low)), high)
         };
-        let (least, most) = extremes(&self.multiplier);
+        let (what, force) = if self.has_pressure() {
+            ("pressure", &self.pressure())
+        } else {
+            ("multiplier", &self.multiplier)
+        };
+        let (least, most) = extremes(force);
         let (least, most) = (least.min(0.0), most.max(0.0));
-        let force = if most > least {
+        let shown = if most > least {
             let air = 0.06 * (most - least);
             (least - air, most + air)
         } else {
@@ -166,13 +199,10 @@ impl Profile {
                 title: self.name.clone(),
                 x: axis(""),
                 y: Axis {
-                    range: Some(force),
-                    ..Axis::new("multiplier", Scale::Linear)
+                    range: Some(shown),
+                    ..Axis::new(what, Scale::Linear)
                 },
-                series: vec![
-                    zero(x),
-                    curve("multiplier", &self.multiplier, Colour::CYCLE[0]),
-                ],
+                series: vec![zero(x), curve(what, force, Colour::CYCLE[0])],
                 bands: self.zone(),
             },
             Panel {
@@ -241,7 +271,7 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
 }
 
 /// Writes `interfaces.png`, `interfaces.svg` and `interfaces.csv` into a directory; returns their paths. The CSV has all
-/// interfaces: name, t, x, y, gap, multiplier, active (0 or 1).
+/// interfaces: name, t, x, y, gap, multiplier, active (0 or 1), and with areas pressure and area.
 ///
 /// # Errors
 /// [`Error::Input`] when the arrays of an interface differ in length; [`Error::Environment`] with the path.
@@ -249,18 +279,22 @@ pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBu
     let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
     let csv = dir.join("interfaces.csv");
     output::write_file(&csv, |out| {
-        writeln!(out, "name,t,x,y,gap,multiplier,active")?;
+        let pressures = profiles.iter().any(Profile::has_pressure);
+        let more = if pressures { ",pressure,area" } else { "" };
+        writeln!(out, "name,t,x,y,gap,multiplier,active{more}")?;
         for p in profiles {
+            let pressure = p.pressure();
             let name = quoted(&p.name);
             for k in 0..p.t.len() {
                 let [x, y] = p.points[k];
                 let numbers = [p.t[k], x, y, p.gap[k], p.multiplier[k]].map(|v| exactly(Some(v)));
-                writeln!(
-                    out,
-                    "{name},{},{}",
-                    numbers.join(","),
-                    u8::from(p.active[k])
-                )?;
+                let active = u8::from(p.active[k]);
+                write!(out, "{name},{},{active}", numbers.join(","))?;
+                if pressures {
+                    let number = |list: &[f64]| exactly(list.get(k).copied());
+                    write!(out, ",{},{}", number(&pressure), number(&p.area))?;
+                }
+                writeln!(out)?;
             }
         }
         Ok(())
@@ -286,6 +320,7 @@ mod tests {
             gap: t.iter().map(|&t| gap(t)).collect(),
             multiplier: t.iter().map(|&t| pressure(t)).collect(),
             active: t.iter().map(|&t| pressure(t) > 0.0).collect(),
+            area: Vec::new(),
             t,
         }
     }

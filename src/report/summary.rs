@@ -48,6 +48,10 @@ pub fn solve(r: &SolveReport) -> String {
             ),
         ),
     ];
+    // A plane scalar problem is what the program began with: it goes without saying.
+    if r.dimension == 3 || r.components > 1 {
+        lines.insert(1, ("physics", r.form.clone()));
+    }
     let inner = if r.outer_iterations > 1 {
         let each: Vec<String> = r.iterations.inner.iter().map(usize::to_string).collect();
         // The table of outer steps has them where there are many.

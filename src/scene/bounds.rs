@@ -204,8 +204,13 @@ impl<'a> Checks<'a> {
                 } else {
                     ("≥", 0.0 - bound)
                 };
+                let what = if obstacle.rigid.is_some() {
+                    "n·u"
+                } else {
+                    "u"
+                };
                 return Err(Error::Input(format!(
-                    "{}body `{}` has the given value {value} at {at}{}, beyond its obstacle (u {relation} {bound} was \
+                    "{}body `{}` has the given value {value} at {at}{}, beyond its obstacle ({what} {relation} {bound} was \
                      expected)",
                     self.place(entry, member),
                     self.bodies[member.body].spec.name,

@@ -90,7 +90,7 @@ impl Scene {
             dofs,
             rho,
             primal,
-near_kernel: Some(near_kernel),
+            near_kernel: Some(near_kernel),
             coordinates: Some(coordinates),
         })
     }
@@ -122,6 +122,38 @@ near_kernel: Some(near_kernel),
             sum.iter_mut().zip(node).for_each(|(s, f)| *s += f);
         }
         Ok(sum)
+    }
+
+    /// As [`Scene::resultant`], with the moment of the loads about `centre`.
+    ///
+    /// # Errors
+    /// As [`Scene::loads`].
+    pub fn wrench(
+        &self,
+        index: usize,
+        step: usize,
+        centre: [f64; 3],
+    ) -> Result<([f64; 3], [f64; 3])> {
+        let factors = Factors::of(&self.steps, step)?;
+        let mesh = self.mesh_with(index, factors)?;
+        let (body, block) = self.place(index);
+        let load = self.nodal_load(body, &block, &mesh, factors)?;
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        for (node, at) in load.chunks_exact(body.components).zip(&mesh.points) {
+            let mut f = [0.0; 3];
+            f[..node.len()].copy_from_slice(node);
+            let [x, y, z] = [0, 1, 2].map(|d| at[d] - centre[d]);
+            let turn = [
+                y * f[2] - z * f[1],
+                z * f[0] - x * f[2],
+                x * f[1] - y * f[0],
+            ];
+            for d in 0..3 {
+                force[d] += f[d];
+                moment[d] += turn[d];
+            }
+        }
+        Ok((force, moment))
     }
 
     /// The factor of given values at load step `step` ([`SubdomainMesh::prescribed`] has that of the last step).

@@ -40,6 +40,9 @@ pub enum Held {
     Rolling,
 }
 
+/// Stiffness by place of the body and of the subdomain in it.
+pub type Stiffness = fn([usize; 3], [usize; 3]) -> f64;
+
 /// N_b bodies of N_s subdomains of N_e elements in every direction on the unit square or cube.
 #[derive(Clone, Copy)]
 pub struct Solid {
@@ -51,7 +54,9 @@ pub struct Solid {
     pub rows: Rows,
     pub held: Held,
     /// Stiffness of a body and of a subdomain in it, by place; 1 if `None`.
-    pub stiffness: Option<fn([usize; 3], [usize; 3]) -> f64>,
+    pub stiffness: Option<Stiffness>,
+    /// Whether the edges of squares in 2D are entities; those of cubes always are.
+    pub plane_edges: bool,
 }
 
 impl Solid {
@@ -66,6 +71,7 @@ impl Solid {
             rows,
             held: Held::AllRound,
             stiffness: None,
+            plane_edges: false,
         }
     }
 
@@ -193,6 +199,7 @@ impl Solid {
                     continue;
                 }
                 (3, 2) => EntityKind::Edge,
+                (2, 1) if self.plane_edges => EntityKind::Edge,
                 (3, 1) => EntityKind::Face,
                 _ => continue,
             };
@@ -208,10 +215,7 @@ impl Solid {
             index,
             body,
             k: Csr::from_triplets(n, &triplets),
-            f: nodes
-                .iter()
-                .map(|&(x, c)| self.load(body, x, c))
-                .collect(),
+            f: nodes.iter().map(|&(x, c)| self.load(body, x, c)).collect(),
             dofs: nodes.iter().map(|&(x, c)| self.dof(body, x, c)).collect(),
             rho: vec![stiffness; n],
             primal,

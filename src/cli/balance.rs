@@ -1,0 +1,163 @@
+//! Equilibrium of every body: loads, forces on interfaces and obstacles, reactions; in elasticity by components and with moments.
+
+use super::contact::ContactRow;
+use crate::feti::exchange::sum_all;
+use crate::feti::FetiFeti;
+use crate::petsc::Session;
+use crate::report::contact::{Amount, BodyBalance};
+use crate::scene::{Body, Scene};
+use crate::Result;
+
+/// What acts on a body. Moments are about its centre.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    load: [f64; 3],
+    contact: [f64; 3],
+    /// Σ |multiplier|.
+    size: f64,
+    moment: [f64; 3],
+    /// Sizes of the moments that the forces on rows and the load make.
+    moment_size: [f64; 2],
+}
+
+const WORDS: usize = 12;
+
+impl Sums {
+    fn words(&self) -> [f64; WORDS] {
+        let ([a, b, c], [d, e, f], [g, h, i]) = (self.load, self.contact, self.moment);
+        let [j, k] = self.moment_size;
+        [a, b, c, d, e, f, self.size, g, h, i, j, k]
+    }
+
+    fn from_words(w: &[f64]) -> Sums {
+        let three = |k: usize| [w[k], w[k + 1], w[k + 2]];
+        Sums {
+            load: three(0),
+            contact: three(3),
+            size: w[6],
+            moment: three(7),
+            moment_size: [w[10], w[11]],
+        }
+    }
+}
+
+/// Loads, forces of contact and reactions of every body; `rows` are all rows on rank 0. Collective.
+pub(super) fn bodies(
+    session: &Session,
+    scene: &Scene,
+    solver: &FetiFeti,
+    rows: &[ContactRow],
+    step: usize,
+) -> Result<Vec<BodyBalance>> {
+    let mut sums = vec![Sums::default(); scene.n_bodies()];
+    for sub in &solver.problem().local {
+        let body = &scene.bodies[sub.body];
+        let (force, moment) = scene.wrench(sub.index, step, centre(body))?;
+        let to = &mut sums[sub.body];
+        for d in 0..3 {
+            to.load[d] += force[d];
+            to.moment[d] += moment[d];
+        }
+        to.moment_size[1] += norm(moment);
+    }
+    // Rank 0 has all rows, those of the others are empty.
+    for row in rows {
+        for (sign, &(b, node)) in [-1.0, 1.0].into_iter().zip(row.members.iter().flatten()) {
+            let body = &scene.bodies[b];
+            let n = match body.components {
+                1 => [row.direction.iter().sum(), 0.0, 0.0],
+                _ => row.direction,
+            };
+            let force = n.map(|n| sign * row.multiplier * n);
+            let to = &mut sums[b];
+            (0..3).for_each(|d| to.contact[d] += force[d]);
+            to.size += norm(force);
+            let centre = centre(body);
+            let at = body.spec.position(body.mesh().place(node));
+            let moment = cross([0, 1, 2].map(|d| at[d] - centre[d]), force);
+            (0..3).for_each(|d| to.moment[d] += moment[d]);
+            to.moment_size[0] += norm(moment);
+        }
+    }
+    let mut words: Vec<f64> = sums.iter().flat_map(Sums::words).collect();
+    sum_all(session.comm(), &mut words);
+    let floating = &solver.dual().stiffness.space.defect;
+    let each = scene.bodies.iter().zip(words.chunks_exact(WORDS));
+    let out = each.enumerate().map(|(b, (body, words))| {
+        let sums = Sums::from_words(words);
+        if scene.form.is_elastic() {
+            elastic(body, &sums, floating[b] > 0)
+        } else {
+            scalar(body, &sums, floating[b] > 0)
+        }
+    });
+    Ok(out.collect())
+}
+
+fn scalar(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
+    let (load, contact) = (sums.load[0], sums.contact[0]);
+    let rest = load + contact;
+    let scale = load.abs().max(sums.size);
+    BodyBalance {
+        name: body.spec.name.clone(),
+        floating: floats,
+        load: load.into(),
+        contact: contact.into(),
+        reaction: (!floats).then_some((-rest).into()),
+        imbalance: if floats && scale > 0.0 {
+            rest.abs() / scale
+        } else {
+            0.0
+        },
+        moment_imbalance: None,
+    }
+}
+
+/// Reactions are what is missing in the components that are given somewhere; in the others forces must balance, and moments
+/// where nothing is given at all.
+fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
+    let c = body.components;
+    let mut held = [false; 3];
+    for &(dof, _) in &body.prescribed {
+        held[dof % c] = true;
+    }
+    let rest = [0, 1, 2].map(|d| sums.load[d] + sums.contact[d]);
+    let free = |d: usize| if held[d] { 0.0 } else { rest[d] };
+    let relative = |rest: f64, scale: f64| if scale > 0.0 { rest / scale } else { 0.0 };
+    let loose = body.prescribed.is_empty();
+    let vector = |f: &dyn Fn(usize) -> f64| Amount((0..c).map(f).collect());
+    let lever = sums.moment_size[0].max(sums.moment_size[1]);
+    // Forces through the centre have no lever; their rounding is no moment.
+    let lever = lever.max(sums.size * radius(body) * 1e-3);
+    BodyBalance {
+        name: body.spec.name.clone(),
+        floating: floats,
+        load: vector(&|d| sums.load[d]),
+        contact: vector(&|d| sums.contact[d]),
+        reaction: (!loose).then(|| vector(&|d| if held[d] { -rest[d] } else { 0.0 })),
+        imbalance: relative(norm([0, 1, 2].map(free)), norm(sums.load).max(sums.size)),
+        moment_imbalance: loose.then(|| relative(norm(sums.moment), lever)),
+    }
+}
+
+fn centre(body: &Body) -> [f64; 3] {
+    let [low, high] = body.bounds;
+    [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]))
+}
+
+fn radius(body: &Body) -> f64 {
+    let [low, high] = body.bounds;
+    0.5 * norm([0, 1, 2].map(|d| high[d] - low[d]))
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn norm(v: [f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

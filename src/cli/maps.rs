@@ -1,0 +1,70 @@
+//! Contact on the faces of solids, for [`crate::report::contact_map`].
+
+use std::collections::HashMap;
+
+use super::areas::{side, side_cells};
+use super::contact::{by_source, name, ContactRow};
+use crate::report::contact_map::ContactMap;
+use crate::scene::Scene;
+
+/// A side is drawn in two of its coordinates where no normal is further from the third than the angle of this cosine, else in its
+/// parameters.
+const STEEP: f64 = 0.4;
+
+/// Every interface and obstacle that has inequalities.
+pub(super) fn of(scene: &Scene, rows: &[ContactRow]) -> Vec<ContactMap> {
+    by_source(rows)
+        .filter(|rows| rows.iter().any(|r| r.inequality))
+        .map(|rows| map(scene, rows))
+        .collect()
+}
+
+fn map(scene: &Scene, rows: &[ContactRow]) -> ContactMap {
+    let along = |d: usize| {
+        let least = |a: f64, r: &ContactRow| a.min(r.direction[d].abs());
+        rows.iter().filter(|r| r.inequality).fold(1.0_f64, least)
+    };
+    let across = (0..3)
+        .max_by(|&a, &b| along(a).total_cmp(&along(b)))
+        .unwrap_or(2);
+    let flat = along(across) > STEEP;
+    let shown: Vec<usize> = (0..3).filter(|&d| d != across).collect();
+    let (labels, at): (_, Vec<[f64; 2]>) = if flat {
+        let labels = [shown[0], shown[1]].map(|d| ["x", "y", "z"][d].to_string());
+        let at = |r: &ContactRow| [r.point[shown[0]], r.point[shown[1]]];
+        (labels, rows.iter().map(at).collect())
+    } else {
+        (
+            ["s", "t"].map(String::from),
+            rows.iter().map(|r| r.t).collect(),
+        )
+    };
+    let mut cells = Vec::new();
+    if let Some((body, side)) = side(scene, rows) {
+        let spec = &scene.bodies[body].spec;
+        let numbered = rows.iter().enumerate();
+        let of: HashMap<usize, u32> = numbered
+            .filter_map(|(k, r)| Some((r.members[0]?.1, k as u32)))
+            .collect();
+        for cell in side_cells(spec, side) {
+            let corner = |a: usize| of.get(&spec.mesh.node(cell[a])).copied();
+            // Around the face, not line by line.
+            if let [Some(a), Some(b), Some(c), Some(d)] = [0, 1, 3, 2].map(corner) {
+                cells.push([a, b, c, d]);
+            }
+        }
+    }
+    let column = |f: fn(&ContactRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    ContactMap {
+        name: name(scene, rows[0].source),
+        labels,
+        at,
+        cells,
+        t: rows.iter().map(|r| r.t).collect(),
+        points: rows.iter().map(|r| r.point).collect(),
+        gap: column(|r| r.distance),
+        multiplier: column(|r| r.multiplier),
+        area: column(|r| r.area),
+        active: rows.iter().map(|r| r.active).collect(),
+    }
+}

@@ -1,0 +1,63 @@
+//! What is solved, in words.
+
+use crate::fem::cell::{Cure, Element, Plane};
+use crate::fem::Physics;
+use crate::scene::Scene;
+
+/// Equation and elements, such as "plane strain elasticity, Q1, no cure of locking". Units are those of the scene.
+pub fn form(scene: &Scene) -> String {
+    let element = match scene.form.element {
+        Element::Q1 => "Q1",
+        Element::P1 => "P1",
+    };
+    let solid = scene.dim() == 3;
+    let (equation, cure) = match scene.form.physics {
+        Physics::Scalar if solid => ("three-dimensional scalar", None),
+        Physics::Scalar => ("plane scalar", None),
+        Physics::Elasticity { plane, cure } => (
+            match plane {
+                _ if solid => "three-dimensional elasticity",
+                Plane::Strain => "plane strain elasticity",
+                Plane::Stress => "plane stress elasticity",
+            },
+            Some(match cure {
+                Cure::None => "no cure of locking",
+                Cure::Selective => "selective reduced integration",
+                Cure::BBar => "B-bar",
+            }),
+        ),
+    };
+    let parts = [Some(equation), Some(element), cure];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(head: &str, dim: usize) -> String {
+        let size = ["1, 1", "1, 1, 1"][dim - 2];
+        let text = format!(
+            "dimension = {dim}\n{head}\n[[body]]\nsize = [{size}]\nelements = 1\ndirichlet = [\"left\"]\n"
+        );
+        form(&Scene::parse("form.toml", &text).unwrap())
+    }
+
+    #[test]
+    fn forms_are_named() {
+        assert_eq!(of("", 2), "plane scalar, Q1");
+        assert_eq!(of("element = \"p1\"", 3), "three-dimensional scalar, P1");
+        let elastic = "physics = \"elasticity\"";
+        assert_eq!(
+            of(elastic, 2),
+            "plane strain elasticity, Q1, no cure of locking"
+        );
+        let stress = format!("{elastic}\nplane = \"stress\"");
+        assert_eq!(
+            of(&stress, 2),
+            "plane stress elasticity, Q1, no cure of locking"
+        );
+        let cured = format!("{elastic}\nlocking = \"bbar\"");
+        assert_eq!(of(&cured, 3), "three-dimensional elasticity, Q1, B-bar");
+    }
+}

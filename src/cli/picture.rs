@@ -1,0 +1,233 @@
+//! `solution.png`: u and ρ of a plane scalar problem, the deformed bodies of an elastic one, the surface of solids.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::areas::{side, side_cells};
+use super::contact::{by_source, ContactRow};
+use super::fields::Gathered;
+use crate::fem::cell::CellStress;
+use crate::report::field::{self, ContactMark, Field, Mesh, Values};
+use crate::report::solid::{self, FaceMark, Solid};
+use crate::report::ticks::{number, Scale};
+use crate::scene::Scene;
+use crate::Result;
+
+/// Displacements are magnified so that the largest is at most this part of the scene's size.
+const LARGEST: f64 = 0.1;
+/// They are shown as they are between these parts of it.
+const VISIBLE: [f64; 2] = [0.03, 0.3];
+/// … and beside contact already from this part on: magnified, bodies that touch overlap.
+const VISIBLE_CONTACT: f64 = 0.01;
+
+/// Writes `solution.png` into `dir`.
+pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[ContactRow], dir: &Path) -> Result<()> {
+    let path = dir.join("solution.png");
+    let elastic = scene.form.is_elastic();
+    let moved = Moved::new(scene, all, rows.iter().any(|r| r.inequality));
+    let size = all.u.chunks_exact(scene.components());
+    let u: Vec<f64> = size
+        .map(|u| match u {
+            [u] => *u,
+            u => u.iter().map(|v| v * v).sum::<f64>().sqrt(),
+        })
+        .collect();
+    let von_mises: Vec<f64> = all.stress.iter().map(CellStress::von_mises).collect();
+    let field = |title, values| Field {
+        title,
+        values,
+        scale: Scale::Linear,
+    };
+    let first = match elastic {
+        true => field("displacement |u|", Values::Nodal(&u)),
+        false => field("solution u", Values::Nodal(&u)),
+    };
+    let second = match elastic {
+        true => field("von Mises stress", Values::Cell(&von_mises)),
+        false => first,
+    };
+    let title = match elastic {
+        true => format!("{} (displacements {} ×)", scene.title, number(moved.factor)),
+        false => scene.title.clone(),
+    };
+    if scene.dim() == 3 {
+        let hexahedra: Vec<[u32; 8]> = all
+            .cells
+            .chunks_exact(8)
+            .map(|c| std::array::from_fn(|k| c[k]))
+            .collect();
+        let solid = Solid {
+            points: &all.points,
+            shown: &moved.points,
+            hexahedra: &hexahedra,
+            body: &all.body,
+            subdomain: &all.subdomain,
+        };
+        let marks = face_marks(scene, rows);
+        return solid::write_solution(&solid, &[first, second], &marks, &title, &path);
+    }
+    let flat =
+        |points: &[[f64; 3]]| -> Vec<[f64; 2]> { points.iter().map(|p| [p[0], p[1]]).collect() };
+    let points = flat(&all.points);
+    let quads: Vec<[u32; 4]> = all
+        .cells
+        .chunks_exact(4)
+        .map(|q| [q[0], q[1], q[2], q[3]])
+        .collect();
+    let mesh = Mesh {
+        points: &points,
+        quads: &quads,
+        body: &all.body,
+        subdomain: &all.subdomain,
+    };
+    if !elastic {
+        let marks = line_marks(rows, &|r| [r.point[0], r.point[1]]);
+        return field::write_solution(&mesh, &all.u, &all.rho, &marks, &title, &path);
+    }
+    let copies = all.copies(scene, rows);
+    let at = |row: &ContactRow| {
+        let copy = row.members[0].and_then(|m| copies.get(&m));
+        let point = copy.map_or(row.point, |c| moved.points[c[0]]);
+        [point[0], point[1]]
+    };
+    let marks = line_marks(rows, &at);
+    let shown = flat(&moved.points);
+    field::write_displaced(&mesh, &shown, &[first, second], &marks, &title, &path)
+}
+
+/// The points where they have moved to.
+struct Moved {
+    points: Vec<[f64; 3]>,
+    /// Displacements are magnified by it.
+    factor: f64,
+}
+
+impl Moved {
+    fn new(scene: &Scene, all: &Gathered, contact: bool) -> Moved {
+        if !scene.form.is_elastic() {
+            return Moved {
+                points: all.points.clone(),
+                factor: 1.0,
+            };
+        }
+        let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let each = || (0..all.points.len()).map(|p| all.displacement(scene, p));
+        let largest = each()
+            .map(norm)
+            .filter(|x| x.is_finite())
+            .fold(0.0, f64::max);
+        let [low, high] = bounds(&all.points);
+        let size = norm([0, 1, 2].map(|d| high[d] - low[d]));
+        let from = if contact { VISIBLE_CONTACT } else { VISIBLE[0] };
+        let factor = factor(largest, size, from);
+        let moved = |(p, u): (&[f64; 3], [f64; 3])| [0, 1, 2].map(|d| p[d] + factor * u[d]);
+        Moved {
+            points: all.points.iter().zip(each()).map(moved).collect(),
+            factor,
+        }
+    }
+}
+
+/// 1 where the largest displacement is visible beside the scene's size, from the part `from` of it on, else 1, 2 or 5 times a power of ten.
+fn factor(largest: f64, size: f64, from: f64) -> f64 {
+    if largest == 0.0 || (from..=VISIBLE[1]).contains(&(largest / size)) {
+        return 1.0;
+    }
+    let wanted = LARGEST * size / largest;
+    let power = 10_f64.powi(wanted.log10().floor() as i32);
+    let fits = [5.0, 2.0, 1.0].map(|m| m * power);
+    let fits = fits.into_iter().find(|f| *f <= wanted).unwrap_or(power);
+    // Neither an overflow nor nothing, whatever the displacements.
+    if fits.is_normal() {
+        fits
+    } else {
+        1.0
+    }
+}
+
+fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for p in points {
+        for d in 0..3 {
+            out[0][d] = out[0][d].min(p[d]);
+            out[1][d] = out[1][d].max(p[d]);
+        }
+    }
+    out
+}
+
+/// Where bodies may touch and do, from node to node.
+fn line_marks(rows: &[ContactRow], at: &dyn Fn(&ContactRow) -> [f64; 2]) -> Vec<ContactMark> {
+    let mut out = Vec::new();
+    for rows in by_source(rows) {
+        let rows: Vec<&ContactRow> = rows.iter().filter(|r| r.inequality).collect();
+        if let [only] = rows[..] {
+            out.push(ContactMark {
+                from: at(only),
+                to: at(only),
+                closed: only.active,
+            });
+        }
+        out.extend(rows.windows(2).map(|pair| ContactMark {
+            from: at(pair[0]),
+            to: at(pair[1]),
+            closed: pair[0].active && pair[1].active,
+        }));
+    }
+    out
+}
+
+/// The faces of elements whose nodes all may touch, on both bodies of an interface.
+fn face_marks(scene: &Scene, rows: &[ContactRow]) -> Vec<FaceMark> {
+    let mut out = Vec::new();
+    for rows in by_source(rows) {
+        let Some((first, one)) = side(scene, rows) else {
+            continue;
+        };
+        let (kind, k) = rows[0].source;
+        let mut sides = vec![(0, first, one)];
+        if let (0, Some((second, _))) = (kind, rows[0].members[1]) {
+            let interface = &scene.interfaces[k];
+            let which = usize::from(interface.bodies[0] != second);
+            sides.push((1, second, interface.sides[which]));
+        }
+        for (member, body, side) in sides {
+            let contact = rows.iter().filter(|r| r.inequality);
+            let active: HashMap<usize, bool> = contact
+                .filter_map(|r| Some((r.members[member]?.1, r.active)))
+                .collect();
+            let spec = &scene.bodies[body].spec;
+            for cell in side_cells(spec, side) {
+                let state = |p: &[usize; 3]| active.get(&spec.mesh.node(*p));
+                if cell.iter().all(|p| state(p).is_some()) {
+                    out.push(FaceMark {
+                        body: body as u32,
+                        corners: std::array::from_fn(|a| spec.position(cell[a])),
+                        closed: cell.iter().all(|p| state(p) == Some(&true)),
+                    });
+                }
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn displacements_become_visible_and_stay_inside() {
+        let factor = |largest, size| super::factor(largest, size, super::VISIBLE[0]);
+        assert_eq!(factor(0.0, 1.0), 1.0);
+        assert_eq!(factor(0.05, 1.0), 1.0);
+        assert_eq!(factor(1e-3, 1.0), 100.0);
+        assert_eq!(factor(3e-3, 1.0), 20.0);
+        assert_eq!(factor(4.0, 1.0), 0.02);
+        for k in 1..400 {
+            let largest = 0.9_f64.powi(k) * 0.3;
+            let part = largest * factor(largest, 2.0) / 2.0;
+            assert!((0.03..0.3).contains(&part), "{largest} {part}");
+        }
+        assert!(factor(1e-320, 1.0).is_finite());
+        assert_eq!(super::factor(0.02, 1.0, super::VISIBLE_CONTACT), 1.0);
+    }
+}
