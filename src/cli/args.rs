@@ -19,9 +19,10 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
   fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
-  fetifeti study hertz|hard-cases [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
+  fetifeti study hertz|hard-cases|speed-error [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
       hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
-      hard for the method against direct solutions, exit code 1 where an answer is wrong;
+      hard for the method against direct solutions, exit code 1 where an answer is wrong; speed-error: error
+      against seconds, ours and the baselines of compare, over meshes and tolerances;
       --quick: coarser meshes, smaller cases, a few seconds
   mpirun -n N fetifeti solve SCENE ...
       the same answer on N ranks
@@ -110,17 +111,24 @@ pub enum StudyName {
     Hertz,
     /// Problems that are hard for the method, against direct solutions.
     HardCases,
+    /// Error against seconds, ours and every baseline.
+    SpeedError,
 }
 
 impl StudyName {
     /// All of them.
-    pub const ALL: [StudyName; 2] = [StudyName::Hertz, StudyName::HardCases];
+    pub const ALL: [StudyName; 3] = [
+        StudyName::Hertz,
+        StudyName::HardCases,
+        StudyName::SpeedError,
+    ];
 
     /// As it is written.
     pub fn name(self) -> &'static str {
         match self {
             StudyName::Hertz => "hertz",
             StudyName::HardCases => "hard-cases",
+            StudyName::SpeedError => "speed-error",
         }
     }
 }

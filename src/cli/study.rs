@@ -6,7 +6,7 @@ use super::args::{Study, StudyName};
 use super::solve::prepare;
 use crate::petsc::Session;
 use crate::report::{json, output};
-use crate::study::{hard_cases, hertz};
+use crate::study::{hard_cases, hertz, speed_error};
 use crate::{Error, Result};
 
 /// Runs a study and writes what was asked for.
@@ -15,6 +15,7 @@ pub fn run(session: &Session, args: &Study) -> Result<()> {
     match args.name {
         StudyName::Hertz => run_hertz(session, args),
         StudyName::HardCases => run_hard_cases(session, args),
+        StudyName::SpeedError => run_speed_error(session, args),
     }
 }
 
@@ -62,6 +63,24 @@ fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
         "hard-cases: wrong answers were called solutions: {}",
         wrong.join(", ")
     )))
+}
+
+fn run_speed_error(session: &Session, args: &Study) -> Result<()> {
+    let report = speed_error::run(session, args.quick, &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        speed_error::table(&report).write_csv(&dir.join("speed-error.csv"))?;
+        let mut files = vec!["speed-error.csv".to_string()];
+        for case in &report.cases {
+            let stem = format!("speed-error_{}", case.case);
+            speed_error::figure(case).save(&dir.join(&stem))?;
+            files.extend(["png", "svg"].map(|end| format!("{stem}.{end}")));
+        }
+        Ok(files)
+    };
+    finish(session, args, &report, &speed_error::text(&report), write)
 }
 
 /// Prints and writes on rank 0; `write` puts tables and pictures into the directory and says which. Collective.

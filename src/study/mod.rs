@@ -7,6 +7,7 @@ mod direct;
 pub mod hard_cases;
 pub mod hertz;
 mod solved;
+pub mod speed_error;
 
 /// a · b.
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
