@@ -99,6 +99,7 @@ pub mod petsc;
 pub mod report;
 pub mod scene;
 pub mod sparse;
+pub mod study;
 pub mod substructures;
 
 pub use error::{Error, Result};

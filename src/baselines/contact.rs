@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
+use super::layout::Layout;
 use super::job::{memory, timed, ContactOutcome, Job, Outcome};
 use super::linear::{kappa, solver};
+use super::near::NearKernel;
 use super::outer::{self, Tolerances};
 use super::reduced::Reduced;
 use super::rows::Rows;
@@ -12,7 +14,7 @@ use super::system::System;
 use super::table::Baseline;
 use super::unknowns::Unknowns;
 use crate::petsc::Session;
-use crate::scene::{Numbering, Scene};
+use crate::scene::Scene;
 use crate::Result;
 
 /// Solves a scene with inequalities.
@@ -27,10 +29,12 @@ pub fn baseline(
     file: &Path,
 ) -> Result<Outcome> {
     let ((rows, reduced), assemble) = timed(session, || {
-        let numbering = Numbering::new(scene);
-        let rows = Rows::new(scene, &numbering);
-        let system = System::new(session, scene, &Unknowns::all(&numbering), row.format)?;
-        let reduced = Reduced::new(session, system, &rows)?;
+        let layout = Layout::new(scene);
+        let rows = Rows::new(scene, &layout);
+        let unknowns = Unknowns::all(&layout);
+        let system = System::new(session, scene, &unknowns, row.format)?;
+        let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
+        let reduced = Reduced::new(session, system, &rows, kernel)?;
         Ok((rows, reduced))
     })?;
     let (ksp, krylov) = solver(session, row, &reduced.a)?;

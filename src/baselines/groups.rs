@@ -199,7 +199,6 @@ mod tests {
             plus,
             minus,
             gap,
-            joins: [0; 2],
         };
         Rows {
             unknowns: (0..n as u64).collect(),

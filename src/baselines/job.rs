@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::attempt::Attempt;
 use super::judge::judge;
-use super::table::{Baseline, Format};
+use super::table::{Baseline, Case, Format};
 use super::{contact, linear, ours};
 use crate::cli::problem;
 use crate::feti::exchange::{max_all, sum_all};
@@ -155,7 +155,11 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         } => {
             let row = Baseline::named(name)
                 .ok_or_else(|| Error::input(format!("there is no baseline \"{name}\"")))?;
-            row.set_options(session, job.rtol, [scene.has_contact(), *rescue])?;
+            let case = Case {
+                rescue: *rescue,
+                ..Case::of(&scene)
+            };
+            row.set_options(session, job.rtol, case)?;
             match row.format {
                 Format::Assembled if scene.has_contact() => {
                     contact::baseline(session, &scene, &job, row, solution)?

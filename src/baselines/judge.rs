@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::groups::{multipliers, Groups};
+use super::layout::Layout;
+use super::near::{Near, NearKernel};
 use super::outer::{self, Found, Tolerances};
 use super::reduced::Reduced;
 use super::rows::Rows;
@@ -12,7 +14,7 @@ use super::system::System;
 use super::table::Format;
 use super::unknowns::{Trace, Unknowns};
 use crate::petsc::{Comm, Ksp, Session, Vec as PetscVec};
-use crate::scene::{Numbering, Scene};
+use crate::scene::Scene;
 use crate::Result;
 
 /// Residual that a direct solution of a contact problem must have; refined, it has what rounding leaves.
@@ -64,13 +66,15 @@ pub fn judge(
     scene: &Scene,
     solutions: &[(PathBuf, Vec<usize>)],
 ) -> Result<Verdict> {
-    let numbering = Numbering::new(scene);
-    let unknowns = Unknowns::all(&numbering);
+    let layout = Layout::new(scene);
+    let unknowns = Unknowns::all(&layout);
     let new_system = || System::new(session, scene, &unknowns, Format::Assembled);
     let system = new_system()?;
-    let mut rows = Rows::new(scene, &numbering);
+    let mut rows = Rows::new(scene, &layout);
     let reference = if scene.has_contact() {
-        let reduced = Reduced::new(session, new_system()?, &rows)?;
+        let again = new_system()?;
+        let kernel = NearKernel::new(scene, &unknowns, &again.b, Near::None)?;
+        let reduced = Reduced::new(session, again, &rows, kernel)?;
         let ksp = direct(session)?;
         ksp.set_operators(&reduced.a, &reduced.a)?;
         let tolerances = Tolerances {

@@ -5,13 +5,15 @@ use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
 use super::groups::Groups;
+use super::near::NearKernel;
+use super::layout::Layout;
 use super::job::{memory, timed, ContactOutcome, Job, Outcome};
 use super::rows::Rows;
 use super::system::System;
-use super::table::Baseline;
+use super::table::{Baseline, Format};
 use super::unknowns::Unknowns;
-use crate::petsc::{Comm, Ksp, Mat, Session};
-use crate::scene::{Numbering, Scene};
+use crate::petsc::{Comm, Is, Ksp, Mat, Session};
+use crate::scene::Scene;
 use crate::Result;
 
 /// The solver of a row with its operator and options, and the solver that iterates: KSPFETIDP hands over to one inside.
@@ -31,6 +33,25 @@ pub fn solver(session: &Session, row: &Baseline, a: &Mat) -> Result<(Ksp, Ksp)> 
     ksp.set_compute_singular_values(true)?;
     krylov.set_compute_singular_values(true)?;
     Ok((ksp, krylov))
+}
+
+/// Tells PCBDDC, alone or inside KSPFETIDP, which component each local unknown is of.
+fn fields(session: &Session, scene: &Scene, ksp: &Ksp, of: &[usize]) -> Result<()> {
+    if scene.components() == 1 {
+        return Ok(());
+    }
+    let bddc = match ksp.type_name()?.as_str() {
+        "fetidp" => ksp.fetidp_inner_bddc()?,
+        _ => ksp.pc()?,
+    };
+    let list = |c: usize| -> Vec<i32> {
+        let of = of.iter().enumerate();
+        of.filter(|(_, f)| **f == c).map(|(i, _)| i as i32).collect()
+    };
+    let sets: Result<Vec<Is>> = (0..scene.components())
+        .map(|c| Is::general(session, Comm::Own, &list(c)))
+        .collect();
+    bddc.bddc_set_fields_local(&sets?)
 }
 
 /// κ by the last run of CG; `None` for other methods.
@@ -58,20 +79,27 @@ pub fn baseline(
     active: &[usize],
     file: &Path,
 ) -> Result<Outcome> {
-    let numbering = Numbering::new(scene);
-    let unknowns = if scene.has_contact() {
-        let rows = Rows::new(scene, &numbering);
-        let mut on = rows.set(active);
-        let in_order: Vec<usize> = (0..rows.len()).collect();
-        let groups = Groups::new(&rows, &mut on, &in_order);
-        Unknowns::merged(&numbering, &rows, &groups)
-    } else {
-        Unknowns::all(&numbering)
+    let layout = Layout::new(scene);
+    let unknowns = match row.format {
+        Format::Assembled => Unknowns::all(&layout),
+        Format::Unassembled if scene.has_contact() => {
+            let rows = Rows::new(scene, &layout);
+            let mut on = rows.set(active);
+            let in_order: Vec<usize> = (0..rows.len()).collect();
+            let groups = Groups::new(&rows, &mut on, &in_order);
+            Unknowns::merged(&layout, &rows, &groups)
+        }
+        Format::Unassembled => Unknowns::dense(&layout),
     };
     let (system, assemble) = timed(session, || {
         System::new(session, scene, &unknowns, row.format)
     })?;
+    let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
+    kernel.attach(&system.a)?;
     let (ksp, krylov) = solver(session, row, &system.a)?;
+    if row.format == Format::Unassembled {
+        fields(session, scene, &ksp, &system.fields)?;
+    }
     let ((), setup) = timed(session, || ksp.setup())?;
     let first = krylov.tolerances()?.0;
     let direct = krylov.type_name()? == "preonly";

@@ -14,11 +14,15 @@
 
 mod attempt;
 mod contact;
+mod frame;
 mod groups;
 mod job;
 mod judge;
 mod launch;
+mod layout;
 mod linear;
+mod motions;
+mod near;
 mod ours;
 mod outer;
 mod plan;
@@ -47,6 +51,7 @@ use job::{Job, Outcome, Task};
 use judge::{Judgement, Verdict};
 use launch::{Failure, Launcher, Workspace};
 use plan::{Plan, Run};
+use table::Case;
 
 pub use job::run as run_job;
 pub use table::BASELINES;
@@ -66,7 +71,7 @@ pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()
     let all = Options::new(session, "");
     if all.has("help")? || all.has("h")? {
         for baseline in &baselines {
-            baseline.set_options(session, plan.rtol, [scene.has_contact(), false])?;
+            baseline.set_options(session, plan.rtol, Case::of(&scene))?;
         }
     }
     let ready = if session.rank() == 0 {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
 use super::groups::Groups;
+use super::layout::Layout;
 use super::job::{memory, timed, ContactOutcome, Job, Outcome};
 use super::judge::stationarity;
 use super::rows::Rows;
@@ -14,7 +15,7 @@ use crate::cli::problem::{self, Distribution};
 use crate::feti::exchange::{gather_all, max_all};
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::petsc::{Options, Session, Vec as PetscVec};
-use crate::scene::{Numbering, Scene};
+use crate::scene::Scene;
 use crate::Result;
 
 /// Solves a scene by the FETI-FETI method.
@@ -36,8 +37,8 @@ pub fn solve(
     };
     let (solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
     // The assembled matrix is for the residual only: what it needs does not count.
-    let numbering = Numbering::new(scene);
-    let unknowns = Unknowns::all(&numbering);
+    let layout = Layout::new(scene);
+    let unknowns = Unknowns::all(&layout);
     let mut system: Option<Assembled> = None;
     let mut bytes = 0.0;
     let (attempt, rtol, message) = solve_to(job.rtol, job.rtol, |rtol| {
@@ -94,7 +95,7 @@ struct Assembled {
 impl Assembled {
     fn new(session: &Session, scene: &Scene, unknowns: &Unknowns) -> Result<Assembled> {
         let system = System::new(session, scene, unknowns, Format::Unassembled)?;
-        let rows = Rows::new(scene, unknowns.numbering);
+        let rows = Rows::new(scene, unknowns.layout);
         let trace = Trace::new(&rows, &system.b);
         Ok(Assembled {
             system,

@@ -108,6 +108,10 @@ pub fn solve(
                 }
                 ksp.set_reuse_preconditioner(!build)?;
                 let prepare = || {
+                    if build && steps > 0 && reduced.has_near_kernel() {
+                        // GAMG keeps the rigid motions that it saw first.
+                        ksp.reset()?;
+                    }
                     reduced.update(&groups)?;
                     ksp.set_operators(&reduced.a, &reduced.a)?;
                     ksp.setup()

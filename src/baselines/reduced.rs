@@ -7,6 +7,7 @@
 use mpi::topology::SimpleCommunicator;
 
 use super::groups::Groups;
+use super::near::NearKernel;
 use super::rows::Rows;
 use super::system::System;
 use super::unknowns::Trace;
@@ -39,6 +40,8 @@ pub struct Reduced {
     near: Vec<i32>,
     scatter: Scatter,
     near_u: PetscVec,
+    /// The rigid motions for the method's preconditioner.
+    kernel: NearKernel,
 }
 
 impl Reduced {
@@ -46,7 +49,12 @@ impl Reduced {
     ///
     /// # Errors
     /// PETSc's.
-    pub fn new(session: &Session, system: System, rows: &Rows) -> Result<Reduced> {
+    pub fn new(
+        session: &Session,
+        system: System,
+        rows: &Rows,
+        kernel: NearKernel,
+    ) -> Result<Reduced> {
         let unknowns: Vec<i32> = rows.unknowns.iter().map(|&u| u as i32).collect();
         let trace = Trace::new(rows, &system.b);
         let range = system.a.ownership_range()?;
@@ -127,6 +135,7 @@ impl Reduced {
             touched,
             near,
             near_u,
+            kernel,
         })
     }
 
@@ -167,7 +176,19 @@ impl Reduced {
                 .unzip();
             self.a.add_values(&[to], &cols, &vals)?;
         }
-        self.a.assemble()
+        self.a.assemble()?;
+        // At an unknown that is led there is nothing but its diagonal.
+        self.kernel.attach_where(&self.a, |x| {
+            let free = |k: usize, v: f64| if groups.is_free(k) { v } else { 0.0 };
+            let at = self.trace.get(self.comm(), x)?;
+            let kept: Vec<f64> = at.iter().enumerate().map(|(k, v)| free(k, *v)).collect();
+            self.trace.set(x, &kept)
+        })
+    }
+
+    /// Whether the preconditioner knows rigid motions, which change with the set.
+    pub fn has_near_kernel(&self) -> bool {
+        !self.kernel.is_empty()
     }
 
     /// Tᵀ(f − K u₀). Collective.

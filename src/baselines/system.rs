@@ -9,6 +9,7 @@ use crate::scene::Scene;
 use crate::substructures::Subdomain;
 use crate::Result;
 
+use super::layout::Layout;
 use super::table::Format;
 use super::unknowns::Unknowns;
 
@@ -20,6 +21,8 @@ pub struct System {
     pub b: PetscVec,
     /// ‖f‖₂ over the unknowns of the scene, or ‖b‖₂ where that is zero: what residuals are relative to.
     pub reference: f64,
+    /// Of this rank's local unknowns in the unassembled format the component that each is of.
+    pub fields: Vec<usize>,
 }
 
 impl System {
@@ -40,32 +43,37 @@ impl System {
         let mine = session.agree(mine)?;
         let part = Part::new(session, &mine, unknowns)?;
         let owned = match format {
-            Format::Assembled => contiguous_share(unknowns.len(), ranks, rank),
+            Format::Assembled => unknowns.share(ranks, rank),
             Format::Unassembled => unknowns.range(share),
         };
         let b = PetscVec::mpi(session, owned.len())?;
         Scatter::new(&b, &part.unknowns, &part.f)?.reverse_add(&part.f, &b)?;
         let mut reference = match unknowns.are_all() {
             true => b.norm2()?,
-            false => norm_f(session, &mine, unknowns)?,
+            false => norm_f(session, &mine, unknowns.layout)?,
         };
         if reference == 0.0 {
             reference = b.norm2()?;
         }
         drop(mine);
         let unassembled = Mat::unassembled(session, owned.len(), &part.unknowns, &part.k)?;
-        drop(part);
+        let fields = part.fields;
         let a = match format {
             Format::Assembled => unassembled.convert("aij")?,
             Format::Unassembled => unassembled,
         };
-        let held = unknowns.are_all() && scene.has_contact();
+        let held = unknowns.are_free() && scene.has_contact();
         a.set_flag(if held {
             MatFlag::Symmetric
         } else {
             MatFlag::Spd
         })?;
-        Ok(System { a, b, reference })
+        Ok(System {
+            a,
+            b,
+            reference,
+            fields,
+        })
     }
 
     /// r ← b − A u.
@@ -106,7 +114,7 @@ impl System {
     }
 
     /// The assembled form of subdomain vectors whose copies may differ by what the iteration has left: at each unknown of the scene the
-    /// mean of the copies with weight ρ, as the method's own scaling has it; and the sum of the weights. Collective.
+    /// mean of the copies with weight ρ, as the method's own scaling has it, taken to w; and the sum of the weights. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -117,7 +125,7 @@ impl System {
         u: &[Vec<f64>],
         unknowns: &Unknowns,
     ) -> Result<(PetscVec, PetscVec)> {
-        let places = places(subdomains, unknowns);
+        let places = places(subdomains, unknowns.layout);
         let rho: Vec<f64> = subdomains
             .iter()
             .flat_map(|s| s.rho.iter().copied())
@@ -130,25 +138,24 @@ impl System {
         scatter.reverse_add(&PetscVec::from_slice(session, &rho)?, &weight)?;
         let mean = self.b.duplicate()?;
         mean.pointwise_divide(&sum, &weight)?;
+        unknowns.layout.settle(session, &mean)?;
         Ok((mean, weight))
     }
 }
 
-/// The unknown of the scene at every dof of the subdomains.
-fn places(subdomains: &[Subdomain], unknowns: &Unknowns) -> Vec<i32> {
+/// The place in the layout of every dof of the subdomains.
+fn places(subdomains: &[Subdomain], layout: &Layout) -> Vec<i32> {
     let dofs = subdomains.iter().flat_map(|s| &s.dofs);
-    dofs.map(|&dof| unknowns.numbering.global(dof) as i32)
-        .collect()
+    dofs.map(|&dof| layout.index(dof) as i32).collect()
 }
 
-/// ‖f‖₂ over the unknowns of the scene. Collective.
-fn norm_f(session: &Session, subdomains: &[Subdomain], unknowns: &Unknowns) -> Result<f64> {
-    let n = unknowns.numbering.len() as usize;
-    let share = contiguous_share(n, session.size(), session.rank());
+/// ‖f‖₂ over the components of u. Collective.
+fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &Layout) -> Result<f64> {
+    let share = layout.share(session.size(), session.rank());
     let f = PetscVec::mpi(session, share.len())?;
     let local: Vec<f64> = subdomains.iter().flat_map(|s| s.f.clone()).collect();
     let local = PetscVec::from_slice(session, &local)?;
-    Scatter::new(&f, &places(subdomains, unknowns), &local)?.reverse_add(&local, &f)?;
+    Scatter::new(&f, &places(subdomains, layout), &local)?.reverse_add(&local, &f)?;
     f.norm2()
 }
 
@@ -156,66 +163,98 @@ fn norm_f(session: &Session, subdomains: &[Subdomain], unknowns: &Unknowns) -> R
 struct Part {
     /// Global unknown of each local one, increasing.
     unknowns: Vec<i32>,
+    /// The component that each is of.
+    fields: Vec<usize>,
     k: Mat,
     f: PetscVec,
 }
 
+/// What u at the dofs of a subdomain is in local unknowns: (unknown, coefficient) and an offset.
+type Local = Vec<(Vec<(i32, f64)>, f64)>;
+
 impl Part {
     fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<Part> {
         let mut unknowns: Vec<i32> = Vec::new();
-        for s in subdomains {
-            unknowns.extend(
-                s.dofs
-                    .iter()
-                    .filter_map(|&dof| all.place(dof).0)
-                    .map(|g| g as i32),
-            );
+        for &dof in subdomains.iter().flat_map(|s| &s.dofs) {
+            unknowns.extend(all.terms(dof).0.iter().map(|t| t.0 as i32));
+            unknowns.extend(all.void_beside(dof).0.iter().map(|&v| v as i32));
         }
         unknowns.sort_unstable();
         unknowns.dedup();
-        // Local unknown and offset of each dof.
-        let local = |s: &Subdomain| -> Vec<(Option<i32>, f64)> {
-            let find = |g: u64| {
-                let found = unknowns.binary_search(&(g as i32));
-                found.expect("every unknown was listed") as i32
-            };
-            let places = s.dofs.iter().map(|&dof| all.place(dof));
-            places.map(|(lead, o)| (lead.map(find), o)).collect()
+        let find = |g: u64| {
+            let found = unknowns.binary_search(&(g as i32));
+            found.expect("every unknown was listed") as i32
+        };
+        let local = |s: &Subdomain| -> Local {
+            let terms = s.dofs.iter().map(|&dof| all.terms(dof));
+            let found = |list: Vec<(u64, f64)>| list.into_iter().map(|(g, c)| (find(g), c));
+            terms.map(|(list, o)| (found(list).collect(), o)).collect()
         };
         let n = unknowns.len();
-        let mut room = vec![0; n];
+        let mut room = vec![1; n];
         for s in subdomains {
-            for (i, (row, _)) in local(s).into_iter().enumerate() {
-                if let Some(row) = row {
-                    room[row as usize] += s.k.row(i).0.len() as i32;
-                }
+            let local = local(s);
+            for (i, (rows, _)) in local.iter().enumerate() {
+                let cols = s.k.row(i).0.iter().map(|&j| local[j as usize].0.len());
+                let most = cols.sum::<usize>() as i32;
+                rows.iter().for_each(|(row, _)| room[*row as usize] += most);
             }
         }
         room.iter_mut().for_each(|r| *r = (*r).min(n as i32));
         let k = Mat::preallocated(session, Comm::Own, n, n, &room, &[])?;
         let mut f = vec![0.0; n];
+        let (mut cols, mut vals) = (Vec::new(), Vec::new());
         for s in subdomains {
             let local = local(s);
-            for (i, &(row, _)) in local.iter().enumerate() {
-                let Some(row) = row else { continue };
-                let mut cols = Vec::new();
-                let mut vals = Vec::new();
-                f[row as usize] += s.f[i];
+            for (i, (rows, _)) in local.iter().enumerate() {
                 let (col, val) = s.k.row(i);
-                for (&j, &v) in col.iter().zip(val) {
-                    let (col, offset) = local[j as usize];
-                    f[row as usize] -= v * offset;
-                    if let Some(col) = col {
-                        cols.push(col);
-                        vals.push(v);
+                let entries = || col.iter().zip(val).map(|(&j, &v)| (&local[j as usize], v));
+                let given: f64 = entries().map(|((_, offset), v)| v * offset).sum();
+                for (row, weight) in rows {
+                    f[*row as usize] += weight * (s.f[i] - given);
+                    cols.clear();
+                    vals.clear();
+                    for ((terms, _), v) in entries() {
+                        cols.extend(terms.iter().map(|t| t.0));
+                        vals.extend(terms.iter().map(|t| weight * v * t.1));
                     }
+                    k.add_values(&[*row], &cols, &vals)?;
                 }
-                k.add_values(&[row], &cols, &vals)?;
+                // Rows of void places are of the size of those beside them.
+                let (void, itself) = all.void_beside(s.dofs[i]);
+                let diagonal = || entries_at(col, val, i);
+                if itself {
+                    let row = find(all.layout.index(s.dofs[i]));
+                    k.add_values(&[row], &[row], &[diagonal()])?;
+                }
+                for &v in void.iter().filter(|_| !itself) {
+                    k.add_values(&[find(v)], &[find(v)], &[diagonal()])?;
+                }
             }
         }
         k.assemble()?;
         k.set_flag(MatFlag::Symmetric)?;
         let f = PetscVec::from_slice(session, &f)?;
-        Ok(Part { unknowns, k, f })
+        let components = all.layout.components();
+        let fields = match (unknowns.first(), unknowns.last()) {
+            (Some(&first), Some(&last)) => {
+                let places = all.places(first as usize..last as usize + 1);
+                let place = |g: &i32| places[(g - first) as usize] as usize;
+                unknowns.iter().map(|g| place(g) % components).collect()
+            }
+            _ => Vec::new(),
+        };
+        Ok(Part {
+            unknowns,
+            fields,
+            k,
+            f,
+        })
     }
+}
+
+/// The entry in column `i` of a row.
+fn entries_at(col: &[u32], val: &[f64], i: usize) -> f64 {
+    let at = col.iter().position(|&j| j as usize == i);
+    at.map_or(0.0, |k| val[k])
 }

@@ -3,7 +3,9 @@
 //! Every row has a prefix of its own, so that a researcher can tune it on the command line of `compare`:
 //! `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_use_deluxe_scaling`, `-fetidp_fetidp_ksp_monitor`. Ours keeps `-fetifeti_`.
 
+use super::near::Near;
 use crate::petsc::{Options, Session};
+use crate::scene::Scene;
 use crate::{Error, Result};
 
 /// The matrix that a method works on.
@@ -28,6 +30,12 @@ pub struct Baseline {
     pub krylov: &'static str,
     /// Options (without the prefix) that hold unless the user says otherwise.
     pub options: &'static [(&'static str, &'static str)],
+    /// Further options in space.
+    pub space: &'static [(&'static str, &'static str)],
+    /// Further options in elasticity, over those in space.
+    pub elastic: &'static [(&'static str, &'static str)],
+    /// The rigid motions that it is told.
+    pub near: Near,
     /// Further options in contact loops, in which the matrix changes and has entries that are zero.
     pub contact: &'static [(&'static str, &'static str)],
     /// In contact loops the preconditioner stays while at most this part of the inequalities has changed since it was built: what is
@@ -58,16 +66,11 @@ impl Baseline {
             .join(" ")
     }
 
-    /// Puts its options (with those of contact loops and of a second try, if this is one) into the database, below those of the user, and lists them under `-help`.
+    /// Puts its options into the database, below those of the user, and lists them under `-help`.
     ///
     /// # Errors
     /// PETSc's.
-    pub fn set_options(
-        &self,
-        session: &Session,
-        rtol: f64,
-        [contact, rescue]: [bool; 2],
-    ) -> Result<()> {
+    pub fn set_options(&self, session: &Session, rtol: f64, case: Case) -> Result<()> {
         let options = Options::new(session, &self.prefix());
         options.heading(&format!(
             "compare --with {}: {}",
@@ -75,19 +78,48 @@ impl Baseline {
         ))?;
         let rtol = format!("{rtol:e}");
         let tolerance = (format!("{}ksp_rtol", self.krylov), rtol.as_str());
-        let contact = if contact { self.contact } else { &[] };
-        let rescue = if rescue { self.rescue } else { &[] };
-        let fixed = self
-            .options
+        let further = [
+            (true, self.options),
+            (case.elastic, self.elastic),
+            (case.space, self.space),
+            (case.contact, self.contact),
+            (case.rescue, self.rescue),
+        ];
+        let fixed = further
             .iter()
-            .chain(contact)
-            .chain(rescue)
+            .filter(|(holds, _)| *holds)
+            .flat_map(|(_, list)| list.iter())
             .map(|(name, value)| (name.to_string(), *value));
         for (name, value) in fixed.chain([tolerance]) {
             options.set_default(&name, value)?;
             options.list(&name, value, "set by compare")?;
         }
         Ok(())
+    }
+}
+
+/// What options depend on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Case {
+    /// Three dimensions.
+    pub space: bool,
+    /// Elasticity.
+    pub elastic: bool,
+    /// Inequalities.
+    pub contact: bool,
+    /// The second try.
+    pub rescue: bool,
+}
+
+impl Case {
+    /// The first try on `scene`.
+    pub fn of(scene: &Scene) -> Case {
+        Case {
+            space: scene.dim() == 3,
+            elastic: scene.components() > 1,
+            contact: scene.has_contact(),
+            rescue: false,
+        }
     }
 }
 
@@ -109,6 +141,9 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_bddc_neumann_pc_type", "cholesky"),
             ("pc_bddc_neumann_pc_factor_mat_solver_type", "cholmod"),
         ],
+        space: &[("pc_bddc_use_faces", "true")],
+        elastic: &[],
+        near: Near::Motions,
         contact: &[],
         lag: 0.0,
         // A part that floats and has no vertex gets a singular local problem unless averages become unknowns, which costs
@@ -138,6 +173,9 @@ pub const BASELINES: [Baseline; 5] = [
                 "cholmod",
             ),
         ],
+        space: &[("fetidp_bddc_pc_bddc_use_faces", "true")],
+        elastic: &[],
+        near: Near::Motions,
         contact: &[],
         lag: 0.0,
         rescue: &[("fetidp_bddc_pc_bddc_use_change_of_basis", "true")],
@@ -152,6 +190,9 @@ pub const BASELINES: [Baseline; 5] = [
             ("ksp_norm_type", "unpreconditioned"),
             ("pc_type", "gamg"),
         ],
+        space: &[],
+        elastic: &[],
+        near: Near::Motions,
         // Unknowns that a step has let go need a place on the coarse grids, and zeros are no connections.
         contact: &[
             ("pc_gamg_reuse_interpolation", "false"),
@@ -171,6 +212,9 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_type", "hypre"),
             ("pc_hypre_type", "boomeramg"),
         ],
+        space: &[("pc_hypre_boomeramg_strong_threshold", "0.5")],
+        elastic: &[("pc_hypre_boomeramg_strong_threshold", "0.5")],
+        near: Near::Rotations,
         contact: &[],
         lag: 0.0,
         rescue: &[],
@@ -185,6 +229,9 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_type", "cholesky"),
             ("pc_factor_mat_solver_type", "mumps"),
         ],
+        space: &[],
+        elastic: &[],
+        near: Near::None,
         contact: &[],
         lag: 0.0,
         rescue: &[],

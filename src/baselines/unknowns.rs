@@ -1,10 +1,10 @@
-//! The unknowns of an assembled problem: those of the scene's numbering, or what an active set leaves of them.
+//! The unknowns of an assembled problem: those of the scene's layout, or what an active set leaves of them.
 
 use super::groups::Groups;
+use super::layout::Layout;
 use super::rows::Rows;
 use crate::feti::exchange::sum_all;
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
-use crate::scene::Numbering;
 use crate::Result;
 use mpi::topology::SimpleCommunicator;
 use std::collections::HashMap;
@@ -13,63 +13,105 @@ use std::ops::Range;
 /// Where the value at an unknown comes from: an entry of the vector of unknowns, or none, and an offset.
 pub type Place = (Option<u64>, f64);
 
-/// Unknowns with active rows as further ties: u = T v + u₀ (see [`Groups`]).
+/// Unknowns with active rows as further ties: w = T v + w₀ (see [`Groups`]).
 pub struct Unknowns<'a> {
-    /// The unknowns of the scene, on which u lives.
-    pub numbering: &'a Numbering,
-    /// Unknowns of the scene that are none here, increasing.
+    /// The unknowns w of the scene.
+    pub layout: &'a Layout<'a>,
+    /// Places of w that are none of v, increasing.
     gone: Vec<u64>,
     /// Unknowns in rows: the unknown that leads them, and the offset.
     led: HashMap<u64, Place>,
 }
 
 impl<'a> Unknowns<'a> {
-    /// v = u.
-    pub fn all(numbering: &'a Numbering) -> Unknowns<'a> {
+    /// v = w.
+    pub fn all(layout: &'a Layout<'a>) -> Unknowns<'a> {
         Unknowns {
-            numbering,
+            layout,
             gone: Vec::new(),
             led: HashMap::new(),
         }
     }
 
-    /// One v per group.
-    pub fn merged(numbering: &'a Numbering, rows: &Rows, groups: &Groups) -> Unknowns<'a> {
+    /// Those of w that are not void.
+    pub fn dense(layout: &'a Layout<'a>) -> Unknowns<'a> {
+        Unknowns {
+            layout,
+            gone: layout.void().to_vec(),
+            led: HashMap::new(),
+        }
+    }
+
+    /// One v per group, and none at void places.
+    pub fn merged(layout: &'a Layout<'a>, rows: &Rows, groups: &Groups) -> Unknowns<'a> {
         let each = rows.unknowns.iter().enumerate();
-        let gone = each.clone().filter(|(k, _)| !groups.is_free(*k));
-        let led = each.clone().map(|(k, &unknown)| {
+        let led = each.clone().filter(|(k, _)| !groups.is_free(*k));
+        let mut gone: Vec<u64> = led.map(|(_, &unknown)| unknown).collect();
+        gone.extend(layout.void());
+        gone.sort_unstable();
+        let led = each.map(|(k, &unknown)| {
             let lead = groups.lead[k].map(|lead| rows.unknowns[lead]);
             (unknown, (lead, groups.offset[k]))
         });
         Unknowns {
-            numbering,
-            gone: gone.map(|(_, &unknown)| unknown).collect(),
+            layout,
+            gone,
             led: led.collect(),
         }
     }
 
-    /// Whether v = u.
+    /// Whether v = w.
     pub fn are_all(&self) -> bool {
         self.gone.is_empty() && self.led.values().all(|(_, offset)| *offset == 0.0)
     }
 
+    /// Whether no active row has been made a tie.
+    pub fn are_free(&self) -> bool {
+        self.led.is_empty()
+    }
+
     /// Length of v.
     pub fn len(&self) -> usize {
-        self.numbering.len() as usize - self.gone.len()
+        self.layout.len() - self.gone.len()
     }
 
     /// The entries of v that belong to subdomains `share`.
     pub fn range(&self, share: Range<usize>) -> Range<usize> {
-        let all = self.numbering.range(share);
-        self.after(all.start)..self.after(all.end)
+        let all = self.layout.range(share);
+        self.after(all.start as u64)..self.after(all.end as u64)
     }
 
-    /// Where u at a body dof comes from.
-    pub fn place(&self, body_dof: u64) -> Place {
-        self.of(self.numbering.global(body_dof))
+    /// The entries of v of a rank in about equal shares, without cutting a node.
+    pub fn share(&self, ranks: usize, rank: usize) -> Range<usize> {
+        let all = self.layout.share(ranks, rank);
+        self.after(all.start as u64)..self.after(all.end as u64)
+    }
+
+    /// u at a body dof: Σ coefficient · v, and an offset.
+    pub fn terms(&self, body_dof: u64) -> (Vec<(u64, f64)>, f64) {
+        let mut out = (Vec::new(), 0.0);
+        for (unknown, coefficient) in self.layout.terms(self.layout.index(body_dof)) {
+            let (lead, offset) = self.of(unknown);
+            out.0.extend(lead.map(|lead| (lead, coefficient)));
+            out.1 += coefficient * offset;
+        }
+        out
+    }
+
+    /// The void places, as entries of v if they are any, from the node of a body dof, and whether the dof itself is one of them.
+    pub fn void_beside(&self, body_dof: u64) -> (&[u64], bool) {
+        if !self.gone.is_empty() {
+            return (&[], false);
+        }
+        let at = self.layout.index(body_dof);
+        let void = self.layout.void_beside(at);
+        (void, void.contains(&at))
     }
 
     fn of(&self, unknown: u64) -> Place {
+        if self.layout.void().binary_search(&unknown).is_ok() {
+            return (None, 0.0);
+        }
         let (lead, offset) = self
             .led
             .get(&unknown)
@@ -82,13 +124,32 @@ impl<'a> Unknowns<'a> {
         unknown as usize - self.gone.partition_point(|&g| g < unknown)
     }
 
-    /// u = T v + u₀ in equal shares. Collective.
+    /// The places in w of entries `range` of v.
+    pub fn places(&self, range: Range<usize>) -> Vec<u64> {
+        let mut at = 0;
+        let mut next = self.gone.iter().peekable();
+        let mut out = Vec::with_capacity(range.len());
+        for w in 0..self.layout.len() as u64 {
+            if at >= range.end {
+                break;
+            }
+            if next.next_if_eq(&&w).is_some() {
+                continue;
+            }
+            if at >= range.start {
+                out.push(w);
+            }
+            at += 1;
+        }
+        out
+    }
+
+    /// w = T v + w₀ in equal shares. Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn spread(&self, session: &Session, v: &PetscVec) -> Result<PetscVec> {
-        let n = self.numbering.len() as usize;
-        let share = crate::mesh::contiguous_share(n, session.size(), session.rank());
+        let share = self.layout.share(session.size(), session.rank());
         let u = PetscVec::mpi(session, share.len())?;
         let places: Vec<Place> = share.map(|unknown| self.of(unknown as u64)).collect();
         let known = places.iter().filter_map(|(lead, _)| *lead);

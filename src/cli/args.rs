@@ -19,6 +19,11 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
   fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
+  fetifeti study hertz|hard-cases|speed-error [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
+      hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
+      hard for the method against direct solutions, exit code 1 where an answer is wrong; speed-error: error
+      against seconds, ours and the baselines of compare, over meshes and tolerances;
+      --quick: coarser meshes, smaller cases, a few seconds
   mpirun -n N fetifeti solve SCENE ...
       the same answer on N ranks
 
@@ -45,6 +50,8 @@ pub enum Command {
     Table1(Table1),
     /// Run the baselines.
     Compare(Compare),
+    /// Run a study.
+    Study(Study),
     /// One method of a comparison, in a process of its own (not for users).
     Baseline {
         /// What to run, as the parent process wrote it.
@@ -97,6 +104,50 @@ pub struct Compare {
     pub quiet: bool,
 }
 
+/// The studies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StudyName {
+    /// Half-width and peak pressure against Hertz's theory.
+    Hertz,
+    /// Problems that are hard for the method, against direct solutions.
+    HardCases,
+    /// Error against seconds, ours and every baseline.
+    SpeedError,
+}
+
+impl StudyName {
+    /// All of them.
+    pub const ALL: [StudyName; 3] = [
+        StudyName::Hertz,
+        StudyName::HardCases,
+        StudyName::SpeedError,
+    ];
+
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            StudyName::Hertz => "hertz",
+            StudyName::HardCases => "hard-cases",
+            StudyName::SpeedError => "speed-error",
+        }
+    }
+}
+
+/// Arguments of `study`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// Which one.
+    pub name: StudyName,
+    /// File for the JSON.
+    pub json: Option<PathBuf>,
+    /// Directory for tables and pictures.
+    pub out: Option<PathBuf>,
+    /// Coarser meshes, smaller cases.
+    pub quick: bool,
+    /// No table.
+    pub quiet: bool,
+}
+
 /// What was written: a command and the options that are PETSc's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Invocation {
@@ -132,14 +183,14 @@ pub fn parse(args: &[String]) -> Result<Invocation> {
     Ok(Invocation { command, petsc })
 }
 
-const COMMANDS: [&str; 5] = ["solve", "plan", "compare", "table1", "baseline"];
+const COMMANDS: [&str; 6] = ["solve", "plan", "compare", "table1", "study", "baseline"];
 
 fn known(name: &str) -> Result<()> {
     if COMMANDS.contains(&name) {
         return Ok(());
     }
     Err(Error::input(format!(
-        "\"{name}\" is no command, expected solve, plan, compare or table1 (fetifeti --help tells more)"
+        "\"{name}\" is no command, expected solve, plan, compare, table1 or study (fetifeti --help tells more)"
     )))
 }
 
@@ -220,6 +271,18 @@ impl Words {
         })
     }
 
+    fn study(&mut self) -> Result<StudyName> {
+        let names = StudyName::ALL.map(StudyName::name).join(", ");
+        let Some(word) = self.next_plain() else {
+            return Err(Error::input(format!(
+                "study was given no name, expected one of {names} right behind the command"
+            )));
+        };
+        let found = StudyName::ALL.into_iter().find(|s| s.name() == word);
+        found
+            .ok_or_else(|| Error::input(format!("\"{word}\" is no study, expected one of {names}")))
+    }
+
     fn command(&mut self, name: &str) -> Result<Command> {
         known(name)?;
         Ok(match name {
@@ -250,6 +313,13 @@ impl Words {
                     .unwrap_or_default(),
                 json: self.path("--json"),
                 out: self.path("--out"),
+                quiet: self.flag("--quiet"),
+            }),
+            "study" => Command::Study(Study {
+                name: self.study()?,
+                json: self.path("--json"),
+                out: self.path("--out"),
+                quick: self.flag("--quick"),
                 quiet: self.flag("--quiet"),
             }),
             _ => Command::Baseline {
@@ -360,6 +430,9 @@ mod tests {
             ("solve a.toml --json", "--json"),
             ("solve a.toml --resume", "--resume"),
             ("plan a.toml --checkpoint c", "--checkpoint"),
+            ("study", "no name"),
+            ("study hurtz", "hurtz"),
+            ("study hertz a.toml", "a.toml"),
         ] {
             let message = read(line).expect_err(line).to_string();
             assert!(message.contains(part), "{line}: {message}");

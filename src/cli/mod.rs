@@ -13,6 +13,7 @@ mod picture;
 mod plan;
 pub(crate) mod problem;
 mod solve;
+mod study;
 mod table1;
 
 use args::{Command, Invocation};
@@ -49,6 +50,7 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
         Command::Solve(args) => solve::run(session, &args),
         Command::Plan { scene } => plan::run(session, &scene),
         Command::Table1(args) => table1::run(session, &args),
+        Command::Study(args) => study::run(session, &args),
         Command::Compare(args) => crate::baselines::compare(session, &args, &petsc),
         Command::Baseline { job } => crate::baselines::run_job(session, &job),
     }

@@ -10,6 +10,8 @@ type Stencil<const C: usize> = [[[f64; C]; C]; 27];
 
 /// K^(ij) on the free dofs, and the load with the prescribed values eliminated: f_F − K_FD u_D.
 ///
+/// Springs stand in the diagonal: ∫ k u·v by the rule that takes values at the nodes.
+///
 /// `load` has an entry per degree of freedom. A node's rows are the sum over the elements around it, so the rows come out in order and
 /// sorted, and nothing has to be searched.
 pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
@@ -52,9 +54,12 @@ fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
             .filter(|d| *d.1 != SubdomainMesh::PRESCRIBED)
         {
             let mut load_here = load[C * node + c];
+            let spring = mesh.spring.get(node).copied().unwrap_or(0.0);
             for (block, other) in neighbours(mesh, &stencil, place) {
                 for (j, &value) in block[c].iter().enumerate() {
                     let at = C * other + j;
+                    let own = other == node && j == c;
+                    let value = if own { value + spring } else { value };
                     if mesh.dof[at] == SubdomainMesh::PRESCRIBED {
                         load_here -= value * mesh.prescribed[at];
                     } else {
@@ -188,6 +193,7 @@ mod tests {
             prescribed,
             rho: (0..6).map(|e| 1.0 + e as f64).collect(),
             poisson: Vec::new(),
+            spring: Vec::new(),
         }
     }
 

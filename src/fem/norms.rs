@@ -68,6 +68,7 @@ mod tests {
             prescribed: vec![0.0; 6],
             rho: vec![3.0; 2],
             poisson: Vec::new(),
+            spring: Vec::new(),
         };
         let exact = |[x, y, _]: [f64; 3]| ([x * y, 0.0, 0.0], [[y, x, 0.0], [0.0; 3], [0.0; 3]]);
         let squares = error_squares(&mesh, &[0.0; 6], exact);

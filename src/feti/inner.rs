@@ -88,7 +88,7 @@ impl Residual {
     }
 
     /// r ← B y − c and the size of y, for the y that is there. Collective.
-    fn close(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+    pub fn close(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         let stiffness = &dual.stiffness;
         stiffness.jump_of(&self.work, &self.r)?; /*           r ← B y − c       */
         {

@@ -32,6 +32,8 @@ pub struct SubdomainMesh {
     pub rho: Vec<f64>,
     /// Poisson's ratio of every element; empty for a scalar problem.
     pub poisson: Vec<f64>,
+    /// ∫ k N_a over sides that stand on springs, by node; empty where there is none.
+    pub spring: Vec<f64>,
 }
 
 impl SubdomainMesh {

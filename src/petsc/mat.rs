@@ -267,6 +267,11 @@ impl Mat {
         Ok(())
     }
 
+    /// Tells PETSc that rows come in blocks of this size; every rank's share must be a multiple of it.
+    pub fn set_block_size(&self, size: usize) -> Result<()> {
+        petsc!(MatSetBlockSize(self.raw(), count(size)?))
+    }
+
     /// Attaches the constants as the kernel of the matrix.
     pub fn set_constant_null_space(&self) -> Result<()> {
         let space = self.null_space(true, &[])?;

@@ -65,6 +65,16 @@ impl Pc {
         petsc!(PCBDDCSetNeumannBoundariesLocal(self.0.raw(), dofs.0.raw()))
     }
 
+    /// PCBDDC: the local dofs of this rank's subdomain by field. Collective.
+    pub fn bddc_set_fields_local(&self, fields: &[Is]) -> Result<()> {
+        let mut raw: std::vec::Vec<sys::IS> = fields.iter().map(|is| is.0.raw()).collect();
+        petsc!(PCBDDCSetDofsSplittingLocal(
+            self.0.raw(),
+            raw.len() as i32,
+            raw.as_mut_ptr()
+        ))
+    }
+
     /// PCBDDC: local dofs that are primal beside those it finds itself. Collective.
     pub fn bddc_set_primal_local(&self, dofs: &Is) -> Result<()> {
         petsc!(PCBDDCSetPrimalVerticesLocalIS(self.0.raw(), dofs.0.raw()))

@@ -4,7 +4,7 @@ use super::field::{At, Field};
 use super::spec::Force;
 use super::steps::Factors;
 use super::topology::{entities, rigid_motions};
-use super::validate::{bad_load, checked_poisson, checked_rho};
+use super::validate::{bad_load, bad_spring, checked_poisson, checked_rho};
 use super::{Body, Scene, Variables};
 use crate::error::Result;
 use crate::fem;
@@ -196,6 +196,7 @@ impl Scene {
             prescribed: vec![0.0; c * n],
             rho: Vec::new(),
             poisson: Vec::new(),
+            spring: Vec::new(),
         };
         let mut next = 0;
         for place in block.places() {
@@ -226,6 +227,11 @@ impl Scene {
             mesh.poisson = by_element(body, &block, &mesh, &body.spec.poisson, |value, point| {
                 checked_poisson(&body.spec, value, point)
             })?;
+        }
+        for (side, stiffness) in &body.spec.springs {
+            if reaches(body, &block, *side) {
+                add_spring(body, &block, &mut mesh, *side, stiffness)?;
+            }
         }
         Ok(mesh)
     }
@@ -308,6 +314,35 @@ impl Scene {
 fn reaches(body: &Body, block: &Block, side: usize) -> bool {
     let d = side / 2;
     block.place[d] == [0, body.mesh().subdomains[d] - 1][side % 2]
+}
+
+/// Adds ∫ k N_a over a side to the springs of a mesh.
+fn add_spring(
+    body: &Body,
+    block: &Block,
+    mesh: &mut SubdomainMesh,
+    side: usize,
+    stiffness: &Field,
+) -> Result<()> {
+    let c = mesh.components();
+    let mut sums = vec![0.0; mesh.dof.len()];
+    let mut bad = None;
+    let value = |point: [f64; 3], _normal: [f64; 3]| {
+        let k = evaluate(body, block, stiffness, point);
+        if !(k >= 0.0 && k.is_finite()) {
+            bad.get_or_insert((k, point));
+        }
+        [k, 0.0, 0.0]
+    };
+    fem::add_side_load(mesh, side, value, &mut sums);
+    if let Some((k, point)) = bad {
+        return bad_spring(&body.spec, k, point);
+    }
+    mesh.spring.resize(mesh.points.len(), 0.0);
+    for (spring, sum) in mesh.spring.iter_mut().zip(sums.chunks_exact(c)) {
+        *spring += sum[0];
+    }
+    Ok(())
 }
 
 /// A coefficient in the middle of every element.

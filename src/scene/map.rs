@@ -28,8 +28,8 @@ pub enum BodyShape {
         /// First and last angle.
         angles: [f64; 2],
     },
-    /// Half a disc in the plane (half a cylinder along z as a solid), half a ball. The side `bottom`, with the pole in its middle, and
-    /// the sides beside it become the round surface, `top` the flat one; with the pole upwards the other way round.
+    /// A round body that stands on its pole: half a disc in the plane (half a cylinder along z as a solid), half a ball. The side
+    /// `bottom` (`top` where the pole is the highest point) and the parts of the others beside it become its surface.
     Round(Round),
 }
 
@@ -48,6 +48,12 @@ pub struct Round {
     pub upwards: bool,
     /// Elements shrink towards the pole with this power of the distance; 1: not at all.
     pub grading: f64,
+    /// Width w of a zone around the pole, as a fraction of the radius, in which elements are of about equal size, after the grading: beyond
+    /// they grow in proportion to the distance. `None`: they do not.
+    pub focus: Option<f64>,
+    /// How far out the box reaches, as a fraction: 1 is the whole half. On the rim of the whole two or three sides of the box meet at
+    /// angles of 180°, and elements degenerate there; below 1 flanks are cut off instead.
+    pub trim: f64,
 }
 
 impl Map {
@@ -90,24 +96,32 @@ impl Round {
         let across = |s: f64| {
             let u = if self.quarter { s } else { 2.0 * s - 1.0 };
             // Exact at the axis and the rim.
-            u.signum() * u.abs().powf(self.grading)
+            u.signum() * self.trim * self.spread(u.abs())
         };
-        // From the pole at −1 to the flat side at 0, or from the flat side up to the pole.
-        let v = match self.upwards {
-            false => s[1].powf(self.grading) - 1.0,
-            true => 1.0 - (1.0 - s[1]).powf(self.grading),
-        };
-        let u = across(s[0]);
+        // Mirrored in the box and in space, elements keep their orientation.
+        let up = if self.upwards { 1.0 - s[1] } else { s[1] };
+        let (u, v) = (across(s[0]), self.spread(up) - 1.0);
         let w = if self.ball { across(s[2]) } else { 0.0 };
         let stretch =
             |a: f64, b: f64| (1.0 - a * a / 2.0 - b * b / 2.0 + a * a * b * b / 3.0).sqrt();
         let [x, y, w] = [u * stretch(v, w), v * stretch(u, w), w * stretch(u, v)];
+        let y = if self.upwards { -y } else { y };
         let [cx, cy, cz] = self.centre;
         [
             cx + self.radius * x,
             cy + self.radius * y,
             if self.ball { cz + self.radius * w } else { z },
         ]
+    }
+
+    /// How far from the pole a line of nodes goes, 0 to 1: w sinh(s arsinh(1/w)) is linear below w and geometric above.
+    fn spread(&self, s: f64) -> f64 {
+        let s = s.powf(self.grading);
+        match self.focus {
+            // Exact at the rim.
+            Some(w) if s < 1.0 => w * (s * (1.0 / w).asinh()).sinh(),
+            _ => s,
+        }
     }
 }
 
@@ -126,8 +140,24 @@ mod tests {
                 ball,
                 upwards: false,
                 grading: 1.5,
+                focus: None,
+                trim: 1.0,
             }),
         }
+    }
+
+    #[test]
+    fn elements_are_equal_in_focus_and_grow_beyond() {
+        let mut map = round(false, true);
+        let BodyShape::Round(shape) = &mut map.shape else {
+            unreachable!("it is round")
+        };
+        (shape.grading, shape.focus) = (1.0, Some(0.02));
+        let x = |i: u32| map.apply([f64::from(i) / 50.0, 0.0, 0.0])[0];
+        let step = |i: u32| x(i + 1) - x(i);
+        assert!(step(1) < 1.01 * step(0) && step(49) > 40.0 * step(0));
+        assert!((step(40) / step(39) - step(39) / step(38)).abs() < 1e-3);
+        assert_eq!(map.apply([1.0, 1.0, 0.0]), [3.0, 2.0, 0.0]);
     }
 
     #[test]
@@ -146,15 +176,39 @@ mod tests {
     }
 
     #[test]
-    fn a_pole_on_top_has_its_round_side_there() {
-        let mut map = round(false, false);
-        if let BodyShape::Round(r) = &mut map.shape {
-            r.upwards = true;
-        }
-        assert_eq!(map.apply([0.5, 1.0, 0.0]), [1.0, 4.0, 0.0]);
-        assert_eq!(map.apply([0.2, 0.0, 0.0])[1], 2.0);
-        // x to the right, y upwards: the orientation stays.
-        assert!(map.apply([0.9, 0.5, 0.0])[0] > map.apply([0.1, 0.5, 0.0])[0]);
+    fn trimmed_bottoms_are_round_and_have_good_corners() {
+        let mut map = round(true, true);
+        let BodyShape::Round(shape) = &mut map.shape else {
+            unreachable!("it is round")
+        };
+        shape.trim = 0.7;
+        let corner = map.apply([1.0, 0.0, 1.0]);
+        let from_centre = [corner[0] - 1.0, corner[1] - 2.0, corner[2] - 3.0];
+        let distance = from_centre.iter().map(|v| v * v).sum::<f64>().sqrt();
+        assert!((distance - 2.0).abs() < 1e-14, "{distance}");
+        // Edges of the box meet there at an angle well below 180°, also in a fine mesh.
+        let to = |s: [f64; 3]| {
+            let p = map.apply(s);
+            [0, 1, 2].map(|d| p[d] - corner[d])
+        };
+        let (p, q) = (to([1.0 - 1e-4, 0.0, 1.0]), to([1.0, 1e-4, 1.0]));
+        let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| a[d] * b[d]).sum::<f64>();
+        let cosine = product(p, q) / (product(p, p) * product(q, q)).sqrt();
+        assert!(cosine > -0.9, "{cosine}");
+    }
+
+    #[test]
+    fn a_pole_on_top_is_the_mirror_image() {
+        let mut map = round(true, false);
+        let below = map.apply([0.3, 0.2, 0.6]);
+        let BodyShape::Round(shape) = &mut map.shape else {
+            unreachable!("it is round")
+        };
+        shape.upwards = true;
+        let above = map.apply([0.3, 0.8, 0.6]);
+        assert_eq!([above[0], above[2]], [below[0], below[2]]);
+        assert!((above[1] + below[1] - 4.0).abs() < 1e-15);
+        assert_eq!(map.apply([0.5, 1.0, 0.5]), [1.0, 4.0, 3.0]);
     }
 
     #[test]

@@ -87,6 +87,8 @@ pub struct BodySpec {
     pub load: Load,
     /// Loads on its sides.
     pub surface: Vec<SurfaceLoad>,
+    /// Elastic foundations: k on a side (an index into [`SIDES`]) adds ∫ k u·v to the energy's form, a force −k u per area.
+    pub springs: Vec<(usize, Field)>,
     /// Factor of the loads over the load steps; `None`: that of all loads.
     pub ramp: Option<Ramp>,
     /// Dirichlet conditions.
@@ -108,6 +110,7 @@ impl BodySpec {
             poisson: Field::constant(POISSON),
             load: Load::constant(0.0),
             surface: Vec::new(),
+            springs: Vec::new(),
             ramp: None,
             dirichlet: free_all_round(),
             place: [0; 3],
@@ -163,6 +166,8 @@ pub struct GridSpec {
     pub load: Load,
     /// Loads on the outer sides of the whole grid.
     pub surface: Vec<SurfaceLoad>,
+    /// Elastic foundations on the outer sides of the whole grid.
+    pub springs: Vec<(usize, Field)>,
     /// Factor of the loads over the load steps; `None`: that of all loads.
     pub ramp: Option<Ramp>,
     /// Dirichlet conditions on the outer sides of the whole grid.
@@ -197,6 +202,7 @@ impl GridSpec {
             poisson: Field::constant(POISSON),
             load: Load::constant(1.0),
             surface: Vec::new(),
+            springs: Vec::new(),
             ramp: None,
             dirichlet: held_all_round(),
             written: String::new(),
@@ -238,6 +244,12 @@ impl GridSpec {
                     .surface
                     .iter()
                     .filter(|l| outer(l.side))
+                    .cloned()
+                    .collect(),
+                springs: self
+                    .springs
+                    .iter()
+                    .filter(|(side, _)| outer(*side))
                     .cloned()
                     .collect(),
                 ramp: self.ramp.clone(),

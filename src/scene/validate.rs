@@ -275,6 +275,15 @@ pub(super) fn bad_load<T>(body: &BodySpec, value: f64, point: [f64; 3]) -> Resul
     )
 }
 
+/// The error for a spring that is negative or not finite.
+pub(super) fn bad_spring<T>(body: &BodySpec, value: f64, point: [f64; 3]) -> Result<T> {
+    let at = body.spot_at(point);
+    fail(
+        body,
+        format_args!("spring {value} at {at} where a finite number of at least 0 was expected"),
+    )
+}
+
 /// Degrees of freedom with a value given by a side, in increasing order: C k + c for component c of node k.
 ///
 /// # Errors

@@ -189,6 +189,7 @@ const FUNCTIONS: &[&str] = &[
     "PCBDDCSetDirichletBoundariesLocal",
     "PCBDDCSetNeumannBoundariesLocal",
     "PCBDDCSetPrimalVerticesLocalIS",
+    "PCBDDCSetDofsSplittingLocal",
     // eigenvalues
     "EPSCreate",
     "EPSSetOperators",

@@ -106,6 +106,7 @@ struct Data {
     poisson: Field,
     load: Load,
     surface: Vec<SurfaceLoad>,
+    springs: Vec<(usize, Field)>,
     dirichlet: Sides,
 }
 
@@ -144,6 +145,7 @@ impl<'a> Reader<'a> {
         body.ramp = self.ramp(&mut section)?;
         (body.rho, body.poisson) = (data.rho, data.poisson);
         (body.load, body.surface, body.dirichlet) = (data.load, data.surface, data.dirichlet);
+        body.springs = data.springs;
         section.finish()?;
         Ok(body)
     }
@@ -191,6 +193,7 @@ impl<'a> Reader<'a> {
             poisson: data.poisson,
             load: data.load,
             surface: data.surface,
+            springs: data.springs,
             ramp,
             dirichlet: data.dirichlet,
             written: self.written(item),
@@ -274,6 +277,7 @@ impl<'a> Reader<'a> {
             poisson,
             load,
             surface: self.surface_loads(section)?,
+            springs: self.springs(section)?,
             dirichlet: match section.take("dirichlet") {
                 Some(item) => self.sides(item)?,
                 None => free_all_round(),

@@ -110,6 +110,22 @@ impl<'a> Reader<'a> {
             Some(item) => self.positive(item)?,
             None => 1.0,
         };
+        let focus = match section.take("focus") {
+            Some(item) => Some(self.positive(item)?),
+            None => None,
+        };
+        let trim = match section.take("trim") {
+            Some(item) => match self.positive(item)? {
+                t if t <= 1.0 => t,
+                t => {
+                    return self.error(
+                        item,
+                        format_args!("{t} where a fraction up to 1 was expected"),
+                    )
+                }
+            },
+            None => 1.0,
+        };
         let upwards = match section.take("pole") {
             Some(item) => self.choice(item, &["bottom", "top"])? == 1,
             None => false,
@@ -122,6 +138,8 @@ impl<'a> Reader<'a> {
             ball,
             upwards,
             grading,
+            focus,
+            trim,
         })
     }
 

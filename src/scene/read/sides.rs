@@ -94,6 +94,22 @@ impl<'a> Reader<'a> {
         Ok(out)
     }
 
+    /// Elastic foundations on sides.
+    pub(super) fn springs(&self, section: &mut Section<'a>) -> Result<Vec<(usize, Field)>> {
+        let mut out = Vec::new();
+        let Some(item) = section.take("spring") else {
+            return Ok(out);
+        };
+        let mut sides = Section::new(self.source, "`spring`", item)?;
+        for (side, name) in SIDES.into_iter().enumerate().take(2 * self.dim) {
+            if let Some(value) = sides.take(name) {
+                out.push((side, Field::Expression(self.expression(value)?)));
+            }
+        }
+        sides.finish()?;
+        Ok(out)
+    }
+
     /// An expression for each component.
     fn components(&self, item: &'a Item) -> Result<Vec<Field>> {
         let c = self.form.components(self.dim);

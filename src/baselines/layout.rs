@@ -1,0 +1,408 @@
+//! The unknowns of a scene as the assembled problem has them: node by node, C components each.
+//!
+//! ```text
+//!     Numbering (free dofs) ── blocks of C ──> u ── w = M u at nodes in contact ──> w, what systems and files hold
+//! ```
+//!
+//! A node with some components given keeps a place for them, in which w = 0 with a row of its own (*void*): multigrid for elasticity
+//! needs to know nodes from one another. So do supports that the scene does not have: rigid motions that ties, values and inequalities
+//! together leave free are taken away by as many dofs set to zero, which bear no force where the load is balanced.
+
+use std::collections::BTreeMap;
+
+use super::frame::{norm, parallel, Frame};
+use super::motions::{Echelon, Form, Motions};
+use crate::feti::exchange::sum_all;
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::scene::{Numbering, Scene};
+use crate::substructures::{InterfaceRow, RowKind};
+use crate::Result;
+use std::ops::Range;
+
+/// A support must have this part of its own form left when it is chosen; where none has, half of it, and so on.
+const FIRM: f64 = 0.3;
+
+/// Layout of w.
+pub struct Layout<'a> {
+    scene: &'a Scene,
+    /// The free dofs.
+    numbering: Numbering,
+    components: usize,
+    /// Where in the numbering places for given components are put in, increasing.
+    inserted: Vec<u64>,
+    /// The places put in, increasing.
+    filled: Vec<u64>,
+    /// Those and the supports, increasing.
+    void: Vec<u64>,
+    /// Supports with their forms.
+    supports: Vec<(u64, Form)>,
+    /// Nodes at which w is not u.
+    frames: BTreeMap<u64, Frame>,
+    /// The rigid motions.
+    pub motions: Motions,
+    /// What ties and given values hold of them.
+    pub held: Echelon,
+    /// The forms of the inequalities.
+    pub forms: Vec<Form>,
+    /// All of that with the supports' forms left out.
+    all_held: Echelon,
+    /// Why the inequalities have no frames, if they have none.
+    pub trouble: Option<String>,
+}
+
+impl<'a> Layout<'a> {
+    /// The layout of `scene`.
+    pub fn new(scene: &'a Scene) -> Layout<'a> {
+        let motions = Motions::new(scene);
+        let held = motions.held(scene);
+        let mut layout = Layout {
+            scene,
+            numbering: Numbering::new(scene),
+            components: scene.components(),
+            inserted: Vec::new(),
+            filled: Vec::new(),
+            void: Vec::new(),
+            supports: Vec::new(),
+            frames: BTreeMap::new(),
+            all_held: held.clone(),
+            motions,
+            held,
+            forms: Vec::new(),
+            trouble: None,
+        };
+        layout.fill();
+        let rows = scene.rows(&|_| true);
+        let inequalities: Vec<&InterfaceRow> =
+            rows.iter().filter(|r| r.kind == RowKind::Inequality).collect();
+        for row in &inequalities {
+            let form = layout.motions.of_terms(scene, &row.terms);
+            layout.all_held.insert(&form, 0.0);
+            layout.forms.push(form);
+        }
+        layout.turn(&inequalities);
+        layout.support(&inequalities);
+        layout
+    }
+
+    /// Puts in places for the given components of nodes that are not given altogether.
+    fn fill(&mut self) {
+        let c = self.components;
+        if c == 1 {
+            return;
+        }
+        // (a free dof's number in the numbering, given components)
+        let mut nodes: Vec<(u64, Vec<usize>)> = Vec::new();
+        for (b, body) in self.scene.bodies.iter().enumerate() {
+            for given in body.prescribed.chunk_by(|p, q| p.0 / c == q.0 / c) {
+                if given.len() == c {
+                    continue;
+                }
+                let node = given[0].0 / c;
+                let is_given = |k: usize| given.iter().any(|g| g.0 % c == k);
+                let number = |k: usize| {
+                    self.numbering
+                        .global(body.first_dof + (node * c + k) as u64)
+                };
+                let free: Vec<usize> = (0..c).filter(|&k| !is_given(k)).collect();
+                let first = number(free[0]);
+                let (owner, place, _) = self.numbering.place(first);
+                // The copies of a tied node share one place.
+                if (owner, place) != (b, body.mesh().place(node)) {
+                    continue;
+                }
+                for k in (0..c).filter(|&k| is_given(k)) {
+                    let next = free.iter().find(|&&f| f > k);
+                    let before = next.map_or_else(|| number(free[free.len() - 1]) + 1, |&f| number(f));
+                    self.inserted.push(before);
+                }
+                nodes.push((first, (0..c).filter(|&k| is_given(k)).collect()));
+            }
+        }
+        self.inserted.sort_unstable();
+        for (first, given) in nodes {
+            let block = self.moved(first) / c as u64;
+            self.filled
+                .extend(given.iter().map(|&k| block * c as u64 + k as u64));
+        }
+        self.filled.sort_unstable();
+        self.void.clone_from(&self.filled);
+    }
+
+    /// Finds the frames of nodes in inequalities.
+    fn turn(&mut self, rows: &[&InterfaceRow]) {
+        let mut directions: BTreeMap<u64, Vec<[f64; 3]>> = BTreeMap::new();
+        for row in rows {
+            for (block, direction) in self.ends(row).0 {
+                let list = directions.entry(block).or_default();
+                if !list.iter().any(|d| parallel(*d, direction)) {
+                    list.push(upright(direction));
+                }
+            }
+        }
+        for (block, list) in directions {
+            let c = self.components as u64;
+            let free = [0, 1, 2].map(|k| k < c && self.void.binary_search(&(block * c + k)).is_err());
+            match Frame::new(&list, free) {
+                Some(frame) if frame.is_identity() => {}
+                Some(frame) => {
+                    self.frames.insert(block, frame);
+                }
+                None => {
+                    let x = self.position(block);
+                    self.trouble.get_or_insert_with(|| {
+                        format!(
+                            "at ({}, {}, {}) the node is in inequalities along {} directions that are not independent, so that they are no bounds of single unknowns",
+                            x[0], x[1], x[2], list.len()
+                        )
+                    });
+                }
+            }
+        }
+        for row in rows {
+            if self.trouble.is_none() && self.bound(row).is_none() {
+                let x = self.ends(row).0.first().map_or([0.0; 3], |e| self.position(e.0));
+                self.trouble = Some(format!(
+                    "the inequality at ({}, {}, {}) is not the difference of two unknowns",
+                    x[0], x[1], x[2]
+                ));
+            }
+        }
+    }
+
+    /// Supports for the rigid motions that nothing holds.
+    fn support(&mut self, rows: &[&InterfaceRow]) {
+        let loose = self.motions.len() - self.all_held.rank();
+        if loose == 0 {
+            return;
+        }
+        let c = self.components as u64;
+        let in_rows: std::collections::HashSet<u64> = rows
+            .iter()
+            .flat_map(|row| self.ends(row).0)
+            .map(|(block, _)| block)
+            .collect();
+        let mut candidates: Vec<(u64, Form)> = Vec::new();
+        for (b, body) in self.scene.bodies.iter().enumerate() {
+            let mesh = body.mesh();
+            for place in mesh.boundary() {
+                for k in 0..self.components {
+                    let inside = mesh.node(place) * self.components + k;
+                    if body.prescribed_at(inside).is_some() {
+                        continue;
+                    }
+                    let at = self.index(body.first_dof + inside as u64);
+                    if in_rows.contains(&(at / c)) {
+                        continue;
+                    }
+                    candidates.push((at, self.motions.form(b, body.spec.position(place), k)));
+                }
+            }
+        }
+        let mut now = self.all_held.clone();
+        let mut firm = FIRM;
+        while now.rank() < self.motions.len() && firm > 1e-6 {
+            for (at, form) in &candidates {
+                if now.left(form) >= firm && now.insert(form, 0.0) {
+                    self.supports.push((*at, form.clone()));
+                }
+            }
+            firm *= 0.5;
+        }
+        self.void.extend(self.supports.iter().map(|s| s.0));
+        self.void.sort_unstable();
+    }
+
+    /// Number of rigid motions that nothing in the scene holds.
+    pub fn loose(&self) -> usize {
+        self.supports.len()
+    }
+
+    /// The nodes of a row with the vectors that it takes the products of u with, divided by the length of the first; that length.
+    pub fn ends(&self, row: &InterfaceRow) -> (Vec<(u64, [f64; 3])>, f64) {
+        let mut ends: Vec<(u64, [f64; 3])> = Vec::new();
+        let c = self.components as u64;
+        for &(dof, coefficient) in &row.terms {
+            let at = self.index(dof);
+            let (block, component) = (at / c, (at % c) as usize);
+            match ends.iter_mut().find(|e| e.0 == block) {
+                Some(end) => end.1[component] += coefficient,
+                None => {
+                    let mut end = (block, [0.0; 3]);
+                    end.1[component] = coefficient;
+                    ends.push(end);
+                }
+            }
+        }
+        // Ties may leave nothing of it.
+        ends.retain(|e| norm(e.1) > 1e-12);
+        let scale = ends.first().map_or(1.0, |e| norm(e.1));
+        ends.iter_mut().for_each(|e| e.1 = e.1.map(|v| v / scale));
+        (ends, scale)
+    }
+
+    /// A row as w_plus − w_minus ≤ gap / scale: (plus, minus, scale). `None` if it is nothing of the kind.
+    pub fn bound(&self, row: &InterfaceRow) -> Option<([Option<u64>; 2], f64)> {
+        let (ends, scale) = self.ends(row);
+        let mut out = [None; 2];
+        for (block, direction) in ends {
+            let (slot, sign) = self.frame(block).place(direction)?;
+            let place = &mut out[usize::from(sign < 0.0)];
+            if place.is_some() {
+                return None;
+            }
+            *place = Some(block * self.components as u64 + slot as u64);
+        }
+        Some((out, scale))
+    }
+
+    fn frame(&self, block: u64) -> &Frame {
+        self.frames.get(&block).unwrap_or(&Frame::IDENTITY)
+    }
+
+    /// Length of w.
+    pub fn len(&self) -> usize {
+        self.numbering.len() as usize + self.inserted.len()
+    }
+
+    /// Number C of components.
+    pub fn components(&self) -> usize {
+        self.components
+    }
+
+    fn moved(&self, number: u64) -> u64 {
+        number + self.inserted.partition_point(|&p| p <= number) as u64
+    }
+
+    /// The place of a free body dof.
+    pub fn index(&self, body_dof: u64) -> u64 {
+        self.moved(self.numbering.global(body_dof))
+    }
+
+    /// The places of the nodes that subdomains `share` own.
+    pub fn range(&self, share: Range<usize>) -> Range<usize> {
+        let numbers = self.numbering.range(share);
+        self.block_start(numbers.start)..self.block_start(numbers.end)
+    }
+
+    fn block_start(&self, number: u64) -> usize {
+        if number == self.numbering.len() {
+            return self.len();
+        }
+        self.moved(number) as usize / self.components * self.components
+    }
+
+    /// The places of a rank in equal shares of nodes.
+    pub fn share(&self, ranks: usize, rank: usize) -> Range<usize> {
+        let nodes = crate::mesh::contiguous_share(self.len() / self.components, ranks, rank);
+        nodes.start * self.components..nodes.end * self.components
+    }
+
+    /// Places without an unknown, increasing.
+    pub fn void(&self) -> &[u64] {
+        &self.void
+    }
+
+    /// The void places of the node that `index` is in.
+    pub fn void_beside(&self, index: u64) -> &[u64] {
+        let c = self.components as u64;
+        let first = index / c * c;
+        let at = |i: u64| self.void.partition_point(|&v| v < i);
+        &self.void[at(first)..at(first + c)]
+    }
+
+    /// u at place `index` as Σ coefficient · w.
+    pub fn terms(&self, index: u64) -> Vec<(u64, f64)> {
+        let c = self.components as u64;
+        let Some(frame) = self.frames.get(&(index / c)) else {
+            return vec![(index, 1.0)];
+        };
+        let row = frame.from[(index % c) as usize];
+        let entries = (0..self.components).map(|k| (index / c * c + k as u64, row[k]));
+        entries.filter(|e| e.1 != 0.0).collect()
+    }
+
+    /// Whether the scene has nodes whose unknowns are not components of u.
+    pub fn is_turned(&self) -> bool {
+        !self.frames.is_empty()
+    }
+
+    /// Position of a node.
+    fn position(&self, block: u64) -> [f64; 3] {
+        let (body, place) = self.node(block);
+        self.scene.bodies[body].spec.position(place)
+    }
+
+    /// Body and place of a node.
+    fn node(&self, block: u64) -> (usize, [usize; 3]) {
+        let first = block * self.components as u64;
+        let at = (first..).find(|i| self.filled.binary_search(i).is_err());
+        let at = at.expect("a node has a free component");
+        let before = self.filled.partition_point(|&v| v < at) as u64;
+        let (body, place, _) = self.numbering.place(at - before);
+        (body, place)
+    }
+
+    /// The rigid motions of all bodies together as values of w at place `index`, void or not. `centre`, `scale`: as in `rigid_motions`.
+    pub fn motions_at(&self, index: u64, centre: [f64; 3], scale: f64) -> [f64; 6] {
+        let c = self.components as u64;
+        let x = self.position(index / c);
+        let motions = crate::fem::cell::rigid_motions(self.scene.dim(), centre, scale, x);
+        let row = self.frame(index / c).to[(index % c) as usize];
+        motions.map(|m| (0..3).map(|k| row[k] * m[k]).sum())
+    }
+
+    /// Takes u, as a method without supports and frames has found it, to w: without the motions that the supports take away, and
+    /// along the frames. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn settle(&self, session: &Session, u: &PetscVec) -> Result<()> {
+        let range = u.ownership_range();
+        let c = self.components;
+        if !self.supports.is_empty() {
+            let mut values = vec![0.0; self.supports.len()];
+            {
+                let u = u.array()?;
+                for (value, (at, _)) in values.iter_mut().zip(&self.supports) {
+                    if range.contains(&(*at as usize)) {
+                        *value = u[*at as usize - range.start];
+                    }
+                }
+            }
+            sum_all(session.comm(), &mut values);
+            let mut equations = self.all_held.clone();
+            for ((_, form), value) in self.supports.iter().zip(&values) {
+                equations.insert(form, *value);
+            }
+            let alpha = equations.solve(self.motions.len());
+            let mut u = u.array_mut()?;
+            for i in range.clone() {
+                if self.filled.binary_search(&(i as u64)).is_ok() {
+                    continue;
+                }
+                let (body, place) = self.node((i / c) as u64);
+                let x = self.scene.bodies[body].spec.position(place);
+                let form = self.motions.form(body, x, i % c);
+                u[i - range.start] -= form.iter().map(|&(k, v)| v * alpha[k]).sum::<f64>();
+            }
+        }
+        let mut u = u.array_mut()?;
+        for (&block, frame) in &self.frames {
+            let first = block as usize * c;
+            if range.contains(&first) {
+                let at = first - range.start;
+                let old: Vec<f64> = u[at..at + c].to_vec();
+                for k in 0..c {
+                    u[at + k] = (0..c).map(|j| frame.to[k][j] * old[j]).sum();
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The direction or its opposite: that with a positive first entry.
+fn upright(d: [f64; 3]) -> [f64; 3] {
+    let first = d.iter().find(|v| v.abs() > 1e-6).copied().unwrap_or(1.0);
+    d.map(|v| v * first.signum() + 0.0)
+}

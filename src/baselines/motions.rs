@@ -1,0 +1,214 @@
+//! Rigid motions of bodies, and which of them ties, given values and rows leave free.
+//!
+//! A body moves by α ∈ Rᵐ, m = 1 (scalars), 3 or 6; all bodies by one long vector. A row that holds, a tie or a given value is a linear form
+//! in it that vanishes. Forms are collected in echelon form: whether one more is independent of them tells whether it holds
+//! anything that was loose.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::fem::cell::{rigid_count, rigid_motions};
+use crate::scene::Scene;
+
+/// What is left of a dependent form, relative to its largest entry, is below this.
+const DEPENDENT: f64 = 1e-9;
+
+/// A linear form, or an equation: (place, coefficient), increasing.
+pub type Form = Vec<(usize, f64)>;
+
+/// Independent equations in echelon form.
+#[derive(Debug, Clone, Default)]
+pub struct Echelon {
+    /// Equations with their pivots; no pivot of an earlier one is in a later one.
+    rows: Vec<(usize, BTreeMap<usize, f64>, f64)>,
+    of_pivot: HashMap<usize, usize>,
+}
+
+impl Echelon {
+    /// Number of independent equations.
+    pub fn rank(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// What is left of a form once the equations are used, the largest entry of it, and the right-hand side.
+    fn reduce(&self, form: &Form, mut rhs: f64) -> (BTreeMap<usize, f64>, f64) {
+        let mut rest: BTreeMap<usize, f64> = BTreeMap::new();
+        form.iter()
+            .for_each(|&(k, v)| *rest.entry(k).or_default() += v);
+        while let Some(r) = rest.keys().filter_map(|k| self.of_pivot.get(k)).min() {
+            let (pivot, row, its) = &self.rows[*r];
+            let factor = rest.remove(pivot).expect("the pivot was found in it");
+            rhs -= factor * its;
+            for (&k, v) in row.iter().filter(|(k, _)| *k != pivot) {
+                *rest.entry(k).or_default() -= factor * v;
+            }
+        }
+        (rest, rhs)
+    }
+
+    /// The part of a form that the equations leave, relative to the form: 0 if it depends on them.
+    pub fn left(&self, form: &Form) -> f64 {
+        let largest = |m: f64, v: f64| m.max(v.abs());
+        let size = form.iter().map(|t| t.1).fold(0.0, largest);
+        let left = self.reduce(form, 0.0).0.into_values().fold(0.0, largest);
+        if left > DEPENDENT * size {
+            left / size
+        } else {
+            0.0
+        }
+    }
+
+    /// Adds form·α = rhs if it is independent, and says whether it was.
+    pub fn insert(&mut self, form: &Form, rhs: f64) -> bool {
+        let size = form.iter().fold(0.0f64, |m, t| m.max(t.1.abs()));
+        let (mut rest, mut rhs) = self.reduce(form, rhs);
+        let by_size = |a: &(&usize, &f64), b: &(&usize, &f64)| {
+            a.1.abs().total_cmp(&b.1.abs()).then(b.0.cmp(a.0))
+        };
+        let Some((&pivot, &value)) = rest.iter().max_by(by_size) else {
+            return false;
+        };
+        if value.abs() <= DEPENDENT * size {
+            return false;
+        }
+        // What rounding has left would fill the rows.
+        rest.retain(|_, v| v.abs() > 1e-14 * size);
+        rest.values_mut().for_each(|v| *v /= value);
+        rhs /= value;
+        self.of_pivot.insert(pivot, self.rows.len());
+        self.rows.push((pivot, rest, rhs));
+        true
+    }
+
+    /// The α of length n that satisfies the equations and has no other entries.
+    pub fn solve(&self, n: usize) -> Vec<f64> {
+        let mut alpha = vec![0.0; n];
+        for (pivot, row, rhs) in self.rows.iter().rev() {
+            let others = row.iter().filter(|(k, _)| *k != pivot);
+            alpha[*pivot] = rhs - others.map(|(&k, v)| v * alpha[k]).sum::<f64>();
+        }
+        alpha
+    }
+}
+
+/// The rigid motions of the bodies of a scene.
+#[derive(Debug, Clone)]
+pub struct Motions {
+    dim: usize,
+    components: usize,
+    /// Motions of one body.
+    count: usize,
+    /// Centre and radius by body.
+    bodies: Vec<([f64; 3], f64)>,
+}
+
+impl Motions {
+    /// Those of `scene`.
+    pub fn new(scene: &Scene) -> Motions {
+        let (dim, components) = (scene.dim(), scene.components());
+        let ball = |[low, high]: [[f64; 3]; 2]| {
+            let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
+            let half = [0, 1, 2].map(|d| 0.5 * (high[d] - low[d]));
+            (centre, half.iter().map(|h| h * h).sum::<f64>().sqrt())
+        };
+        Motions {
+            dim,
+            components,
+            count: if components == 1 { 1 } else { rigid_count(dim) },
+            bodies: scene.bodies.iter().map(|b| ball(b.bounds)).collect(),
+        }
+    }
+
+    /// Number of motions of all bodies.
+    pub fn len(&self) -> usize {
+        self.count * self.bodies.len()
+    }
+
+    /// Number of motions of one body.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Component `component` of u at a point of a body.
+    pub fn form(&self, body: usize, point: [f64; 3], component: usize) -> Form {
+        let first = body * self.count;
+        if self.components == 1 {
+            return vec![(first, 1.0)];
+        }
+        let (centre, radius) = self.bodies[body];
+        let motions = rigid_motions(self.dim, centre, radius, point);
+        let entries = (0..self.count).map(|m| (first + m, motions[m][component]));
+        entries.filter(|e| e.1 != 0.0).collect()
+    }
+
+    /// The form of Σ coefficient · u(body dof).
+    pub fn of_terms(&self, scene: &Scene, terms: &[(u64, f64)]) -> Form {
+        let mut out: BTreeMap<usize, f64> = BTreeMap::new();
+        for &(dof, coefficient) in terms {
+            let body = scene.bodies.partition_point(|b| b.first_dof <= dof) - 1;
+            let inside = (dof - scene.bodies[body].first_dof) as usize;
+            for (k, v) in self.at(scene, body, inside) {
+                *out.entry(k).or_default() += coefficient * v;
+            }
+        }
+        out.into_iter().collect()
+    }
+
+    /// The form of degree of freedom C k + c of a body.
+    fn at(&self, scene: &Scene, body: usize, inside: usize) -> Form {
+        let spec = &scene.bodies[body].spec;
+        let place = spec.mesh.place(inside / self.components);
+        self.form(body, spec.position(place), inside % self.components)
+    }
+
+    /// What ties and given values hold.
+    pub fn held(&self, scene: &Scene) -> Echelon {
+        let mut out = Echelon::default();
+        for (b, body) in scene.bodies.iter().enumerate() {
+            for &(dof, _) in &body.prescribed {
+                out.insert(&self.at(scene, b, dof), 0.0);
+            }
+        }
+        for point in &scene.points {
+            for (member, &to) in point.members.iter().zip(&point.tied_to) {
+                let other = &point.members[to];
+                if (member.body, member.node) == (other.body, other.node) {
+                    continue;
+                }
+                for c in 0..self.components {
+                    let dof = |b: usize, node: usize| {
+                        scene.bodies[b].first_dof + (node * self.components + c) as u64
+                    };
+                    let tie = [
+                        (dof(member.body, member.node), 1.0),
+                        (dof(other.body, other.node), -1.0),
+                    ];
+                    out.insert(&self.of_terms(scene, &tie), 0.0);
+                }
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equations_are_kept_while_they_are_independent() {
+        let mut e = Echelon::default();
+        assert!(e.insert(&vec![(0, 1.0), (1, 2.0)], 5.0));
+        assert!(e.insert(&vec![(1, 1.0), (2, -1.0)], 1.0));
+        assert!(!e.insert(&vec![(0, 1.0), (2, 2.0)], 3.0));
+        assert_eq!(e.left(&vec![(0, 3.0), (1, 6.0)]), 0.0);
+        assert!(e.left(&vec![(2, 1.0)]) > 0.1);
+        assert!(e.insert(&vec![(0, 1.0), (1, 1.0), (2, 1.0)], 6.0));
+        assert_eq!(e.rank(), 3);
+        let alpha = e.solve(3);
+        // α₀ + 2α₁ = 5, α₁ − α₂ = 1, Σ = 6.
+        let want = [5.0 - 2.0 * alpha[1], alpha[2] + 1.0, 6.0 - alpha[0] - alpha[1]];
+        for (a, w) in alpha.iter().zip(want) {
+            assert!((a - w).abs() < 1e-13, "{alpha:?}");
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! What multigrid and domain decompositions are told of elasticity: rigid motions, and which rows are of one node.
+
+use super::frame::norm;
+use super::unknowns::Unknowns;
+use crate::fem::cell::rigid_count;
+use crate::petsc::{Mat, Vec as PetscVec};
+use crate::scene::Scene;
+use crate::Result;
+
+/// The rigid motions that a method wants to know.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Near {
+    /// None.
+    None,
+    /// Rotations: what interpolates every component by itself keeps translations anyway.
+    Rotations,
+    /// All.
+    Motions,
+}
+
+/// Rigid motions of the whole scene on the unknowns of a problem; none for scalars.
+pub struct NearKernel {
+    vectors: Vec<PetscVec>,
+    /// Rows per node, where all nodes have as many.
+    block: usize,
+}
+
+impl NearKernel {
+    /// For vectors laid out as `like`, the entries of v = `unknowns`. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn new(
+        scene: &Scene,
+        unknowns: &Unknowns,
+        like: &PetscVec,
+        near: Near,
+    ) -> Result<NearKernel> {
+        let layout = unknowns.layout;
+        let dim = scene.dim();
+        let whole = unknowns.len() == layout.len();
+        let block = if whole { layout.components() } else { 1 };
+        let mut vectors = Vec::new();
+        let wanted = match near {
+            _ if layout.components() == 1 => 0..0,
+            Near::None => 0..0,
+            Near::Rotations => dim..rigid_count(dim),
+            Near::Motions => 0..rigid_count(dim),
+        };
+        let bounds = scene.bodies.iter().map(|b| b.bounds);
+        let (low, high) = bounds.fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |a, b| {
+            let low = [0, 1, 2].map(|d| a.0[d].min(b[0][d]));
+            (low, [0, 1, 2].map(|d| a.1[d].max(b[1][d])))
+        });
+        let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
+        let scale = 0.5 * norm([0, 1, 2].map(|d| high[d] - low[d]));
+        for _ in wanted.clone() {
+            vectors.push(like.duplicate()?);
+        }
+        if !vectors.is_empty() {
+            let places = unknowns.places(like.ownership_range());
+            let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(places.len()); vectors.len()];
+            for place in places {
+                let void = layout.void().binary_search(&place).is_ok();
+                let values = layout.motions_at(place, centre, scale);
+                for (column, mode) in columns.iter_mut().zip(wanted.clone()) {
+                    column.push(if void { 0.0 } else { values[mode] });
+                }
+            }
+            for (vector, column) in vectors.iter().zip(&columns) {
+                vector.array_mut()?.copy_from_slice(column);
+            }
+        }
+        Ok(NearKernel { vectors, block })
+    }
+
+    /// Whether there is nothing to tell.
+    pub fn is_empty(&self) -> bool {
+        self.vectors.is_empty()
+    }
+
+    /// Attaches all to a matrix. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn attach(&self, a: &Mat) -> Result<()> {
+        self.attach_where(a, |_| Ok(()))
+    }
+
+    /// The same with vectors that `clear` has had a look at. Collective.
+    ///
+    /// # Errors
+    /// PETSc's, and those of `clear`.
+    pub fn attach_where(&self, a: &Mat, clear: impl Fn(&PetscVec) -> Result<()>) -> Result<()> {
+        if self.block > 1 {
+            a.set_block_size(self.block)?;
+        }
+        if self.is_empty() {
+            return Ok(());
+        }
+        let mut basis: Vec<PetscVec> = Vec::new();
+        for vector in &self.vectors {
+            let q = vector.duplicate()?;
+            q.copy_from(vector)?;
+            clear(&q)?;
+            let size = q.norm2()?;
+            // Twice: once leaves rounding.
+            for other in basis.iter().chain(&basis) {
+                q.axpy(-q.dot(other)?, other)?;
+            }
+            let left = q.norm2()?;
+            // Few nodes may not tell all motions from each other.
+            if left > 1e-8 * size {
+                q.scale(1.0 / left)?;
+                basis.push(q);
+            }
+        }
+        a.set_near_null_space(false, &basis)
+    }
+}

@@ -1,0 +1,128 @@
+//! `fetifeti study`: arguments and files; the studies themselves are in [`crate::study`].
+
+use std::path::Path;
+
+use super::args::{Study, StudyName};
+use super::solve::prepare;
+use crate::petsc::Session;
+use crate::report::{json, output};
+use crate::study::{hard_cases, hertz, speed_error};
+use crate::{Error, Result};
+
+/// Runs a study and writes what was asked for.
+pub fn run(session: &Session, args: &Study) -> Result<()> {
+    prepare(session, args.out.as_deref(), args.json.as_deref())?;
+    match args.name {
+        StudyName::Hertz => run_hertz(session, args),
+        StudyName::HardCases => run_hard_cases(session, args),
+        StudyName::SpeedError => run_speed_error(session, args),
+    }
+}
+
+fn run_hertz(session: &Session, args: &Study) -> Result<()> {
+    let report = hertz::run(session, args.quick, &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        let mut files = vec!["hertz.csv".to_string()];
+        hertz::table(&report).write_csv(&dir.join("hertz.csv"))?;
+        for case in &report.cases {
+            let stem = format!("hertz_{}", case.case);
+            hertz::figure(case).save(&dir.join(&stem))?;
+            hertz::csv(case).write_csv(&dir.join(format!("{stem}.csv")))?;
+            files.extend(["png", "svg", "csv"].map(|end| format!("{stem}.{end}")));
+        }
+        Ok(files)
+    };
+    finish(session, args, &report, &hertz::text(&report), write)?;
+    match report.cases.iter().find(|c| !c.holds()) {
+        None => Ok(()),
+        Some(case) => Err(Error::NotConverged(format!(
+            "hertz, {}: half-width and peak are not within 2 % of the theory on the finest mesh, or do not come nearer to it",
+            case.case
+        ))),
+    }
+}
+
+fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
+    let report = hard_cases::run(session, args.quick, &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        hard_cases::table(&report).write_csv(&dir.join("hard-cases.csv"))?;
+        Ok(vec!["hard-cases.csv".to_string()])
+    };
+    finish(session, args, &report, &hard_cases::text(&report), write)?;
+    let wrong: Vec<&str> = report.wrong().map(|c| c.case.as_str()).collect();
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    Err(Error::NotConverged(format!(
+        "hard-cases: wrong answers were called solutions: {}",
+        wrong.join(", ")
+    )))
+}
+
+fn run_speed_error(session: &Session, args: &Study) -> Result<()> {
+    let report = speed_error::run(session, args.quick, &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        speed_error::table(&report).write_csv(&dir.join("speed-error.csv"))?;
+        let mut files = vec!["speed-error.csv".to_string()];
+        for case in &report.cases {
+            let stem = format!("speed-error_{}", case.case);
+            speed_error::figure(case).save(&dir.join(&stem))?;
+            files.extend(["png", "svg"].map(|end| format!("{stem}.{end}")));
+        }
+        Ok(files)
+    };
+    finish(session, args, &report, &speed_error::text(&report), write)
+}
+
+/// Prints and writes on rank 0; `write` puts tables and pictures into the directory and says which. Collective.
+fn finish<T: serde::Serialize>(
+    session: &Session,
+    args: &Study,
+    report: &T,
+    text: &str,
+    write: impl FnOnce(&Path) -> Result<Vec<String>>,
+) -> Result<()> {
+    let name = args.name.name();
+    let all = || -> Result<()> {
+        let quiet = args.quiet || args.json.as_deref().is_some_and(output::is_stdout);
+        if !quiet {
+            output::print(text)?;
+        }
+        if let Some(file) = &args.json {
+            json::write(file, report)?;
+        }
+        if let Some(dir) = &args.out {
+            let json = format!("{name}.json");
+            json::write(&dir.join(&json), report)?;
+            let mut files = vec![json];
+            files.extend(write(dir)?);
+            if !quiet {
+                let list = files.join(", ");
+                output::print(&format!("written: {list} in {}\n", dir.display()))?;
+            }
+        }
+        Ok(())
+    };
+    session.agree(if session.rank() == 0 { all() } else { Ok(()) })
+}
+
+/// One line on stderr that overwrites itself, on a terminal only.
+fn progress(session: &Session, args: &Study, what: &str) {
+    use std::io::IsTerminal;
+    if session.rank() == 0 && !args.quiet && std::io::stderr().is_terminal() {
+        let text = match what {
+            "" => String::new(),
+            what => format!("{}: {what}", args.name.name()),
+        };
+        eprint!("\r\x1b[K{text}");
+    }
+}

@@ -1,0 +1,358 @@
+//! `study hard-cases`: problems that are hard for the method, each against a direct solution that shares only matrices with it.
+//!
+//! What counts is that no wrong answer is called a solution. A case ends as `solved`, as `not converged` or `refused` where the program
+//! says so itself, or as `WRONG`.
+
+mod cases;
+
+pub use cases::{cases, Case};
+
+use serde::{Deserialize, Serialize};
+
+use super::direct::Direct;
+use super::solved::Solved;
+use crate::feti::exchange::gather_all;
+use crate::feti::Settings;
+use crate::petsc::Session;
+use crate::report::json;
+use crate::report::table::{count, fixed, scientific, Align, Table};
+use crate::{Error, Result};
+
+/// Relative residual that is asked of the method.
+pub const RTOL: f64 = 1e-8;
+
+/// What an answer may be away from the direct solution, relative to it, in the energy norm and in the largest displacement.
+pub const LIMIT: f64 = 1e-3;
+
+/// Exact spectra up to so many multipliers; in the quick study.
+const SPECTRUM: [usize; 2] = [1200, 400];
+
+/// How a case ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Converged, and near the direct solution.
+    Solved,
+    /// The solver says that it did not converge.
+    NotConverged,
+    /// The program refuses the scene with a sentence, and the direct solver finds no solution either.
+    Refused,
+    /// Converged, but not to the solution; or a scene is refused that has one.
+    Wrong,
+}
+
+impl Verdict {
+    /// For tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Solved => "solved",
+            Verdict::NotConverged => "not converged (said so)",
+            Verdict::Refused => "no solution (said so)",
+            Verdict::Wrong => "WRONG",
+        }
+    }
+}
+
+/// The study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Its name, "hard-cases".
+    pub study: String,
+    /// Relative residual that was asked for.
+    pub rtol: f64,
+    /// Distance from the direct solution above which an answer is wrong.
+    pub limit: f64,
+    /// The cases.
+    pub cases: Vec<Record>,
+}
+
+/// One case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Its name.
+    pub case: String,
+    /// What is hard about it.
+    pub title: String,
+    /// Unknowns.
+    pub dofs: usize,
+    /// Subdomains.
+    pub subdomains: usize,
+    /// Multipliers.
+    pub multipliers: usize,
+    /// Steps of the contact loop; 0 without inequalities.
+    pub outer_iterations: usize,
+    /// Krylov iterations in all.
+    pub iterations: usize,
+    /// κ with the rows that hold at the end.
+    pub condition: json::Condition,
+    /// The certificate of the method.
+    pub kkt: Option<json::Kkt>,
+    /// Distance from the direct solution in the energy norm, relative.
+    pub error_energy: Option<f64>,
+    /// The largest difference of a displacement, over the largest displacement.
+    pub error_max: Option<f64>,
+    /// Rows that hold, and in the direct solution.
+    pub active: [Option<usize>; 2],
+    /// The largest residual of the direct solution; `None` where it has none.
+    pub reference: Option<f64>,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// What the program says, where it did not solve the case.
+    pub message: Option<String>,
+    /// Seconds of assembly, set-up and solve.
+    pub seconds: f64,
+}
+
+impl Report {
+    /// The cases that are wrong.
+    pub fn wrong(&self) -> impl Iterator<Item = &Record> {
+        self.cases.iter().filter(|c| c.verdict == Verdict::Wrong)
+    }
+}
+
+/// Runs all cases, telling `progress` before each. Collective.
+///
+/// # Errors
+/// A scene that cannot be read, and PETSc's own errors.
+pub fn run(session: &Session, quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Report> {
+    let mut records = Vec::new();
+    for case in cases(quick) {
+        progress(case.name);
+        records.push(one(session, &case, SPECTRUM[usize::from(quick)])?);
+    }
+    Ok(Report {
+        study: "hard-cases".into(),
+        rtol: RTOL,
+        limit: LIMIT,
+        cases: records,
+    })
+}
+
+/// Solves one case and holds it against the direct solution; exact spectra up to `spectrum` multipliers. Collective.
+///
+/// # Errors
+/// As [`run`].
+pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
+    let file = format!("{}.toml", case.name);
+    let scene = session.agree(crate::Scene::parse(&file, &case.text))?;
+    let mut record = Record {
+        case: case.name.into(),
+        title: case.title.into(),
+        dofs: crate::scene::Numbering::new(&scene).len() as usize,
+        subdomains: scene.n_subdomains(),
+        multipliers: 0,
+        outer_iterations: 0,
+        iterations: 0,
+        condition: json::Condition {
+            exact: None,
+            estimate: None,
+        },
+        kkt: None,
+        error_energy: None,
+        error_max: None,
+        active: [None; 2],
+        reference: None,
+        verdict: Verdict::NotConverged,
+        message: None,
+        seconds: 0.0,
+    };
+    let settings = Settings {
+        rtol: RTOL,
+        ..Settings::default()
+    };
+    let solved = match Solved::new(session, &file, &case.text, &settings) {
+        Ok(solved) => solved,
+        // The scene has been read: what is refused now is said not to have a solution.
+        Err(e @ (Error::Input(_) | Error::NotConverged(_))) => {
+            record.message = Some(e.to_string());
+            let exists = on_first(session, || Ok(vec![f64::from(Direct::new(&scene).is_ok())]))?;
+            record.verdict = match (exists[0] > 0.0, &e) {
+                (true, Error::Input(_)) => Verdict::Wrong,
+                (true, _) => Verdict::NotConverged,
+                (false, _) => Verdict::Refused,
+            };
+            return Ok(record);
+        }
+        Err(e) => return Err(e),
+    };
+    fill(session, &solved, spectrum, &mut record)?;
+    Ok(record)
+}
+
+/// What the method says of itself, then what the direct solution says.
+fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -> Result<()> {
+    let (solver, solution) = (&solved.solver, &solved.solution);
+    let facts = solver.facts();
+    let spectrum = |s: crate::Spectrum| json::Spectrum::new(s.lambda_min, s.lambda_max);
+    record.multipliers = facts.multipliers_local + facts.multipliers_global;
+    record.outer_iterations = solution.steps.len();
+    record.iterations = solution.iterations;
+    record.seconds = solved.seconds;
+    if record.multipliers <= exact {
+        // An eigensolver that fails takes nothing away from the solution.
+        record.condition.exact = solver.spectrum().ok().flatten().map(spectrum);
+    }
+    record.condition.estimate = solution.estimate.map(spectrum);
+    record.kkt = Some(json::Kkt {
+        stationarity: solution.kkt.stationarity,
+        feasibility: solution.kkt.feasibility,
+        complementarity: solution.kkt.complementarity,
+        min_multiplier: (facts.inequalities > 0).then_some(solution.kkt.min_multiplier),
+    });
+    let mut words = Vec::new();
+    for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
+        words.extend(
+            sub.dofs
+                .iter()
+                .zip(u)
+                .flat_map(|(&dof, u)| [dof, u.to_bits()]),
+        );
+    }
+    let words = gather_all(session.comm(), &words).concat();
+    let rows = solved.rows(session)?;
+    let active = rows.iter().filter(|r| r.inequality && r.active).count();
+    let found = on_first(session, || {
+        let direct = match Direct::new(&solved.scene) {
+            Ok(direct) => direct,
+            Err(e @ Error::NotConverged(_)) => {
+                eprintln!("{}: {e}", solved.scene.title);
+                return Ok(Vec::new());
+            }
+            Err(e) => return Err(e),
+        };
+        let [energy, largest] = distance(&direct, &words);
+        let certificate = direct.certificate.largest();
+        Ok(vec![energy, largest, certificate, direct.active as f64])
+    })?;
+    let inequalities = facts.inequalities > 0;
+    record.active[0] = inequalities.then_some(active);
+    if let [energy, largest, certificate, active] = found[..] {
+        record.error_energy = Some(energy);
+        record.error_max = Some(largest);
+        record.reference = Some(certificate);
+        record.active[1] = inequalities.then_some(active as usize);
+    }
+    let near = |e: Option<f64>| e.is_some_and(|e| e <= LIMIT);
+    record.verdict = match solution.converged {
+        false => Verdict::NotConverged,
+        true if near(record.error_energy) && near(record.error_max) => Verdict::Solved,
+        true => Verdict::Wrong,
+    };
+    if !solution.converged {
+        record.message = Some(solution.reason.clone());
+    }
+    if record.reference.is_none() {
+        record.message = Some("the direct solver finds no solution".into());
+    }
+    Ok(())
+}
+
+/// The distance of a torn solution, as pairs of body dof and value, from the direct one: in the energy norm, and the largest.
+fn distance(direct: &Direct, words: &[u64]) -> [f64; 2] {
+    let n = direct.u.len();
+    let (mut sum, mut copies) = (vec![0.0; n], vec![0.0; n]);
+    let mut largest = 0.0_f64;
+    for pair in words.chunks_exact(2) {
+        let (i, value) = (direct.unknown(pair[0]), f64::from_bits(pair[1]));
+        let difference = value - direct.u[i];
+        largest = largest.max(difference.abs());
+        sum[i] += difference;
+        copies[i] += 1.0;
+    }
+    let d: Vec<f64> = sum.iter().zip(&copies).map(|(s, c)| s / c).collect();
+    let size = direct.u.iter().fold(0.0_f64, |a, u| a.max(u.abs()));
+    let energy = direct.energy(&direct.u).max(0.0).sqrt();
+    let over = |x: f64, size: f64| if size > 0.0 { x / size } else { x };
+    [
+        over(direct.energy(&d).max(0.0).sqrt(), energy),
+        over(largest, size),
+    ]
+}
+
+/// Numbers that rank 0 works out, on every rank. Collective.
+fn on_first(session: &Session, work: impl FnOnce() -> Result<Vec<f64>>) -> Result<Vec<f64>> {
+    let numbers = session.agree(match session.rank() {
+        0 => work(),
+        _ => Ok(Vec::new()),
+    })?;
+    let words: Vec<u64> = numbers.iter().map(|v| v.to_bits()).collect();
+    let all = gather_all(session.comm(), &words).concat();
+    Ok(all.into_iter().map(f64::from_bits).collect())
+}
+
+/// All cases.
+pub fn table(report: &Report) -> Table {
+    let header = [
+        "case",
+        "dofs",
+        "sub",
+        "mult",
+        "outer",
+        "it",
+        "κ exact",
+        "κ est",
+        "kkt",
+        "error energy",
+        "error max",
+        "set",
+        "direct",
+        "s",
+        "verdict",
+    ];
+    let mut table = Table::new(header)
+        .align(0, Align::Left)
+        .align(14, Align::Left);
+    for c in &report.cases {
+        let kappa = |s: Option<json::Spectrum>| scientific_or_fixed(s.map(|s| s.kappa));
+        let kkt = c
+            .kkt
+            .map(|k| k.stationarity.max(k.feasibility).max(k.complementarity));
+        let set = match c.active {
+            [Some(ours), Some(direct)] => format!("{ours}/{direct}"),
+            [Some(ours), None] => ours.to_string(),
+            _ => String::new(),
+        };
+        table.row([
+            c.case.clone(),
+            c.dofs.to_string(),
+            c.subdomains.to_string(),
+            c.multipliers.to_string(),
+            count((c.outer_iterations > 0).then_some(c.outer_iterations)),
+            c.iterations.to_string(),
+            kappa(c.condition.exact),
+            kappa(c.condition.estimate),
+            scientific(kkt),
+            scientific(c.error_energy),
+            scientific(c.error_max),
+            set,
+            scientific(c.reference),
+            fixed(Some(c.seconds), 2),
+            c.verdict.name().to_string(),
+        ]);
+    }
+    table
+}
+
+fn scientific_or_fixed(x: Option<f64>) -> String {
+    match x {
+        Some(v) if v < 1e4 => fixed(x, 2),
+        _ => scientific(x),
+    }
+}
+
+/// The table for terminals, with what every case is and what the program said.
+pub fn text(report: &Report) -> String {
+    let mut out = format!(
+        "Hard cases: rtol {:e}; errors against a direct solution; set: rows that hold, ours/direct\n{}\n",
+        report.rtol,
+        table(report)
+    );
+    for c in &report.cases {
+        out += &format!("{}: {}", c.case, c.title);
+        if let Some(message) = &c.message {
+            out += &format!(". Said: {message}");
+        }
+        out += "\n";
+    }
+    out
+}

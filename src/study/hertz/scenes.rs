@@ -1,0 +1,107 @@
+//! The three scenes, mesh by mesh, as a user would write them.
+
+use super::theory::{Elastic, Pair};
+
+/// One of the three problems of the study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Case {
+    /// Half a cylinder on a rigid plane, plane strain.
+    Cylinder,
+    /// Two half cylinders of different materials, plane strain.
+    TwoCylinders,
+    /// A quarter of half a ball on a rigid plane.
+    Sphere,
+}
+
+/// Radius of all bodies.
+const RADIUS: f64 = 1.0;
+/// Young's modulus and Poisson's ratio of the lower (or only) body.
+const LOWER: [f64; 2] = [1.0, 0.3];
+/// Of the upper one of two.
+const UPPER: [f64; 2] = [3.0, 0.2];
+
+impl Case {
+    /// All of them.
+    pub const ALL: [Case; 3] = [Case::Cylinder, Case::TwoCylinders, Case::Sphere];
+
+    /// Name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Case::Cylinder => "cylinder",
+            Case::TwoCylinders => "two_cylinders",
+            Case::Sphere => "sphere",
+        }
+    }
+
+    /// What it is, for titles.
+    pub fn title(self) -> &'static str {
+        match self {
+            Case::Cylinder => "Elastic cylinder on a rigid plane",
+            Case::TwoCylinders => "Two elastic cylinders",
+            Case::Sphere => "Elastic sphere on a rigid plane",
+        }
+    }
+
+    /// What Hertz's formulas need.
+    pub fn pair(self) -> Pair {
+        let body = |[young, poisson]: [f64; 2]| Elastic {
+            young,
+            poisson,
+            radius: RADIUS,
+        };
+        match self {
+            Case::Cylinder => Pair::new([body(LOWER), Elastic::PLANE], false),
+            Case::TwoCylinders => Pair::new([body(LOWER), body(UPPER)], false),
+            Case::Sphere => Pair::new([body(LOWER), Elastic::PLANE], true),
+        }
+    }
+
+    /// The whole force over that of the modelled part: symmetry leaves a quarter of the ball.
+    pub fn share(self) -> f64 {
+        match self {
+            Case::Sphere => 4.0,
+            _ => 1.0,
+        }
+    }
+
+    /// The scene with `n` elements from the axis to the rim, and from the pole to the flat side.
+    pub fn scene(self, n: usize) -> String {
+        let [young, poisson] = LOWER;
+        let head = format!("title = \"{}, {n} elements per radius\"\n", self.title());
+        match self {
+            Case::Cylinder => format!(
+                "{head}physics = \"elasticity\"\n\
+                 [[body]]\nname = \"cylinder\"\n\
+                 shape = {{ half_disc = {{ radius = {RADIUS}, centre = [0, {RADIUS}], focus = 0.05 }} }}\n\
+                 elements = [{}, {n}]\nsubdomains = [4, 2]\nyoung = {young}\npoisson = {poisson}\n\
+                 dirichlet = {{ top = [0, -0.004] }}\n\
+                 [[obstacle]]\nbody = \"cylinder\"\nside = \"bottom\"\nplane = {{ point = [0, 0], normal = [0, 1] }}\n",
+                2 * n
+            ),
+            Case::TwoCylinders => {
+                let [young2, poisson2] = UPPER;
+                format!(
+                    "{head}physics = \"elasticity\"\n\
+                     [[body]]\nname = \"lower\"\n\
+                     shape = {{ half_disc = {{ radius = {RADIUS}, centre = [0, -{RADIUS}], focus = 0.05, pole = \"top\" }} }}\n\
+                     elements = [{0}, {n}]\nsubdomains = [4, 2]\nyoung = {young}\npoisson = {poisson}\ndirichlet = [\"bottom\"]\n\
+                     [[body]]\nname = \"upper\"\n\
+                     shape = {{ half_disc = {{ radius = {RADIUS}, centre = [0, {RADIUS}], focus = 0.05 }} }}\n\
+                     elements = [{0}, {n}]\nsubdomains = [4, 2]\nyoung = {young2}\npoisson = {poisson2}\n\
+                     dirichlet = {{ top = [0, -0.01] }}\n\
+                     [[contact]]\nbodies = [\"lower\", \"upper\"]\nsides = [\"top\", \"bottom\"]\n",
+                    2 * n
+                )
+            }
+            Case::Sphere => format!(
+                "{head}dimension = 3\nphysics = \"elasticity\"\n\
+                 [[body]]\nname = \"ball\"\n\
+                 shape = {{ quarter_ball = {{ radius = {RADIUS}, centre = [0, {RADIUS}, 0], focus = 0.05, trim = 0.7 }} }}\n\
+                 elements = [{n}, {n}, {n}]\nsubdomains = [{0}, {0}, {0}]\nyoung = {young}\npoisson = {poisson}\n\
+                 dirichlet = {{ left = {{ x = 0 }}, back = {{ z = 0 }}, top = [0, -0.01, 0] }}\n\
+                 [[obstacle]]\nbody = \"ball\"\nside = \"bottom\"\nplane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\n",
+                (n / 8).max(2)
+            ),
+        }
+    }
+}

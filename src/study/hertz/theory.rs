@@ -1,0 +1,128 @@
+//! Hertz's formulas for frictionless contact (K. L. Johnson, *Contact Mechanics*, 1985, chapter 4).
+
+/// An elastic body, or the rigid one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elastic {
+    /// Young's modulus; infinite for a rigid body.
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Radius; infinite for a plane.
+    pub radius: f64,
+}
+
+impl Elastic {
+    /// The rigid plane.
+    pub const PLANE: Elastic = Elastic {
+        young: f64::INFINITY,
+        poisson: 0.0,
+        radius: f64::INFINITY,
+    };
+}
+
+/// A pair of bodies: what the formulas need of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// E*, with 1/E* the sum of (1 − ν²)/E.
+    pub modulus: f64,
+    /// R, with 1/R the sum of the curvatures.
+    pub radius: f64,
+    /// Spheres; otherwise parallel cylinders in plane strain.
+    pub spheres: bool,
+}
+
+/// What the formulas say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Half-width, or radius, of the contact zone.
+    pub a: f64,
+    /// Pressure in its middle.
+    pub p0: f64,
+}
+
+impl Pair {
+    /// Of two bodies.
+    pub fn new(bodies: [Elastic; 2], spheres: bool) -> Pair {
+        let compliance = |b: &Elastic| (1.0 - b.poisson * b.poisson) / b.young;
+        let curvature = |b: &Elastic| 1.0 / b.radius;
+        Pair {
+            modulus: 1.0 / bodies.iter().map(compliance).sum::<f64>(),
+            radius: 1.0 / bodies.iter().map(curvature).sum::<f64>(),
+            spheres,
+        }
+    }
+
+    /// Under the force F (per length of cylinders).
+    pub fn under(&self, force: f64) -> Contact {
+        use std::f64::consts::PI;
+        let (e, r) = (self.modulus, self.radius);
+        if self.spheres {
+            let a = (3.0 * force * r / (4.0 * e)).cbrt();
+            let p0 = 3.0 * force / (2.0 * PI * a * a);
+            return Contact { a, p0 };
+        }
+        let a = (4.0 * force * r / (PI * e)).sqrt();
+        let p0 = 2.0 * force / (PI * a);
+        Contact { a, p0 }
+    }
+}
+
+impl Contact {
+    /// The pressure at a distance from the middle.
+    pub fn pressure(&self, x: f64) -> f64 {
+        self.p0 * (1.0 - (x / self.a).powi(2)).max(0.0).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pressure adds up to the force, and p0 = E* a/(2R) for cylinders, 2 E* a/(πR) for spheres.
+    #[test]
+    fn pressure_and_force_belong_together() {
+        let soft = Elastic {
+            young: 2.0,
+            poisson: 0.3,
+            radius: 1.5,
+        };
+        for spheres in [false, true] {
+            let pair = Pair::new([soft, Elastic::PLANE], spheres);
+            assert!((pair.modulus - 2.0 / 0.91).abs() < 1e-14 && (pair.radius - 1.5).abs() < 1e-14);
+            let found = pair.under(0.01);
+            let n = 100_000;
+            let sum: f64 = (0..n)
+                .map(|k| {
+                    let x = (f64::from(k) + 0.5) / f64::from(n) * found.a;
+                    let ring = if spheres {
+                        std::f64::consts::TAU * x
+                    } else {
+                        2.0
+                    };
+                    found.pressure(x) * ring * found.a / f64::from(n)
+                })
+                .sum();
+            assert!((sum / 0.01 - 1.0).abs() < 1e-5, "{sum}");
+            let stiffness = pair.modulus * found.a / pair.radius;
+            let factor = if spheres {
+                2.0 / std::f64::consts::PI
+            } else {
+                0.5
+            };
+            assert!((found.p0 / (factor * stiffness) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn two_equal_bodies_are_half_as_stiff_and_half_as_wide() {
+        let body = Elastic {
+            young: 1.0,
+            poisson: 0.25,
+            radius: 1.0,
+        };
+        let pair = Pair::new([body, body], false);
+        let plane = Pair::new([body, Elastic::PLANE], false);
+        assert!((pair.modulus - 0.5 * plane.modulus).abs() < 1e-15);
+        assert!((pair.radius - 0.5).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,386 @@
+//! `study speed-error`: how far a solution is from the solution of the continuous problem, and how many seconds it took, for ours and every
+//! baseline of `compare`, over meshes and tolerances.
+//!
+//! ```text
+//!     ‖u_h,k − u‖² = ‖u_h − u‖² + ‖u_h,k − u_h‖²         (Galerkin)
+//! ```
+//!
+//! The first part, the mesh's, is measured once per mesh on a tight solution of ours: against the known solution, or by the energy against
+//! that of a mesh twice as fine as the finest. The second, the solver's, is what `compare` reports: the distance from a direct solution of the
+//! same mesh. With inequalities the sum stands for the distance only; the parts are exact. `compare` runs all methods one after the other for
+//! every mesh and tolerance, so that what else the machine does meets all of them.
+
+mod picture;
+mod scenes;
+
+pub use picture::{figure, table, text};
+pub use scenes::Case;
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use serde::{Deserialize, Serialize};
+
+use super::solved::Solved;
+use crate::feti::exchange::sum_all;
+use crate::feti::Settings;
+use crate::petsc::Session;
+use crate::report::json::CompareReport;
+use crate::report::output;
+use crate::{Error, Result};
+
+/// A way to run ours: one curve each. The first also brings the baselines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Variant {
+    /// Its name in tables and pictures.
+    pub name: &'static str,
+    /// PETSc options.
+    pub options: &'static [&'static str],
+}
+
+/// The variants of ours.
+pub const VARIANTS: [Variant; 1] = [Variant {
+    name: "fetifeti",
+    options: &[],
+}];
+
+/// The study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Its name, "speed-error".
+    pub study: String,
+    /// Cores that every method might use.
+    pub cores: usize,
+    /// The scenes.
+    pub cases: Vec<CaseReport>,
+}
+
+/// One scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseReport {
+    /// Its name.
+    pub case: String,
+    /// What it is.
+    pub title: String,
+    /// Error of every mesh itself, relative, in the energy norm.
+    pub meshes: Vec<MeshError>,
+    /// All runs.
+    pub runs: Vec<Run>,
+}
+
+/// The error of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct MeshError {
+    /// Elements across a subdomain.
+    pub elements: usize,
+    /// Unknowns.
+    pub dofs: usize,
+    /// ‖u_h − u‖ / ‖u_h‖ in the energy norm.
+    pub error: f64,
+}
+
+/// One method on one mesh with one tolerance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// `fetifeti` or a baseline.
+    pub method: String,
+    /// Elements across a subdomain.
+    pub elements: usize,
+    /// Unknowns.
+    pub dofs: usize,
+    /// Relative residual that was asked for.
+    pub rtol: f64,
+    /// MPI ranks.
+    pub ranks: usize,
+    /// Threads per rank.
+    pub threads: usize,
+    /// Iterations.
+    pub iterations: Option<usize>,
+    /// Seconds of set-up.
+    pub setup: f64,
+    /// Seconds of the solve.
+    pub solve: f64,
+    /// Distance from the direct solution of the mesh, relative.
+    pub solver_error: f64,
+    /// Both parts together.
+    pub error: f64,
+}
+
+/// Tolerances of the study.
+pub fn tolerances(quick: bool) -> &'static [f64] {
+    if quick {
+        &[1e-4]
+    } else {
+        &[1e-2, 1e-4, 1e-6]
+    }
+}
+
+/// Runs the study with the program itself, telling `progress` before every step. On one rank: the methods have the machine.
+///
+/// # Errors
+/// [`Error::Input`] on several ranks; those of `compare`.
+pub fn run(session: &Session, quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Report> {
+    if session.size() > 1 {
+        return Err(Error::input(format!(
+            "study speed-error was started on {} ranks, expected one: it starts the methods on ranks of their own",
+            session.size()
+        )));
+    }
+    let mut cores = 0;
+    let mut cases = Vec::new();
+    for case in Case::ALL {
+        let meshes = case.meshes(quick);
+        progress(&format!("{}: errors of the meshes", case.name()));
+        let errors = mesh_errors(session, case, meshes)?;
+        let mut runs = Vec::new();
+        for &rtol in tolerances(quick) {
+            for mesh in &errors {
+                for (k, variant) in VARIANTS.iter().enumerate() {
+                    progress(&format!(
+                        "{}, {} elements per subdomain, rtol {rtol:e}",
+                        case.name(),
+                        mesh.elements
+                    ));
+                    // A direct solver knows no tolerance: it is run at the first one. Variants need a baseline beside them.
+                    let with = match (k, quick) {
+                        (0, false) => None,
+                        _ => Some("mumps"),
+                    };
+                    let report = compare(case, mesh.elements, rtol, variant, with)?;
+                    cores = report.cores;
+                    runs.extend(rows(&report, mesh, rtol, variant, k == 0));
+                }
+            }
+        }
+        cases.push(CaseReport {
+            case: case.name().into(),
+            title: case.title().into(),
+            meshes: errors,
+            runs,
+        });
+    }
+    Ok(Report {
+        study: "speed-error".into(),
+        cores,
+        cases,
+    })
+}
+
+/// The runs of a comparison that have an answer; baselines only where wanted.
+fn rows(
+    report: &CompareReport,
+    mesh: &MeshError,
+    rtol: f64,
+    variant: &Variant,
+    baselines: bool,
+) -> Vec<Run> {
+    let mut out = Vec::new();
+    for row in &report.rows {
+        let ours = row.method == "fetifeti";
+        let (Some(setup), Some(solve), Some(error)) =
+            (row.seconds.setup, row.seconds.solve, row.error)
+        else {
+            continue;
+        };
+        if !(ours || baselines) {
+            continue;
+        }
+        out.push(Run {
+            method: if ours {
+                variant.name.into()
+            } else {
+                row.method.clone()
+            },
+            elements: mesh.elements,
+            dofs: mesh.dofs,
+            rtol,
+            ranks: row.ranks,
+            threads: row.threads,
+            iterations: row.iterations,
+            setup,
+            solve,
+            solver_error: error,
+            error: mesh.error.hypot(error),
+        });
+    }
+    out
+}
+
+/// What a tight solution of ours says about a mesh: its error, where the solution is known, and its energies.
+struct Tight {
+    dofs: usize,
+    /// ‖u_h − u‖² where u is known.
+    square: Option<f64>,
+    /// ½ uᵀKu − fᵀu.
+    energy: f64,
+    /// uᵀKu.
+    size: f64,
+}
+
+/// The errors of the meshes themselves.
+fn mesh_errors(session: &Session, case: Case, meshes: &[usize]) -> Result<Vec<MeshError>> {
+    let mut list = meshes
+        .iter()
+        .map(|&n| tight(session, case, n))
+        .collect::<Result<Vec<_>>>()?;
+    // Energies fall towards that of the solution, and their difference is half the square of the distance (at least, with inequalities).
+    let reference = match list[0].square {
+        Some(_) => None,
+        None => {
+            let (coarse, fine) = (
+                list[list.len() - 1].energy,
+                tight(session, case, 2 * meshes[meshes.len() - 1])?.energy,
+            );
+            // The distance falls like h, the energy like h².
+            Some(fine - (coarse - fine) / 3.0)
+        }
+    };
+    Ok(list
+        .drain(..)
+        .zip(meshes)
+        .map(|(t, &elements)| {
+            let square = t
+                .square
+                .unwrap_or_else(|| 2.0 * (t.energy - reference.unwrap_or(t.energy)));
+            MeshError {
+                elements,
+                dofs: t.dofs,
+                error: (square.max(0.0) / t.size).sqrt(),
+            }
+        })
+        .collect())
+}
+
+fn tight(session: &Session, case: Case, n: usize) -> Result<Tight> {
+    let settings = Settings {
+        rtol: 1e-10,
+        ..Settings::default()
+    };
+    let solved = Solved::new(
+        session,
+        &format!("{}_{n}.toml", case.name()),
+        &case.scene(n),
+        &settings,
+    )?;
+    let solution = &solved.solution;
+    if !solution.converged {
+        return Err(Error::NotConverged(format!(
+            "{} with {n} elements per subdomain: {}",
+            case.name(),
+            solution.reason
+        )));
+    }
+    // [uᵀKu, Σ error²]
+    let mut sums = [0.0; 2];
+    for (sub, u) in solved.solver.problem().local.iter().zip(&solution.u) {
+        let mut ku = vec![0.0; u.len()];
+        sub.k.mul(u, &mut ku);
+        sums[0] += u.iter().zip(&ku).map(|(a, b)| a * b).sum::<f64>();
+        let mesh = solved.scene.subdomain_mesh(sub.index)?;
+        if let Some([_, _, energy]) = solved.scene.error_squares(&mesh, &mesh.nodal(u)) {
+            sums[1] += energy;
+        }
+    }
+    sum_all(session.comm(), &mut sums);
+    Ok(Tight {
+        dofs: solved.dofs(),
+        square: solved.scene.exact.is_some().then_some(sums[1]),
+        energy: solution.energy,
+        size: sums[0],
+    })
+}
+
+/// A directory that goes away with the value.
+struct Scratch(PathBuf);
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// `fetifeti compare` as a process of its own.
+fn compare(
+    case: Case,
+    n: usize,
+    rtol: f64,
+    variant: &Variant,
+    with: Option<&str>,
+) -> Result<CompareReport> {
+    let name = format!("fetifeti-study-{}-{}-{n}", std::process::id(), case.name());
+    let dir = Scratch(std::env::temp_dir().join(name));
+    output::prepare_directory(&dir.0)?;
+    let (scene, file) = (dir.0.join("scene.toml"), dir.0.join("compare.json"));
+    output::write_text(&scene, &case.scene(n))?;
+    let own = std::env::current_exe()
+        .map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))?;
+    let mut command = Command::new(own);
+    // MPI of this process is not that of the comparison, which clears what its jobs would inherit.
+    for (name, _) in std::env::vars_os() {
+        let text = name.to_string_lossy();
+        if ["OMPI_COMM_", "PMIX_", "PMI_", "ORTE_"]
+            .iter()
+            .any(|p| text.starts_with(p))
+        {
+            command.env_remove(&name);
+        }
+    }
+    command
+        .arg("compare")
+        .arg(&scene)
+        .arg("--json")
+        .arg(&file)
+        .arg("--quiet");
+    if let Some(with) = with {
+        command.args(["--with", with]);
+    }
+    command.args(["-fetifeti_ksp_rtol", &format!("{rtol:e}")]);
+    command.args(variant.options);
+    command.args(["-compare_time_limit", "120"]);
+    let out = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .output()
+        .map_err(|e| Error::environment(format!("cannot start compare: {e}")))?;
+    let text = std::fs::read_to_string(&file).map_err(|_| {
+        let said = String::from_utf8_lossy(&out.stderr);
+        let said = said
+            .lines()
+            .find(|l| l.starts_with("Error"))
+            .unwrap_or("no message");
+        Error::environment(format!("compare left no result: {said}"))
+    })?;
+    serde_json::from_str(&text)
+        .map_err(|e| Error::environment(format!("compare left an unreadable result: {e}")))
+}
+
+impl CaseReport {
+    /// The methods, ours first.
+    pub fn methods(&self) -> Vec<String> {
+        let mut out: Vec<String> = Vec::new();
+        for run in &self.runs {
+            if !out.contains(&run.method) {
+                out.push(run.method.clone());
+            }
+        }
+        out
+    }
+
+    /// For every mesh and tolerance the run of a method in its fastest layout.
+    pub fn fastest(&self, method: &str) -> Vec<&Run> {
+        let mut out: Vec<&Run> = Vec::new();
+        for run in self.runs.iter().filter(|r| r.method == method) {
+            let total = |r: &Run| r.setup + r.solve;
+            match out
+                .iter_mut()
+                .find(|r| (r.elements, r.rtol.to_bits()) == (run.elements, run.rtol.to_bits()))
+            {
+                Some(best) if total(run) < total(best) => *best = run,
+                Some(_) => {}
+                None => out.push(run),
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,113 @@
+//! Work-precision plots: error over seconds, a curve per method.
+
+use super::{CaseReport, Report, Run};
+use crate::report::canvas::Colour;
+use crate::report::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use crate::report::table::{count, scientific, Align, Table};
+use crate::report::ticks::Scale;
+
+/// All runs.
+pub fn table(report: &Report) -> Table {
+    let header = [
+        "scene",
+        "method",
+        "n",
+        "dofs",
+        "rtol",
+        "ranks",
+        "threads",
+        "it",
+        "set-up s",
+        "solve s",
+        "solver error",
+        "error",
+    ];
+    let mut table = Table::new(header)
+        .align(0, Align::Left)
+        .align(1, Align::Left);
+    for case in &report.cases {
+        for r in &case.runs {
+            table.row([
+                case.case.clone(),
+                r.method.clone(),
+                r.elements.to_string(),
+                r.dofs.to_string(),
+                format!("{:e}", r.rtol),
+                r.ranks.to_string(),
+                r.threads.to_string(),
+                count(r.iterations),
+                format!("{:.4}", r.setup),
+                format!("{:.4}", r.solve),
+                scientific(Some(r.solver_error)),
+                format!("{:.3e}", r.error),
+            ]);
+        }
+    }
+    table
+}
+
+/// The table for terminals.
+pub fn text(report: &Report) -> String {
+    format!(
+        "Error and seconds on {} cores; n: elements across a subdomain; error: of mesh and solver, relative, in the energy norm\n{}",
+        report.cores,
+        table(report)
+    )
+}
+
+/// The runs that no other run of the method beats in both error and seconds, by seconds.
+fn front(runs: &[&Run], seconds: fn(&Run) -> f64) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> = runs.iter().map(|r| (seconds(r), r.error)).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut best = f64::INFINITY;
+    points.retain(|p| {
+        let better = p.1 < best;
+        best = best.min(p.1);
+        better
+    });
+    points
+}
+
+/// Error over seconds: set-up and solve, and the solve alone.
+pub fn figure(case: &CaseReport) -> Figure {
+    let markers = [
+        Marker::Circle,
+        Marker::Square,
+        Marker::Diamond,
+        Marker::Triangle,
+    ];
+    let panel = |title: &str, seconds: fn(&Run) -> f64| {
+        let mut series = Vec::new();
+        for (k, method) in case.methods().iter().enumerate() {
+            let runs = case.fastest(method);
+            let (colour, marker) = (
+                Colour::CYCLE[k % Colour::CYCLE.len()],
+                markers[k % markers.len()],
+            );
+            let all = runs.iter().map(|r| (seconds(r), r.error)).collect();
+            series.push(
+                Series::new("", all, colour)
+                    .marker(marker, false, 3.0)
+                    .line(Line::None),
+            );
+            series.push(
+                Series::new(method.clone(), front(&runs, seconds), colour)
+                    .marker(marker, true, 3.6),
+            );
+        }
+        Panel {
+            title: title.into(),
+            x: Axis::new("seconds", Scale::Log),
+            y: Axis::new("relative error, energy norm", Scale::Log),
+            series,
+            bands: Vec::new(),
+        }
+    };
+    Figure::new(
+        case.title.clone(),
+        vec![
+            panel("Set-up and solve", |r| r.setup + r.solve),
+            panel("Solve alone", |r| r.solve),
+        ],
+    )
+}
