@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
-use super::layout::Layout;
 use super::job::{memory, timed, ContactOutcome, Job, Outcome};
+use super::layout::Layout;
 use super::linear::{kappa, solver};
 use super::near::NearKernel;
 use super::outer::{self, Tolerances};

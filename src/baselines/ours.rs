@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
 use super::groups::Groups;
-use super::layout::Layout;
 use super::job::{memory, timed, ContactOutcome, Job, Outcome};
 use super::judge::stationarity;
+use super::layout::Layout;
 use super::rows::Rows;
 use super::system::System;
 use super::table::Format;

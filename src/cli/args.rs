@@ -19,10 +19,11 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
   fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
-  fetifeti study hertz|hard-cases|speed-error [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
+  fetifeti study hertz|hard-cases|kappa|speed-error [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
       hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
-      hard for the method against direct solutions, exit code 1 where an answer is wrong; speed-error: error
-      against seconds, ours and the baselines of compare, over meshes and tolerances;
+      hard for the method against direct solutions, exit code 1 where an answer is wrong; kappa: condition
+      numbers with M_D and M_C over H_b/H_s and H_s/h (-fetifeti_spectrum: exact ones too); speed-error:
+      error against seconds, ours and the baselines of compare, over meshes and tolerances;
       --quick: coarser meshes, smaller cases, a few seconds
   mpirun -n N fetifeti solve SCENE ...
       the same answer on N ranks
@@ -111,15 +112,18 @@ pub enum StudyName {
     Hertz,
     /// Problems that are hard for the method, against direct solutions.
     HardCases,
+    /// Condition numbers with M_D and M_C.
+    Kappa,
     /// Error against seconds, ours and every baseline.
     SpeedError,
 }
 
 impl StudyName {
     /// All of them.
-    pub const ALL: [StudyName; 3] = [
+    pub const ALL: [StudyName; 4] = [
         StudyName::Hertz,
         StudyName::HardCases,
+        StudyName::Kappa,
         StudyName::SpeedError,
     ];
 
@@ -128,6 +132,7 @@ impl StudyName {
         match self {
             StudyName::Hertz => "hertz",
             StudyName::HardCases => "hard-cases",
+            StudyName::Kappa => "kappa",
             StudyName::SpeedError => "speed-error",
         }
     }

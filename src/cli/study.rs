@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::args::{Study, StudyName};
 use super::solve::prepare;
+use crate::feti::Settings;
 use crate::petsc::Session;
 use crate::report::{json, output};
-use crate::study::{hard_cases, hertz, speed_error};
+use crate::study::{hard_cases, hertz, kappa, speed_error};
 use crate::{Error, Result};
 
 /// Runs a study and writes what was asked for.
@@ -15,6 +16,7 @@ pub fn run(session: &Session, args: &Study) -> Result<()> {
     match args.name {
         StudyName::Hertz => run_hertz(session, args),
         StudyName::HardCases => run_hard_cases(session, args),
+        StudyName::Kappa => run_kappa(session, args),
         StudyName::SpeedError => run_speed_error(session, args),
     }
 }
@@ -63,6 +65,20 @@ fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
         "hard-cases: wrong answers were called solutions: {}",
         wrong.join(", ")
     )))
+}
+
+fn run_kappa(session: &Session, args: &Study) -> Result<()> {
+    let exact = Settings::default().with_options(session)?.spectrum;
+    let report = kappa::run(session, args.quick, exact, &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let table = kappa::table(&report);
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        table.write_csv(&dir.join("kappa.csv"))?;
+        Ok(vec!["kappa.csv".to_string()])
+    };
+    finish(session, args, &report, &table.to_string(), write)
 }
 
 fn run_speed_error(session: &Session, args: &Study) -> Result<()> {

@@ -6,6 +6,7 @@
 mod direct;
 pub mod hard_cases;
 pub mod hertz;
+pub mod kappa;
 mod solved;
 pub mod speed_error;
 

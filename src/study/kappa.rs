@@ -1,0 +1,249 @@
+//! `study kappa`: condition numbers of the preconditioned operator over H_b/H_s and H_s/h, scalar and elastic, plane and solid, with M_D and
+//! M_C.
+//!
+//! The unit square or cube, held all round, is cut into two bodies in each direction, all tied. κ is the estimate of CG (Lanczos) at a
+//! relative residual of 1e-11, a lower bound that has settled to three digits by then; `exact` has SLEPc's where it was asked for.
+
+use serde::{Deserialize, Serialize};
+
+use crate::feti::{FetiFeti, PcType, Settings};
+use crate::petsc::Session;
+use crate::report::table::{Align, Table};
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// What is solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Family {
+    /// Name in tables.
+    pub name: &'static str,
+    /// 2 or 3.
+    pub dim: usize,
+    /// Poisson's ratio; `None` for a scalar.
+    pub poisson: Option<f64>,
+    /// Pairs (H_b/H_s, H_s/h).
+    pub sizes: &'static [[usize; 2]],
+    /// As many of them with `--quick`.
+    pub quick: usize,
+}
+
+/// The families of the study.
+pub const FAMILIES: [Family; 5] = [
+    Family {
+        name: "scalar 2D",
+        dim: 2,
+        poisson: None,
+        sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
+        quick: 2,
+    },
+    Family {
+        name: "elasticity 2D, plane strain, 0.3",
+        dim: 2,
+        poisson: Some(0.3),
+        sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
+        quick: 2,
+    },
+    Family {
+        name: "elasticity 2D, plane strain, 0.49",
+        dim: 2,
+        poisson: Some(0.49),
+        sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
+        quick: 1,
+    },
+    Family {
+        name: "scalar 3D",
+        dim: 3,
+        poisson: None,
+        sizes: &[[2, 4], [4, 4], [8, 4], [2, 2], [2, 8], [2, 16]],
+        quick: 1,
+    },
+    Family {
+        name: "elasticity 3D, 0.3",
+        dim: 3,
+        poisson: Some(0.3),
+        sizes: &[[2, 2], [3, 2], [4, 2], [6, 2], [2, 4], [2, 8]],
+        quick: 1,
+    },
+];
+
+/// One preconditioner on one grid.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// CG's estimate of κ.
+    pub kappa: f64,
+    /// Its smallest eigenvalue, at least 1 up to rounding.
+    pub lambda_min: f64,
+    /// Iterations.
+    pub iterations: usize,
+    /// The exact κ, where it was asked for.
+    pub exact: Option<f64>,
+}
+
+/// One grid.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The family.
+    pub family: String,
+    /// H_b/H_s.
+    pub subdomains: usize,
+    /// H_s/h.
+    pub elements: usize,
+    /// Free degrees of freedom of the subdomains, copies counted.
+    pub dofs: usize,
+    /// With M_D.
+    pub dirichlet: Found,
+    /// With M_C.
+    pub coarse_corrected: Found,
+}
+
+/// The study.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// "kappa".
+    pub study: String,
+    /// By family and size.
+    pub rows: Vec<Row>,
+}
+
+/// Runs the study; `exact` asks for the exact spectra too (minutes where grids are large). Collective.
+///
+/// # Errors
+/// Those of the method; [`Error::NotConverged`] where CG did not end.
+pub fn run(
+    session: &Session,
+    quick: bool,
+    exact: bool,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Report> {
+    let mut rows = Vec::new();
+    for family in FAMILIES {
+        let n = if quick {
+            family.quick
+        } else {
+            family.sizes.len()
+        };
+        for &[subdomains, elements] in &family.sizes[..n] {
+            progress(&format!("{}, {subdomains} x {elements}", family.name));
+            rows.push(grid(session, &family, [2, subdomains, elements], exact)?);
+        }
+    }
+    Ok(Report {
+        study: "kappa".into(),
+        rows,
+    })
+}
+
+/// One grid of `bodies` bodies in each direction, of `subdomains` subdomains of `elements` elements. Collective.
+///
+/// # Errors
+/// As [`run`].
+pub fn grid(
+    session: &Session,
+    family: &Family,
+    [bodies, subdomains, elements]: [usize; 3],
+    exact: bool,
+) -> Result<Row> {
+    let scene = Scene::parse("kappa.toml", &text(family, [bodies, subdomains, elements]))?;
+    let mine = crate::share(session, scene.n_subdomains());
+    let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
+    let mut dofs = [problem.local.iter().map(|s| s.k.n() as f64).sum::<f64>()];
+    crate::feti::exchange::sum_all(session.comm(), &mut dofs);
+    let found = |pc: PcType| -> Result<Found> {
+        let settings = Settings {
+            pc_type: Some(pc),
+            rtol: 1e-11,
+            ..Settings::default()
+        };
+        let solver = FetiFeti::new(session, problem.clone(), settings)?;
+        let solution = solver.solve()?;
+        if !solution.converged {
+            return Err(Error::NotConverged(format!(
+                "kappa, {}, H_b/H_s = {subdomains}, H_s/h = {elements}: {}",
+                family.name, solution.reason
+            )));
+        }
+        let exact = match exact {
+            true => solver.spectrum()?.map(|s| s.kappa()),
+            false => None,
+        };
+        Ok(Found {
+            kappa: solution.estimate.map_or(f64::NAN, |s| s.kappa()),
+            lambda_min: solution.estimate.map_or(f64::NAN, |s| s.lambda_min),
+            iterations: solution.iterations,
+            exact,
+        })
+    };
+    Ok(Row {
+        family: family.name.into(),
+        subdomains,
+        elements,
+        dofs: dofs[0] as usize,
+        dirichlet: found(PcType::Dirichlet)?,
+        coarse_corrected: found(PcType::CoarseCorrected)?,
+    })
+}
+
+/// The scene: a load without symmetry, so that CG sees the whole spectrum.
+fn text(family: &Family, [bodies, subdomains, elements]: [usize; 3]) -> String {
+    let dim = family.dim;
+    let wave = |k: usize| match dim {
+        2 => format!("\"sin({}*x + {}*y + {k})\"", 7 + 4 * k, 11 - 3 * k),
+        _ => format!(
+            "\"sin({}*x + {}*y + {}*z + {k})\"",
+            7 + 4 * k,
+            11 - 3 * k,
+            5 + 2 * k
+        ),
+    };
+    let rest = match family.poisson {
+        None => format!("load = {}\n", wave(0)),
+        Some(nu) => {
+            let loads: Vec<String> = (0..dim).map(wave).collect();
+            format!("poisson = {nu}\nload = [{}]\n", loads.join(", "))
+        }
+    };
+    let physics = match family.poisson {
+        None => "scalar",
+        Some(_) => "elasticity",
+    };
+    format!(
+        "dimension = {dim}\nphysics = \"{physics}\"\n[grid]\nbodies = {bodies}\nsubdomains = {subdomains}\n\
+         elements_per_subdomain = {elements}\ndirichlet = \"all\"\n{rest}"
+    )
+}
+
+/// The table that is printed and written as CSV.
+pub fn table(report: &Report) -> Table {
+    let exact = report.rows.iter().any(|r| r.dirichlet.exact.is_some());
+    let mut header = vec![
+        "problem",
+        "H_b/H_s",
+        "H_s/h",
+        "dofs",
+        "κ of M_D",
+        "it",
+        "κ of M_C",
+        "it",
+    ];
+    if exact {
+        header.extend(["exact M_D", "exact M_C"]);
+    }
+    let mut table = Table::new(header).align(0, Align::Left);
+    for r in &report.rows {
+        let mut cells = vec![
+            r.family.clone(),
+            r.subdomains.to_string(),
+            r.elements.to_string(),
+            r.dofs.to_string(),
+        ];
+        for found in [&r.dirichlet, &r.coarse_corrected] {
+            cells.extend([format!("{:.3}", found.kappa), found.iterations.to_string()]);
+        }
+        if exact {
+            let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
+            cells.extend([&r.dirichlet, &r.coarse_corrected].map(|f| number(f.exact)));
+        }
+        table.row(cells);
+    }
+    table
+}
