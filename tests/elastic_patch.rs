@@ -2,7 +2,7 @@
 //! every element and cure of locking.
 
 use fetifeti::fem::ErrorNorms;
-use fetifeti::feti::{FetiFeti, Settings};
+use fetifeti::feti::{FetiFeti, Precision, Settings};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
@@ -212,5 +212,32 @@ fn a_scalar_in_space_converges_too() {
         let order = |a: f64, b: f64| (a / b).log2();
         assert!((order(coarse.l2, fine.l2) - 2.0).abs() < 0.06);
         assert!((order(coarse.energy, fine.energy) - 1.0).abs() < 0.06);
+    });
+}
+
+#[test]
+fn a_preconditioner_in_single_precision_changes_no_answer() {
+    with_session(|session| {
+        let solve = |precision: Precision| {
+            let scene = Scene::parse("scene.toml", &manufactured(3, "", 4)).expect("a scene");
+            let settings = Settings {
+                rtol: 1e-12,
+                precision,
+                ..Settings::default()
+            };
+            let problem = scene.substructures(&|_| true).expect("substructures");
+            let solver = FetiFeti::new(session, problem, settings).expect("set up");
+            let solution = solver.solve().expect("solved");
+            assert!(solution.converged);
+            (solution.u.concat(), solution.iterations)
+        };
+        let (double, its) = solve(Precision::Double);
+        let (mixed, its_mixed) = solve(Precision::Mixed);
+        let largest = double.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        let far = double.iter().zip(&mixed).map(|(a, b)| (a - b).abs());
+        let far = far.fold(0.0, f64::max);
+        // Not the same to the last bit: single precision is really used.
+        assert!(far > 0.0 && far < 1e-10 * largest, "{far:.1e}");
+        assert!(its_mixed <= its + 3, "{its} and {its_mixed}");
     });
 }

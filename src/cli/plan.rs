@@ -7,6 +7,7 @@ use super::{physics, problem};
 use crate::fem::cell::rigid_count;
 use crate::feti::sizes::Sizes;
 use crate::feti::team::Team;
+use crate::feti::Settings;
 use crate::petsc::Session;
 use crate::report::table::{Align, Table};
 use crate::scene::{Plan, Scene};
@@ -19,9 +20,15 @@ const LIST: usize = 24;
 pub fn run(session: &Session, path: &Path) -> Result<()> {
     let scene = problem::load(session, path)?;
     let substructures = problem::substructures(session, &scene)?;
+    let settings = Settings::default().with_options(session)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     let team = Team::new(if session.size() == 1 { threads } else { 1 })?;
-    let sizes = session.agree(Sizes::new(session.comm(), &substructures, &team))?;
+    let sizes = session.agree(Sizes::with(
+        session.comm(),
+        &substructures,
+        &team,
+        settings.primal,
+    ))?;
     super::say(session, &text(&scene, &sizes))
 }
 

@@ -32,6 +32,6 @@ pub mod team;
 
 pub use kkt::Kkt;
 pub use recover::Solution;
-pub use settings::{PcType, Primal, ProjectorKind, Scaling, Settings};
+pub use settings::{PcType, Precision, Primal, ProjectorKind, Scaling, Settings};
 pub use solver::FetiFeti;
 pub use spectrum::Spectrum;

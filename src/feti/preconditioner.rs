@@ -7,9 +7,13 @@
 //! ```
 
 use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::lifting::Lifting;
-use super::settings::PcType;
+use super::local::problem::LocalProblem;
+use super::local::single::Single;
+use super::settings::{PcType, Precision};
 use super::stiffness::{Stiffness, Work};
 use crate::petsc::Vec as PetscVec;
 use crate::sparse::Csr;
@@ -22,6 +26,8 @@ pub struct Preconditioner {
     lifting: Option<Lifting>,
     /// K_ΓΓ of each local subdomain in the order of Γ, for the lumped preconditioner.
     k_gamma: Vec<Csr>,
+    /// S of each local subdomain in single precision, where that is asked for; equal subdomains share it.
+    single: Vec<Arc<Single>>,
     buffers: RefCell<(Vec<Work>, Vec<f64>)>,
 }
 
@@ -32,6 +38,7 @@ impl Preconditioner {
         problem: &Substructures,
         stiffness: &Stiffness,
         lifting: Option<Lifting>,
+        precision: Precision,
     ) -> Preconditioner {
         let k_gamma = match kind {
             PcType::Lumped => problem
@@ -42,10 +49,16 @@ impl Preconditioner {
                 .collect(),
             _ => Vec::new(),
         };
+        let uses_s = matches!(kind, PcType::Dirichlet | PcType::CoarseCorrected);
+        let single = match (precision, uses_s) {
+            (Precision::Mixed, true) => in_single(stiffness),
+            _ => Vec::new(),
+        };
         Preconditioner {
             kind,
             lifting,
             k_gamma,
+            single,
             buffers: RefCell::new((stiffness.work(), vec![0.0; stiffness.jump.ghosts.len()])),
         }
     }
@@ -69,10 +82,12 @@ impl Preconditioner {
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
         stiffness.dual_halo.fetch(lambda, ghost)?;
         let (received, kind, k_gamma) = (&*ghost, self.kind, &self.k_gamma);
+        let single = &self.single;
         stiffness.team.for_each(work, |j, w| {
             columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
             match kind {
                 PcType::Lumped => k_gamma[j].mul(&w.v, &mut w.y), /* y ← K_ΓΓ v */
+                _ if !single.is_empty() => single[j].mul(&w.v, &mut w.y), /* y ← S v */
                 _ => {
                     w.y.fill(0.0);
                     locals[j].s.add_mul(&w.v, &mut w.y); /*   y ← S v            */
@@ -88,6 +103,18 @@ impl Preconditioner {
         }
         stiffness.dual_halo.sum(ghost, out)
     }
+}
+
+/// S of every local subdomain in single precision.
+fn in_single(stiffness: &Stiffness) -> Vec<Arc<Single>> {
+    let mut known: HashMap<*const LocalProblem, Arc<Single>> = HashMap::new();
+    let of = |local: &Arc<LocalProblem>| {
+        let entry = known.entry(Arc::as_ptr(local));
+        entry
+            .or_insert_with(|| Arc::new(Single::new(&local.s)))
+            .clone()
+    };
+    stiffness.locals.iter().map(of).collect()
 }
 
 /// The rows and columns of `k` listed in `interface`, in that order.

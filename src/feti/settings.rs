@@ -30,6 +30,15 @@ pub enum Scaling {
     Deluxe,
 }
 
+/// The digits of M⁻¹.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Everything in double precision.
+    Double,
+    /// S in single precision where M_D and M_C multiply with it; all else in double.
+    Mixed,
+}
+
 /// The constraints that hold the subdomains of a body together, at least one of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Primal {
@@ -118,6 +127,7 @@ macro_rules! names {
 
 names!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
 names!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness", Deluxe = "deluxe" });
+names!(Precision { Double = "double", Mixed = "mixed" });
 names!(ProjectorKind {
     Identity = "identity",
     Diagonal = "diagonal",
@@ -135,6 +145,8 @@ pub struct Settings {
     pub scaling: Scaling,
     /// `fetifeti_scaling_gamma`, γ ∈ [1/2, ∞).
     pub gamma: f64,
+    /// `fetifeti_precision`.
+    pub precision: Precision,
     /// `fetifeti_primal`.
     pub primal: Primal,
     /// `fetifeti_projector`.
@@ -160,6 +172,7 @@ impl Default for Settings {
             scaling: Scaling::Rho,
             gamma: 1.0,
             primal: Primal::default(),
+            precision: Precision::Double,
             projector: ProjectorKind::Auto,
             threads: None,
             check: false,
@@ -195,6 +208,9 @@ impl Settings {
                 self.gamma
             )));
         }
+        let help = "digits of the preconditioner";
+        let i = o.choice("precision", Precision::NAMES, self.precision as usize, help)?;
+        self.precision = Precision::from_index(i);
         let help = "weight Q of the projector";
         let i = o.choice(
             "projector",

@@ -117,7 +117,8 @@ impl FetiFeti {
             PcType::CoarseCorrected => Lifting::new(session, &problem, &sharing, &stiffness)?,
             _ => None,
         };
-        let preconditioner = Preconditioner::new(kind, &problem, &stiffness, lifting);
+        let preconditioner =
+            Preconditioner::new(kind, &problem, &stiffness, lifting, settings.precision);
         let natural = NaturalCoarse::new(
             session,
             &problem,

@@ -6,6 +6,7 @@ pub mod dissection;
 pub mod multifrontal;
 pub mod problem;
 pub mod semidefinite;
+pub mod single;
 
 #[cfg(test)]
 pub(crate) mod testing {
