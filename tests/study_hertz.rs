@@ -55,7 +55,10 @@ fn half_width_and_peak_agree_with_the_theory() {
     for case in ["cylinder", "two_cylinders", "sphere"] {
         for end in ["png", "svg", "csv"] {
             let file = dir.path(&format!("hertz_{case}.{end}"));
-            assert!(std::fs::metadata(&file).is_ok_and(|m| m.len() > 200), "{file:?}");
+            assert!(
+                std::fs::metadata(&file).is_ok_and(|m| m.len() > 200),
+                "{file:?}"
+            );
         }
     }
 }
