@@ -6,7 +6,7 @@ use crate::cli::problem;
 use crate::feti::exchange::gather_all;
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::petsc::{Options, Session};
-use crate::scene::{RowLabel, Scene};
+use crate::scene::{Member, Numbering, RowLabel, RowSource, Scene};
 use crate::{Error, Result};
 
 /// A scene and what the method made of it.
@@ -114,19 +114,15 @@ impl Solved {
 
     /// Unknowns of the scene.
     pub fn dofs(&self) -> usize {
-        crate::scene::Numbering::new(&self.scene).len() as usize
+        Numbering::new(&self.scene).len() as usize
     }
 }
 
-/// What tells rows apart: source, members, and the two bounds of one obstacle by their direction.
-fn key(
-    label: &RowLabel,
-) -> (
-    crate::scene::RowSource,
-    [Option<(usize, usize)>; 2],
-    [u64; 3],
-) {
-    let member = |m: Option<crate::scene::Member>| m.map(|m| (m.body, m.node));
+/// What tells rows apart: source, members (body, node), and the two bounds of one obstacle by their direction.
+type Key = (RowSource, [Option<(usize, usize)>; 2], [u64; 3]);
+
+fn key(label: &RowLabel) -> Key {
+    let member = |m: Option<Member>| m.map(|m| (m.body, m.node));
     (
         label.source,
         label.members.map(member),

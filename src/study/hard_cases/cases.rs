@@ -188,7 +188,11 @@ fn shapes(quick: bool) -> Vec<Case> {
     let (many, fine) = if quick { (16, 32) } else { (32, 128) };
     out.push(case(
         "many-subdomains",
-        "H_b/H_s = 32",
+        if quick {
+            "H_b/H_s = 16"
+        } else {
+            "H_b/H_s = 32"
+        },
         Grid {
             head: SCALAR,
             bodies: &[2, 2],
@@ -199,7 +203,7 @@ fn shapes(quick: bool) -> Vec<Case> {
     ));
     out.push(case(
         "fine-subdomains",
-        "H_s/h = 128",
+        if quick { "H_s/h = 32" } else { "H_s/h = 128" },
         Grid {
             head: SCALAR,
             bodies: &[2, 2],
@@ -212,7 +216,11 @@ fn shapes(quick: bool) -> Vec<Case> {
     let (many, fine) = if quick { (8, 16) } else { (16, 64) };
     out.push(case(
         "many-subdomains-elastic",
-        "H_b/H_s = 16, elastic",
+        if quick {
+            "H_b/H_s = 8, elastic"
+        } else {
+            "H_b/H_s = 16, elastic"
+        },
         Grid {
             head: ELASTIC,
             bodies: &[2, 2],
@@ -223,7 +231,11 @@ fn shapes(quick: bool) -> Vec<Case> {
     ));
     out.push(case(
         "fine-subdomains-elastic",
-        "H_s/h = 64, elastic",
+        if quick {
+            "H_s/h = 16, elastic"
+        } else {
+            "H_s/h = 64, elastic"
+        },
         Grid {
             head: ELASTIC,
             bodies: &[2, 2],

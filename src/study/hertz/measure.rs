@@ -93,9 +93,8 @@ fn projected_area(scene: &Scene, row: &Row) -> Option<f64> {
         let points: Vec<[f64; 3]> = corners.iter().map(|&a| body.position(corner(a))).collect();
         let found = side_weights(dim, &points, geometry.outward(dim), scene.form.element);
         let here = corners.iter().position(|&a| corner(a) == place)?;
-        for d in 0..3 {
-            normal[d] += found.normal[here][d];
-        }
+        let part = found.normal[here];
+        normal.iter_mut().zip(part).for_each(|(sum, v)| *sum += v);
     }
     let along = crate::study::dot(normal, row.label.direction).abs();
     (along > 0.0).then_some(along)

@@ -105,9 +105,9 @@ pub fn figure(case: &CaseReport) -> Figure {
     let mut series =
         vec![Series::new("Hertz", curve, Colour::CYCLE[7]).marker(Marker::None, true, 1.0)];
     let markers = [Marker::Triangle, Marker::Square, Marker::Circle];
-    // The coarsest, one in the middle and the finest: more would hide each other.
+    // The two coarsest and the finest: more would hide each other.
     let n = case.meshes.len();
-    let shown = [0, n / 2, n - 1];
+    let shown = [0, 1.min(n - 1), n - 1];
     for (k, &m) in shown.iter().enumerate() {
         let mesh = &case.meshes[m];
         let (a, p0) = (mesh.half_width.theory, mesh.peak.theory);
