@@ -49,7 +49,10 @@ fn a_row_says_that_the_second_body_stays_above_the_first() {
         let labels = scene.row_labels(&|_| true);
         let first = labels[1].members.map(|m| m.unwrap().body);
         assert_eq!(first, interface.order);
-        assert_eq!((labels[1].point, labels[1].t), ([1.0, 0.25, 0.0], [0.25, 0.0]));
+        assert_eq!(
+            (labels[1].point, labels[1].t),
+            ([1.0, 0.25, 0.0], [0.25, 0.0])
+        );
         assert_eq!(labels[1].source, RowSource::Interface(0));
     }
 }

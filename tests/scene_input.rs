@@ -77,7 +77,9 @@ fn keys_and_types() {
     );
     let e = message(&format!("colour = 1\n{}", pair("")));
     assert!(
-        e.starts_with("s.toml:1: unknown key `colour` in the scene (known keys are dimension, physics,"),
+        e.starts_with(
+            "s.toml:1: unknown key `colour` in the scene (known keys are dimension, physics,"
+        ),
         "{e}"
     );
     let e = message(&pair("[[tie]]\nbodies = \"all\"\nrang = [0, 1]\n"));

@@ -37,13 +37,16 @@ impl Frame {
             if size < INDEPENDENT * norm(*d) {
                 return None;
             }
-            let by_size = |a: &usize, b: &usize| rest[*a].abs().total_cmp(&rest[*b].abs()).then(b.cmp(a));
+            let by_size =
+                |a: &usize, b: &usize| rest[*a].abs().total_cmp(&rest[*b].abs()).then(b.cmp(a));
             let slot = (0..3).filter(|&c| open[c]).max_by(by_size)?;
             (to[slot], open[slot]) = (*d, false);
             span.push(rest.map(|v| v / size));
         }
         for slot in (0..3).filter(|&c| open[c]) {
-            let axes = (0..3).filter(|&c| free[c]).map(|c| beside(&span, Frame::IDENTITY.to[c]));
+            let axes = (0..3)
+                .filter(|&c| free[c])
+                .map(|c| beside(&span, Frame::IDENTITY.to[c]));
             // The own axis if it will do: frames of directions along axes are the identity.
             let own = beside(&span, Frame::IDENTITY.to[slot]);
             let best = axes.max_by(|a, b| norm(*a).total_cmp(&norm(*b)))?;
@@ -136,7 +139,10 @@ mod tests {
         let (x, y) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
         assert!(Frame::new(&[y], [true; 3]).is_some_and(|f| f.is_identity()));
         assert!(Frame::new(&[y, x], [true; 3]).is_some_and(|f| f.is_identity()));
-        assert_eq!(Frame::new(&[x, y, [0.6, 0.8, 0.0]], [true, true, false]), None);
+        assert_eq!(
+            Frame::new(&[x, y, [0.6, 0.8, 0.0]], [true, true, false]),
+            None
+        );
         assert_eq!(Frame::new(&[x, y], [true, false, false]), None);
         let close = [1.0, 0.01, 0.0];
         assert_eq!(Frame::new(&[x, close], [true; 3]), None);

@@ -195,11 +195,7 @@ mod tests {
     use super::*;
 
     fn rows(n: usize, list: &[(usize, usize, f64)]) -> Rows {
-        let row = |&(plus, minus, gap): &(usize, usize, f64)| Row {
-            plus,
-            minus,
-            gap,
-        };
+        let row = |&(plus, minus, gap): &(usize, usize, f64)| Row { plus, minus, gap };
         Rows {
             unknowns: (0..n as u64).collect(),
             rows: list.iter().map(row).collect(),

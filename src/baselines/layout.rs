@@ -72,8 +72,10 @@ impl<'a> Layout<'a> {
         };
         layout.fill();
         let rows = scene.rows(&|_| true);
-        let inequalities: Vec<&InterfaceRow> =
-            rows.iter().filter(|r| r.kind == RowKind::Inequality).collect();
+        let inequalities: Vec<&InterfaceRow> = rows
+            .iter()
+            .filter(|r| r.kind == RowKind::Inequality)
+            .collect();
         for row in &inequalities {
             let form = layout.motions.of_terms(scene, &row.terms);
             layout.all_held.insert(&form, 0.0);
@@ -112,7 +114,8 @@ impl<'a> Layout<'a> {
                 }
                 for k in (0..c).filter(|&k| is_given(k)) {
                     let next = free.iter().find(|&&f| f > k);
-                    let before = next.map_or_else(|| number(free[free.len() - 1]) + 1, |&f| number(f));
+                    let before =
+                        next.map_or_else(|| number(free[free.len() - 1]) + 1, |&f| number(f));
                     self.inserted.push(before);
                 }
                 nodes.push((first, (0..c).filter(|&k| is_given(k)).collect()));
@@ -141,7 +144,8 @@ impl<'a> Layout<'a> {
         }
         for (block, list) in directions {
             let c = self.components as u64;
-            let free = [0, 1, 2].map(|k| k < c && self.void.binary_search(&(block * c + k)).is_err());
+            let free =
+                [0, 1, 2].map(|k| k < c && self.void.binary_search(&(block * c + k)).is_err());
             match Frame::new(&list, free) {
                 Some(frame) if frame.is_identity() => {}
                 Some(frame) => {
@@ -160,7 +164,11 @@ impl<'a> Layout<'a> {
         }
         for row in rows {
             if self.trouble.is_none() && self.bound(row).is_none() {
-                let x = self.ends(row).0.first().map_or([0.0; 3], |e| self.position(e.0));
+                let x = self
+                    .ends(row)
+                    .0
+                    .first()
+                    .map_or([0.0; 3], |e| self.position(e.0));
                 self.trouble = Some(format!(
                     "the inequality at ({}, {}, {}) is not the difference of two unknowns",
                     x[0], x[1], x[2]
@@ -319,11 +327,6 @@ impl<'a> Layout<'a> {
         let row = frame.from[(index % c) as usize];
         let entries = (0..self.components).map(|k| (index / c * c + k as u64, row[k]));
         entries.filter(|e| e.1 != 0.0).collect()
-    }
-
-    /// Whether the scene has nodes whose unknowns are not components of u.
-    pub fn is_turned(&self) -> bool {
-        !self.frames.is_empty()
     }
 
     /// Position of a node.

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
 use super::groups::Groups;
-use super::near::NearKernel;
-use super::layout::Layout;
 use super::job::{memory, timed, ContactOutcome, Job, Outcome};
+use super::layout::Layout;
+use super::near::NearKernel;
 use super::rows::Rows;
 use super::system::System;
 use super::table::{Baseline, Format};
@@ -46,7 +46,9 @@ fn fields(session: &Session, scene: &Scene, ksp: &Ksp, of: &[usize]) -> Result<(
     };
     let list = |c: usize| -> Vec<i32> {
         let of = of.iter().enumerate();
-        of.filter(|(_, f)| **f == c).map(|(i, _)| i as i32).collect()
+        of.filter(|(_, f)| **f == c)
+            .map(|(i, _)| i as i32)
+            .collect()
     };
     let sets: Result<Vec<Is>> = (0..scene.components())
         .map(|c| Is::general(session, Comm::Own, &list(c)))

@@ -123,11 +123,6 @@ impl Motions {
         self.count * self.bodies.len()
     }
 
-    /// Number of motions of one body.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
     /// Component `component` of u at a point of a body.
     pub fn form(&self, body: usize, point: [f64; 3], component: usize) -> Form {
         let first = body * self.count;
@@ -206,7 +201,11 @@ mod tests {
         assert_eq!(e.rank(), 3);
         let alpha = e.solve(3);
         // α₀ + 2α₁ = 5, α₁ − α₂ = 1, Σ = 6.
-        let want = [5.0 - 2.0 * alpha[1], alpha[2] + 1.0, 6.0 - alpha[0] - alpha[1]];
+        let want = [
+            5.0 - 2.0 * alpha[1],
+            alpha[2] + 1.0,
+            6.0 - alpha[0] - alpha[1],
+        ];
         for (a, w) in alpha.iter().zip(want) {
             assert!((a - w).abs() < 1e-13, "{alpha:?}");
         }

@@ -8,8 +8,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::blocks::{self, Block, Entry};
-use super::exchange::{exchange, offsets, sum_all};
 use super::entities::Average;
+use super::exchange::{exchange, offsets, sum_all};
 use super::scaling;
 use super::sharing::{Copy, Sharing};
 use crate::substructures::{RowKind, Substructures};

@@ -88,12 +88,7 @@ impl FetiFeti {
         let prefix = settings.prefix.clone();
 
         let weights = weights(&problem, &settings);
-        let sharing = session.agree(Sharing::new(
-            comm,
-            &problem,
-            &weights,
-            settings.primal,
-        ))?;
+        let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;

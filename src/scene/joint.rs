@@ -90,7 +90,7 @@ impl Scene {
             dofs,
             rho,
             primal,
-near_kernel: Some(near_kernel),
+            near_kernel: Some(near_kernel),
             coordinates: Some(coordinates),
         })
     }

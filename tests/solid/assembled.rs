@@ -18,10 +18,7 @@ pub fn solve(problem: &Substructures) -> Vec<Vec<f64>> {
         dof
     }
     for row in &problem.rows {
-        let (a, b) = (
-            find(&leader, row.terms[0].0),
-            find(&leader, row.terms[1].0),
-        );
+        let (a, b) = (find(&leader, row.terms[0].0), find(&leader, row.terms[1].0));
         if a != b {
             leader.insert(a.max(b), a.min(b));
         }

@@ -208,10 +208,7 @@ impl Solid {
             index,
             body,
             k: Csr::from_triplets(n, &triplets),
-            f: nodes
-                .iter()
-                .map(|&(x, c)| self.load(body, x, c))
-                .collect(),
+            f: nodes.iter().map(|&(x, c)| self.load(body, x, c)).collect(),
             dofs: nodes.iter().map(|&(x, c)| self.dof(body, x, c)).collect(),
             rho: vec![stiffness; n],
             primal,

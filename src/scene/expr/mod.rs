@@ -75,7 +75,13 @@ impl Expr {
 
     /// The expression written as `text` for a plane scene, where there is no z.
     pub(super) fn parse_plane(text: &str) -> Result<Expr, String> {
-        let names = VARIABLES.map(|v| if ["z", "bk", "sk"].contains(&v) { "" } else { v });
+        let names = VARIABLES.map(|v| {
+            if ["z", "bk", "sk"].contains(&v) {
+                ""
+            } else {
+                v
+            }
+        });
         Expr::parse_in(text, &names)
     }
 
