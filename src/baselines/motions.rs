@@ -12,6 +12,9 @@ use crate::scene::Scene;
 /// What is left of a dependent form, relative to its largest entry, is below this.
 const DEPENDENT: f64 = 1e-9;
 
+/// A form that completes equations must have this part of itself left when it is chosen; where none has, half of it, and so on.
+const FIRM: f64 = 0.3;
+
 /// A linear form, or an equation: (place, coefficient), increasing.
 pub type Form = Vec<(usize, f64)>;
 
@@ -77,6 +80,21 @@ impl Echelon {
         self.of_pivot.insert(pivot, self.rows.len());
         self.rows.push((pivot, rest, rhs));
         true
+    }
+
+    /// Those of the candidates that, set to zero, hold all n motions with these equations; the firm ones first.
+    pub fn complete(&self, n: usize, candidates: &[(u64, Form)]) -> Vec<(u64, Form)> {
+        let (mut now, mut chosen) = (self.clone(), Vec::new());
+        let mut firm = FIRM;
+        while now.rank() < n && firm > 1e-6 {
+            for candidate in candidates {
+                if now.left(&candidate.1) >= firm && now.insert(&candidate.1, 0.0) {
+                    chosen.push(candidate.clone());
+                }
+            }
+            firm *= 0.5;
+        }
+        chosen
     }
 
     /// The α of length n that satisfies the equations and has no other entries.
