@@ -318,7 +318,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Position of a node.
-    fn position(&self, block: u64) -> [f64; 3] {
+    pub fn position(&self, block: u64) -> [f64; 3] {
         let (body, place) = self.node(block);
         self.scene.bodies[body].spec.position(place)
     }
