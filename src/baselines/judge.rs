@@ -76,14 +76,19 @@ pub fn judge(
         let kernel = NearKernel::new(scene, &unknowns, &again.b, Near::None)?;
         let reduced = Reduced::new(session, again, &rows, kernel)?;
         let ksp = direct(session)?;
-        ksp.set_operators(&reduced.a, &reduced.a)?;
         let tolerances = Tolerances {
             rtol: TARGET,
             inner: 0.0,
             lag: 0.0,
             solves: SOLVES,
         };
-        outer::solve(session, &rows, &reduced, &ksp, tolerances)?
+        outer::solve(
+            session,
+            &rows,
+            &reduced,
+            &mut || Ok(ksp.clone()),
+            tolerances,
+        )?
     } else {
         rows = Rows::default();
         linear(session, &system)?

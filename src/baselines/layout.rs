@@ -19,9 +19,6 @@ use crate::substructures::{InterfaceRow, RowKind};
 use crate::Result;
 use std::ops::Range;
 
-/// A support must have this part of its own form left when it is chosen; where none has, half of it, and so on.
-const FIRM: f64 = 0.3;
-
 /// Layout of w.
 pub struct Layout<'a> {
     scene: &'a Scene,
@@ -206,16 +203,7 @@ impl<'a> Layout<'a> {
                 }
             }
         }
-        let mut now = self.all_held.clone();
-        let mut firm = FIRM;
-        while now.rank() < self.motions.len() && firm > 1e-6 {
-            for (at, form) in &candidates {
-                if now.left(form) >= firm && now.insert(form, 0.0) {
-                    self.supports.push((*at, form.clone()));
-                }
-            }
-            firm *= 0.5;
-        }
+        self.supports = self.all_held.complete(self.motions.len(), &candidates);
         self.void.extend(self.supports.iter().map(|s| s.0));
         self.void.sort_unstable();
     }
@@ -329,13 +317,8 @@ impl<'a> Layout<'a> {
         entries.filter(|e| e.1 != 0.0).collect()
     }
 
-    /// Whether the scene has nodes whose unknowns are not components of u.
-    pub fn is_turned(&self) -> bool {
-        !self.frames.is_empty()
-    }
-
     /// Position of a node.
-    fn position(&self, block: u64) -> [f64; 3] {
+    pub fn position(&self, block: u64) -> [f64; 3] {
         let (body, place) = self.node(block);
         self.scene.bodies[body].spec.position(place)
     }

@@ -35,8 +35,14 @@ pub fn solver(session: &Session, row: &Baseline, a: &Mat) -> Result<(Ksp, Ksp)> 
     Ok((ksp, krylov))
 }
 
-/// Tells PCBDDC, alone or inside KSPFETIDP, which component each local unknown is of.
-fn fields(session: &Session, scene: &Scene, ksp: &Ksp, of: &[usize]) -> Result<()> {
+/// Tells PCBDDC, alone or inside KSPFETIDP, which component each local unknown is of, and where the unknowns are.
+fn tell(
+    session: &Session,
+    scene: &Scene,
+    ksp: &Ksp,
+    unknowns: &Unknowns,
+    system: &System,
+) -> Result<()> {
     if scene.components() == 1 {
         return Ok(());
     }
@@ -45,7 +51,7 @@ fn fields(session: &Session, scene: &Scene, ksp: &Ksp, of: &[usize]) -> Result<(
         _ => ksp.pc()?,
     };
     let list = |c: usize| -> Vec<i32> {
-        let of = of.iter().enumerate();
+        let of = system.fields.iter().enumerate();
         of.filter(|(_, f)| **f == c)
             .map(|(i, _)| i as i32)
             .collect()
@@ -53,7 +59,12 @@ fn fields(session: &Session, scene: &Scene, ksp: &Ksp, of: &[usize]) -> Result<(
     let sets: Result<Vec<Is>> = (0..scene.components())
         .map(|c| Is::general(session, Comm::Own, &list(c)))
         .collect();
-    bddc.bddc_set_fields_local(&sets?)
+    bddc.bddc_set_fields_local(&sets?)?;
+    let layout = unknowns.layout;
+    let node = |place: u64| layout.position(place / layout.components() as u64);
+    let places = unknowns.places(system.b.ownership_range());
+    let points: Vec<[f64; 3]> = places.into_iter().map(node).collect();
+    bddc.set_coordinates(scene.dim(), &points)
 }
 
 /// κ by the last run of CG; `None` for other methods.
@@ -100,7 +111,7 @@ pub fn baseline(
     kernel.attach(&system.a)?;
     let (ksp, krylov) = solver(session, row, &system.a)?;
     if row.format == Format::Unassembled {
-        fields(session, scene, &ksp, &system.fields)?;
+        tell(session, scene, &ksp, &unknowns, &system)?;
     }
     let ((), setup) = timed(session, || ksp.setup())?;
     let first = krylov.tolerances()?.0;

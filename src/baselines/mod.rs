@@ -6,6 +6,7 @@
 //!                                             all solutions ──> judge (direct solution) ─────> Verdict
 //! ```
 //!
+//! In elasticity u is taken in blocks of nodes, along the normals of contact (`layout`, `frame`), and solvers are told the rigid motions (`near`).
 //! With inequalities the solvers of the assembled problem stand inside an active-set loop (`outer`); the domain decompositions of PETSc
 //! solve the equations of the last active set.
 //!
@@ -50,6 +51,7 @@ use crate::{Error, Result};
 use job::{Job, Outcome, Task};
 use judge::{Judgement, Verdict};
 use launch::{Failure, Launcher, Workspace};
+use layout::Layout;
 use plan::{Plan, Run};
 use table::Case;
 
@@ -128,8 +130,14 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
     let (mut solved, mut solutions) = (Vec::new(), Vec::new());
     // The active set of the last contact loop: methods that solve equations only take it.
     let mut active: Vec<usize> = Vec::new();
+    let layout = Layout::new(scene);
     for (k, run) in plan.runs.iter().enumerate() {
         let name = run.baseline.map_or("fetifeti", |b| b.name);
+        if let (Some(_), Some(trouble)) = (run.baseline, &layout.trouble) {
+            let message = format!("not for this scene: {trouble}");
+            rows.push(row(name, run, Err(message)));
+            continue;
+        }
         let solution = launcher.workspace.file(&format!("{k}.u"));
         let solve = |rescue: bool| -> Result<std::result::Result<Outcome, Failure>> {
             progress(args, &format!("{name} on {} ranks", run.ranks));
@@ -175,7 +183,13 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         });
     }
     progress(args, "direct solution");
-    let verdict = judge(&launcher, plan, &file, solutions)?;
+    let verdict = match layout.trouble {
+        None => judge(&launcher, plan, &file, solutions)?,
+        Some(_) => Verdict {
+            rows: layout.forms.len(),
+            ..Verdict::default()
+        },
+    };
     for (k, judgement) in solved.into_iter().zip(&verdict.solutions) {
         sentence(&mut rows[k], judgement);
     }
@@ -187,6 +201,7 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         dofs: Numbering::new(scene).len() as usize,
         rtol: plan.rtol,
         cores: plan.cores,
+        supports: layout.loose(),
         reference_residual: verdict.reference.and_then(|r| r.residual),
         contact: scene.has_contact().then(|| inequalities(scene, &verdict)),
         rows,

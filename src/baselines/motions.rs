@@ -12,6 +12,9 @@ use crate::scene::Scene;
 /// What is left of a dependent form, relative to its largest entry, is below this.
 const DEPENDENT: f64 = 1e-9;
 
+/// A form that completes equations must have this part of itself left when it is chosen; where none has, half of it, and so on.
+const FIRM: f64 = 0.3;
+
 /// A linear form, or an equation: (place, coefficient), increasing.
 pub type Form = Vec<(usize, f64)>;
 
@@ -79,6 +82,21 @@ impl Echelon {
         true
     }
 
+    /// Those of the candidates that, set to zero, hold all n motions with these equations; the firm ones first.
+    pub fn complete(&self, n: usize, candidates: &[(u64, Form)]) -> Vec<(u64, Form)> {
+        let (mut now, mut chosen) = (self.clone(), Vec::new());
+        let mut firm = FIRM;
+        while now.rank() < n && firm > 1e-6 {
+            for candidate in candidates {
+                if now.left(&candidate.1) >= firm && now.insert(&candidate.1, 0.0) {
+                    chosen.push(candidate.clone());
+                }
+            }
+            firm *= 0.5;
+        }
+        chosen
+    }
+
     /// The α of length n that satisfies the equations and has no other entries.
     pub fn solve(&self, n: usize) -> Vec<f64> {
         let mut alpha = vec![0.0; n];
@@ -121,11 +139,6 @@ impl Motions {
     /// Number of motions of all bodies.
     pub fn len(&self) -> usize {
         self.count * self.bodies.len()
-    }
-
-    /// Number of motions of one body.
-    pub fn count(&self) -> usize {
-        self.count
     }
 
     /// Component `component` of u at a point of a body.
@@ -202,17 +215,26 @@ mod tests {
         assert!(!e.insert(&vec![(0, 1.0), (2, 2.0)], 3.0));
         assert_eq!(e.left(&vec![(0, 3.0), (1, 6.0)]), 0.0);
         assert!(e.left(&vec![(2, 1.0)]) > 0.1);
-        assert!(e.insert(&vec![(0, 1.0), (1, 1.0), (2, 1.0)], 6.0));
+        assert!(e.insert(&vec![(0, 1.0), (1, 1.0)], 4.0));
         assert_eq!(e.rank(), 3);
-        let alpha = e.solve(3);
-        // α₀ + 2α₁ = 5, α₁ − α₂ = 1, Σ = 6.
-        let want = [
-            5.0 - 2.0 * alpha[1],
-            alpha[2] + 1.0,
-            6.0 - alpha[0] - alpha[1],
-        ];
-        for (a, w) in alpha.iter().zip(want) {
-            assert!((a - w).abs() < 1e-13, "{alpha:?}");
+        // α₀ + 2α₁ = 5, α₁ − α₂ = 1, α₀ + α₁ = 4.
+        for (a, want) in e.solve(3).iter().zip([3.0, 1.0, 0.0]) {
+            assert!((a - want).abs() < 1e-13, "{a} {want}");
         }
+    }
+
+    #[test]
+    fn candidates_complete_equations_firmly() {
+        let mut e = Echelon::default();
+        assert!(e.insert(&vec![(0, 1.0)], 0.0));
+        let candidates = [
+            (7, vec![(0, 1.0)]),
+            (8, vec![(0, 1.0), (1, 1e-3)]),
+            (9, vec![(1, 1.0), (2, 1.0)]),
+            (10, vec![(1, 1.0), (2, -1.0)]),
+        ];
+        let chosen = e.complete(3, &candidates);
+        let chosen: Vec<u64> = chosen.into_iter().map(|c| c.0).collect();
+        assert_eq!(chosen, [9, 10]);
     }
 }

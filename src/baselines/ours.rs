@@ -58,7 +58,12 @@ pub fn solve(
                     steps: Some(solution.steps.len()),
                     active: system.rows.list(&active),
                 };
-                (system.close(session, active, &u, &weight)?, Some(outcome))
+                let residual = match layout.trouble {
+                    None => system.close(session, active, &u, &weight)?,
+                    // There is no assembled problem to have a residual.
+                    Some(_) => 0.0,
+                };
+                (residual, Some(outcome))
             }
             false => (system.system.relative_residual(&u)?, None),
         };
@@ -77,12 +82,11 @@ pub fn solve(
         })
     })?;
     attempt.u.save(file)?;
-    Ok(Outcome::new(
-        attempt,
-        rtol,
-        message,
-        [assemble, setup, bytes],
-    ))
+    let mut outcome = Outcome::new(attempt, rtol, message, [assemble, setup, bytes]);
+    if layout.trouble.is_some() {
+        outcome.residual = None;
+    }
+    Ok(outcome)
 }
 
 /// K, f and the inequalities.

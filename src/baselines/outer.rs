@@ -74,7 +74,11 @@ enum Caution {
     Single,
 }
 
-/// Runs the loop. `ksp` has its options, but neither operator nor set-up. Collective.
+/// Where the loop has its solver from: called whenever a preconditioner is built, to give the solver of before or a new one, with its
+/// options, but without operator and set-up.
+pub type Solvers<'a> = dyn FnMut() -> Result<Ksp> + 'a;
+
+/// Runs the loop. Collective.
 ///
 /// # Errors
 /// PETSc's.
@@ -82,7 +86,7 @@ pub fn solve(
     session: &Session,
     rows: &Rows,
     reduced: &Reduced,
-    ksp: &Ksp,
+    solvers: &mut Solvers,
     tolerances: Tolerances,
 ) -> Result<Found> {
     let (whole, mut setup) = (Instant::now(), 0.0);
@@ -95,6 +99,7 @@ pub fn solve(
     // The set that the preconditioner was built for.
     let mut built: Vec<bool> = Vec::new();
     let mut groups: Option<Groups> = None;
+    let mut ksp = solvers()?;
     loop {
         let now = match groups.take() {
             Some(groups) => groups,
@@ -106,12 +111,11 @@ pub fn solve(
                 if build {
                     built.clone_from(&active);
                 }
-                ksp.set_reuse_preconditioner(!build)?;
                 let prepare = || {
-                    if build && steps > 0 && reduced.has_near_kernel() {
-                        // GAMG keeps the rigid motions that it saw first.
-                        ksp.reset()?;
+                    if build && steps > 0 {
+                        ksp = solvers()?;
                     }
+                    ksp.set_reuse_preconditioner(!build)?;
                     reduced.update(&groups)?;
                     ksp.set_operators(&reduced.a, &reduced.a)?;
                     ksp.setup()

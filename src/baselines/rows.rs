@@ -33,9 +33,9 @@ pub struct Rows {
     /// Whether each row holds to begin with.
     pub initial: Vec<bool>,
     /// What ties and given values hold of the rigid motions.
-    held: Echelon,
+    pub(super) held: Echelon,
     /// The forms of the rows on them.
-    forms: Vec<Form>,
+    pub(super) forms: Vec<Form>,
     /// For every row of the scene its subdomain, and its place in `rows` if it is an inequality.
     pub(super) from: Vec<(usize, Option<usize>)>,
 }

@@ -65,6 +65,18 @@ impl Pc {
         petsc!(PCBDDCSetNeumannBoundariesLocal(self.0.raw(), dofs.0.raw()))
     }
 
+    /// Positions of the rows that this rank owns, the first `dim` entries of each. Collective.
+    pub fn set_coordinates(&self, dim: usize, points: &[[f64; 3]]) -> Result<()> {
+        let flat: std::vec::Vec<f64> = points.iter().flat_map(|p| p[..dim].to_vec()).collect();
+        let (dim, n) = (dim as i32, points.len() as i32);
+        petsc!(PCSetCoordinates(
+            self.0.raw(),
+            dim,
+            n,
+            flat.as_ptr().cast_mut()
+        ))
+    }
+
     /// PCBDDC: the local dofs of this rank's subdomain by field. Collective.
     pub fn bddc_set_fields_local(&self, fields: &[Is]) -> Result<()> {
         let mut raw: std::vec::Vec<sys::IS> = fields.iter().map(|is| is.0.raw()).collect();

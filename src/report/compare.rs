@@ -75,7 +75,7 @@ pub fn text(report: &CompareReport) -> String {
          All methods were driven to ‖b − Au‖ ≤ {} ‖b‖ of the assembled problem; its assembly is not in the times.\n\
          parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); error: in the energy norm,\n\
          against a refined direct solution{}; MB: largest resident memory, summed over the ranks;\n\
-         net: without what each rank holds before it has read the problem.\n{}",
+         net: without what each rank holds before it has read the problem.\n{}{}",
         report.scene,
         report.bodies,
         report.subdomains,
@@ -85,6 +85,13 @@ pub fn text(report: &CompareReport) -> String {
         match report.reference_residual {
             Some(r) => format!(" (residual {})", scientific(Some(r))),
             None => " (not available)".to_string(),
+        },
+        match report.supports {
+            0 => String::new(),
+            n => format!(
+                "Nothing holds {n} rigid motion{}: the assembled problem has as many unknowns set to zero, which bear no force.\n",
+                if n == 1 { "" } else { "s" }
+            ),
         },
         report.contact.map(|c| inequalities(&c)).unwrap_or_default(),
     )
@@ -208,6 +215,7 @@ mod tests {
             dofs: 225,
             rtol: 1e-6,
             cores: 2,
+            supports: 0,
             reference_residual: None,
             contact: None,
             rows: vec![row.clone(), failed.clone()],
@@ -255,6 +263,7 @@ mod tests {
             dofs: 10,
             rtol: 1e-6,
             cores: 2,
+            supports: 2,
             reference_residual: None,
             contact: Some(CompareInequalities {
                 rows: 33,
@@ -275,6 +284,7 @@ mod tests {
         assert!(!lines[2].contains("same") && !lines[2].contains("differ"));
         assert!(text.contains("Of 33 inequalities 9 hold") && text.contains("in 6 steps"));
         assert!(text.contains("Of 4 load steps the last one"));
+        assert!(text.contains("Nothing holds 2 rigid motions:"));
         let csv = csv(&report.rows[1..2]).to_csv();
         assert!(csv.contains(",,9,3,0.5,-0.25,,true,"), "{csv}");
     }

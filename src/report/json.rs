@@ -300,6 +300,9 @@ pub struct CompareReport {
     pub rtol: f64,
     /// Cores that methods without a layout of their own were given.
     pub cores: usize,
+    /// Rigid motions that nothing in the scene holds: the assembled problem has as many supports, which bear no force.
+    #[serde(default)]
+    pub supports: usize,
     /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
     pub reference_residual: Option<f64>,
     /// In scenes with inequalities: what they are in the direct solution.

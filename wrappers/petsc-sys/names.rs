@@ -190,6 +190,7 @@ const FUNCTIONS: &[&str] = &[
     "PCBDDCSetNeumannBoundariesLocal",
     "PCBDDCSetPrimalVerticesLocalIS",
     "PCBDDCSetDofsSplittingLocal",
+    "PCSetCoordinates",
     // eigenvalues
     "EPSCreate",
     "EPSSetOperators",
