@@ -47,7 +47,7 @@ fn judge(session: &Session, case: &Case, kind: ContactType) -> std::result::Resu
     let Case { scene, problem, .. } = case;
     if let Fate::Solvable(reference) = &case.fate {
         let cards = case.seed % 2 == 1;
-        let what = (scene, problem, reference);
+        let what = (scene, problem, &**reference);
         return contact_judge::judge(session, what, cards, kind).map(|_| ());
     }
     match contact_judge::answer(session, scene, problem, false, kind) {

@@ -80,9 +80,9 @@ fn box_load(
             for q in 0..corners {
                 let mut s = [0.0; 3];
                 let mut weight = volume;
-                for d in 0..dim {
+                for (d, s) in s.iter_mut().enumerate().take(dim) {
                     let (point, w) = q1::GAUSS2[q >> d & 1];
-                    s[d] = point;
+                    *s = point;
                     weight *= w;
                 }
                 let value = f(s).map(|v| v * weight);

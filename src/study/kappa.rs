@@ -54,7 +54,7 @@ pub const FAMILIES: [Family; 5] = [
         name: "scalar 3D",
         dim: 3,
         poisson: None,
-        sizes: &[[2, 4], [4, 4], [8, 4], [2, 2], [2, 8], [2, 16]],
+        sizes: &[[2, 2], [4, 2], [8, 2], [2, 4], [2, 8], [2, 16]],
         quick: 1,
     },
     Family {

@@ -17,7 +17,7 @@ pub struct Case {
 }
 
 pub enum Fate {
-    Solvable(Reference),
+    Solvable(Box<Reference>),
     Unbounded,
     Infeasible,
 }
@@ -28,7 +28,7 @@ pub fn case(seed: u64) -> Result<Case, String> {
     let scene = Scene::parse("random.toml", &text).map_err(|e| format!("{e}\n{text}"))?;
     let problem = Assembled::of_scene(&scene);
     let fate = match problem.outcome() {
-        Outcome::Solved(solved) => Fate::Solvable(problem.reference(solved)),
+        Outcome::Solved(solved) => Fate::Solvable(Box::new(problem.reference(solved))),
         Outcome::Unbounded(_) => Fate::Unbounded,
         Outcome::Infeasible(_) => Fate::Infeasible,
     };
