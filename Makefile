@@ -40,6 +40,8 @@ run: build ## Solve the model problems with contact and without, compare with PE
 	@mkdir -p "$(OUT)"
 	$(FETIFETI) solve examples/scenes/model_contact.toml --out "$(OUT)/model_contact"
 	$(FETIFETI) solve examples/scenes/press_ramp.toml --out "$(OUT)/press_ramp"
+	$(FETIFETI) solve examples/scenes/hertz_cylinder.toml --out "$(OUT)/hertz_cylinder"
+	$(FETIFETI) solve examples/scenes/blocks_3d.toml --out "$(OUT)/blocks_3d"
 	$(FETIFETI) compare examples/scenes/model_contact.toml --json "$(OUT)/compare_contact.json"
 	$(FETIFETI) solve examples/scenes/poisson_2x2.toml --out "$(OUT)/poisson"
 	$(FETIFETI) compare examples/scenes/poisson_2x2.toml --json "$(OUT)/compare.json"
@@ -47,6 +49,8 @@ run: build ## Solve the model problems with contact and without, compare with PE
 	@echo
 	@echo "The model contact problem (report, pictures, ParaView): $(abspath $(OUT))/model_contact"
 	@echo "Load steps (report, pictures, ParaView series):         $(abspath $(OUT))/press_ramp"
+	@echo "An elastic cylinder on a rigid plane (Hertz):           $(abspath $(OUT))/hertz_cylinder"
+	@echo "Elastic blocks pressed together, in space:              $(abspath $(OUT))/blocks_3d"
 	@echo "Contact compared with PETSc's solvers:                  $(abspath $(OUT))/compare_contact.json"
 	@echo "Solution of the 2x2 scene (report, picture, ParaView):  $(abspath $(OUT))/poisson"
 	@echo "Comparison with PETSc's solvers:                        $(abspath $(OUT))/compare.json"
