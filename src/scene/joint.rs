@@ -23,7 +23,9 @@ impl Scene {
     /// [`Error::Input`](crate::Error::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
     pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Substructures> {
         let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
-        let local: Result<Vec<Subdomain>> = mine.par_iter().map(|&s| self.subdomain(s)).collect();
+        // All first, then the first error: which one a parallel search meets first is chance.
+        let local: Vec<Result<Subdomain>> = mine.par_iter().map(|&s| self.subdomain(s)).collect();
+        let local: Result<Vec<Subdomain>> = local.into_iter().collect();
         Ok(Substructures {
             n_bodies: self.n_bodies(),
             n_subdomains: self.n_subdomains(),
