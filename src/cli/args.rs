@@ -19,7 +19,7 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
   fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
-  fetifeti study hertz|hard-cases|speed-error [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
+  fetifeti study hertz|hard-cases|speed-error [CASE] [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
       hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
       hard for the method against direct solutions, exit code 1 where an answer is wrong; speed-error: error
       against seconds, ours and the baselines of compare, over meshes and tolerances;
@@ -138,6 +138,8 @@ impl StudyName {
 pub struct Study {
     /// Which one.
     pub name: StudyName,
+    /// The one of its cases that is run; `None`: all.
+    pub case: Option<String>,
     /// File for the JSON.
     pub json: Option<PathBuf>,
     /// Directory for tables and pictures.
@@ -317,6 +319,7 @@ impl Words {
             }),
             "study" => Command::Study(Study {
                 name: self.study()?,
+                case: self.next_plain(),
                 json: self.path("--json"),
                 out: self.path("--out"),
                 quick: self.flag("--quick"),
@@ -432,7 +435,7 @@ mod tests {
             ("plan a.toml --checkpoint c", "--checkpoint"),
             ("study", "no name"),
             ("study hurtz", "hurtz"),
-            ("study hertz a.toml", "a.toml"),
+            ("study hertz sphere a.toml", "a.toml"),
         ] {
             let message = read(line).expect_err(line).to_string();
             assert!(message.contains(part), "{line}: {message}");

@@ -20,7 +20,7 @@ pub fn run(session: &Session, args: &Study) -> Result<()> {
 }
 
 fn run_hertz(session: &Session, args: &Study) -> Result<()> {
-    let report = hertz::run(session, args.quick, &mut |what| {
+    let report = hertz::run(session, args.quick, args.case.as_deref(), &mut |what| {
         progress(session, args, what)
     })?;
     progress(session, args, "");
@@ -46,7 +46,7 @@ fn run_hertz(session: &Session, args: &Study) -> Result<()> {
 }
 
 fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
-    let report = hard_cases::run(session, args.quick, &mut |what| {
+    let report = hard_cases::run(session, args.quick, args.case.as_deref(), &mut |what| {
         progress(session, args, what)
     })?;
     progress(session, args, "");
@@ -66,7 +66,7 @@ fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
 }
 
 fn run_speed_error(session: &Session, args: &Study) -> Result<()> {
-    let report = speed_error::run(session, args.quick, &mut |what| {
+    let report = speed_error::run(session, args.quick, args.case.as_deref(), &mut |what| {
         progress(session, args, what)
     })?;
     progress(session, args, "");
