@@ -19,7 +19,7 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
   fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
-  fetifeti study hertz|hard-cases|kappa|speed-error [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
+  fetifeti study hertz|hard-cases|kappa|speed-error [CASE] [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
       hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
       hard for the method against direct solutions, exit code 1 where an answer is wrong; kappa: condition
       numbers with M_D and M_C over H_b/H_s and H_s/h (-fetifeti_spectrum: exact ones too); speed-error:
@@ -143,6 +143,8 @@ impl StudyName {
 pub struct Study {
     /// Which one.
     pub name: StudyName,
+    /// The one of its cases that is run; `None`: all.
+    pub case: Option<String>,
     /// File for the JSON.
     pub json: Option<PathBuf>,
     /// Directory for tables and pictures.
@@ -322,6 +324,7 @@ impl Words {
             }),
             "study" => Command::Study(Study {
                 name: self.study()?,
+                case: self.next_plain(),
                 json: self.path("--json"),
                 out: self.path("--out"),
                 quick: self.flag("--quick"),
@@ -437,7 +440,7 @@ mod tests {
             ("plan a.toml --checkpoint c", "--checkpoint"),
             ("study", "no name"),
             ("study hurtz", "hurtz"),
-            ("study hertz a.toml", "a.toml"),
+            ("study hertz sphere a.toml", "a.toml"),
         ] {
             let message = read(line).expect_err(line).to_string();
             assert!(message.contains(part), "{line}: {message}");

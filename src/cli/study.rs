@@ -22,7 +22,7 @@ pub fn run(session: &Session, args: &Study) -> Result<()> {
 }
 
 fn run_hertz(session: &Session, args: &Study) -> Result<()> {
-    let report = hertz::run(session, args.quick, &mut |what| {
+    let report = hertz::run(session, args.quick, args.case.as_deref(), &mut |what| {
         progress(session, args, what)
     })?;
     progress(session, args, "");
@@ -48,7 +48,7 @@ fn run_hertz(session: &Session, args: &Study) -> Result<()> {
 }
 
 fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
-    let report = hard_cases::run(session, args.quick, &mut |what| {
+    let report = hard_cases::run(session, args.quick, args.case.as_deref(), &mut |what| {
         progress(session, args, what)
     })?;
     progress(session, args, "");
@@ -69,7 +69,8 @@ fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
 
 fn run_kappa(session: &Session, args: &Study) -> Result<()> {
     let exact = Settings::default().with_options(session)?.spectrum;
-    let report = kappa::run(session, args.quick, exact, &mut |what| {
+    let only = args.case.as_deref();
+    let report = kappa::run(session, args.quick, only, exact, &mut |what| {
         progress(session, args, what)
     })?;
     progress(session, args, "");
@@ -82,7 +83,7 @@ fn run_kappa(session: &Session, args: &Study) -> Result<()> {
 }
 
 fn run_speed_error(session: &Session, args: &Study) -> Result<()> {
-    let report = speed_error::run(session, args.quick, &mut |what| {
+    let report = speed_error::run(session, args.quick, args.case.as_deref(), &mut |what| {
         progress(session, args, what)
     })?;
     progress(session, args, "");

@@ -30,35 +30,35 @@ pub struct Family {
 /// The families of the study.
 pub const FAMILIES: [Family; 5] = [
     Family {
-        name: "scalar 2D",
+        name: "scalar-2d",
         dim: 2,
         poisson: None,
         sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
         quick: 2,
     },
     Family {
-        name: "elasticity 2D, plane strain, 0.3",
+        name: "elastic-2d-0.3",
         dim: 2,
         poisson: Some(0.3),
         sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
         quick: 2,
     },
     Family {
-        name: "elasticity 2D, plane strain, 0.49",
+        name: "elastic-2d-0.49",
         dim: 2,
         poisson: Some(0.49),
         sizes: &[[2, 4], [4, 4], [8, 4], [4, 2], [4, 8], [4, 16]],
         quick: 1,
     },
     Family {
-        name: "scalar 3D",
+        name: "scalar-3d",
         dim: 3,
         poisson: None,
         sizes: &[[2, 2], [4, 2], [8, 2], [2, 4], [2, 8], [2, 16]],
         quick: 1,
     },
     Family {
-        name: "elasticity 3D, 0.3",
+        name: "elastic-3d-0.3",
         dim: 3,
         poisson: Some(0.3),
         sizes: &[[2, 2], [3, 2], [4, 2], [6, 2], [2, 4], [2, 8]],
@@ -112,11 +112,12 @@ pub struct Report {
 pub fn run(
     session: &Session,
     quick: bool,
+    only: Option<&str>,
     exact: bool,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Report> {
     let mut rows = Vec::new();
-    for family in FAMILIES {
+    for family in super::chosen(FAMILIES.to_vec(), |f| f.name, only)? {
         let n = if quick {
             family.quick
         } else {

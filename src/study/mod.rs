@@ -10,7 +10,26 @@ pub mod kappa;
 mod solved;
 pub mod speed_error;
 
+use crate::{Error, Result};
+
 /// a · b.
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The cases of a study, or the one that is asked for.
+fn chosen<T>(all: Vec<T>, name: impl Fn(&T) -> &'static str, only: Option<&str>) -> Result<Vec<T>> {
+    let Some(wanted) = only else {
+        return Ok(all);
+    };
+    let names: Vec<&str> = all.iter().map(&name).collect();
+    let message = format!(
+        "the study has no case \"{wanted}\", expected one of {}",
+        names.join(", ")
+    );
+    let found: Vec<T> = all.into_iter().filter(|c| name(c) == wanted).collect();
+    if found.is_empty() {
+        return Err(Error::input(message));
+    }
+    Ok(found)
 }

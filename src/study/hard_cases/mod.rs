@@ -114,9 +114,14 @@ impl Report {
 ///
 /// # Errors
 /// A scene that cannot be read, and PETSc's own errors.
-pub fn run(session: &Session, quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Report> {
+pub fn run(
+    session: &Session,
+    quick: bool,
+    only: Option<&str>,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Report> {
     let mut records = Vec::new();
-    for case in cases(quick) {
+    for case in super::chosen(cases(quick), |c| c.name, only)? {
         progress(case.name);
         records.push(one(session, &case, SPECTRUM[usize::from(quick)])?);
     }

@@ -122,9 +122,14 @@ pub fn meshes(case: Case, quick: bool) -> &'static [usize] {
 ///
 /// # Errors
 /// Those of the method; [`Error::NotConverged`] where a solution cannot be measured.
-pub fn run(session: &Session, quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Report> {
+pub fn run(
+    session: &Session,
+    quick: bool,
+    only: Option<&str>,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Report> {
     let mut cases = Vec::new();
-    for case in Case::ALL {
+    for case in super::chosen(Case::ALL.to_vec(), |c| c.name(), only)? {
         let mut list = Vec::new();
         for &n in meshes(case, quick) {
             progress(&format!("{}, {n} elements per radius", case.name()));

@@ -104,6 +104,8 @@ pub struct Run {
     pub solver_error: f64,
     /// Both parts together.
     pub error: f64,
+    /// Whether the residual was reached; pictures show only these.
+    pub converged: bool,
 }
 
 /// Tolerances of the study.
@@ -119,7 +121,12 @@ pub fn tolerances(quick: bool) -> &'static [f64] {
 ///
 /// # Errors
 /// [`Error::Input`] on several ranks; those of `compare`.
-pub fn run(session: &Session, quick: bool, progress: &mut dyn FnMut(&str)) -> Result<Report> {
+pub fn run(
+    session: &Session,
+    quick: bool,
+    only: Option<&str>,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Report> {
     if session.size() > 1 {
         return Err(Error::input(format!(
             "study speed-error was started on {} ranks, expected one: it starts the methods on ranks of their own",
@@ -128,7 +135,7 @@ pub fn run(session: &Session, quick: bool, progress: &mut dyn FnMut(&str)) -> Re
     }
     let mut cores = 0;
     let mut cases = Vec::new();
-    for case in Case::ALL {
+    for case in super::chosen(Case::ALL.to_vec(), |c| c.name(), only)? {
         let meshes = case.meshes(quick);
         progress(&format!("{}: errors of the meshes", case.name()));
         let errors = mesh_errors(session, case, meshes)?;
@@ -201,6 +208,7 @@ fn rows(
             solve,
             solver_error: error,
             error: mesh.error.hypot(error),
+            converged: row.converged,
         });
     }
     out
@@ -409,10 +417,14 @@ impl CaseReport {
         out
     }
 
-    /// For every mesh and tolerance the run of a method in its fastest layout.
+    /// For every mesh and tolerance the run of a method in its fastest layout, if one converged.
     pub fn fastest(&self, method: &str) -> Vec<&Run> {
         let mut out: Vec<&Run> = Vec::new();
-        for run in self.runs.iter().filter(|r| r.method == method) {
+        for run in self
+            .runs
+            .iter()
+            .filter(|r| r.method == method && r.converged)
+        {
             let total = |r: &Run| r.setup + r.solve;
             match out
                 .iter_mut()

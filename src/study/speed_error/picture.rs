@@ -21,6 +21,7 @@ pub fn table(report: &Report) -> Table {
         "solve s",
         "solver error",
         "error",
+        "converged",
     ];
     let mut table = Table::new(header)
         .align(0, Align::Left)
@@ -40,6 +41,7 @@ pub fn table(report: &Report) -> Table {
                 format!("{:.4}", r.solve),
                 scientific(Some(r.solver_error)),
                 format!("{:.3e}", r.error),
+                if r.converged { "yes" } else { "no" }.to_string(),
             ]);
         }
     }
