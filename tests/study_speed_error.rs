@@ -35,7 +35,7 @@ fn errors_fall_with_the_mesh() {
             case.case, coarse.error, fine.error
         );
         assert!(order > 0.8 && order < 1.3, "{}: order {order}", case.case);
-        assert_eq!(case.methods(), ["fetifeti", "mumps"]);
+        assert_eq!(case.methods(), ["fetifeti", "mumps", "fetifeti, mixed"]);
         for run in &case.runs {
             let mesh = case.meshes.iter().find(|m| m.elements == run.elements);
             let mesh = mesh.expect("a run has a mesh").error;

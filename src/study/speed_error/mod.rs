@@ -39,10 +39,16 @@ pub struct Variant {
 }
 
 /// The variants of ours.
-pub const VARIANTS: [Variant; 1] = [Variant {
-    name: "fetifeti",
-    options: &[],
-}];
+pub const VARIANTS: [Variant; 2] = [
+    Variant {
+        name: "fetifeti",
+        options: &[],
+    },
+    Variant {
+        name: "fetifeti, mixed",
+        options: &["-fetifeti_precision", "mixed"],
+    },
+];
 
 /// The study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
