@@ -51,7 +51,7 @@ pub struct Solution {
 /// Jumps on the rows that hold, over the displacements, may be so many times the relative tolerance.
 const JUMPS: f64 = 10.0;
 
-/// Jumps below this part of the displacements that S̃⁺ gives are rounding.
+/// Jumps below this part of the first displacements and jumps are rounding.
 const ROUNDING: f64 = 1e-13;
 
 /// Krylov runs after the first one, each from a residual computed anew.
@@ -72,6 +72,8 @@ pub(super) fn solve(
     natural.balance(session.comm(), &loads.kernel, &lambda)?;
     let mut residual = Residual::new(dual)?;
     residual.evaluate(session, dual, &loads, &lambda)?;
+    // An interface may come to rest altogether: what S̃⁺ made of the loads at first is the size of rounding.
+    let rounding = ROUNDING * residual.size.max(residual.r.norm2()?);
     dual.p_transpose(&residual.r)?;
     let mut inner = iterate(dual, ksp, &residual.r, residual.size, &lambda, None)?;
     let mut iterations = inner.iterations;
@@ -80,8 +82,6 @@ pub(super) fn solve(
     let mut open = None;
     for run in 0..=RUNS {
         residual.evaluate(session, dual, &loads, &lambda)?;
-        // Where rigid motions bring the interface back to rest, what S̃⁺ made of the loads is the size of rounding.
-        let rounding = ROUNDING * residual.size;
         residual.add_rigid_motion(session, dual)?;
         residual.close(session, dual)?;
         let jumps = residual.r.norm2()?;
