@@ -73,7 +73,7 @@ fn keys_and_types() {
     check(
         &body("a", "[0, 0]", "elements = 4\nrhoo = 2"),
         "s.toml:6: unknown key `rhoo` in [[body]] (known keys are name, origin, shape, size, subdomains, elements, \
-         elements_per_subdomain, rho, load, flux, dirichlet, ramp)",
+         elements_per_subdomain, rho, load, flux, spring, dirichlet, ramp)",
     );
     let e = message(&format!("colour = 1\n{}", pair("")));
     assert!(
@@ -129,7 +129,7 @@ fn keys_and_types() {
     );
     check(
         "physics = \"stokes\"\n[grid]\nbodies = 2\nelements = 2\n",
-        "s.toml:1: the text \"stokes\" where \"scalar\" was expected",
+        "s.toml:1: the text \"stokes\" where \"scalar\" or \"elasticity\" was expected",
     );
     check(
         &pair("[options]\nx = [1]\n"),
