@@ -82,7 +82,7 @@ pub struct MeshError {
 /// One method on one mesh with one tolerance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// `fetifeti` or a baseline.
+    /// `fetifeti` or a baseline; one with "(set given)" solves the equations of the last active set only.
     pub method: String,
     /// Elements across a subdomain.
     pub elements: usize,
@@ -192,12 +192,15 @@ fn rows(
         if !(ours || baselines) {
             continue;
         }
+        // Methods that are set up for a mesh and its parts do not search for the set.
+        let given = row.contact.is_some_and(|c| c.outer.is_none());
+        let method = match (ours, given) {
+            (true, _) => variant.name.into(),
+            (false, true) => format!("{} (set given)", row.method),
+            (false, false) => row.method.clone(),
+        };
         out.push(Run {
-            method: if ours {
-                variant.name.into()
-            } else {
-                row.method.clone()
-            },
+            method,
             elements: mesh.elements,
             dofs: mesh.dofs,
             rtol,
