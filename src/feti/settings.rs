@@ -39,6 +39,43 @@ pub enum Precision {
     Mixed,
 }
 
+/// How far the spectrum is cut down where coefficients jump inside bodies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Adaptive {
+    /// As it comes.
+    Off,
+    /// Below [`Adaptive::USUAL`] where coefficients vary inside a body, or where the first iterations show large eigenvalues.
+    Auto,
+    /// Below τ > 1 in every body.
+    Below(f64),
+}
+
+impl Adaptive {
+    /// τ of `auto`.
+    pub const USUAL: f64 = 10.0;
+
+    /// As the option takes it.
+    pub fn name(self) -> String {
+        match self {
+            Adaptive::Off => "off".into(),
+            Adaptive::Auto => "auto".into(),
+            Adaptive::Below(tau) => tau.to_string(),
+        }
+    }
+
+    /// From `off`, `auto` or a number above 1; `None` where the text is none of these.
+    pub fn parse(text: &str) -> Option<Adaptive> {
+        match text.trim().to_ascii_lowercase().as_str() {
+            "off" => Some(Adaptive::Off),
+            "auto" => Some(Adaptive::Auto),
+            number => {
+                let tau: f64 = number.parse().ok()?;
+                (tau > 1.0 && tau.is_finite()).then_some(Adaptive::Below(tau))
+            }
+        }
+    }
+}
+
 /// The constraints that hold the subdomains of a body together, at least one of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Primal {
@@ -151,6 +188,10 @@ pub struct Settings {
     pub primal: Primal,
     /// `fetifeti_projector`.
     pub projector: ProjectorKind,
+    /// `fetifeti_adaptive`.
+    pub adaptive: Adaptive,
+    /// `fetifeti_adaptive_max`: vectors per body at most.
+    pub adaptive_max: usize,
     /// `fetifeti_threads`: threads of this rank; `None`: all cores where one rank runs, else one.
     pub threads: Option<usize>,
     /// `fetifeti_check`: print the identities that the theory promises.
@@ -174,6 +215,8 @@ impl Default for Settings {
             primal: Primal::default(),
             precision: Precision::Double,
             projector: ProjectorKind::Auto,
+            adaptive: Adaptive::Auto,
+            adaptive_max: 100,
             threads: None,
             check: false,
             spectrum: false,
@@ -228,6 +271,16 @@ impl Settings {
                 Primal::NAMES.join(", ")
             ))
         })?;
+        let help = "bound on the condition number where coefficients jump inside bodies: off, auto or a number above 1";
+        let text = o.string("adaptive", &self.adaptive.name(), help)?;
+        self.adaptive = Adaptive::parse(&text).ok_or_else(|| {
+            Error::input(format!(
+                "option {} is \"{text}\", expected off, auto or a number above 1",
+                o.full_name("adaptive")
+            ))
+        })?;
+        let help = "deflation vectors per body at most";
+        self.adaptive_max = o.usize("adaptive_max", self.adaptive_max, help)?;
         let help = "threads per rank; 0: all cores where one rank runs, else 1";
         self.threads = match o.usize("threads", self.threads.unwrap_or(0), help)? {
             0 => None,
