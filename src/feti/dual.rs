@@ -4,9 +4,10 @@
 //! preconditioned, works in the space V = ker Gᵀ without knowing of it. Between the steps of the contact loop Z^k changes, and with it
 //! G, the touched blocks of B_D, and nothing else.
 
-use std::cell::RefCell;
+use std::cell::{Ref, RefCell};
 use std::rc::Rc;
 
+use super::deflation::Deflation;
 use super::exchange::sum_all;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
@@ -23,6 +24,8 @@ pub struct Dual {
     pub preconditioner: Preconditioner,
     /// G and P.
     pub natural: NaturalCoarse,
+    /// P_2, where it is in use.
+    deflation: RefCell<Option<Deflation>>,
     session: Session,
     /// Whether G belongs to other rows than those that hold.
     stale: bool,
@@ -48,6 +51,7 @@ impl Dual {
                 event("FetiFetiM")?,
                 event("FetiFetiP")?,
             ],
+            deflation: RefCell::new(None),
             session: session.clone(),
             stale: false,
             y: x.duplicate()?,
@@ -69,6 +73,10 @@ impl Dual {
             self.natural
                 .renew(&self.session, problem, stiffness, preconditioner)?;
             self.stale = false;
+            if let Some(mut deflation) = self.deflation.take() {
+                deflation.renew(&self.session, self)?;
+                self.deflation.replace(Some(deflation));
+            }
         }
         Ok(changed[0] as usize)
     }
@@ -108,6 +116,32 @@ impl Dual {
         self.natural.project_transpose(self.session.comm(), x)
     }
 
+    /// Uses P_2, or none.
+    pub fn deflate(&self, deflation: Option<Deflation>) {
+        self.deflation.replace(deflation);
+    }
+
+    /// P_2, where it is in use.
+    pub fn deflation(&self) -> Ref<'_, Option<Deflation>> {
+        self.deflation.borrow()
+    }
+
+    /// x ← P_2 x for x in V. Collective.
+    pub fn p2(&self, x: &PetscVec) -> Result<()> {
+        match &*self.deflation.borrow() {
+            Some(deflation) => deflation.project(&self.session, x),
+            None => Ok(()),
+        }
+    }
+
+    /// x ← P_2ᵀ x. Collective.
+    pub fn p2_transpose(&self, x: &PetscVec) -> Result<()> {
+        match &*self.deflation.borrow() {
+            Some(deflation) => deflation.project_transpose(&self.session, x),
+            None => Ok(()),
+        }
+    }
+
     /// y ← Pᵀ F P x.
     fn projected_f(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         if self.natural.r == 0 {
@@ -119,15 +153,17 @@ impl Dual {
         self.p_transpose(y) /*          y ← Pᵀ y         */
     }
 
-    /// y ← P M⁻¹ Pᵀ x.
+    /// y ← P_2 P M⁻¹ Pᵀ P_2ᵀ x.
     fn projected_m(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        if self.natural.r == 0 {
+        if self.natural.r == 0 && self.deflation.borrow().is_none() {
             return self.m(x, y);
         }
         self.y.copy_from(x)?;
+        self.p2_transpose(&self.y)?; /* x ← P_2ᵀ x       */
         self.p_transpose(&self.y)?; /*  x ← Pᵀ x         */
         self.m(&self.y, y)?; /*         y ← M⁻¹ x        */
-        self.p(y) /*                    y ← P y          */
+        self.p(y)?; /*                  y ← P y          */
+        self.p2(y) /*                   y ← P_2 y        */
     }
 
     fn describe(&self) -> String {
@@ -156,18 +192,49 @@ pub type Shared = Rc<RefCell<Dual>>;
 struct Range(Shared);
 
 impl ShellMat for Range {
-    /// y ← Π P x
+    /// y ← E x
     fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.0.borrow();
         dual.x.copy_from(x)?;
         dual.p(&dual.x)?;
-        dual.stiffness.range_projection(&dual.x, y)
+        dual.stiffness.range_projection(&dual.x, y)?;
+        if dual.deflation.borrow().is_some() {
+            dual.p2(y)?;
+            dual.x.copy_from(y)?;
+            dual.stiffness.range_projection(&dual.x, y)?;
+        }
+        Ok(())
     }
-    /// y ← Pᵀ Π x
+    /// y ← Eᵀ x
     fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.0.borrow();
-        dual.stiffness.range_projection(x, y)?;
+        if dual.deflation.borrow().is_some() {
+            dual.stiffness.range_projection(x, &dual.x)?;
+            dual.p2_transpose(&dual.x)?;
+            dual.p_transpose(&dual.x)?;
+            dual.stiffness.range_projection(&dual.x, y)?;
+        } else {
+            dual.stiffness.range_projection(x, y)?;
+        }
         dual.p_transpose(y)
+    }
+}
+
+struct Deflated(Shared);
+
+impl ShellMat for Deflated {
+    fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let dual = self.0.borrow();
+        let inner = dual.multipliers()?;
+        inner.copy_from(x)?;
+        dual.p(&inner)?; /*             x ← P x          */
+        dual.p2(&inner)?; /*            x ← P_2 x        */
+        dual.f(&inner, y)?; /*          y ← F x          */
+        dual.p2_transpose(y)?; /*       y ← P_2ᵀ y       */
+        dual.p_transpose(y) /*          y ← Pᵀ y         */
+    }
+    fn symmetric(&self) -> bool {
+        true
     }
 }
 
@@ -219,14 +286,21 @@ pub fn operator(session: &Session, dual: &Shared) -> Result<Mat> {
     Mat::shell(session, n, n, Box::new(Operator(dual.clone())))
 }
 
-/// P M⁻¹ Pᵀ as a matrix. Collective.
+/// P_2ᵀ Pᵀ F P P_2 as a matrix: what CG works with where a part is deflated. Collective.
+pub fn deflated_operator(session: &Session, dual: &Shared) -> Result<Mat> {
+    let n = dual.borrow().stiffness.jump.n_owned;
+    Mat::shell(session, n, n, Box::new(Deflated(dual.clone())))
+}
+
+/// P M⁻¹ Pᵀ, deflated where a part is, as a matrix. Collective.
 pub fn preconditioner_matrix(session: &Session, dual: &Shared) -> Result<Mat> {
     let n = dual.borrow().stiffness.jump.n_owned;
     Mat::shell(session, n, n, Box::new(Projected(dual.clone())))
 }
 
 /// E = Π P as a matrix, Π the orthogonal projection onto range B: F (I − Π) = 0 and P (I − Π) = I − Π make E a projection
-/// with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. Collective.
+/// with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. With deflation it is E P_2 E, whose range is the
+/// F-orthogonal complement of W in that space. Collective.
 pub fn range_matrix(session: &Session, dual: &Shared) -> Result<Mat> {
     let n = dual.borrow().stiffness.jump.n_owned;
     Mat::shell(session, n, n, Box::new(Range(dual.clone())))

@@ -3,6 +3,7 @@
 pub mod blocks;
 pub mod check;
 pub mod coarse;
+pub mod deflation;
 pub mod deluxe;
 pub mod dual;
 pub mod entities;

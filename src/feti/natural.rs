@@ -258,8 +258,18 @@ impl NaturalCoarse {
         Ok(Rows::from_triplets(n, entries))
     }
 
+    /// G on the owned rows.
+    pub fn g(&self) -> &Rows {
+        &self.g
+    }
+
+    /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank.
+    pub fn solve_gtg(&self, x: &mut [f64]) -> Result<()> {
+        self.gtg.as_ref().map_or(Ok(()), |gtg| gtg.solve(x, Side::Plain))
+    }
+
     /// Q G, which is G itself for Q = I.
-    fn qg(&self) -> &Rows {
+    pub fn qg(&self) -> &Rows {
         self.qg.as_ref().unwrap_or(&self.g)
     }
 

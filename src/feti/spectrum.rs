@@ -33,7 +33,11 @@ pub fn exact(session: &Session, dual: &Shared, prefix: &str) -> Result<Option<Sp
     if dual.borrow().stiffness.jump.n_global == 0 {
         return Ok(None);
     }
-    let a = dual::operator(session, dual)?;
+    let a = if dual.borrow().deflation().is_some() {
+        dual::deflated_operator(session, dual)?
+    } else {
+        dual::operator(session, dual)?
+    };
     let c = dual::preconditioner_matrix(session, dual)?;
     let e = dual::range_matrix(session, dual)?;
     let start = start_vector(&dual.borrow())?;

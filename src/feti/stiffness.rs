@@ -100,11 +100,25 @@ impl Stiffness {
 
     /// out ← F λ = B S̃⁺ Bᵀ λ. Collective.
     pub fn f_mult(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        self.f_mult_of(lambda, out, |_| true)
+    }
+
+    /// The same with the bodies alone to which the chosen local subdomains belong. Collective.
+    pub fn f_mult_of(
+        &self,
+        lambda: &PetscVec,
+        out: &PetscVec,
+        chosen: impl Fn(usize) -> bool + Sync,
+    ) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         self.dual_halo.fetch(lambda, ghost)?;
         let columns = &self.jump.columns;
         self.team.for_each(work, |j, w| {
-            columns[j].b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
+            if chosen(j) {
+                columns[j].b_transpose(ghost, &mut w.v); /* v ← Bᵀ λ     */
+            } else {
+                w.v.fill(0.0);
+            }
         });
         self.s_plus(work)?; /*                            y ← S̃⁺ v       */
         self.jump_of(work, out) /*                        out ← B y      */

@@ -82,15 +82,26 @@ impl Dense {
 
     /// y ← y + A x.
     pub fn add_mul(&self, x: &[f64], y: &mut [f64]) {
+        if is_zero(x) {
+            return;
+        }
         gemv(&self.data, self.rows, x, y);
     }
 
     /// y ← y + Aᵀ x.
     pub fn add_mul_transpose(&self, x: &[f64], y: &mut [f64]) {
+        if is_zero(x) {
+            return;
+        }
         for (j, yj) in y.iter_mut().enumerate().take(self.cols) {
             *yj += dot(self.col(j), x);
         }
     }
+}
+
+/// Deflation vectors and coarse columns touch a few subdomains and pass by all of them.
+fn is_zero(x: &[f64]) -> bool {
+    x.iter().all(|x| *x == 0.0)
 }
 
 /// y ← y + A x for a column-major A with `rows` rows: four columns at a time, so that y is read once for four.

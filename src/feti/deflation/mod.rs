@@ -1,0 +1,306 @@
+//! Deflation of what coefficients that jump inside bodies leave above τ (method section 5b).
+//!
+//! ```text
+//!     W = P M⁻¹ [ P_iᵀ F_i μ ],    P_2 = I − W (Wᵀ F W)⁺ Wᵀ F
+//! ```
+//!
+//! The columns μ are the top of the pencils of the bodies, one body after the other ([`pencil`], [`search`]); they are found once, with the rows that
+//! hold to begin with. M⁻¹ becomes P_2 M⁻¹ P_2ᵀ, and λ₀ gets the part of the solution in range W: every Krylov method then works in
+//! the F-orthogonal complement of W without knowing of it.
+//!
+//! W without P is sparse: a column lives on its body and those next to it. P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ stays a factor, and so it does in F P W:
+//!
+//! ```text
+//!     P W = W − Q G X,    F P W = F W − F Q G X,    X = (Gᵀ Q G)⁻¹ Gᵀ W
+//! ```
+
+pub mod graph;
+pub mod pencil;
+pub mod search;
+pub mod sweep;
+
+use std::time::Instant;
+
+use self::graph::BodyGraph;
+use self::pencil::Pencil;
+use self::sweep::Column;
+use super::dual::Dual;
+use super::exchange::sum_all;
+use super::local::dense::Dense;
+use super::local::semidefinite::Semidefinite;
+use super::rows::Rows;
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// What was found and what it cost; the same on every rank except for the seconds.
+#[derive(Debug, Clone, Default)]
+pub struct Cost {
+    /// τ.
+    pub tau: f64,
+    /// Vectors of every body.
+    pub vectors: Vec<usize>,
+    /// Bodies with more vectors above τ than the cap allows, or whose vectors did not settle.
+    pub capped: Vec<usize>,
+    /// The largest Ritz value of all bodies that is deflated; 0 where none is.
+    pub largest: f64,
+    /// Vectors that depended on others.
+    pub dependent: usize,
+    /// Seconds of the search and of the matrices.
+    pub seconds: f64,
+}
+
+/// Rows Y without the kernel part: Y − Q X with sparse Y, Q.
+struct Split {
+    y: Rows,
+    q: Option<Rows>,
+}
+
+/// P_2 for the rows that hold.
+pub struct Deflation {
+    /// What it cost.
+    pub cost: Cost,
+    graph: BodyGraph,
+    /// M⁻¹ P_iᵀ F_i μ with all rows that the search knew.
+    columns: Vec<Column>,
+    /// P W and F P W.
+    w: Split,
+    fw: Split,
+    /// X, r × the number of columns.
+    x: Dense,
+    /// Wᵀ Pᵀ F P W.
+    e: Semidefinite,
+}
+
+impl Deflation {
+    /// Searches all bodies for vectors above `tau`, at most `most` in each. `None` where there is none. Collective.
+    pub fn new(
+        session: &Session,
+        problem: &Substructures,
+        dual: &Dual,
+        tau: f64,
+        most: usize,
+    ) -> Result<Deflation> {
+        let clock = Instant::now();
+        let graph = BodyGraph::new(session.comm(), problem, &dual.stiffness);
+        let bodies: Vec<u32> = (0..graph.n as u32).collect();
+        let mut cost = Cost {
+            tau,
+            vectors: vec![0; graph.n],
+            ..Cost::default()
+        };
+        let mut jumps: Vec<(u32, Column)> = Vec::new();
+        for colour in graph.colours(&bodies) {
+            let pencil = Pencil::new(session, problem, dual, &graph, &colour)?;
+            let found = search::top(&pencil, tau, most, |slot, image| {
+                let entries = pencil.parts[slot].clone().map(|i| (pencil.rows[i], image[i]));
+                let body = pencil.bodies[slot];
+                let column = Column {
+                    entries: entries.filter(|e| e.1 != 0.0).collect(),
+                    reach: graph.near[body as usize].clone(),
+                };
+                jumps.push((body, column));
+            })?;
+            for (body, found) in colour.iter().zip(&found) {
+                let body = *body as usize;
+                cost.vectors[body] = found.theta.len();
+                cost.largest = found.theta.iter().fold(cost.largest, |a, t| a.max(*t));
+                if found.capped {
+                    cost.capped.push(body);
+                }
+            }
+        }
+        cost.capped.sort_unstable();
+        // By body, whatever the colours are.
+        jumps.sort_by_key(|j| j.0);
+        let jumps: Vec<Column> = jumps.into_iter().map(|j| j.1).collect();
+        let columns = sweep::images(dual, &graph, &jumps, |x, y| dual.m(x, y))?;
+        let (w, fw, x, e) = matrices(session, dual, &graph, &columns)?;
+        cost.dependent = columns.len() - e.rank();
+        cost.seconds = clock.elapsed().as_secs_f64();
+        Ok(Deflation {
+            cost,
+            graph,
+            columns,
+            w,
+            fw,
+            x,
+            e,
+        })
+    }
+
+    /// Number of vectors.
+    pub fn n(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Masks W by the rows that hold now and renews what follows from it. Collective.
+    pub fn renew(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+        if self.columns.is_empty() {
+            return Ok(());
+        }
+        let active = &dual.stiffness.jump.active;
+        let mask = |column: &Column| Column {
+            entries: column
+                .entries
+                .iter()
+                .copied()
+                .filter(|e| active[e.0 as usize])
+                .collect(),
+            reach: column.reach.clone(),
+        };
+        let columns: Vec<Column> = self.columns.iter().map(mask).collect();
+        (self.w, self.fw, self.x, self.e) = matrices(session, dual, &self.graph, &columns)?;
+        Ok(())
+    }
+
+    /// λ ← P_2 λ for λ in V. Collective.
+    pub fn project(&self, session: &Session, lambda: &PetscVec) -> Result<()> {
+        if self.columns.is_empty() {
+            return Ok(());
+        }
+        let mut c = self.transpose(session, &self.fw, lambda)?; /* c ← (F P W)ᵀ λ     */
+        self.e.solve(&mut c); /*                                    c ← E⁺ c           */
+        self.add(-1.0, &self.w, &c, lambda) /*                      λ ← λ − P W c      */
+    }
+
+    /// r ← P_2ᵀ r. Collective.
+    pub fn project_transpose(&self, session: &Session, residual: &PetscVec) -> Result<()> {
+        if self.columns.is_empty() {
+            return Ok(());
+        }
+        let mut c = self.transpose(session, &self.w, residual)?; /* c ← (P W)ᵀ r       */
+        self.e.solve(&mut c); /*                                    c ← E⁺ c           */
+        self.add(-1.0, &self.fw, &c, residual) /*                   r ← r − F P W c    */
+    }
+
+    /// out ← out + W (Wᵀ F W)⁺ Wᵀ r: the part of the solution in range W. Collective.
+    pub fn solve(&self, session: &Session, residual: &PetscVec, out: &PetscVec) -> Result<()> {
+        let mut c = self.transpose(session, &self.w, residual)?;
+        self.e.solve(&mut c);
+        self.add(1.0, &self.w, &c, out)
+    }
+
+    /// (Y − Q X)ᵀ v.
+    fn transpose(&self, session: &Session, of: &Split, v: &PetscVec) -> Result<Vec<f64>> {
+        let (k, r) = (self.x.cols, self.x.rows);
+        let mut c = vec![0.0; k + r];
+        {
+            let v = v.array()?;
+            let (columns, kernels) = c.split_at_mut(k);
+            of.y.add_transpose(&v, columns);
+            if let Some(q) = &of.q {
+                q.add_transpose(&v, kernels);
+            }
+        }
+        sum_all(session.comm(), &mut c);
+        let mut kernels = c.split_off(k);
+        kernels.iter_mut().for_each(|v| *v = -*v);
+        self.x.add_mul_transpose(&kernels, &mut c);
+        Ok(c)
+    }
+
+    /// v ← v + α (Y − Q X) c.
+    fn add(&self, alpha: f64, of: &Split, c: &[f64], v: &PetscVec) -> Result<()> {
+        let mut v = v.array_mut()?;
+        of.y.add(alpha, c, &mut v);
+        if let Some(q) = &of.q {
+            let mut kernels = vec![0.0; self.x.rows];
+            self.x.add_mul(c, &mut kernels);
+            q.add(-alpha, &kernels, &mut v);
+        }
+        Ok(())
+    }
+}
+
+/// W, F W, X and Wᵀ F W of given columns. Collective.
+fn matrices(
+    session: &Session,
+    dual: &Dual,
+    graph: &BodyGraph,
+    columns: &[Column],
+) -> Result<(Split, Split, Dense, Semidefinite)> {
+    let n = dual.stiffness.jump.n_owned;
+    let (k, r) = (columns.len(), dual.natural.r);
+    let f = |x: &PetscVec, y: &PetscVec| dual.f(x, y);
+    let w = sweep::rows(n, columns);
+    let fw = sweep::rows(n, &sweep::images(dual, graph, columns, f)?);
+    let mut x = Dense::zeros(r, k);
+    let mut kernels = None;
+    if r > 0 && k > 0 {
+        for i in 0..n {
+            for (g, gv) in dual.natural.g().row(i) {
+                w.row(i).for_each(|(c, wv)| x.data[g + c * r] += gv * wv);
+            }
+        }
+        sum_all(session.comm(), &mut x.data);
+        for c in 0..k {
+            dual.natural.solve_gtg(x.col_mut(c))?;
+        }
+        let qg = kernel_columns(dual, graph);
+        let fqg = sweep::rows(n, &sweep::images(dual, graph, &qg, f)?);
+        kernels = Some((sweep::rows(n, &qg), fqg));
+    }
+    let (qg, fqg) = kernels.unzip();
+    let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
+    let e = gram(session, &w, &fw, &x);
+    Ok((w, fw, x, Semidefinite::new(&e)))
+}
+
+/// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
+fn gram(session: &Session, w: &Split, f: &Split, x: &Dense) -> Dense {
+    let (r, k) = (x.rows, x.cols);
+    // The products of all columns, kernel ones after the others: [Y Q]ᵀ F [Y Q].
+    let m = k + if w.q.is_some() { r } else { 0 };
+    let mut a = Dense::zeros(m, m);
+    let of = |s: &Split, i: usize, out: &mut Vec<(usize, f64)>| {
+        out.clear();
+        out.extend(s.y.row(i));
+        out.extend(s.q.iter().flat_map(|q| q.row(i).map(|(c, v)| (k + c, v))));
+    };
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    for i in 0..w.y.n() {
+        of(w, i, &mut left);
+        of(f, i, &mut right);
+        for &(p, pv) in &left {
+            let column = a.col_mut(p);
+            right.iter().for_each(|&(q, qv)| column[q] += pv * qv);
+        }
+    }
+    sum_all(session.comm(), &mut a.data);
+    let entry = |i: usize, j: usize| 0.5 * (a.get(i, j) + a.get(j, i));
+    let mut e = Dense::zeros(k, k);
+    let mut column = vec![0.0; m];
+    for j in 0..k {
+        for (i, c) in column.iter_mut().enumerate() {
+            *c = entry(i, j);
+            for g in k..m {
+                *c -= entry(i, g) * x.get(g - k, j);
+            }
+        }
+        for i in 0..k {
+            let kernels = (k..m).map(|g| x.get(g - k, i) * column[g]);
+            e.set(i, j, column[i] - kernels.sum::<f64>());
+        }
+    }
+    e
+}
+
+/// The columns of Q G.
+fn kernel_columns(dual: &Dual, graph: &BodyGraph) -> Vec<Column> {
+    let natural = &dual.natural;
+    let start = &dual.stiffness.space.kernel_start;
+    let mut columns = vec![Column::default(); natural.r];
+    for body in 0..graph.n {
+        for column in &mut columns[start[body]..start[body + 1]] {
+            // G and M⁻¹ G of a body live on the rows that its neighbours touch.
+            column.reach = graph.around(&graph.near[body]);
+        }
+    }
+    for i in 0..natural.qg().n() {
+        for (c, value) in natural.qg().row(i) {
+            columns[c].entries.push((i as u32, value));
+        }
+    }
+    columns
+}

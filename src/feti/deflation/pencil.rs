@@ -1,0 +1,225 @@
+//! The pencils of the bodies of one colour, side by side.
+//!
+//! ```text
+//!     F_i = B_i S̃_i⁺ B_iᵀ,    M_i⁻¹ = the rows of body i of M⁻¹,    P_i = I − M_i⁻¹ G_i (G_iᵀ M_i⁻¹ G_i)⁺ G_iᵀ
+//!     P_i M_i⁻¹ P_iᵀ F_i μ = θ μ
+//! ```
+//!
+//! With v = S̃_i⁺ B_iᵀ μ this is B_iᵀ M⁻¹ B_i v = θ S̃_i v (method section 5b), v orthogonal to the kernel of S̃_i. No body of a colour is near
+//! two others, so that one product with F and M⁻¹ serves all of them.
+
+use std::ops::Range;
+
+use super::graph::BodyGraph;
+use crate::feti::dual::Dual;
+use crate::feti::exchange::sum_all;
+use crate::feti::local::dense::Dense;
+use crate::feti::local::semidefinite::Semidefinite;
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// The bodies of a colour. Vectors hold the rows of one body after those of the other.
+pub struct Pencil<'a> {
+    session: &'a Session,
+    dual: &'a Dual,
+    /// The bodies.
+    pub bodies: Vec<u32>,
+    /// Owned row behind each entry of a vector.
+    pub rows: Vec<u32>,
+    /// Entries of each body.
+    pub parts: Vec<Range<usize>>,
+    /// Whether each local subdomain belongs to one of the bodies.
+    inside: Vec<bool>,
+    kernel: Option<Kernel>,
+    x: PetscVec,
+    y: PetscVec,
+}
+
+/// G_i and M_i⁻¹ G_i, one column of every body at a time, and the factors of G_iᵀ M_i⁻¹ G_i.
+struct Kernel {
+    g: Vec<Vec<f64>>,
+    mg: Vec<Vec<f64>>,
+    factors: Vec<Semidefinite>,
+}
+
+impl<'a> Pencil<'a> {
+    /// Prepares the rows and projections of `bodies`. Collective.
+    pub fn new(
+        session: &'a Session,
+        problem: &Substructures,
+        dual: &'a Dual,
+        graph: &BodyGraph,
+        bodies: &[u32],
+    ) -> Result<Pencil<'a>> {
+        let jump = &dual.stiffness.jump;
+        let mut slot = vec![usize::MAX; graph.n];
+        for (s, &b) in bodies.iter().enumerate() {
+            slot[b as usize] = s;
+        }
+        let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); bodies.len()];
+        for row in 0..jump.n_owned {
+            let terms = graph.terms.of(row).iter();
+            for s in terms.map(|&b| slot[b as usize]).filter(|&s| s != usize::MAX) {
+                of_body[s].push(row as u32);
+            }
+        }
+        let mut parts = Vec::new();
+        let mut rows = Vec::new();
+        for list in of_body {
+            let start = rows.len();
+            rows.extend(list);
+            parts.push(start..rows.len());
+        }
+        let inside = problem.local.iter().map(|s| slot[s.body] != usize::MAX);
+        let mut pencil = Pencil {
+            session,
+            dual,
+            bodies: bodies.to_vec(),
+            rows,
+            parts,
+            inside: inside.collect(),
+            kernel: None,
+            x: dual.multipliers()?,
+            y: dual.multipliers()?,
+        };
+        pencil.kernel = pencil.kernels()?;
+        Ok(pencil)
+    }
+
+    /// Number of entries of a vector on this rank.
+    pub fn n(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn kernels(&self) -> Result<Option<Kernel>> {
+        let start = &self.dual.stiffness.space.kernel_start;
+        let of = |b: &u32| start[*b as usize]..start[*b as usize + 1];
+        let most = self.bodies.iter().map(|b| of(b).len()).max().unwrap_or(0);
+        if most == 0 {
+            return Ok(None);
+        }
+        let mut g = vec![vec![0.0; self.n()]; most];
+        for (part, body) in self.parts.iter().zip(&self.bodies) {
+            let columns = of(body);
+            for i in part.clone() {
+                for (c, value) in self.dual.natural.g().row(self.rows[i] as usize) {
+                    if columns.contains(&c) {
+                        g[c - columns.start][i] = value;
+                    }
+                }
+            }
+        }
+        let mut mg = Vec::new();
+        for column in &g {
+            mg.push(self.plain_m(column)?);
+        }
+        let mut sums = Vec::new();
+        for (p, gp) in g.iter().enumerate() {
+            for mq in &mg[..=p] {
+                sums.extend(self.dots(gp, mq));
+            }
+        }
+        sum_all(self.session.comm(), &mut sums);
+        let factor = |s: usize| {
+            let mut a = Dense::zeros(most, most);
+            let mut k = s;
+            for p in 0..most {
+                for q in 0..=p {
+                    a.set(p, q, sums[k]);
+                    a.set(q, p, sums[k]);
+                    k += self.bodies.len();
+                }
+            }
+            Semidefinite::new(&a)
+        };
+        let factors = (0..self.bodies.len()).map(factor).collect();
+        Ok(Some(Kernel { g, mg, factors }))
+    }
+
+    /// This rank's share of aᵀ b for every body.
+    pub fn dots(&self, a: &[f64], b: &[f64]) -> Vec<f64> {
+        let dot = |part: &Range<usize>| {
+            let pairs = a[part.clone()].iter().zip(&b[part.clone()]);
+            pairs.map(|(a, b)| a * b).sum()
+        };
+        self.parts.iter().map(dot).collect()
+    }
+
+    /// y ← y + Σ α_i x on the entries of body i.
+    pub fn add(&self, alpha: &[f64], x: &[f64], y: &mut [f64]) {
+        for (part, &alpha) in self.parts.iter().zip(alpha) {
+            if alpha != 0.0 {
+                let pairs = y[part.clone()].iter_mut().zip(&x[part.clone()]);
+                pairs.for_each(|(y, x)| *y += alpha * x);
+            }
+        }
+    }
+
+    fn scatter(&self, v: &[f64]) -> Result<()> {
+        self.x.set(0.0)?;
+        let mut x = self.x.array_mut()?;
+        self.rows.iter().zip(v).for_each(|(&r, v)| x[r as usize] = *v);
+        Ok(())
+    }
+
+    fn gather(&self) -> Result<Vec<f64>> {
+        let y = self.y.array()?;
+        Ok(self.rows.iter().map(|&r| y[r as usize]).collect())
+    }
+
+    /// F_i v. Collective.
+    pub fn f(&self, v: &[f64]) -> Result<Vec<f64>> {
+        self.scatter(v)?;
+        let (stiffness, inside) = (&self.dual.stiffness, &self.inside);
+        stiffness.f_mult_of(&self.x, &self.y, |j| inside[j])?;
+        self.gather()
+    }
+
+    fn plain_m(&self, v: &[f64]) -> Result<Vec<f64>> {
+        self.scatter(v)?;
+        self.dual.m(&self.x, &self.y)?;
+        self.gather()
+    }
+
+    /// P_i M_i⁻¹ v for v that `jump_part` has been through. Collective.
+    pub fn m(&self, v: &[f64]) -> Result<Vec<f64>> {
+        let mut z = self.plain_m(v)?;
+        if let Some(k) = &self.kernel {
+            self.remove(&mut z, k, &k.g, &k.mg);
+        }
+        Ok(z)
+    }
+
+    /// v ← P_iᵀ v. Collective.
+    pub fn jump_part(&self, v: &mut [f64]) {
+        if let Some(k) = &self.kernel {
+            self.remove(v, k, &k.mg, &k.g);
+        }
+    }
+
+    /// v ← v − along (G_iᵀ M_i⁻¹ G_i)⁺ fromᵀ v.
+    fn remove(&self, v: &mut [f64], kernel: &Kernel, from: &[Vec<f64>], along: &[Vec<f64>]) {
+        let n = self.bodies.len();
+        let mut sums: Vec<f64> = from.iter().flat_map(|c| self.dots(c, v)).collect();
+        sum_all(self.session.comm(), &mut sums);
+        for s in 0..n {
+            let mut c: Vec<f64> = (0..from.len()).map(|p| sums[p * n + s]).collect();
+            kernel.factors[s].solve(&mut c);
+            c.iter().enumerate().for_each(|(p, c)| sums[p * n + s] = -c);
+        }
+        for (p, column) in along.iter().enumerate() {
+            self.add(&sums[p * n..(p + 1) * n], column, v);
+        }
+    }
+
+    /// Number of this rank's first row.
+    pub fn first_row(&self) -> u64 {
+        self.dual.stiffness.jump.first as u64
+    }
+
+    /// Sums over the ranks.
+    pub fn sum(&self, values: &mut [f64]) {
+        sum_all(self.session.comm(), values);
+    }
+}

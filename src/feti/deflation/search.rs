@@ -1,0 +1,186 @@
+//! The top of the pencils of one colour: Krylov spaces of all bodies in step, each with its own Rayleigh–Ritz problem.
+//!
+//! Bases are orthonormal in F_i. Two start vectors find eigenvalues of multiplicity two at once; others come out by and by. A body stops
+//! when what is left above τ is within what the deflation may leave there, see [`settled`].
+
+use super::pencil::Pencil;
+use crate::Result;
+
+/// Start vectors.
+const STARTS: usize = 2;
+
+/// Vectors that are expanded before a body is judged for the first time.
+const FIRST: usize = 5;
+
+/// Vectors that are expanded beyond three for each one that is kept.
+const PATIENCE: usize = 60;
+
+/// What is left of a vector after orthogonalisation, relative to the vector, that is rounding.
+const ROUNDING: f64 = 1e-10;
+
+/// What the search has found for one body.
+#[derive(Debug, Default, Clone)]
+pub struct Found {
+    /// Ritz values above τ, the largest first.
+    pub theta: Vec<f64>,
+    /// Their vectors in terms of the basis.
+    y: Vec<Vec<f64>>,
+    /// Whether there are more than the cap allows, or they would not settle.
+    pub capped: bool,
+    done: bool,
+}
+
+/// An F-orthonormal basis of each body.
+struct Basis {
+    q: Vec<Vec<f64>>,
+    fq: Vec<Vec<f64>>,
+    /// h[s][k][body] = q_kᵀ F M⁻¹ F q_s for the expanded s, k up to what was there after the expansion.
+    h: Vec<Vec<Vec<f64>>>,
+}
+
+/// F μ of the vectors above `tau` of every body of the pencil (with their Ritz values): `visit(body slot, F μ)`, the largest θ first.
+/// At most `most` per body. Collective.
+pub fn top(
+    pencil: &Pencil,
+    tau: f64,
+    most: usize,
+    mut visit: impl FnMut(usize, &[f64]),
+) -> Result<Vec<Found>> {
+    let n = pencil.bodies.len();
+    let mut found = vec![Found::default(); n];
+    let mut basis = Basis {
+        q: Vec::new(),
+        fq: Vec::new(),
+        h: Vec::new(),
+    };
+    for start in 0..STARTS {
+        let mut v = noise(pencil, start);
+        pencil.jump_part(&mut v);
+        let v = pencil.m(&v)?;
+        basis.append(pencil, v)?;
+    }
+    while found.iter().any(|f| !f.done) && basis.h.len() < basis.q.len() {
+        basis.expand(pencil, &found)?;
+        if basis.h.len() >= FIRST {
+            for (s, body) in found.iter_mut().enumerate().filter(|f| !f.1.done) {
+                basis.judge(s, tau, most, body);
+            }
+        }
+    }
+    let mut image = vec![0.0; pencil.n()];
+    for (s, body) in found.iter().enumerate() {
+        for y in &body.y {
+            image.fill(0.0);
+            let part = pencil.parts[s].clone();
+            for (fq, &c) in basis.fq.iter().zip(y) {
+                let pairs = image[part.clone()].iter_mut().zip(&fq[part.clone()]);
+                pairs.for_each(|(i, f)| *i += c * f);
+            }
+            visit(s, &image);
+        }
+    }
+    Ok(found)
+}
+
+impl Basis {
+    /// The image of the next vector, orthogonal to the others, becomes a new one.
+    fn expand(&mut self, pencil: &Pencil, found: &[Found]) -> Result<()> {
+        let s = self.h.len();
+        let mut v = self.fq[s].clone();
+        // Bodies that have settled rest.
+        for (part, _) in pencil.parts.iter().zip(found).filter(|p| p.1.done) {
+            v[part.clone()].fill(0.0);
+        }
+        pencil.jump_part(&mut v);
+        let z = pencil.m(&v)?;
+        let h = self.append(pencil, z)?;
+        self.h.push(h);
+        Ok(())
+    }
+
+    /// Orthonormalises `v` against the basis and adds it; returns the coefficients. Collective.
+    fn append(&mut self, pencil: &Pencil, mut v: Vec<f64>) -> Result<Vec<Vec<f64>>> {
+        let n = pencil.bodies.len();
+        let mut h = vec![vec![0.0; n]; self.q.len()];
+        for _ in 0..2 {
+            let mut sums: Vec<f64> = self.fq.iter().flat_map(|f| pencil.dots(f, &v)).collect();
+            pencil.sum(&mut sums);
+            for ((q, c), h) in self.q.iter().zip(sums.chunks(n)).zip(&mut h) {
+                let minus: Vec<f64> = c.iter().map(|c| -c).collect();
+                pencil.add(&minus, q, &mut v);
+                h.iter_mut().zip(c).for_each(|(h, c)| *h += c);
+            }
+        }
+        let mut fv = pencil.f(&v)?;
+        let mut square = pencil.dots(&v, &fv);
+        pencil.sum(&mut square);
+        let mut beta = vec![0.0; n];
+        for (s, part) in pencil.parts.iter().enumerate() {
+            let before: f64 = h.iter().map(|h| h[s] * h[s]).sum::<f64>() + square[s].max(0.0);
+            let left = square[s] > ROUNDING * ROUNDING * before;
+            let scale = if left { square[s].sqrt().recip() } else { 0.0 };
+            beta[s] = if left { square[s].sqrt() } else { 0.0 };
+            for i in part.clone() {
+                v[i] *= scale;
+                fv[i] *= scale;
+            }
+        }
+        h.push(beta);
+        self.q.push(v);
+        self.fq.push(fv);
+        Ok(h)
+    }
+
+    /// The Rayleigh–Ritz problem of body `s` over the expanded vectors.
+    fn judge(&self, s: usize, tau: f64, most: usize, body: &mut Found) {
+        let m = self.h.len();
+        let entry = |i: usize, j: usize| self.h[j].get(i).map_or(0.0, |h| h[s]);
+        let a = faer::Mat::from_fn(m, m, |i, j| 0.5 * (entry(i, j) + entry(j, i)));
+        let eigen = a
+            .self_adjoint_eigen(faer::Side::Lower)
+            .expect("eigenvalues of a small symmetric finite matrix converge");
+        let theta = eigen.S().column_vector();
+        let residual = |k: usize| {
+            let beyond = (m..self.q.len()).map(|l| {
+                let terms = (0..m).map(|j| entry(l, j) * eigen.U()[(j, k)]);
+                terms.sum::<f64>().powi(2)
+            });
+            beyond.sum::<f64>().sqrt()
+        };
+        let pairs: Vec<(f64, f64)> = (0..m).rev().map(|k| (theta[k], residual(k))).collect();
+        let above = pairs.iter().take_while(|p| p.0 > tau).count();
+        let tired = m >= PATIENCE + 3 * above;
+        if !settled(&pairs, above, tau) && !tired && above <= most {
+            return;
+        }
+        body.done = true;
+        body.capped = above > most || (tired && !settled(&pairs, above, tau));
+        body.theta = pairs[..above.min(most)].iter().map(|p| p.0).collect();
+        let vector = |k: usize| (0..m).map(|j| eigen.U()[(j, m - 1 - k)]).collect();
+        body.y = (0..body.theta.len()).map(vector).collect();
+    }
+}
+
+/// Whether the vectors above τ may be taken as they are, from (θ, residual) in decreasing order of θ.
+///
+/// With the Ritz vectors deflated, the rest of the pencil is at most that of exact ones plus Σ r²/θ; and the largest one that is left has
+/// converged well enough to be believed.
+fn settled(pairs: &[(f64, f64)], above: usize, tau: f64) -> bool {
+    let rest: f64 = pairs[..above].iter().map(|(t, r)| r * r / t).sum();
+    let next = pairs.get(above).is_none_or(|(t, r)| t + r <= tau || *r <= 0.2 * t);
+    rest <= 0.1 * tau && next
+}
+
+/// A start vector: numbers without pattern that follow from rows alone, so that every distribution starts alike.
+fn noise(pencil: &Pencil, start: usize) -> Vec<f64> {
+    let first = pencil.first_row();
+    let value = |row: &u32| {
+        let mut x = (first + u64::from(*row) + 1) ^ ((start as u64 + 1) << 48);
+        for _ in 0..2 {
+            x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        }
+        (x >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    pencil.rows.iter().map(value).collect()
+}

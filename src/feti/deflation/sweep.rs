@@ -1,0 +1,85 @@
+//! An operator on many columns of multipliers that live near one body each: columns whose images do not meet go through it together.
+
+use super::graph::BodyGraph;
+use crate::feti::dual::Dual;
+use crate::feti::rows::Rows;
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+/// This rank's entries of a column of multipliers.
+#[derive(Debug, Clone, Default)]
+pub struct Column {
+    /// (owned row, value), by increasing row.
+    pub entries: Vec<(u32, f64)>,
+    /// Bodies whose rows the operator reaches from here: those that the column's rows touch. The same on every rank.
+    pub reach: Vec<u32>,
+}
+
+/// The columns as rows.
+pub fn rows(n: usize, columns: &[Column]) -> Rows {
+    let triplets = columns.iter().enumerate().flat_map(|(c, column)| {
+        let entries = column.entries.iter();
+        entries.map(move |&(row, value)| (row, c as u32, value))
+    });
+    Rows::from_triplets(n, triplets.collect())
+}
+
+/// Sets of columns that can share a product.
+fn groups(graph: &BodyGraph, columns: &[Column]) -> Vec<Vec<usize>> {
+    // Bodies at or next to those that the columns of each group reach.
+    let mut taken: Vec<Vec<bool>> = Vec::new();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (c, column) in columns.iter().enumerate() {
+        let fits = |taken: &Vec<bool>| column.reach.iter().all(|&b| !taken[b as usize]);
+        let g = taken.iter().position(fits).unwrap_or_else(|| {
+            taken.push(vec![false; graph.n]);
+            groups.push(Vec::new());
+            groups.len() - 1
+        });
+        for b in graph.around(&column.reach) {
+            taken[g][b as usize] = true;
+        }
+        groups[g].push(c);
+    }
+    groups
+}
+
+/// The images of all columns under `apply`, an operator that leads from a row to rows of the bodies that it touches and no further. Collective.
+pub fn images(
+    dual: &Dual,
+    graph: &BodyGraph,
+    columns: &[Column],
+    mut apply: impl FnMut(&PetscVec, &PetscVec) -> Result<()>,
+) -> Result<Vec<Column>> {
+    let (x, y) = (dual.multipliers()?, dual.multipliers()?);
+    let mut out: Vec<Column> = vec![Column::default(); columns.len()];
+    const NONE: u32 = u32::MAX;
+    let mut owner = vec![NONE; graph.n];
+    for group in groups(graph, columns) {
+        owner.fill(NONE);
+        x.set(0.0)?;
+        {
+            let mut x = x.array_mut()?;
+            for &c in &group {
+                for &b in &columns[c].reach {
+                    owner[b as usize] = c as u32;
+                }
+                for &(row, value) in &columns[c].entries {
+                    x[row as usize] = value;
+                }
+            }
+        }
+        apply(&x, &y)?;
+        for (row, &value) in y.array()?.iter().enumerate().filter(|v| *v.1 != 0.0) {
+            let bodies = graph.touched.of(row).iter();
+            let column = bodies.map(|&b| owner[b as usize]).find(|&c| c != NONE);
+            if let Some(c) = column {
+                out[c as usize].entries.push((row as u32, value));
+            }
+        }
+        for &c in &group {
+            out[c].reach = graph.around(&columns[c].reach);
+        }
+    }
+    Ok(out)
+}
