@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use super::dual::Dual;
-use super::inner::{iterate, Loads, Residual};
+use super::inner::{iterate, target, to_the_end, Loads, Residual, ROUNDING};
 use super::kkt::{certify, Kkt};
 use super::spectrum::Spectrum;
 use crate::contact::Step;
@@ -48,15 +48,6 @@ pub struct Solution {
     pub steps: Vec<Step>,
 }
 
-/// Where jumps on the rows that hold, over the displacements, are more than so many times the relative tolerance, the iteration goes on.
-const JUMPS: f64 = 10.0;
-
-/// Jumps below this part of the first displacements and jumps are rounding.
-const ROUNDING: f64 = 1e-13;
-
-/// Krylov runs after the first one, each from a residual computed anew.
-const RUNS: usize = 4;
-
 /// Solves with the rows that hold, as equations. Collective.
 pub(super) fn solve(
     session: &Session,
@@ -72,33 +63,30 @@ pub(super) fn solve(
     natural.balance(session.comm(), &loads.kernel, &lambda)?;
     let mut residual = Residual::new(dual)?;
     residual.evaluate(session, dual, &loads, &lambda)?;
-    // An interface may come to rest altogether: what S̃⁺ made of the loads at first is the size of rounding.
-    let rounding = ROUNDING * residual.size.max(residual.r.norm2()?);
     dual.p_transpose(&residual.r)?;
-    let mut inner = iterate(dual, ksp, &residual.r, residual.size, &lambda, None)?;
+    let (reference, rows) = (residual.r.norm2()?, dual.stiffness.jump.n_global);
+    let mut size = residual.size;
+    let mut tolerance = target(ksp, reference, 0.0, rows)?;
+    let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
     let mut iterations = inner.iterations;
-    // The first residual may be large against the displacements, where stiff bodies hold soft ones: a reduction of it says nothing then.
-    let rtol = ksp.tolerances()?.0;
     let mut stalled = false;
-    for run in 0..=RUNS {
+    loop {
         residual.evaluate(session, dual, &loads, &lambda)?;
         residual.add_rigid_motion(session, dual)?;
-        residual.close(session, dual)?;
-        let jumps = residual.r.norm2()?;
-        let above = |times: f64| jumps > (times * rtol * residual.size).max(rounding);
-        if !above(JUMPS) || stalled || !inner.reason.converged() || run == RUNS {
+        // An interface may come to rest altogether: what S̃⁺ made of the loads at first is the size of rounding.
+        size = size.max(residual.size);
+        // The target of the displacements that have come out.
+        let target = target(ksp, reference, residual.length(session), rows)?.max(ROUNDING * size);
+        if to_the_end(tolerance, target) || stalled || !inner.reason.converged() {
             break;
         }
+        tolerance = target;
         dual.p_transpose(&residual.r)?;
-        let target = Some(rtol * residual.size);
-        let more = iterate(dual, ksp, &residual.r, residual.size, &lambda, target)?;
+        let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
         iterations += more.iterations;
-        if more.iterations == 0 {
-            break;
-        }
-        // A further run that stalls has met the rounding of the operator: what the first one reached stands, and is measured again.
+        // A further run that stalls has met the rounding of the operator: what the first one reached stands.
         stalled = !more.reason.converged();
-        if !stalled {
+        if !stalled && more.iterations > 0 {
             inner = more;
         }
     }
