@@ -188,7 +188,22 @@ impl Run {
             target.max(reduction * first)
         };
         let (r, size) = (&self.residual.r, self.residual.size);
-        let inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
+        let mut inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
+        drop(dual);
+        if inner.broken_off {
+            solver.deflate()?;
+            let dual = solver.dual();
+            self.residual
+                .evaluate(session, &dual, &self.loads, &self.lambda)?;
+            let (r, size) = (&self.residual.r, self.residual.size);
+            dual.p_transpose(r)?;
+            let more = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
+            inner = Inner {
+                iterations: inner.iterations + more.iterations,
+                ..more
+            };
+        }
+        let dual = solver.dual();
         self.residual
             .evaluate(session, &dual, &self.loads, &self.lambda)?;
         let next = self.next(solver, &dual)?;

@@ -4,7 +4,7 @@
 //! preconditioned, works in the space V = ker Gᵀ without knowing of it. Between the steps of the contact loop Z^k changes, and with it
 //! G, the touched blocks of B_D, and nothing else.
 
-use std::cell::{Ref, RefCell};
+use std::cell::{Cell, Ref, RefCell};
 use std::rc::Rc;
 
 use super::deflation::Deflation;
@@ -26,6 +26,7 @@ pub struct Dual {
     pub natural: NaturalCoarse,
     /// P_2, where it is in use.
     deflation: RefCell<Option<Deflation>>,
+    watch: Cell<Option<f64>>,
     session: Session,
     /// Whether G belongs to other rows than those that hold.
     stale: bool,
@@ -52,6 +53,7 @@ impl Dual {
                 event("FetiFetiP")?,
             ],
             deflation: RefCell::new(None),
+            watch: Cell::new(None),
             session: session.clone(),
             stale: false,
             y: x.duplicate()?,
@@ -124,6 +126,30 @@ impl Dual {
     /// P_2, where it is in use.
     pub fn deflation(&self) -> Ref<'_, Option<Deflation>> {
         self.deflation.borrow()
+    }
+
+    /// Eigenvalue from which on an iteration is broken off, so that what is above τ can be deflated.
+    pub fn watch(&self) -> Option<f64> {
+        self.watch.get()
+    }
+
+    /// Sets that eigenvalue; `None`: iterations run to their end.
+    pub fn set_watch(&self, limit: Option<f64>) {
+        self.watch.set(limit);
+    }
+
+    /// λ ← λ + W (Wᵀ F W)⁺ Wᵀ r and r ← P_2ᵀ r, where something is deflated. Collective.
+    pub fn deflated_part(&self, residual: &PetscVec, lambda: &PetscVec) -> Result<()> {
+        if let Some(deflation) = &*self.deflation.borrow() {
+            // What is left in range F W stays there: the preconditioner does not see it. The second time removes the rounding of the first.
+            for _ in 0..2 {
+                deflation.solve(&self.session, residual, lambda)?;
+                deflation.project_transpose(&self.session, residual)?;
+                self.natural
+                    .project_transpose(self.session.comm(), residual)?;
+            }
+        }
+        Ok(())
     }
 
     /// x ← P_2 x for x in V. Collective.

@@ -17,6 +17,12 @@ use crate::Result;
 /// A residual below this fraction of the displacements it was formed from is rounding: nothing is left to iterate on.
 pub const ROUNDING: f64 = 1e-14;
 
+/// Iterations before the first look at the spectrum.
+const WATCHED_FROM: usize = 9;
+
+/// An iteration is not broken off any more when its residual is less than this many times what it is to end with.
+const NEARLY: f64 = 30.0;
+
 /// The loads, condensed to the interfaces of the subdomains.
 pub struct Loads {
     /// K_II⁻¹ f_I of each local subdomain, as [`LocalProblem::condense`](super::local::problem::LocalProblem) leaves it.
@@ -160,6 +166,28 @@ pub struct Inner {
     pub residuals: Vec<f64>,
     /// The method's own estimate of the spectrum.
     pub estimate: Option<Spectrum>,
+    /// Whether the run was broken off because of large eigenvalues that are to be deflated.
+    pub broken_off: bool,
+}
+
+impl Inner {
+    fn nothing_to_do(residual: f64) -> Inner {
+        Inner {
+            iterations: 0,
+            reason: ConvergedReason {
+                code: 1,
+                name: "CONVERGED_NOTHING_TO_DO".into(),
+            },
+            residuals: vec![residual],
+            estimate: None,
+            broken_off: false,
+        }
+    }
+
+    /// Whether the residual fell to what was asked for.
+    pub fn converged(&self) -> bool {
+        self.reason.converged() && !self.broken_off
+    }
 }
 
 /// Adds the Krylov method's correction to `lambda`; `residual` is Pᵀ r on entry, `size` the size of the displacements it comes
@@ -176,34 +204,41 @@ pub fn iterate(
     // stall on it and go astray. Of the small residual that is left the second one leaves nothing to speak of.
     dual.p_transpose(residual)?;
     let start = residual.norm2()?;
-    if start <= (ROUNDING * size).max(target) {
-        return Ok(Inner {
-            iterations: 0,
-            reason: ConvergedReason {
-                code: 1,
-                name: "CONVERGED_NOTHING_TO_DO".into(),
-            },
-            residuals: vec![start],
-            estimate: None,
-        });
+    let nothing = (ROUNDING * size).max(target);
+    if start <= nothing {
+        return Ok(Inner::nothing_to_do(start));
+    }
+    // What range W has of the solution is known at once.
+    dual.deflated_part(residual, lambda)?;
+    let start = residual.norm2()?;
+    if start <= nothing {
+        return Ok(Inner::nothing_to_do(start));
     }
     let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
     let x = dual.multipliers()?;
     ksp.record_residuals(max_it.min(100_000) + 1)?;
     rtol_of(target / start)?;
-    let solved = ksp.solve(residual, &x);
+    let solved = match dual.watch() {
+        Some(limit) if ksp.type_name()? == "cg" => {
+            ksp.solve_watched(residual, &x, WATCHED_FROM, limit, NEARLY * target)
+        }
+        _ => ksp.solve(residual, &x).map(|()| false),
+    };
     rtol_of(rtol)?;
-    solved?;
+    let broken_off = solved?;
     dual.p(&x)?;
+    dual.p2(&x)?;
     lambda.axpy(1.0, &x)?;
     let iterations = ksp.iterations()?;
     let estimate = estimate(ksp, iterations)?;
+    eprintln!("RUN {iterations} its, start {start:e} target {target:e} {:?} {estimate:?} broken {broken_off} last {:?}", ksp.converged_reason()?.name, ksp.residual_history()?.last());
     Ok(Inner {
         iterations,
         reason: ksp.converged_reason()?,
         residuals: ksp.residual_history()?,
         estimate,
+        broken_off,
     })
 }
 

@@ -48,12 +48,13 @@ pub struct Solution {
     pub steps: Vec<Step>,
 }
 
-/// Solves with the rows that hold, as equations. Collective.
+/// Solves with the rows that hold, as equations; `deflate` is called where the first iterations show large eigenvalues. Collective.
 pub(super) fn solve(
     session: &Session,
     problem: &Substructures,
     dual: &Dual,
     ksp: &Ksp,
+    deflate: &dyn Fn(&Dual) -> Result<()>,
 ) -> Result<Solution> {
     let clock = Instant::now();
     let loads = Loads::new(session, problem, dual);
@@ -69,6 +70,13 @@ pub(super) fn solve(
     let mut tolerance = target(ksp, reference, 0.0, rows)?;
     let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
     let mut iterations = inner.iterations;
+    if inner.broken_off {
+        deflate(dual)?;
+        residual.evaluate(session, dual, &loads, &lambda)?;
+        dual.p_transpose(&residual.r)?;
+        inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
+        iterations += inner.iterations;
+    }
     let mut stalled = false;
     loop {
         residual.evaluate(session, dual, &loads, &lambda)?;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::coarse::PrimalProblem;
+use super::deflation::{self, Cost, Deflation};
 use super::deluxe;
 use super::dual::{self, Dual, Shared};
 use super::entities;
@@ -18,7 +19,7 @@ use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::primal::PrimalSpace;
 use super::recover::{self, Solution};
-use super::settings::{PcType, Scaling, Settings};
+use super::settings::{Adaptive, PcType, Scaling, Settings};
 use super::sharing::Sharing;
 use super::spectrum::{self, Spectrum};
 use super::stiffness::Stiffness;
@@ -131,6 +132,8 @@ impl FetiFeti {
         let dual = Dual::new(session, stiffness, preconditioner, natural)?;
         let dual = Rc::new(RefCell::new(dual));
         let ksp = krylov(session, &dual, &settings)?;
+        let varies = deflation::varies(session.comm(), &problem);
+        dual.borrow().set_watch(deflation::watch(settings.adaptive, varies));
         facts.setup_seconds = clock.elapsed().as_secs_f64();
         Ok(FetiFeti {
             session: session.clone(),
@@ -168,7 +171,9 @@ impl FetiFeti {
         let solution = if self.facts.inequalities > 0 {
             contact::solve(self, start, observe)?
         } else {
-            recover::solve(&self.session, &self.problem, &self.dual(), &self.ksp)?
+            let deflate = |dual: &Dual| self.deflate_with(dual);
+            let dual = self.dual();
+            recover::solve(&self.session, &self.problem, &dual, &self.ksp, &deflate)?
         };
         self.believe(solution)
     }
@@ -207,8 +212,50 @@ impl FetiFeti {
         self.dual.borrow_mut().stiffness.jump.set_gaps(gaps);
     }
 
-    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Collective.
+    /// Finds what of the spectrum is above τ and deflates it from now on, whatever the iterations have shown; with all rows that may hold.
+    /// Collective.
+    pub fn deflate(&self) -> Result<()> {
+        let (candidates, now) = {
+            let dual = self.dual();
+            let jump = &dual.stiffness.jump;
+            let may = |i| jump.active[i] || jump.is_candidate(i);
+            let all: Vec<bool> = (0..jump.n_owned).map(may).collect();
+            (all, jump.active.clone())
+        };
+        let set = |active: &[bool]| self.dual.borrow_mut().set_active(&self.problem, active);
+        let changed = set(&candidates)?;
+        let found = self.deflate_with(&self.dual());
+        if changed > 0 {
+            set(&now)?;
+        }
+        found
+    }
+
+    fn deflate_with(&self, dual: &Dual) -> Result<()> {
+        let tau = match self.settings.adaptive {
+            Adaptive::Below(tau) => tau,
+            _ => Adaptive::USUAL,
+        };
+        let most = self.settings.adaptive_max;
+        let deflation = Deflation::new(&self.session, &self.problem, dual, tau, most)?;
+        dual.set_watch(None);
+        eprintln!("{:?}", deflation.cost);
+        dual.deflate(Some(deflation));
+        Ok(())
+    }
+
+    /// What is deflated and what that has cost; `None` where nothing has been searched for.
+    pub fn deflated(&self) -> Option<Cost> {
+        self.dual().deflation().as_ref().map(|d| d.cost.clone())
+    }
+
+    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Where a bound is asked for and nothing
+    /// has been deflated yet, that is done first. Collective.
     pub fn spectrum(&self) -> Result<Option<Spectrum>> {
+        let searched = self.dual().deflation().is_some();
+        if matches!(self.settings.adaptive, Adaptive::Below(_)) && !searched {
+            self.deflate()?;
+        }
         let prefix = format!("{}eps_", self.settings.prefix);
         spectrum::exact(&self.session, &self.dual, &prefix)
     }

@@ -181,6 +181,30 @@ impl Ksp {
         petsc!(KSPSolve(self.raw(), b, x))
     }
 
+    /// The same for CG, but from iteration `first` on it stops where the largest eigenvalue that it has seen is above `limit` while the
+    /// residual is above `rest`. Returns whether it did. Collective.
+    pub fn solve_watched(
+        &self,
+        b: &Vec,
+        x: &Vec,
+        first: usize,
+        limit: f64,
+        rest: f64,
+    ) -> Result<bool> {
+        let (b, x) = (b.read()?, x.write()?);
+        let mut tripped = 0;
+        petsc!(ff_ksp_solve_watched(
+            self.raw(),
+            b,
+            x,
+            first as i32,
+            limit,
+            rest,
+            &mut tripped
+        ))?;
+        Ok(tripped != 0)
+    }
+
     /// x ← A⁻ᵀ b. Collective.
     pub fn solve_transpose(&self, b: &Vec, x: &Vec) -> Result<()> {
         let (b, x) = (b.read()?, x.write()?);

@@ -134,6 +134,46 @@ int ff_push_error_handler(ff_trace trace)
   return (int)PetscPushErrorHandler(CollectFrame, (void *)trace);
 }
 
+/* ---- Krylov methods ---- */
+
+typedef PetscErrorCode (*ff_test)(KSP, PetscInt, PetscReal, KSPConvergedReason *, void *);
+
+typedef struct {
+  ff_test  test; /* the test that decides about convergence */
+  void    *context;
+  int      first, tripped;
+  double   limit, rest;
+} ff_watch;
+
+static PetscErrorCode ff_watched(KSP ksp, PetscInt it, PetscReal rnorm, KSPConvergedReason *reason, void *data)
+{
+  ff_watch *watch = (ff_watch *)data;
+  PetscReal large = 0.0, small = 0.0;
+
+  PetscCall((*watch->test)(ksp, it, rnorm, reason, watch->context));
+  if (*reason || it < watch->first || (it - watch->first) % 3 || !(rnorm > watch->rest)) return 0;
+  PetscCall(KSPComputeExtremeSingularValues(ksp, &large, &small));
+  if (large > watch->limit) {
+    watch->tripped = 1;
+    *reason        = KSP_CONVERGED_ITS;
+  }
+  return 0;
+}
+
+int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, int *tripped)
+{
+  PetscErrorCode (*drop)(void *) = NULL;
+  ff_watch       watch           = {NULL, NULL, first, 0, limit, rest};
+  PetscErrorCode code;
+
+  PetscCall(KSPGetAndClearConvergenceTest(ksp, &watch.test, &watch.context, &drop));
+  PetscCall(KSPSetConvergenceTest(ksp, ff_watched, &watch, NULL));
+  code = KSPSolve(ksp, b, x);
+  PetscCall(KSPSetConvergenceTest(ksp, watch.test, watch.context, drop));
+  *tripped = watch.tripped;
+  return (int)code;
+}
+
 /* ---- log, citations, printing ---- */
 
 int ff_event_begin(int event)

@@ -28,6 +28,10 @@ int ff_pc_shell_set_apply_transpose(PC pc, int (*f)(PC, Vec, Vec));
 int ff_pc_shell_set_view(PC pc, int (*f)(PC, PetscViewer));
 int ff_st_shell_set_apply(ST st, int (*f)(ST, Vec, Vec));
 
+/* KSPSolve() that may stop early: from iteration `first` on, in every third one, when the largest singular value that the method has seen is
+   above `limit` while the residual is above `rest`. `tripped` says whether it did; the reason is KSP_CONVERGED_ITS then. */
+int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, int *tripped);
+
 /* Collects PETSc's error frames instead of printing them. */
 typedef void (*ff_trace)(int line, const char *function, const char *file, int code, int initial, const char *message);
 int ff_push_error_handler(ff_trace trace);

@@ -21,14 +21,17 @@ pub mod sweep;
 
 use std::time::Instant;
 
+use mpi::topology::SimpleCommunicator;
+
 use self::graph::BodyGraph;
 use self::pencil::Pencil;
 use self::sweep::Column;
 use super::dual::Dual;
-use super::exchange::sum_all;
+use super::exchange::{max_all, sum_all};
 use super::local::dense::Dense;
 use super::local::semidefinite::Semidefinite;
 use super::rows::Rows;
+use super::settings::Adaptive;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
@@ -48,6 +51,42 @@ pub struct Cost {
     pub dependent: usize,
     /// Seconds of the search and of the matrices.
     pub seconds: f64,
+}
+
+/// Vectors of neighbours may show the same mode. What is left of one after the others, relative to it and squared in the F-norm, must be
+/// more than this to count: it carries the rounding of F W divided by it.
+const DEPENDENT: f64 = 1e-7;
+
+/// Coefficients of a body whose largest is more than this many times the smallest jump.
+const JUMPS: f64 = 1e2;
+
+/// The largest ratio of two scaling weights in one body. Collective.
+pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
+    let n = problem.n_bodies;
+    // −smallest beside the largest, so that one reduction does.
+    let mut ends = vec![f64::NEG_INFINITY; 2 * n];
+    for sub in &problem.local {
+        for &rho in &sub.rho {
+            ends[sub.body] = ends[sub.body].max(rho);
+            ends[n + sub.body] = ends[n + sub.body].max(-rho);
+        }
+    }
+    max_all(comm, &mut ends);
+    let ratio = |b: usize| ends[b] / -ends[n + b];
+    (0..n).map(ratio).filter(|r| r.is_finite()).fold(1.0, f64::max)
+}
+
+/// The eigenvalue at which an iteration is broken off so that those above τ are deflated; `varies` is the largest ratio of coefficients
+/// inside a body.
+///
+/// Where coefficients do not vary, κ is what the mesh makes it, and `auto` leaves it alone unless it is far off.
+pub fn watch(adaptive: Adaptive, varies: f64) -> Option<f64> {
+    match adaptive {
+        Adaptive::Off => None,
+        Adaptive::Auto if varies > JUMPS => Some(1.5 * Adaptive::USUAL),
+        Adaptive::Auto => Some(20.0 * Adaptive::USUAL),
+        Adaptive::Below(tau) => Some(1.2 * tau),
+    }
 }
 
 /// Rows Y without the kernel part: Y − Q X with sparse Y, Q.
@@ -244,7 +283,7 @@ fn matrices(
     let (qg, fqg) = kernels.unzip();
     let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
     let e = gram(session, &w, &fw, &x);
-    Ok((w, fw, x, Semidefinite::new(&e)))
+    Ok((w, fw, x, Semidefinite::above(&e, DEPENDENT)))
 }
 
 /// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.

@@ -24,14 +24,19 @@ pub struct Semidefinite {
 impl Semidefinite {
     /// Factors `a`; reads the lower triangle.
     pub fn new(a: &Dense) -> Semidefinite {
+        Semidefinite::above(a, DEPENDENT)
+    }
+
+    /// The same with columns dropped whose pivots, relative to their diagonal entries, are below `dependent`.
+    pub fn above(a: &Dense, dependent: f64) -> Semidefinite {
         let n = a.rows;
         let largest = (0..n).map(|i| a.get(i, i)).fold(0.0, f64::max);
         // Columns of size zero are no columns. 1e-30 of the largest is far below any scaling by coefficients.
         let nonzero: Vec<usize> = (0..n).filter(|&i| a.get(i, i) > 1e-30 * largest).collect();
-        if let Some(out) = Self::with(a, nonzero.clone()) {
+        if let Some(out) = Self::factor(a, &nonzero, dependent) {
             return out;
         }
-        let mut kept = independent(a, &nonzero);
+        let mut kept = independent(a, &nonzero, dependent);
         kept.sort_unstable();
         // The order differs from the pivoted one, so a pivot may come out slightly smaller: only its sign matters now.
         loop {
@@ -40,10 +45,6 @@ impl Semidefinite {
             }
             kept.pop();
         }
-    }
-
-    fn with(a: &Dense, kept: Vec<usize>) -> Option<Semidefinite> {
-        Self::factor(a, &kept, DEPENDENT)
     }
 
     fn factor(a: &Dense, kept: &[usize], tolerance: f64) -> Option<Semidefinite> {
@@ -98,7 +99,7 @@ impl Semidefinite {
 }
 
 /// Independent columns by Cholesky factorisation with diagonal pivoting.
-fn independent(a: &Dense, among: &[usize]) -> Vec<usize> {
+fn independent(a: &Dense, among: &[usize], dependent: f64) -> Vec<usize> {
     let m = among.len();
     let scale: Vec<f64> = among.iter().map(|&i| 1.0 / a.get(i, i).sqrt()).collect();
     let entry = |i: usize, j: usize| {
@@ -110,7 +111,7 @@ fn independent(a: &Dense, among: &[usize]) -> Vec<usize> {
     let mut kept = Vec::new();
     loop {
         let best = (0..m).max_by(|&i, &j| left[i].total_cmp(&left[j]).then(j.cmp(&i)));
-        let Some(p) = best.filter(|&p| left[p] > DEPENDENT) else {
+        let Some(p) = best.filter(|&p| left[p] > dependent) else {
             return kept;
         };
         let root = left[p].sqrt();
