@@ -4,6 +4,7 @@ mod areas;
 pub mod args;
 mod balance;
 mod checkpoint;
+mod coefficient;
 mod contact;
 mod course;
 mod fields;

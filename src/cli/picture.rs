@@ -1,4 +1,5 @@
-//! `solution.png`: u and ρ of a plane scalar problem, the deformed bodies of an elastic one, the surface of solids.
+//! `solution.png`: u and ρ of a plane scalar problem, the deformed bodies of an elastic one, the surface of solids; there also the coefficient
+//! where it varies inside bodies.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -46,6 +47,14 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[ContactRow], dir: &Pa
         true => field("von Mises stress", Values::Cell(&von_mises)),
         false => first,
     };
+    let mut fields = vec![first, second];
+    if varies_inside_bodies(&all.rho, &all.body) {
+        fields.push(Field {
+            title: ["coefficient ρ", "Young's modulus E"][usize::from(elastic)],
+            values: Values::Cell(&all.rho),
+            scale: field::coefficient_scale(&all.rho),
+        });
+    }
     let title = match elastic {
         true => format!("{} (displacements {} ×)", scene.title, number(moved.factor)),
         false => scene.title.clone(),
@@ -64,7 +73,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[ContactRow], dir: &Pa
             subdomain: &all.subdomain,
         };
         let marks = face_marks(scene, rows);
-        return solid::write_solution(&solid, &[first, second], &marks, &title, &path);
+        return solid::write_solution(&solid, &fields, &marks, &title, &path);
     }
     let flat =
         |points: &[[f64; 3]]| -> Vec<[f64; 2]> { points.iter().map(|p| [p[0], p[1]]).collect() };
@@ -92,7 +101,14 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[ContactRow], dir: &Pa
     };
     let marks = line_marks(rows, &at);
     let shown = flat(&moved.points);
-    field::write_displaced(&mesh, &shown, &[first, second], &marks, &title, &path)
+    field::write_displaced(&mesh, &shown, &fields, &marks, &title, &path)
+}
+
+/// Whether two cells of one body have different values.
+fn varies_inside_bodies(values: &[f64], body: &[u32]) -> bool {
+    let mut first = HashMap::new();
+    let mut cells = values.iter().zip(body);
+    cells.any(|(value, body)| *first.entry(body).or_insert(value) != value)
 }
 
 /// The points where they have moved to.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use super::coefficient::Coefficient;
 use super::{physics, problem};
 use crate::fem::cell::rigid_count;
 use crate::feti::sizes::Sizes;
@@ -29,10 +30,11 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
         &team,
         settings.primal,
     ))?;
-    super::say(session, &text(&scene, &sizes))
+    let coefficient = Coefficient::of(session, &scene)?;
+    super::say(session, &text(&scene, &sizes, &coefficient))
 }
 
-fn text(scene: &Scene, sizes: &Sizes) -> String {
+fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
     let plan = scene.plan();
     let mut out = format!("{}\n\n", plan.title);
     out += &bodies(&plan, sizes);
@@ -40,6 +42,7 @@ fn text(scene: &Scene, sizes: &Sizes) -> String {
     if scene.dim() == 3 || scene.form.is_elastic() {
         let _ = writeln!(out, "{:<22}{}", "physics", physics::form(scene));
     }
+    let _ = writeln!(out, "{:<22}{}", "coefficient", coefficient.text(scene));
     out += &decisions(scene, &plan, sizes);
     out
 }

@@ -56,12 +56,6 @@ pub fn write_solution(
     title: &str,
     path: &Path,
 ) -> Result<()> {
-    let (low, high) = extremes(rho);
-    let scale = if low > 0.0 && high > 100.0 * low {
-        Scale::Log
-    } else {
-        Scale::Linear
-    };
     let fields = [
         Field {
             title: "solution u",
@@ -71,11 +65,21 @@ pub fn write_solution(
         Field {
             title: "coefficient ρ",
             values: Values::Cell(rho),
-            scale,
+            scale: coefficient_scale(rho),
         },
     ];
     check(mesh, &fields)?;
     draw(mesh, &fields, contact, title).write_png(path)
+}
+
+/// The scale that shows a coefficient: logarithmic where it varies by more than 100.
+pub fn coefficient_scale(values: &[f64]) -> Scale {
+    let (low, high) = extremes(values);
+    if low > 0.0 && high > 100.0 * low {
+        Scale::Log
+    } else {
+        Scale::Linear
+    }
 }
 
 /// Writes any fields of one mesh as PNG: side by side, or under each other where the mesh is wide.

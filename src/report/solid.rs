@@ -29,14 +29,14 @@ const APART: [f64; 2] = [0.75, 0.5];
 /// So much more of the marked area another place has to show before it is taken.
 const BETTER: f64 = 1.6;
 
-/// Writes two fields as PNG: the first on the bodies as they are, the second on bodies moved apart, or on the other side of a single
-/// one, seen from where most of the faces in `marks` are seen.
+/// Writes fields as PNG, side by side: the first on the bodies as they are, the others on bodies moved apart, or on the other side of a
+/// single one, seen from where most of the faces in `marks` are seen.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
 pub fn write_solution(
     solid: &Solid,
-    fields: &[Field; 2],
+    fields: &[Field],
     marks: &[FaceMark],
     title: &str,
     path: &Path,
@@ -44,7 +44,7 @@ pub fn write_solution(
     draw(solid, fields, marks, title)?.write_png(path)
 }
 
-fn draw(solid: &Solid, fields: &[Field; 2], marks: &[FaceMark], title: &str) -> Result<Raster> {
+fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Result<Raster> {
     solid.check()?;
     for field in fields {
         let (expected, what) = match field.values {
@@ -64,20 +64,19 @@ fn draw(solid: &Solid, fields: &[Field; 2], marks: &[FaceMark], title: &str) -> 
     let several = shifts.len() > 1;
     let none = vec![[0.0; 3]; shifts.len()];
     let second = second_camera(solid, &surface, several);
-    let scenes = [
-        Stage::new(solid, &surface, Camera::new(false, false), &none),
-        Stage::new(solid, &surface, second, &shifts),
-    ];
-    let notes = [
-        String::new(),
-        match (several, second.towards[1] < 0.0) {
-            (true, false) => "bodies moved apart".into(),
-            (true, true) => "bodies moved apart, from below".into(),
-            (false, _) if second.towards[2] < 0.0 => "from behind, below".into(),
-            (false, true) => "from below".into(),
-            (false, false) => String::new(),
-        },
-    ];
+    let stage = |k: usize| match k {
+        0 => Stage::new(solid, &surface, Camera::new(false, false), &none),
+        _ => Stage::new(solid, &surface, second, &shifts),
+    };
+    let scenes: Vec<Stage> = (0..fields.len()).map(stage).collect();
+    let note = |k: usize| match (several, second.towards[1] < 0.0) {
+        _ if k == 0 => "",
+        (true, false) => "bodies moved apart",
+        (true, true) => "bodies moved apart, from below",
+        (false, _) if second.towards[2] < 0.0 => "from behind, below",
+        (false, true) => "from below",
+        (false, false) => "",
+    };
     let panel_height = scenes.iter().map(|s| s.size().1).fold(90.0, f64::max);
     let width = |s: &Stage| MARGIN + s.size().0.max(150.0) + MARGIN + BAR + LABELS;
     let total: f64 = scenes.iter().map(width).sum();
@@ -98,10 +97,10 @@ fn draw(solid: &Solid, fields: &[Field; 2], marks: &[FaceMark], title: &str) -> 
         raster.text((0.5 * total, 1.25 * TITLE_TEXT), title, &bold(TITLE_TEXT));
     }
     let mut left = 0.0;
-    for ((scene, field), note) in scenes.iter().zip(fields).zip(notes) {
+    for (k, (scene, field)) in scenes.iter().zip(fields).enumerate() {
         let (w, h) = scene.size();
         let at = (left + MARGIN, top + 2.4 * TEXT + 0.5 * (panel_height - h));
-        let heading = match &note[..] {
+        let heading = match note(k) {
             "" => field.title.to_string(),
             note => format!("{} ({note})", field.title),
         };

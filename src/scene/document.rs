@@ -148,6 +148,11 @@ impl<'a> Section<'a> {
     /// The value of `key`, if it is there.
     pub fn take(&mut self, key: &'static str) -> Option<&'a Item> {
         self.known.push(key);
+        self.entry(key)
+    }
+
+    /// As [`Section::take`], of a key that does not belong here.
+    pub fn entry(&self, key: &str) -> Option<&'a Item> {
         self.entries
             .iter()
             .find(|(k, _, _)| k == key)

@@ -1,5 +1,6 @@
 //! Data over bodies: coefficients, loads and boundary values.
 
+use super::cells::Cells;
 use super::expr::{Expr, Variables};
 
 /// What an alternation or a table follows.
@@ -50,6 +51,8 @@ pub enum Field {
         /// The value outside all of them.
         otherwise: Expr,
     },
+    /// Values by element, from a file. Only coefficients have them.
+    Cells(Cells),
 }
 
 /// Where a field is evaluated.
@@ -67,7 +70,7 @@ impl Field {
         Field::Expression(Expr::constant(value))
     }
 
-    /// The value at `at`.
+    /// The value at `at`; NaN for [`Field::Cells`], which know elements and no points.
     pub fn eval(&self, at: &At) -> f64 {
         let v = &at.variables;
         match self {
@@ -100,6 +103,7 @@ impl Field {
                 .find(|r| r.contains(v.point))
                 .map_or(otherwise, |r| &r.value)
                 .eval(v),
+            Field::Cells(_) => f64::NAN,
         }
     }
 
@@ -116,7 +120,7 @@ impl Field {
         match self {
             Field::Expression(e) => e.as_constant().is_some(),
             Field::Checkerboard { .. } | Field::Table { .. } => true,
-            Field::Regions { .. } => false,
+            Field::Regions { .. } | Field::Cells(_) => false,
         }
     }
 
@@ -132,6 +136,15 @@ impl Field {
                 .chain([otherwise])
                 .filter_map(Expr::as_constant)
                 .collect(),
+            Field::Cells(cells) => cells.range().to_vec(),
+        }
+    }
+
+    /// The same field for the bodies of a grid: cells cover all of it.
+    pub(super) fn over(&self, bodies: [usize; 3]) -> Field {
+        match self {
+            Field::Cells(cells) => Field::Cells(cells.over(bodies)),
+            other => other.clone(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! From a scene to [`Substructures`]: subdomain by subdomain, row by row.
 
+use super::coefficient::{by_element, stiffest};
 use super::field::{At, Field};
 use super::spec::Force;
 use super::steps::Factors;
@@ -254,7 +255,8 @@ impl Scene {
         }))
     }
 
-    fn place(&self, index: usize) -> (&Body, Block) {
+    /// The body of subdomain `index`, and its elements.
+    pub(super) fn place(&self, index: usize) -> (&Body, Block) {
         let (body, inside) = self.body_of(index);
         let body = &self.bodies[body];
         (body, body.mesh().block(inside))
@@ -347,54 +349,6 @@ fn add_spring(
     Ok(())
 }
 
-/// A coefficient in the middle of every element.
-fn by_element(
-    body: &Body,
-    block: &Block,
-    mesh: &SubdomainMesh,
-    field: &Field,
-    check: impl Fn(f64, [f64; 3]) -> Result<f64>,
-) -> Result<Vec<f64>> {
-    let middle = |place: [usize; 3]| match mesh.step {
-        Some(step) => {
-            let first = mesh.points[mesh.element_nodes(place)[0]];
-            [0, 1, 2].map(|d| first[d] + 0.5 * step[d])
-        }
-        None => {
-            // In the plane the last four corners repeat the first.
-            let corners = mesh.element_points(place);
-            [0, 1, 2].map(|d| corners.iter().map(|p| p[d]).sum::<f64>() / 8.0)
-        }
-    };
-    if field.is_constant_by_subdomain() {
-        let point = middle([0; 3]);
-        let value = check(evaluate(body, block, field, point), point)?;
-        return Ok(vec![value; mesh.n_elements()]);
-    }
-    let value = |place| {
-        let point = middle(place);
-        check(evaluate(body, block, field, point), point)
-    };
-    mesh.element_places().map(value).collect()
-}
-
-/// The largest coefficient in the elements around the node at a place of the subdomain.
-fn stiffest(mesh: &SubdomainMesh, place: [usize; 3]) -> f64 {
-    let counts = mesh.elements.map(|n| n.max(1));
-    let range = |d: usize| place[d].saturating_sub(1)..=place[d].min(counts[d] - 1);
-    let mut largest = 0.0_f64;
-    for k in range(2) {
-        for j in range(1) {
-            let row = (k * counts[1] + j) * counts[0];
-            let around = range(0);
-            for &value in &mesh.rho[row + around.start()..=row + around.end()] {
-                largest = largest.max(value);
-            }
-        }
-    }
-    largest
-}
-
 fn at(body: &Body, block: &Block, point: [f64; 3]) -> At {
     At {
         variables: Variables {
@@ -406,6 +360,7 @@ fn at(body: &Body, block: &Block, point: [f64; 3]) -> At {
     }
 }
 
-fn evaluate(body: &Body, block: &Block, field: &Field, point: [f64; 3]) -> f64 {
+/// The value of a field at a point of a subdomain.
+pub(super) fn evaluate(body: &Body, block: &Block, field: &Field, point: [f64; 3]) -> f64 {
     field.eval(&at(body, block, point))
 }

@@ -9,9 +9,11 @@
 //!
 //! A [`SceneSpec`] is unchecked data, a [`Scene`] is checked and has every default filled in. A scene is small: it holds
 //! what happens on the boundaries of bodies, O(boundary nodes), and is the same on every rank; matrices are made
-//! subdomain by subdomain, on the rank that owns the subdomain.
+//! subdomain by subdomain, on the rank that owns the subdomain. Coefficients from arrays in files are read there, too.
 
 mod bounds;
+mod cells;
+mod coefficient;
 mod document;
 mod dual;
 mod entries;
@@ -37,6 +39,7 @@ mod topology;
 mod union_find;
 mod validate;
 
+pub use cells::{Cells, NumberFormat, Tone};
 pub use dual::Dual;
 pub use expr::{Expr, Variables};
 pub use field::{At, By, Field, Region};

@@ -237,8 +237,8 @@ impl GridSpec {
                     subdomains: self.subdomains,
                 },
                 map: self.map.clone(),
-                rho: self.rho.clone(),
-                poisson: self.poisson.clone(),
+                rho: self.rho.over(self.bodies),
+                poisson: self.poisson.over(self.bodies),
                 load: self.load.clone(),
                 surface: self
                     .surface

@@ -139,19 +139,9 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
 
 /// Values that do not depend on the point.
 fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
-    for value in body.rho.known_values() {
-        if !is_coefficient(value) {
-            let name = coefficient(form);
-            return fail(
-                body,
-                format_args!("{name} = {value} where a positive number was expected"),
-            );
-        }
-    }
-    for value in body.poisson.known_values() {
-        if form.is_elastic() && !is_ratio(value) {
-            return fail(body, format_args!("ν = {value} where {RATIO} was expected"));
-        }
+    check_coefficient(body, coefficient(form), &body.rho, is_coefficient, POSITIVE)?;
+    if form.is_elastic() {
+        check_coefficient(body, "ν", &body.poisson, is_ratio, RATIO)?;
     }
     let components = form.components(body.mesh.dim());
     let count = |n: usize, what: &str| match n == components || n == 1 && components == 1 {
@@ -175,6 +165,19 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
             Force::Pressure(p) => fields.push(p),
         }
     }
+    let springs = body.springs.iter().map(|(_, k)| k);
+    let held = body.dirichlet.iter().flatten().flatten();
+    for field in fields.iter().copied().chain(springs).chain(held) {
+        if let Field::Cells(cells) = field {
+            let file = cells.name();
+            return fail(
+                body,
+                format_args!(
+                    "{file} gives a load, a spring or a side where only coefficients were expected"
+                ),
+            );
+        }
+    }
     for value in fields.into_iter().flat_map(Field::known_values) {
         if !value.is_finite() {
             return fail(
@@ -184,6 +187,33 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// A coefficient as far as its values are written down.
+fn check_coefficient(
+    body: &BodySpec,
+    name: &str,
+    field: &Field,
+    good: fn(f64) -> bool,
+    wanted: &str,
+) -> Result<()> {
+    let Some(value) = field.known_values().into_iter().find(|v| !good(*v)) else {
+        return Ok(());
+    };
+    let found = match field {
+        Field::Cells(cells) => cells.find(|v| !good(v))?,
+        _ => None,
+    };
+    match found {
+        Some((value, cell)) => fail(
+            body,
+            format_args!("{name} = {value} in {cell} where {wanted} was expected"),
+        ),
+        None => fail(
+            body,
+            format_args!("{name} = {value} where {wanted} was expected"),
+        ),
+    }
 }
 
 /// Whether a bent body has positive elements everywhere.
@@ -219,6 +249,7 @@ fn check_shape(body: &BodySpec, form: &Form) -> Result<()> {
     Ok(())
 }
 
+const POSITIVE: &str = "a positive number";
 const RATIO: &str = "a number above -1 and below 1/2";
 
 fn is_ratio(value: f64) -> bool {
@@ -250,7 +281,7 @@ pub(super) fn checked_rho(
     let (name, at) = (coefficient(form), body.spot_at(point));
     fail(
         body,
-        format_args!("{name} = {value} at {at} where a positive number was expected"),
+        format_args!("{name} = {value} at {at} where {POSITIVE} was expected"),
     )
 }
 

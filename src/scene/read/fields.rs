@@ -13,6 +13,8 @@ pub(super) struct Shape {
     pub bare: By,
     /// Bodies of the grid, `None` outside a grid.
     pub bodies: Option<[usize; 3]>,
+    /// Elements of each body, 0 in z in the plane.
+    pub elements: [usize; 3],
     /// Subdomains of each body.
     pub subdomains: [usize; 3],
 }
@@ -43,6 +45,12 @@ impl<'a> Reader<'a> {
     ) -> Result<(Field, Option<Quadrature>)> {
         const FORMS: &str = "`value`, `regions`, `checkerboard`, `per_body` or `per_subdomain`";
         let mut section = Section::new(self.source, "this table", item)?;
+        if let Some(file) = section.entry("file") {
+            return self.error(
+                file,
+                "a `file`, which only `rho`, `young` and `poisson` take",
+            );
+        }
         let mut found = Vec::new();
         if let Some(value) = section.take("value") {
             found.push(Field::Expression(self.expression(value)?));

@@ -1,5 +1,6 @@
 //! From TOML to a [`SceneSpec`]: keys, types and shapes.
 
+mod cells;
 mod fields;
 mod form;
 mod shape;
@@ -139,6 +140,7 @@ impl<'a> Reader<'a> {
         let shape = Shape {
             bare: By::Subdomain,
             bodies: None,
+            elements,
             subdomains,
         };
         let data = self.data(&mut section, &shape)?;
@@ -176,6 +178,7 @@ impl<'a> Reader<'a> {
         let shape = Shape {
             bare: By::Body,
             bodies: Some(bodies),
+            elements,
             subdomains,
         };
         let data = self.data(&mut section, &shape)?;
@@ -250,7 +253,7 @@ impl<'a> Reader<'a> {
         let elastic = self.form.is_elastic();
         let key = if elastic { "young" } else { "rho" };
         let rho = match section.take(key) {
-            Some(item) => self.field(item, shape, 1.0)?.0,
+            Some(item) => self.coefficient(item, shape, 1.0)?,
             None => Field::constant(1.0),
         };
         let given = if elastic {
@@ -259,7 +262,7 @@ impl<'a> Reader<'a> {
             None
         };
         let poisson = match given {
-            Some(item) => self.field(item, shape, POISSON)?.0,
+            Some(item) => self.coefficient(item, shape, POISSON)?,
             None => Field::constant(POISSON),
         };
         let load = match section.take("load") {

@@ -1,0 +1,128 @@
+//! The coefficient in words: how far it ranges, and where it was read.
+
+use crate::feti::exchange::{max_all, min_all};
+use crate::petsc::Session;
+use crate::scene::{Cells, Field, Scene};
+use crate::Result;
+
+use super::problem;
+
+/// How far ρ (Young's modulus in elasticity) ranges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coefficient {
+    /// Least and greatest value by body.
+    pub bodies: Vec<[f64; 2]>,
+}
+
+impl Coefficient {
+    /// Evaluates it in all elements. Collective.
+    pub fn of(session: &Session, scene: &Scene) -> Result<Coefficient> {
+        let owns = problem::owner(session, scene)?;
+        let mine = session.agree(scene.coefficient_ranges(&owns))?;
+        let [mut low, mut high]: [Vec<f64>; 2] =
+            [0, 1].map(|k| mine.iter().map(|r| r[k]).collect());
+        min_all(session.comm(), &mut low);
+        max_all(session.comm(), &mut high);
+        Ok(Coefficient {
+            bodies: low.into_iter().zip(high).map(|(l, h)| [l, h]).collect(),
+        })
+    }
+
+    /// Least and greatest value of all.
+    pub fn range(&self) -> [f64; 2] {
+        let wider = |a: [f64; 2], b: &[f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        self.bodies
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], wider)
+    }
+
+    /// The largest quotient of two values in one body.
+    pub fn contrast(&self) -> f64 {
+        let quotients = self.bodies.iter().map(|[low, high]| high / low);
+        quotients.fold(1.0, f64::max)
+    }
+
+    /// Such as "ρ from 0.001 to 1000, inside a body by a factor of up to 1e6; layers.bin, 24 x 24 x 12 cells".
+    pub fn text(&self, scene: &Scene) -> String {
+        let name = ["ρ", "E"][usize::from(scene.form.is_elastic())];
+        let [low, high] = self.range();
+        let contrast = self.contrast();
+        let (from, to) = (number(low), number(high));
+        let mut out = match (low == high, contrast == 1.0) {
+            (true, _) => format!("{name} = {from}"),
+            (false, true) => format!("{name} from {from} to {to}, constant inside bodies"),
+            (false, false) => {
+                let contrast = number(contrast);
+                format!("{name} from {from} to {to}, inside a body by a factor of up to {contrast}")
+            }
+        };
+        for cells in files(scene) {
+            let counts = cells.counts();
+            let counts = &counts[..scene.dim()];
+            let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
+            out += &format!("; {}, {} cells", cells.name(), counts.join(" x "));
+        }
+        out
+    }
+}
+
+/// Four digits of a number: 0.0123, 3000, 1e6.
+fn number(x: f64) -> String {
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    match (1e-4..1e5).contains(&rounded.abs()) {
+        true => format!("{rounded}"),
+        false => format!("{rounded:e}"),
+    }
+}
+
+/// The files of the coefficient, each once.
+fn files(scene: &Scene) -> Vec<&Cells> {
+    let mut out: Vec<&Cells> = Vec::new();
+    for body in &scene.bodies {
+        if let Field::Cells(cells) = &body.spec.rho {
+            if out.iter().all(|c| c.name() != cells.name()) {
+                out.push(cells);
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_said_in_words() {
+        let text = |rho: &str| {
+            let text = format!(
+                "[grid]\nbodies = [2, 1]\nelements = 4\nsubdomains = 2\ndirichlet = [\"left\"]\nrho = {rho}\n"
+            );
+            let scene = Scene::parse("s.toml", &text).unwrap();
+            let bodies = scene.coefficient_ranges(&|_| true).unwrap();
+            Coefficient { bodies }.text(&scene)
+        };
+        assert_eq!(text("2"), "ρ = 2");
+        assert_eq!(
+            text("[[1e-5, 4]]"),
+            "ρ from 1e-5 to 4, constant inside bodies"
+        );
+        assert_eq!(
+            text("{ per_subdomain = [[1, 2], [1, 1e6]] }"),
+            "ρ from 1 to 1e6, inside a body by a factor of up to 1e6"
+        );
+        assert_eq!(
+            text("[{ x = [0, 0.5], value = \"1 + 8*x\" }, { x = [0.5, 1], value = 100 }]"),
+            "ρ from 1.5 to 100, inside a body by a factor of up to 3"
+        );
+    }
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let all = [1.0, 1e-3, 2.0 / 3.0, 123456.7, 1e6, 1e-5, 12345.6].map(number);
+        assert_eq!(
+            all,
+            ["1", "0.001", "0.6667", "1.235e5", "1e6", "1e-5", "12350"]
+        );
+    }
+}
