@@ -21,6 +21,7 @@ pub mod natural;
 pub mod preconditioner;
 pub mod primal;
 pub mod recover;
+pub mod refine;
 pub mod rows;
 pub mod scaling;
 pub mod settings;

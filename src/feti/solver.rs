@@ -18,6 +18,7 @@ use super::local::problem::LocalProblem;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::primal::PrimalSpace;
+use super::refine::{self, Refinement};
 use super::recover::{self, Solution};
 use super::settings::{Adaptive, PcType, Scaling, Settings};
 use super::sharing::Sharing;
@@ -109,7 +110,11 @@ impl FetiFeti {
         let layout = PetscVec::mpi(session, jump.n_owned)?;
         let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
         team.set_load(locals.iter().map(|l| l.t.data.len()).sum());
-        let stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
+        let mut stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
+        let varies = deflation::varies(comm, &problem);
+        if varies > refine::PLAIN {
+            stiffness.refine(Refinement::new(&problem, &stiffness.locals));
+        }
 
         let kind = settings
             .pc_type
@@ -132,7 +137,6 @@ impl FetiFeti {
         let dual = Dual::new(session, stiffness, preconditioner, natural)?;
         let dual = Rc::new(RefCell::new(dual));
         let ksp = krylov(session, &dual, &settings)?;
-        let varies = deflation::varies(session.comm(), &problem);
         dual.borrow().set_watch(deflation::watch(settings.adaptive, varies));
         facts.setup_seconds = clock.elapsed().as_secs_f64();
         Ok(FetiFeti {

@@ -12,6 +12,7 @@ use super::halo::Halo;
 use super::jump::Jump;
 use super::local::problem::LocalProblem;
 use super::primal::PrimalSpace;
+use super::refine::{self, Refinement};
 use super::team::Team;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
@@ -41,6 +42,8 @@ pub struct Stiffness {
     pub dual_halo: Halo,
     /// The threads of this rank.
     pub team: Team,
+    /// Corrections of S_Π⁺, where coefficients jump inside bodies.
+    refinement: Option<Refinement>,
     buffers: RefCell<Buffers>,
 }
 
@@ -71,8 +74,30 @@ impl Stiffness {
             primal,
             dual_halo,
             team,
+            refinement: None,
             buffers: RefCell::new(buffers),
         }
+    }
+
+    /// From now on S_Π⁺ is corrected by `refinement`.
+    pub fn refine(&mut self, refinement: Refinement) {
+        self.refinement = Some(refinement);
+    }
+
+    /// `c` (at this rank's ghosts): in, contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
+    fn primal_solve(&self, c: &mut [f64]) -> Result<()> {
+        let Some(refinement) = &self.refinement else {
+            return self.primal.solve(c);
+        };
+        let b = c.to_vec();
+        self.primal.solve(c)?;
+        for _ in 0..refine::STEPS {
+            let mut r = b.clone();
+            refinement.subtract(&self.space, &self.locals, c, &mut r);
+            self.primal.solve(&mut r)?;
+            c.iter_mut().zip(&r).for_each(|(c, r)| *c += r);
+        }
+        Ok(())
     }
 
     /// work.y ← S̃⁺ work.v on every subdomain. Collective.
@@ -87,7 +112,7 @@ impl Stiffness {
                 sum[g as usize] += p;
             }
         }
-        self.primal.solve(&mut sum)?; /*                  c ← S_Π⁺ p     */
+        self.primal_solve(&mut sum)?; /*                  c ← S_Π⁺ p     */
         self.team.for_each(work, |j, w| {
             for (&g, p) in space.of_subdomain[j].iter().zip(&mut w.p) {
                 *p = sum[g as usize];
@@ -120,6 +145,24 @@ impl Stiffness {
                 w.v.fill(0.0);
             }
         });
+        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
+        self.jump_of(work, out) /*                        out ← B y      */
+    }
+
+    /// The same, but `change` may change the loads Bᵀ λ before they act. Collective.
+    pub fn f_mult_with(
+        &self,
+        lambda: &PetscVec,
+        out: &PetscVec,
+        change: impl FnOnce(&mut [Work]),
+    ) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        self.dual_halo.fetch(lambda, ghost)?;
+        let columns = &self.jump.columns;
+        self.team.for_each(work, |j, w| {
+            columns[j].b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
+        });
+        change(work);
         self.s_plus(work)?; /*                            y ← S̃⁺ v       */
         self.jump_of(work, out) /*                        out ← B y      */
     }

@@ -14,6 +14,7 @@
 //!     P W = W − Q G X,    F P W = F W − F Q G X,    X = (Gᵀ Q G)⁻¹ Gᵀ W
 //! ```
 
+pub mod balance;
 pub mod graph;
 pub mod pencil;
 pub mod search;
@@ -23,6 +24,7 @@ use std::time::Instant;
 
 use mpi::topology::SimpleCommunicator;
 
+use self::balance::Balance;
 use self::graph::BodyGraph;
 use self::pencil::Pencil;
 use self::sweep::Column;
@@ -55,7 +57,7 @@ pub struct Cost {
 
 /// Vectors of neighbours may show the same mode. What is left of one after the others, relative to it and squared in the F-norm, must be
 /// more than this to count: it carries the rounding of F W divided by it.
-const DEPENDENT: f64 = 1e-7;
+const DEPENDENT: f64 = 1e-10;
 
 /// Coefficients of a body whose largest is more than this many times the smallest jump.
 const JUMPS: f64 = 1e2;
@@ -100,6 +102,7 @@ pub struct Deflation {
     /// What it cost.
     pub cost: Cost,
     graph: BodyGraph,
+    balance: Balance,
     /// M⁻¹ P_iᵀ F_i μ with all rows that the search knew.
     columns: Vec<Column>,
     /// P W and F P W.
@@ -129,8 +132,11 @@ impl Deflation {
             ..Cost::default()
         };
         let mut jumps: Vec<(u32, Column)> = Vec::new();
+        let owners: Vec<usize> = problem.local.iter().map(|s| s.body).collect();
+        let mut balance = Balance::new(dual, &owners, graph.n);
         for colour in graph.colours(&bodies) {
             let pencil = Pencil::new(session, problem, dual, &graph, &colour)?;
+            balance.take(session, dual, &pencil)?;
             let found = search::top(&pencil, tau, most, |slot, image| {
                 let entries = pencil.parts[slot].clone().map(|i| (pencil.rows[i], image[i]));
                 let body = pencil.bodies[slot];
@@ -154,12 +160,13 @@ impl Deflation {
         jumps.sort_by_key(|j| j.0);
         let jumps: Vec<Column> = jumps.into_iter().map(|j| j.1).collect();
         let columns = sweep::images(dual, &graph, &jumps, |x, y| dual.m(x, y))?;
-        let (w, fw, x, e) = matrices(session, dual, &graph, &columns)?;
+        let (w, fw, x, e) = matrices(session, dual, &graph, &balance, &columns)?;
         cost.dependent = columns.len() - e.rank();
         cost.seconds = clock.elapsed().as_secs_f64();
         Ok(Deflation {
             cost,
             graph,
+            balance,
             columns,
             w,
             fw,
@@ -189,7 +196,7 @@ impl Deflation {
             reach: column.reach.clone(),
         };
         let columns: Vec<Column> = self.columns.iter().map(mask).collect();
-        (self.w, self.fw, self.x, self.e) = matrices(session, dual, &self.graph, &columns)?;
+        (self.w, self.fw, self.x, self.e) = matrices(session, dual, &self.graph, &self.balance, &columns)?;
         Ok(())
     }
 
@@ -257,11 +264,12 @@ fn matrices(
     session: &Session,
     dual: &Dual,
     graph: &BodyGraph,
+    balance: &Balance,
     columns: &[Column],
 ) -> Result<(Split, Split, Dense, Semidefinite)> {
     let n = dual.stiffness.jump.n_owned;
     let (k, r) = (columns.len(), dual.natural.r);
-    let f = |x: &PetscVec, y: &PetscVec| dual.f(x, y);
+    let f = |x: &PetscVec, y: &PetscVec| balance.f(session, dual, x, y);
     let w = sweep::rows(n, columns);
     let fw = sweep::rows(n, &sweep::images(dual, graph, columns, f)?);
     let mut x = Dense::zeros(r, k);

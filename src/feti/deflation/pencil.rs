@@ -213,6 +213,18 @@ impl<'a> Pencil<'a> {
         }
     }
 
+    /// M_i⁻¹ G_i, column `p` of every body, as multipliers. Collective.
+    pub fn reaction(&self, p: usize) -> Result<&PetscVec> {
+        let column = self.kernel.as_ref().map(|k| &k.mg[p]);
+        self.scatter(column.expect("a body of this colour floats"))?;
+        Ok(&self.x)
+    }
+
+    /// Whether local subdomain `j` belongs to one of the bodies.
+    pub fn holds(&self, j: usize) -> bool {
+        self.inside[j]
+    }
+
     /// Number of this rank's first row.
     pub fn first_row(&self) -> u64 {
         self.dual.stiffness.jump.first as u64

@@ -1,0 +1,109 @@
+//! F on multipliers outside V without the reactions of fixing dofs.
+//!
+//! Columns of W and of Q G alone push floating bodies. What S̃⁺ makes of that hangs on one fixing dof, which may lie in the softest corner: the
+//! displacements are then so large that little is left of F P W when F W and F Q G X cancel. Forces balanced in each body,
+//!
+//! ```text
+//!     v ← v − f_i (R_iᵀ f_i)⁺ R_iᵀ v,    f_i = B_iᵀ M_i⁻¹ G_i
+//! ```
+//!
+//! change nothing on V, where they are balanced already, and put the reaction where the body is stiff.
+
+use super::pencil::Pencil;
+use crate::feti::dual::Dual;
+use crate::feti::exchange::sum_all;
+use crate::feti::local::dense::Dense;
+use crate::feti::local::semidefinite::Semidefinite;
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::Result;
+
+/// f_i of all bodies.
+#[derive(Default)]
+pub struct Balance {
+    /// f on the interface of each local subdomain, n_Γ × defect; empty where its body is held.
+    f: Vec<Dense>,
+    /// Body of each local subdomain.
+    body: Vec<usize>,
+    /// R_iᵀ f_i of every body, factored; `None` for those that are held.
+    e: Vec<Option<Semidefinite>>,
+    /// First kernel column of every body, and the end.
+    start: Vec<usize>,
+}
+
+impl Balance {
+    /// Room for all bodies.
+    pub fn new(dual: &Dual, bodies: &[usize], n_bodies: usize) -> Balance {
+        Balance {
+            f: vec![Dense::default(); dual.stiffness.locals.len()],
+            body: bodies.to_vec(),
+            e: (0..n_bodies).map(|_| None).collect(),
+            start: dual.stiffness.space.kernel_start.clone(),
+        }
+    }
+
+    /// Takes the bodies of a colour. Collective.
+    pub fn take(&mut self, session: &Session, dual: &Dual, pencil: &Pencil) -> Result<()> {
+        let stiffness = &dual.stiffness;
+        let defect = |b: usize| self.start[b + 1] - self.start[b];
+        let most = pencil.bodies.iter().map(|&b| defect(b as usize)).max();
+        let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+        let mut v = Vec::new();
+        for p in 0..most.unwrap_or(0) {
+            stiffness.dual_halo.fetch(pencil.reaction(p)?, &mut ghost)?;
+            for (j, f) in self.f.iter_mut().enumerate() {
+                if pencil.holds(j) && p < defect(self.body[j]) {
+                    v.clear();
+                    v.resize(stiffness.locals[j].n_gamma(), 0.0);
+                    stiffness.jump.columns[j].b_transpose(&ghost, &mut v);
+                    f.rows = v.len();
+                    f.cols = p + 1;
+                    f.data.extend(&v);
+                }
+            }
+        }
+        for &b in pencil.bodies.iter().filter(|&&b| defect(b as usize) > 0) {
+            let b = b as usize;
+            let d = defect(b);
+            let mut e = Dense::zeros(d, d);
+            for (j, f) in self.f.iter().enumerate().filter(|f| self.body[f.0] == b) {
+                let r = &dual.natural.kernels[j];
+                for q in 0..d {
+                    r.add_mul_transpose(f.col(q), e.col_mut(q));
+                }
+            }
+            sum_all(session.comm(), &mut e.data);
+            self.e[b] = Some(Semidefinite::new(&e));
+        }
+        Ok(())
+    }
+
+    /// y ← F x with forces balanced. Collective.
+    pub fn f(&self, session: &Session, dual: &Dual, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let natural = &dual.natural;
+        if natural.r == 0 {
+            return dual.f(x, y);
+        }
+        dual.stiffness.f_mult_with(x, y, |work| {
+            let mut load = vec![0.0; natural.r];
+            for (j, w) in work.iter().enumerate() {
+                let range = self.start[self.body[j]]..self.start[self.body[j] + 1];
+                natural.kernels[j].add_mul_transpose(&w.v, &mut load[range]);
+            }
+            sum_all(session.comm(), &mut load);
+            for (b, e) in self.e.iter().enumerate() {
+                let part = &mut load[self.start[b]..self.start[b + 1]];
+                match e {
+                    Some(e) => e.solve(part),
+                    None => part.fill(0.0),
+                }
+            }
+            load.iter_mut().for_each(|l| *l = -*l);
+            for (j, w) in work.iter_mut().enumerate() {
+                let range = self.start[self.body[j]]..self.start[self.body[j] + 1];
+                if self.f[j].cols > 0 {
+                    self.f[j].add_mul(&load[range], &mut w.v);
+                }
+            }
+        })
+    }
+}
