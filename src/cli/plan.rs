@@ -4,14 +4,18 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::coefficient::Coefficient;
+use super::solve::adaptive;
 use super::{physics, problem};
 use crate::fem::cell::rigid_count;
+use crate::feti::deflation::{watch, JUMPS};
+use crate::feti::settings::Adaptive;
 use crate::feti::sizes::Sizes;
 use crate::feti::team::Team;
-use crate::feti::Settings;
+use crate::feti::{FetiFeti, Settings};
 use crate::petsc::Session;
 use crate::report::table::{Align, Table};
 use crate::scene::{Plan, Scene};
+use crate::substructures::Substructures;
 use crate::Result;
 
 /// Bodies and interfaces are listed one by one up to this many lines.
@@ -31,7 +35,58 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
         settings.primal,
     ))?;
     let coefficient = Coefficient::of(session, &scene)?;
-    super::say(session, &text(&scene, &sizes, &coefficient))
+    let mut out = text(&scene, &sizes, &coefficient);
+    let deflation = deflation(session, substructures, settings, &coefficient)?;
+    let _ = writeln!(out, "{:<22}{deflation}", "deflation");
+    super::say(session, &out)
+}
+
+/// What `-fetifeti_adaptive` comes to. Where it is sure to be looked at, the search is made: that factors the subdomains. Collective.
+fn deflation(
+    session: &Session,
+    problem: Substructures,
+    settings: Settings,
+    coefficient: &Coefficient,
+) -> Result<String> {
+    let contrast = coefficient.contrast();
+    match settings.adaptive {
+        Adaptive::Off => return Ok("off".into()),
+        Adaptive::Auto if contrast <= JUMPS => {
+            let limit = watch(settings.adaptive, contrast).unwrap_or(f64::INFINITY);
+            return Ok(format!(
+                "auto: none, unless the iterations see eigenvalues above {limit}"
+            ));
+        }
+        _ => {}
+    }
+    let solver = FetiFeti::new(session, problem, settings)?;
+    solver.deflate()?;
+    let Some(report) = adaptive(&solver)? else {
+        return Ok("none".into());
+    };
+    let names = &solver.problem().body_names;
+    let counts = report.by_body.iter().zip(names).filter(|c| *c.0 > 0);
+    let listed: Vec<String> = counts
+        .clone()
+        .take(LIST)
+        .map(|(n, b)| format!("{b} {n}"))
+        .collect();
+    let more = counts.count().saturating_sub(LIST);
+    let mut out = report.text();
+    if !listed.is_empty() {
+        let rest = if more > 0 {
+            format!(" and {more} more bodies")
+        } else {
+            String::new()
+        };
+        let _ = write!(out, "\n{:<22}{}{rest}", "", listed.join(", "));
+    }
+    if solver.settings().spectrum {
+        if let Some(s) = solver.spectrum()? {
+            let _ = write!(out, "\n{:<22}κ with them {:.4}", "", s.kappa());
+        }
+    }
+    Ok(out)
 }
 
 fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {

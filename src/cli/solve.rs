@@ -15,6 +15,7 @@ use crate::feti::exchange::sum_all;
 use crate::feti::local::problem::factorisations;
 use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
 use crate::petsc::{max_memory, Session};
+use crate::report::adaptive::Adaptive;
 use crate::report::contact::ContactReport;
 use crate::report::json::{self, SolveReport};
 use crate::report::{contact_map, load_steps, output, profile, summary};
@@ -193,6 +194,7 @@ fn report(
             exact: exact.map(spectrum),
             estimate: solution.estimate.map(spectrum),
         },
+        adaptive: adaptive(solver)?,
         kkt: json::Kkt {
             stationarity: solution.kkt.stationarity,
             feasibility: solution.kkt.feasibility,
@@ -225,6 +227,30 @@ fn report(
         check: None,
         rtol: solver.ksp().tolerances()?.0,
     })
+}
+
+/// Key `adaptive`. Collective.
+pub(super) fn adaptive(solver: &FetiFeti) -> Result<Option<Adaptive>> {
+    let Some(cost) = solver.deflated() else {
+        return Ok(None);
+    };
+    // A spectrum that reaches over many decades may be out of the eigensolver's reach.
+    let exact_without = match solver.settings().spectrum {
+        true => solver.plain_spectrum().ok().flatten(),
+        false => None,
+    };
+    let names = &solver.problem().body_names;
+    Ok(Some(Adaptive {
+        tau: cost.tau,
+        vectors: cost.vectors.iter().sum(),
+        dependent: cost.dependent,
+        largest: cost.largest,
+        capped: cost.capped.iter().map(|&b| names[b].clone()).collect(),
+        by_body: cost.vectors,
+        seconds: cost.seconds,
+        exact_without: exact_without.map(spectrum),
+        estimate_without: cost.before.map(spectrum),
+    }))
 }
 
 /// The fields, the pictures and the profiles along the interfaces; rank 0 writes for all. Collective.

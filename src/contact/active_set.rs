@@ -191,7 +191,7 @@ impl Run {
         let mut inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
         drop(dual);
         if inner.broken_off {
-            solver.deflate()?;
+            solver.deflate_after(inner.estimate)?;
             let dual = solver.dual();
             self.residual
                 .evaluate(session, &dual, &self.loads, &self.lambda)?;

@@ -123,6 +123,11 @@ impl Dual {
         self.deflation.replace(deflation);
     }
 
+    /// P_2, which is not in use any more.
+    pub fn take_deflation(&self) -> Option<Deflation> {
+        self.deflation.take()
+    }
+
     /// P_2, where it is in use.
     pub fn deflation(&self) -> Ref<'_, Option<Deflation>> {
         self.deflation.borrow()

@@ -232,7 +232,6 @@ pub fn iterate(
     lambda.axpy(1.0, &x)?;
     let iterations = ksp.iterations()?;
     let estimate = estimate(ksp, iterations)?;
-    eprintln!("RUN {iterations} its, start {start:e} target {target:e} {:?} {estimate:?} broken {broken_off} last {:?}", ksp.converged_reason()?.name, ksp.residual_history()?.last());
     Ok(Inner {
         iterations,
         reason: ksp.converged_reason()?,

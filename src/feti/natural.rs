@@ -265,7 +265,9 @@ impl NaturalCoarse {
 
     /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank.
     pub fn solve_gtg(&self, x: &mut [f64]) -> Result<()> {
-        self.gtg.as_ref().map_or(Ok(()), |gtg| gtg.solve(x, Side::Plain))
+        self.gtg
+            .as_ref()
+            .map_or(Ok(()), |gtg| gtg.solve(x, Side::Plain))
     }
 
     /// Q G, which is G itself for Q = I.

@@ -54,7 +54,7 @@ pub(super) fn solve(
     problem: &Substructures,
     dual: &Dual,
     ksp: &Ksp,
-    deflate: &dyn Fn(&Dual) -> Result<()>,
+    deflate: &dyn Fn(&Dual, Option<Spectrum>) -> Result<()>,
 ) -> Result<Solution> {
     let clock = Instant::now();
     let loads = Loads::new(session, problem, dual);
@@ -71,7 +71,7 @@ pub(super) fn solve(
     let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
     let mut iterations = inner.iterations;
     if inner.broken_off {
-        deflate(dual)?;
+        deflate(dual, inner.estimate)?;
         residual.evaluate(session, dual, &loads, &lambda)?;
         dual.p_transpose(&residual.r)?;
         inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
@@ -95,7 +95,12 @@ pub(super) fn solve(
         // A further run that stalls has met the rounding of the operator: what the first one reached stands.
         stalled = !more.reason.converged();
         if !stalled && more.iterations > 0 {
+            // A few more iterations say less about the spectrum than the many before.
+            let estimate = inner
+                .estimate
+                .filter(|_| inner.iterations > more.iterations);
             inner = more;
+            inner.estimate = estimate.or(inner.estimate);
         }
     }
     let solve_seconds = clock.elapsed().as_secs_f64();

@@ -64,7 +64,9 @@ fn remove(n: &Dense, x: &mut [f64]) {
     for _ in 0..2 {
         for k in 0..n.cols {
             let along: f64 = n.col(k).iter().zip(&*x).map(|(n, x)| n * x).sum();
-            x.iter_mut().zip(n.col(k)).for_each(|(x, n)| *x -= along * n);
+            x.iter_mut()
+                .zip(n.col(k))
+                .for_each(|(x, n)| *x -= along * n);
         }
     }
 }

@@ -18,8 +18,8 @@ use super::local::problem::LocalProblem;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::primal::PrimalSpace;
-use super::refine::{self, Refinement};
 use super::recover::{self, Solution};
+use super::refine::{self, Refinement};
 use super::settings::{Adaptive, PcType, Scaling, Settings};
 use super::sharing::Sharing;
 use super::spectrum::{self, Spectrum};
@@ -137,7 +137,8 @@ impl FetiFeti {
         let dual = Dual::new(session, stiffness, preconditioner, natural)?;
         let dual = Rc::new(RefCell::new(dual));
         let ksp = krylov(session, &dual, &settings)?;
-        dual.borrow().set_watch(deflation::watch(settings.adaptive, varies));
+        dual.borrow()
+            .set_watch(deflation::watch(settings.adaptive, varies));
         facts.setup_seconds = clock.elapsed().as_secs_f64();
         Ok(FetiFeti {
             session: session.clone(),
@@ -175,7 +176,7 @@ impl FetiFeti {
         let solution = if self.facts.inequalities > 0 {
             contact::solve(self, start, observe)?
         } else {
-            let deflate = |dual: &Dual| self.deflate_with(dual);
+            let deflate = |dual: &Dual, seen| self.deflate_with(dual, seen);
             let dual = self.dual();
             recover::solve(&self.session, &self.problem, &dual, &self.ksp, &deflate)?
         };
@@ -219,6 +220,11 @@ impl FetiFeti {
     /// Finds what of the spectrum is above τ and deflates it from now on, whatever the iterations have shown; with all rows that may hold.
     /// Collective.
     pub fn deflate(&self) -> Result<()> {
+        self.deflate_after(None)
+    }
+
+    /// The same with what the iterations have seen of the spectrum.
+    pub(crate) fn deflate_after(&self, before: Option<Spectrum>) -> Result<()> {
         let (candidates, now) = {
             let dual = self.dual();
             let jump = &dual.stiffness.jump;
@@ -228,22 +234,22 @@ impl FetiFeti {
         };
         let set = |active: &[bool]| self.dual.borrow_mut().set_active(&self.problem, active);
         let changed = set(&candidates)?;
-        let found = self.deflate_with(&self.dual());
+        let found = self.deflate_with(&self.dual(), before);
         if changed > 0 {
             set(&now)?;
         }
         found
     }
 
-    fn deflate_with(&self, dual: &Dual) -> Result<()> {
+    fn deflate_with(&self, dual: &Dual, before: Option<Spectrum>) -> Result<()> {
         let tau = match self.settings.adaptive {
             Adaptive::Below(tau) => tau,
             _ => Adaptive::USUAL,
         };
         let most = self.settings.adaptive_max;
-        let deflation = Deflation::new(&self.session, &self.problem, dual, tau, most)?;
+        let mut deflation = Deflation::new(&self.session, &self.problem, dual, tau, most)?;
+        deflation.cost.before = before;
         dual.set_watch(None);
-        eprintln!("{:?}", deflation.cost);
         dual.deflate(Some(deflation));
         Ok(())
     }
@@ -260,6 +266,18 @@ impl FetiFeti {
         if matches!(self.settings.adaptive, Adaptive::Below(_)) && !searched {
             self.deflate()?;
         }
+        self.present_spectrum()
+    }
+
+    /// The same without deflation. Collective.
+    pub fn plain_spectrum(&self) -> Result<Option<Spectrum>> {
+        let kept = self.dual().take_deflation();
+        let spectrum = self.present_spectrum();
+        self.dual().deflate(kept);
+        spectrum
+    }
+
+    fn present_spectrum(&self) -> Result<Option<Spectrum>> {
         let prefix = format!("{}eps_", self.settings.prefix);
         spectrum::exact(&self.session, &self.dual, &prefix)
     }

@@ -77,6 +77,9 @@ pub struct SolveReport {
     pub iterations: Iterations,
     /// Extreme eigenvalues of the preconditioned operator.
     pub condition: Condition,
+    /// What was deflated; absent where nothing was searched for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<super::adaptive::Adaptive>,
     /// Residuals of the Karush-Kuhn-Tucker conditions.
     pub kkt: Kkt,
     /// ½ uᵀKu − fᵀu.
@@ -428,6 +431,7 @@ mod tests {
                 exact: None,
                 estimate: Some(Spectrum::new(2.0, 5.0)),
             },
+            adaptive: None,
             kkt: Kkt {
                 stationarity: 1e-9,
                 feasibility: f64::NAN,

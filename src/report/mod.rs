@@ -16,6 +16,7 @@
 //! | [`progress`] | the line that tells how far a contact solve is |
 //! | [`vtu`], [`contact_fields`], [`pvd`] | ParaView files, contact as point data, time series |
 
+pub mod adaptive;
 pub mod canvas;
 pub mod checkpoint;
 pub mod colormap;

@@ -71,6 +71,9 @@ pub fn solve(r: &SolveReport) -> String {
         "iterations",
         format!("{inner}, {} at rtol {:.0e}", r.converged_reason, r.rtol),
     ));
+    if let Some(adaptive) = &r.adaptive {
+        lines.push(("deflation", adaptive.text()));
+    }
     if r.condition.exact.is_some() {
         lines.push(("exact spectrum", spectrum(r.condition.exact)));
     }

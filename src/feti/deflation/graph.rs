@@ -69,7 +69,12 @@ impl BodyGraph {
                 touched.push(block.bodies.clone());
             }
             for &a in &block.bodies {
-                pairs.extend(block.bodies.iter().map(|&b| u64::from(a) << 32 | u64::from(b)));
+                pairs.extend(
+                    block
+                        .bodies
+                        .iter()
+                        .map(|&b| u64::from(a) << 32 | u64::from(b)),
+                );
             }
         }
         pairs.sort_unstable();
@@ -107,7 +112,9 @@ impl BodyGraph {
         for &body in bodies {
             let others = self.around(&self.near[body as usize]);
             let taken: Vec<usize> = others.iter().map(|&b| colour[b as usize]).collect();
-            let free = (0..).find(|c| !taken.contains(c)).expect("there is always one more");
+            let free = (0..)
+                .find(|c| !taken.contains(c))
+                .expect("there is always one more");
             colour[body as usize] = free;
             if free == groups.len() {
                 groups.push(Vec::new());

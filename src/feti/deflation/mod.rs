@@ -34,6 +34,7 @@ use super::local::dense::Dense;
 use super::local::semidefinite::Semidefinite;
 use super::rows::Rows;
 use super::settings::Adaptive;
+use super::spectrum::Spectrum;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
@@ -51,6 +52,8 @@ pub struct Cost {
     pub largest: f64,
     /// Vectors that depended on others.
     pub dependent: usize,
+    /// The spectrum that the iterations saw before the search.
+    pub before: Option<Spectrum>,
     /// Seconds of the search and of the matrices.
     pub seconds: f64,
 }
@@ -60,7 +63,7 @@ pub struct Cost {
 const DEPENDENT: f64 = 1e-10;
 
 /// Coefficients of a body whose largest is more than this many times the smallest jump.
-const JUMPS: f64 = 1e2;
+pub const JUMPS: f64 = 1e2;
 
 /// The largest ratio of two scaling weights in one body. Collective.
 pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
@@ -75,7 +78,10 @@ pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
     }
     max_all(comm, &mut ends);
     let ratio = |b: usize| ends[b] / -ends[n + b];
-    (0..n).map(ratio).filter(|r| r.is_finite()).fold(1.0, f64::max)
+    (0..n)
+        .map(ratio)
+        .filter(|r| r.is_finite())
+        .fold(1.0, f64::max)
 }
 
 /// The eigenvalue at which an iteration is broken off so that those above τ are deflated; `varies` is the largest ratio of coefficients
@@ -115,7 +121,7 @@ pub struct Deflation {
 }
 
 impl Deflation {
-    /// Searches all bodies for vectors above `tau`, at most `most` in each. `None` where there is none. Collective.
+    /// Searches all bodies for vectors above `tau`, at most `most` in each. Collective.
     pub fn new(
         session: &Session,
         problem: &Substructures,
@@ -138,7 +144,9 @@ impl Deflation {
             let pencil = Pencil::new(session, problem, dual, &graph, &colour)?;
             balance.take(session, dual, &pencil)?;
             let found = search::top(&pencil, tau, most, |slot, image| {
-                let entries = pencil.parts[slot].clone().map(|i| (pencil.rows[i], image[i]));
+                let entries = pencil.parts[slot]
+                    .clone()
+                    .map(|i| (pencil.rows[i], image[i]));
                 let body = pencil.bodies[slot];
                 let column = Column {
                     entries: entries.filter(|e| e.1 != 0.0).collect(),
@@ -196,7 +204,8 @@ impl Deflation {
             reach: column.reach.clone(),
         };
         let columns: Vec<Column> = self.columns.iter().map(mask).collect();
-        (self.w, self.fw, self.x, self.e) = matrices(session, dual, &self.graph, &self.balance, &columns)?;
+        (self.w, self.fw, self.x, self.e) =
+            matrices(session, dual, &self.graph, &self.balance, &columns)?;
         Ok(())
     }
 

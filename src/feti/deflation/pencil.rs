@@ -60,7 +60,10 @@ impl<'a> Pencil<'a> {
         let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); bodies.len()];
         for row in 0..jump.n_owned {
             let terms = graph.terms.of(row).iter();
-            for s in terms.map(|&b| slot[b as usize]).filter(|&s| s != usize::MAX) {
+            for s in terms
+                .map(|&b| slot[b as usize])
+                .filter(|&s| s != usize::MAX)
+            {
                 of_body[s].push(row as u32);
             }
         }
@@ -159,7 +162,10 @@ impl<'a> Pencil<'a> {
     fn scatter(&self, v: &[f64]) -> Result<()> {
         self.x.set(0.0)?;
         let mut x = self.x.array_mut()?;
-        self.rows.iter().zip(v).for_each(|(&r, v)| x[r as usize] = *v);
+        self.rows
+            .iter()
+            .zip(v)
+            .for_each(|(&r, v)| x[r as usize] = *v);
         Ok(())
     }
 

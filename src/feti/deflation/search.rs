@@ -167,7 +167,9 @@ impl Basis {
 /// converged well enough to be believed.
 fn settled(pairs: &[(f64, f64)], above: usize, tau: f64) -> bool {
     let rest: f64 = pairs[..above].iter().map(|(t, r)| r * r / t).sum();
-    let next = pairs.get(above).is_none_or(|(t, r)| t + r <= tau || *r <= 0.2 * t);
+    let next = pairs
+        .get(above)
+        .is_none_or(|(t, r)| t + r <= tau || *r <= 0.2 * t);
     rest <= 0.1 * tau && next
 }
 
