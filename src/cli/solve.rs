@@ -243,6 +243,7 @@ pub(super) fn adaptive(solver: &FetiFeti) -> Result<Option<Adaptive>> {
     Ok(Some(Adaptive {
         tau: cost.tau,
         vectors: cost.vectors.iter().sum(),
+        shared: cost.shared,
         dependent: cost.dependent,
         largest: cost.largest,
         capped: cost.capped.iter().map(|&b| names[b].clone()).collect(),

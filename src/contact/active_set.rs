@@ -190,7 +190,7 @@ impl Run {
         let (r, size) = (&self.residual.r, self.residual.size);
         let mut inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
         drop(dual);
-        if inner.broken_off {
+        while inner.broken_off {
             solver.deflate_after(inner.estimate)?;
             let dual = solver.dual();
             self.residual

@@ -173,24 +173,25 @@ impl Dual {
         }
     }
 
-    /// y ← Pᵀ F P x.
+    /// y ← Pᵀ P_2ᵀ F P x. Residuals that this makes have no part in range F W, where the preconditioner would not see it.
     fn projected_f(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         if self.natural.r == 0 {
-            return self.f(x, y);
+            self.f(x, y)?;
+            return self.p2_transpose(y);
         }
         self.x.copy_from(x)?;
         self.p(&self.x)?; /*            x ← P x          */
         self.f(&self.x, y)?; /*         y ← F x          */
+        self.p2_transpose(y)?; /*       y ← P_2ᵀ y       */
         self.p_transpose(y) /*          y ← Pᵀ y         */
     }
 
-    /// y ← P_2 P M⁻¹ Pᵀ P_2ᵀ x.
+    /// y ← P_2 P M⁻¹ Pᵀ x for residuals x, which P_2ᵀ leaves as they are.
     fn projected_m(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         if self.natural.r == 0 && self.deflation.borrow().is_none() {
             return self.m(x, y);
         }
         self.y.copy_from(x)?;
-        self.p2_transpose(&self.y)?; /* x ← P_2ᵀ x       */
         self.p_transpose(&self.y)?; /*  x ← Pᵀ x         */
         self.m(&self.y, y)?; /*         y ← M⁻¹ x        */
         self.p(y)?; /*                  y ← P y          */

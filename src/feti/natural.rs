@@ -10,6 +10,8 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::deflation::graph::BodyGraph;
+use super::deflation::{self, sweep};
 use super::exchange::{exchange, gather_all, max_all, sum_all};
 use super::gtg::{Gtg, Side};
 use super::local::dense::Dense;
@@ -113,7 +115,7 @@ impl NaturalCoarse {
             }
             ProjectorKind::Preconditioner => {
                 let rigid = self.rigid_rows(session, problem, stiffness)?;
-                Some(self.probe(session, stiffness, preconditioner, &rigid)?)
+                Some(self.probe(session, problem, stiffness, preconditioner, &rigid)?)
             }
             _ => None,
         };
@@ -225,36 +227,31 @@ impl NaturalCoarse {
         Ok(out)
     }
 
-    /// Q G with Q = M⁻¹ + diag(`rigid`), one column after the other.
+    /// Q G with Q = M⁻¹ + diag(`rigid`); columns of bodies that are far from each other go through M⁻¹ together.
     fn probe(
         &self,
         session: &Session,
+        problem: &Substructures,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
         rigid: &[f64],
     ) -> Result<Rows> {
         let n = stiffness.jump.n_owned;
-        let column = PetscVec::mpi(session, n)?;
-        let image = column.duplicate()?;
-        let mut entries = Vec::new();
-        for c in 0..self.r {
-            {
-                let mut values = column.array_mut()?;
-                for (i, v) in values.iter_mut().enumerate() {
-                    *v = self.g.row(i).find(|e| e.0 == c).map_or(0.0, |e| e.1);
-                }
-            }
-            preconditioner.apply(stiffness, &column, &image)?;
-            {
-                let (mut values, column) = (image.array_mut()?, column.array()?);
-                for ((v, q), g) in values.iter_mut().zip(rigid).zip(&*column) {
-                    *v += q * g;
-                }
-            }
-            let values = image.array()?;
-            let rows = values.iter().enumerate().filter(|(_, v)| **v != 0.0);
-            entries.extend(rows.map(|(i, &v)| (i as u32, c as u32, v)));
-        }
+        let graph = BodyGraph::new(session.comm(), problem, stiffness);
+        let start = &stiffness.space.kernel_start;
+        let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
+        let like = PetscVec::mpi(session, n)?;
+        let apply = |x: &PetscVec, y: &PetscVec| preconditioner.apply(stiffness, x, y);
+        let images = sweep::images(&like, &graph, &columns, apply)?;
+        let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
+            let entries = list.iter().enumerate().flat_map(|(c, column)| {
+                let entries = column.entries.iter();
+                entries.map(move |&(row, v)| (row, c as u32, v * weigh(row)))
+            });
+            entries.collect::<Vec<_>>()
+        };
+        let mut entries = of(&images, &|_| 1.0);
+        entries.extend(of(&columns, &|row| rigid[row as usize]));
         Ok(Rows::from_triplets(n, entries))
     }
 
@@ -405,7 +402,7 @@ pub fn moving(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -
     }
 }
 
-/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness. Only called where some body floats.
+/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness, or coefficients jump inside them. Only called where some body floats.
 fn choose(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -437,7 +434,8 @@ fn choose(
         (l.min(m), h.max(m))
     });
     // A factor of two comes from corners and mesh sizes alone.
-    match (high > 3.0 * low, preconditioner.kind()) {
+    let differ = high > 3.0 * low || deflation::varies(comm, problem) > deflation::JUMPS;
+    match (differ, preconditioner.kind()) {
         (false, _) => ProjectorKind::Identity,
         (true, PcType::None) => ProjectorKind::Diagonal,
         (true, _) => ProjectorKind::Preconditioner,

@@ -70,7 +70,7 @@ pub(super) fn solve(
     let mut tolerance = target(ksp, reference, 0.0, rows)?;
     let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
     let mut iterations = inner.iterations;
-    if inner.broken_off {
+    while inner.broken_off {
         deflate(dual, inner.estimate)?;
         residual.evaluate(session, dual, &loads, &lambda)?;
         dual.p_transpose(&residual.r)?;

@@ -41,6 +41,10 @@ const CITATION: &str = "@techreport{Lee2010,
 /// KKT residuals may be this many times the tolerance of the iteration, which measures another norm.
 const CREDIBLE: f64 = 1e4;
 
+/// Where a bound τ is asked for, deflation of what bodies share sets in above `KEPT` τ and goes down to `SHARED` τ.
+const KEPT: f64 = 1.45;
+const SHARED: f64 = 1.25;
+
 /// Facts about the problem as the solver sees it.
 #[derive(Debug, Clone, Default)]
 pub struct Facts {
@@ -247,9 +251,21 @@ impl FetiFeti {
             _ => Adaptive::USUAL,
         };
         let most = self.settings.adaptive_max;
-        let mut deflation = Deflation::new(&self.session, &self.problem, dual, tau, most)?;
-        deflation.cost.before = before;
-        dual.set_watch(None);
+        let bounded = matches!(self.settings.adaptive, Adaptive::Below(_));
+        // Modes that bodies share come second, and only where a bound is asked for.
+        let (deflation, more) = match dual.take_deflation() {
+            Some(mut deflation) => {
+                let bound = SHARED * tau;
+                let found = deflation.polish(&self.session, dual, bound, most)?;
+                (deflation, found > 0)
+            }
+            None => {
+                let mut deflation = Deflation::new(&self.session, &self.problem, dual, tau, most)?;
+                deflation.cost.before = before;
+                (deflation, true)
+            }
+        };
+        dual.set_watch((bounded && more).then_some(KEPT * tau));
         dual.deflate(Some(deflation));
         Ok(())
     }
@@ -266,7 +282,16 @@ impl FetiFeti {
         if matches!(self.settings.adaptive, Adaptive::Below(_)) && !searched {
             self.deflate()?;
         }
-        self.present_spectrum()
+        let mut spectrum = self.present_spectrum()?;
+        // As long as what bodies share is above the bound and can be found.
+        while let (Some(limit), Some(s)) = (self.dual().watch(), spectrum) {
+            if self.dual().deflation().is_none() || s.lambda_max <= limit {
+                break;
+            }
+            self.deflate()?;
+            spectrum = self.present_spectrum()?;
+        }
+        Ok(spectrum)
     }
 
     /// The same without deflation. Collective.

@@ -13,6 +13,8 @@ pub struct Adaptive {
     pub vectors: usize,
     /// Vectors of every body, by its number.
     pub by_body: Vec<usize>,
+    /// Vectors beside those that bodies share.
+    pub shared: usize,
     /// Vectors that depend on those of neighbours.
     pub dependent: usize,
     /// The largest eigenvalue of a body's pencil that is deflated; 0 without vectors.
@@ -45,6 +47,10 @@ impl Adaptive {
             (Some(s), _) => format!("; κ without {:.4e}", s.kappa),
             (None, Some(s)) => format!("; κ without at least {:.1e}", s.kappa),
             _ => String::new(),
+        };
+        let found = match self.shared {
+            0 => found,
+            n => format!("{found} and {n} that bodies share"),
         };
         let mut out = format!("{found}, {:.3} s{without}", self.seconds);
         if let Some(first) = self.capped.first() {

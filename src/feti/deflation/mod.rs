@@ -19,6 +19,7 @@ pub mod graph;
 pub mod pencil;
 pub mod search;
 pub mod sweep;
+pub mod whole;
 
 use std::time::Instant;
 
@@ -28,6 +29,7 @@ use self::balance::Balance;
 use self::graph::BodyGraph;
 use self::pencil::Pencil;
 use self::sweep::Column;
+use self::whole::Whole;
 use super::dual::Dual;
 use super::exchange::{max_all, sum_all};
 use super::local::dense::Dense;
@@ -46,6 +48,8 @@ pub struct Cost {
     pub tau: f64,
     /// Vectors of every body.
     pub vectors: Vec<usize>,
+    /// Vectors that bodies share, found afterwards.
+    pub shared: usize,
     /// Bodies with more vectors above τ than the cap allows, or whose vectors did not settle.
     pub capped: Vec<usize>,
     /// The largest Ritz value of all bodies that is deflated; 0 where none is.
@@ -143,7 +147,7 @@ impl Deflation {
         for colour in graph.colours(&bodies) {
             let pencil = Pencil::new(session, problem, dual, &graph, &colour)?;
             balance.take(session, dual, &pencil)?;
-            let found = search::top(&pencil, tau, most, |slot, image| {
+            let found = search::top(&pencil, tau, most, |slot, _, image| {
                 let entries = pencil.parts[slot]
                     .clone()
                     .map(|i| (pencil.rows[i], image[i]));
@@ -167,7 +171,7 @@ impl Deflation {
         // By body, whatever the colours are.
         jumps.sort_by_key(|j| j.0);
         let jumps: Vec<Column> = jumps.into_iter().map(|j| j.1).collect();
-        let columns = sweep::images(dual, &graph, &jumps, |x, y| dual.m(x, y))?;
+        let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| dual.m(x, y))?;
         let (w, fw, x, e) = matrices(session, dual, &graph, &balance, &columns)?;
         cost.dependent = columns.len() - e.rank();
         cost.seconds = clock.elapsed().as_secs_f64();
@@ -181,6 +185,36 @@ impl Deflation {
             x,
             e,
         })
+    }
+
+    /// Deflates what is still above `bound` in the whole problem, at most `most` vectors; returns how many there were. Collective.
+    pub fn polish(
+        &mut self,
+        session: &Session,
+        dual: &Dual,
+        bound: f64,
+        most: usize,
+    ) -> Result<usize> {
+        let clock = Instant::now();
+        let everywhere: Vec<u32> = (0..self.graph.n as u32).collect();
+        let mut found = Vec::new();
+        let whole = Whole::new(session, dual, self)?;
+        search::top(&whole, bound, most, |_, vector, _| {
+            let entries = vector.iter().enumerate().filter(|e| *e.1 != 0.0);
+            found.push(Column {
+                entries: entries.map(|(row, &v)| (row as u32, v)).collect(),
+                reach: everywhere.clone(),
+            });
+        })?;
+        let n = found.len();
+        if n > 0 {
+            self.columns.extend(found);
+            (self.w, self.fw, self.x, self.e) =
+                matrices(session, dual, &self.graph, &self.balance, &self.columns)?;
+            self.cost.shared += n;
+        }
+        self.cost.seconds += clock.elapsed().as_secs_f64();
+        Ok(n)
     }
 
     /// Number of vectors.
@@ -278,9 +312,10 @@ fn matrices(
 ) -> Result<(Split, Split, Dense, Semidefinite)> {
     let n = dual.stiffness.jump.n_owned;
     let (k, r) = (columns.len(), dual.natural.r);
+    let like = dual.multipliers()?;
     let f = |x: &PetscVec, y: &PetscVec| balance.f(session, dual, x, y);
     let w = sweep::rows(n, columns);
-    let fw = sweep::rows(n, &sweep::images(dual, graph, columns, f)?);
+    let fw = sweep::rows(n, &sweep::images(&like, graph, columns, f)?);
     let mut x = Dense::zeros(r, k);
     let mut kernels = None;
     if r > 0 && k > 0 {
@@ -293,8 +328,11 @@ fn matrices(
         for c in 0..k {
             dual.natural.solve_gtg(x.col_mut(c))?;
         }
-        let qg = kernel_columns(dual, graph);
-        let fqg = sweep::rows(n, &sweep::images(dual, graph, &qg, f)?);
+        let natural = &dual.natural;
+        let qg = sweep::kernel_columns(natural.qg(), &dual.stiffness.space.kernel_start, |b| {
+            graph.around(&graph.near[b])
+        });
+        let fqg = sweep::rows(n, &sweep::images(&like, graph, &qg, f)?);
         kernels = Some((sweep::rows(n, &qg), fqg));
     }
     let (qg, fqg) = kernels.unzip();
@@ -340,23 +378,4 @@ fn gram(session: &Session, w: &Split, f: &Split, x: &Dense) -> Dense {
         }
     }
     e
-}
-
-/// The columns of Q G.
-fn kernel_columns(dual: &Dual, graph: &BodyGraph) -> Vec<Column> {
-    let natural = &dual.natural;
-    let start = &dual.stiffness.space.kernel_start;
-    let mut columns = vec![Column::default(); natural.r];
-    for body in 0..graph.n {
-        for column in &mut columns[start[body]..start[body + 1]] {
-            // G and M⁻¹ G of a body live on the rows that its neighbours touch.
-            column.reach = graph.around(&graph.near[body]);
-        }
-    }
-    for i in 0..natural.qg().n() {
-        for (c, value) in natural.qg().row(i) {
-            columns[c].entries.push((i as u32, value));
-        }
-    }
-    columns
 }

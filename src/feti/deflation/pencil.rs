@@ -11,6 +11,7 @@
 use std::ops::Range;
 
 use super::graph::BodyGraph;
+use super::search::Pencils;
 use crate::feti::dual::Dual;
 use crate::feti::exchange::sum_all;
 use crate::feti::local::dense::Dense;
@@ -90,11 +91,6 @@ impl<'a> Pencil<'a> {
         Ok(pencil)
     }
 
-    /// Number of entries of a vector on this rank.
-    pub fn n(&self) -> usize {
-        self.rows.len()
-    }
-
     fn kernels(&self) -> Result<Option<Kernel>> {
         let start = &self.dual.stiffness.space.kernel_start;
         let of = |b: &u32| start[*b as usize]..start[*b as usize + 1];
@@ -140,25 +136,6 @@ impl<'a> Pencil<'a> {
         Ok(Some(Kernel { g, mg, factors }))
     }
 
-    /// This rank's share of aᵀ b for every body.
-    pub fn dots(&self, a: &[f64], b: &[f64]) -> Vec<f64> {
-        let dot = |part: &Range<usize>| {
-            let pairs = a[part.clone()].iter().zip(&b[part.clone()]);
-            pairs.map(|(a, b)| a * b).sum()
-        };
-        self.parts.iter().map(dot).collect()
-    }
-
-    /// y ← y + Σ α_i x on the entries of body i.
-    pub fn add(&self, alpha: &[f64], x: &[f64], y: &mut [f64]) {
-        for (part, &alpha) in self.parts.iter().zip(alpha) {
-            if alpha != 0.0 {
-                let pairs = y[part.clone()].iter_mut().zip(&x[part.clone()]);
-                pairs.for_each(|(y, x)| *y += alpha * x);
-            }
-        }
-    }
-
     fn scatter(&self, v: &[f64]) -> Result<()> {
         self.x.set(0.0)?;
         let mut x = self.x.array_mut()?;
@@ -174,34 +151,10 @@ impl<'a> Pencil<'a> {
         Ok(self.rows.iter().map(|&r| y[r as usize]).collect())
     }
 
-    /// F_i v. Collective.
-    pub fn f(&self, v: &[f64]) -> Result<Vec<f64>> {
-        self.scatter(v)?;
-        let (stiffness, inside) = (&self.dual.stiffness, &self.inside);
-        stiffness.f_mult_of(&self.x, &self.y, |j| inside[j])?;
-        self.gather()
-    }
-
     fn plain_m(&self, v: &[f64]) -> Result<Vec<f64>> {
         self.scatter(v)?;
         self.dual.m(&self.x, &self.y)?;
         self.gather()
-    }
-
-    /// P_i M_i⁻¹ v for v that `jump_part` has been through. Collective.
-    pub fn m(&self, v: &[f64]) -> Result<Vec<f64>> {
-        let mut z = self.plain_m(v)?;
-        if let Some(k) = &self.kernel {
-            self.remove(&mut z, k, &k.g, &k.mg);
-        }
-        Ok(z)
-    }
-
-    /// v ← P_iᵀ v. Collective.
-    pub fn jump_part(&self, v: &mut [f64]) {
-        if let Some(k) = &self.kernel {
-            self.remove(v, k, &k.mg, &k.g);
-        }
     }
 
     /// v ← v − along (G_iᵀ M_i⁻¹ G_i)⁺ fromᵀ v.
@@ -230,14 +183,40 @@ impl<'a> Pencil<'a> {
     pub fn holds(&self, j: usize) -> bool {
         self.inside[j]
     }
+}
 
-    /// Number of this rank's first row.
-    pub fn first_row(&self) -> u64 {
-        self.dual.stiffness.jump.first as u64
+impl Pencils for Pencil<'_> {
+    fn parts(&self) -> &[Range<usize>] {
+        &self.parts
     }
 
-    /// Sums over the ranks.
-    pub fn sum(&self, values: &mut [f64]) {
+    fn row(&self, i: usize) -> u64 {
+        self.dual.stiffness.jump.first as u64 + u64::from(self.rows[i])
+    }
+
+    fn f(&self, v: &[f64]) -> Result<Vec<f64>> {
+        self.scatter(v)?;
+        let (stiffness, inside) = (&self.dual.stiffness, &self.inside);
+        stiffness.f_mult_of(&self.x, &self.y, |j| inside[j])?;
+        self.gather()
+    }
+
+    fn m(&self, v: &[f64]) -> Result<Vec<f64>> {
+        let mut z = self.plain_m(v)?;
+        if let Some(k) = &self.kernel {
+            self.remove(&mut z, k, &k.g, &k.mg);
+        }
+        Ok(z)
+    }
+
+    fn jump_part(&self, v: &mut Vec<f64>) -> Result<()> {
+        if let Some(k) = &self.kernel {
+            self.remove(v, k, &k.mg, &k.g);
+        }
+        Ok(())
+    }
+
+    fn sum(&self, values: &mut [f64]) {
         sum_all(self.session.comm(), values);
     }
 }

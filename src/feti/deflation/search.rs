@@ -1,10 +1,56 @@
-//! The top of the pencils of one colour: Krylov spaces of all bodies in step, each with its own Rayleigh–Ritz problem.
+//! The top of pencils that stand side by side: Krylov spaces of all bodies in step, each with its own Rayleigh–Ritz problem.
 //!
 //! Bases are orthonormal in F_i. Two start vectors find eigenvalues of multiplicity two at once; others come out by and by. A body stops
 //! when what is left above τ is within what the deflation may leave there, see [`settled`].
 
-use super::pencil::Pencil;
+use std::ops::Range;
+
 use crate::Result;
+
+/// Pencils F, M⁻¹ on vectors that hold the entries of one after those of the other.
+pub trait Pencils {
+    /// This rank's entries of each.
+    fn parts(&self) -> &[Range<usize>];
+
+    /// A number of entry `i` that no other entry of its pencil has on any rank.
+    fn row(&self, i: usize) -> u64;
+
+    /// F v. Collective.
+    fn f(&self, v: &[f64]) -> Result<Vec<f64>>;
+
+    /// P M⁻¹ v for v that [`jump_part`](Pencils::jump_part) has been through. Collective.
+    fn m(&self, v: &[f64]) -> Result<Vec<f64>>;
+
+    /// v ← Pᵀ v. Collective.
+    fn jump_part(&self, v: &mut Vec<f64>) -> Result<()>;
+
+    /// Sums over the ranks. Collective.
+    fn sum(&self, values: &mut [f64]);
+
+    /// Number of entries of a vector on this rank.
+    fn n(&self) -> usize {
+        self.parts().last().map_or(0, |p| p.end)
+    }
+
+    /// This rank's share of aᵀ b for each.
+    fn dots(&self, a: &[f64], b: &[f64]) -> Vec<f64> {
+        let dot = |part: &Range<usize>| {
+            let pairs = a[part.clone()].iter().zip(&b[part.clone()]);
+            pairs.map(|(a, b)| a * b).sum()
+        };
+        self.parts().iter().map(dot).collect()
+    }
+
+    /// y ← y + α x with an α for each.
+    fn add(&self, alpha: &[f64], x: &[f64], y: &mut [f64]) {
+        for (part, &alpha) in self.parts().iter().zip(alpha) {
+            if alpha != 0.0 {
+                let pairs = y[part.clone()].iter_mut().zip(&x[part.clone()]);
+                pairs.for_each(|(y, x)| *y += alpha * x);
+            }
+        }
+    }
+}
 
 /// Start vectors.
 const STARTS: usize = 2;
@@ -38,15 +84,14 @@ struct Basis {
     h: Vec<Vec<Vec<f64>>>,
 }
 
-/// F μ of the vectors above `tau` of every body of the pencil (with their Ritz values): `visit(body slot, F μ)`, the largest θ first.
-/// At most `most` per body. Collective.
+/// The vectors above `tau` of every pencil: `visit(which, μ, F μ)`, the largest θ first. At most `most` of each. Collective.
 pub fn top(
-    pencil: &Pencil,
+    pencil: &impl Pencils,
     tau: f64,
     most: usize,
-    mut visit: impl FnMut(usize, &[f64]),
+    mut visit: impl FnMut(usize, &[f64], &[f64]),
 ) -> Result<Vec<Found>> {
-    let n = pencil.bodies.len();
+    let n = pencil.parts().len();
     let mut found = vec![Found::default(); n];
     let mut basis = Basis {
         q: Vec::new(),
@@ -55,7 +100,7 @@ pub fn top(
     };
     for start in 0..STARTS {
         let mut v = noise(pencil, start);
-        pencil.jump_part(&mut v);
+        pencil.jump_part(&mut v)?;
         let v = pencil.m(&v)?;
         basis.append(pencil, v)?;
     }
@@ -67,16 +112,18 @@ pub fn top(
             }
         }
     }
-    let mut image = vec![0.0; pencil.n()];
+    let combine = |of: &[Vec<f64>], y: &[f64], part: &Range<usize>| {
+        let mut out = vec![0.0; pencil.n()];
+        for (v, &c) in of.iter().zip(y) {
+            let pairs = out[part.clone()].iter_mut().zip(&v[part.clone()]);
+            pairs.for_each(|(o, v)| *o += c * v);
+        }
+        out
+    };
     for (s, body) in found.iter().enumerate() {
+        let part = &pencil.parts()[s];
         for y in &body.y {
-            image.fill(0.0);
-            let part = pencil.parts[s].clone();
-            for (fq, &c) in basis.fq.iter().zip(y) {
-                let pairs = image[part.clone()].iter_mut().zip(&fq[part.clone()]);
-                pairs.for_each(|(i, f)| *i += c * f);
-            }
-            visit(s, &image);
+            visit(s, &combine(&basis.q, y, part), &combine(&basis.fq, y, part));
         }
     }
     Ok(found)
@@ -84,14 +131,14 @@ pub fn top(
 
 impl Basis {
     /// The image of the next vector, orthogonal to the others, becomes a new one.
-    fn expand(&mut self, pencil: &Pencil, found: &[Found]) -> Result<()> {
+    fn expand(&mut self, pencil: &impl Pencils, found: &[Found]) -> Result<()> {
         let s = self.h.len();
         let mut v = self.fq[s].clone();
         // Bodies that have settled rest.
-        for (part, _) in pencil.parts.iter().zip(found).filter(|p| p.1.done) {
+        for (part, _) in pencil.parts().iter().zip(found).filter(|p| p.1.done) {
             v[part.clone()].fill(0.0);
         }
-        pencil.jump_part(&mut v);
+        pencil.jump_part(&mut v)?;
         let z = pencil.m(&v)?;
         let h = self.append(pencil, z)?;
         self.h.push(h);
@@ -99,8 +146,8 @@ impl Basis {
     }
 
     /// Orthonormalises `v` against the basis and adds it; returns the coefficients. Collective.
-    fn append(&mut self, pencil: &Pencil, mut v: Vec<f64>) -> Result<Vec<Vec<f64>>> {
-        let n = pencil.bodies.len();
+    fn append(&mut self, pencil: &impl Pencils, mut v: Vec<f64>) -> Result<Vec<Vec<f64>>> {
+        let n = pencil.parts().len();
         let mut h = vec![vec![0.0; n]; self.q.len()];
         for _ in 0..2 {
             let mut sums: Vec<f64> = self.fq.iter().flat_map(|f| pencil.dots(f, &v)).collect();
@@ -115,7 +162,7 @@ impl Basis {
         let mut square = pencil.dots(&v, &fv);
         pencil.sum(&mut square);
         let mut beta = vec![0.0; n];
-        for (s, part) in pencil.parts.iter().enumerate() {
+        for (s, part) in pencil.parts().iter().enumerate() {
             let before: f64 = h.iter().map(|h| h[s] * h[s]).sum::<f64>() + square[s].max(0.0);
             let left = square[s] > ROUNDING * ROUNDING * before;
             let scale = if left { square[s].sqrt().recip() } else { 0.0 };
@@ -174,15 +221,14 @@ fn settled(pairs: &[(f64, f64)], above: usize, tau: f64) -> bool {
 }
 
 /// A start vector: numbers without pattern that follow from rows alone, so that every distribution starts alike.
-fn noise(pencil: &Pencil, start: usize) -> Vec<f64> {
-    let first = pencil.first_row();
-    let value = |row: &u32| {
-        let mut x = (first + u64::from(*row) + 1) ^ ((start as u64 + 1) << 48);
+fn noise(pencil: &impl Pencils, start: usize) -> Vec<f64> {
+    let value = |i: usize| {
+        let mut x = (pencil.row(i) + 1) ^ ((start as u64 + 1) << 48);
         for _ in 0..2 {
             x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
             x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         }
         (x >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     };
-    pencil.rows.iter().map(value).collect()
+    (0..pencil.n()).map(value).collect()
 }

@@ -1,7 +1,6 @@
 //! An operator on many columns of multipliers that live near one body each: columns whose images do not meet go through it together.
 
 use super::graph::BodyGraph;
-use crate::feti::dual::Dual;
 use crate::feti::rows::Rows;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
@@ -44,14 +43,14 @@ fn groups(graph: &BodyGraph, columns: &[Column]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The images of all columns under `apply`, an operator that leads from a row to rows of the bodies that it touches and no further. Collective.
+/// The images of all columns under `apply`, an operator on vectors like `like` that leads from a row to rows of the bodies that it touches and no further. Collective.
 pub fn images(
-    dual: &Dual,
+    like: &PetscVec,
     graph: &BodyGraph,
     columns: &[Column],
     mut apply: impl FnMut(&PetscVec, &PetscVec) -> Result<()>,
 ) -> Result<Vec<Column>> {
-    let (x, y) = (dual.multipliers()?, dual.multipliers()?);
+    let (x, y) = (like.duplicate()?, like.duplicate()?);
     let mut out: Vec<Column> = vec![Column::default(); columns.len()];
     const NONE: u32 = u32::MAX;
     let mut owner = vec![NONE; graph.n];
@@ -82,4 +81,24 @@ pub fn images(
         }
     }
     Ok(out)
+}
+
+/// The columns of G or Q G, given by rows; `reach` says what bodies those of a body touch.
+pub fn kernel_columns(
+    rows: &Rows,
+    start: &[usize],
+    reach: impl Fn(usize) -> Vec<u32>,
+) -> Vec<Column> {
+    let mut columns = vec![Column::default(); *start.last().unwrap_or(&0)];
+    for body in 0..start.len().saturating_sub(1) {
+        for column in &mut columns[start[body]..start[body + 1]] {
+            column.reach = reach(body);
+        }
+    }
+    for i in 0..rows.n() {
+        for (c, value) in rows.row(i) {
+            columns[c].entries.push((i as u32, value));
+        }
+    }
+    columns
 }
