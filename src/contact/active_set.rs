@@ -14,7 +14,7 @@ use std::time::Instant;
 use super::{checkpoint, judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
 use crate::feti::dual::Dual;
 use crate::feti::exchange::{gather_all, max_all, sum_all};
-use crate::feti::inner::{iterate, Inner, Loads, Residual};
+use crate::feti::inner::{iterate, target, to_the_end, Inner, Loads, Residual};
 use crate::feti::rows::Rows;
 use crate::feti::{recover, FetiFeti, Solution, Spectrum};
 use crate::petsc::Vec as PetscVec;
@@ -77,8 +77,8 @@ pub(super) struct Run {
     g: Rows,
     /// Whether `residual` has the displacements that belong to `lambda`, rigid motions included.
     placed: bool,
-    /// √m.
-    sqrt_rows: f64,
+    /// m.
+    n_rows: usize,
     /// B u − c on the owned rows after the last step, and which of them held in it.
     pub gaps: Vec<f64>,
     pub held: Vec<bool>,
@@ -96,7 +96,7 @@ impl Run {
         motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
         let lambda = dual.multipliers()?;
-        let sqrt_rows = (jump.n_global as f64).sqrt();
+        let n_rows = jump.n_global;
         let residual = Residual::new(&dual)?;
         drop(dual);
         let mut run = Run {
@@ -109,7 +109,7 @@ impl Run {
             lambda,
             residual,
             g,
-            sqrt_rows,
+            n_rows,
             placed: false,
             gaps: Vec::new(),
             held: Vec::new(),
@@ -150,15 +150,9 @@ impl Run {
         self.residual.r.norm2()
     }
 
-    /// The residual to end with. Where stiff and soft bodies meet, λ₀ may stand for displacements far larger than those of the
-    /// solution; jumps are to be small beside these.
+    /// The residual to end with, as far as the displacements are known.
     fn target(&self, solver: &FetiFeti) -> Result<f64> {
-        let (rtol, atol, _, _) = solver.ksp().tolerances()?;
-        let reference = match self.length {
-            length if length > 0.0 => self.state.reference.min(length * self.sqrt_rows),
-            _ => self.state.reference,
-        };
-        Ok((rtol * reference).max(atol))
+        target(solver.ksp(), self.state.reference, self.length, self.n_rows)
     }
 
     /// One outer step: equations on the set, then the next set.
@@ -194,7 +188,7 @@ impl Run {
             target.max(reduction * first)
         };
         let (r, size) = (&self.residual.r, self.residual.size);
-        let inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, Some(tolerance))?;
+        let inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
         self.residual
             .evaluate(session, &dual, &self.loads, &self.lambda)?;
         let next = self.next(solver, &dual)?;
@@ -237,7 +231,7 @@ impl Run {
         }
         // The target of the displacements that have come out.
         let target = self.target(solver)?;
-        let to_the_end = tolerance <= 1.01 * target;
+        let to_the_end = to_the_end(tolerance, target);
         let closed = next.jump_left <= CLOSED * target + 1e3 * judge::ROUNDING * self.length;
         let verdict = self.advance(solver, next, to_the_end, closed)?;
         Ok((step, inner, verdict))
@@ -286,8 +280,7 @@ impl Run {
         }
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.lambda.array()?);
-        let y = self.residual.work.iter().flat_map(|w| &w.y);
-        let y = y.fold(0.0f64, |a, y| a.max(y.abs()));
+        let y = self.residual.largest();
         let mut judged = judge::Rows::new(comm, jump, gaps, &lambda, y, self.pull);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);

@@ -6,7 +6,7 @@
 //! ```
 
 use super::dual::Dual;
-use super::exchange::sum_all;
+use super::exchange::{max_all, sum_all};
 use super::natural::KernelLoad;
 use super::spectrum::Spectrum;
 use super::stiffness::Work;
@@ -15,7 +15,7 @@ use crate::substructures::Substructures;
 use crate::Result;
 
 /// A residual below this fraction of the displacements it was formed from is rounding: nothing is left to iterate on.
-const ROUNDING: f64 = 1e-14;
+pub const ROUNDING: f64 = 1e-14;
 
 /// The loads, condensed to the interfaces of the subdomains.
 pub struct Loads {
@@ -88,7 +88,7 @@ impl Residual {
     }
 
     /// r ← B y − c and the size of y, for the y that is there. Collective.
-    pub fn close(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+    fn close(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         let stiffness = &dual.stiffness;
         stiffness.jump_of(&self.work, &self.r)?; /*           r ← B y − c       */
         {
@@ -102,6 +102,19 @@ impl Residual {
         sum_all(session.comm(), &mut norm);
         self.size = norm[0].sqrt();
         Ok(())
+    }
+
+    /// Largest |y| on this rank.
+    pub fn largest(&self) -> f64 {
+        let y = self.work.iter().flat_map(|w| &w.y);
+        y.fold(0.0, |a, y| a.max(y.abs()))
+    }
+
+    /// Largest |y| over all ranks. Collective.
+    pub fn length(&self, session: &Session) -> f64 {
+        let mut largest = [self.largest()];
+        max_all(session.comm(), &mut largest);
+        largest[0]
     }
 
     /// y ← y + R α for given α.
@@ -119,6 +132,23 @@ impl Residual {
     }
 }
 
+/// The norm of the residual on `rows` rows to end with: relative to `reference`, that of Pᵀ r at λ₀, or to displacements as large as
+/// `length`, 0 as long as they are not known, if that is less. Where stiff and soft bodies meet, λ₀ may stand for displacements far
+/// larger than those of the solution; jumps are to be small beside these.
+pub fn target(ksp: &Ksp, reference: f64, length: f64, rows: usize) -> Result<f64> {
+    let (rtol, atol, _, _) = ksp.tolerances()?;
+    let least = match length {
+        length if length > 0.0 => reference.min(length * (rows as f64).sqrt()),
+        _ => reference,
+    };
+    Ok((rtol * least).max(atol))
+}
+
+/// Whether a run down to `tolerance` was one to the end, where that turns out to be `target`.
+pub fn to_the_end(tolerance: f64, target: f64) -> bool {
+    tolerance <= 1.01 * target
+}
+
 /// What one run of the Krylov method did.
 #[derive(Debug, Clone)]
 pub struct Inner {
@@ -133,20 +163,20 @@ pub struct Inner {
 }
 
 /// Adds the Krylov method's correction to `lambda`; `residual` is Pᵀ r on entry, `size` the size of the displacements it comes
-/// from. Stops at a residual of `target`, or relative to the first one as the options say where `target` is `None`.
+/// from. Stops at a residual of `target`.
 pub fn iterate(
     dual: &Dual,
     ksp: &Ksp,
     residual: &PetscVec,
     size: f64,
     lambda: &PetscVec,
-    target: Option<f64>,
+    target: f64,
 ) -> Result<Inner> {
     // Once more: what the first projection of a large jump leaves behind by rounding is out of reach for the iteration, which would
     // stall on it and go astray. Of the small residual that is left the second one leaves nothing to speak of.
     dual.p_transpose(residual)?;
     let start = residual.norm2()?;
-    if start <= (ROUNDING * size).max(target.unwrap_or(0.0)) {
+    if start <= (ROUNDING * size).max(target) {
         return Ok(Inner {
             iterations: 0,
             reason: ConvergedReason {
@@ -161,9 +191,7 @@ pub fn iterate(
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
     let x = dual.multipliers()?;
     ksp.record_residuals(max_it.min(100_000) + 1)?;
-    if let Some(target) = target {
-        rtol_of(target / start)?;
-    }
+    rtol_of(target / start)?;
     let solved = ksp.solve(residual, &x);
     rtol_of(rtol)?;
     solved?;

@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use super::dual::Dual;
-use super::inner::{iterate, Loads, Residual};
+use super::inner::{iterate, target, to_the_end, Loads, Residual, ROUNDING};
 use super::kkt::{certify, Kkt};
 use super::spectrum::Spectrum;
 use crate::contact::Step;
@@ -32,9 +32,9 @@ pub struct Solution {
     pub converged: bool,
     /// Why it stopped, by PETSc's name.
     pub reason: String,
-    /// ‖r_n‖₂ for n = 0, 1, … of the last Krylov run.
+    /// ‖r_n‖₂ for n = 0, 1, …; of the contact loop those of the last step that iterated.
     pub residuals: Vec<f64>,
-    /// The Krylov method's own estimate of the spectrum, in the last step that iterated.
+    /// The Krylov method's own estimate of the spectrum, of the contact loop in the last step that iterated.
     pub estimate: Option<Spectrum>,
     /// Optimality.
     pub kkt: Kkt,
@@ -47,15 +47,6 @@ pub struct Solution {
     /// Steps of the contact loop; empty without inequalities.
     pub steps: Vec<Step>,
 }
-
-/// Where jumps on the rows that hold, over the displacements, are more than so many times the relative tolerance, the iteration goes on.
-const JUMPS: f64 = 10.0;
-
-/// Jumps below this part of the first displacements and jumps are rounding.
-const ROUNDING: f64 = 1e-13;
-
-/// Krylov runs after the first one, each from a residual computed anew.
-const RUNS: usize = 4;
 
 /// Solves with the rows that hold, as equations. Collective.
 pub(super) fn solve(
@@ -72,40 +63,44 @@ pub(super) fn solve(
     natural.balance(session.comm(), &loads.kernel, &lambda)?;
     let mut residual = Residual::new(dual)?;
     residual.evaluate(session, dual, &loads, &lambda)?;
-    // An interface may come to rest altogether: what S̃⁺ made of the loads at first is the size of rounding.
-    let rounding = ROUNDING * residual.size.max(residual.r.norm2()?);
     dual.p_transpose(&residual.r)?;
-    let mut inner = iterate(dual, ksp, &residual.r, residual.size, &lambda, None)?;
-    let mut iterations = inner.iterations;
-    // The first residual may be large against the displacements, where stiff bodies hold soft ones: a reduction of it says nothing then.
-    let rtol = ksp.tolerances()?.0;
+    let (reference, rows) = (residual.r.norm2()?, dual.stiffness.jump.n_global);
+    let mut size = residual.size;
+    let mut tolerance = target(ksp, reference, 0.0, rows)?;
+    let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
     let mut stalled = false;
-    for run in 0..=RUNS {
+    loop {
         residual.evaluate(session, dual, &loads, &lambda)?;
         residual.add_rigid_motion(session, dual)?;
-        residual.close(session, dual)?;
-        let jumps = residual.r.norm2()?;
-        let above = |times: f64| jumps > (times * rtol * residual.size).max(rounding);
-        if !above(JUMPS) || stalled || !inner.reason.converged() || run == RUNS {
+        // An interface may come to rest altogether: what S̃⁺ made of the loads at first is the size of rounding.
+        size = size.max(residual.size);
+        // The target of the displacements that have come out.
+        let target = target(ksp, reference, residual.length(session), rows)?.max(ROUNDING * size);
+        if to_the_end(tolerance, target) || stalled || !inner.reason.converged() {
             break;
         }
+        tolerance = target;
         dual.p_transpose(&residual.r)?;
-        let target = Some(rtol * residual.size);
-        let more = iterate(dual, ksp, &residual.r, residual.size, &lambda, target)?;
-        iterations += more.iterations;
+        let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
         if more.iterations == 0 {
             break;
         }
-        // A further run that stalls has met the rounding of the operator: what the first one reached stands, and is measured again.
+        // The longest run knows the spectrum best.
+        if more.iterations > inner.iterations {
+            inner.estimate = more.estimate;
+        }
+        inner.iterations += more.iterations;
+        inner.residuals.extend(more.residuals.iter().skip(1));
+        // A further run that stalls has met the rounding of the operator: what the first one reached stands.
         stalled = !more.reason.converged();
         if !stalled {
-            inner = more;
+            inner.reason = more.reason;
         }
     }
     let solve_seconds = clock.elapsed().as_secs_f64();
     let solution = finish(session, problem, dual, loads, &lambda, residual, true)?;
     Ok(Solution {
-        iterations,
+        iterations: inner.iterations,
         converged: inner.reason.converged(),
         reason: inner.reason.name,
         residuals: inner.residuals,
