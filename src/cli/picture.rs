@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::areas::{side, side_cells};
+use super::areas::side;
 use super::contact::{by_source, ContactRow};
 use super::fields::Gathered;
 use crate::fem::cell::CellStress;
@@ -197,7 +197,7 @@ fn face_marks(scene: &Scene, rows: &[ContactRow]) -> Vec<FaceMark> {
                 .filter_map(|r| Some((r.members[member]?.1, r.active)))
                 .collect();
             let spec = &scene.bodies[body].spec;
-            for cell in side_cells(spec, side) {
+            for cell in spec.side_cells(side) {
                 let state = |p: &[usize; 3]| active.get(&spec.mesh.node(*p));
                 if cell.iter().all(|p| state(p).is_some()) {
                     out.push(FaceMark {

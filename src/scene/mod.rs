@@ -31,6 +31,7 @@ mod read;
 mod rigid;
 mod rows;
 mod select;
+mod sides;
 mod spec;
 mod steps;
 mod topology;

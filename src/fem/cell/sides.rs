@@ -14,12 +14,17 @@ pub struct Side {
 }
 
 impl Side {
+    /// Side number `index` in the order left, right, bottom, top, back, front.
+    pub fn of_index(index: usize) -> Side {
+        Side {
+            axis: index / 2,
+            upper: index % 2 == 1,
+        }
+    }
+
     /// All sides of a cell.
     pub fn all(dim: usize) -> impl Iterator<Item = Side> {
-        (0..2 * dim).map(|k| Side {
-            axis: k / 2,
-            upper: k % 2 == 1,
-        })
+        (0..2 * dim).map(Side::of_index)
     }
 
     /// The cell's corners on the side, 2 or 4, in lexicographic order of the other axes: the order in which the functions of
