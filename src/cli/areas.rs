@@ -3,34 +3,7 @@
 use std::collections::HashMap;
 
 use super::contact::ContactRow;
-use crate::fem::cell::{side_weights, Side};
-use crate::mesh::places;
-use crate::scene::{BodySpec, Scene, Shape};
-
-/// A side of a body in cells: the nodes of each, in the order of [`Side::corners`].
-pub(super) fn side_cells(
-    body: &BodySpec,
-    side: usize,
-) -> impl Iterator<Item = Vec<[usize; 3]>> + use<'_> {
-    let mesh = &body.mesh;
-    let dim = mesh.dim();
-    let at = Side {
-        axis: side / 2,
-        upper: side % 2 == 1,
-    };
-    let mut counts = mesh.elements.map(|n| n.max(1));
-    counts[at.axis] = 1;
-    let level = if at.upper {
-        mesh.elements[at.axis] - 1
-    } else {
-        0
-    };
-    places(counts).map(move |mut cell| {
-        cell[at.axis] = level;
-        let corner = |a: usize| [0, 1, 2].map(|d| cell[d] + (a >> d & 1));
-        at.corners(dim).map(corner).collect()
-    })
-}
+use crate::scene::{Scene, Shape};
 
 /// The sides of the first members' bodies that the rows of one source lie on; none where bodies meet in less than a side.
 pub(super) fn side(scene: &Scene, rows: &[ContactRow]) -> Option<(usize, usize)> {
@@ -62,17 +35,11 @@ pub(super) fn assign(scene: &Scene, rows: &mut [ContactRow]) {
             let nodes = spec.mesh.side_nodes(side);
             areas.extend(nodes.map(|p| (spec.mesh.node(p), 0.0)));
         }
-        let at = Side {
-            axis: side / 2,
-            upper: side % 2 == 1,
-        };
-        let dim = scene.dim();
-        for cell in side_cells(spec, side) {
+        for cell in spec.side_cells(side) {
             if !cell.iter().all(|&p| areas.contains_key(&spec.mesh.node(p))) {
                 continue;
             }
-            let points: Vec<[f64; 3]> = cell.iter().map(|&p| spec.position(p)).collect();
-            let weights = side_weights(dim, &points, at.outward(dim), scene.form.element);
+            let weights = spec.side_weights(side, &cell, scene.form.element);
             for (&p, area) in cell.iter().zip(weights.area) {
                 *areas.entry(spec.mesh.node(p)).or_default() += area;
             }

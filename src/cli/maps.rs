@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::areas::{side, side_cells};
+use super::areas::side;
 use super::contact::{by_source, name, ContactRow};
 use crate::report::contact_map::ContactMap;
 use crate::scene::Scene;
@@ -46,7 +46,7 @@ fn map(scene: &Scene, rows: &[ContactRow]) -> ContactMap {
         let of: HashMap<usize, u32> = numbered
             .filter_map(|(k, r)| Some((r.members[0]?.1, k as u32)))
             .collect();
-        for cell in side_cells(spec, side) {
+        for cell in spec.side_cells(side) {
             let corner = |a: usize| of.get(&spec.mesh.node(cell[a])).copied();
             // Around the face, not line by line.
             if let [Some(a), Some(b), Some(c), Some(d)] = [0, 1, 3, 2].map(corner) {

@@ -198,10 +198,7 @@ impl Run {
             let (r, size) = (&self.residual.r, self.residual.size);
             dual.p_transpose(r)?;
             let more = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
-            inner = Inner {
-                iterations: inner.iterations + more.iterations,
-                ..more
-            };
+            inner = inner.followed_by(more);
         }
         let dual = solver.dual();
         self.residual

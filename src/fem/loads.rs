@@ -105,10 +105,7 @@ where
     F: FnMut([f64; 3], [f64; 3]) -> [f64; 3],
 {
     let c = mesh.components();
-    let side = Side {
-        axis: side / 2,
-        upper: side % 2 == 1,
-    };
+    let side = Side::of_index(side);
     let level = if side.upper {
         mesh.elements[side.axis] - 1
     } else {

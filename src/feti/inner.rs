@@ -184,9 +184,15 @@ impl Inner {
         }
     }
 
-    /// Whether the residual fell to what was asked for.
-    pub fn converged(&self) -> bool {
-        self.reason.converged() && !self.broken_off
+    /// This run, broken off, and the one that went on from it with another preconditioner: the spectrum is that of the latter.
+    pub fn followed_by(self, more: Inner) -> Inner {
+        let mut residuals = self.residuals;
+        residuals.extend(&more.residuals);
+        Inner {
+            iterations: self.iterations + more.iterations,
+            residuals,
+            ..more
+        }
     }
 }
 

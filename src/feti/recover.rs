@@ -32,9 +32,9 @@ pub struct Solution {
     pub converged: bool,
     /// Why it stopped, by PETSc's name.
     pub reason: String,
-    /// ‖r_n‖₂ for n = 0, 1, … of the last Krylov run.
+    /// ‖r_n‖₂ for n = 0, 1, …; of the contact loop those of the last step that iterated.
     pub residuals: Vec<f64>,
-    /// The Krylov method's own estimate of the spectrum, in the last step that iterated.
+    /// The Krylov method's own estimate of the spectrum, of the contact loop in the last step that iterated.
     pub estimate: Option<Spectrum>,
     /// Optimality.
     pub kkt: Kkt,
@@ -69,14 +69,16 @@ pub(super) fn solve(
     let mut size = residual.size;
     let mut tolerance = target(ksp, reference, 0.0, rows)?;
     let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
-    let mut iterations = inner.iterations;
     while inner.broken_off {
         deflate(dual, inner.estimate)?;
         residual.evaluate(session, dual, &loads, &lambda)?;
         dual.p_transpose(&residual.r)?;
-        inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
-        iterations += inner.iterations;
+        let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
+        inner = inner.followed_by(more);
     }
+    // What follows is short, and no look at the spectrum may end it.
+    let watch = dual.watch();
+    dual.set_watch(None);
     let mut stalled = false;
     loop {
         residual.evaluate(session, dual, &loads, &lambda)?;
@@ -91,22 +93,26 @@ pub(super) fn solve(
         tolerance = target;
         dual.p_transpose(&residual.r)?;
         let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
-        iterations += more.iterations;
+        if more.iterations == 0 {
+            break;
+        }
+        // The longest run knows the spectrum best.
+        if more.iterations > inner.iterations {
+            inner.estimate = more.estimate;
+        }
+        inner.iterations += more.iterations;
+        inner.residuals.extend(more.residuals.iter().skip(1));
         // A further run that stalls has met the rounding of the operator: what the first one reached stands.
         stalled = !more.reason.converged();
-        if !stalled && more.iterations > 0 {
-            // A few more iterations say less about the spectrum than the many before.
-            let estimate = inner
-                .estimate
-                .filter(|_| inner.iterations > more.iterations);
-            inner = more;
-            inner.estimate = estimate.or(inner.estimate);
+        if !stalled {
+            inner.reason = more.reason;
         }
     }
+    dual.set_watch(watch);
     let solve_seconds = clock.elapsed().as_secs_f64();
     let solution = finish(session, problem, dual, loads, &lambda, residual, true)?;
     Ok(Solution {
-        iterations,
+        iterations: inner.iterations,
         converged: inner.reason.converged(),
         reason: inner.reason.name,
         residuals: inner.residuals,

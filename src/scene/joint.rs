@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::fem;
 use crate::mesh::{Block, SubdomainMesh};
 use crate::substructures::{Subdomain, Substructures};
+use crate::vec3::{cross, minus};
 use rayon::prelude::*;
 
 impl Scene {
@@ -111,23 +112,8 @@ impl Scene {
         Ok(fem::free_load(&mesh, &load))
     }
 
-    /// The sum of all loads on subdomain `index` at load step `step`, by components; those of its sides included.
-    ///
-    /// # Errors
-    /// As [`Scene::loads`].
-    pub fn resultant(&self, index: usize, step: usize) -> Result<[f64; 3]> {
-        let factors = Factors::of(&self.steps, step)?;
-        let mesh = self.mesh_with(index, factors)?;
-        let (body, block) = self.place(index);
-        let load = self.nodal_load(body, &block, &mesh, factors)?;
-        let mut sum = [0.0; 3];
-        for node in load.chunks_exact(body.components) {
-            sum.iter_mut().zip(node).for_each(|(s, f)| *s += f);
-        }
-        Ok(sum)
-    }
-
-    /// As [`Scene::resultant`], with the moment of the loads about `centre`.
+    /// The sum of all loads on subdomain `index` at load step `step`, by components, those of its sides included, and their moment
+    /// about `centre`.
     ///
     /// # Errors
     /// As [`Scene::loads`].
@@ -145,12 +131,7 @@ impl Scene {
         for (node, at) in load.chunks_exact(body.components).zip(&mesh.points) {
             let mut f = [0.0; 3];
             f[..node.len()].copy_from_slice(node);
-            let [x, y, z] = [0, 1, 2].map(|d| at[d] - centre[d]);
-            let turn = [
-                y * f[2] - z * f[1],
-                z * f[0] - x * f[2],
-                x * f[1] - y * f[0],
-            ];
+            let turn = cross(minus(*at, centre), f);
             for d in 0..3 {
                 force[d] += f[d];
                 moment[d] += turn[d];

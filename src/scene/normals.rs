@@ -2,9 +2,10 @@
 
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::profile::Limits;
-use super::rigid::dot;
 use super::spec::BodySpec;
 use super::Body;
+use crate::fem::cell::Element;
+use crate::vec3::{dot, minus, norm};
 use std::collections::HashMap;
 
 /// The unit normals at nodes of a side, out of the body: that of a flat side exactly, else the mean over the elements around the node,
@@ -14,58 +15,18 @@ pub(super) fn of_side(
     side: usize,
     nodes: impl Iterator<Item = usize>,
 ) -> Vec<[f64; 3]> {
-    let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
     if body.map.is_none() {
         let mut normal = [0.0; 3];
-        normal[side / 2] = sign;
+        normal[side / 2] = if side % 2 == 0 { -1.0 } else { 1.0 };
         return nodes.map(|_| normal).collect();
     }
-    nodes.map(|node| mean_normal(body, side, node)).collect()
-}
-
-fn mean_normal(body: &BodySpec, side: usize, node: usize) -> [f64; 3] {
-    let mesh = &body.mesh;
-    let across = side / 2;
-    let place = mesh.place(node);
-    let at = body.position(place);
-    // The vector to the neighbour along direction d, if there is one.
-    let to = |d: usize, forward: bool| -> Option<[f64; 3]> {
-        let mut next = place;
-        next[d] = match forward {
-            true if place[d] < mesh.elements[d] => place[d] + 1,
-            false if place[d] > 0 => place[d] - 1,
-            _ => return None,
-        };
-        let x = body.position(next);
-        Some([0, 1, 2].map(|i| x[i] - at[i]))
+    // Triangles of P1 elements would turn the normals towards their diagonals.
+    let sums = body.side_normals(side, Element::Q1);
+    let unit = |sum: [f64; 3]| {
+        let length = norm(sum);
+        sum.map(|v| v / length)
     };
-    let mut sum = [0.0; 3];
-    let mut add = |v: [f64; 3], w: f64| (0..3).for_each(|d| sum[d] += w * v[d]);
-    if mesh.dim() == 2 {
-        let along = 1 - across;
-        for forward in [false, true] {
-            let Some([x, y, _]) = to(along, forward) else {
-                continue;
-            };
-            add([y, -x, 0.0], if forward { 1.0 } else { -1.0 });
-        }
-    } else {
-        let (p, q) = ((across + 1) % 3, (across + 2) % 3);
-        for (fp, fq) in [(false, false), (false, true), (true, false), (true, true)] {
-            if let (Some(a), Some(b)) = (to(p, fp), to(q, fq)) {
-                let cross = [0, 1, 2].map(|d| {
-                    let (e, f) = ((d + 1) % 3, (d + 2) % 3);
-                    a[e] * b[f] - a[f] * b[e]
-                });
-                add(cross, if fp == fq { 1.0 } else { -1.0 });
-            }
-        }
-    }
-    // Away from the inner neighbour.
-    let inner = to(across, side % 2 == 0).expect("a body has at least one layer of elements");
-    let length = dot(sum, sum).sqrt();
-    let sign = if dot(sum, inner) > 0.0 { -1.0 } else { 1.0 };
-    sum.map(|v| sign * v / length)
+    nodes.map(|node| unit(sums[&node])).collect()
 }
 
 /// Where sides of two bodies with different maps meet: interfaces of the nodes that coincide, by pairs of sides; a single node is a
@@ -146,7 +107,8 @@ pub(super) fn opposite(bodies: &[Body], pair: [usize; 2], sides: [usize; 2]) -> 
     let total = |flip: usize| -> f64 {
         let square = |i: usize| {
             let (x, y) = (position(0, i), position(1, partner(i, flip)));
-            (0..3).map(|d| (x[d] - y[d]).powi(2)).sum::<f64>()
+            let away = minus(x, y);
+            dot(away, away)
         };
         (0..m * n).map(square).sum()
     };
@@ -180,8 +142,8 @@ fn interface(
         .iter()
         .zip(&second)
         .map(|(n, m)| {
-            let sum = [0, 1, 2].map(|d| n[d] - m[d]);
-            let length = dot(sum, sum).sqrt();
+            let sum = minus(*n, *m);
+            let length = norm(sum);
             // Sides that do not face each other have no common normal: that of the first will do.
             if length > 1e-3 {
                 sum.map(|v| v / length)
@@ -198,7 +160,7 @@ fn interface(
                 let spec = &bodies[pair[k]].spec;
                 spec.position(spec.mesh.place(s.nodes[k]))
             });
-            let distance = dot([0, 1, 2].map(|d| y[d] - x[d]), *n);
+            let distance = dot(minus(y, x), *n);
             let size = x.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             if distance.abs() <= 1e-14 * size {
                 0.0
@@ -238,8 +200,7 @@ fn shortest(body: &BodySpec) -> f64 {
             let mut before = place;
             before[d] -= 1;
             let y = body.position(before);
-            let square: f64 = (0..3).map(|d| (x[d] - y[d]).powi(2)).sum();
-            out = out.min(square.sqrt());
+            out = out.min(norm(minus(x, y)));
         }
     }
     out

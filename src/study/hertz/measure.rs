@@ -1,9 +1,11 @@
 //! Pressure, half-width and peak from the multipliers of a solution.
 
+use std::collections::HashMap;
+
 use super::theory::{Contact, Pair};
-use crate::fem::cell::{side_weights, Side};
-use crate::scene::{Member, Scene};
+use crate::scene::{Member, RowSource, Scene};
 use crate::study::solved::Row;
+use crate::vec3::dot;
 
 /// The pressure at a node that may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,11 +35,23 @@ pub struct Measured {
 
 /// The nodal pressures: rows must be those of one contact between facing sides, or of one plane obstacle, around the origin.
 pub fn pressures(scene: &Scene, rows: &[Row]) -> Vec<Pressure> {
+    let mut normals: HashMap<(usize, usize), HashMap<usize, [f64; 3]>> = HashMap::new();
+    // ∫ N_a over the side of the row's first member, projected along the row: Hertz's pressure acts on the tangent plane.
+    let mut projected_area = |row: &Row| {
+        let Member { body, node } = row.label.members[0]?;
+        let side = side_of(scene, row.label.source, body)?;
+        let normals = normals.entry((body, side)).or_insert_with(|| {
+            let spec = &scene.bodies[body].spec;
+            spec.side_normals(side, scene.form.element)
+        });
+        let along = dot(*normals.get(&node)?, row.label.direction).abs();
+        (along > 0.0).then_some(along)
+    };
     rows.iter()
         .filter(|row| row.inequality)
         .filter_map(|row| {
             let [x, _, z] = row.label.point;
-            let weight = projected_area(scene, row)?;
+            let weight = projected_area(row)?;
             Some(Pressure {
                 x: if scene.dim() == 2 { x } else { x.hypot(z) },
                 value: row.multiplier / weight,
@@ -48,56 +62,16 @@ pub fn pressures(scene: &Scene, rows: &[Row]) -> Vec<Pressure> {
         .collect()
 }
 
-/// ∫ N_a over the side of the row's first member, projected along the row: Hertz's pressure acts on the tangent plane.
-fn projected_area(scene: &Scene, row: &Row) -> Option<f64> {
-    let Member { body, node } = row.label.members[0]?;
-    let body = &scene.bodies[body].spec;
-    let mesh = &body.mesh;
-    let (dim, place) = (mesh.dim(), mesh.place(node));
-    let side = match row.label.source {
-        crate::scene::RowSource::Obstacle(k) => scene.obstacles[k].side,
-        crate::scene::RowSource::Interface(k) => {
+/// The side of a body that rows from `source` lie on.
+fn side_of(scene: &Scene, source: RowSource, body: usize) -> Option<usize> {
+    match source {
+        RowSource::Obstacle(k) => Some(scene.obstacles[k].side),
+        RowSource::Interface(k) => {
             let interface = &scene.interfaces[k];
-            let first = interface
-                .bodies
-                .iter()
-                .position(|&b| row.label.members[0].is_some_and(|m| m.body == b))?;
-            interface.sides[first]
+            let which = interface.bodies.iter().position(|&b| b == body)?;
+            Some(interface.sides[which])
         }
-    };
-    let geometry = Side {
-        axis: side / 2,
-        upper: side % 2 == 1,
-    };
-    let mut normal = [0.0; 3];
-    // The elements on the side around the node, by their lowest corner.
-    let along: Vec<usize> = (0..dim).filter(|&d| d != geometry.axis).collect();
-    for step in 0..1 << along.len() {
-        let mut first = place;
-        if geometry.upper {
-            first[geometry.axis] = mesh.elements[geometry.axis] - 1;
-        }
-        let mut inside = true;
-        for (k, &d) in along.iter().enumerate() {
-            match (step >> k & 1, first[d]) {
-                (0, i) => inside &= i < mesh.elements[d],
-                (_, 0) => inside = false,
-                (_, i) => first[d] = i - 1,
-            }
-        }
-        if !inside {
-            continue;
-        }
-        let corner = |a: usize| [0, 1, 2].map(|d| first[d] + (a >> d & 1));
-        let corners: Vec<usize> = geometry.corners(dim).collect();
-        let points: Vec<[f64; 3]> = corners.iter().map(|&a| body.position(corner(a))).collect();
-        let found = side_weights(dim, &points, geometry.outward(dim), scene.form.element);
-        let here = corners.iter().position(|&a| corner(a) == place)?;
-        let part = found.normal[here];
-        normal.iter_mut().zip(part).for_each(|(sum, v)| *sum += v);
     }
-    let along = crate::study::dot(normal, row.label.direction).abs();
-    (along > 0.0).then_some(along)
 }
 
 /// Force, half-width and peak; `None` where fewer than three nodes touch.
