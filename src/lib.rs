@@ -101,6 +101,7 @@ pub mod scene;
 pub mod sparse;
 pub mod study;
 pub mod substructures;
+mod vec3;
 
 pub use error::{Error, Result};
 pub use feti::{FetiFeti, PcType, Primal, ProjectorKind, Scaling, Settings, Solution, Spectrum};

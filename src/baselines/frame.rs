@@ -3,6 +3,8 @@
 //! The directions of the rows at the node are rows of M, unit vectors orthogonal to them the others. Directions need not be
 //! orthogonal to each other, but independent.
 
+use crate::vec3::{dot, norm};
+
 /// A direction that is less than this off the span of those before it (its sine) cannot be told from them.
 const INDEPENDENT: f64 = 0.05;
 
@@ -73,20 +75,11 @@ impl Frame {
     }
 }
 
-/// |a|.
-pub fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
-}
-
 /// Whether two directions are one or each other's opposite.
 pub fn parallel(a: [f64; 3], b: [f64; 3]) -> bool {
     [1.0, -1.0]
         .iter()
         .any(|sign| (0..3).all(|c| (a[c] - sign * b[c]).abs() < SAME))
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The part of `a` that is orthogonal to an orthonormal `span`.

@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use crate::fem::cell::{rigid_count, rigid_motions};
-use crate::scene::Scene;
+use crate::scene::{Body, Scene};
 
 /// What is left of a dependent form, relative to its largest entry, is below this.
 const DEPENDENT: f64 = 1e-9;
@@ -123,16 +123,11 @@ impl Motions {
     /// Those of `scene`.
     pub fn new(scene: &Scene) -> Motions {
         let (dim, components) = (scene.dim(), scene.components());
-        let ball = |[low, high]: [[f64; 3]; 2]| {
-            let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
-            let half = [0, 1, 2].map(|d| 0.5 * (high[d] - low[d]));
-            (centre, half.iter().map(|h| h * h).sum::<f64>().sqrt())
-        };
         Motions {
             dim,
             components,
             count: if components == 1 { 1 } else { rigid_count(dim) },
-            bodies: scene.bodies.iter().map(|b| ball(b.bounds)).collect(),
+            bodies: scene.bodies.iter().map(Body::ball).collect(),
         }
     }
 

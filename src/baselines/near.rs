@@ -1,10 +1,10 @@
 //! What multigrid and domain decompositions are told of elasticity: rigid motions, and which rows are of one node.
 
-use super::frame::norm;
 use super::unknowns::Unknowns;
 use crate::fem::cell::rigid_count;
 use crate::petsc::{Mat, Vec as PetscVec};
 use crate::scene::Scene;
+use crate::vec3::ball;
 use crate::Result;
 
 /// The rigid motions that a method wants to know.
@@ -48,12 +48,11 @@ impl NearKernel {
             Near::Motions => 0..rigid_count(dim),
         };
         let bounds = scene.bodies.iter().map(|b| b.bounds);
-        let (low, high) = bounds.fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |a, b| {
-            let low = [0, 1, 2].map(|d| a.0[d].min(b[0][d]));
-            (low, [0, 1, 2].map(|d| a.1[d].max(b[1][d])))
+        let bounds = bounds.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |a, b| {
+            let low = [0, 1, 2].map(|d| a[0][d].min(b[0][d]));
+            [low, [0, 1, 2].map(|d| a[1][d].max(b[1][d]))]
         });
-        let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
-        let scale = 0.5 * norm([0, 1, 2].map(|d| high[d] - low[d]));
+        let (centre, scale) = ball(bounds);
         for _ in wanted.clone() {
             vectors.push(like.duplicate()?);
         }

@@ -6,6 +6,7 @@ use crate::feti::FetiFeti;
 use crate::petsc::Session;
 use crate::report::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Scene};
+use crate::vec3::{cross, minus, norm};
 use crate::Result;
 
 /// What acts on a body. Moments are about its centre.
@@ -52,7 +53,7 @@ pub(super) fn bodies(
     let mut sums = vec![Sums::default(); scene.n_bodies()];
     for sub in &solver.problem().local {
         let body = &scene.bodies[sub.body];
-        let (force, moment) = scene.wrench(sub.index, step, centre(body))?;
+        let (force, moment) = scene.wrench(sub.index, step, body.ball().0)?;
         let to = &mut sums[sub.body];
         for d in 0..3 {
             to.load[d] += force[d];
@@ -72,9 +73,8 @@ pub(super) fn bodies(
             let to = &mut sums[b];
             (0..3).for_each(|d| to.contact[d] += force[d]);
             to.size += norm(force);
-            let centre = centre(body);
             let at = body.spec.position(body.mesh().place(node));
-            let moment = cross([0, 1, 2].map(|d| at[d] - centre[d]), force);
+            let moment = cross(minus(at, body.ball().0), force);
             (0..3).for_each(|d| to.moment[d] += moment[d]);
             to.moment_size[0] += norm(moment);
         }
@@ -128,7 +128,7 @@ fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
     let vector = |f: &dyn Fn(usize) -> f64| Amount((0..c).map(f).collect());
     let lever = sums.moment_size[0].max(sums.moment_size[1]);
     // Forces through the centre have no lever; their rounding is no moment.
-    let lever = lever.max(sums.size * radius(body) * 1e-3);
+    let lever = lever.max(sums.size * body.ball().1 * 1e-3);
     BodyBalance {
         name: body.spec.name.clone(),
         floating: floats,
@@ -138,26 +138,4 @@ fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
         imbalance: relative(norm([0, 1, 2].map(free)), norm(sums.load).max(sums.size)),
         moment_imbalance: loose.then(|| relative(norm(sums.moment), lever)),
     }
-}
-
-fn centre(body: &Body) -> [f64; 3] {
-    let [low, high] = body.bounds;
-    [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]))
-}
-
-fn radius(body: &Body) -> f64 {
-    let [low, high] = body.bounds;
-    0.5 * norm([0, 1, 2].map(|d| high[d] - low[d]))
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn norm(v: [f64; 3]) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -11,6 +11,7 @@ use crate::report::field::{self, ContactMark, Field, Mesh, Values};
 use crate::report::solid::{self, FaceMark, Solid};
 use crate::report::ticks::{number, Scale};
 use crate::scene::Scene;
+use crate::vec3::{minus, norm};
 use crate::Result;
 
 /// Displacements are magnified so that the largest is at most this part of the scene's size.
@@ -110,14 +111,13 @@ impl Moved {
                 factor: 1.0,
             };
         }
-        let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let each = || (0..all.points.len()).map(|p| all.displacement(scene, p));
         let largest = each()
             .map(norm)
             .filter(|x| x.is_finite())
             .fold(0.0, f64::max);
         let [low, high] = bounds(&all.points);
-        let size = norm([0, 1, 2].map(|d| high[d] - low[d]));
+        let size = norm(minus(high, low));
         let from = if contact { VISIBLE_CONTACT } else { VISIBLE[0] };
         let factor = factor(largest, size, from);
         let moved = |(p, u): (&[f64; 3], [f64; 3])| [0, 1, 2].map(|d| p[d] + factor * u[d]);

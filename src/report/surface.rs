@@ -1,5 +1,6 @@
 //! The surface of bodies made of hexahedra as pictures see it: outer faces, edges of bodies, lines between subdomains.
 
+use crate::vec3::{cross, norm};
 use crate::{Error, Result};
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
@@ -219,11 +220,8 @@ impl Solid<'_> {
 
 /// The unit vector along a × b; zero where there is none.
 pub(super) fn unit_cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    let v = [0, 1, 2].map(|d| {
-        let (e, f) = ((d + 1) % 3, (d + 2) % 3);
-        a[e] * b[f] - a[f] * b[e]
-    });
-    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let v = cross(a, b);
+    let length = norm(v);
     v.map(|x| if length > 0.0 { x / length } else { 0.0 })
 }
 

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::fem;
 use crate::mesh::{Block, SubdomainMesh};
 use crate::substructures::{Subdomain, Substructures};
+use crate::vec3::{cross, minus};
 use rayon::prelude::*;
 
 impl Scene {
@@ -144,12 +145,7 @@ impl Scene {
         for (node, at) in load.chunks_exact(body.components).zip(&mesh.points) {
             let mut f = [0.0; 3];
             f[..node.len()].copy_from_slice(node);
-            let [x, y, z] = [0, 1, 2].map(|d| at[d] - centre[d]);
-            let turn = [
-                y * f[2] - z * f[1],
-                z * f[0] - x * f[2],
-                x * f[1] - y * f[0],
-            ];
+            let turn = cross(minus(*at, centre), f);
             for d in 0..3 {
                 force[d] += f[d];
                 moment[d] += turn[d];

@@ -59,6 +59,7 @@ pub use steps::{Ramp, Steps, StepsSpec};
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use crate::mesh::BoxMesh;
+use crate::vec3::ball;
 use std::path::Path;
 
 /// A body of a checked scene.
@@ -83,6 +84,11 @@ impl Body {
     /// Its mesh.
     pub fn mesh(&self) -> &BoxMesh {
         &self.spec.mesh
+    }
+
+    /// Centre and radius of the ball around its [`Body::bounds`].
+    pub fn ball(&self) -> ([f64; 3], f64) {
+        ball(self.bounds)
     }
 
     /// The given value of degree of freedom `dof` = C k + c, if there is one.

@@ -2,10 +2,10 @@
 
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::profile::Limits;
-use super::rigid::dot;
 use super::spec::BodySpec;
 use super::Body;
 use crate::fem::cell::Element;
+use crate::vec3::{dot, minus, norm};
 use std::collections::HashMap;
 
 /// The unit normals at nodes of a side, out of the body: that of a flat side exactly, else the mean over the elements around the node,
@@ -23,7 +23,7 @@ pub(super) fn of_side(
     // Triangles of P1 elements would turn the normals towards their diagonals.
     let sums = body.side_normals(side, Element::Q1);
     let unit = |sum: [f64; 3]| {
-        let length = dot(sum, sum).sqrt();
+        let length = norm(sum);
         sum.map(|v| v / length)
     };
     nodes.map(|node| unit(sums[&node])).collect()
@@ -107,7 +107,8 @@ pub(super) fn opposite(bodies: &[Body], pair: [usize; 2], sides: [usize; 2]) -> 
     let total = |flip: usize| -> f64 {
         let square = |i: usize| {
             let (x, y) = (position(0, i), position(1, partner(i, flip)));
-            (0..3).map(|d| (x[d] - y[d]).powi(2)).sum::<f64>()
+            let away = minus(x, y);
+            dot(away, away)
         };
         (0..m * n).map(square).sum()
     };
@@ -141,8 +142,8 @@ fn interface(
         .iter()
         .zip(&second)
         .map(|(n, m)| {
-            let sum = [0, 1, 2].map(|d| n[d] - m[d]);
-            let length = dot(sum, sum).sqrt();
+            let sum = minus(*n, *m);
+            let length = norm(sum);
             // Sides that do not face each other have no common normal: that of the first will do.
             if length > 1e-3 {
                 sum.map(|v| v / length)
@@ -159,7 +160,7 @@ fn interface(
                 let spec = &bodies[pair[k]].spec;
                 spec.position(spec.mesh.place(s.nodes[k]))
             });
-            let distance = dot([0, 1, 2].map(|d| y[d] - x[d]), *n);
+            let distance = dot(minus(y, x), *n);
             let size = x.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             if distance.abs() <= 1e-14 * size {
                 0.0
@@ -199,8 +200,7 @@ fn shortest(body: &BodySpec) -> f64 {
             let mut before = place;
             before[d] -= 1;
             let y = body.position(before);
-            let square: f64 = (0..3).map(|d| (x[d] - y[d]).powi(2)).sum();
-            out = out.min(square.sqrt());
+            out = out.min(norm(minus(x, y)));
         }
     }
     out

@@ -1,5 +1,7 @@
 //! Rigid obstacles of elastic bodies: plane, cylinder, sphere, as distance and normal.
 
+use crate::vec3::{dot, minus, norm};
+
 /// A rigid body that elastic bodies cannot enter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rigid {
@@ -23,32 +25,24 @@ pub enum Rigid {
     },
 }
 
-/// Σ a_d b_d.
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 impl Rigid {
     /// Distance of a point from the surface (negative inside the obstacle) and the unit normal of the nearest point of the surface, towards
     /// the free side; `None` where no point is the nearest (on an axis or in a centre).
     pub fn distance(&self, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
         match *self {
-            Rigid::Plane { point, normal } => {
-                let from = [0, 1, 2].map(|d| x[d] - point[d]);
-                Some((dot(from, normal), normal))
-            }
+            Rigid::Plane { point, normal } => Some((dot(minus(x, point), normal), normal)),
             Rigid::Round {
                 centre,
                 axis,
                 radius,
                 cavity,
             } => {
-                let mut from = [0, 1, 2].map(|d| x[d] - centre[d]);
+                let mut from = minus(x, centre);
                 if let Some(axis) = axis {
                     let along = dot(from, axis);
-                    from = [0, 1, 2].map(|d| from[d] - along * axis[d]);
+                    from = minus(from, axis.map(|v| along * v));
                 }
-                let r = dot(from, from).sqrt();
+                let r = norm(from);
                 if r <= 1e-12 * radius {
                     return None;
                 }

@@ -46,8 +46,8 @@ pub(super) fn entities(mesh: &SubdomainMesh, dofs: &[u64]) -> Vec<Entity> {
 /// one over the body. 3 columns in the plane, 6 in space.
 pub(super) fn rigid_motions(body: &Body, mesh: &SubdomainMesh) -> Vec<Vec<f64>> {
     let [low, high] = body.bounds;
-    let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
     let size = (0..3).fold(0.0_f64, |a, d| a.max(0.5 * (high[d] - low[d])));
+    let (centre, _) = body.ball();
     let c = mesh.components();
     let n_modes = if c == 2 { 3 } else { 6 };
     let mut out = vec![Vec::with_capacity(mesh.n_free()); n_modes];

@@ -12,11 +12,6 @@ pub mod speed_error;
 
 use crate::{Error, Result};
 
-/// a · b.
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// The cases of a study, or the one that is asked for.
 fn chosen<T>(all: Vec<T>, name: impl Fn(&T) -> &'static str, only: Option<&str>) -> Result<Vec<T>> {
     let Some(wanted) = only else {

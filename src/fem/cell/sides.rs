@@ -3,6 +3,7 @@
 use super::map::place;
 use super::reference::{for_each, ReferencePoint, Rule};
 use super::Element;
+use crate::vec3::{cross, norm};
 
 /// A side of a cell: where coordinate `axis` of the unit cell is 0 or 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,10 +120,6 @@ pub fn side_load<F>(
     );
 }
 
-fn norm(v: [f64; 3]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
-}
-
 /// Calls `f` with point, area-weighted normal n |∂x/∂s|, shape functions and the rule's weight.
 fn for_each_point(
     dim: usize,
@@ -144,11 +141,7 @@ fn for_each_point(
             let points = corners::<4>(points);
             for_each::<2, 4>(element, Rule::Load, |r| {
                 let [s, t] = tangents(points, r);
-                let normal = [
-                    outward * (s[1] * t[2] - s[2] * t[1]),
-                    outward * (s[2] * t[0] - s[0] * t[2]),
-                    outward * (s[0] * t[1] - s[1] * t[0]),
-                ];
+                let normal = cross(s, t).map(|v| outward * v);
                 f(place(points, &r.shape), normal, &r.shape, r.weight);
             });
         }

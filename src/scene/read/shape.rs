@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::scene::document::{Item, Section, Value};
 use crate::scene::expr::Expr;
 use crate::scene::map::{BodyShape, Map, Round};
-use crate::scene::rigid::{dot, Rigid};
+use crate::scene::rigid::Rigid;
+use crate::vec3::norm;
 
 impl<'a> Reader<'a> {
     /// How a box is bent: coordinates as expressions, or a named shape with its measures.
@@ -194,7 +195,7 @@ impl<'a> Reader<'a> {
     /// A unit vector along the one that is written.
     fn direction(&self, item: &'a Item) -> Result<[f64; 3]> {
         let v = self.vector(item, "a direction")?;
-        let length = dot(v, v).sqrt();
+        let length = norm(v);
         if length > 0.0 {
             Ok(v.map(|c| c / length))
         } else {

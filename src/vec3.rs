@@ -1,0 +1,50 @@
+//! Vectors of three components; those of the plane end in 0.
+
+/// a · b.
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// |a|.
+pub(crate) fn norm(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// a − b.
+pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|d| a[d] - b[d])
+}
+
+/// a × b.
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// Centre and radius of the ball around a box from `low` to `high`.
+pub(crate) fn ball([low, high]: [[f64; 3]; 2]) -> ([f64; 3], f64) {
+    let centre = [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]));
+    (centre, 0.5 * norm(minus(high, low)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_and_lengths() {
+        let (a, b) = ([1.0, 2.0, 2.0], [3.0, 0.0, 4.0]);
+        assert_eq!((dot(a, b), norm(a), norm(b)), (11.0, 3.0, 5.0));
+        assert_eq!(minus(b, a), [2.0, -2.0, 2.0]);
+        let c = cross(a, b);
+        assert_eq!(c, [8.0, 2.0, -6.0]);
+        assert_eq!((dot(a, c), dot(b, c)), (0.0, 0.0));
+        assert_eq!(
+            ball([[0.0, 1.0, 2.0], [4.0, 5.0, 4.0]]),
+            ([2.0, 3.0, 3.0], 3.0)
+        );
+    }
+}
