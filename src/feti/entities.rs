@@ -31,20 +31,17 @@ pub fn chosen(sub: &Subdomain, primal: Primal) -> impl Iterator<Item = &Entity> 
     sub.entities.iter().filter(move |e| primal.takes(e.kind))
 }
 
-/// The averages of every local subdomain, those that other subdomains have too. Collective.
+/// The averages of every local subdomain, those that other subdomains have too; the entities must have passed [`check`].
+/// Collective.
 pub fn averages(
     comm: &SimpleCommunicator,
     problem: &Substructures,
     sharing: &Sharing,
     primal: Primal,
 ) -> Result<Vec<Vec<Average>>> {
-    let own = problem
-        .local
-        .iter()
-        .try_for_each(|sub| valid(problem, sub, primal));
     let size = comm.size() as usize;
     let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
-    for sub in problem.local.iter().filter(|_| own.is_ok()) {
+    for sub in &problem.local {
         for entity in chosen(sub, primal) {
             let mut state = DefaultHasher::new();
             for &i in &entity.dofs {
@@ -78,7 +75,6 @@ pub fn averages(
         .map(|w| w.chunks_exact(WORDS).map(count).collect())
         .collect();
     let answers: Vec<Vec<u64>> = exchange_words(comm, replies);
-    own?;
     agreed?;
 
     let mut next = vec![0; size];
@@ -94,6 +90,12 @@ pub fn averages(
         out.push(mine);
     }
     Ok(out)
+}
+
+/// What can be said of the chosen entities of every local subdomain by itself: their dofs exist and belong to one entity each.
+pub fn check(problem: &Substructures, primal: Primal) -> Result<()> {
+    let mut each = problem.local.iter();
+    each.try_for_each(|sub| valid(problem, sub, primal))
 }
 
 /// The constraint that an entity of `count` subdomains is; `None` for one, or where all its dofs are vertices.
@@ -126,7 +128,6 @@ fn average(
     }))
 }
 
-/// Dofs of a subdomain's entities exist and belong to one entity each.
 fn valid(problem: &Substructures, sub: &Subdomain, primal: Primal) -> Result<()> {
     let mut taken = vec![false; sub.dofs.len()];
     for entity in chosen(sub, primal) {
@@ -189,8 +190,9 @@ fn agree(problem: &Substructures, group: &[&[u64]]) -> Result<()> {
 }
 
 fn name(problem: &Substructures, subdomain: usize, body: usize) -> String {
-    format!(
-        "subdomain {subdomain} of body \"{}\"",
-        problem.body_names[body]
-    )
+    match problem.body_names.get(body) {
+        Some(name) => format!("subdomain {subdomain} of body \"{name}\""),
+        // Whether bodies exist is seen later.
+        None => format!("subdomain {subdomain}"),
+    }
 }

@@ -57,10 +57,7 @@ impl JumpColumns {
 
     /// v ← B_Dᵀ λ on this subdomain's interface.
     pub fn bd_transpose(&self, ghost: &[f64], v: &mut [f64]) {
-        v.fill(0.0);
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
-            v[i as usize] += b * ghost[r as usize];
-        }
+        self.bd_transpose_of(ghost, v, |_| true);
     }
 
     /// v ← B_Dᵀ λ with some of the ghost rows.

@@ -3,7 +3,6 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::equal;
 use super::exchange::{exchange_words, max_all, sum_all};
 use super::jump::Jump;
 use super::kernel;
@@ -12,6 +11,7 @@ use super::local::multifrontal::Symbolic;
 use super::settings::Primal;
 use super::sharing::Sharing;
 use super::team::Team;
+use super::{entities, equal};
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -55,6 +55,7 @@ impl Sizes {
         team: &Team,
         constraints: Primal,
     ) -> Result<Sizes> {
+        entities::check(problem, constraints)?;
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing = Sharing::new(comm, problem, &weights, constraints)?;
         let jump = Jump::new(comm, problem, &sharing);

@@ -91,6 +91,7 @@ impl FetiFeti {
         let comm = session.comm();
         let prefix = settings.prefix.clone();
 
+        session.agree(entities::check(&problem, settings.primal))?;
         let weights = weights(&problem, &settings);
         let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
         drop(weights);
@@ -270,13 +271,9 @@ fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
     let of = |sub: &crate::substructures::Subdomain| -> Vec<f64> {
         let mut d = of(sub);
         for entity in entities::chosen(sub, settings.primal) {
-            let inside = entity.dofs.iter().filter(|&&i| (i as usize) < d.len());
-            let mean = inside.map(|&i| d[i as usize]).sum::<f64>() / entity.dofs.len() as f64;
-            for &i in &entity.dofs {
-                if let Some(d) = d.get_mut(i as usize) {
-                    *d = mean;
-                }
-            }
+            let sum: f64 = entity.dofs.iter().map(|&i| d[i as usize]).sum();
+            let mean = sum / entity.dofs.len() as f64;
+            entity.dofs.iter().for_each(|&i| d[i as usize] = mean);
         }
         d
     };

@@ -111,23 +111,8 @@ impl Scene {
         Ok(fem::free_load(&mesh, &load))
     }
 
-    /// The sum of all loads on subdomain `index` at load step `step`, by components; those of its sides included.
-    ///
-    /// # Errors
-    /// As [`Scene::loads`].
-    pub fn resultant(&self, index: usize, step: usize) -> Result<[f64; 3]> {
-        let factors = Factors::of(&self.steps, step)?;
-        let mesh = self.mesh_with(index, factors)?;
-        let (body, block) = self.place(index);
-        let load = self.nodal_load(body, &block, &mesh, factors)?;
-        let mut sum = [0.0; 3];
-        for node in load.chunks_exact(body.components) {
-            sum.iter_mut().zip(node).for_each(|(s, f)| *s += f);
-        }
-        Ok(sum)
-    }
-
-    /// As [`Scene::resultant`], with the moment of the loads about `centre`.
+    /// The sum of all loads on subdomain `index` at load step `step`, by components, those of its sides included, and their moment
+    /// about `centre`.
     ///
     /// # Errors
     /// As [`Scene::loads`].

@@ -2,6 +2,8 @@
 //!
 //! Subdomains are the unit of parallel work; a kernel that spawned tasks of its own would fight with them.
 
+use std::ops::{Add, AddAssign, Mul};
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{
     cholesky_in_place, cholesky_in_place_scratch, LltParams, LltRegularization,
@@ -93,8 +95,12 @@ impl Dense {
     }
 }
 
-/// y ← y + A x for a column-major A with `rows` rows: four columns at a time, so that y is read once for four.
-fn gemv(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
+/// y ← y + A x for a column-major A with `rows` rows: four columns at a time, so that y is read once for four; columns that meet
+/// nothing but zeros are not read.
+pub fn gemv<T>(a: &[T], rows: usize, x: &[T], y: &mut [T])
+where
+    T: Copy + Default + PartialEq + AddAssign + Add<Output = T> + Mul<Output = T>,
+{
     if rows == 0 {
         return;
     }
@@ -102,6 +108,9 @@ fn gemv(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
     let mut columns = a.chunks_exact(4 * rows);
     let mut coefficients = x.chunks_exact(4);
     for (four, c) in (&mut columns).zip(&mut coefficients) {
+        if c.iter().all(|v| *v == T::default()) {
+            continue;
+        }
         let (a0, rest) = four.split_at(rows);
         let (a1, rest) = rest.split_at(rows);
         let (a2, a3) = rest.split_at(rows);
@@ -111,7 +120,7 @@ fn gemv(a: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
     }
     let rest = columns.remainder().chunks_exact(rows);
     for (column, &c) in rest.zip(coefficients.remainder()) {
-        for (yi, ai) in y.iter_mut().zip(column) {
+        for (yi, &ai) in y.iter_mut().zip(column) {
             *yi += ai * c;
         }
     }
