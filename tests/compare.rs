@@ -1,50 +1,11 @@
 //! `fetifeti compare` from the outside: methods that know nothing of each other must agree.
 
+mod compared;
 mod mpi;
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
+use compared::SceneFile;
 use fetifeti::report::json::{CompareReport, CompareRow};
-
-/// A scene file that goes away with the value.
-struct SceneFile(PathBuf);
-
-impl SceneFile {
-    fn new(name: &str, text: &str) -> SceneFile {
-        let file = format!("fetifeti-compare-test-{name}-{}.toml", std::process::id());
-        let path = std::env::temp_dir().join(file);
-        std::fs::write(&path, text).expect("the scene can be written");
-        SceneFile(path)
-    }
-
-    fn path(&self) -> &str {
-        self.0.to_str().expect("the path is UTF-8")
-    }
-}
-
-impl Drop for SceneFile {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
-    }
-}
-
-fn fetifeti(args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fetifeti"));
-    command.args(args).output().expect("the program starts")
-}
-
-fn compare(scene: &str, more: &[&str]) -> CompareReport {
-    let args = [
-        &["compare", scene, "--json", "-", "-compare_cores", "2"],
-        more,
-    ]
-    .concat();
-    let output = fetifeti(&args);
-    let err = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{scene}: {err}");
-    serde_json::from_slice(&output.stdout).expect("a report")
-}
+use mpi::fetifeti;
 
 fn row<'a>(report: &'a CompareReport, method: &str, parts: Option<usize>) -> &'a CompareRow {
     let fits = |r: &&CompareRow| r.method == method && (parts.is_none() || r.subdomains == parts);
@@ -105,7 +66,7 @@ load = "x*y*y"
 #[test]
 fn all_methods_agree_on_tied_bodies() {
     let scene = SceneFile::new("tied", TIED);
-    let report = compare(scene.path(), &["-fetifeti_ksp_rtol", "1e-7"]);
+    let report = scene.compare(&["-fetifeti_ksp_rtol", "1e-7"]);
     check(&report, 1e-7);
     // Nodes of both bodies less the held ones and the second copies of the common face.
     assert_eq!(report.dofs, 13 * 12 + 13 * 13 - 13);
@@ -153,7 +114,7 @@ fn all_methods_agree_on_partly_tied_bodies() {
     let partly =
         format!("{TIED}\n[[tie]]\nbodies = [\"left\", \"right\"]\nrange = [\"1/3\", \"2/3\"]\n");
     let scene = SceneFile::new("partly", &partly);
-    let report = compare(scene.path(), &[]);
+    let report = scene.compare(&[]);
     check(&report, 1e-6);
     // Five of the thirteen nodes of the face are tied.
     assert_eq!(report.dofs, 13 * 12 + 13 * 13 - 5);
@@ -170,7 +131,7 @@ fn options_of_a_baseline_reach_it_alone_and_its_failure_is_a_row() {
         "-hypre_pc_type",
         "no_such_thing",
     ];
-    let report = compare(scene.path(), &options);
+    let report = scene.compare(&options);
     let gamg = row(&report, "gamg", None);
     assert!(!gamg.converged);
     assert_eq!(gamg.converged_reason, "DIVERGED_ITS");
@@ -204,8 +165,8 @@ fn mistakes_end_before_anything_runs() {
     ];
     for (args, code, part) in cases {
         let output = fetifeti(&[&["compare"], args].concat());
-        let err = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {err}");
+        let err = &output.stderr;
+        assert_eq!(output.code, code, "{args:?}: {err}");
         assert!(
             err.contains(part) && err.trim().lines().count() == 1,
             "{args:?}: {err}"
@@ -216,24 +177,14 @@ fn mistakes_end_before_anything_runs() {
 #[test]
 fn under_mpirun_the_first_rank_runs_the_jobs_and_leaves_nothing_behind() {
     let scene = SceneFile::new("nested", TIED);
-    let scratch = std::env::temp_dir().join(format!("fetifeti-compare-out-{}", std::process::id()));
-    let [out, tmp] = ["out", "tmp"].map(|d| scratch.join(d));
+    let [out, tmp] = ["out", "tmp"].map(|d| scene.scratch.path(d));
     std::fs::create_dir_all(&tmp).expect("a directory");
-    let name = |path: &Path| path.to_str().expect("the path is UTF-8").to_string();
-    let (out_name, tmp_name) = (name(&out), name(&tmp));
-    let args = [
-        "compare",
-        scene.path(),
-        "--with",
-        "mumps",
-        "--out",
-        &out_name,
-    ];
+    let args = ["compare", scene.path(), "--with", "mumps", "--out", &out];
     let run = mpi::mpirun(
         2,
         env!("CARGO_BIN_EXE_fetifeti"),
         &args,
-        &[("TMPDIR", &tmp_name)],
+        &[("TMPDIR", &tmp)],
     );
     assert_eq!(run.code, 0, "{}", run.all());
     assert_eq!(
@@ -242,10 +193,10 @@ fn under_mpirun_the_first_rank_runs_the_jobs_and_leaves_nothing_behind() {
         "{}",
         run.all()
     );
-    let text = std::fs::read_to_string(out.join("compare.json")).expect("a report");
+    let text = std::fs::read_to_string(format!("{out}/compare.json")).expect("a report");
     let report: CompareReport = serde_json::from_str(&text).expect("a report");
     assert!(row(&report, "mumps", None).converged);
-    let csv = std::fs::read_to_string(out.join("compare.csv")).expect("a table");
+    let csv = std::fs::read_to_string(format!("{out}/compare.csv")).expect("a table");
     assert_eq!(csv.lines().count(), 1 + report.rows.len());
     let left: Vec<_> = std::fs::read_dir(&tmp)
         .expect("the directory")
@@ -254,5 +205,4 @@ fn under_mpirun_the_first_rank_runs_the_jobs_and_leaves_nothing_behind() {
         .filter(|entry| entry.to_string_lossy().starts_with("fetifeti"))
         .collect();
     assert!(left.is_empty(), "{left:?}");
-    std::fs::remove_dir_all(&scratch).expect("it can be removed");
 }

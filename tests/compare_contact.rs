@@ -1,45 +1,12 @@
 //! `fetifeti compare` on scenes with inequalities: a loop on the multipliers and a loop on the assembled problem must find the
 //! same set and the same solution.
 
-use std::process::{Command, Output};
+mod compared;
+mod mpi;
 
+use compared::SceneFile;
 use fetifeti::report::json::{CompareContact, CompareReport, CompareRow};
-
-/// A scene file that goes away with the value.
-struct SceneFile(std::path::PathBuf);
-
-impl SceneFile {
-    fn new(name: &str, text: &str) -> SceneFile {
-        let file = format!("fetifeti-contact-test-{name}-{}.toml", std::process::id());
-        let path = std::env::temp_dir().join(file);
-        std::fs::write(&path, text).expect("the scene can be written");
-        SceneFile(path)
-    }
-
-    fn path(&self) -> &str {
-        self.0.to_str().expect("the path is UTF-8")
-    }
-}
-
-impl Drop for SceneFile {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
-    }
-}
-
-fn run(scene: &SceneFile, more: &[&str]) -> Output {
-    let args = [&["compare", scene.path(), "-compare_cores", "2"], more].concat();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fetifeti"));
-    let output = command.args(args).output().expect("the program starts");
-    let err = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{err}");
-    output
-}
-
-fn compare(scene: &SceneFile, more: &[&str]) -> CompareReport {
-    let output = run(scene, &[&["--json", "-"], more].concat());
-    serde_json::from_slice(&output.stdout).expect("a report")
-}
+use mpi::fetifeti;
 
 fn contact(row: &CompareRow) -> CompareContact {
     row.contact.expect("what became of the inequalities")
@@ -77,7 +44,7 @@ fn model(subdomains: &str, elements: &str) -> String {
 #[test]
 fn all_methods_agree_on_the_model_problem() {
     let scene = SceneFile::new("model", &model("[2, 1]", "16"));
-    let report = compare(&scene, &["-fetifeti_ksp_rtol", "1e-8"]);
+    let report = scene.compare(&["-fetifeti_ksp_rtol", "1e-8"]);
     check(&report, 1e-8);
     let methods: Vec<&str> = report.rows.iter().map(|r| r.method.as_str()).collect();
     assert_eq!(
@@ -147,7 +114,7 @@ below = -0.5
 #[test]
 fn floating_bodies_gaps_and_obstacles_come_out_the_same() {
     let scene = SceneFile::new("pile", PILE);
-    let report = compare(&scene, &[]);
+    let report = scene.compare(&[]);
     check(&report, 1e-9);
     let reference = report.contact.expect("inequalities");
     let active = reference.active.expect("a direct solution");
@@ -177,16 +144,14 @@ below = -0.05
 #[test]
 fn the_last_load_step_is_solved_and_that_is_said() {
     let scene = SceneFile::new("steps", STEPS);
-    let report = compare(&scene, &["--with", "hypre,mumps,bddc"]);
+    let report = scene.compare(&["--with", "hypre,mumps,bddc"]);
     check(&report, 1e-6);
     let reference = report.contact.expect("inequalities");
     // The load has turned round: all nine nodes lie on the lower bound.
     assert_eq!((reference.rows, reference.active), (18, Some(9)));
     assert_eq!(reference.load_steps, 4);
-    let out = std::env::temp_dir().join(format!("fetifeti-contact-out-{}", std::process::id()));
-    let name = out.to_str().expect("the path is UTF-8");
-    let output = run(&scene, &["--with", "bddc", "--out", name]);
-    let text = String::from_utf8_lossy(&output.stdout);
+    let out = scene.scratch.path("out");
+    let text = scene.run(&["--with", "bddc", "--out", &out]).stdout;
     assert!(
         text.contains("Of 4 load steps the last one is solved, alone."),
         "{text}"
@@ -195,12 +160,11 @@ fn the_last_load_step_is_solved_and_that_is_said() {
         text.contains("outer") && text.contains("last set"),
         "{text}"
     );
-    let csv = std::fs::read_to_string(out.join("compare.csv")).expect("a table");
+    let csv = std::fs::read_to_string(format!("{out}/compare.csv")).expect("a table");
     let header = csv.lines().next().expect("a header");
     for column in ["outer_steps", "iterations", "active_rows", "active_differ"] {
         assert!(header.split(',').any(|c| c == column), "{header}");
     }
-    std::fs::remove_dir_all(&out).expect("it can be removed");
 }
 
 #[test]
@@ -208,15 +172,13 @@ fn the_tolerance_of_the_inner_solves_is_an_option() {
     let scene = SceneFile::new("inner", &model("[2, 1]", "16"));
     let iterations = |inner: &str| {
         let options = ["--with", "gamg", "-compare_inner_rtol", inner];
-        let report = compare(&scene, &options);
+        let report = scene.compare(&options);
         check(&report, 1e-10);
         report.rows.last().expect("gamg").iterations
     };
     assert!(iterations("1e-6") > iterations("0.3"));
-    let args = ["compare", scene.path(), "-compare_inner_rtol", "1"];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fetifeti"));
-    let output = command.args(args).output().expect("the program starts");
-    assert_eq!(output.status.code(), Some(2));
-    let err = String::from_utf8_lossy(&output.stderr);
+    let output = fetifeti(&["compare", scene.path(), "-compare_inner_rtol", "1"]);
+    assert_eq!(output.code, 2);
+    let err = &output.stderr;
     assert!(err.contains("-compare_inner_rtol is 1"), "{err}");
 }

@@ -1,23 +1,15 @@
 //! `fetifeti compare` in space and in elasticity: tied bodies, contact along axes and along other normals, bodies that float.
 
-use std::process::Command;
+mod compared;
+mod mpi;
 
+use compared::SceneFile;
 use fetifeti::report::json::{CompareReport, CompareRow};
 
 /// All methods on a scene, to 1e-9.
 fn compare(name: &str, text: &str, more: &[&str]) -> CompareReport {
-    let file = format!("fetifeti-elastic-test-{name}-{}.toml", std::process::id());
-    let path = std::env::temp_dir().join(file);
-    std::fs::write(&path, text).expect("the scene can be written");
-    let scene = path.to_str().expect("the path is UTF-8");
-    let args = ["compare", scene, "--json", "-", "-compare_cores", "2"];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_fetifeti"));
-    let command = command.args(args).args(["-fetifeti_ksp_rtol", "1e-9"]);
-    let output = command.args(more).output().expect("the program starts");
-    let _ = std::fs::remove_file(&path);
-    let err = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{name}: {err}");
-    serde_json::from_slice(&output.stdout).expect("a report")
+    let scene = SceneFile::new(name, text);
+    scene.compare(&[&["-fetifeti_ksp_rtol", "1e-9"], more].concat())
 }
 
 /// Every method has solved the problem at the first try, and the same one.

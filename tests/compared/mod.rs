@@ -1,0 +1,41 @@
+//! `fetifeti compare` from the outside: a scene in a file, and what the program says of it.
+#![allow(dead_code)] // every test file uses its own part
+
+use crate::mpi::{fetifeti, Output, Scratch};
+use fetifeti::report::json::CompareReport;
+
+/// A scene file that goes away with the value.
+pub struct SceneFile {
+    path: String,
+    /// Where it lies, for more files.
+    pub scratch: Scratch,
+}
+
+impl SceneFile {
+    /// `name` is one that no other scene of the test file has.
+    pub fn new(name: &str, text: &str) -> SceneFile {
+        let scratch = Scratch::new(&format!("compare-{name}"));
+        SceneFile {
+            path: scratch.file("scene.toml", text),
+            scratch,
+        }
+    }
+
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// `fetifeti compare` on two cores with more arguments; it must end well.
+    pub fn run(&self, more: &[&str]) -> Output {
+        let args = [&["compare", self.path(), "-compare_cores", "2"], more].concat();
+        let output = fetifeti(&args);
+        assert_eq!(output.code, 0, "{}", output.all());
+        output
+    }
+
+    /// The same for the report.
+    pub fn compare(&self, more: &[&str]) -> CompareReport {
+        let output = self.run(&[&["--json", "-"], more].concat());
+        serde_json::from_str(&output.stdout).expect("a report")
+    }
+}
