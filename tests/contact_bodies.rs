@@ -50,18 +50,12 @@ fn on_one_rank() {
 /// What runs under mpirun.
 #[test]
 fn on_ranks() {
-    if mpi::case().is_none() {
-        return;
-    }
-    let session = Session::new(&[], "").expect("PETSc starts");
-    let code = session.run(|session| {
+    mpi::as_rank(|session, _| {
         for name in SCENES {
             agree(session, name).map_err(Error::input)?;
         }
         Ok(())
     });
-    drop(session);
-    std::process::exit(code);
 }
 
 #[test]

@@ -69,17 +69,11 @@ fn random_scenes_agree_with_the_reference() {
 /// What runs under mpirun.
 #[test]
 fn on_ranks() {
-    if mpi::case().is_none() {
-        return;
-    }
-    let session = Session::new(&[], "").expect("PETSc starts");
-    let code = session.run(|session| {
+    mpi::as_rank(|session, _| {
         all_agree(session, 1000..1015)
             .map_err(Error::input)
             .map(|_| ())
     });
-    drop(session);
-    std::process::exit(code);
 }
 
 #[test]

@@ -11,9 +11,7 @@ use mpi::run_case;
 /// What a rank does; nothing in the ordinary test run.
 #[test]
 fn on_ranks() {
-    let Some(case) = mpi::case() else { return };
-    let session = Session::new(&[], "").expect("PETSc starts");
-    let code = session.run(|session| match case.as_str() {
+    mpi::as_rank(|session, case| match case {
         "values" => values(session),
         "error_on_one" => solve_with(session, || {
             Err(Error::input("Body \"left\" has no matrix."))
@@ -41,8 +39,6 @@ fn on_ranks() {
         }
         other => panic!("unknown case {other}"),
     });
-    drop(session);
-    std::process::exit(code);
 }
 
 /// Each rank holds two rows of the 1D Laplacian.

@@ -264,20 +264,14 @@ fn on_a_rank(session: &Session, scaling: Scaling) {
 
 #[test]
 fn on_ranks() {
-    let Some(case) = mpi::case() else {
-        return;
-    };
-    let scaling = match case.as_str() {
-        "deluxe" => Scaling::Deluxe,
-        _ => Scaling::Stiffness,
-    };
-    let session = Session::new(&[], "").expect("PETSc starts");
-    let code = session.run(|session| {
+    mpi::as_rank(|session, case| {
+        let scaling = match case {
+            "deluxe" => Scaling::Deluxe,
+            _ => Scaling::Stiffness,
+        };
         on_a_rank(session, scaling);
         Ok(())
     });
-    drop(session);
-    std::process::exit(code);
 }
 
 #[test]

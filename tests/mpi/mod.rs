@@ -8,6 +8,8 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use fetifeti::petsc::Session;
+
 /// What a run left behind.
 pub struct Output {
     /// Exit code of mpirun; -1 when it was killed after the time limit.
@@ -106,6 +108,18 @@ pub fn run_case(ranks: usize, case: &str) -> Output {
         &["--exact", "on_ranks", "--nocapture", "--test-threads=1"],
         &[(CASE, case)],
     )
+}
+
+/// The body of a test `on_ranks`: where this process is a rank that [`run_case`] has started, runs `work` with PETSc and the name
+/// of the case and ends the process with its exit code; otherwise does nothing.
+pub fn as_rank(work: impl FnOnce(&Session, &str) -> fetifeti::Result<()>) {
+    let Some(case) = case() else {
+        return;
+    };
+    let session = Session::new(&[], "").expect("PETSc starts");
+    let code = session.run(|session| work(session, &case));
+    drop(session);
+    std::process::exit(code);
 }
 
 /// The case that this process is to run as a rank; `None` in the ordinary test run.
