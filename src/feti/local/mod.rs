@@ -1,6 +1,7 @@
 //! Local work: everything that one subdomain does by itself.
 
 pub mod basis;
+mod condense;
 pub mod dense;
 pub mod dissection;
 pub mod multifrontal;

@@ -2,6 +2,12 @@
 //!
 //! A number that is not known or not finite is written as `null`, never as NaN, and read back as `None` or NaN.
 
+mod compare;
+mod table1;
+
+pub use compare::{CompareContact, CompareInequalities, CompareReport, CompareRow, CompareSeconds};
+pub use table1::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
+
 use super::contact::ContactReport;
 use super::output;
 use crate::{Error, Result};
@@ -216,189 +222,6 @@ pub struct Seconds {
     pub total: f64,
 }
 
-/// One row of `table1`: an array of them is the command's JSON.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Table1Row {
-    /// 1/H_b, bodies along each side of the square.
-    pub bodies: usize,
-    /// H_b/H_s, subdomains along each side of a body.
-    pub subdomains: usize,
-    /// H_s/h, elements along each side of a subdomain.
-    pub elements: usize,
-    /// Column (I): continuity on all of Γ.
-    pub whole_interface: Table1Side,
-    /// Column (II): continuity on the middle third Γ_0 of every face.
-    pub middle_third: Table1Side,
-}
-
-/// One column of a row of `table1`. Every κ is a plain number.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Table1Side {
-    /// Rows of B, B_loc and B_gl together.
-    pub multipliers: usize,
-    /// Rows of B_loc.
-    pub local_multipliers: usize,
-    /// Bodies that touch no Dirichlet side.
-    pub floating_bodies: usize,
-    /// Iterations with M_D.
-    pub iterations: usize,
-    /// Exact κ with M_D; `null` where it was not asked for.
-    pub exact: Option<f64>,
-    /// κ with M_D as CG estimates it.
-    pub estimate: Option<f64>,
-    /// Exact λ_min with M_D.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lambda_min: Option<f64>,
-    /// Exact λ_max with M_D.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lambda_max: Option<f64>,
-    /// The paper's printed numbers; `null` in a row that the paper does not have.
-    pub paper: Option<PaperSide>,
-    /// The same with M_C.
-    pub coarse_corrected: CoarseCorrected,
-}
-
-/// The M_C part of [`Table1Side`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CoarseCorrected {
-    /// Exact κ with M_C; `null` where it was not asked for.
-    pub exact: Option<f64>,
-    /// κ with M_C as CG estimates it.
-    pub estimate: Option<f64>,
-    /// Exact λ_min with M_C.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lambda_min: Option<f64>,
-    /// Exact λ_max with M_C.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lambda_max: Option<f64>,
-    /// Iterations with M_C.
-    pub iterations: usize,
-}
-
-/// What the paper prints for one column of one row.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PaperSide {
-    /// Condition number.
-    pub cond: f64,
-    /// Iterations.
-    pub iter: usize,
-}
-
-/// What `compare` reports: facts about the problem, then one row per method and layout.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CompareReport {
-    /// The scene's title.
-    pub scene: String,
-    /// Bodies.
-    pub bodies: usize,
-    /// Subdomains over all bodies.
-    pub subdomains: usize,
-    /// Unknowns of the assembled problem: one where tied bodies have several copies.
-    pub dofs: usize,
-    /// Relative residual ‖b − A u‖₂ / ‖b‖₂ of the assembled problem that every method was driven to.
-    #[serde(with = "number")]
-    pub rtol: f64,
-    /// Cores that methods without a layout of their own were given.
-    pub cores: usize,
-    /// Rigid motions that nothing in the scene holds: the assembled problem has as many supports, which bear no force.
-    #[serde(default)]
-    pub supports: usize,
-    /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
-    pub reference_residual: Option<f64>,
-    /// In scenes with inequalities: what they are in the direct solution.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<CompareInequalities>,
-    /// The methods.
-    pub rows: Vec<CompareRow>,
-}
-
-/// One method in one layout.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct CompareRow {
-    /// The method, such as `fetifeti`, `bddc`, `gamg`.
-    pub method: String,
-    /// Parts of the domain that the method sees; `null` for methods that see none.
-    pub subdomains: Option<usize>,
-    /// MPI ranks.
-    pub ranks: usize,
-    /// Threads per rank.
-    pub threads: usize,
-    /// κ as CG estimates it; `null` where there is none.
-    pub kappa: Option<f64>,
-    /// Iterations, of all contact steps; `null` for a direct solver or a run that failed.
-    pub iterations: Option<usize>,
-    /// Wall-clock time by phase.
-    pub seconds: CompareSeconds,
-    /// Largest resident memory over the ranks, summed, in MB of 10⁶ bytes.
-    pub memory_mb: Option<f64>,
-    /// The part of `memory_mb` that was there before the problem: program and libraries, once per rank.
-    pub memory_at_start_mb: Option<f64>,
-    /// Error in the energy norm against the assembled direct solution, relative.
-    pub error: Option<f64>,
-    /// Relative residual of the assembled problem that was reached.
-    pub residual: Option<f64>,
-    /// In scenes with inequalities: how they came out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<CompareContact>,
-    /// Relative tolerance of the method's own residual with which that was reached.
-    pub rtol: Option<f64>,
-    /// Whether the residual was reached.
-    pub converged: bool,
-    /// PETSc's name for why the iteration ended.
-    pub converged_reason: String,
-    /// Options with which a second try was made after the first had failed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rescue: Option<String>,
-    /// One sentence when the method could not run or did not converge.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub message: Option<String>,
-}
-
-/// Inequalities in the direct solution of `compare`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct CompareInequalities {
-    /// Inequality rows.
-    pub rows: usize,
-    /// Those that hold with equality; `null` if there is no direct solution.
-    pub active: Option<usize>,
-    /// Active sets that the direct solution took.
-    pub outer: Option<usize>,
-    /// Largest violation, relative to the largest |u|.
-    pub feasibility: Option<f64>,
-    /// Smallest multiplier, relative to the largest; 0 where none pulls.
-    pub min_multiplier: Option<f64>,
-    /// Load steps of the scene, of which the last one is solved.
-    pub load_steps: usize,
-}
-
-/// How the inequalities came out in one row of `compare`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct CompareContact {
-    /// Active sets that were solved for; `null` for a method that solved the equations of the last one only.
-    pub outer: Option<usize>,
-    /// Rows of the last one.
-    pub active: usize,
-    /// Rows that hold here or in the direct solution, but not in both; rows that touch without a force do not count.
-    pub differ: Option<usize>,
-    /// Largest violation, relative to the largest |u|.
-    pub feasibility: Option<f64>,
-    /// Smallest multiplier, relative to the largest; 0 where none pulls.
-    pub min_multiplier: Option<f64>,
-}
-
-/// Wall-clock seconds of one method in `compare`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct CompareSeconds {
-    /// Mesh and matrices.
-    pub assemble: Option<f64>,
-    /// Factorisations, hierarchies, coarse problems.
-    pub setup: Option<f64>,
-    /// Iterations and recovery.
-    pub solve: Option<f64>,
-    /// Set-up and solve.
-    pub total: Option<f64>,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -499,16 +322,6 @@ mod tests {
         let back: SolveReport = serde_json::from_str(&text).unwrap();
         assert!(back.energy.is_nan() && back.kkt.feasibility.is_nan());
         assert_eq!(back.iterations, report().iterations);
-        let nothing = CompareSeconds {
-            assemble: Some(0.5),
-            setup: Some(f64::NAN),
-            solve: None,
-            total: Some(1.0),
-        };
-        assert_eq!(
-            serde_json::to_string(&nothing).unwrap(),
-            r#"{"assemble":0.5,"setup":null,"solve":null,"total":1.0}"#
-        );
     }
 
     #[test]
@@ -521,36 +334,5 @@ mod tests {
         });
         let value: Value = serde_json::from_str(&to_string(&known).unwrap()).unwrap();
         assert_eq!(value["error"], json!({"l2": 1.0, "h1": 2.0, "energy": 3.0}));
-    }
-
-    #[test]
-    fn table1_kappas_are_plain_numbers() {
-        let side = Table1Side {
-            multipliers: 34,
-            local_multipliers: 16,
-            floating_bodies: 0,
-            iterations: 7,
-            exact: Some(2.718541),
-            estimate: Some(2.55),
-            lambda_min: None,
-            lambda_max: None,
-            paper: Some(PaperSide {
-                cond: 2.5536,
-                iter: 7,
-            }),
-            coarse_corrected: CoarseCorrected {
-                exact: Some(2.1189),
-                estimate: None,
-                lambda_min: None,
-                lambda_max: None,
-                iterations: 6,
-            },
-        };
-        let expected = json!({
-            "multipliers": 34, "local_multipliers": 16, "floating_bodies": 0, "iterations": 7,
-            "exact": 2.718541, "estimate": 2.55, "paper": {"cond": 2.5536, "iter": 7},
-            "coarse_corrected": {"exact": 2.1189, "estimate": null, "iterations": 6},
-        });
-        assert_eq!(serde_json::to_value(&side).unwrap(), expected);
     }
 }

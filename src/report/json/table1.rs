@@ -1,0 +1,108 @@
+//! The record of `table1`.
+
+use serde::{Deserialize, Serialize};
+
+/// One row of `table1`: an array of them is the command's JSON.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Table1Row {
+    /// 1/H_b, bodies along each side of the square.
+    pub bodies: usize,
+    /// H_b/H_s, subdomains along each side of a body.
+    pub subdomains: usize,
+    /// H_s/h, elements along each side of a subdomain.
+    pub elements: usize,
+    /// Column (I): continuity on all of Γ.
+    pub whole_interface: Table1Side,
+    /// Column (II): continuity on the middle third Γ_0 of every face.
+    pub middle_third: Table1Side,
+}
+
+/// One column of a row of `table1`. Every κ is a plain number.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Table1Side {
+    /// Rows of B, B_loc and B_gl together.
+    pub multipliers: usize,
+    /// Rows of B_loc.
+    pub local_multipliers: usize,
+    /// Bodies that touch no Dirichlet side.
+    pub floating_bodies: usize,
+    /// Iterations with M_D.
+    pub iterations: usize,
+    /// Exact κ with M_D; `null` where it was not asked for.
+    pub exact: Option<f64>,
+    /// κ with M_D as CG estimates it.
+    pub estimate: Option<f64>,
+    /// Exact λ_min with M_D.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lambda_min: Option<f64>,
+    /// Exact λ_max with M_D.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lambda_max: Option<f64>,
+    /// The paper's printed numbers; `null` in a row that the paper does not have.
+    pub paper: Option<PaperSide>,
+    /// The same with M_C.
+    pub coarse_corrected: CoarseCorrected,
+}
+
+/// The M_C part of [`Table1Side`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CoarseCorrected {
+    /// Exact κ with M_C; `null` where it was not asked for.
+    pub exact: Option<f64>,
+    /// κ with M_C as CG estimates it.
+    pub estimate: Option<f64>,
+    /// Exact λ_min with M_C.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lambda_min: Option<f64>,
+    /// Exact λ_max with M_C.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lambda_max: Option<f64>,
+    /// Iterations with M_C.
+    pub iterations: usize,
+}
+
+/// What the paper prints for one column of one row.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PaperSide {
+    /// Condition number.
+    pub cond: f64,
+    /// Iterations.
+    pub iter: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn table1_kappas_are_plain_numbers() {
+        let side = Table1Side {
+            multipliers: 34,
+            local_multipliers: 16,
+            floating_bodies: 0,
+            iterations: 7,
+            exact: Some(2.718541),
+            estimate: Some(2.55),
+            lambda_min: None,
+            lambda_max: None,
+            paper: Some(PaperSide {
+                cond: 2.5536,
+                iter: 7,
+            }),
+            coarse_corrected: CoarseCorrected {
+                exact: Some(2.1189),
+                estimate: None,
+                lambda_min: None,
+                lambda_max: None,
+                iterations: 6,
+            },
+        };
+        let expected = json!({
+            "multipliers": 34, "local_multipliers": 16, "floating_bodies": 0, "iterations": 7,
+            "exact": 2.718541, "estimate": 2.55, "paper": {"cond": 2.5536, "iter": 7},
+            "coarse_corrected": {"exact": 2.1189, "estimate": null, "iterations": 6},
+        });
+        assert_eq!(serde_json::to_value(&side).unwrap(), expected);
+    }
+}
