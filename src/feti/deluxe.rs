@@ -103,7 +103,7 @@ fn groups(
     for &(k, _) in &columns.contact {
         plain[columns.at[k as usize] as usize] = true;
     }
-    for average in &local.basis.averages {
+    for average in local.basis.supports() {
         if average.iter().any(|&i| plain[i]) {
             average.iter().for_each(|&i| plain[i] = true);
         }
@@ -124,15 +124,9 @@ fn groups(
             .enumerate()
             .map(|(place, (_, i))| (*i, place))
             .collect();
-        let averages = local.basis.averages.iter();
-        let inside = averages.filter(|a| place.contains_key(&a[0]));
         Group {
             sharers,
-            basis: Basis {
-                averages: inside
-                    .map(|a| a.iter().map(|i| place[i]).collect())
-                    .collect(),
-            },
+            basis: local.basis.moved(&place),
             name: members[0].0,
             at: members.into_iter().map(|(_, i)| i).collect(),
         }
@@ -157,8 +151,7 @@ impl Group {
                 block.set(p, q, s.get(i, j));
             }
         }
-        self.basis.apply_left(&mut block);
-        self.basis.apply_right(&mut block);
+        self.basis.congruence_to_coordinates(&mut block);
         let free = self.free();
         let mut out = Dense::zeros(free.len(), free.len());
         for (q, &j) in free.iter().enumerate() {
@@ -251,8 +244,7 @@ impl Group {
         for i in self.basis.pivots() {
             out.set(i, i, value(c) / q);
         }
-        self.basis.apply_left(&mut out);
-        self.basis.apply_right(&mut out);
+        self.basis.congruence_to_nodes(&mut out);
         out
     }
 }

@@ -1,5 +1,6 @@
 //! The method, one file per operator, symbols as in the theory page.
 
+pub mod adaptive;
 pub mod blocks;
 pub mod check;
 pub mod coarse;

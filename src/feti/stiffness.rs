@@ -122,7 +122,7 @@ impl Stiffness {
         self.jump_of_all(work, out) /*                    out ← B y      */
     }
 
-    /// The orthogonal projection onto B W̃, out ← B N B_Dᵀ λ: redundant multipliers are removed, and so is what averages that are
+    /// The orthogonal projection onto B W̃, out ← B N B_Dᵀ λ: redundant multipliers are removed, and so is what functionals that are
     /// continuous in W̃ leave no work for (N takes them out of the jumps inside bodies). Collective.
     pub fn range_projection(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
@@ -131,7 +131,7 @@ impl Stiffness {
             let columns = &self.jump.columns[j];
             let contact = &self.jump.ghost_is_contact;
             columns.bd_transpose_of(ghost, &mut w.y, |r| !contact[r]);
-            self.locals[j].basis.remove_means(&mut w.y); /* y ← N B_D,locᵀ λ */
+            self.locals[j].basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
             columns.bd_transpose_of(ghost, &mut w.v, |r| contact[r]);
             let both = w.y.iter_mut().zip(&w.v); /*       y ← y + B_D,glᵀ λ */
             both.for_each(|(y, v)| *y += v);

@@ -4,6 +4,7 @@ pub mod basis;
 pub mod dense;
 pub mod dissection;
 pub mod multifrontal;
+pub mod pencil;
 pub mod problem;
 pub mod semidefinite;
 pub mod single;
