@@ -9,7 +9,6 @@ use super::adaptive;
 use super::coarse::PrimalProblem;
 use super::deluxe;
 use super::dual::{self, Dual, Shared};
-use super::entities;
 use super::equal;
 use super::halo::Halo;
 use super::jump::Jump;
@@ -283,20 +282,6 @@ fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
                 (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect()
             }
         }
-    };
-    // One number on an entity with an average: otherwise B_Dᵀ would lead out of W̃.
-    let of = |sub: &crate::substructures::Subdomain| -> Vec<f64> {
-        let mut d = of(sub);
-        for entity in entities::chosen(sub, settings.primal) {
-            let inside = entity.dofs.iter().filter(|&&i| (i as usize) < d.len());
-            let mean = inside.map(|&i| d[i as usize]).sum::<f64>() / entity.dofs.len() as f64;
-            for &i in &entity.dofs {
-                if let Some(d) = d.get_mut(i as usize) {
-                    *d = mean;
-                }
-            }
-        }
-        d
     };
     problem.local.iter().map(of).collect()
 }
