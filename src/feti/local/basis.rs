@@ -139,22 +139,6 @@ impl Basis {
         self.reflections[k].factor
     }
 
-    /// The functionals on positions that `place` knows, with the places it gives them.
-    pub fn moved(&self, place: &HashMap<usize, usize>) -> Basis {
-        let inside = self
-            .reflections
-            .iter()
-            .filter(|r| place.contains_key(&r.pivot));
-        let moved = inside.map(|r| Reflection {
-            at: r.at.iter().map(|i| place[i]).collect(),
-            pivot: place[&r.pivot],
-            ..r.clone()
-        });
-        Basis {
-            reflections: moved.collect(),
-        }
-    }
-
     /// u ← Hᵀ u: from nodal values to coordinates.
     pub fn to_coordinates(&self, u: &mut [f64]) {
         self.reflections.iter().for_each(|r| r.apply(u));
