@@ -4,7 +4,7 @@
 //! edges in which it meets the surface of its body, or an edge; all components of the field together. Its lowest
 //! subdomain's rank solves the eigenproblem of [`pencil`] and tells the functionals to all sharers.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
@@ -33,6 +33,8 @@ struct Class {
     dofs: Vec<u64>,
     /// Positions in Γ.
     at: Vec<usize>,
+    /// Where the entries of its rows stand in the subdomain's list of entries of B_D.
+    entries: Vec<u32>,
 }
 
 impl Class {
@@ -57,6 +59,9 @@ pub fn find(
         Adaptive::Auto => (Adaptive::USUAL, false),
         Adaptive::Below(tau) => (tau, true),
     };
+    if !all && !anywhere(comm, problem, locals) {
+        return Vec::new();
+    }
     let mut classes: Vec<Vec<Class>> = (0..locals.len())
         .map(|j| classes(&problem.local[j], sharing, &locals[j]))
         .collect();
@@ -74,6 +79,9 @@ pub fn find(
         return Vec::new();
     }
 
+    for (j, list) in classes.iter_mut().enumerate() {
+        collect_entries(jump, j, locals[j].n_gamma(), list);
+    }
     // Parts travel to the rank of the lowest sharer.
     let rank = comm.rank() as u32;
     let rank_of = |s: u32| sharing.rank_of[s as usize];
@@ -203,7 +211,12 @@ fn classes(sub: &Subdomain, sharing: &Sharing, local: &LocalProblem) -> Vec<Clas
     let class = |(sharers, mut members): (Vec<u32>, Vec<(u64, usize)>)| {
         members.sort_unstable();
         let (dofs, at) = members.into_iter().unzip();
-        Class { sharers, dofs, at }
+        Class {
+            sharers,
+            dofs,
+            at,
+            entries: Vec::new(),
+        }
     };
     found.into_iter().map(class).collect()
 }
@@ -219,7 +232,8 @@ fn rough(
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
     for (j, list) in classes.iter().enumerate() {
         for class in list {
-            if varies(&problem.local[j], &locals[j], class) {
+            let dofs = class.at.iter().map(|&i| locals[j].interface[i]);
+            if varies(&problem.local[j], dofs) {
                 for &to in &class.sharers {
                     outgoing[sharing.rank_of[to as usize] as usize].push(class.name());
                 }
@@ -235,11 +249,28 @@ fn rough(
         .collect()
 }
 
-/// Whether stiffness varies along the class or next to it in one subdomain.
-fn varies(sub: &Subdomain, local: &LocalProblem, class: &Class) -> bool {
+/// Whether stiffness varies along the interface of any subdomain at all; equal subdomains are looked at once. Collective.
+fn anywhere(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    locals: &[Arc<LocalProblem>],
+) -> bool {
+    let mut seen = HashSet::new();
+    let mut locals = locals.iter().zip(&problem.local);
+    let found = locals.any(|(local, sub)| {
+        let shared = local.interface[..local.n_delta].iter().copied();
+        seen.insert(Arc::as_ptr(local)) && varies(sub, shared)
+    });
+    let mut found = [f64::from(u8::from(found))];
+    sum_all(comm, &mut found);
+    found[0] > 0.0
+}
+
+/// Whether stiffness varies along these dofs of a subdomain or next to them.
+fn varies(sub: &Subdomain, dofs: impl Iterator<Item = u32>) -> bool {
     let (mut low, mut high) = (f64::INFINITY, 0.0f64);
-    for &i in &class.at {
-        for &k in sub.k.row(local.interface[i] as usize).0 {
+    for i in dofs {
+        for &k in sub.k.row(i as usize).0 {
             let stiff = sub.k.get(k as usize, k as usize);
             (low, high) = (low.min(stiff), high.max(stiff));
         }
@@ -305,40 +336,55 @@ fn part(
     }
 }
 
+/// Notes the entries of B_D in the rows of every class.
+fn collect_entries(jump: &Jump, j: usize, n_gamma: usize, classes: &mut [Class]) {
+    let mut of = vec![None; n_gamma];
+    for (c, class) in classes.iter().enumerate() {
+        class.at.iter().for_each(|&i| of[i] = Some(c));
+    }
+    let columns = &jump.columns[j];
+    for (k, (&row, &at)) in columns.row.iter().zip(&columns.at).enumerate() {
+        if let Some(c) = of[at as usize].filter(|_| !jump.ghost_is_contact[row as usize]) {
+            classes[c].entries.push(k as u32);
+        }
+    }
+}
+
 /// Q_c: what B_Dᵀ B makes, on the copy in local subdomain `j`, of differences to the last sharer, read from the entries of B_D.
 fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
     let (n, q) = (class.at.len(), class.sharers.len());
     let columns = &jump.columns[j];
     let place: HashMap<u32, usize> = class.at.iter().map(|&i| i as u32).zip(0..).collect();
+    let entries = class.entries.iter().map(|&k| {
+        let k = k as usize;
+        (columns.row[k], place[&columns.at[k]], columns.bd[k])
+    });
     // The first entry of a row is the one on the dof that it belongs to; rows of a dof are numbered pair after pair.
     let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n];
     let mut known: HashMap<u32, usize> = HashMap::new();
-    for (row, at) in columns.row.iter().zip(&columns.at) {
-        if let Some(&x) = place.get(at) {
-            if !jump.ghost_is_contact[*row as usize] && !known.contains_key(row) {
-                known.insert(*row, x);
-                rows[x].push(*row);
-            }
-        }
+    for (row, x, _) in entries.clone() {
+        known.entry(row).or_insert_with(|| {
+            rows[x].push(row);
+            x
+        });
     }
     rows.iter_mut().for_each(|r| r.sort_unstable());
     let pairs: Vec<(usize, usize)> = (0..q)
         .flat_map(|a| (a + 1..q).map(move |b| (a, b)))
         .collect();
     let mut out = Dense::zeros(n, (q - 1) * n);
-    for ((row, at), bd) in columns.row.iter().zip(&columns.at).zip(&columns.bd) {
-        if let (Some(&x), Some(&y)) = (known.get(row), place.get(at)) {
-            let pair = rows[x].binary_search(row).expect("a row of the dof");
-            let (a, b) = pairs[pair];
-            let mut add = |k: usize, value: f64| {
-                if k < q - 1 {
-                    let sum = out.get(y, k * n + x) + value;
-                    out.set(y, k * n + x, sum);
-                }
-            };
-            add(a, *bd);
-            add(b, -*bd);
-        }
+    for (row, y, bd) in entries {
+        let x = known[&row];
+        let pair = rows[x].binary_search(&row).expect("a row of the dof");
+        let (a, b) = pairs[pair];
+        let mut add = |k: usize, value: f64| {
+            if k < q - 1 {
+                let sum = out.get(y, k * n + x) + value;
+                out.set(y, k * n + x, sum);
+            }
+        };
+        add(a, bd);
+        add(b, -bd);
     }
     out
 }
