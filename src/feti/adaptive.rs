@@ -1,15 +1,14 @@
 //! Adaptive primal constraints: what is made primal inside bodies where coefficients jump along and beside the interfaces of their subdomains.
 //!
-//! A *class* is the set of dual dofs that the same subdomains of a body share: in the plane an edge, in space a face with the
-//! edges in which it meets the surface of its body, or an edge; all components of the field together. Its lowest
-//! subdomain's rank solves the eigenproblem of [`pencil`] and tells the functionals to all sharers.
+//! The rank of a class's lowest subdomain solves the eigenproblem of [`pencil`] on it and tells the functionals to all sharers.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::classes::{self, Class};
 use super::entities::Average;
 use super::exchange::{exchange_words, sum_all};
 use super::jump::Jump;
@@ -21,27 +20,6 @@ use super::sharing::Sharing;
 use super::team::Team;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
-
-/// Diagonal entries of K along a class and beside it that differ by less than this come from the mesh, or from jumps that weights alone deal with.
-const SMOOTH: f64 = 1e2;
-
-/// Dual dofs of one subdomain that the same subdomains share, in the order of body dof.
-struct Class {
-    /// The subdomains, increasing.
-    sharers: Vec<u32>,
-    /// The body dofs; the lowest one names the class.
-    dofs: Vec<u64>,
-    /// Positions in Γ.
-    at: Vec<usize>,
-    /// Where the entries of its rows stand in the subdomain's list of entries of B_D.
-    entries: Vec<u32>,
-}
-
-impl Class {
-    fn name(&self) -> u64 {
-        self.dofs[0]
-    }
-}
 
 /// Finds the constraints that keep the eigenvalues of every class below τ and adds them to `jump.averages`. Entries of `jump` are on interface
 /// positions. Returns how many each body gets, over all ranks; nothing where none is wanted. Collective.
@@ -59,14 +37,14 @@ pub fn find(
         Adaptive::Auto => (Adaptive::USUAL, false),
         Adaptive::Below(tau) => (tau, true),
     };
-    if !all && !anywhere(comm, problem, locals) {
+    if !all && !classes::anywhere(comm, problem, locals) {
         return Vec::new();
     }
     let mut classes: Vec<Vec<Class>> = (0..locals.len())
-        .map(|j| classes(&problem.local[j], sharing, &locals[j]))
+        .map(|j| classes::of(&problem.local[j], sharing, &locals[j]))
         .collect();
     if !all {
-        let rough = rough(comm, problem, sharing, locals, &classes);
+        let rough = classes::rough(comm, problem, sharing, locals, &classes);
         let keep = classes.iter_mut().zip(rough);
         keep.for_each(|(list, rough)| {
             let mut rough = rough.into_iter();
@@ -80,7 +58,7 @@ pub fn find(
     }
 
     for (j, list) in classes.iter_mut().enumerate() {
-        collect_entries(jump, j, locals[j].n_gamma(), list);
+        classes::collect_entries(jump, j, locals[j].n_gamma(), list);
     }
     // Parts travel to the rank of the lowest sharer.
     let rank = comm.rank() as u32;
@@ -123,7 +101,7 @@ pub fn find(
             }
         };
         let parts: Vec<Part> = class.sharers.iter().map(own).collect();
-        pencil::functionals(&parts, &means(&locals[j], class), tau)
+        pencil::functionals(&parts, &classes::means(&locals[j], class), tau)
     });
 
     // [to, class, k, k functionals] to every sharer
@@ -197,99 +175,6 @@ pub fn constrain(
     Ok(first.iter().map(|j| renewed[place(j)].clone()).collect())
 }
 
-/// The classes of a subdomain.
-fn classes(sub: &Subdomain, sharing: &Sharing, local: &LocalProblem) -> Vec<Class> {
-    let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
-    for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
-        let dof = sub.dofs[dof as usize];
-        let copies = sharing.shared(dof);
-        if copies.len() > 1 {
-            let sharers = copies.iter().map(|c| c.subdomain).collect();
-            found.entry(sharers).or_default().push((dof, i));
-        }
-    }
-    let class = |(sharers, mut members): (Vec<u32>, Vec<(u64, usize)>)| {
-        members.sort_unstable();
-        let (dofs, at) = members.into_iter().unzip();
-        Class {
-            sharers,
-            dofs,
-            at,
-            entries: Vec::new(),
-        }
-    };
-    found.into_iter().map(class).collect()
-}
-
-/// For each class of each local subdomain, whether coefficients vary in one of its sharers. Collective.
-fn rough(
-    comm: &SimpleCommunicator,
-    problem: &Substructures,
-    sharing: &Sharing,
-    locals: &[Arc<LocalProblem>],
-    classes: &[Vec<Class>],
-) -> Vec<Vec<bool>> {
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
-    for (j, list) in classes.iter().enumerate() {
-        for class in list {
-            let dofs = class.at.iter().map(|&i| locals[j].interface[i]);
-            if varies(&problem.local[j], dofs) {
-                for &to in &class.sharers {
-                    outgoing[sharing.rank_of[to as usize] as usize].push(class.name());
-                }
-            }
-        }
-    }
-    let mut names = exchange_words(comm, outgoing).concat();
-    names.sort_unstable();
-    let of = |class: &Class| names.binary_search(&class.name()).is_ok();
-    classes
-        .iter()
-        .map(|list| list.iter().map(of).collect())
-        .collect()
-}
-
-/// Whether stiffness varies along the interface of any subdomain at all; equal subdomains are looked at once. Collective.
-fn anywhere(
-    comm: &SimpleCommunicator,
-    problem: &Substructures,
-    locals: &[Arc<LocalProblem>],
-) -> bool {
-    let mut seen = HashSet::new();
-    let mut locals = locals.iter().zip(&problem.local);
-    let found = locals.any(|(local, sub)| {
-        let shared = local.interface[..local.n_delta].iter().copied();
-        seen.insert(Arc::as_ptr(local)) && varies(sub, shared)
-    });
-    let mut found = [f64::from(u8::from(found))];
-    sum_all(comm, &mut found);
-    found[0] > 0.0
-}
-
-/// Whether stiffness varies along these dofs of a subdomain or next to them.
-fn varies(sub: &Subdomain, dofs: impl Iterator<Item = u32>) -> bool {
-    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
-    for i in dofs {
-        for &k in sub.k.row(i as usize).0 {
-            let stiff = sub.k.get(k as usize, k as usize);
-            (low, high) = (low.min(stiff), high.max(stiff));
-        }
-    }
-    high > SMOOTH * low
-}
-
-/// Places in the class of the dofs of the averages that are primal already.
-fn means(local: &LocalProblem, class: &Class) -> Vec<Vec<usize>> {
-    let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
-    let inside = local
-        .basis
-        .supports()
-        .filter(|at| place.contains_key(&at[0]));
-    inside
-        .map(|at| at.iter().map(|i| place[i]).collect())
-        .collect()
-}
-
 /// What local subdomain `j` has to say about a class.
 fn part(
     problem: &Substructures,
@@ -333,20 +218,6 @@ fn part(
         sigma: local.sigma.clone(),
         stiff: local.primal_stiffness(),
         names: vertices.chain(averages).chain(fixing).collect(),
-    }
-}
-
-/// Notes the entries of B_D in the rows of every class.
-fn collect_entries(jump: &Jump, j: usize, n_gamma: usize, classes: &mut [Class]) {
-    let mut of = vec![None; n_gamma];
-    for (c, class) in classes.iter().enumerate() {
-        class.at.iter().for_each(|&i| of[i] = Some(c));
-    }
-    let columns = &jump.columns[j];
-    for (k, (&row, &at)) in columns.row.iter().zip(&columns.at).enumerate() {
-        if let Some(c) = of[at as usize].filter(|_| !jump.ghost_is_contact[row as usize]) {
-            classes[c].entries.push(k as u32);
-        }
     }
 }
 

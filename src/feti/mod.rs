@@ -3,6 +3,7 @@
 pub mod adaptive;
 pub mod blocks;
 pub mod check;
+pub mod classes;
 pub mod coarse;
 pub mod deluxe;
 pub mod dual;

@@ -90,7 +90,7 @@ impl Basis {
             .filter(|(u, _)| **u)
             .for_each(|(_, c)| *c = 0.0);
         let left = norm(&c);
-        if !(left > DEPENDENT * all) {
+        if left <= DEPENDENT * all || left.is_nan() {
             return false;
         }
         c.iter_mut().for_each(|c| *c /= left);

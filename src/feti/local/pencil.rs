@@ -1,4 +1,4 @@
-//! The eigenproblem behind adaptive primal constraints, on the dofs that the same q subdomains share (docs/theory.md, section 10).
+//! The eigenproblem behind adaptive primal constraints, on the dofs that the same q subdomains share (docs/theory.md, section 11).
 //!
 //! For jumps d = (w_a − w_q)_{a<q} of these dofs, A measures what B_Dᵀ makes of them and M is the least energy that can hold
 //! them open with the primal dofs of the q subdomains as they are,
@@ -325,7 +325,7 @@ impl Chosen {
             }
         }
         let left = norm(&rest);
-        if !(left > SAME * size) {
+        if left <= SAME * size || left.is_nan() {
             return false;
         }
         rest.iter_mut().for_each(|v| *v /= left);
