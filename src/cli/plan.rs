@@ -37,7 +37,7 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
     let coefficient = Coefficient::of(session, &scene)?;
     let mut out = text(&scene, &sizes, &coefficient);
     let deflation = deflation(session, substructures, settings, &coefficient)?;
-    let _ = writeln!(out, "{:<22}{deflation}", "deflation");
+    let _ = writeln!(out, "{:<22}{deflation}", "adaptive");
     super::say(session, &out)
 }
 
@@ -61,8 +61,11 @@ fn deflation(
     }
     let solver = FetiFeti::new(session, problem, settings)?;
     solver.deflate()?;
-    let Some(report) = adaptive(&solver)? else {
+    let Some(adaptive) = adaptive(&solver)? else {
         return Ok("none".into());
+    };
+    let Some(report) = &adaptive.deflation else {
+        return Ok(adaptive.constraints_text());
     };
     let names = &solver.problem().body_names;
     let counts = report.by_body.iter().zip(names).filter(|c| *c.0 > 0);
@@ -73,6 +76,9 @@ fn deflation(
         .collect();
     let more = counts.count().saturating_sub(LIST);
     let mut out = report.text();
+    if adaptive.constraints.iter().any(|n| *n > 0) {
+        out = format!("{}\n{:<22}{out}", adaptive.constraints_text(), "");
+    }
     if !listed.is_empty() {
         let rest = if more > 0 {
             format!(" and {more} more bodies")

@@ -15,7 +15,7 @@ use crate::feti::exchange::sum_all;
 use crate::feti::local::problem::factorisations;
 use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
 use crate::petsc::{max_memory, Session};
-use crate::report::adaptive::Adaptive;
+use crate::report::adaptive::{Adaptive, Deflation};
 use crate::report::contact::ContactReport;
 use crate::report::json::{self, SolveReport};
 use crate::report::{contact_map, load_steps, output, profile, summary};
@@ -231,6 +231,17 @@ fn report(
 
 /// Key `adaptive`. Collective.
 pub(super) fn adaptive(solver: &FetiFeti) -> Result<Option<Adaptive>> {
+    let facts = solver.facts();
+    let out = Adaptive {
+        constraints: facts.adaptive_constraints.clone(),
+        constraint_seconds: facts.adaptive_seconds,
+        deflation: deflation(solver)?,
+    };
+    let added = out.constraints.iter().any(|n| *n > 0);
+    Ok((added || out.deflation.is_some()).then_some(out))
+}
+
+fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
     let Some(cost) = solver.deflated() else {
         return Ok(None);
     };
@@ -240,7 +251,7 @@ pub(super) fn adaptive(solver: &FetiFeti) -> Result<Option<Adaptive>> {
         false => None,
     };
     let names = &solver.problem().body_names;
-    Ok(Some(Adaptive {
+    Ok(Some(Deflation {
         tau: cost.tau,
         vectors: cost.vectors.iter().sum(),
         shared: cost.shared,

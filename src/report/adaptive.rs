@@ -1,12 +1,23 @@
-//! What was deflated, in words and as JSON.
+//! What adaptivity added, in words and as JSON.
 
 use serde::{Deserialize, Serialize};
 
 use super::json::Spectrum;
 
-/// Deflation of eigenvalues above τ; key `adaptive` of a report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Constraints inside bodies, and deflation of eigenvalues above τ between them; key `adaptive` of a report.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Adaptive {
+    /// Primal constraints that were added in every body, by its number; empty where none was looked for.
+    pub constraints: Vec<usize>,
+    /// Seconds of finding them; part of `seconds.setup`.
+    pub constraint_seconds: f64,
+    /// The deflation; absent where nothing was searched for.
+    pub deflation: Option<Deflation>,
+}
+
+/// Deflation of eigenvalues above τ.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Deflation {
     /// τ.
     pub tau: f64,
     /// Vectors of all bodies.
@@ -30,6 +41,23 @@ pub struct Adaptive {
 }
 
 impl Adaptive {
+    /// How many constraints were added and where.
+    pub fn constraints_text(&self) -> String {
+        let bodies = self.constraints.iter().filter(|n| **n > 0).count();
+        let count = |n: usize, one: &str, many: &str| match n {
+            1 => format!("1 {one}"),
+            n => format!("{n} {many}"),
+        };
+        format!(
+            "{} added in {}, {:.3} s",
+            count(self.constraints.iter().sum(), "constraint", "constraints"),
+            count(bodies, "body", "bodies"),
+            self.constraint_seconds
+        )
+    }
+}
+
+impl Deflation {
     /// One line of a summary, and one more where a body needs more vectors than it may have.
     pub fn text(&self) -> String {
         let bodies = self.by_body.iter().filter(|n| **n > 0).count();

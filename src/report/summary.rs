@@ -72,7 +72,12 @@ pub fn solve(r: &SolveReport) -> String {
         format!("{inner}, {} at rtol {:.0e}", r.converged_reason, r.rtol),
     ));
     if let Some(adaptive) = &r.adaptive {
-        lines.push(("deflation", adaptive.text()));
+        if adaptive.constraints.iter().any(|n| *n > 0) {
+            lines.push(("adaptive primal", adaptive.constraints_text()));
+        }
+        if let Some(deflation) = &adaptive.deflation {
+            lines.push(("deflation", deflation.text()));
+        }
     }
     if r.condition.exact.is_some() {
         lines.push(("exact spectrum", spectrum(r.condition.exact)));

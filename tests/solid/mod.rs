@@ -25,6 +25,9 @@ pub enum Physics {
 pub enum Rows {
     /// All components, all pairs of bodies at a node.
     Tied,
+    /// Rows as `Tied`, but only those hold that are normal to the face of just two bodies; what does not hold is a candidate all the same,
+    /// so that whole nodes belong to Γ and leave Z_c.
+    NormalsByNode,
     /// One row for each pair of faces and node, in the normal direction.
     Normals,
 }
@@ -267,8 +270,8 @@ impl Solid {
         translations.chain(rotations).collect()
     }
 
-    /// The rows between the bodies at node `x`: (lower body, other body, component).
-    fn pairs(&self, x: [usize; 3]) -> Vec<(usize, usize, usize)> {
+    /// The rows between the bodies at node `x`: (lower body, other body, component, whether it holds).
+    fn pairs(&self, x: [usize; 3]) -> Vec<(usize, usize, usize, bool)> {
         let pb = self.per_body();
         let around = |x: usize| -> Vec<usize> {
             let last = self.bodies - 1;
@@ -297,13 +300,15 @@ impl Solid {
             for b in &bodies[i + 1..] {
                 let apart: Vec<usize> = (0..self.dim).filter(|&d| a[d] != b[d]).collect();
                 let components: Vec<usize> = match self.rows {
-                    Rows::Tied => (0..self.components()).collect(),
-                    Rows::Normals if apart.len() == 1 => apart,
+                    Rows::Tied | Rows::NormalsByNode => (0..self.components()).collect(),
+                    Rows::Normals if apart.len() == 1 => apart.clone(),
                     Rows::Normals => continue,
                 };
                 let free = components.into_iter().filter(|&c| self.free(x, c));
                 let number = |p: &[usize; 3]| Self::number(*p, self.bodies);
-                out.extend(free.map(|c| (number(a), number(b), c)));
+                let normal = |c| bodies.len() == 2 && apart == [c];
+                let holds = |c| self.rows != Rows::NormalsByNode || normal(c);
+                out.extend(free.map(|c| (number(a), number(b), c, holds(c))));
             }
         }
         out
@@ -317,14 +322,14 @@ impl Solid {
         for i in 0..n.pow(self.dim as u32) {
             let x = self.place(i, n);
             let pairs = self.pairs(x);
-            for (a, b, c) in pairs.iter().copied() {
+            for (a, b, c, holds) in pairs.iter().copied() {
                 let home = pairs.iter().filter(|p| p.2 == c).map(|p| p.0).min();
                 if mine(home.expect("the pair itself") * per_body) {
                     rows.push(InterfaceRow {
                         terms: vec![(self.dof(a, x, c), 1.0), (self.dof(b, x, c), -1.0)],
                         gap: 0.0,
                         kind: RowKind::Equality,
-                        holds: true,
+                        holds,
                         block: (i * self.components() + c) as u64,
                     });
                 }
