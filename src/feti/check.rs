@@ -33,6 +33,20 @@ pub(super) fn identities(
         out.push(("P^T P^T = P^T", check.projector(|x| dual.p_transpose(x))?));
         out.push(("G^T P = 0", check.admissible()?));
     }
+    if dual
+        .deflation()
+        .as_ref()
+        .is_some_and(|d| d.matrices().is_some())
+    {
+        out.push((
+            "P_2 P_2 = P_2",
+            check.projector(|x| {
+                dual.p(x)?;
+                dual.p2(x)
+            })?,
+        ));
+        out.push(("W^T F P_2 = 0", check.complement()?));
+    }
     if dual.preconditioner.lifting().is_some() {
         out.push(("B Z_c = 0", check.lifted()?));
     }
@@ -72,6 +86,29 @@ impl Check<'_> {
             local.basis.set_values(&values, &mut w.y);
         }
         work
+    }
+
+    /// What P_2 leaves of W in F P_2 M⁻¹ x for jumps x, relative to what it takes away.
+    fn complement(&self) -> Result<f64> {
+        let dual = self.dual;
+        let (x, y, image) = (
+            self.multipliers(7)?,
+            dual.multipliers()?,
+            dual.multipliers()?,
+        );
+        dual.p_transpose(&x)?;
+        dual.m(&x, &y)?;
+        dual.p(&y)?;
+        let mut sizes = [0.0; 2];
+        for size in &mut sizes {
+            dual.f(&y, &image)?;
+            *size = match dual.deflation().as_ref().and_then(|d| d.matrices()) {
+                Some(p2) => p2.part_of(self.session, &image)?,
+                None => 0.0,
+            };
+            dual.p2(&y)?;
+        }
+        Ok(self.relative(sizes[1], sizes[0]))
     }
 
     fn relative(&self, defect: f64, size: f64) -> f64 {

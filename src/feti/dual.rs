@@ -145,11 +145,16 @@ impl Dual {
 
     /// λ ← λ + W (Wᵀ F W)⁺ Wᵀ r and r ← P_2ᵀ r, where something is deflated. Collective.
     pub fn deflated_part(&self, residual: &PetscVec, lambda: &PetscVec) -> Result<()> {
-        if let Some(deflation) = &*self.deflation.borrow() {
+        if let Some(p2) = self
+            .deflation
+            .borrow()
+            .as_ref()
+            .and_then(Deflation::matrices)
+        {
             // What is left in range F W stays there: the preconditioner does not see it. The second time removes the rounding of the first.
             for _ in 0..2 {
-                deflation.solve(&self.session, residual, lambda)?;
-                deflation.project_transpose(&self.session, residual)?;
+                p2.solve(&self.session, residual, lambda)?;
+                p2.project_transpose(&self.session, residual)?;
                 self.natural
                     .project_transpose(self.session.comm(), residual)?;
             }
@@ -159,16 +164,26 @@ impl Dual {
 
     /// x ← P_2 x for x in V. Collective.
     pub fn p2(&self, x: &PetscVec) -> Result<()> {
-        match &*self.deflation.borrow() {
-            Some(deflation) => deflation.project(&self.session, x),
+        match self
+            .deflation
+            .borrow()
+            .as_ref()
+            .and_then(Deflation::matrices)
+        {
+            Some(p2) => p2.project(&self.session, x),
             None => Ok(()),
         }
     }
 
     /// x ← P_2ᵀ x. Collective.
     pub fn p2_transpose(&self, x: &PetscVec) -> Result<()> {
-        match &*self.deflation.borrow() {
-            Some(deflation) => deflation.project_transpose(&self.session, x),
+        match self
+            .deflation
+            .borrow()
+            .as_ref()
+            .and_then(Deflation::matrices)
+        {
+            Some(p2) => p2.project_transpose(&self.session, x),
             None => Ok(()),
         }
     }

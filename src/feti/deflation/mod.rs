@@ -16,6 +16,7 @@
 
 pub mod balance;
 pub mod graph;
+pub mod matrices;
 pub mod pencil;
 pub mod search;
 pub mod sweep;
@@ -27,17 +28,15 @@ use mpi::topology::SimpleCommunicator;
 
 use self::balance::Balance;
 use self::graph::BodyGraph;
+use self::matrices::Matrices;
 use self::pencil::Pencil;
 use self::sweep::Column;
 use self::whole::Whole;
 use super::dual::Dual;
-use super::exchange::{max_all, sum_all};
-use super::local::dense::Dense;
-use super::local::semidefinite::Semidefinite;
-use super::rows::Rows;
+use super::exchange::max_all;
 use super::settings::Adaptive;
 use super::spectrum::Spectrum;
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -61,10 +60,6 @@ pub struct Cost {
     /// Seconds of the search and of the matrices.
     pub seconds: f64,
 }
-
-/// Vectors of neighbours may show the same mode. What is left of one after the others, relative to it and squared in the F-norm, must be
-/// more than this to count: it carries the rounding of F W divided by it.
-const DEPENDENT: f64 = 1e-10;
 
 /// Coefficients of a body whose largest is more than this many times the smallest jump.
 pub const JUMPS: f64 = 1e2;
@@ -101,12 +96,6 @@ pub fn watch(adaptive: Adaptive, varies: f64) -> Option<f64> {
     }
 }
 
-/// Rows Y without the kernel part: Y − Q X with sparse Y, Q.
-struct Split {
-    y: Rows,
-    q: Option<Rows>,
-}
-
 /// P_2 for the rows that hold.
 pub struct Deflation {
     /// What it cost.
@@ -115,13 +104,7 @@ pub struct Deflation {
     balance: Balance,
     /// M⁻¹ P_iᵀ F_i μ with all rows that the search knew.
     columns: Vec<Column>,
-    /// P W and F P W.
-    w: Split,
-    fw: Split,
-    /// X, r × the number of columns.
-    x: Dense,
-    /// Wᵀ Pᵀ F P W.
-    e: Semidefinite,
+    matrices: Matrices,
 }
 
 impl Deflation {
@@ -172,18 +155,15 @@ impl Deflation {
         jumps.sort_by_key(|j| j.0);
         let jumps: Vec<Column> = jumps.into_iter().map(|j| j.1).collect();
         let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| dual.m(x, y))?;
-        let (w, fw, x, e) = matrices(session, dual, &graph, &balance, &columns)?;
-        cost.dependent = columns.len() - e.rank();
+        let matrices = Matrices::new(session, dual, &graph, &balance, &columns)?;
+        cost.dependent = columns.len() - matrices.rank();
         cost.seconds = clock.elapsed().as_secs_f64();
         Ok(Deflation {
             cost,
             graph,
             balance,
             columns,
-            w,
-            fw,
-            x,
-            e,
+            matrices,
         })
     }
 
@@ -209,8 +189,8 @@ impl Deflation {
         let n = found.len();
         if n > 0 {
             self.columns.extend(found);
-            (self.w, self.fw, self.x, self.e) =
-                matrices(session, dual, &self.graph, &self.balance, &self.columns)?;
+            self.matrices =
+                Matrices::new(session, dual, &self.graph, &self.balance, &self.columns)?;
             self.cost.shared += n;
         }
         self.cost.seconds += clock.elapsed().as_secs_f64();
@@ -238,144 +218,12 @@ impl Deflation {
             reach: column.reach.clone(),
         };
         let columns: Vec<Column> = self.columns.iter().map(mask).collect();
-        (self.w, self.fw, self.x, self.e) =
-            matrices(session, dual, &self.graph, &self.balance, &columns)?;
+        self.matrices = Matrices::new(session, dual, &self.graph, &self.balance, &columns)?;
         Ok(())
     }
 
-    /// λ ← P_2 λ for λ in V. Collective.
-    pub fn project(&self, session: &Session, lambda: &PetscVec) -> Result<()> {
-        if self.columns.is_empty() {
-            return Ok(());
-        }
-        let mut c = self.transpose(session, &self.fw, lambda)?; /* c ← (F P W)ᵀ λ     */
-        self.e.solve(&mut c); /*                                    c ← E⁺ c           */
-        self.add(-1.0, &self.w, &c, lambda) /*                      λ ← λ − P W c      */
+    /// P_2 as matrices; `None` without vectors.
+    pub fn matrices(&self) -> Option<&Matrices> {
+        (!self.columns.is_empty()).then_some(&self.matrices)
     }
-
-    /// r ← P_2ᵀ r. Collective.
-    pub fn project_transpose(&self, session: &Session, residual: &PetscVec) -> Result<()> {
-        if self.columns.is_empty() {
-            return Ok(());
-        }
-        let mut c = self.transpose(session, &self.w, residual)?; /* c ← (P W)ᵀ r       */
-        self.e.solve(&mut c); /*                                    c ← E⁺ c           */
-        self.add(-1.0, &self.fw, &c, residual) /*                   r ← r − F P W c    */
-    }
-
-    /// out ← out + W (Wᵀ F W)⁺ Wᵀ r: the part of the solution in range W. Collective.
-    pub fn solve(&self, session: &Session, residual: &PetscVec, out: &PetscVec) -> Result<()> {
-        let mut c = self.transpose(session, &self.w, residual)?;
-        self.e.solve(&mut c);
-        self.add(1.0, &self.w, &c, out)
-    }
-
-    /// (Y − Q X)ᵀ v.
-    fn transpose(&self, session: &Session, of: &Split, v: &PetscVec) -> Result<Vec<f64>> {
-        let (k, r) = (self.x.cols, self.x.rows);
-        let mut c = vec![0.0; k + r];
-        {
-            let v = v.array()?;
-            let (columns, kernels) = c.split_at_mut(k);
-            of.y.add_transpose(&v, columns);
-            if let Some(q) = &of.q {
-                q.add_transpose(&v, kernels);
-            }
-        }
-        sum_all(session.comm(), &mut c);
-        let mut kernels = c.split_off(k);
-        kernels.iter_mut().for_each(|v| *v = -*v);
-        self.x.add_mul_transpose(&kernels, &mut c);
-        Ok(c)
-    }
-
-    /// v ← v + α (Y − Q X) c.
-    fn add(&self, alpha: f64, of: &Split, c: &[f64], v: &PetscVec) -> Result<()> {
-        let mut v = v.array_mut()?;
-        of.y.add(alpha, c, &mut v);
-        if let Some(q) = &of.q {
-            let mut kernels = vec![0.0; self.x.rows];
-            self.x.add_mul(c, &mut kernels);
-            q.add(-alpha, &kernels, &mut v);
-        }
-        Ok(())
-    }
-}
-
-/// W, F W, X and Wᵀ F W of given columns. Collective.
-fn matrices(
-    session: &Session,
-    dual: &Dual,
-    graph: &BodyGraph,
-    balance: &Balance,
-    columns: &[Column],
-) -> Result<(Split, Split, Dense, Semidefinite)> {
-    let n = dual.stiffness.jump.n_owned;
-    let (k, r) = (columns.len(), dual.natural.r);
-    let like = dual.multipliers()?;
-    let f = |x: &PetscVec, y: &PetscVec| balance.f(session, dual, x, y);
-    let w = sweep::rows(n, columns);
-    let fw = sweep::rows(n, &sweep::images(&like, graph, columns, f)?);
-    let mut x = Dense::zeros(r, k);
-    let mut kernels = None;
-    if r > 0 && k > 0 {
-        for i in 0..n {
-            for (g, gv) in dual.natural.g().row(i) {
-                w.row(i).for_each(|(c, wv)| x.data[g + c * r] += gv * wv);
-            }
-        }
-        sum_all(session.comm(), &mut x.data);
-        for c in 0..k {
-            dual.natural.solve_gtg(x.col_mut(c))?;
-        }
-        let natural = &dual.natural;
-        let qg = sweep::kernel_columns(natural.qg(), &dual.stiffness.space.kernel_start, |b| {
-            graph.around(&graph.near[b])
-        });
-        let fqg = sweep::rows(n, &sweep::images(&like, graph, &qg, f)?);
-        kernels = Some((sweep::rows(n, &qg), fqg));
-    }
-    let (qg, fqg) = kernels.unzip();
-    let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
-    let e = gram(session, &w, &fw, &x);
-    Ok((w, fw, x, Semidefinite::above(&e, DEPENDENT)))
-}
-
-/// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
-fn gram(session: &Session, w: &Split, f: &Split, x: &Dense) -> Dense {
-    let (r, k) = (x.rows, x.cols);
-    // The products of all columns, kernel ones after the others: [Y Q]ᵀ F [Y Q].
-    let m = k + if w.q.is_some() { r } else { 0 };
-    let mut a = Dense::zeros(m, m);
-    let of = |s: &Split, i: usize, out: &mut Vec<(usize, f64)>| {
-        out.clear();
-        out.extend(s.y.row(i));
-        out.extend(s.q.iter().flat_map(|q| q.row(i).map(|(c, v)| (k + c, v))));
-    };
-    let (mut left, mut right) = (Vec::new(), Vec::new());
-    for i in 0..w.y.n() {
-        of(w, i, &mut left);
-        of(f, i, &mut right);
-        for &(p, pv) in &left {
-            let column = a.col_mut(p);
-            right.iter().for_each(|&(q, qv)| column[q] += pv * qv);
-        }
-    }
-    sum_all(session.comm(), &mut a.data);
-    let entry = |i: usize, j: usize| 0.5 * (a.get(i, j) + a.get(j, i));
-    let mut e = Dense::zeros(k, k);
-    let mut column = vec![0.0; m];
-    for j in 0..k {
-        for (i, c) in column.iter_mut().enumerate() {
-            *c = entry(i, j);
-            for g in k..m {
-                *c -= entry(i, g) * x.get(g - k, j);
-            }
-        }
-        for i in 0..k {
-            let kernels = (k..m).map(|g| x.get(g - k, i) * column[g]);
-            e.set(i, j, column[i] - kernels.sum::<f64>());
-        }
-    }
-    e
 }

@@ -70,13 +70,17 @@ impl Pencils for Whole<'_> {
         self.x.array_mut()?.copy_from_slice(v);
         self.dual.m(&self.x, &self.y)?;
         self.dual.p(&self.y)?;
-        self.deflation.project(self.session, &self.y)?;
+        if let Some(p2) = self.deflation.matrices() {
+            p2.project(self.session, &self.y)?;
+        }
         self.y.to_vec()
     }
 
     fn jump_part(&self, v: &mut Vec<f64>) -> Result<()> {
         *v = self.with(v, |x| {
-            self.deflation.project_transpose(self.session, x)?;
+            if let Some(p2) = self.deflation.matrices() {
+                p2.project_transpose(self.session, x)?;
+            }
             self.dual.p_transpose(x)
         })?;
         Ok(())

@@ -1,0 +1,185 @@
+//! W, F W and Wᵀ F W for the rows that hold, and P_2 made of them.
+
+use super::balance::Balance;
+use super::graph::BodyGraph;
+use super::sweep::{self, Column};
+use crate::feti::dual::Dual;
+use crate::feti::exchange::sum_all;
+use crate::feti::local::dense::Dense;
+use crate::feti::local::semidefinite::Semidefinite;
+use crate::feti::rows::Rows;
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::Result;
+
+/// Vectors of neighbours may show the same mode. What is left of one after the others, relative to it and squared in the F-norm, must be
+/// more than this to count: it carries the rounding of F W divided by it.
+const DEPENDENT: f64 = 1e-10;
+
+/// Rows Y without the kernel part: Y − Q X with sparse Y, Q.
+struct Split {
+    y: Rows,
+    q: Option<Rows>,
+}
+
+/// P_2 in terms of P W = W − Q G X.
+pub struct Matrices {
+    /// P W and F P W.
+    w: Split,
+    fw: Split,
+    /// X, r × the number of columns.
+    x: Dense,
+    /// Wᵀ Pᵀ F P W.
+    e: Semidefinite,
+    /// F-norms of the columns of W.
+    norms: Vec<f64>,
+}
+
+impl Matrices {
+    /// Applies F to the columns and puts everything together. Collective.
+    pub fn new(
+        session: &Session,
+        dual: &Dual,
+        graph: &BodyGraph,
+        balance: &Balance,
+        columns: &[Column],
+    ) -> Result<Matrices> {
+        let n = dual.stiffness.jump.n_owned;
+        let (k, r) = (columns.len(), dual.natural.r);
+        let like = dual.multipliers()?;
+        let f = |x: &PetscVec, y: &PetscVec| balance.f(session, dual, x, y);
+        let w = sweep::rows(n, columns);
+        let fw = sweep::rows(n, &sweep::images(&like, graph, columns, f)?);
+        let mut x = Dense::zeros(r, k);
+        let mut kernels = None;
+        if r > 0 && k > 0 {
+            for i in 0..n {
+                for (g, gv) in dual.natural.g().row(i) {
+                    w.row(i).for_each(|(c, wv)| x.data[g + c * r] += gv * wv);
+                }
+            }
+            sum_all(session.comm(), &mut x.data);
+            for c in 0..k {
+                dual.natural.solve_gtg(x.col_mut(c))?;
+            }
+            let natural = &dual.natural;
+            let qg = sweep::kernel_columns(natural.qg(), &dual.stiffness.space.kernel_start, |b| {
+                graph.around(&graph.near[b])
+            });
+            let fqg = sweep::rows(n, &sweep::images(&like, graph, &qg, f)?);
+            kernels = Some((sweep::rows(n, &qg), fqg));
+        }
+        let (qg, fqg) = kernels.unzip();
+        let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
+        let e = gram(session, &w, &fw, &x);
+        Ok(Matrices {
+            w,
+            fw,
+            x,
+            norms: (0..k).map(|i| e.get(i, i).max(0.0).sqrt()).collect(),
+            e: Semidefinite::above(&e, DEPENDENT),
+        })
+    }
+
+    /// Number of independent vectors.
+    pub fn rank(&self) -> usize {
+        self.e.rank()
+    }
+
+    /// λ ← P_2 λ for λ in V. Collective.
+    pub fn project(&self, session: &Session, lambda: &PetscVec) -> Result<()> {
+        let mut c = self.transpose(session, &self.fw, lambda)?; /* c ← (F P W)ᵀ λ     */
+        self.e.solve(&mut c); /*                                    c ← E⁺ c           */
+        self.add(-1.0, &self.w, &c, lambda) /*                      λ ← λ − P W c      */
+    }
+
+    /// r ← P_2ᵀ r. Collective.
+    pub fn project_transpose(&self, session: &Session, residual: &PetscVec) -> Result<()> {
+        let mut c = self.transpose(session, &self.w, residual)?; /* c ← (P W)ᵀ r       */
+        self.e.solve(&mut c); /*                                    c ← E⁺ c           */
+        self.add(-1.0, &self.fw, &c, residual) /*                   r ← r − F P W c    */
+    }
+
+    /// out ← out + W (Wᵀ F W)⁺ Wᵀ r: the part of the solution in range W. Collective.
+    pub fn solve(&self, session: &Session, residual: &PetscVec, out: &PetscVec) -> Result<()> {
+        let mut c = self.transpose(session, &self.w, residual)?;
+        self.e.solve(&mut c);
+        self.add(1.0, &self.w, &c, out)
+    }
+
+    /// The size of Wᵀ r, each entry relative to its vector's F-norm. Collective.
+    pub fn part_of(&self, session: &Session, residual: &PetscVec) -> Result<f64> {
+        let c = self.transpose(session, &self.w, residual)?;
+        let of = |(c, norm): (&f64, &f64)| if *norm > 0.0 { (c / norm).abs() } else { 0.0 };
+        Ok(c.iter().zip(&self.norms).map(of).fold(0.0, f64::max))
+    }
+
+    /// (Y − Q X)ᵀ v.
+    fn transpose(&self, session: &Session, of: &Split, v: &PetscVec) -> Result<Vec<f64>> {
+        let (k, r) = (self.x.cols, self.x.rows);
+        let mut c = vec![0.0; k + r];
+        {
+            let v = v.array()?;
+            let (columns, kernels) = c.split_at_mut(k);
+            of.y.add_transpose(&v, columns);
+            if let Some(q) = &of.q {
+                q.add_transpose(&v, kernels);
+            }
+        }
+        sum_all(session.comm(), &mut c);
+        let mut kernels = c.split_off(k);
+        kernels.iter_mut().for_each(|v| *v = -*v);
+        self.x.add_mul_transpose(&kernels, &mut c);
+        Ok(c)
+    }
+
+    /// v ← v + α (Y − Q X) c.
+    fn add(&self, alpha: f64, of: &Split, c: &[f64], v: &PetscVec) -> Result<()> {
+        let mut v = v.array_mut()?;
+        of.y.add(alpha, c, &mut v);
+        if let Some(q) = &of.q {
+            let mut kernels = vec![0.0; self.x.rows];
+            self.x.add_mul(c, &mut kernels);
+            q.add(-alpha, &kernels, &mut v);
+        }
+        Ok(())
+    }
+}
+
+/// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
+fn gram(session: &Session, w: &Split, f: &Split, x: &Dense) -> Dense {
+    let (r, k) = (x.rows, x.cols);
+    // The products of all columns, kernel ones after the others: [Y Q]ᵀ F [Y Q].
+    let m = k + if w.q.is_some() { r } else { 0 };
+    let mut a = Dense::zeros(m, m);
+    let of = |s: &Split, i: usize, out: &mut Vec<(usize, f64)>| {
+        out.clear();
+        out.extend(s.y.row(i));
+        out.extend(s.q.iter().flat_map(|q| q.row(i).map(|(c, v)| (k + c, v))));
+    };
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    for i in 0..w.y.n() {
+        of(w, i, &mut left);
+        of(f, i, &mut right);
+        for &(p, pv) in &left {
+            let column = a.col_mut(p);
+            right.iter().for_each(|&(q, qv)| column[q] += pv * qv);
+        }
+    }
+    sum_all(session.comm(), &mut a.data);
+    let entry = |i: usize, j: usize| 0.5 * (a.get(i, j) + a.get(j, i));
+    let mut e = Dense::zeros(k, k);
+    let mut column = vec![0.0; m];
+    for j in 0..k {
+        for (i, c) in column.iter_mut().enumerate() {
+            *c = entry(i, j);
+            for g in k..m {
+                *c -= entry(i, g) * x.get(g - k, j);
+            }
+        }
+        for i in 0..k {
+            let kernels = (k..m).map(|g| x.get(g - k, i) * column[g]);
+            e.set(i, j, column[i] - kernels.sum::<f64>());
+        }
+    }
+    e
+}
