@@ -189,10 +189,12 @@ fn every_krylov_method_works_in_the_complement() {
 
 #[test]
 fn contact_keeps_its_vectors() {
-    let text =
-        |table: &str| by_subdomain(3, 4, 3.0, 11) + "[interface]\ndefault = \"contact\"\n" + table;
+    // Two columns of bodies, each held on its outer side: none can be pushed away.
+    let right = "dirichlet = { right = 0 }\norigin = [\"1/2\"";
+    let text = by_subdomain(2, 5, 3.0, 11).replace("origin = [\"1/2\"", right)
+        + "[interface]\ndefault = \"contact\"\n";
     with_session(move |session| {
-        let scene = scene(&text(""));
+        let scene = scene(&text);
         let energy = |adaptive| {
             let settings = Settings {
                 adaptive,
