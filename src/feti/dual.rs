@@ -106,6 +106,12 @@ impl Dual {
         self.preconditioner.apply(&self.stiffness, x, y)
     }
 
+    /// ys ← M⁻¹ xs, several columns at once. Collective.
+    pub fn m_many(&self, xs: &[PetscVec], ys: &[PetscVec]) -> Result<()> {
+        let _timed = self.events[1].scope()?;
+        self.preconditioner.apply_many(&self.stiffness, xs, ys)
+    }
+
     /// x ← P x.
     pub fn p(&self, x: &PetscVec) -> Result<()> {
         let _timed = self.events[2].scope()?;

@@ -241,7 +241,7 @@ impl NaturalCoarse {
         let start = &stiffness.space.kernel_start;
         let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
         let like = PetscVec::mpi(session, n)?;
-        let apply = |x: &PetscVec, y: &PetscVec| preconditioner.apply(stiffness, x, y);
+        let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
         let images = sweep::images(&like, &graph, &columns, apply)?;
         let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
             let entries = list.iter().enumerate().flat_map(|(c, column)| {

@@ -106,6 +106,63 @@ impl Preconditioner {
     }
 }
 
+/// Several columns of one subdomain on Γ: loads in, displacements out.
+struct Columns {
+    v: Dense,
+    y: Dense,
+}
+
+impl Preconditioner {
+    /// outs ← M⁻¹ λs. S is read once for all of them, and only for those that reach the subdomain. Collective.
+    pub fn apply_many(
+        &self,
+        stiffness: &Stiffness,
+        lambdas: &[PetscVec],
+        outs: &[PetscVec],
+    ) -> Result<()> {
+        let direct = matches!(self.kind, PcType::Dirichlet | PcType::CoarseCorrected);
+        if lambdas.len() == 1 || !direct || !self.single.is_empty() {
+            let mut pairs = lambdas.iter().zip(outs);
+            return pairs.try_for_each(|(l, out)| self.apply(stiffness, l, out));
+        }
+        let (work, ghost) = &mut *self.buffers.borrow_mut();
+        let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
+        let room = |local: &Arc<LocalProblem>| Columns {
+            v: Dense::zeros(local.n_gamma(), lambdas.len()),
+            y: Dense::zeros(local.n_gamma(), lambdas.len()),
+        };
+        let mut blocks: Vec<Columns> = locals.iter().map(room).collect();
+        for (c, lambda) in lambdas.iter().enumerate() {
+            stiffness.dual_halo.fetch(lambda, ghost)?;
+            let received = &*ghost;
+            stiffness.team.for_each(&mut blocks, |j, b| {
+                columns[j].bd_transpose(received, b.v.col_mut(c)); /* v ← B_Dᵀ λ   */
+            });
+        }
+        stiffness.team.for_each(&mut blocks, |j, b| {
+            locals[j].s.add_mul_columns(&b.v, &mut b.y); /*       y ← S v          */
+        });
+        for (c, out) in outs.iter().enumerate() {
+            if let Some(lifting) = &self.lifting {
+                for (w, b) in work.iter_mut().zip(&blocks) {
+                    w.v.copy_from_slice(b.v.col(c));
+                    w.y.copy_from_slice(b.y.col(c));
+                }
+                lifting.remove(stiffness, work)?; /*              y ← y − Y A⁺ Yᵀ v */
+                for (w, b) in work.iter().zip(&mut blocks) {
+                    b.y.col_mut(c).copy_from_slice(&w.y);
+                }
+            }
+            ghost.fill(0.0);
+            for (b, columns) in blocks.iter().zip(columns) {
+                columns.add_bd(b.y.col(c), ghost); /*             out ← B_D y      */
+            }
+            stiffness.dual_halo.sum(ghost, out)?;
+        }
+        Ok(())
+    }
+}
+
 /// S of every local subdomain in single precision.
 fn in_single(stiffness: &Stiffness) -> Vec<Arc<Single>> {
     let mut known: HashMap<*const Dense, Arc<Single>> = HashMap::new();

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use super::coarse::PrimalProblem;
 use super::halo::Halo;
 use super::jump::Jump;
+use super::local::dense::Dense;
 use super::local::problem::LocalProblem;
 use super::primal::PrimalSpace;
 use super::refine::{self, Refinement};
@@ -100,23 +101,35 @@ impl Stiffness {
         Ok(())
     }
 
-    /// work.y ← S̃⁺ work.v on every subdomain. Collective.
-    pub fn s_plus(&self, work: &mut [Work]) -> Result<()> {
-        let (locals, space) = (&self.locals, &self.space);
+    /// S_Π⁺ Ψᵀ work.v at this rank's ghosts. Collective.
+    fn coarse_values(&self, work: &mut [Work]) -> Result<Vec<f64>> {
+        let locals = &self.locals;
         self.team.for_each(work, |j, w| {
             locals[j].psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
         });
-        let mut sum = vec![0.0; space.ghosts.len()];
-        for (w, places) in work.iter().zip(&space.of_subdomain) {
+        let mut sum = vec![0.0; self.space.ghosts.len()];
+        for (w, places) in work.iter().zip(&self.space.of_subdomain) {
             for (&g, p) in places.iter().zip(&w.p) {
                 sum[g as usize] += p;
             }
         }
         self.primal_solve(&mut sum)?; /*                  c ← S_Π⁺ p     */
+        Ok(sum)
+    }
+
+    /// p ← the coarse values of local subdomain `j`.
+    fn local_values(space: &PrimalSpace, j: usize, coarse: &[f64], p: &mut [f64]) {
+        for (&g, p) in space.of_subdomain[j].iter().zip(p) {
+            *p = coarse[g as usize];
+        }
+    }
+
+    /// work.y ← S̃⁺ work.v on every subdomain. Collective.
+    pub fn s_plus(&self, work: &mut [Work]) -> Result<()> {
+        let (locals, space) = (&self.locals, &self.space);
+        let coarse = self.coarse_values(work)?;
         self.team.for_each(work, |j, w| {
-            for (&g, p) in space.of_subdomain[j].iter().zip(&mut w.p) {
-                *p = sum[g as usize];
-            }
+            Self::local_values(space, j, &coarse, &mut w.p);
             locals[j].t_apply(&w.v, &mut w.y); /*         y ← T v        */
             locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
         });
@@ -125,46 +138,90 @@ impl Stiffness {
 
     /// out ← F λ = B S̃⁺ Bᵀ λ. Collective.
     pub fn f_mult(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
-        self.f_mult_of(lambda, out, |_| true)
-    }
-
-    /// The same with the bodies alone to which the chosen local subdomains belong. Collective.
-    pub fn f_mult_of(
-        &self,
-        lambda: &PetscVec,
-        out: &PetscVec,
-        chosen: impl Fn(usize) -> bool + Sync,
-    ) -> Result<()> {
-        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
-        self.dual_halo.fetch(lambda, ghost)?;
-        let columns = &self.jump.columns;
-        self.team.for_each(work, |j, w| {
-            if chosen(j) {
-                columns[j].b_transpose(ghost, &mut w.v); /* v ← Bᵀ λ     */
-            } else {
-                w.v.fill(0.0);
-            }
-        });
-        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
-        self.jump_of(work, out) /*                        out ← B y      */
-    }
-
-    /// The same, but `change` may change the loads Bᵀ λ before they act. Collective.
-    pub fn f_mult_with(
-        &self,
-        lambda: &PetscVec,
-        out: &PetscVec,
-        change: impl FnOnce(&mut [Work]),
-    ) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         self.dual_halo.fetch(lambda, ghost)?;
         let columns = &self.jump.columns;
         self.team.for_each(work, |j, w| {
             columns[j].b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
         });
-        change(work);
         self.s_plus(work)?; /*                            y ← S̃⁺ v       */
         self.jump_of(work, out) /*                        out ← B y      */
+    }
+
+    /// outs ← F λs of each colour of bodies: λ and F λ of one colour are about the bodies of that colour alone, `colour` is that of each
+    /// local subdomain's body. One product with S̃⁺ serves all of them. Collective.
+    pub fn f_mult_coloured(
+        &self,
+        lambdas: &[PetscVec],
+        outs: &[PetscVec],
+        colour: &[usize],
+    ) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        let columns = &self.jump.columns;
+        for (c, lambda) in lambdas.iter().enumerate() {
+            self.dual_halo.fetch(lambda, ghost)?;
+            let ghost = &*ghost;
+            self.team.for_each(work, |j, w| {
+                if colour[j] == c {
+                    columns[j].b_transpose(ghost, &mut w.v); /* v ← Bᵀ λ */
+                }
+            });
+        }
+        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
+        for (c, out) in outs.iter().enumerate() {
+            ghost.fill(0.0);
+            for (j, w) in work.iter().enumerate().filter(|w| colour[w.0] == c) {
+                columns[j].add_b(&w.y, ghost); /*         out ← B y      */
+            }
+            self.dual_halo.sum(ghost, out)?;
+        }
+        Ok(())
+    }
+
+    /// outs ← F λs, several columns at once; `change` may change the loads Bᵀ λ of each before they act. T is read once for all of
+    /// them. Collective.
+    pub fn f_mult_many(
+        &self,
+        lambdas: &[PetscVec],
+        outs: &[PetscVec],
+        change: impl Fn(&mut [Work]),
+    ) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        let (columns, locals) = (&self.jump.columns, &self.locals);
+        let room = |local: &Arc<LocalProblem>| {
+            let zeros = || Dense::zeros(local.n_delta, lambdas.len());
+            (zeros(), zeros())
+        };
+        let mut blocks: Vec<(Dense, Dense)> = locals.iter().map(room).collect();
+        let mut coarse = Vec::new();
+        for (c, lambda) in lambdas.iter().enumerate() {
+            self.dual_halo.fetch(lambda, ghost)?;
+            let received = &*ghost;
+            self.team.for_each(work, |j, w| {
+                columns[j].b_transpose(received, &mut w.v); /* v ← Bᵀ λ  */
+            });
+            change(work);
+            coarse.push(self.coarse_values(work)?); /*        c ← S_Π⁺ Ψᵀ v  */
+            for (w, (v, _)) in work.iter().zip(&mut blocks) {
+                let n = v.rows;
+                v.col_mut(c).copy_from_slice(&w.v[..n]);
+            }
+        }
+        self.team.for_each(&mut blocks, |j, (v, y)| {
+            locals[j].t.add_mul_columns(v, y); /*             y ← T v        */
+        });
+        for (c, out) in outs.iter().enumerate() {
+            let (blocks, sum, space) = (&blocks, &coarse[c], &self.space);
+            self.team.for_each(work, |j, w| {
+                w.y.fill(0.0);
+                let y = blocks[j].1.col(c);
+                w.y[..y.len()].copy_from_slice(y);
+                Self::local_values(space, j, sum, &mut w.p);
+                locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
+            });
+            self.jump_of(work, out)?; /*                      out ← B y      */
+        }
+        Ok(())
     }
 
     /// out ← B S̃⁺ Bᵀ λ with all rows of B_gl, those that do not hold included. Collective.

@@ -41,7 +41,7 @@ impl Balance {
         }
     }
 
-    /// Takes the bodies of a colour. Collective.
+    /// The reactions of all bodies. Collective.
     pub fn take(&mut self, session: &Session, dual: &Dual, pencil: &Pencil) -> Result<()> {
         let stiffness = &dual.stiffness;
         let defect = |b: usize| self.start[b + 1] - self.start[b];
@@ -49,15 +49,17 @@ impl Balance {
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
         let mut v = Vec::new();
         for p in 0..most.unwrap_or(0) {
-            stiffness.dual_halo.fetch(pencil.reaction(p)?, &mut ghost)?;
-            for (j, f) in self.f.iter_mut().enumerate() {
-                if pencil.holds(j) && p < defect(self.body[j]) {
-                    v.clear();
-                    v.resize(stiffness.locals[j].n_gamma(), 0.0);
-                    stiffness.jump.columns[j].b_transpose(&ghost, &mut v);
-                    f.rows = v.len();
-                    f.cols = p + 1;
-                    f.data.extend(&v);
+            for (colour, reaction) in pencil.reaction(p)?.iter().enumerate() {
+                stiffness.dual_halo.fetch(reaction, &mut ghost)?;
+                for (j, f) in self.f.iter_mut().enumerate() {
+                    if pencil.colour(j) == colour && p < defect(self.body[j]) {
+                        v.clear();
+                        v.resize(stiffness.locals[j].n_gamma(), 0.0);
+                        stiffness.jump.columns[j].b_transpose(&ghost, &mut v);
+                        f.rows = v.len();
+                        f.cols = p + 1;
+                        f.data.extend(&v);
+                    }
                 }
             }
         }
@@ -77,13 +79,19 @@ impl Balance {
         Ok(())
     }
 
-    /// y ← F x with forces balanced. Collective.
-    pub fn f(&self, session: &Session, dual: &Dual, x: &PetscVec, y: &PetscVec) -> Result<()> {
+    /// ys ← F xs with forces balanced. Collective.
+    pub fn f(
+        &self,
+        session: &Session,
+        dual: &Dual,
+        xs: &[PetscVec],
+        ys: &[PetscVec],
+    ) -> Result<()> {
         let natural = &dual.natural;
-        if natural.r == 0 {
-            return dual.f(x, y);
-        }
-        dual.stiffness.f_mult_with(x, y, |work| {
+        dual.stiffness.f_mult_many(xs, ys, |work| {
+            if natural.r == 0 {
+                return;
+            }
             let mut load = vec![0.0; natural.r];
             for (j, w) in work.iter().enumerate() {
                 let range = self.start[self.body[j]]..self.start[self.body[j] + 1];

@@ -46,7 +46,7 @@ impl Matrices {
         let n = dual.stiffness.jump.n_owned;
         let (k, r) = (columns.len(), dual.natural.r);
         let like = dual.multipliers()?;
-        let f = |x: &PetscVec, y: &PetscVec| balance.f(session, dual, x, y);
+        let f = |x: &[PetscVec], y: &[PetscVec]| balance.f(session, dual, x, y);
         let w = sweep::rows(n, columns);
         let fw = sweep::rows(n, &sweep::images(&like, graph, columns, f)?);
         let mut x = Dense::zeros(r, k);

@@ -118,7 +118,6 @@ impl Deflation {
     ) -> Result<Deflation> {
         let clock = Instant::now();
         let graph = BodyGraph::new(session.comm(), problem, &dual.stiffness);
-        let bodies: Vec<u32> = (0..graph.n as u32).collect();
         let mut cost = Cost {
             tau,
             vectors: vec![0; graph.n],
@@ -127,34 +126,35 @@ impl Deflation {
         let mut jumps: Vec<(u32, Column)> = Vec::new();
         let owners: Vec<usize> = problem.local.iter().map(|s| s.body).collect();
         let mut balance = Balance::new(dual, &owners, graph.n);
-        for colour in graph.colours(&bodies) {
-            let pencil = Pencil::new(session, problem, dual, &graph, &colour)?;
-            balance.take(session, dual, &pencil)?;
-            let found = search::top(&pencil, tau, most, |slot, _, image| {
-                let entries = pencil.parts[slot]
-                    .clone()
-                    .map(|i| (pencil.rows[i], image[i]));
-                let body = pencil.bodies[slot];
-                let column = Column {
-                    entries: entries.filter(|e| e.1 != 0.0).collect(),
-                    reach: graph.near[body as usize].clone(),
-                };
-                jumps.push((body, column));
-            })?;
-            for (body, found) in colour.iter().zip(&found) {
-                let body = *body as usize;
-                cost.vectors[body] = found.theta.len();
-                cost.largest = found.theta.iter().fold(cost.largest, |a, t| a.max(*t));
-                if found.capped {
-                    cost.capped.push(body);
-                }
+        let pencil = Pencil::new(session, problem, dual, &graph)?;
+        balance.take(session, dual, &pencil)?;
+        let found = search::top(&pencil, tau, most, |slot, _, image| {
+            let entries = pencil.parts[slot]
+                .clone()
+                .map(|i| (pencil.rows[i], image[i]));
+            let body = pencil.bodies[slot];
+            let column = Column {
+                entries: entries.filter(|e| e.1 != 0.0).collect(),
+                reach: graph.near[body as usize].clone(),
+            };
+            jumps.push((body, column));
+        })?;
+        for (body, found) in pencil.bodies.iter().zip(&found) {
+            let body = *body as usize;
+            cost.vectors[body] = found.theta.len();
+            cost.largest = found.theta.iter().fold(cost.largest, |a, t| a.max(*t));
+            if found.capped {
+                cost.capped.push(body);
             }
         }
+        drop(pencil);
         cost.capped.sort_unstable();
         // By body, whatever the colours are.
         jumps.sort_by_key(|j| j.0);
         let jumps: Vec<Column> = jumps.into_iter().map(|j| j.1).collect();
-        let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| dual.m(x, y))?;
+        let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| {
+            dual.m_many(x, y)
+        })?;
         let matrices = Matrices::new(session, dual, &graph, &balance, &columns)?;
         cost.dependent = columns.len() - matrices.rank();
         cost.seconds = clock.elapsed().as_secs_f64();

@@ -1,12 +1,13 @@
-//! The pencils of the bodies of one colour, side by side.
+//! The pencils of all bodies, side by side.
 //!
 //! ```text
 //!     F_i = B_i S̃_i⁺ B_iᵀ,    M_i⁻¹ = the rows of body i of M⁻¹,    P_i = I − M_i⁻¹ G_i (G_iᵀ M_i⁻¹ G_i)⁺ G_iᵀ
 //!     P_i M_i⁻¹ P_iᵀ F_i μ = θ μ
 //! ```
 //!
-//! With v = S̃_i⁺ B_iᵀ μ this is B_iᵀ M⁻¹ B_i v = θ S̃_i v (method section 5b), v orthogonal to the kernel of S̃_i. No body of a colour is near
-//! two others, so that one product with F and M⁻¹ serves all of them.
+//! With v = S̃_i⁺ B_iᵀ μ this is B_iᵀ M⁻¹ B_i v = θ S̃_i v (method section 5b), v orthogonal to the kernel of S̃_i. Rows between two bodies
+//! belong to both pencils; bodies are coloured so that none is near two of one colour, and a vector of multipliers holds all bodies of a colour. F is one product
+//! for all colours, M⁻¹ one with several columns.
 
 use std::ops::Range;
 
@@ -20,7 +21,7 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// The bodies of a colour. Vectors hold the rows of one body after those of the other.
+/// All bodies. Vectors hold the rows of one body after those of the other, colour after colour.
 pub struct Pencil<'a> {
     session: &'a Session,
     dual: &'a Dual,
@@ -30,11 +31,14 @@ pub struct Pencil<'a> {
     pub rows: Vec<u32>,
     /// Entries of each body.
     pub parts: Vec<Range<usize>>,
-    /// Whether each local subdomain belongs to one of the bodies.
-    inside: Vec<bool>,
+    /// Colour of each local subdomain's body.
+    colour: Vec<usize>,
+    /// Entries of the bodies of each colour.
+    colours: Vec<Range<usize>>,
     kernel: Option<Kernel>,
-    x: PetscVec,
-    y: PetscVec,
+    /// A vector of multipliers of each colour, and its image.
+    x: Vec<PetscVec>,
+    y: Vec<PetscVec>,
 }
 
 /// G_i and M_i⁻¹ G_i, one column of every body at a time, and the factors of G_iᵀ M_i⁻¹ G_i.
@@ -45,14 +49,16 @@ struct Kernel {
 }
 
 impl<'a> Pencil<'a> {
-    /// Prepares the rows and projections of `bodies`. Collective.
+    /// Prepares rows and projections. Collective.
     pub fn new(
         session: &'a Session,
         problem: &Substructures,
         dual: &'a Dual,
         graph: &BodyGraph,
-        bodies: &[u32],
     ) -> Result<Pencil<'a>> {
+        let all: Vec<u32> = (0..graph.n as u32).collect();
+        let groups = graph.colours(&all);
+        let bodies = groups.concat();
         let jump = &dual.stiffness.jump;
         let mut slot = vec![usize::MAX; graph.n];
         for (s, &b) in bodies.iter().enumerate() {
@@ -75,17 +81,33 @@ impl<'a> Pencil<'a> {
             rows.extend(list);
             parts.push(start..rows.len());
         }
-        let inside = problem.local.iter().map(|s| slot[s.body] != usize::MAX);
+        let mut of_colour = vec![0; graph.n];
+        let mut colours = Vec::new();
+        let mut first = 0;
+        for (c, group) in groups.iter().enumerate() {
+            group.iter().for_each(|&b| of_colour[b as usize] = c);
+            let last = first + group.len();
+            colours.push(parts[first].start..parts[last - 1].end);
+            first = last;
+        }
+        let vectors = || {
+            colours
+                .iter()
+                .map(|_| dual.multipliers())
+                .collect::<Result<_>>()
+        };
+        let (x, y) = (vectors()?, vectors()?);
         let mut pencil = Pencil {
             session,
             dual,
-            bodies: bodies.to_vec(),
+            bodies,
             rows,
             parts,
-            inside: inside.collect(),
+            colour: problem.local.iter().map(|s| of_colour[s.body]).collect(),
+            colours,
             kernel: None,
-            x: dual.multipliers()?,
-            y: dual.multipliers()?,
+            x,
+            y,
         };
         pencil.kernel = pencil.kernels()?;
         Ok(pencil)
@@ -137,23 +159,27 @@ impl<'a> Pencil<'a> {
     }
 
     fn scatter(&self, v: &[f64]) -> Result<()> {
-        self.x.set(0.0)?;
-        let mut x = self.x.array_mut()?;
-        self.rows
-            .iter()
-            .zip(v)
-            .for_each(|(&r, v)| x[r as usize] = *v);
+        for (x, range) in self.x.iter().zip(&self.colours) {
+            x.set(0.0)?;
+            let mut x = x.array_mut()?;
+            let entries = self.rows[range.clone()].iter().zip(&v[range.clone()]);
+            entries.for_each(|(&r, v)| x[r as usize] = *v);
+        }
         Ok(())
     }
 
     fn gather(&self) -> Result<Vec<f64>> {
-        let y = self.y.array()?;
-        Ok(self.rows.iter().map(|&r| y[r as usize]).collect())
+        let mut out = Vec::with_capacity(self.rows.len());
+        for (y, range) in self.y.iter().zip(&self.colours) {
+            let y = y.array()?;
+            out.extend(self.rows[range.clone()].iter().map(|&r| y[r as usize]));
+        }
+        Ok(out)
     }
 
     fn plain_m(&self, v: &[f64]) -> Result<Vec<f64>> {
         self.scatter(v)?;
-        self.dual.m(&self.x, &self.y)?;
+        self.dual.m_many(&self.x, &self.y)?;
         self.gather()
     }
 
@@ -172,16 +198,16 @@ impl<'a> Pencil<'a> {
         }
     }
 
-    /// M_i⁻¹ G_i, column `p` of every body, as multipliers. Collective.
-    pub fn reaction(&self, p: usize) -> Result<&PetscVec> {
+    /// M_i⁻¹ G_i, column `p` of every body, as multipliers by colour. Collective.
+    pub fn reaction(&self, p: usize) -> Result<&[PetscVec]> {
         let column = self.kernel.as_ref().map(|k| &k.mg[p]);
-        self.scatter(column.expect("a body of this colour floats"))?;
+        self.scatter(column.expect("some body floats"))?;
         Ok(&self.x)
     }
 
-    /// Whether local subdomain `j` belongs to one of the bodies.
-    pub fn holds(&self, j: usize) -> bool {
-        self.inside[j]
+    /// Colour of the body of local subdomain `j`.
+    pub fn colour(&self, j: usize) -> usize {
+        self.colour[j]
     }
 }
 
@@ -196,8 +222,8 @@ impl Pencils for Pencil<'_> {
 
     fn f(&self, v: &[f64]) -> Result<Vec<f64>> {
         self.scatter(v)?;
-        let (stiffness, inside) = (&self.dual.stiffness, &self.inside);
-        stiffness.f_mult_of(&self.x, &self.y, |j| inside[j])?;
+        let stiffness = &self.dual.stiffness;
+        stiffness.f_mult_coloured(&self.x, &self.y, &self.colour)?;
         self.gather()
     }
 

@@ -43,41 +43,51 @@ fn groups(graph: &BodyGraph, columns: &[Column]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The images of all columns under `apply`, an operator on vectors like `like` that leads from a row to rows of the bodies that it touches and no further. Collective.
+/// Products at a time.
+const TOGETHER: usize = 8;
+
+/// The images of all columns under `apply`, an operator on several vectors like `like` that leads from a row to rows of the bodies that it touches and
+/// no further. Collective.
 pub fn images(
     like: &PetscVec,
     graph: &BodyGraph,
     columns: &[Column],
-    mut apply: impl FnMut(&PetscVec, &PetscVec) -> Result<()>,
+    mut apply: impl FnMut(&[PetscVec], &[PetscVec]) -> Result<()>,
 ) -> Result<Vec<Column>> {
-    let (x, y) = (like.duplicate()?, like.duplicate()?);
+    let groups = groups(graph, columns);
+    let vectors = || {
+        let n = groups.len().min(TOGETHER);
+        (0..n).map(|_| like.duplicate()).collect::<Result<Vec<_>>>()
+    };
+    let (xs, ys) = (vectors()?, vectors()?);
     let mut out: Vec<Column> = vec![Column::default(); columns.len()];
     const NONE: u32 = u32::MAX;
     let mut owner = vec![NONE; graph.n];
-    for group in groups(graph, columns) {
-        owner.fill(NONE);
-        x.set(0.0)?;
-        {
+    for batch in groups.chunks(TOGETHER) {
+        let (xs, ys) = (&xs[..batch.len()], &ys[..batch.len()]);
+        for (group, x) in batch.iter().zip(xs) {
+            x.set(0.0)?;
             let mut x = x.array_mut()?;
-            for &c in &group {
+            for &(row, value) in group.iter().flat_map(|&c| &columns[c].entries) {
+                x[row as usize] = value;
+            }
+        }
+        apply(xs, ys)?;
+        for (group, y) in batch.iter().zip(ys) {
+            owner.fill(NONE);
+            for &c in group {
                 for &b in &columns[c].reach {
                     owner[b as usize] = c as u32;
                 }
-                for &(row, value) in &columns[c].entries {
-                    x[row as usize] = value;
+                out[c].reach = graph.around(&columns[c].reach);
+            }
+            for (row, &value) in y.array()?.iter().enumerate().filter(|v| *v.1 != 0.0) {
+                let bodies = graph.touched.of(row).iter();
+                let column = bodies.map(|&b| owner[b as usize]).find(|&c| c != NONE);
+                if let Some(c) = column {
+                    out[c as usize].entries.push((row as u32, value));
                 }
             }
-        }
-        apply(&x, &y)?;
-        for (row, &value) in y.array()?.iter().enumerate().filter(|v| *v.1 != 0.0) {
-            let bodies = graph.touched.of(row).iter();
-            let column = bodies.map(|&b| owner[b as usize]).find(|&c| c != NONE);
-            if let Some(c) = column {
-                out[c as usize].entries.push((row as u32, value));
-            }
-        }
-        for &c in &group {
-            out[c].reach = graph.around(&columns[c].reach);
         }
     }
     Ok(out)

@@ -87,6 +87,26 @@ impl Dense {
         gemv(&self.data, self.rows, x, y);
     }
 
+    /// Y ← Y + A X, columns of zeros left out.
+    pub fn add_mul_columns(&self, x: &Dense, y: &mut Dense) {
+        let live: Vec<usize> = (0..x.cols).filter(|&c| !is_zero(x.col(c))).collect();
+        if live.len() < 2 {
+            live.iter()
+                .for_each(|&c| self.add_mul(x.col(c), y.col_mut(c)));
+            return;
+        }
+        let mut packed = Dense::zeros(x.rows, live.len());
+        for (p, &c) in live.iter().enumerate() {
+            packed.col_mut(p).copy_from_slice(x.col(c));
+        }
+        let mut product = Dense::zeros(self.rows, live.len());
+        multiply(product.view_mut(), false, 1.0, self.view(), packed.view());
+        for (p, &c) in live.iter().enumerate() {
+            let sums = y.col_mut(c).iter_mut().zip(product.col(p));
+            sums.for_each(|(y, p)| *y += p);
+        }
+    }
+
     /// y ← y + Aᵀ x.
     pub fn add_mul_transpose(&self, x: &[f64], y: &mut [f64]) {
         if is_zero(x) {
