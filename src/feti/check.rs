@@ -67,10 +67,9 @@ impl Check<'_> {
                 };
                 w.y[i] = noise(sub.dofs[dof as usize] ^ (copy << 40));
             }
-            local.basis.remove_means(&mut w.y);
-            for (dofs, average) in local.basis.averages.iter().zip(&stiffness.jump.averages[j]) {
-                dofs.iter().for_each(|&i| w.y[i] += noise(average.key));
-            }
+            let averages = stiffness.jump.averages[j].iter();
+            let values: Vec<f64> = averages.map(|a| noise(a.key)).collect();
+            local.basis.set_values(&values, &mut w.y);
         }
         work
     }

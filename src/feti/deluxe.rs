@@ -1,10 +1,9 @@
 //! Deluxe scaling: inside a body the copies of an edge or face are averaged with their Schur complements as weights.
 //!
-//! A group is what the same subdomains share: a face with the edges in it, an edge. For jumps in W̃, whose averages over
-//! constrained entities vanish, let N span the functions without these averages. With
+//! A group is what the same subdomains share: a face with the edges in it, an edge. With
 //!
 //! ```text
-//!     A_k = N (Nᵀ Σ S N)⁻¹ Nᵀ S_k,      E w = Σ_k A_k w_k,      B_D,locᵀ = (I − E) B_loc⁺
+//!     A_k = (Σ S)⁻¹ S_k,      E w = Σ_k A_k w_k,      B_D,locᵀ = (I − E) B_loc⁺
 //! ```
 //!
 //! B B_Dᵀ B = B holds as for weights that are numbers. Dofs that carry rows of B_gl keep those: B_gl acts on the weighted average of the copies,
@@ -18,7 +17,6 @@ use mpi::traits::Communicator;
 
 use super::exchange::exchange_words;
 use super::jump::Jump;
-use super::local::basis::Basis;
 use super::local::dense::{self, Dense, Scratch};
 use super::local::problem::LocalProblem;
 use super::sharing::Sharing;
@@ -30,8 +28,6 @@ struct Group {
     sharers: Vec<u32>,
     /// Positions in Γ.
     at: Vec<usize>,
-    /// The averages among them that are primal, with places in `at`.
-    basis: Basis,
     /// The lowest body dof: names the group.
     name: u64,
 }
@@ -103,11 +99,6 @@ fn groups(
     for &(k, _) in &columns.contact {
         plain[columns.at[k as usize] as usize] = true;
     }
-    for average in &local.basis.averages {
-        if average.iter().any(|&i| plain[i]) {
-            average.iter().for_each(|&i| plain[i] = true);
-        }
-    }
     let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
     for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
         let copies = sharing.shared(dofs[dof as usize]);
@@ -119,20 +110,8 @@ fn groups(
     }
     let group = |(sharers, mut members): (Vec<u32>, Vec<(u64, usize)>)| {
         members.sort_unstable();
-        let place: HashMap<usize, usize> = members
-            .iter()
-            .enumerate()
-            .map(|(place, (_, i))| (*i, place))
-            .collect();
-        let averages = local.basis.averages.iter();
-        let inside = averages.filter(|a| place.contains_key(&a[0]));
         Group {
             sharers,
-            basis: Basis {
-                averages: inside
-                    .map(|a| a.iter().map(|i| place[i]).collect())
-                    .collect(),
-            },
             name: members[0].0,
             at: members.into_iter().map(|(_, i)| i).collect(),
         }
@@ -141,14 +120,7 @@ fn groups(
 }
 
 impl Group {
-    /// Places that are no averages after the change of basis: the coordinates of N.
-    fn free(&self) -> Vec<usize> {
-        let pivots = self.basis.pivots();
-        let places = 0..self.at.len();
-        places.filter(|i| !pivots.contains(i)).collect()
-    }
-
-    /// Nᵀ S N.
+    /// S on the group.
     fn restrict(&self, s: &Dense) -> Dense {
         let n = self.at.len();
         let mut block = Dense::zeros(n, n);
@@ -157,21 +129,12 @@ impl Group {
                 block.set(p, q, s.get(i, j));
             }
         }
-        self.basis.apply_left(&mut block);
-        self.basis.apply_right(&mut block);
-        let free = self.free();
-        let mut out = Dense::zeros(free.len(), free.len());
-        for (q, &j) in free.iter().enumerate() {
-            for (p, &i) in free.iter().enumerate() {
-                out.set(p, q, block.get(i, j));
-            }
-        }
-        out
+        block
     }
 
-    /// (Nᵀ Σ S N)⁻¹ Nᵀ S_k N for every sharer; nothing where nothing holds the group.
+    /// (Σ S)⁻¹ S_k for every sharer; nothing where nothing holds the group.
     fn weights<'a>(&self, schur: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Option<Vec<Dense>> {
-        let m = self.free().len();
+        let m = self.at.len();
         let mut l = Dense::zeros(m, m);
         for s in schur.clone() {
             l.data.iter_mut().zip(s).for_each(|(l, s)| *l += s);
@@ -233,26 +196,15 @@ impl Group {
     /// B_Dᵀ of the rows (a, b) on copy c: Σ_k A_k (z_c − z_k) with z = B⁺ λ, added up without cancellation.
     fn pair(&self, (a, b): (usize, usize), c: usize, weights: &[Dense]) -> Dense {
         let (n, q) = (self.at.len(), weights.len() as f64);
-        let free = self.free();
         let value = |k: usize| f64::from(u8::from(k == a)) - f64::from(u8::from(k == b));
         let mut out = Dense::zeros(n, n);
         for (k, weight) in weights.iter().enumerate() {
             let factor = (value(c) - value(k)) / q;
             if factor != 0.0 {
-                for (y, &j) in free.iter().enumerate() {
-                    for (x, &i) in free.iter().enumerate() {
-                        let sum = out.get(i, j) + factor * weight.get(x, y);
-                        out.set(i, j, sum);
-                    }
-                }
+                let terms = out.data.iter_mut().zip(&weight.data);
+                terms.for_each(|(o, w)| *o += factor * w);
             }
         }
-        // Averages of jumps in W̃ vanish; any value serves.
-        for i in self.basis.pivots() {
-            out.set(i, i, value(c) / q);
-        }
-        self.basis.apply_left(&mut out);
-        self.basis.apply_right(&mut out);
         out
     }
 }

@@ -14,13 +14,15 @@ use super::sharing::Sharing;
 use crate::substructures::{Entity, Subdomain, Substructures};
 use crate::{Error, Result};
 
-/// The mean over some dofs as a primal constraint that several subdomains of a body share.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// The mean over some dofs, or another functional of them, as a primal constraint that several subdomains of a body share.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Average {
-    /// Key of the entity.
+    /// Key of the entity; of a functional that adaptivity added, a body dof that no other one has.
     pub key: u64,
     /// Local dofs, none of them a shared vertex.
     pub dofs: Vec<u32>,
+    /// Σ weights · u is the same in all these subdomains; `None` for the mean.
+    pub weights: Option<Vec<f64>>,
 }
 
 /// Words of a report: key, body, subdomain, number of dofs, hash of the body dofs.
@@ -125,6 +127,7 @@ fn average(
     Ok((count > 1 && !dofs.is_empty()).then_some(Average {
         key: entity.key,
         dofs,
+        weights: None,
     }))
 }
 

@@ -68,16 +68,26 @@ pub fn certify(
         let fixing = places[local.n_pi() - local.fixing.len()..].iter();
         // Fixing dofs take nothing over: no residual, any divisor.
         fixing.for_each(|&at| primal_d[at as usize] = 1.0);
-        let vertices = local.interface[local.n_delta..].iter().map(|i| vec![*i]);
-        let averages = local.basis.averages.iter();
-        let averages = averages.map(|a| a.iter().map(|&p| local.interface[p]).collect());
-        for (dofs, &at) in vertices.chain(averages).zip(places.iter()) {
-            // What a copy takes over from another one: a force at a vertex, an even one along an edge.
-            let force: f64 = dofs.iter().map(|&i| r[i as usize]).sum();
-            primal[at as usize] += force;
-            primal_d[at as usize] += dofs.iter().map(|&i| d[i as usize]).sum::<f64>();
-            let even = force / dofs.len() as f64;
-            dofs.iter().for_each(|&i| r[i as usize] -= even);
+        // What a copy takes over from another one: a force at a vertex, one along a functional on an edge or face.
+        let mut on_gamma: Vec<f64> = local.interface.iter().map(|&i| r[i as usize]).collect();
+        let stiff: Vec<f64> = local.interface.iter().map(|&i| d[i as usize]).collect();
+        for (i, &at) in (local.n_delta..local.n_gamma()).zip(places) {
+            primal[at as usize] += std::mem::take(&mut on_gamma[i]);
+            primal_d[at as usize] += stiff[i];
+        }
+        if !local.basis.is_empty() {
+            local.basis.to_coordinates(&mut on_gamma);
+            let vectors = local.basis.vectors(stiff.len());
+            let pivots = local.basis.pivots().into_iter().zip(&vectors);
+            for ((p, q), &at) in pivots.zip(&places[local.n_vertices()..]) {
+                primal[at as usize] += std::mem::take(&mut on_gamma[p]);
+                let weights = q.iter().zip(&stiff);
+                primal_d[at as usize] += weights.map(|(q, d)| q * q * d).sum::<f64>();
+            }
+            local.basis.to_nodes(&mut on_gamma);
+        }
+        for (&i, v) in local.interface.iter().zip(&on_gamma) {
+            r[i as usize] = *v;
         }
         sums[0] += r.iter().zip(&d).map(|(r, d)| r * r / d).sum::<f64>();
         for (y, &i) in work[j].y.iter_mut().zip(&local.interface) {

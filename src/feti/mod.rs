@@ -1,7 +1,9 @@
 //! The method, one file per operator, symbols as in the theory page.
 
+pub mod adaptive;
 pub mod blocks;
 pub mod check;
+pub mod classes;
 pub mod coarse;
 pub mod deflation;
 pub mod deluxe;

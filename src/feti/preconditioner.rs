@@ -11,6 +11,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::lifting::Lifting;
+use super::local::dense::Dense;
 use super::local::problem::LocalProblem;
 use super::local::single::Single;
 use super::settings::{PcType, Precision};
@@ -107,9 +108,9 @@ impl Preconditioner {
 
 /// S of every local subdomain in single precision.
 fn in_single(stiffness: &Stiffness) -> Vec<Arc<Single>> {
-    let mut known: HashMap<*const LocalProblem, Arc<Single>> = HashMap::new();
+    let mut known: HashMap<*const Dense, Arc<Single>> = HashMap::new();
     let of = |local: &Arc<LocalProblem>| {
-        let entry = known.entry(Arc::as_ptr(local));
+        let entry = known.entry(Arc::as_ptr(&local.s));
         entry
             .or_insert_with(|| Arc::new(Single::new(&local.s)))
             .clone()

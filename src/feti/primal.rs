@@ -130,10 +130,12 @@ impl PrimalSpace {
         let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
             let local = local.as_ref();
-            // A vertex is known by its body dof, an average by its entity; a fixing dof belongs to its subdomain alone.
+            // A vertex is known by its body dof, an average by its entity, another functional by a body dof; a fixing dof belongs to its
+            // subdomain alone.
             let vertices = local.interface[local.n_delta..].iter();
             let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
-            let averages = averages[j].iter().map(|a| (1, a.key));
+            let averages = averages[j].iter();
+            let averages = averages.map(|a| (if a.weights.is_some() { 3 } else { 1 }, a.key));
             let fixing = local.fixing.iter();
             let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
             for (kind, key) in vertices.chain(averages).chain(fixing) {

@@ -5,6 +5,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::adaptive;
 use super::coarse::PrimalProblem;
 use super::deflation::{self, Cost, Deflation};
 use super::deluxe;
@@ -27,7 +28,7 @@ use super::stiffness::Stiffness;
 use super::team::Team;
 use crate::contact;
 use crate::petsc::{cite, Comm, Ksp, NormType, Session, Stage, Vec as PetscVec};
-use crate::substructures::Substructures;
+use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
 const CITATION: &str = "@techreport{Lee2010,
@@ -62,6 +63,10 @@ pub struct Facts {
     pub kernel_dimension: usize,
     /// Primal dofs of all bodies.
     pub primal: usize,
+    /// Adaptive primal constraints in each body; empty where no edge or face is tested.
+    pub adaptive_constraints: Vec<usize>,
+    /// Seconds of set-up that finding them and making them primal took.
+    pub adaptive_seconds: f64,
     /// Different subdomains on this rank: each is factored once.
     pub kinds: usize,
     /// Bytes of the subdomains' sparse factors on this rank.
@@ -103,13 +108,24 @@ impl FetiFeti {
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
-        let locals = session.agree(factor(&problem, &jump, &team))?;
+        let mut locals = session.agree(factor(&problem, &jump, &team))?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
         }
         if settings.scaling == Scaling::Deluxe {
             deluxe::apply(comm, &problem, &sharing, &mut jump, &locals);
         }
+        let adapting = Instant::now();
+        let adaptive = settings.adaptive;
+        let added = adaptive::find(
+            comm, &problem, &sharing, &mut jump, &locals, &team, adaptive,
+        );
+        if added.iter().any(|&n| n > 0) {
+            let fails = |sub: &Subdomain, dof| unfit_matrix(&problem, sub, dof);
+            let renewed = adaptive::constrain(&problem, &jump, &locals, &team, fails);
+            locals = session.agree(renewed)?;
+        }
+        let adapting = adapting.elapsed().as_secs_f64();
         let space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
         let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
         let layout = PetscVec::mpi(session, jump.n_owned)?;
@@ -144,6 +160,8 @@ impl FetiFeti {
         let ksp = krylov(session, &dual, &settings)?;
         dual.borrow()
             .set_watch(deflation::watch(settings.adaptive, varies));
+        facts.adaptive_constraints = added;
+        facts.adaptive_seconds = adapting;
         facts.setup_seconds = clock.elapsed().as_secs_f64();
         Ok(FetiFeti {
             session: session.clone(),
@@ -285,10 +303,12 @@ impl FetiFeti {
         }
         let mut spectrum = self.present_spectrum()?;
         // As long as what bodies share is above the bound and can be found.
-        while let (Some(limit), Some(s)) = (self.dual().watch(), spectrum) {
-            if self.dual().deflation().is_none() || s.lambda_max <= limit {
-                break;
-            }
+        let too_large = |s: &Option<Spectrum>| {
+            let dual = self.dual();
+            let limit = dual.watch().filter(|_| dual.deflation().is_some());
+            matches!((limit, s), (Some(limit), Some(s)) if s.lambda_max > limit)
+        };
+        while too_large(&spectrum) {
             self.deflate()?;
             spectrum = self.present_spectrum()?;
         }
@@ -361,16 +381,6 @@ fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
             }
         }
     };
-    // One number on an entity with an average: otherwise B_Dᵀ would lead out of W̃.
-    let of = |sub: &crate::substructures::Subdomain| -> Vec<f64> {
-        let mut d = of(sub);
-        for entity in entities::chosen(sub, settings.primal) {
-            let sum: f64 = entity.dofs.iter().map(|&i| d[i as usize]).sum();
-            let mean = sum / entity.dofs.len() as f64;
-            entity.dofs.iter().for_each(|&i| d[i as usize] = mean);
-        }
-        d
-    };
     problem.local.iter().map(of).collect()
 }
 
@@ -390,24 +400,20 @@ fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<L
         let (delta, primal) = (&jump.delta[kinds[k]], &jump.primal[kinds[k]]);
         let averages = jump.averages[kinds[k]].iter();
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
-        LocalProblem::new(
-            &sub.k,
-            delta,
-            primal,
-            &averages,
-            sub.coordinates.as_deref(),
-        )
+        LocalProblem::new(&sub.k, delta, primal, &averages, sub.coordinates.as_deref())
             .map(Arc::new)
-            .map_err(|e| {
-                Error::input(format!(
-                    "the matrix of subdomain {} in body \"{}\" is not positive semidefinite (at local dof {}), expected a stiffness matrix",
-                    sub.index, problem.body_names[sub.body], e.dof
-                ))
-            })
+            .map_err(|e| unfit_matrix(problem, sub, e.dof))
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: &usize| kinds.binary_search(j).expect("a representative is a kind");
     Ok(first.iter().map(|j| factored[place(j)].clone()).collect())
+}
+
+fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
+    Error::input(format!(
+        "the matrix of subdomain {} in body \"{}\" is not positive semidefinite (at local dof {dof}), expected a stiffness matrix",
+        sub.index, problem.body_names[sub.body]
+    ))
 }
 
 /// M_C where there is something to lift: a body cut into subdomains that other bodies pull at; else M_D.
@@ -448,6 +454,8 @@ fn facts(
         factor_bytes,
         dense_bytes,
         kinds: kinds.len(),
+        adaptive_constraints: Vec::new(),
+        adaptive_seconds: 0.0,
         setup_seconds: 0.0,
     }
 }

@@ -179,21 +179,27 @@ impl Stiffness {
         self.jump_of_all(work, out) /*                    out ← B y      */
     }
 
-    /// The orthogonal projection onto B W̃, out ← B N B_Dᵀ λ: redundant multipliers are removed, and so is what averages that are
-    /// continuous in W̃ leave no work for (N takes them out of the jumps inside bodies). Collective.
+    /// The orthogonal projection onto B W̃: on the rows of B_loc out ← B N B_Dᵀ λ, on those of B_gl out ← B B_Dᵀ λ. Redundant multipliers
+    /// are removed, and so is what functionals that are continuous in W̃ leave no work for (N takes them out of the jumps
+    /// inside bodies; B_gl sees weighted averages of the copies, with which N does not commute). Collective.
     pub fn range_projection(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         self.dual_halo.fetch(lambda, ghost)?;
+        let contact = &self.jump.ghost_is_contact;
+        let mut inside = vec![0.0; ghost.len()];
+        let mut between = vec![0.0; ghost.len()];
         for (j, w) in work.iter_mut().enumerate() {
             let columns = &self.jump.columns[j];
-            let contact = &self.jump.ghost_is_contact;
             columns.bd_transpose_of(ghost, &mut w.y, |r| !contact[r]);
-            self.locals[j].basis.remove_means(&mut w.y); /* y ← N B_D,locᵀ λ */
-            columns.bd_transpose_of(ghost, &mut w.v, |r| contact[r]);
-            let both = w.y.iter_mut().zip(&w.v); /*       y ← y + B_D,glᵀ λ */
-            both.for_each(|(y, v)| *y += v);
+            self.locals[j].basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
+            columns.add_b(&w.y, &mut inside); /*          inside ← B y     */
+            columns.bd_transpose_of(ghost, &mut w.y, |r| contact[r]);
+            columns.add_b(&w.y, &mut between); /*         between ← B B_D,glᵀ λ */
         }
-        self.jump_of(work, out) /*                        out ← B y      */
+        for ((sum, other), contact) in inside.iter_mut().zip(&between).zip(contact) {
+            *sum = if *contact { *other } else { *sum };
+        }
+        self.dual_halo.sum(&inside, out)
     }
 
     /// out ← B y of the displacements in `work`. Collective.

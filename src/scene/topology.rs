@@ -45,12 +45,14 @@ pub(super) fn entities(mesh: &SubdomainMesh, dofs: &[u64]) -> Vec<Entity> {
 /// The rigid motions of a body on the free dofs of one of its subdomains: translations, and rotations about the body's centre, all of order
 /// one over the body. 3 columns in the plane, 6 in space.
 pub(super) fn rigid_motions(body: &Body, mesh: &SubdomainMesh) -> Vec<Vec<f64>> {
-    let (centre, radius) = body.ball();
+    let [low, high] = body.bounds;
+    let size = (0..3).fold(0.0_f64, |a, d| a.max(0.5 * (high[d] - low[d])));
+    let (centre, _) = body.ball();
     let c = mesh.components();
     let n_modes = if c == 2 { 3 } else { 6 };
     let mut out = vec![Vec::with_capacity(mesh.n_free()); n_modes];
     for (node, &point) in mesh.points.iter().enumerate() {
-        let modes = cell::rigid_motions(mesh.dim, centre, radius, point);
+        let modes = cell::rigid_motions(mesh.dim, centre, size, point);
         for component in 0..c {
             if mesh.local_dof(c * node + component).is_some() {
                 for (column, mode) in out.iter_mut().zip(&modes) {

@@ -55,6 +55,8 @@ pub struct Solid {
     pub held: Held,
     /// Stiffness of a body and of a subdomain in it, by place; 1 if `None`.
     pub stiffness: Option<Stiffness>,
+    /// Stiffness of an element by its place on the whole grid, on top of that; 1 if `None`.
+    pub by_element: Option<fn([usize; 3]) -> f64>,
     /// Whether the edges of squares in 2D are entities; those of cubes always are.
     pub plane_edges: bool,
 }
@@ -71,6 +73,7 @@ impl Solid {
             rows,
             held: Held::AllRound,
             stiffness: None,
+            by_element: None,
             plane_edges: false,
         }
     }
@@ -162,8 +165,10 @@ impl Solid {
         let stiffness = self.stiffness.map_or(1.0, |of| of(b, place));
         let k = element::stiffness(dim, h, self.physics);
         let mut triplets = Vec::new();
+        let mut rho = vec![0.0f64; n];
         for e in 0..ne.pow(dim as u32) {
             let corner = node(e, ne);
+            let stiffness = stiffness * self.by_element.map_or(1.0, |of| of(corner));
             let local: Vec<Option<&u32>> = (0..1 << dim)
                 .flat_map(|a| (0..comps).map(move |c| (a, c)))
                 .map(|(a, c)| {
@@ -172,6 +177,9 @@ impl Solid {
                     number.get(&(x, c))
                 })
                 .collect();
+            for &&i in local.iter().flatten() {
+                rho[i as usize] = rho[i as usize].max(stiffness);
+            }
             for (i, row) in local.iter().zip(&k) {
                 for (j, v) in local.iter().zip(row) {
                     if let (Some(&i), Some(&j)) = (i, j) {
@@ -217,7 +225,7 @@ impl Solid {
             k: Csr::from_triplets(n, &triplets),
             f: nodes.iter().map(|&(x, c)| self.load(body, x, c)).collect(),
             dofs: nodes.iter().map(|&(x, c)| self.dof(body, x, c)).collect(),
-            rho: vec![stiffness; n],
+            rho,
             primal,
             entities: entities.into_values().collect(),
             near_kernel: Some(self.motions(b, &nodes)),

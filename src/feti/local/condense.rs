@@ -1,4 +1,4 @@
-//! The way from S to T, Ψ and Σ: a change of basis for averages, dofs to hold where S_ΔΔ is singular, and back to the nodal dofs.
+//! The way from S to T, Ψ and Σ: a change of basis for averages and other functionals, dofs to hold where S_ΔΔ is singular, and back to the nodal dofs.
 
 use super::dense::{self, Dense, Scratch};
 use super::multifrontal::SingularInterior;
@@ -9,7 +9,7 @@ use super::problem::LocalProblem;
 const WEAKLY_HELD: f64 = 1e-6;
 
 impl LocalProblem {
-    /// T, Ψ and Σ from S: in the basis in which averages are coordinates, in the order [Δ, vertices, averages, fixing dofs], and
+    /// T, Ψ and Σ from S: in the basis in which averages are coordinates, in the order [Δ, vertices, functionals, fixing dofs], and
     /// back to the nodal dofs.
     pub(super) fn condense_dual(&mut self, stiff: &[f64]) -> Result<(), SingularInterior> {
         let (n_delta, n_gamma) = (self.n_delta, self.n_gamma());
@@ -17,9 +17,8 @@ impl LocalProblem {
         let mut order = moved_to_the_end(n_gamma, n_delta, &pivots);
         let mut n = n_delta - pivots.len();
         let changed = (!pivots.is_empty()).then(|| {
-            let mut s = self.s.clone();
-            self.basis.apply_left(&mut s);
-            self.basis.apply_right(&mut s);
+            let mut s = Dense::clone(&self.s);
+            self.basis.congruence_to_coordinates(&mut s);
             permuted(&s, &order)
         });
         let mut s = changed.as_ref().unwrap_or(&self.s);
@@ -73,7 +72,7 @@ impl LocalProblem {
         Ok(())
     }
 
-    /// T and Ψ on the nodal dofs of Δ, primal values in units of averages.
+    /// T and Ψ on the nodal dofs of Δ, primal values in units of the functionals.
     fn back_to_nodes(&mut self, t: &Dense, psi: &Dense, order: &[usize]) {
         let (n_delta, n) = (self.n_delta, t.rows);
         let mut nodal = Dense::zeros(n_delta, n_delta);
@@ -82,8 +81,7 @@ impl LocalProblem {
                 nodal.set(oi, oj, t.get(i, j));
             }
         }
-        self.basis.apply_left(&mut nodal);
-        self.basis.apply_right(&mut nodal);
+        self.basis.congruence_to_nodes(&mut nodal);
         self.t = nodal;
         let mut nodal = Dense::zeros(n_delta, psi.cols);
         for p in 0..psi.cols {
@@ -95,7 +93,7 @@ impl LocalProblem {
             }
         }
         let first = self.n_vertices();
-        for k in 0..self.basis.averages.len() {
+        for k in 0..self.basis.len() {
             let (p, factor) = (first + k, self.basis.factor(k));
             nodal.col_mut(p).iter_mut().for_each(|v| *v *= factor);
             self.sigma.col_mut(p).iter_mut().for_each(|v| *v *= factor);
@@ -104,7 +102,7 @@ impl LocalProblem {
                 self.sigma.set(p, q, value);
             }
         }
-        self.basis.apply_left(&mut nodal);
+        self.basis.columns_to_nodes(&mut nodal);
         self.psi = nodal;
     }
 }

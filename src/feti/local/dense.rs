@@ -84,9 +84,6 @@ impl Dense {
 
     /// y ← y + A x.
     pub fn add_mul(&self, x: &[f64], y: &mut [f64]) {
-        if is_zero(x) {
-            return;
-        }
         gemv(&self.data, self.rows, x, y);
     }
 

@@ -5,6 +5,7 @@ mod condense;
 pub mod dense;
 pub mod dissection;
 pub mod multifrontal;
+pub mod pencil;
 pub mod problem;
 pub mod semidefinite;
 pub mod single;

@@ -9,7 +9,7 @@
 //!     Σ = Ψᵀ S Ψ = S_ΠΠ − S_ΠΔ T S_ΔΠ
 //! ```
 //!
-//! An average over dual dofs is made a coordinate first ([`Basis`]), and so are the dofs that have to be held to make S_ΔΔ regular: the
+//! An average over dual dofs, or any other functional of them, is made a coordinate first ([`Basis`]), and so are the dofs that have to be held to make S_ΔΔ regular: the
 //! formulas hold in that basis, and only T and Ψ know of it. Everything outside sees nodal dofs.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -39,19 +39,19 @@ pub struct LocalProblem {
     pub interface: Vec<u32>,
     /// Number of dual interface dofs. Those of averages and the fixing dofs are among them.
     pub n_delta: usize,
-    /// Averages over dual dofs that are primal.
+    /// Functionals of dual dofs that are primal: averages, and what adaptivity added.
     pub basis: Basis,
     /// Positions in Γ of the coordinates that were added here to the primal dofs to make S_ΔΔ regular.
     pub fixing: Vec<usize>,
     /// S on Γ, n_Γ × n_Γ, both triangles.
-    pub s: Dense,
+    pub s: Arc<Dense>,
     /// T, n_Δ × n_Δ, both triangles.
     pub t: Dense,
     /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
     pub psi: Dense,
     /// Σ, n_Π × n_Π.
     pub sigma: Dense,
-    factor: PartialCholesky,
+    factor: Arc<PartialCholesky>,
 }
 
 impl LocalProblem {
@@ -84,19 +84,53 @@ impl LocalProblem {
             .iter()
             .map(|&i| k.get(i as usize, i as usize))
             .collect();
-        let basis = basis(&interface[..given], averages);
+        let mut basis = Basis::default();
+        let delta = positions(&interface[..given]);
+        let at = averages.iter().map(|a| delta.of(a));
+        at.for_each(|at| basis.push_mean(at));
         let mut out = LocalProblem {
             interface,
             n_delta,
             basis,
             fixing: Vec::new(),
-            s,
+            s: Arc::new(s),
             t: Dense::default(),
             psi: Dense::default(),
             sigma: Dense::default(),
-            factor,
+            factor: Arc::new(factor),
         };
         out.condense_dual(&stiff)?;
+        Ok(out)
+    }
+
+    /// The same subdomain with more functionals primal, Σ weights · u over dual dofs each. S and the factor are shared with what is
+    /// there; only T, Ψ and Σ are computed again.
+    pub fn constrained<'a>(
+        &self,
+        k: &Csr,
+        functionals: impl Iterator<Item = (&'a [u32], &'a [f64])>,
+    ) -> Result<LocalProblem, SingularInterior> {
+        let mut out = LocalProblem {
+            interface: self.interface.clone(),
+            n_delta: self.n_delta,
+            basis: self.basis.clone(),
+            fixing: Vec::new(),
+            s: self.s.clone(),
+            t: Dense::default(),
+            psi: Dense::default(),
+            sigma: Dense::default(),
+            factor: self.factor.clone(),
+        };
+        let delta = positions(&self.interface[..self.n_delta]);
+        for (dofs, weights) in functionals {
+            let new = out.basis.push(delta.of(dofs), weights);
+            debug_assert!(new, "functionals are independent");
+        }
+        let diagonal = self
+            .interface
+            .iter()
+            .map(|&i| k.get(i as usize, i as usize));
+        out.condense_dual(&diagonal.collect::<Vec<f64>>())?;
         Ok(out)
     }
 
@@ -110,21 +144,34 @@ impl LocalProblem {
         self.interface.len() - self.n_delta
     }
 
-    /// Number of primal dofs n_Π: vertices, averages, fixing dofs.
+    /// Number of primal dofs n_Π: vertices, functionals, fixing dofs.
     pub fn n_pi(&self) -> usize {
-        self.n_vertices() + self.basis.averages.len() + self.fixing.len()
+        self.n_vertices() + self.basis.len() + self.fixing.len()
     }
 
     /// The primal dofs of a function on Γ.
     pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
         let mut changed = u.to_vec();
         if !self.fixing.is_empty() {
-            self.basis.apply(&mut changed);
+            self.basis.to_coordinates(&mut changed);
         }
         let vertices = u[self.n_delta..].iter().copied();
-        let averages = (0..self.basis.averages.len()).map(|k| self.basis.mean(k, u));
         let fixing = self.fixing.iter().map(|&i| changed[i]);
-        vertices.chain(averages).chain(fixing).collect()
+        vertices.chain(self.basis.values(u)).chain(fixing).collect()
+    }
+
+    /// A stiffness of each primal dof that does not vanish with Σ: what it takes to move its dofs alone.
+    pub fn primal_stiffness(&self) -> Vec<f64> {
+        let n = self.n_gamma();
+        let own = |i: usize| self.s.get(i, i);
+        let along = |(k, q): (usize, Vec<f64>)| {
+            let terms = q.iter().enumerate().map(|(i, q)| q * q * own(i));
+            self.basis.factor(k).powi(2) * terms.sum::<f64>()
+        };
+        let vectors = self.basis.vectors(n).into_iter().enumerate();
+        let vertices = (self.n_delta..n).map(own);
+        let fixing = self.fixing.iter().map(|&i| own(i));
+        vertices.chain(vectors.map(along)).chain(fixing).collect()
     }
 
     /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
@@ -169,23 +216,28 @@ impl LocalProblem {
 
     /// Bytes held by the factor and by the dense operators: (sparse, dense).
     pub fn bytes(&self) -> (usize, usize) {
-        let dense = [&self.s, &self.t, &self.psi, &self.sigma];
+        let dense = [&*self.s, &self.t, &self.psi, &self.sigma];
         let dense: usize = dense.iter().map(|d| d.data.len()).sum();
         (self.factor.bytes(), dense * std::mem::size_of::<f64>())
     }
 }
 
-/// Averages with their dofs as positions in Γ; all of them are dual.
-fn basis(delta: &[u32], averages: &[&[u32]]) -> Basis {
+/// Where the first dofs of Γ stand.
+struct Positions(Vec<(u32, usize)>);
+
+fn positions(delta: &[u32]) -> Positions {
     let mut place: Vec<(u32, usize)> = delta.iter().copied().zip(0..).collect();
     place.sort_unstable();
-    let position = |i: &u32| {
-        let at = place.binary_search_by_key(i, |p| p.0);
-        place[at.expect("dofs of an average are dual")].1
-    };
-    let averages = averages.iter().map(|a| a.iter().map(position).collect());
-    Basis {
-        averages: averages.collect(),
+    Positions(place)
+}
+
+impl Positions {
+    fn of(&self, dofs: &[u32]) -> Vec<usize> {
+        let position = |i: &u32| {
+            let at = self.0.binary_search_by_key(i, |p| p.0);
+            self.0[at.expect("dofs of a functional are dual")].1
+        };
+        dofs.iter().map(position).collect()
     }
 }
 

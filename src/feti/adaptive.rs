@@ -1,0 +1,299 @@
+//! Adaptive primal constraints: what is made primal inside bodies where coefficients jump along and beside the interfaces of their subdomains.
+//!
+//! The rank of a class's lowest subdomain solves the eigenproblem of [`pencil`] on it and tells the functionals to all sharers.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::classes::{self, Class};
+use super::entities::Average;
+use super::exchange::{exchange_words, sum_all};
+use super::jump::Jump;
+use super::local::dense::{multiply, Dense};
+use super::local::pencil::{self, Part};
+use super::local::problem::LocalProblem;
+use super::settings::Adaptive;
+use super::sharing::Sharing;
+use super::team::Team;
+use crate::substructures::{Subdomain, Substructures};
+use crate::Result;
+
+/// Finds the constraints that keep the eigenvalues of every class below τ and adds them to `jump.averages`. Entries of `jump` are on interface
+/// positions. Returns how many each body gets, over all ranks; nothing where none is wanted. Collective.
+pub fn find(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    sharing: &Sharing,
+    jump: &mut Jump,
+    locals: &[Arc<LocalProblem>],
+    team: &Team,
+    adaptive: Adaptive,
+) -> Vec<usize> {
+    let (tau, all) = match adaptive {
+        Adaptive::Off => return Vec::new(),
+        Adaptive::Auto => (Adaptive::USUAL, false),
+        Adaptive::Below(tau) => (tau, true),
+    };
+    if !all && !classes::anywhere(comm, problem, locals) {
+        return Vec::new();
+    }
+    let mut classes: Vec<Vec<Class>> = (0..locals.len())
+        .map(|j| classes::of(&problem.local[j], sharing, &locals[j]))
+        .collect();
+    if !all {
+        let rough = classes::rough(comm, problem, sharing, locals, &classes);
+        let keep = classes.iter_mut().zip(rough);
+        keep.for_each(|(list, rough)| {
+            let mut rough = rough.into_iter();
+            list.retain(|_| rough.next() == Some(true));
+        });
+    }
+    let mut left = [classes.iter().map(Vec::len).sum::<usize>() as f64];
+    sum_all(comm, &mut left);
+    if left[0] == 0.0 {
+        return Vec::new();
+    }
+
+    for (j, list) in classes.iter_mut().enumerate() {
+        classes::collect_entries(jump, j, locals[j].n_gamma(), list);
+    }
+    // Parts travel to the rank of the lowest sharer.
+    let rank = comm.rank() as u32;
+    let rank_of = |s: u32| sharing.rank_of[s as usize];
+    let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    for (j, list) in classes.iter().enumerate() {
+        for class in list.iter().filter(|c| rank_of(c.sharers[0]) != rank) {
+            let words = &mut outgoing[rank_of(class.sharers[0]) as usize];
+            words.extend([class.name(), problem.local[j].index as u64]);
+            pack(&part(j, class), words);
+        }
+    }
+    let mut received: HashMap<(u64, u64), Part> = HashMap::new();
+    for words in exchange_words(comm, outgoing) {
+        let mut rest = &words[..];
+        while let [name, from, tail @ ..] = rest {
+            rest = tail;
+            received.insert((*name, *from), unpack(&mut rest));
+        }
+    }
+    let mut here: HashMap<(u64, u64), (usize, &Class)> = HashMap::new();
+    let mut owned = Vec::new();
+    for (j, list) in classes.iter().enumerate() {
+        for class in list {
+            let index = problem.local[j].index;
+            here.insert((class.name(), index as u64), (j, class));
+            if class.sharers[0] as usize == index {
+                owned.push((j, class));
+            }
+        }
+    }
+    let found = team.map(owned.len(), |i| {
+        let (j, class) = owned[i];
+        let own = |&s: &u32| {
+            let key = (class.name(), u64::from(s));
+            match here.get(&key) {
+                Some((j, class)) => part(*j, class),
+                None => received[&key].clone(),
+            }
+        };
+        let parts: Vec<Part> = class.sharers.iter().map(own).collect();
+        pencil::functionals(&parts, &classes::means(&locals[j], class), tau)
+    });
+
+    // [to, class, k, k functionals] to every sharer
+    let mut per_body = vec![0.0; problem.n_bodies];
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    for ((j, class), list) in owned.iter().zip(&found) {
+        per_body[problem.local[*j].body] += list.len() as f64;
+        for &to in class.sharers.iter().filter(|_| !list.is_empty()) {
+            let words = &mut outgoing[rank_of(to) as usize];
+            words.extend([u64::from(to), class.name(), list.len() as u64]);
+            words.extend(list.iter().flatten().map(|v| v.to_bits()));
+        }
+    }
+    let answers = exchange_words(comm, outgoing);
+    let mut added: Vec<(usize, Average)> = Vec::new();
+    for words in answers {
+        let mut rest = &words[..];
+        while let [to, name, k, tail @ ..] = rest {
+            let (j, class) = here[&(*name, *to)];
+            let (values, tail) = tail.split_at(*k as usize * class.dofs.len());
+            let interface = &locals[j].interface;
+            let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
+            added.extend(functionals.map(|(values, &key)| {
+                let average = Average {
+                    key,
+                    dofs: class.at.iter().map(|&i| interface[i]).collect(),
+                    weights: Some(values.iter().map(|&w| f64::from_bits(w)).collect()),
+                };
+                (j, average)
+            }));
+            rest = tail;
+        }
+    }
+    drop(here);
+    for (j, average) in added {
+        jump.averages[j].push(average);
+    }
+    sum_all(comm, &mut per_body);
+    per_body.iter().map(|&n| n as usize).collect()
+}
+
+/// Gives the subdomains the constraints that [`find`] added. Equal ones stay equal.
+pub fn constrain(
+    problem: &Substructures,
+    jump: &Jump,
+    locals: &[Arc<LocalProblem>],
+    team: &Team,
+    fails: impl Fn(&Subdomain, u32) -> crate::Error + Sync,
+) -> Result<Vec<Arc<LocalProblem>>> {
+    let added = |j: usize| {
+        let list = jump.averages[j].iter();
+        list.filter_map(|a| Some((&a.dofs[..], a.weights.as_deref()?)))
+    };
+    let mut first: Vec<usize> = Vec::new();
+    for j in 0..locals.len() {
+        let same = |&i: &usize| Arc::ptr_eq(&locals[i], &locals[j]) && added(i).eq(added(j));
+        first.push((0..j).find(same).unwrap_or(j));
+    }
+    let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
+    let renewed = team.map(kinds.len(), |k| {
+        let j = kinds[k];
+        if added(j).next().is_none() {
+            return Ok(locals[j].clone());
+        }
+        let sub = &problem.local[j];
+        let renewed = locals[j].constrained(&sub.k, added(j));
+        renewed.map(Arc::new).map_err(|e| fails(sub, e.dof))
+    });
+    let renewed = renewed.into_iter().collect::<Result<Vec<_>>>()?;
+    let place = |j: &usize| kinds.binary_search(j).expect("a first one is a kind");
+    Ok(first.iter().map(|j| renewed[place(j)].clone()).collect())
+}
+
+/// What local subdomain `j` has to say about a class.
+fn part(
+    problem: &Substructures,
+    jump: &Jump,
+    local: &LocalProblem,
+    j: usize,
+    class: &Class,
+) -> Part {
+    let sub = &problem.local[j];
+    let (n, at) = (class.at.len(), &class.at);
+    let block = |m: &Dense| {
+        let mut out = Dense::zeros(n, n);
+        for (q, &j) in at.iter().enumerate() {
+            for (p, &i) in at.iter().enumerate() {
+                out.set(p, q, m.get(i, j));
+            }
+        }
+        out
+    };
+    let q = lifted(jump, j, class);
+    let s = block(&local.s);
+    let mut sq = Dense::zeros(n, q.cols);
+    multiply(sq.view_mut(), false, 1.0, s.view(), q.view());
+    let mut a = Dense::zeros(q.cols, q.cols);
+    multiply(a.view_mut(), false, 1.0, q.view().transpose(), sq.view());
+    let mut psi = Dense::zeros(n, local.n_pi());
+    for p in 0..psi.cols {
+        for (k, &i) in at.iter().enumerate() {
+            psi.set(k, p, local.psi.get(i, p));
+        }
+    }
+    let vertices = local.interface[local.n_delta..].iter();
+    let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
+    let averages = jump.averages[j].iter().map(|a| [1, a.key]);
+    let fixing = local.fixing.iter();
+    let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
+    Part {
+        a,
+        t: block(&local.t),
+        psi,
+        sigma: local.sigma.clone(),
+        stiff: local.primal_stiffness(),
+        names: vertices.chain(averages).chain(fixing).collect(),
+    }
+}
+
+/// Q_c: what B_Dᵀ B makes, on the copy in local subdomain `j`, of differences to the last sharer, read from the entries of B_D.
+fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
+    let (n, q) = (class.at.len(), class.sharers.len());
+    let columns = &jump.columns[j];
+    let place: HashMap<u32, usize> = class.at.iter().map(|&i| i as u32).zip(0..).collect();
+    let entries = class.entries.iter().map(|&k| {
+        let k = k as usize;
+        (columns.row[k], place[&columns.at[k]], columns.bd[k])
+    });
+    // The first entry of a row is the one on the dof that it belongs to; rows of a dof are numbered pair after pair.
+    let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n];
+    let mut known: HashMap<u32, usize> = HashMap::new();
+    for (row, x, _) in entries.clone() {
+        known.entry(row).or_insert_with(|| {
+            rows[x].push(row);
+            x
+        });
+    }
+    rows.iter_mut().for_each(|r| r.sort_unstable());
+    let pairs: Vec<(usize, usize)> = (0..q)
+        .flat_map(|a| (a + 1..q).map(move |b| (a, b)))
+        .collect();
+    let mut out = Dense::zeros(n, (q - 1) * n);
+    for (row, y, bd) in entries {
+        let x = known[&row];
+        let pair = rows[x].binary_search(&row).expect("a row of the dof");
+        let (a, b) = pairs[pair];
+        let mut add = |k: usize, value: f64| {
+            if k < q - 1 {
+                let sum = out.get(y, k * n + x) + value;
+                out.set(y, k * n + x, sum);
+            }
+        };
+        add(a, bd);
+        add(b, -bd);
+    }
+    out
+}
+
+fn pack(part: &Part, words: &mut Vec<u64>) {
+    for m in [&part.a, &part.t, &part.psi, &part.sigma] {
+        words.extend([m.rows as u64, m.cols as u64]);
+        words.extend(m.data.iter().map(|v| v.to_bits()));
+    }
+    words.extend(part.stiff.iter().map(|v| v.to_bits()));
+    words.extend(part.names.iter().flatten());
+}
+
+fn unpack(words: &mut &[u64]) -> Part {
+    let take = |words: &mut &[u64], n: usize| {
+        let (head, tail) = words.split_at(n);
+        *words = tail;
+        head.to_vec()
+    };
+    let floats = |w: Vec<u64>| -> Vec<f64> { w.into_iter().map(f64::from_bits).collect() };
+    let matrix = |words: &mut &[u64]| {
+        let size = take(words, 2);
+        let (rows, cols) = (size[0] as usize, size[1] as usize);
+        let data = floats(take(words, rows * cols));
+        Dense { rows, cols, data }
+    };
+    let (a, t) = (matrix(words), matrix(words));
+    let (psi, sigma) = (matrix(words), matrix(words));
+    let n_pi = sigma.rows;
+    Part {
+        a,
+        t,
+        psi,
+        sigma,
+        stiff: floats(take(words, n_pi)),
+        names: take(words, 2 * n_pi)
+            .chunks_exact(2)
+            .map(|w| [w[0], w[1]])
+            .collect(),
+    }
+}
