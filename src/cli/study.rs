@@ -81,11 +81,10 @@ fn run_adaptive(session: &Session, args: &Study) -> Result<()> {
     progress(session, args, "");
     let write = |dir: &Path| -> Result<Vec<String>> {
         adaptive::table(&report).write_csv(&dir.join("adaptive.csv"))?;
+        adaptive::fine(&report).write_csv(&dir.join("adaptive-fine.csv"))?;
+        let tables = ["adaptive", "adaptive-fine"].map(|t| format!("{t}.csv"));
         let scenes = report.cases.iter().map(|c| format!("{}.toml", c.case));
-        Ok(["adaptive.csv".to_string()]
-            .into_iter()
-            .chain(scenes)
-            .collect())
+        Ok(tables.into_iter().chain(scenes).collect())
     };
     finish(session, args, &report, &adaptive::text(&report), write)?;
     let failing = report.cases.iter().filter(|c| c.failing().count() > 0);

@@ -76,13 +76,27 @@ struct Size {
     elements: usize,
 }
 
-/// Small enough for exact spectra.
-fn size(problem: Problem, quick: bool) -> Size {
-    let [bodies, subdomains, elements] = match (problem, quick) {
-        (Problem::Scalar2d | Problem::Elastic2d, false) => [3, 4, 4],
-        (Problem::Scalar2d | Problem::Elastic2d, true) => [2, 3, 3],
-        (Problem::Scalar3d, false) => [2, 2, 3],
-        (Problem::Elastic3d, false) | (_, true) => [2, 2, 2],
+/// Which meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Meshes {
+    /// As small as they may be.
+    Quick,
+    /// Small enough for exact spectra.
+    Small,
+    /// With finer elements, for seconds.
+    Fine,
+}
+
+fn size(problem: Problem, meshes: Meshes) -> Size {
+    let [bodies, subdomains, elements] = match (problem, meshes) {
+        (Problem::Scalar2d | Problem::Elastic2d, Meshes::Quick) => [2, 3, 3],
+        (Problem::Scalar2d | Problem::Elastic2d, Meshes::Small) => [3, 4, 4],
+        (Problem::Scalar2d, Meshes::Fine) => [3, 4, 16],
+        (Problem::Elastic2d, Meshes::Fine) => [3, 4, 12],
+        (_, Meshes::Quick) | (Problem::Elastic3d, Meshes::Small) => [2, 2, 2],
+        (Problem::Scalar3d, Meshes::Small) => [2, 2, 3],
+        (Problem::Scalar3d, Meshes::Fine) => [2, 2, 8],
+        (Problem::Elastic3d, Meshes::Fine) => [2, 2, 4],
     };
     Size {
         bodies,
@@ -112,8 +126,8 @@ const CONTACT: [Field; 6] = [
     Field::Inclusions,
 ];
 
-/// All cases; `quick`: some of them on smaller meshes.
-pub fn cases(quick: bool) -> Vec<Case> {
+/// All cases; of the quick meshes some.
+pub fn cases(meshes: Meshes) -> Vec<Case> {
     let mut out = Vec::new();
     for problem in Problem::ALL {
         let tied = TIED.map(|field| (field, false));
@@ -121,8 +135,8 @@ pub fn cases(quick: bool) -> Vec<Case> {
         let fields = tied.into_iter().chain(contact);
         for (field, contact) in fields.filter(|f| problem.dim() == 2 || !f.1) {
             let name = name(problem, field, contact);
-            if !quick || QUICK.contains(&name.as_str()) {
-                out.push(case(name, problem, field, contact, size(problem, quick)));
+            if meshes != Meshes::Quick || QUICK.contains(&name.as_str()) {
+                out.push(case(name, problem, field, contact, size(problem, meshes)));
             }
         }
     }
@@ -251,12 +265,12 @@ mod tests {
 
     #[test]
     fn names_are_unique_and_quick_cases_exist() {
-        let all = cases(false);
+        let all = cases(Meshes::Small);
         let mut names: Vec<&str> = all.iter().map(|c| c.name.as_str()).collect();
         assert_eq!(names.len(), 26);
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), 40);
-        assert_eq!(cases(true).len(), QUICK.len());
+        assert_eq!(cases(Meshes::Quick).len(), QUICK.len());
     }
 }

@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::{Bddc, Case, Effort, Plain, Record, Run, RTOL};
+use super::{Bddc, Case, Effort, Fine, Plain, Record, Run, RTOL, USUAL};
 use crate::baselines::single;
 use crate::cli::problem;
 use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::petsc::Session;
+use crate::report::output;
 use crate::scene::{Numbering, Scene};
 use crate::study::direct::Direct;
 use crate::substructures::{Subdomain, Substructures};
@@ -17,8 +18,14 @@ use crate::{Error, Result};
 /// Residuals beyond [`RTOL`], until rounding stops the iteration.
 const TIGHTER: [f64; 3] = [1e-10, 1e-12, 1e-14];
 
-/// Options of PCBDDC besides the threshold: adaptive constraints are made for deluxe scaling.
-const ADAPTIVE: [&str; 2] = ["-bddc_pc_bddc_use_deluxe_scaling", "true"];
+/// Options of PCBDDC besides the threshold: adaptive constraints are made for deluxe scaling, and what has not converged after so many
+/// iterations will not.
+const ADAPTIVE: [&str; 4] = [
+    "-bddc_pc_bddc_use_deluxe_scaling",
+    "true",
+    "-bddc_ksp_max_it",
+    "500",
+];
 
 /// A solve and what it took.
 struct Solved {
@@ -206,6 +213,56 @@ fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Op
         }
     }
     Ok(error)
+}
+
+/// Seconds of a case on finer elements, without and with deflation in turns; its files go into `dir`/fine.
+///
+/// # Errors
+/// Those of the scene, of the disk and of PETSc.
+pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Fine> {
+    let dir = dir.join("fine");
+    output::prepare_directory(&dir)?;
+    let scene = problem::load(session, &case.write(&dir)?)?;
+    let problem = problem::substructures(session, &scene)?;
+    let mut out = Fine {
+        dofs: Numbering::new(&scene).len() as usize,
+        ..Fine::default()
+    };
+    let (mut off, mut on, mut search) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..effort.repeats {
+        for way in [Adaptive::Off, Adaptive::Below(USUAL)] {
+            let Solved {
+                solver,
+                solution,
+                seconds,
+            } = match solve(session, &problem, way) {
+                Ok(solved) => solved,
+                Err(e @ (Error::Input(_) | Error::NotConverged(_) | Error::Petsc { .. })) => {
+                    out.message = Some(e.to_string());
+                    return Ok(out);
+                }
+                Err(e) => return Err(e),
+            };
+            if !solution.converged {
+                out.message = Some(format!("{}: {}", way.name(), solution.reason));
+            }
+            if way == Adaptive::Off {
+                off.push(seconds);
+                out.estimate = solution.estimate.map(|s| s.kappa());
+                out.plain_iterations = solution.iterations;
+            } else {
+                on.push(seconds);
+                let cost = solver.deflated();
+                search.extend(cost.as_ref().map(|c| c.seconds));
+                out.vectors = cost.map_or(0, |c| c.vectors.iter().sum());
+                out.iterations = solution.iterations;
+            }
+        }
+    }
+    out.plain_seconds = median(&mut off);
+    out.seconds = median(&mut on);
+    out.search = median(&mut search);
+    Ok(out)
 }
 
 /// PCBDDC with one part for each body: its matrices are then as large as ours, and the machine is not asked for hundreds of ranks.

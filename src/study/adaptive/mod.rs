@@ -11,9 +11,9 @@ mod fields;
 mod measure;
 mod table;
 
-pub use cases::{cases, Case, Problem};
+pub use cases::{cases, Case, Meshes, Problem};
 pub use fields::Field;
-pub use table::{table, text};
+pub use table::{fine, table, text};
 
 use std::path::Path;
 
@@ -27,6 +27,9 @@ pub const RTOL: f64 = 1e-8;
 
 /// The bounds that are asked for.
 const TAUS: [f64; 3] = [5.0, 10.0, 50.0];
+
+/// τ of the runs on finer elements.
+const USUAL: f64 = 10.0;
 
 /// κ may be this many times τ.
 pub const OVER: f64 = 1.5;
@@ -73,6 +76,31 @@ pub struct Record {
     pub mumps: Option<f64>,
     /// With deflation, by τ.
     pub runs: Vec<Run>,
+    /// The same fields on finer elements.
+    pub fine: Option<Fine>,
+}
+
+/// Seconds on finer elements, with τ = [`USUAL`] and without; medians.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fine {
+    /// Unknowns.
+    pub dofs: usize,
+    /// CG's estimate of κ without deflation.
+    pub estimate: Option<f64>,
+    /// Iterations without.
+    pub plain_iterations: usize,
+    /// Seconds of set-up and solve without.
+    pub plain_seconds: f64,
+    /// Vectors.
+    pub vectors: usize,
+    /// Iterations with, those before the search included.
+    pub iterations: usize,
+    /// Seconds of set-up, search and solve.
+    pub seconds: f64,
+    /// Of which for the search.
+    pub search: f64,
+    /// What did not converge.
+    pub message: Option<String>,
 }
 
 /// A run without deflation.
@@ -161,7 +189,8 @@ impl Run {
             Some(kappa) => fails.push(format!("κ = {}", table::number(Some(kappa)))),
             None => fails.push("no exact κ".into()),
         }
-        if let Some(least) = self.lambda_min.filter(|l| *l < 1.0 - BELOW_ONE) {
+        // Written so that NaN fails.
+        if let Some(least) = self.lambda_min.filter(|l| !(*l >= 1.0 - BELOW_ONE)) {
             fails.push(format!("λ_min = {least:.8}"));
         }
         match (self.attainable, mumps) {
@@ -217,7 +246,7 @@ pub fn run(
         false => Effort {
             taus: &TAUS,
             repeats: 3,
-            patience: 120,
+            patience: 15,
             plain: 20_000,
         },
         true => Effort {
@@ -228,9 +257,16 @@ pub fn run(
         },
     };
     let mut records = Vec::new();
-    for case in super::chosen(cases(quick), |c| &c.name, only)? {
+    let meshes = if quick { Meshes::Quick } else { Meshes::Small };
+    let fine = cases(Meshes::Fine);
+    for case in super::chosen(cases(meshes), |c| &c.name, only)? {
         progress(&case.name);
-        records.push(measure::one(session, &case, effort, dir)?);
+        let mut record = measure::one(session, &case, effort, dir)?;
+        if let Some(fine) = fine.iter().find(|f| f.name == case.name && !quick) {
+            progress(&format!("{}, finer elements", case.name));
+            record.fine = Some(measure::fine(session, fine, effort, dir)?);
+        }
+        records.push(record);
     }
     Ok(Report {
         study: "adaptive".into(),

@@ -1,6 +1,6 @@
 //! The tables.
 
-use super::{Bddc, Record, Report};
+use super::{Bddc, Record, Report, USUAL};
 use crate::report::table::{count, fixed, scientific, Align, Table};
 
 /// All runs, one row for each τ.
@@ -83,6 +83,43 @@ fn rows(record: &Record) -> Vec<Vec<String>> {
     out
 }
 
+/// Seconds on finer elements.
+pub fn fine(report: &Report) -> Table {
+    let header = [
+        "case",
+        "dofs",
+        "κ plain ≥",
+        "it",
+        "s",
+        "vectors",
+        "search s",
+        "it τ",
+        "s τ",
+        "s τ / s",
+    ];
+    let mut table = Table::new(header).align(0, Align::Left);
+    for (record, f) in report
+        .cases
+        .iter()
+        .filter_map(|r| r.fine.as_ref().map(|f| (r, f)))
+    {
+        let ratio = f.seconds / f.plain_seconds;
+        table.row(vec![
+            record.case.clone(),
+            f.dofs.to_string(),
+            number(f.estimate),
+            f.plain_iterations.to_string(),
+            fixed(Some(f.plain_seconds), 3),
+            f.vectors.to_string(),
+            fixed((f.search > 0.0).then_some(f.search), 3),
+            f.iterations.to_string(),
+            fixed(Some(f.seconds), 3),
+            fixed(ratio.is_finite().then_some(ratio), 2),
+        ]);
+    }
+    table
+}
+
 /// Condition numbers: fixed while they are small.
 pub(super) fn number(x: Option<f64>) -> String {
     match x {
@@ -100,7 +137,13 @@ pub fn text(report: &Report) -> String {
         report.repeats,
         table(report)
     );
+    if report.cases.iter().any(|c| c.fine.is_some()) {
+        out += &format!("Finer elements, τ = {USUAL}\n{}\n", fine(report));
+    }
     for record in &report.cases {
+        if let Some(message) = record.fine.as_ref().and_then(|f| f.message.as_ref()) {
+            out += &format!("{}, finer elements: {message}\n", record.case);
+        }
         if let Some(message) = &record.plain.message {
             out += &format!("{}, off: {message}\n", record.case);
         }
