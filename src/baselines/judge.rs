@@ -68,31 +68,12 @@ pub fn judge(
 ) -> Result<Verdict> {
     let layout = Layout::new(scene);
     let unknowns = Unknowns::all(&layout);
-    let new_system = || System::new(session, scene, &unknowns, Format::Assembled);
-    let system = new_system()?;
-    let mut rows = Rows::new(scene, &layout);
-    let reference = if scene.has_contact() {
-        let again = new_system()?;
-        let kernel = NearKernel::new(scene, &unknowns, &again.b, Near::None)?;
-        let reduced = Reduced::new(session, again, &rows, kernel)?;
-        let ksp = direct(session)?;
-        let tolerances = Tolerances {
-            rtol: TARGET,
-            inner: 0.0,
-            lag: 0.0,
-            solves: SOLVES,
-        };
-        outer::solve(
-            session,
-            &rows,
-            &reduced,
-            &mut || Ok(ksp.clone()),
-            tolerances,
-        )?
-    } else {
-        rows = Rows::default();
-        linear(session, &system)?
+    let system = System::new(session, scene, &unknowns, Format::Assembled)?;
+    let rows = match scene.has_contact() {
+        true => Rows::new(scene, &layout),
+        false => Rows::default(),
     };
+    let reference = reference(session, scene, &unknowns, &system, &rows)?;
     let trace = Trace::new(&rows, &system.b);
     let court = Court {
         session,
@@ -136,6 +117,34 @@ pub fn judge(
         verdict.solutions.push(one);
     }
     Ok(verdict)
+}
+
+/// The direct solution: MUMPS with iterative refinement, an active set around it where there are inequalities. Collective.
+///
+/// # Errors
+/// Those of the scene and PETSc's.
+pub fn reference(
+    session: &Session,
+    scene: &Scene,
+    unknowns: &Unknowns,
+    system: &System,
+    rows: &Rows,
+) -> Result<Found> {
+    if !scene.has_contact() {
+        return linear(session, system);
+    }
+    let again = System::new(session, scene, unknowns, Format::Assembled)?;
+    let kernel = NearKernel::new(scene, unknowns, &again.b, Near::None)?;
+    let reduced = Reduced::new(session, again, rows, kernel)?;
+    let ksp = direct(session)?;
+    let tolerances = Tolerances {
+        rtol: TARGET,
+        inner: 0.0,
+        lag: 0.0,
+        solves: SOLVES,
+    };
+    let mut solver = || Ok(ksp.clone());
+    outer::solve(session, rows, &reduced, &mut solver, tolerances)
 }
 
 /// MUMPS, without options.

@@ -29,6 +29,7 @@ mod outer;
 mod plan;
 mod reduced;
 mod rows;
+pub(crate) mod single;
 mod system;
 mod table;
 mod unknowns;
@@ -48,7 +49,8 @@ use crate::report::json::{
 use crate::report::{compare, output};
 use crate::scene::{Numbering, Scene};
 use crate::{Error, Result};
-use job::{Job, Outcome, Task};
+pub(crate) use job::Outcome;
+use job::{Job, Task};
 use judge::{Judgement, Verdict};
 use launch::{Failure, Launcher, Workspace};
 use layout::Layout;

@@ -108,6 +108,8 @@ pub struct Compare {
 /// The studies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StudyName {
+    /// Condition numbers that the user chooses, on coefficients that jump inside bodies.
+    Adaptive,
     /// Half-width and peak pressure against Hertz's theory.
     Hertz,
     /// Problems that are hard for the method, against direct solutions.
@@ -120,7 +122,8 @@ pub enum StudyName {
 
 impl StudyName {
     /// All of them.
-    pub const ALL: [StudyName; 4] = [
+    pub const ALL: [StudyName; 5] = [
+        StudyName::Adaptive,
         StudyName::Hertz,
         StudyName::HardCases,
         StudyName::Kappa,
@@ -130,6 +133,7 @@ impl StudyName {
     /// As it is written.
     pub fn name(self) -> &'static str {
         match self {
+            StudyName::Adaptive => "adaptive",
             StudyName::Hertz => "hertz",
             StudyName::HardCases => "hard-cases",
             StudyName::Kappa => "kappa",

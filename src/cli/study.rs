@@ -7,13 +7,14 @@ use super::solve::prepare;
 use crate::feti::Settings;
 use crate::petsc::Session;
 use crate::report::{json, output};
-use crate::study::{hard_cases, hertz, kappa, speed_error};
+use crate::study::{adaptive, hard_cases, hertz, kappa, speed_error};
 use crate::{Error, Result};
 
 /// Runs a study and writes what was asked for.
 pub fn run(session: &Session, args: &Study) -> Result<()> {
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
     match args.name {
+        StudyName::Adaptive => run_adaptive(session, args),
         StudyName::Hertz => run_hertz(session, args),
         StudyName::HardCases => run_hard_cases(session, args),
         StudyName::Kappa => run_kappa(session, args),
@@ -65,6 +66,55 @@ fn run_hard_cases(session: &Session, args: &Study) -> Result<()> {
         "hard-cases: wrong answers were called solutions: {}",
         wrong.join(", ")
     )))
+}
+
+fn run_adaptive(session: &Session, args: &Study) -> Result<()> {
+    let only = args.case.as_deref();
+    let mut tell = |what: &str| progress(session, args, what);
+    let report = match &args.out {
+        Some(dir) => adaptive::run(session, args.quick, only, dir, &mut tell)?,
+        None => {
+            let scratch = Scratch::new("adaptive")?;
+            adaptive::run(session, args.quick, only, &scratch.0, &mut tell)?
+        }
+    };
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        adaptive::table(&report).write_csv(&dir.join("adaptive.csv"))?;
+        adaptive::fine(&report).write_csv(&dir.join("adaptive-fine.csv"))?;
+        let tables = ["adaptive", "adaptive-fine"].map(|t| format!("{t}.csv"));
+        let scenes = report.cases.iter().map(|c| format!("{}.toml", c.case));
+        Ok(tables.into_iter().chain(scenes).collect())
+    };
+    finish(session, args, &report, &adaptive::text(&report), write)?;
+    let failing = report.cases.iter().filter(|c| c.failing().count() > 0);
+    let names: Vec<&str> = failing.map(|c| c.case.as_str()).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    Err(Error::NotConverged(format!(
+        "adaptive: a bound is missed in {}",
+        names.join(", ")
+    )))
+}
+
+/// A directory of this process for scenes that nobody asked for; it goes away with the value.
+struct Scratch(std::path::PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Result<Scratch> {
+        let name = format!("fetifeti-study-{name}-{}", std::process::id());
+        let dir = std::env::temp_dir().join(name);
+        output::prepare_directory(&dir)?;
+        Ok(Scratch(dir))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // What cannot be removed stays in the system's directory for temporary files.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
 }
 
 fn run_kappa(session: &Session, args: &Study) -> Result<()> {

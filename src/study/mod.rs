@@ -3,6 +3,7 @@
 //! A study is library code that returns data; `fetifeti study NAME` writes it to files. Every scene of a study is text as a user
 //! would write it.
 
+pub mod adaptive;
 mod direct;
 pub mod hard_cases;
 pub mod hertz;
@@ -13,7 +14,7 @@ pub mod speed_error;
 use crate::{Error, Result};
 
 /// The cases of a study, or the one that is asked for.
-fn chosen<T>(all: Vec<T>, name: impl Fn(&T) -> &'static str, only: Option<&str>) -> Result<Vec<T>> {
+fn chosen<T>(all: Vec<T>, name: impl Fn(&T) -> &str, only: Option<&str>) -> Result<Vec<T>> {
     let Some(wanted) = only else {
         return Ok(all);
     };

@@ -1,0 +1,97 @@
+//! Single methods for studies: MUMPS in this process, and one row of the table as a job of its own.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::job::{Job, Outcome, Task};
+use super::judge;
+use super::launch::{Launcher, Workspace};
+use super::layout::Layout;
+use super::rows::Rows;
+use super::system::System;
+use super::table::Format;
+use super::unknowns::Unknowns;
+use crate::petsc::Session;
+use crate::scene::Scene;
+use crate::substructures::Subdomain;
+use crate::{Error, Result};
+
+/// What MUMPS finds with iterative refinement.
+pub struct Refined {
+    /// u of the given subdomains, by local dof.
+    pub u: Vec<Vec<f64>>,
+    /// The inequalities that hold, by their place among those of the scene.
+    pub active: Vec<usize>,
+    /// Whether refinement, and the active set where there are inequalities, have settled.
+    pub converged: bool,
+}
+
+/// Solves `scene` by MUMPS with iterative refinement; `subdomains` are all of its subdomains. On one rank.
+///
+/// # Errors
+/// Those of the scene and PETSc's.
+pub fn refined(session: &Session, scene: &Scene, subdomains: &[Subdomain]) -> Result<Refined> {
+    let layout = Layout::new(scene);
+    if let Some(trouble) = &layout.trouble {
+        return Err(Error::input(format!("not for this scene: {trouble}")));
+    }
+    let unknowns = Unknowns::all(&layout);
+    let system = System::new(session, scene, &unknowns, Format::Assembled)?;
+    let rows = match scene.has_contact() {
+        true => Rows::new(scene, &layout),
+        false => Rows::default(),
+    };
+    let found = judge::reference(session, scene, &unknowns, &system, &rows)?;
+    let w = found.u.array()?;
+    // Along the frames of contact: u = Σ coefficient · w.
+    let value = |&dof: &u64| {
+        let terms = layout.terms(layout.index(dof));
+        terms.iter().map(|&(at, c)| c * w[at as usize]).sum()
+    };
+    let u = subdomains
+        .iter()
+        .map(|s| s.dofs.iter().map(value).collect())
+        .collect();
+    Ok(Refined {
+        u,
+        active: rows.list(&found.active),
+        converged: found.converged,
+    })
+}
+
+/// Runs the row `name` of the table on `ranks` ranks with these options of PETSc, to a relative residual of `rtol` of the assembled problem and for
+/// at most `seconds`. Where there are inequalities it solves the equations of the rows `active`. The inner `Err` is one sentence.
+///
+/// # Errors
+/// [`Error::Environment`] without mpirun or disk.
+pub fn baseline(
+    name: &str,
+    scene: &Path,
+    ranks: usize,
+    options: &[&str],
+    active: &[usize],
+    rtol: f64,
+    seconds: u64,
+) -> Result<std::result::Result<Outcome, String>> {
+    let launcher = Launcher {
+        workspace: Workspace::new()?,
+        limit: Duration::from_secs(seconds),
+        petsc: options.iter().map(|o| o.to_string()).collect(),
+    };
+    let job = Job {
+        scene: scene.to_path_buf(),
+        result: launcher.workspace.file("result.json"),
+        rtol,
+        inner: rtol,
+        task: Task::Baseline {
+            name: name.into(),
+            rescue: false,
+            active: active.to_vec(),
+            solution: launcher.workspace.file("result.u"),
+        },
+    };
+    match launcher.run(name, &job, ranks)?.record {
+        Ok(text) => super::read(&text).map(Ok),
+        Err(failure) => Ok(Err(failure.message)),
+    }
+}

@@ -1,0 +1,332 @@
+//! One case, measured.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::{Bddc, Case, Effort, Fine, Plain, Record, Run, RTOL, USUAL};
+use crate::baselines::single;
+use crate::cli::problem;
+use crate::feti::settings::Adaptive;
+use crate::feti::{FetiFeti, Settings, Solution};
+use crate::petsc::Session;
+use crate::report::output;
+use crate::scene::{Numbering, Scene};
+use crate::study::direct::Direct;
+use crate::substructures::{Subdomain, Substructures};
+use crate::{Error, Result};
+
+/// Residuals beyond [`RTOL`], until rounding stops the iteration.
+const TIGHTER: [f64; 3] = [1e-10, 1e-12, 1e-14];
+
+/// Options of PCBDDC besides the threshold: adaptive constraints are made for deluxe scaling, and what has not converged after so many
+/// iterations will not.
+const ADAPTIVE: [&str; 4] = [
+    "-bddc_pc_bddc_use_deluxe_scaling",
+    "true",
+    "-bddc_ksp_max_it",
+    "500",
+];
+
+/// A solve and what it took.
+struct Solved {
+    solver: FetiFeti,
+    solution: Solution,
+    seconds: f64,
+}
+
+/// Measures one case; its files go into `dir`.
+///
+/// # Errors
+/// Those of the scene, of the disk and of PETSc. A method that fails is none.
+pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Record> {
+    let file = case.write(dir)?;
+    let scene = problem::load(session, &file)?;
+    let problem = problem::substructures(session, &scene)?;
+    let mut record = Record {
+        case: case.name.clone(),
+        title: case.title.clone(),
+        dofs: Numbering::new(&scene).len() as usize,
+        bodies: case.bodies,
+        subdomains: scene.n_subdomains(),
+        ..Record::default()
+    };
+    let direct = Direct::new(&scene);
+    if let Err(e) = &direct {
+        eprintln!("{}: {e}", case.name);
+    }
+    let direct = direct.ok();
+    let court = Court {
+        direct: direct.as_ref(),
+        parts: &problem.local,
+    };
+    record.reference = direct.as_ref().map(|d| d.certificate.largest());
+    let mumps = single::refined(session, &scene, &problem.local);
+    if let Err(e) = &mumps {
+        eprintln!("{}, MUMPS: {e}", case.name);
+    }
+    let mumps = mumps.ok().filter(|m| m.converged);
+    record.mumps = mumps.as_ref().and_then(|m| court.error(&m.u));
+    ours(session, &problem, &court, effort, &mut record)?;
+    if effort.patience > 0 {
+        let active = mumps.as_ref().map_or(&[][..], |m| &m.active);
+        for run in &mut record.runs {
+            run.bddc = Some(bddc(&file, &scene, case.bodies, run.tau, active, effort)?);
+        }
+    }
+    let (reference, mumps) = (record.reference.is_some(), record.mumps);
+    for run in &mut record.runs {
+        run.fails = run.judge(reference, mumps);
+    }
+    Ok(record)
+}
+
+/// Without and with deflation, in turns, so that what else the machine does meets all of them.
+fn ours(
+    session: &Session,
+    problem: &Substructures,
+    court: &Court,
+    effort: Effort,
+    record: &mut Record,
+) -> Result<()> {
+    let mut ways = vec![Adaptive::Off];
+    ways.extend(effort.taus.iter().map(|&tau| Adaptive::Below(tau)));
+    let mut seconds = vec![Vec::new(); ways.len()];
+    let mut searches = vec![Vec::new(); ways.len()];
+    for round in 0..effort.repeats {
+        for (k, &way) in ways.iter().enumerate() {
+            let solved = match solve(session, problem, way) {
+                Ok(solved) => solved,
+                // What one way cannot do is said in its row.
+                Err(e @ (Error::Input(_) | Error::NotConverged(_) | Error::Petsc { .. })) => {
+                    if round == 0 {
+                        refused(way, e.to_string(), record);
+                    }
+                    continue;
+                }
+                Err(e) => return Err(e),
+            };
+            seconds[k].push(solved.seconds);
+            searches[k].extend(solved.solver.deflated().map(|c| c.seconds));
+            if round == 0 {
+                match way {
+                    Adaptive::Below(tau) => record.runs.push(deflated(tau, &solved, court)?),
+                    _ => plain(&solved, court, effort, record),
+                }
+            }
+        }
+    }
+    let mut times = seconds.iter_mut().zip(&mut searches);
+    if let Some((s, _)) = times.next() {
+        record.plain.seconds = median(s);
+    }
+    for (run, (s, search)) in record.runs.iter_mut().zip(times) {
+        run.seconds = median(s);
+        run.search = median(search);
+    }
+    Ok(())
+}
+
+fn solve(session: &Session, problem: &Substructures, adaptive: Adaptive) -> Result<Solved> {
+    let settings = Settings {
+        rtol: RTOL,
+        adaptive,
+        ..Settings::default()
+    };
+    let problem = problem.clone();
+    let clock = Instant::now();
+    let solver = FetiFeti::new(session, problem, settings)?;
+    let solution = solver.solve()?;
+    let seconds = clock.elapsed().as_secs_f64();
+    Ok(Solved {
+        solver,
+        solution,
+        seconds,
+    })
+}
+
+fn refused(way: Adaptive, said: String, record: &mut Record) {
+    match way {
+        Adaptive::Below(tau) => record.runs.push(Run {
+            tau,
+            message: Some(said),
+            ..Run::default()
+        }),
+        _ => record.plain.message = Some(said),
+    }
+}
+
+fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) {
+    let (solver, solution) = (&solved.solver, &solved.solution);
+    let facts = solver.facts();
+    record.multipliers = facts.multipliers_local + facts.multipliers_global;
+    let exact = match record.multipliers <= effort.plain {
+        // An eigensolver that fails takes nothing away from the solution.
+        true => solver.plain_spectrum().ok().flatten(),
+        false => None,
+    };
+    record.plain = Plain {
+        exact: exact.map(|s| s.kappa()),
+        estimate: solution.estimate.map(|s| s.kappa()),
+        iterations: solution.iterations,
+        seconds: 0.0,
+        error: court.error(&solution.u),
+        message: (!solution.converged).then(|| solution.reason.clone()),
+    };
+}
+
+fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
+    let (solver, solution) = (&solved.solver, &solved.solution);
+    let cost = solver.deflated();
+    // As the solve has left it: `spectrum` by itself would search for what the iterations have not shown.
+    solver.dual().set_watch(None);
+    let spectrum = match cost {
+        Some(_) => solver.spectrum(),
+        None => solver.plain_spectrum(),
+    };
+    let spectrum = spectrum.ok().flatten();
+    let vectors = cost.as_ref().map_or(&[][..], |c| &c.vectors);
+    let mut run = Run {
+        tau,
+        searched: cost.is_some(),
+        kappa: spectrum.map(|s| s.kappa()),
+        lambda_min: spectrum.map(|s| s.lambda_min),
+        vectors: vectors.iter().sum(),
+        most: vectors.iter().copied().max().unwrap_or(0),
+        capped: cost.as_ref().map_or(0, |c| c.capped.len()),
+        iterations: solution.iterations,
+        error: court.error(&solution.u),
+        message: (!solution.converged).then(|| solution.reason.clone()),
+        ..Run::default()
+    };
+    run.attainable = attainable(solver, court, run.error)?;
+    Ok(run)
+}
+
+/// The error of the smallest residual that is still reached.
+fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Option<f64>> {
+    let mut error = first;
+    for rtol in TIGHTER {
+        solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
+        match solver.solve() {
+            Ok(tight) if tight.converged => error = court.error(&tight.u),
+            _ => break,
+        }
+    }
+    Ok(error)
+}
+
+/// Seconds of a case on finer elements, without and with deflation in turns; its files go into `dir`/fine.
+///
+/// # Errors
+/// Those of the scene, of the disk and of PETSc.
+pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Fine> {
+    let dir = dir.join("fine");
+    output::prepare_directory(&dir)?;
+    let scene = problem::load(session, &case.write(&dir)?)?;
+    let problem = problem::substructures(session, &scene)?;
+    let mut out = Fine {
+        dofs: Numbering::new(&scene).len() as usize,
+        ..Fine::default()
+    };
+    let (mut off, mut on, mut search) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..effort.repeats {
+        for way in [Adaptive::Off, Adaptive::Below(USUAL)] {
+            let Solved {
+                solver,
+                solution,
+                seconds,
+            } = match solve(session, &problem, way) {
+                Ok(solved) => solved,
+                Err(e @ (Error::Input(_) | Error::NotConverged(_) | Error::Petsc { .. })) => {
+                    out.message = Some(e.to_string());
+                    return Ok(out);
+                }
+                Err(e) => return Err(e),
+            };
+            if !solution.converged {
+                out.message = Some(format!("{}: {}", way.name(), solution.reason));
+            }
+            if way == Adaptive::Off {
+                off.push(seconds);
+                out.estimate = solution.estimate.map(|s| s.kappa());
+                out.plain_iterations = solution.iterations;
+            } else {
+                on.push(seconds);
+                let cost = solver.deflated();
+                search.extend(cost.as_ref().map(|c| c.seconds));
+                out.vectors = cost.map_or(0, |c| c.vectors.iter().sum());
+                out.iterations = solution.iterations;
+            }
+        }
+    }
+    out.plain_seconds = median(&mut off);
+    out.seconds = median(&mut on);
+    out.search = median(&mut search);
+    Ok(out)
+}
+
+/// PCBDDC with one part for each body: its matrices are then as large as ours, and the machine is not asked for hundreds of ranks.
+fn bddc(
+    file: &Path,
+    scene: &Scene,
+    bodies: usize,
+    tau: f64,
+    active: &[usize],
+    effort: Effort,
+) -> Result<Bddc> {
+    let ranks = bodies.min(scene.n_subdomains());
+    let threshold = tau.to_string();
+    let mut options = vec!["-bddc_pc_bddc_adaptive_threshold", &threshold];
+    options.extend(ADAPTIVE);
+    let outcome = single::baseline("bddc", file, ranks, &options, active, RTOL, effort.patience)?;
+    Ok(match outcome {
+        Ok(o) => Bddc {
+            ranks,
+            kappa: o.kappa,
+            iterations: o.iterations,
+            seconds: o.setup + o.solve,
+            message: o.message,
+        },
+        Err(message) => Bddc {
+            ranks,
+            message: Some(message),
+            ..Bddc::default()
+        },
+    })
+}
+
+/// Who says how far a solution is from the direct one.
+struct Court<'a> {
+    direct: Option<&'a Direct>,
+    parts: &'a [Subdomain],
+}
+
+impl Court<'_> {
+    /// The distance in the energy norm, relative. Copies that differ count with the weight of their coefficients, as in `compare`.
+    fn error(&self, u: &[Vec<f64>]) -> Option<f64> {
+        let direct = self.direct?;
+        let n = direct.u.len();
+        let (mut sum, mut weight) = (vec![0.0; n], vec![0.0; n]);
+        for (part, u) in self.parts.iter().zip(u) {
+            for ((&dof, value), rho) in part.dofs.iter().zip(u).zip(&part.rho) {
+                let i = direct.unknown(dof);
+                sum[i] += rho * (value - direct.u[i]);
+                weight[i] += rho;
+            }
+        }
+        let d: Vec<f64> = sum.iter().zip(&weight).map(|(s, w)| s / w).collect();
+        let size = direct.energy(&direct.u).max(0.0).sqrt();
+        let distance = direct.energy(&d).max(0.0).sqrt();
+        Some(if size > 0.0 {
+            distance / size
+        } else {
+            distance
+        })
+    }
+}
+
+/// The middle one; 0 of none.
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
