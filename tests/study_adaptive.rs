@@ -28,8 +28,10 @@ fn bounds_hold() {
             let least = run.lambda_min.expect("beside κ");
             assert!(least >= 1.0 - 1e-6, "{}: {least}", case.case);
             assert!(run.error.is_some_and(|e| e < 1e-4), "{}", case.case);
-            // More iterations do not take away what has been reached.
-            assert!(run.attainable <= run.error, "{}", case.case);
+            // More iterations do not take away what has been reached, but for what rounding does.
+            let [first, last] =
+                [run.error, run.attainable].map(|e| e.expect("there is a reference"));
+            assert!(last <= 10.0 * first, "{}: {last}", case.case);
             assert_eq!(run.capped, 0, "{}", case.case);
         }
         // The scene is there to be solved again.

@@ -189,8 +189,8 @@ impl Run {
             Some(kappa) => fails.push(format!("κ = {}", table::number(Some(kappa)))),
             None => fails.push("no exact κ".into()),
         }
-        // Written so that NaN fails.
-        if let Some(least) = self.lambda_min.filter(|l| !(*l >= 1.0 - BELOW_ONE)) {
+        let low = |l: &f64| l.is_nan() || *l < 1.0 - BELOW_ONE;
+        if let Some(least) = self.lambda_min.filter(low) {
             fails.push(format!("λ_min = {least:.8}"));
         }
         match (self.attainable, mumps) {
