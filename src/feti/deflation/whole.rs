@@ -22,7 +22,7 @@ pub struct Whole<'a> {
     session: &'a Session,
     dual: &'a Dual,
     deflation: &'a Deflation,
-    part: [Range<usize>; 1],
+    part: Vec<Range<usize>>,
     x: PetscVec,
     y: PetscVec,
 }
@@ -38,7 +38,7 @@ impl<'a> Whole<'a> {
             session,
             dual,
             deflation,
-            part: [0..dual.stiffness.jump.n_owned],
+            part: std::iter::once(0..dual.stiffness.jump.n_owned).collect(),
             x: dual.multipliers()?,
             y: dual.multipliers()?,
         })
