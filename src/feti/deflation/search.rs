@@ -1,7 +1,7 @@
 //! The top of pencils that stand side by side: Krylov spaces of all bodies in step, each with its own Rayleigh–Ritz problem.
 //!
 //! Bases are orthonormal in F_i. Two start vectors find eigenvalues of multiplicity two at once; others come out by and by. A body stops
-//! when what is left above τ is within what the deflation may leave there, see [`settled`].
+//! when what is left above τ is within what the deflation may leave there, see `settled`.
 
 use std::ops::Range;
 

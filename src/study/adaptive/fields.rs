@@ -32,9 +32,9 @@ pub enum Field {
     Subdomains(f64),
     /// The same, one number for every element.
     Elements(f64),
-    /// [`STIFF`] in straight channels along x, one element thick, through subdomains and bodies.
+    /// 10⁶ in straight channels along x, one element thick, through subdomains and bodies.
     Channels,
-    /// [`STIFF`] in random boxes of one to five elements, where they happen to fall.
+    /// 10⁶ in random boxes of one to five elements, where they happen to fall.
     Inclusions,
 }
 
