@@ -80,7 +80,7 @@ pub struct Record {
     pub fine: Option<Fine>,
 }
 
-/// Seconds on finer elements, with τ = [`USUAL`] and without; medians.
+/// Seconds on finer elements, with τ = 10 and without; medians.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fine {
     /// Unknowns.
