@@ -226,7 +226,8 @@ impl Check<'_> {
         let lambda = self.dual.multipliers()?;
         lambda.set(0.0)?;
         let comm = self.session.comm();
-        let load = natural.kernel_load(comm, self.problem, &g);
+        let f: Vec<&[f64]> = self.problem.local.iter().map(|s| &s.f[..]).collect();
+        let load = natural.kernel_load(comm, &f, &g);
         natural.balance(comm, &load, &lambda)?;
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
         stiffness.dual_halo.fetch(&lambda, &mut ghost)?;

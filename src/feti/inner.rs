@@ -36,13 +36,19 @@ pub struct Loads {
 impl Loads {
     /// Condenses the loads of the problem. Collective.
     pub fn new(session: &Session, problem: &Substructures, dual: &Dual) -> Loads {
+        let f: Vec<&[f64]> = problem.local.iter().map(|s| &s.f[..]).collect();
+        Loads::of(session, dual, &f)
+    }
+
+    /// Condenses given loads, one vector for each local subdomain. Collective.
+    pub fn of(session: &Session, dual: &Dual, f: &[&[f64]]) -> Loads {
         let stiffness = &dual.stiffness;
         let locals = &stiffness.locals;
         let condensed = stiffness
             .team
-            .map(locals.len(), |j| locals[j].condense(&problem.local[j].f));
+            .map(locals.len(), |j| locals[j].condense(f[j]));
         let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
-        let kernel = dual.natural.kernel_load(session.comm(), problem, &g);
+        let kernel = dual.natural.kernel_load(session.comm(), f, &g);
         Loads {
             interiors,
             g,

@@ -5,6 +5,7 @@ pub mod blocks;
 pub mod check;
 pub mod classes;
 pub mod coarse;
+pub mod correction;
 pub mod deflation;
 pub mod deluxe;
 pub mod dual;

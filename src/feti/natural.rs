@@ -288,16 +288,16 @@ impl NaturalCoarse {
         }
     }
 
-    /// e = Rᵀ g for condensed loads g. Collective.
+    /// e = Rᵀ g for condensed loads g of the loads f. Collective.
     pub fn kernel_load(
         &self,
         comm: &SimpleCommunicator,
-        problem: &Substructures,
+        f: &[&[f64]],
         g: &[Vec<f64>],
     ) -> KernelLoad {
         let mut e = vec![0.0; 2 * self.r];
         for (j, kernel) in self.kernels.iter().enumerate() {
-            let load: f64 = problem.local[j].f.iter().map(|f| f.abs()).sum();
+            let load: f64 = f[j].iter().map(|f| f.abs()).sum();
             for c in 0..kernel.cols {
                 let at = self.first_column[j] + c;
                 let largest = kernel.col(c).iter().fold(0.0f64, |a, r| a.max(r.abs()));

@@ -155,7 +155,7 @@ pub(crate) fn finish(
 }
 
 /// u of every local subdomain from λ.
-fn back(
+pub(super) fn back(
     session: &Session,
     dual: &Dual,
     loads: Loads,

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use super::adaptive;
 use super::coarse::PrimalProblem;
+use super::correction;
 use super::deflation::{self, Cost, Deflation};
 use super::deluxe;
 use super::dual::{self, Dual, Shared};
@@ -200,9 +201,16 @@ impl FetiFeti {
             contact::solve(self, start, observe)?
         } else {
             let deflate = |dual: &Dual, seen| self.deflate_with(dual, seen);
-            let dual = self.dual();
-            recover::solve(&self.session, &self.problem, &dual, &self.ksp, &deflate)?
+            recover::solve(
+                &self.session,
+                &self.problem,
+                &self.dual(),
+                &self.ksp,
+                &deflate,
+            )?
         };
+        let (session, problem) = (&self.session, &self.problem);
+        let solution = correction::refine(session, problem, &self.dual, &self.ksp, solution)?;
         self.believe(solution)
     }
 
