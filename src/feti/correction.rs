@@ -7,22 +7,29 @@
 //!     r = f − K u − Bᵀ λ,    (du, dλ) solves it with load r and jumps c − B u,    u ← u + du,  λ ← λ + dλ
 //! ```
 //!
-//! and r is summed in twice the working precision. The set of rows that hold stays.
+//! and r is summed in twice the working precision. The set of rows that hold stays. Where more digits are asked for than [`TIGHT`], the first iteration
+//! stops there and corrections bring the others: a single iteration would stall on the rounding of the operators, or go astray.
 
 use super::dual::Shared;
 use super::inner::{iterate, Loads, Residual};
-use super::kkt::certify;
+use super::kkt::{certify, Kkt};
 use super::recover::{back, Solution};
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::sparse::Csr;
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// Tolerances from here down ask for more than the operators may have.
-const TIGHT: f64 = 1e-9;
+/// Tolerances below this ask for more than the operators may have.
+pub const TIGHT: f64 = 1e-9;
 
 /// A certificate above this many times the tolerance is refined.
-const WORTH: f64 = 30.0;
+const WORTH: f64 = 10.0;
+
+/// A certificate above this many times such a tolerance has missed it.
+const MISSED: f64 = 1e4;
+
+/// A certificate below this misses nothing.
+const FLOOR: f64 = 1e-11;
 
 /// Above this, whatever the tolerance, displacements are no solution yet.
 const FAR: f64 = 1e-3;
@@ -42,9 +49,9 @@ pub(super) fn refine(
     let watch = shared.borrow().watch();
     shared.borrow().set_watch(None);
     for _ in 0..STEPS {
-        let now = solution.kkt.stationarity;
-        let asked = rtol <= TIGHT && now > WORTH * rtol;
-        if !solution.converged || !(asked || now > FAR) {
+        let now = distance(&solution.kkt);
+        let asked = rtol < TIGHT && now > WORTH * rtol;
+        if !solution.converged || !(asked || solution.kkt.stationarity > FAR) {
             break;
         }
         // No more digits than are missing.
@@ -55,7 +62,16 @@ pub(super) fn refine(
         }
     }
     shared.borrow().set_watch(watch);
+    if solution.converged && rtol < TIGHT && distance(&solution.kkt) > (MISSED * rtol).max(FLOOR) {
+        solution.converged = false;
+        solution.reason = "DIVERGED_REFINEMENT".into();
+    }
     Ok(solution)
+}
+
+/// What refinement makes small.
+fn distance(kkt: &Kkt) -> f64 {
+    kkt.stationarity.max(kkt.feasibility)
 }
 
 /// One step; `None` where it does not help. Collective.
@@ -81,7 +97,7 @@ fn step(
     lambda.axpy(1.0, &dl)?;
     let dual = shared.borrow();
     let certificate = certify(session, problem, &dual, &u, &lambda)?;
-    let better = certificate.kkt.stationarity < 0.5 * solution.kkt.stationarity;
+    let better = distance(&certificate.kkt) < 0.5 * distance(&solution.kkt);
     Ok(better.then(|| Solution {
         u,
         lambda: lambda.to_vec().unwrap_or_default(),

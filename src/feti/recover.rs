@@ -6,6 +6,7 @@
 
 use std::time::Instant;
 
+use super::correction::TIGHT;
 use super::dual::Dual;
 use super::inner::{iterate, target, to_the_end, Loads, Residual, ROUNDING};
 use super::kkt::{certify, Kkt};
@@ -67,7 +68,14 @@ pub(super) fn solve(
     dual.p_transpose(&residual.r)?;
     let (reference, rows) = (residual.r.norm2()?, dual.stiffness.jump.n_global);
     let mut size = residual.size;
-    let mut tolerance = target(ksp, reference, 0.0, rows)?;
+    // Digits beyond these are for refinement.
+    let rtol = ksp.tolerances()?.0;
+    let ease = if rtol > 0.0 {
+        (TIGHT / rtol).max(1.0)
+    } else {
+        1.0
+    };
+    let mut tolerance = ease * target(ksp, reference, 0.0, rows)?;
     let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
     while inner.broken_off {
         deflate(dual, inner.estimate)?;
@@ -86,7 +94,8 @@ pub(super) fn solve(
         // An interface may come to rest altogether: what S̃⁺ made of the loads at first is the size of rounding.
         size = size.max(residual.size);
         // The target of the displacements that have come out.
-        let target = target(ksp, reference, residual.length(session), rows)?.max(ROUNDING * size);
+        let target = target(ksp, reference, residual.length(session), rows)?;
+        let target = (ease * target).max(ROUNDING * size);
         if to_the_end(tolerance, target) || stalled || !inner.reason.converged() {
             break;
         }
