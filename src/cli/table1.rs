@@ -2,6 +2,7 @@
 
 use super::args::Table1;
 use super::{not_converged, problem, solve};
+use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
 use crate::petsc::Session;
 use crate::report::json::{self, CoarseCorrected, PaperSide, Table1Row, Table1Side};
@@ -61,6 +62,8 @@ fn side(
         let substructures = problem::substructures(session, scene)?;
         let settings = Settings {
             pc_type: Some(pc),
+            // The paper's method and nothing else.
+            adaptive: Adaptive::Off,
             ..Settings::default()
         };
         let solver = FetiFeti::new(session, substructures, settings)?;
