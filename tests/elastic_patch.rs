@@ -238,6 +238,7 @@ fn a_preconditioner_in_single_precision_changes_no_answer() {
         let far = far.fold(0.0, f64::max);
         // Not the same to the last bit: single precision is really used.
         assert!(far > 0.0 && far < 1e-10 * largest, "{far:.1e}");
-        assert!(its_mixed <= its + 3, "{its} and {its_mixed}");
+        // A step of refinement more at most.
+        assert!(its_mixed <= its + 6, "{its} and {its_mixed}");
     });
 }
