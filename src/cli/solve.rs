@@ -256,6 +256,7 @@ fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
         vectors: cost.vectors.iter().sum(),
         shared: cost.shared,
         dependent: cost.dependent,
+        given_up: cost.given_up,
         largest: cost.largest,
         capped: cost.capped.iter().map(|&b| names[b].clone()).collect(),
         by_body: cost.vectors,

@@ -129,6 +129,18 @@ impl Dual {
         self.deflation.replace(deflation);
     }
 
+    /// Whether there are vectors to deflate; there are none any more. What was found stays known.
+    pub fn give_deflation_up(&self) -> bool {
+        match &mut *self.deflation.borrow_mut() {
+            Some(deflation) if deflation.matrices().is_some() => {
+                deflation.give_up();
+                self.watch.set(None);
+                true
+            }
+            _ => false,
+        }
+    }
+
     /// P_2, which is not in use any more.
     pub fn take_deflation(&self) -> Option<Deflation> {
         self.deflation.take()

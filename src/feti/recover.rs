@@ -84,6 +84,15 @@ pub(super) fn solve(
         let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
         inner = inner.followed_by(more);
     }
+    // Where rounding has made P_2 useless (elements a thousand times as long as high), the plain iteration is started anew.
+    if !inner.reason.converged() && dual.give_deflation_up() {
+        lambda.set(0.0)?;
+        natural.balance(session.comm(), &loads.kernel, &lambda)?;
+        residual.evaluate(session, dual, &loads, &lambda)?;
+        dual.p_transpose(&residual.r)?;
+        let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
+        inner = inner.followed_by(more);
+    }
     // What follows is short, and no look at the spectrum may end it.
     let watch = dual.watch();
     dual.set_watch(None);

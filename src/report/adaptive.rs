@@ -28,6 +28,8 @@ pub struct Deflation {
     pub shared: usize,
     /// Vectors that depend on those of neighbours.
     pub dependent: usize,
+    /// Whether the iteration broke down with the vectors, and was started anew without them.
+    pub given_up: bool,
     /// The largest eigenvalue of a body's pencil that is deflated; 0 without vectors.
     pub largest: f64,
     /// Bodies with more vectors than `-fetifeti_adaptive_max` allows.
@@ -79,6 +81,10 @@ impl Deflation {
         let found = match self.shared {
             0 => found,
             n => format!("{found} and {n} that bodies share"),
+        };
+        let found = match self.given_up {
+            true => format!("{found}, given up: the iteration broke down with them"),
+            false => found,
         };
         let mut out = format!("{found}, {:.3} s{without}", self.seconds);
         if let Some(first) = self.capped.first() {

@@ -62,7 +62,7 @@ pub const FAMILIES: [Family; 5] = [
         name: "elastic-3d-0.3",
         dim: 3,
         poisson: Some(0.3),
-        sizes: &[[2, 2], [3, 2], [4, 2], [6, 2], [2, 4], [2, 8]],
+        sizes: &[[2, 2], [3, 2], [4, 2], [2, 4], [2, 8]],
         quick: 1,
     },
 ];

@@ -57,6 +57,8 @@ pub struct Cost {
     pub dependent: usize,
     /// The spectrum that the iterations saw before the search.
     pub before: Option<Spectrum>,
+    /// Whether the iteration broke down with the vectors, so that they are not used.
+    pub given_up: bool,
     /// Seconds of the search and of the matrices.
     pub seconds: f64,
 }
@@ -220,6 +222,12 @@ impl Deflation {
         let columns: Vec<Column> = self.columns.iter().map(mask).collect();
         self.matrices = Matrices::new(session, dual, &self.graph, &self.balance, &columns)?;
         Ok(())
+    }
+
+    /// P_2 = I from now on.
+    pub fn give_up(&mut self) {
+        self.cost.given_up = true;
+        self.columns.clear();
     }
 
     /// P_2 as matrices; `None` without vectors.
