@@ -31,7 +31,7 @@ const MISSED: f64 = 1e4;
 /// A certificate below this misses nothing.
 const FLOOR: f64 = 1e-11;
 
-/// Above this, whatever the tolerance, displacements are no solution yet.
+/// Above this, and a thousand times the tolerance, displacements are no solution yet.
 const FAR: f64 = 1e-3;
 
 /// Steps at most; each must halve the certificate at least.
@@ -51,7 +51,8 @@ pub(super) fn refine(
     for _ in 0..STEPS {
         let now = distance(&solution.kkt);
         let asked = rtol < TIGHT && now > WORTH * rtol;
-        if !solution.converged || !(asked || solution.kkt.stationarity > FAR) {
+        let far = solution.kkt.stationarity > FAR.max(1e3 * rtol);
+        if !solution.converged || !(asked || far) {
             break;
         }
         // No more digits than are missing.
