@@ -55,7 +55,7 @@ pub const FAMILIES: [Family; 5] = [
         name: "scalar-3d",
         dim: 3,
         poisson: None,
-        sizes: &[[2, 2], [4, 2], [8, 2], [2, 4], [2, 8], [2, 16]],
+        sizes: &[[2, 2], [4, 2], [8, 2], [5, 3], [2, 4], [2, 8], [2, 16]],
         quick: 1,
     },
     Family {
