@@ -2,6 +2,7 @@
 
 pub mod adaptive;
 pub mod blocks;
+pub mod bounded;
 pub mod check;
 pub mod classes;
 pub mod coarse;

@@ -199,11 +199,6 @@ impl Deflation {
         Ok(n)
     }
 
-    /// Number of vectors.
-    pub fn n(&self) -> usize {
-        self.columns.len()
-    }
-
     /// Masks W by the rows that hold now and renews what follows from it. Collective.
     pub fn renew(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         if self.columns.is_empty() {

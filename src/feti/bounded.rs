@@ -1,0 +1,107 @@
+//! The spectrum of a solver, and the bound on it: when deflation is looked for, and how often.
+
+use super::deflation::{Cost, Deflation};
+use super::dual::Dual;
+use super::settings::Adaptive;
+use super::solver::FetiFeti;
+use super::spectrum::{self, Spectrum};
+use crate::Result;
+
+/// Where a bound τ is asked for, deflation of what bodies share sets in above `KEPT` τ and goes down to `SHARED` τ.
+const KEPT: f64 = 1.45;
+const SHARED: f64 = 1.25;
+
+impl FetiFeti {
+    /// Finds what of the spectrum is above τ and deflates it from now on, whatever the iterations have shown; with all rows that may hold.
+    /// Collective.
+    pub fn deflate(&self) -> Result<()> {
+        self.deflate_after(None)
+    }
+
+    /// The same with what the iterations have seen of the spectrum.
+    pub(crate) fn deflate_after(&self, before: Option<Spectrum>) -> Result<()> {
+        let (candidates, now) = {
+            let dual = self.dual();
+            let jump = &dual.stiffness.jump;
+            let may = |i| jump.active[i] || jump.is_candidate(i);
+            let all: Vec<bool> = (0..jump.n_owned).map(may).collect();
+            (all, jump.active.clone())
+        };
+        let set = |active: &[bool]| {
+            self.shared()
+                .borrow_mut()
+                .set_active(self.problem(), active)
+        };
+        let changed = set(&candidates)?;
+        let found = self.deflate_with(&self.dual(), before);
+        if changed > 0 {
+            set(&now)?;
+        }
+        found
+    }
+
+    pub(super) fn deflate_with(&self, dual: &Dual, before: Option<Spectrum>) -> Result<()> {
+        let tau = match self.settings().adaptive {
+            Adaptive::Below(tau) => tau,
+            _ => Adaptive::USUAL,
+        };
+        let most = self.settings().adaptive_max;
+        let bounded = matches!(self.settings().adaptive, Adaptive::Below(_));
+        // Modes that bodies share come second, and only where a bound is asked for.
+        let (deflation, more) = match dual.take_deflation() {
+            Some(mut deflation) => {
+                let bound = SHARED * tau;
+                let found = deflation.polish(self.session(), dual, bound, most)?;
+                (deflation, found > 0)
+            }
+            None => {
+                let mut deflation =
+                    Deflation::new(self.session(), self.problem(), dual, tau, most)?;
+                deflation.cost.before = before;
+                (deflation, true)
+            }
+        };
+        dual.set_watch((bounded && more).then_some(KEPT * tau));
+        dual.deflate(Some(deflation));
+        Ok(())
+    }
+
+    /// What is deflated and what that has cost; `None` where nothing has been searched for.
+    pub fn deflated(&self) -> Option<Cost> {
+        self.dual().deflation().as_ref().map(|d| d.cost.clone())
+    }
+
+    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Where a bound is asked for and nothing
+    /// has been deflated yet, that is done first. Collective.
+    pub fn spectrum(&self) -> Result<Option<Spectrum>> {
+        let searched = self.dual().deflation().is_some();
+        if matches!(self.settings().adaptive, Adaptive::Below(_)) && !searched {
+            self.deflate()?;
+        }
+        let mut spectrum = self.present_spectrum()?;
+        // As long as what bodies share is above the bound and can be found.
+        let too_large = |s: &Option<Spectrum>| {
+            let dual = self.dual();
+            let limit = dual.watch().filter(|_| dual.deflation().is_some());
+            matches!((limit, s), (Some(limit), Some(s)) if s.lambda_max > limit)
+        };
+        while too_large(&spectrum) {
+            self.deflate()?;
+            spectrum = self.present_spectrum()?;
+        }
+        Ok(spectrum)
+    }
+
+    /// The same without deflation. Collective.
+    pub fn plain_spectrum(&self) -> Result<Option<Spectrum>> {
+        let kept = self.dual().take_deflation();
+        let spectrum = self.present_spectrum();
+        self.dual().deflate(kept);
+        spectrum
+    }
+
+    fn present_spectrum(&self) -> Result<Option<Spectrum>> {
+        let prefix = format!("{}eps_", self.settings().prefix);
+        spectrum::exact(self.session(), self.shared(), &prefix)
+    }
+}
