@@ -49,6 +49,7 @@ impl FetiFeti {
         let bounded = matches!(self.settings().adaptive, Adaptive::Below(_));
         // Modes that bodies share come second, and only where a bound is asked for.
         let (deflation, more) = match dual.take_deflation() {
+            Some(given_up) if given_up.cost.given_up => (given_up, false),
             Some(mut deflation) => {
                 let bound = SHARED * tau;
                 let found = deflation.polish(self.session(), dual, bound, most)?;
