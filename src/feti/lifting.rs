@@ -21,7 +21,7 @@ use super::local::dense::{multiply, Dense};
 use super::local::semidefinite::Semidefinite;
 use super::primal::PrimalEntry;
 use super::sharing::Sharing;
-use super::stiffness::{Stiffness, Work};
+use super::stiffness::{Columns, Stiffness, Work};
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
@@ -167,6 +167,51 @@ impl Lifting {
         stiffness.team.for_each(work, |j, w| {
             let c: Vec<f64> = columns[j].iter().map(|&g| -ghost[g as usize]).collect();
             ys[j].add_mul(&c, &mut w.y); /*               y ← y − Y c     */
+        });
+        Ok(())
+    }
+
+    /// The same for several columns of every local subdomain, y ← y − Y A⁺ Yᵀ v. Collective.
+    pub fn remove_many(&self, stiffness: &Stiffness, blocks: &mut [Columns]) -> Result<()> {
+        let n = blocks.first().map_or(0, |b| b.v.cols);
+        let (inputs, ys, columns) = (&*blocks, &self.y, &self.columns);
+        let products = stiffness.team.map(blocks.len(), |j| {
+            let mut t = Dense::zeros(ys[j].cols, n);
+            ys[j].add_mul_transpose_columns(&inputs[j].v, &mut t); /*  t ← Yᵀ v        */
+            t
+        });
+        let ghosts = self.ghosts.len();
+        let mut all = Dense::zeros(ghosts, n);
+        for (t, places) in products.iter().zip(columns) {
+            for c in 0..n {
+                let column = all.col_mut(c);
+                for (&g, v) in places.iter().zip(t.col(c)) {
+                    column[g as usize] += v;
+                }
+            }
+        }
+        for c in 0..n {
+            self.halo.sum(all.col(c), &self.vector)?;
+            {
+                let mut owned = self.vector.array_mut()?;
+                for (start, factor) in &self.bodies {
+                    let part = &mut owned[*start..start + factor.order()];
+                    if part.iter().any(|t| *t != 0.0) {
+                        factor.solve(part); /*                         c ← A⁺ t        */
+                    }
+                }
+            }
+            self.halo.fetch(&self.vector, all.col_mut(c))?;
+        }
+        let all = &all;
+        stiffness.team.for_each(blocks, |j, b| {
+            let mut x = Dense::zeros(columns[j].len(), n);
+            for c in 0..n {
+                for (x, &g) in x.col_mut(c).iter_mut().zip(&columns[j]) {
+                    *x = -all.get(g as usize, c);
+                }
+            }
+            ys[j].add_mul_columns(&x, &mut b.y); /*                    y ← y − Y c     */
         });
         Ok(())
     }

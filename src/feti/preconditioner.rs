@@ -15,7 +15,7 @@ use super::local::dense::Dense;
 use super::local::problem::LocalProblem;
 use super::local::single::Single;
 use super::settings::{PcType, Precision};
-use super::stiffness::{Stiffness, Work};
+use super::stiffness::{Columns, Stiffness, Work};
 use crate::petsc::Vec as PetscVec;
 use crate::sparse::Csr;
 use crate::substructures::Substructures;
@@ -106,12 +106,6 @@ impl Preconditioner {
     }
 }
 
-/// Several columns of one subdomain on Γ: loads in, displacements out.
-struct Columns {
-    v: Dense,
-    y: Dense,
-}
-
 impl Preconditioner {
     /// outs ← M⁻¹ λs. S is read once for all of them, and only for those that reach the subdomain. Collective.
     pub fn apply_many(
@@ -125,7 +119,7 @@ impl Preconditioner {
             let mut pairs = lambdas.iter().zip(outs);
             return pairs.try_for_each(|(l, out)| self.apply(stiffness, l, out));
         }
-        let (work, ghost) = &mut *self.buffers.borrow_mut();
+        let (_, ghost) = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
         let room = |local: &Arc<LocalProblem>| Columns {
             v: Dense::zeros(local.n_gamma(), lambdas.len()),
@@ -142,17 +136,10 @@ impl Preconditioner {
         stiffness.team.for_each(&mut blocks, |j, b| {
             locals[j].s.add_mul_columns(&b.v, &mut b.y); /*       y ← S v          */
         });
+        if let Some(lifting) = &self.lifting {
+            lifting.remove_many(stiffness, &mut blocks)?; /*      y ← y − Y A⁺ Yᵀ v */
+        }
         for (c, out) in outs.iter().enumerate() {
-            if let Some(lifting) = &self.lifting {
-                for (w, b) in work.iter_mut().zip(&blocks) {
-                    w.v.copy_from_slice(b.v.col(c));
-                    w.y.copy_from_slice(b.y.col(c));
-                }
-                lifting.remove(stiffness, work)?; /*              y ← y − Y A⁺ Yᵀ v */
-                for (w, b) in work.iter().zip(&mut blocks) {
-                    b.y.col_mut(c).copy_from_slice(&w.y);
-                }
-            }
             ghost.fill(0.0);
             for (b, columns) in blocks.iter().zip(columns) {
                 columns.add_bd(b.y.col(c), ghost); /*             out ← B_D y      */

@@ -29,6 +29,15 @@ pub struct Work {
     pub p: Vec<f64>,
 }
 
+/// Several columns of one subdomain on its interface Γ.
+#[derive(Debug, Clone, Default)]
+pub struct Columns {
+    /// Inputs, n_Γ × their number.
+    pub v: Dense,
+    /// Outputs, same shape.
+    pub y: Dense,
+}
+
 /// Everything that depends on the matrices alone, with the jump operator on top.
 pub struct Stiffness {
     /// B and B_D.

@@ -2,12 +2,12 @@
 
 use super::balance::Balance;
 use super::graph::BodyGraph;
+use super::panels::Panels;
 use super::sweep::{self, Column};
 use crate::feti::dual::Dual;
 use crate::feti::exchange::sum_all;
 use crate::feti::local::dense::Dense;
 use crate::feti::local::semidefinite::Semidefinite;
-use crate::feti::rows::Rows;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
@@ -15,10 +15,10 @@ use crate::Result;
 /// more than this to count: it carries the rounding of F W divided by it.
 const DEPENDENT: f64 = 1e-10;
 
-/// Rows Y without the kernel part: Y − Q X with sparse Y, Q.
+/// Columns without their kernel part: Y − Q X.
 struct Split {
-    y: Rows,
-    q: Option<Rows>,
+    y: Panels,
+    q: Panels,
 }
 
 /// P_2 in terms of P W = W − Q G X.
@@ -43,32 +43,28 @@ impl Matrices {
         balance: &Balance,
         columns: &[Column],
     ) -> Result<Matrices> {
-        let n = dual.stiffness.jump.n_owned;
         let (k, r) = (columns.len(), dual.natural.r);
         let like = dual.multipliers()?;
         let f = |x: &[PetscVec], y: &[PetscVec]| balance.f(session, dual, x, y);
-        let w = sweep::rows(n, columns);
-        let fw = sweep::rows(n, &sweep::images(&like, graph, columns, f)?);
+        let w = Panels::new(columns);
+        let fw = Panels::new(&sweep::images(&like, graph, columns, f)?);
         let mut x = Dense::zeros(r, k);
-        let mut kernels = None;
+        let (mut qg, mut fqg) = Default::default();
         if r > 0 && k > 0 {
-            for i in 0..n {
-                for (g, gv) in dual.natural.g().row(i) {
-                    w.row(i).for_each(|(c, wv)| x.data[g + c * r] += gv * wv);
-                }
-            }
+            let natural = &dual.natural;
+            let start = &dual.stiffness.space.kernel_start;
+            let near = |b: usize| graph.near[b].clone();
+            let g = Panels::new(&sweep::kernel_columns(natural.g(), start, near));
+            g.add_product(&w, &mut x, (0, 0));
             sum_all(session.comm(), &mut x.data);
             for c in 0..k {
-                dual.natural.solve_gtg(x.col_mut(c))?;
+                natural.solve_gtg(x.col_mut(c))?;
             }
-            let natural = &dual.natural;
-            let qg = sweep::kernel_columns(natural.qg(), &dual.stiffness.space.kernel_start, |b| {
-                graph.around(&graph.near[b])
-            });
-            let fqg = sweep::rows(n, &sweep::images(&like, graph, &qg, f)?);
-            kernels = Some((sweep::rows(n, &qg), fqg));
+            let around = |b: usize| graph.around(&graph.near[b]);
+            let columns = sweep::kernel_columns(natural.qg(), start, around);
+            fqg = Panels::new(&sweep::images(&like, graph, &columns, f)?);
+            qg = Panels::new(&columns);
         }
-        let (qg, fqg) = kernels.unzip();
         let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
         let e = gram(session, &w, &fw, &x);
         Ok(Matrices {
@@ -121,9 +117,7 @@ impl Matrices {
             let v = v.array()?;
             let (columns, kernels) = c.split_at_mut(k);
             of.y.add_transpose(&v, columns);
-            if let Some(q) = &of.q {
-                q.add_transpose(&v, kernels);
-            }
+            of.q.add_transpose(&v, kernels);
         }
         sum_all(session.comm(), &mut c);
         let mut kernels = c.split_off(k);
@@ -136,35 +130,23 @@ impl Matrices {
     fn add(&self, alpha: f64, of: &Split, c: &[f64], v: &PetscVec) -> Result<()> {
         let mut v = v.array_mut()?;
         of.y.add(alpha, c, &mut v);
-        if let Some(q) = &of.q {
-            let mut kernels = vec![0.0; self.x.rows];
-            self.x.add_mul(c, &mut kernels);
-            q.add(-alpha, &kernels, &mut v);
-        }
+        let mut kernels = vec![0.0; self.x.rows];
+        self.x.add_mul(c, &mut kernels);
+        of.q.add(-alpha, &kernels, &mut v);
         Ok(())
     }
 }
 
 /// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
 fn gram(session: &Session, w: &Split, f: &Split, x: &Dense) -> Dense {
-    let (r, k) = (x.rows, x.cols);
+    let k = x.cols;
     // The products of all columns, kernel ones after the others: [Y Q]ᵀ F [Y Q].
-    let m = k + if w.q.is_some() { r } else { 0 };
+    let m = k + w.q.cols();
     let mut a = Dense::zeros(m, m);
-    let of = |s: &Split, i: usize, out: &mut Vec<(usize, f64)>| {
-        out.clear();
-        out.extend(s.y.row(i));
-        out.extend(s.q.iter().flat_map(|q| q.row(i).map(|(c, v)| (k + c, v))));
-    };
-    let (mut left, mut right) = (Vec::new(), Vec::new());
-    for i in 0..w.y.n() {
-        of(w, i, &mut left);
-        of(f, i, &mut right);
-        for &(p, pv) in &left {
-            let column = a.col_mut(p);
-            right.iter().for_each(|&(q, qv)| column[q] += pv * qv);
-        }
-    }
+    w.y.add_product(&f.y, &mut a, (0, 0));
+    w.y.add_product(&f.q, &mut a, (0, k));
+    w.q.add_product(&f.y, &mut a, (k, 0));
+    w.q.add_product(&f.q, &mut a, (k, k));
     sum_all(session.comm(), &mut a.data);
     let entry = |i: usize, j: usize| 0.5 * (a.get(i, j) + a.get(j, i));
     let mut e = Dense::zeros(k, k);

@@ -17,6 +17,7 @@
 pub mod balance;
 pub mod graph;
 pub mod matrices;
+pub mod panels;
 pub mod pencil;
 pub mod search;
 pub mod sweep;

@@ -14,15 +14,6 @@ pub struct Column {
     pub reach: Vec<u32>,
 }
 
-/// The columns as rows.
-pub fn rows(n: usize, columns: &[Column]) -> Rows {
-    let triplets = columns.iter().enumerate().flat_map(|(c, column)| {
-        let entries = column.entries.iter();
-        entries.map(move |&(row, value)| (row, c as u32, value))
-    });
-    Rows::from_triplets(n, triplets.collect())
-}
-
 /// Sets of columns that can share a product.
 fn groups(graph: &BodyGraph, columns: &[Column]) -> Vec<Vec<usize>> {
     // Bodies at or next to those that the columns of each group reach.

@@ -89,21 +89,21 @@ impl Dense {
 
     /// Y ← Y + A X, columns of zeros left out.
     pub fn add_mul_columns(&self, x: &Dense, y: &mut Dense) {
-        let live: Vec<usize> = (0..x.cols).filter(|&c| !is_zero(x.col(c))).collect();
-        if live.len() < 2 {
-            live.iter()
-                .for_each(|&c| self.add_mul(x.col(c), y.col_mut(c)));
-            return;
+        match live(x) {
+            few if few.len() < 2 => few
+                .iter()
+                .for_each(|&c| self.add_mul(x.col(c), y.col_mut(c))),
+            live => add_packed(self.view(), x, &live, y),
         }
-        let mut packed = Dense::zeros(x.rows, live.len());
-        for (p, &c) in live.iter().enumerate() {
-            packed.col_mut(p).copy_from_slice(x.col(c));
-        }
-        let mut product = Dense::zeros(self.rows, live.len());
-        multiply(product.view_mut(), false, 1.0, self.view(), packed.view());
-        for (p, &c) in live.iter().enumerate() {
-            let sums = y.col_mut(c).iter_mut().zip(product.col(p));
-            sums.for_each(|(y, p)| *y += p);
+    }
+
+    /// Y ← Y + Aᵀ X, columns of zeros left out.
+    pub fn add_mul_transpose_columns(&self, x: &Dense, y: &mut Dense) {
+        match live(x) {
+            few if few.len() < 2 => few
+                .iter()
+                .for_each(|&c| self.add_mul_transpose(x.col(c), y.col_mut(c))),
+            live => add_packed(self.view().transpose(), x, &live, y),
         }
     }
 
@@ -115,6 +115,25 @@ impl Dense {
         for (j, yj) in y.iter_mut().enumerate().take(self.cols) {
             *yj += dot(self.col(j), x);
         }
+    }
+}
+
+/// Columns that are not zero.
+fn live(x: &Dense) -> Vec<usize> {
+    (0..x.cols).filter(|&c| !is_zero(x.col(c))).collect()
+}
+
+/// Y ← Y + A X for the columns listed.
+fn add_packed(a: MatRef<'_, f64>, x: &Dense, live: &[usize], y: &mut Dense) {
+    let mut packed = Dense::zeros(x.rows, live.len());
+    for (p, &c) in live.iter().enumerate() {
+        packed.col_mut(p).copy_from_slice(x.col(c));
+    }
+    let mut product = Dense::zeros(a.nrows(), live.len());
+    multiply(product.view_mut(), false, 1.0, a, packed.view());
+    for (p, &c) in live.iter().enumerate() {
+        let sums = y.col_mut(c).iter_mut().zip(product.col(p));
+        sums.for_each(|(y, p)| *y += p);
     }
 }
 

@@ -1,0 +1,208 @@
+//! Columns of multipliers as dense panels: those of one body touch the same rows, so that a product gathers these rows once and goes through
+//! all columns of the body at the speed of a dense matrix.
+
+use std::ops::Range;
+
+use super::sweep::Column;
+use crate::feti::local::dense::{multiply, Dense};
+
+/// Consecutive columns with the same reach.
+#[derive(Debug, Default)]
+struct Panel {
+    columns: Range<usize>,
+    /// Owned rows with an entry in some column, increasing.
+    rows: Vec<u32>,
+    /// Rows × columns.
+    values: Dense,
+}
+
+/// A matrix with this rank's rows of multipliers and a few columns for every body.
+#[derive(Debug, Default)]
+pub struct Panels {
+    panels: Vec<Panel>,
+    /// Number of columns.
+    cols: usize,
+}
+
+impl Panels {
+    /// The columns in the order that they come in.
+    pub fn new(columns: &[Column]) -> Panels {
+        let mut panels = Vec::new();
+        let mut first = 0;
+        for group in columns.chunk_by(|a, b| a.reach == b.reach) {
+            panels.push(Panel::new(first, group));
+            first += group.len();
+        }
+        Panels {
+            panels,
+            cols: columns.len(),
+        }
+    }
+
+    /// Number of columns.
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// out ← out + Aᵀ v, this rank's share.
+    pub fn add_transpose(&self, v: &[f64], out: &mut [f64]) {
+        let mut gathered = Vec::new();
+        for panel in &self.panels {
+            gathered.clear();
+            gathered.extend(panel.rows.iter().map(|&i| v[i as usize]));
+            let part = &mut out[panel.columns.clone()];
+            panel.values.add_mul_transpose(&gathered, part);
+        }
+    }
+
+    /// v ← v + α A c.
+    pub fn add(&self, alpha: f64, c: &[f64], v: &mut [f64]) {
+        let mut product = Vec::new();
+        for panel in &self.panels {
+            let c: Vec<f64> = c[panel.columns.clone()].iter().map(|c| alpha * c).collect();
+            product.clear();
+            product.resize(panel.rows.len(), 0.0);
+            panel.values.add_mul(&c, &mut product);
+            for (&i, p) in panel.rows.iter().zip(&product) {
+                v[i as usize] += p;
+            }
+        }
+    }
+
+    /// out ← out + Aᵀ B on this rank's rows, placed at (`at`.0, `at`.1) of `out`.
+    pub fn add_product(&self, other: &Panels, out: &mut Dense, at: (usize, usize)) {
+        for a in &self.panels {
+            for b in &other.panels {
+                let common = b.gather(&a.rows);
+                if common.data.is_empty() {
+                    continue;
+                }
+                let mut part = Dense::zeros(a.values.cols, common.cols);
+                let left = a.values.view().transpose();
+                multiply(part.view_mut(), false, 1.0, left, common.view());
+                for (q, j) in b.columns.clone().enumerate() {
+                    let column = &mut out.col_mut(at.1 + j)[at.0..];
+                    let sums = column[a.columns.clone()].iter_mut().zip(part.col(q));
+                    sums.for_each(|(o, p)| *o += p);
+                }
+            }
+        }
+    }
+}
+
+impl Panel {
+    fn new(first: usize, columns: &[Column]) -> Panel {
+        let all = || columns.iter().flat_map(|c| &c.entries);
+        // Counting instead of sorting: the columns have thousands of entries and mostly the same rows.
+        const NONE: u32 = u32::MAX;
+        let end = all().map(|e| e.0 as usize + 1).max().unwrap_or(0);
+        let mut place = vec![NONE; end];
+        all().for_each(|e| place[e.0 as usize] = 0);
+        let mut rows = Vec::new();
+        for (row, place) in place.iter_mut().enumerate().filter(|p| *p.1 != NONE) {
+            *place = rows.len() as u32;
+            rows.push(row as u32);
+        }
+        let mut values = Dense::zeros(rows.len(), columns.len());
+        for (c, column) in columns.iter().enumerate() {
+            let out = values.col_mut(c);
+            for &(row, value) in &column.entries {
+                out[place[row as usize] as usize] += value;
+            }
+        }
+        Panel {
+            columns: first..first + columns.len(),
+            rows,
+            values,
+        }
+    }
+
+    /// These rows of all columns, zero where the panel has no such row; without data where it has none of them.
+    fn gather(&self, rows: &[u32]) -> Dense {
+        let mut pairs = Vec::new();
+        let mut at = 0;
+        for (i, row) in rows.iter().enumerate() {
+            while at < self.rows.len() && self.rows[at] < *row {
+                at += 1;
+            }
+            if self.rows.get(at) == Some(row) {
+                pairs.push((i, at));
+            }
+        }
+        if pairs.is_empty() {
+            return Dense::default();
+        }
+        let mut out = Dense::zeros(rows.len(), self.values.cols);
+        for c in 0..out.cols {
+            let (from, to) = (self.values.col(c), out.col_mut(c));
+            pairs.iter().for_each(|&(i, at)| to[i] = from[at]);
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn column(entries: &[(u32, f64)], reach: &[u32]) -> Column {
+        Column {
+            entries: entries.to_vec(),
+            reach: reach.to_vec(),
+        }
+    }
+
+    /// The same matrix, entry by entry.
+    fn dense(n: usize, columns: &[Column]) -> Dense {
+        let mut out = Dense::zeros(n, columns.len());
+        for (c, column) in columns.iter().enumerate() {
+            for &(row, value) in &column.entries {
+                out.data[row as usize + c * n] += value;
+            }
+        }
+        out
+    }
+
+    #[test]
+    fn products_are_those_of_the_whole_matrix() {
+        let n = 6;
+        let a = [
+            column(&[(0, 1.0), (2, -2.0)], &[0, 1]),
+            column(&[(2, 0.5), (3, 4.0)], &[0, 1]),
+            column(&[(3, 3.0), (5, 1.5)], &[1]),
+            column(&[], &[2]),
+        ];
+        let b = [
+            column(&[(5, 2.0)], &[3]),
+            column(&[(0, 1.0), (3, -1.0), (4, 7.0)], &[0]),
+        ];
+        let (pa, pb) = (Panels::new(&a), Panels::new(&b));
+        let (da, db) = (dense(n, &a), dense(n, &b));
+        let v: Vec<f64> = (0..n).map(|i| 1.0 + i as f64).collect();
+        let mut out = vec![1.0; 4];
+        pa.add_transpose(&v, &mut out);
+        for (c, o) in out.iter().enumerate() {
+            let sum: f64 = da.col(c).iter().zip(&v).map(|(a, v)| a * v).sum();
+            assert_eq!(*o, 1.0 + sum);
+        }
+        let c = [1.0, -2.0, 3.0, 10.0];
+        let mut w = v.clone();
+        pa.add(-0.5, &c, &mut w);
+        let mut expected = vec![0.0; n];
+        da.add_mul(&c, &mut expected);
+        for i in 0..n {
+            assert_eq!(w[i], v[i] - 0.5 * expected[i]);
+        }
+        let mut product = Dense::zeros(5, 3);
+        pa.add_product(&pb, &mut product, (1, 1));
+        for i in 0..5 {
+            for j in 0..3 {
+                let entry = match (i, j) {
+                    (0, _) | (_, 0) => 0.0,
+                    _ => (0..n).map(|k| da.get(k, i - 1) * db.get(k, j - 1)).sum(),
+                };
+                assert_eq!(product.get(i, j), entry);
+            }
+        }
+    }
+}
