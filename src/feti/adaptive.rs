@@ -91,8 +91,29 @@ pub fn find(
             }
         }
     }
-    let found = team.map(owned.len(), |i| {
-        let (j, class) = owned[i];
+    // Equal subdomains that meet in the same way have the same functionals.
+    let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+    let mut kinds: Vec<(usize, &Class)> = Vec::new();
+    let kind_of: Vec<usize> = owned
+        .iter()
+        .map(|&(j, class)| {
+            let next = kinds.len();
+            let sharers = class.sharers.iter();
+            let present: Option<Vec<_>> = sharers
+                .map(|&s| here.get(&(class.name(), u64::from(s))).copied())
+                .collect();
+            let kind = present.map_or(next, |present| {
+                let key = signature(problem, jump, locals, &present);
+                *known.entry(key).or_insert(next)
+            });
+            if kind == next {
+                kinds.push((j, class));
+            }
+            kind
+        })
+        .collect();
+    let of_kind = team.map(kinds.len(), |i| {
+        let (j, class) = kinds[i];
         let own = |&s: &u32| {
             let key = (class.name(), u64::from(s));
             match here.get(&key) {
@@ -103,11 +124,12 @@ pub fn find(
         let parts: Vec<Part> = class.sharers.iter().map(own).collect();
         pencil::functionals(&parts, &classes::means(&locals[j], class), tau)
     });
+    let found: Vec<&Vec<Vec<f64>>> = kind_of.iter().map(|&k| &of_kind[k]).collect();
 
     // [to, class, k, k functionals] to every sharer
     let mut per_body = vec![0.0; problem.n_bodies];
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
-    for ((j, class), list) in owned.iter().zip(&found) {
+    for ((j, class), list) in owned.iter().zip(found) {
         per_body[problem.local[*j].body] += list.len() as f64;
         for &to in class.sharers.iter().filter(|_| !list.is_empty()) {
             let words = &mut outgoing[rank_of(to) as usize];
@@ -175,6 +197,47 @@ pub fn constrain(
     Ok(first.iter().map(|j| renewed[place(j)].clone()).collect())
 }
 
+/// All that the functionals of a class depend on, as numbers: the subdomains that share it, given with their class, by their matrices (equal ones are one
+/// object), where the class lies in them, the entries of B_D there, and which of their primal dofs are one.
+fn signature(
+    problem: &Substructures,
+    jump: &Jump,
+    locals: &[Arc<LocalProblem>],
+    sharers: &[(usize, &Class)],
+) -> Vec<u64> {
+    fn number<K: std::hash::Hash + Eq>(seen: &mut HashMap<K, u64>, key: K) -> u64 {
+        let next = seen.len() as u64;
+        *seen.entry(key).or_insert(next)
+    }
+    let mut primal = HashMap::new();
+    let mut rows = HashMap::new();
+    let mut out = Vec::new();
+    for &(j, class) in sharers {
+        out.extend([Arc::as_ptr(&locals[j]) as u64, class.at.len() as u64]);
+        out.extend(class.at.iter().map(|&i| i as u64));
+        let columns = &jump.columns[j];
+        out.push(class.entries.len() as u64);
+        for &k in &class.entries {
+            let k = k as usize;
+            let row = number(&mut rows, columns.row[k]);
+            out.extend([row, u64::from(columns.at[k]), columns.bd[k].to_bits()]);
+        }
+        let names = names(&problem.local[j], jump, &locals[j], j);
+        out.extend(names.into_iter().map(|name| number(&mut primal, name)));
+    }
+    out
+}
+
+/// Names of the primal dofs of local subdomain `j`: equal where subdomains share them.
+fn names(sub: &Subdomain, jump: &Jump, local: &LocalProblem, j: usize) -> Vec<[u64; 2]> {
+    let vertices = local.interface[local.n_delta..].iter();
+    let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
+    let averages = jump.averages[j].iter().map(|a| [1, a.key]);
+    let fixing = local.fixing.iter();
+    let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
+    vertices.chain(averages).chain(fixing).collect()
+}
+
 /// What local subdomain `j` has to say about a class.
 fn part(
     problem: &Substructures,
@@ -206,18 +269,13 @@ fn part(
             psi.set(k, p, local.psi.get(i, p));
         }
     }
-    let vertices = local.interface[local.n_delta..].iter();
-    let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
-    let averages = jump.averages[j].iter().map(|a| [1, a.key]);
-    let fixing = local.fixing.iter();
-    let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
     Part {
         a,
         t: block(&local.t),
         psi,
         sigma: local.sigma.clone(),
         stiff: local.primal_stiffness(),
-        names: vertices.chain(averages).chain(fixing).collect(),
+        names: names(sub, jump, local, j),
     }
 }
 
