@@ -14,7 +14,7 @@ use std::time::Instant;
 use super::{checkpoint, judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
 use crate::feti::dual::Dual;
 use crate::feti::exchange::{gather_all, max_all, sum_all};
-use crate::feti::inner::{iterate, target, to_the_end, Inner, Loads, Residual};
+use crate::feti::inner::{target, to_the_end, Inner, Loads, Residual};
 use crate::feti::rows::Rows;
 use crate::feti::{recover, FetiFeti, Solution, Spectrum};
 use crate::petsc::Vec as PetscVec;
@@ -187,19 +187,10 @@ impl Run {
         } else {
             target.max(reduction * first)
         };
-        let (r, size) = (&self.residual.r, self.residual.size);
-        let mut inner = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
         drop(dual);
-        while inner.broken_off {
-            solver.deflate_after(inner.estimate)?;
-            let dual = solver.dual();
-            self.residual
-                .evaluate(session, &dual, &self.loads, &self.lambda)?;
-            let (r, size) = (&self.residual.r, self.residual.size);
-            dual.p_transpose(r)?;
-            let more = iterate(&dual, solver.ksp(), r, size, &self.lambda, tolerance)?;
-            inner = inner.followed_by(more);
-        }
+        let size = self.residual.size;
+        let residual = &mut self.residual;
+        let inner = solver.reach(&self.loads, residual, size, &self.lambda, tolerance)?;
         let dual = solver.dual();
         self.residual
             .evaluate(session, &dual, &self.loads, &self.lambda)?;

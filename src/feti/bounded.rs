@@ -19,7 +19,7 @@ impl FetiFeti {
     }
 
     /// The same with what the iterations have seen of the spectrum.
-    pub(crate) fn deflate_after(&self, before: Option<Spectrum>) -> Result<()> {
+    fn deflate_after(&self, before: Option<Spectrum>) -> Result<()> {
         let (candidates, now) = {
             let dual = self.dual();
             let jump = &dual.stiffness.jump;
@@ -40,7 +40,16 @@ impl FetiFeti {
         found
     }
 
-    pub(super) fn deflate_with(&self, dual: &Dual, before: Option<Spectrum>) -> Result<()> {
+    /// The same where the iterations ask for it: with the rows that hold, unless rows come and go.
+    pub(super) fn search(&self, seen: Option<Spectrum>) -> Result<()> {
+        if self.facts().inequalities > 0 {
+            self.deflate_after(seen)
+        } else {
+            self.deflate_with(&self.dual(), seen)
+        }
+    }
+
+    fn deflate_with(&self, dual: &Dual, before: Option<Spectrum>) -> Result<()> {
         let tau = match self.settings().adaptive {
             Adaptive::Below(tau) => tau,
             _ => Adaptive::USUAL,
@@ -67,6 +76,21 @@ impl FetiFeti {
         Ok(())
     }
 
+    /// Deflates what is above `bound` with the rows that hold; `false` where nothing is found, or deflation has been given up.
+    fn polish(&self, bound: f64) -> Result<bool> {
+        let dual = self.dual();
+        let Some(mut deflation) = dual.take_deflation() else {
+            return Ok(false);
+        };
+        let most = self.settings().adaptive_max;
+        let found = match deflation.cost.given_up {
+            true => Ok(0),
+            false => deflation.polish(self.session(), &dual, bound, most),
+        };
+        dual.deflate(Some(deflation));
+        Ok(found? > 0)
+    }
+
     /// What is deflated and what that has cost; `None` where nothing has been searched for.
     pub fn deflated(&self) -> Option<Cost> {
         self.dual().deflation().as_ref().map(|d| d.cost.clone())
@@ -80,15 +104,13 @@ impl FetiFeti {
             self.deflate()?;
         }
         let mut spectrum = self.present_spectrum()?;
-        // As long as what bodies share is above the bound and can be found.
-        let too_large = |s: &Option<Spectrum>| {
-            let dual = self.dual();
-            let limit = dual.watch().filter(|_| dual.deflation().is_some());
-            matches!((limit, s), (Some(limit), Some(s)) if s.lambda_max > limit)
-        };
-        while too_large(&spectrum) {
-            self.deflate()?;
-            spectrum = self.present_spectrum()?;
+        // What bodies share with the rows that hold now, which may be fewer than those that were searched with.
+        if let Adaptive::Below(tau) = self.settings().adaptive {
+            let too_large =
+                |s: &Option<Spectrum>| matches!(s, Some(s) if s.lambda_max > KEPT * tau);
+            while too_large(&spectrum) && self.polish(SHARED * tau)? {
+                spectrum = self.present_spectrum()?;
+            }
         }
         Ok(spectrum)
     }

@@ -18,7 +18,7 @@ use crate::Result;
 pub const ROUNDING: f64 = 1e-14;
 
 /// Iterations before the first look at the spectrum.
-const WATCHED_FROM: usize = 9;
+const WATCHED_FROM: usize = 5;
 
 /// An iteration is not broken off any more when its residual is less than this many times what it is to end with.
 const NEARLY: f64 = 30.0;
@@ -188,6 +188,13 @@ impl Inner {
             estimate: None,
             broken_off: false,
         }
+    }
+
+    /// Whether rounding ended the run after the residual had become less than `part` of what it was.
+    pub fn broke_down(&self, part: f64) -> bool {
+        let ends = (self.residuals.first(), self.residuals.last());
+        let moved = matches!(ends, (Some(first), Some(last)) if *last < part * first);
+        self.reason.broke_down() && moved
     }
 
     /// This run, broken off, and the one that went on from it with another preconditioner: the spectrum is that of the latter.

@@ -22,6 +22,7 @@ pub mod kkt;
 pub mod lifting;
 pub mod local;
 pub mod natural;
+pub mod persist;
 pub mod preconditioner;
 pub mod primal;
 pub mod recover;

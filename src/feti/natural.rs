@@ -27,6 +27,10 @@ use crate::{Error, Result};
 /// Entries of R below this part of their column's largest are rounding.
 const STILL: f64 = 1e-12;
 
+/// With Q = M⁻¹ a vector may lose this much on its way through Gᵀ Q G and back. Where stiff channels join bodies that only soft contact holds,
+/// Gᵀ M⁻¹ G is next to singular, and P is no projection any more.
+const SOUND: f64 = 1e-10;
+
 /// G, Q G and the factored Gᵀ Q G; nothing where no body floats.
 pub struct NaturalCoarse {
     /// Number of kernel vectors of all bodies, r.
@@ -91,6 +95,15 @@ impl NaturalCoarse {
         if r > 0 {
             natural.projector = choose(comm, problem, stiffness, preconditioner, wanted);
             natural.renew(session, problem, stiffness, preconditioner)?;
+            let auto = wanted == ProjectorKind::Auto;
+            if auto && natural.projector == ProjectorKind::Preconditioner {
+                let defect = natural.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
+                // Written so that NaN is no small defect.
+                if !(defect <= SOUND) {
+                    natural.projector = ProjectorKind::Diagonal;
+                    natural.renew(session, problem, stiffness, preconditioner)?;
+                }
+            }
         }
         Ok(natural)
     }

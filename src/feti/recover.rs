@@ -10,9 +10,10 @@ use super::correction::TIGHT;
 use super::dual::Dual;
 use super::inner::{iterate, target, to_the_end, Loads, Residual, ROUNDING};
 use super::kkt::{certify, Kkt};
+use super::solver::FetiFeti;
 use super::spectrum::Spectrum;
 use crate::contact::Step;
-use crate::petsc::{Ksp, Session, Vec as PetscVec};
+use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -49,24 +50,24 @@ pub struct Solution {
     pub steps: Vec<Step>,
 }
 
-/// Solves with the rows that hold, as equations; `deflate` is called where the first iterations show large eigenvalues. Collective.
-pub(super) fn solve(
-    session: &Session,
-    problem: &Substructures,
-    dual: &Dual,
-    ksp: &Ksp,
-    deflate: &dyn Fn(&Dual, Option<Spectrum>) -> Result<()>,
-) -> Result<Solution> {
+/// Solves with the rows that hold, as equations. Collective.
+pub(super) fn solve(solver: &FetiFeti) -> Result<Solution> {
+    let (session, problem, ksp) = (solver.session(), solver.problem(), solver.ksp());
     let clock = Instant::now();
-    let loads = Loads::new(session, problem, dual);
-    let natural = &dual.natural;
-    natural.check_held(problem, &dual.stiffness, &loads.kernel)?;
-    let lambda = dual.multipliers()?;
-    natural.balance(session.comm(), &loads.kernel, &lambda)?;
-    let mut residual = Residual::new(dual)?;
-    residual.evaluate(session, dual, &loads, &lambda)?;
-    dual.p_transpose(&residual.r)?;
-    let (reference, rows) = (residual.r.norm2()?, dual.stiffness.jump.n_global);
+    let lambda;
+    let mut residual;
+    let (loads, reference, rows) = {
+        let dual = solver.dual();
+        let loads = Loads::new(session, problem, &dual);
+        let natural = &dual.natural;
+        natural.check_held(problem, &dual.stiffness, &loads.kernel)?;
+        lambda = dual.multipliers()?;
+        natural.balance(session.comm(), &loads.kernel, &lambda)?;
+        residual = Residual::new(&dual)?;
+        residual.evaluate(session, &dual, &loads, &lambda)?;
+        dual.p_transpose(&residual.r)?;
+        (loads, residual.r.norm2()?, dual.stiffness.jump.n_global)
+    };
     let mut size = residual.size;
     // Digits beyond these are for refinement.
     let rtol = ksp.tolerances()?.0;
@@ -76,24 +77,9 @@ pub(super) fn solve(
         1.0
     };
     let mut tolerance = ease * target(ksp, reference, 0.0, rows)?;
-    let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
-    while inner.broken_off {
-        deflate(dual, inner.estimate)?;
-        residual.evaluate(session, dual, &loads, &lambda)?;
-        dual.p_transpose(&residual.r)?;
-        let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
-        inner = inner.followed_by(more);
-    }
-    // Where rounding has made P_2 useless (elements a thousand times as long as high), the plain iteration is started anew.
-    if !inner.reason.converged() && dual.give_deflation_up() {
-        lambda.set(0.0)?;
-        natural.balance(session.comm(), &loads.kernel, &lambda)?;
-        residual.evaluate(session, dual, &loads, &lambda)?;
-        dual.p_transpose(&residual.r)?;
-        let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
-        inner = inner.followed_by(more);
-    }
+    let mut inner = solver.reach(&loads, &mut residual, size, &lambda, tolerance)?;
     // What follows is short, and no look at the spectrum may end it.
+    let dual = &*solver.dual();
     let watch = dual.watch();
     dual.set_watch(None);
     let mut stalled = false;

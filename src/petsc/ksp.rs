@@ -34,6 +34,16 @@ impl ConvergedReason {
     pub fn converged(&self) -> bool {
         self.code > 0
     }
+
+    /// Did it meet numbers that exact arithmetic does not have?
+    pub fn broke_down(&self) -> bool {
+        [
+            sys::KSP_DIVERGED_BREAKDOWN,
+            sys::KSP_DIVERGED_INDEFINITE_PC,
+            sys::KSP_DIVERGED_INDEFINITE_MAT,
+        ]
+        .contains(&self.code)
+    }
 }
 
 /// A linear solver. Clones are handles to the same solver.
