@@ -55,7 +55,7 @@ pub fn baseline(
             }
             Ok(last.clone())
         };
-        let found = outer::solve(session, &rows, &reduced, &mut solvers, tolerances)?;
+        let found = outer::solve(session, &rows, &reduced, &mut solvers, tolerances, None)?;
         Ok(Attempt {
             residual: found.residual,
             kappa: kappa(&krylov)?,

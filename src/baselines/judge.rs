@@ -73,7 +73,7 @@ pub fn judge(
         true => Rows::new(scene, &layout),
         false => Rows::default(),
     };
-    let reference = reference(session, scene, &unknowns, &system, &rows)?;
+    let reference = reference(session, scene, &unknowns, &system, &rows, None)?;
     let trace = Trace::new(&rows, &system.b);
     let court = Court {
         session,
@@ -119,7 +119,7 @@ pub fn judge(
     Ok(verdict)
 }
 
-/// The direct solution: MUMPS with iterative refinement, an active set around it where there are inequalities. Collective.
+/// The direct solution: MUMPS with iterative refinement, an active set around it where there are inequalities, unless the set is `given`. Collective.
 ///
 /// # Errors
 /// Those of the scene and PETSc's.
@@ -129,6 +129,7 @@ pub fn reference(
     unknowns: &Unknowns,
     system: &System,
     rows: &Rows,
+    given: Option<&[bool]>,
 ) -> Result<Found> {
     if !scene.has_contact() {
         return linear(session, system);
@@ -144,7 +145,7 @@ pub fn reference(
         solves: SOLVES,
     };
     let mut solver = || Ok(ksp.clone());
-    outer::solve(session, rows, &reduced, &mut solver, tolerances)
+    outer::solve(session, rows, &reduced, &mut solver, tolerances, given)
 }
 
 /// MUMPS, without options.

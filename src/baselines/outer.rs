@@ -78,7 +78,7 @@ enum Caution {
 /// options, but without operator and set-up.
 pub type Solvers<'a> = dyn FnMut() -> Result<Ksp> + 'a;
 
-/// Runs the loop. Collective.
+/// Runs the loop; with a set that is given, only its equations are solved. Collective.
 ///
 /// # Errors
 /// PETSc's.
@@ -88,14 +88,15 @@ pub fn solve(
     reduced: &Reduced,
     solvers: &mut Solvers,
     tolerances: Tolerances,
+    given: Option<&[bool]>,
 ) -> Result<Found> {
     let (whole, mut setup) = (Instant::now(), 0.0);
     let u = reduced.vector()?;
-    let mut active = rows.initial.clone();
+    let mut active = given.map_or_else(|| rows.initial.clone(), <[bool]>::to_vec);
     let mut priority: Vec<usize> = (0..rows.len()).collect();
     let mut visited: HashSet<Vec<bool>> = HashSet::new();
     let mut caution = Caution::Loose;
-    let (mut steps, mut iterations, mut tight) = (0, 0, false);
+    let (mut steps, mut iterations, mut tight) = (0, 0, given.is_some());
     // The set that the preconditioner was built for.
     let mut built: Vec<bool> = Vec::new();
     let mut groups: Option<Groups> = None;
@@ -174,6 +175,8 @@ pub fn solve(
         let to_the_end = stop <= target;
         let end = if failed {
             Some((false, reason))
+        } else if given.is_some() {
+            Some((true, reason))
         } else if stays && to_the_end {
             let idle = |r: &usize| judged.lambda[*r] >= -IDLE * judged.largest[0];
             match restored.iter().all(idle) {

@@ -26,11 +26,17 @@ pub struct Refined {
     pub converged: bool,
 }
 
-/// Solves `scene` by MUMPS with iterative refinement; `subdomains` are all of its subdomains. On one rank.
+/// Solves `scene` by MUMPS with iterative refinement; `subdomains` are all of its subdomains. Where the active set around MUMPS does not settle and
+/// `known` is one that is known to be right, its equations are solved. On one rank.
 ///
 /// # Errors
 /// Those of the scene and PETSc's.
-pub fn refined(session: &Session, scene: &Scene, subdomains: &[Subdomain]) -> Result<Refined> {
+pub fn refined(
+    session: &Session,
+    scene: &Scene,
+    subdomains: &[Subdomain],
+    known: Option<&[bool]>,
+) -> Result<Refined> {
     let layout = Layout::new(scene);
     if let Some(trouble) = &layout.trouble {
         return Err(Error::input(format!("not for this scene: {trouble}")));
@@ -41,7 +47,11 @@ pub fn refined(session: &Session, scene: &Scene, subdomains: &[Subdomain]) -> Re
         true => Rows::new(scene, &layout),
         false => Rows::default(),
     };
-    let found = judge::reference(session, scene, &unknowns, &system, &rows)?;
+    let solve = |set| judge::reference(session, scene, &unknowns, &system, &rows, set);
+    let mut found = solve(None)?;
+    if let Some(known) = known.filter(|k| !found.converged && k.len() == rows.len()) {
+        found = solve(Some(known))?;
+    }
     let w = found.u.array()?;
     // Along the frames of contact: u = Σ coefficient · w.
     let value = |&dof: &u64| {

@@ -28,8 +28,8 @@ pub struct Direct {
     pub u: Vec<f64>,
     /// How well it satisfies the conditions of optimality.
     pub certificate: Certificate,
-    /// Inequalities that hold.
-    pub active: usize,
+    /// Which inequalities hold, in the order of the scene's rows.
+    pub active: Vec<bool>,
 }
 
 /// How well the conditions of optimality hold, each relative to the size of its terms.
@@ -206,7 +206,7 @@ fn factor(
 }
 
 /// The solution, its certificate, the number of rows that hold.
-type Found = (Vec<f64>, Certificate, usize);
+type Found = (Vec<f64>, Certificate, Vec<bool>);
 
 fn solve(k: &[Vec<(usize, f64)>], f: &[f64], rows: &[Row]) -> Result<Found> {
     const MOST: usize = 100;
@@ -291,8 +291,7 @@ fn solve(k: &[Vec<(usize, f64)>], f: &[f64], rows: &[Row]) -> Result<Found> {
                     certificate.correction, certificate.feasibility, certificate.pull
                 )));
             }
-            let n_active = active.iter().filter(|a| **a).count();
-            return Ok((u, certificate, n_active));
+            return Ok((u, certificate, active));
         }
         if seen.contains(&next) {
             return Err(Error::NotConverged(

@@ -74,6 +74,8 @@ pub struct Record {
     pub reference: Option<f64>,
     /// Error of MUMPS with iterative refinement.
     pub mumps: Option<f64>,
+    /// Error of the direct solution with every entry off by one unit in its last place, up or down.
+    pub last_place: Option<f64>,
     /// With deflation, by τ.
     pub runs: Vec<Run>,
     /// The same fields on finer elements.
@@ -134,11 +136,11 @@ pub struct Run {
     pub tau: f64,
     /// Whether the first iterations of the solve called for a search.
     pub searched: bool,
-    /// Exact κ with what is deflated; where the solve did not search, without anything deflated.
+    /// Exact κ with what is deflated, what is searched for after the solve included.
     pub kappa: Option<f64>,
     /// The smallest eigenvalue.
     pub lambda_min: Option<f64>,
-    /// Vectors of all bodies.
+    /// Vectors of all bodies and those that bodies share.
     pub vectors: usize,
     /// Vectors of the body that has most.
     pub most: usize,

@@ -227,7 +227,8 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         };
         let [energy, largest] = distance(&direct, &words);
         let certificate = direct.certificate.largest();
-        Ok(vec![energy, largest, certificate, direct.active as f64])
+        let active = direct.active.iter().filter(|a| **a).count();
+        Ok(vec![energy, largest, certificate, active as f64])
     })?;
     let inequalities = facts.inequalities > 0;
     record.active[0] = inequalities.then_some(active);
