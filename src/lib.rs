@@ -88,8 +88,11 @@
 #![deny(missing_docs)]
 
 pub mod baselines;
+#[allow(unsafe_code)]
+pub mod capi;
 pub mod cli;
 pub mod contact;
+pub mod embed;
 pub mod error;
 pub mod fem;
 pub mod feti;

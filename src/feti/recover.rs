@@ -76,6 +76,7 @@ pub(super) fn solve(
         1.0
     };
     let mut tolerance = ease * target(ksp, reference, 0.0, rows)?;
+    let _watched = Watched::new(dual, &lambda);
     let mut inner = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
     while inner.broken_off {
         deflate(dual, inner.estimate)?;
@@ -138,6 +139,42 @@ pub(super) fn solve(
         solve_seconds,
         ..solution
     })
+}
+
+/// Lets [`current`] see the iterations as long as it lives.
+struct Watched<'a>(&'a Dual);
+
+impl Watched<'_> {
+    fn new<'a>(dual: &'a Dual, lambda: &PetscVec) -> Watched<'a> {
+        dual.set_start(Some(lambda));
+        Watched(dual)
+    }
+}
+
+impl Drop for Watched<'_> {
+    fn drop(&mut self) {
+        self.0.set_start(None);
+    }
+}
+
+/// u of the iterate that the running iteration has reached, from inside one of its monitors; `None` where none is running. Collective.
+pub(super) fn current(
+    session: &Session,
+    problem: &Substructures,
+    dual: &Dual,
+    ksp: &Ksp,
+) -> Result<Option<Vec<Vec<f64>>>> {
+    let Some(start) = dual.start() else {
+        return Ok(None);
+    };
+    let lambda = dual.multipliers()?;
+    ksp.current_solution(&lambda)?;
+    dual.p(&lambda)?;
+    dual.p2(&lambda)?;
+    lambda.axpy(1.0, &start)?;
+    let loads = Loads::new(session, problem, dual);
+    let mut residual = Residual::new(dual)?;
+    back(session, dual, loads, &lambda, &mut residual, false).map(Some)
 }
 
 /// u from λ, with the certificate; `placed` says that `residual` has the displacements of λ, rigid motions included; what only the iterations know is left empty. Collective.

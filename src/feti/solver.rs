@@ -209,6 +209,15 @@ impl FetiFeti {
         self.believe(solution)
     }
 
+    /// Displacements of each local subdomain for the iterate that has been reached, to be asked for by a monitor of [`FetiFeti::ksp`] during a
+    /// solve without inequalities; `None` where no iteration is running. Costs about as much as an iteration. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn current(&self) -> Result<Option<Vec<Vec<f64>>>> {
+        recover::current(&self.session, &self.problem, &self.dual(), &self.ksp)
+    }
+
     /// The certificate has the last word: whatever the iteration says, displacements that are far from equilibrium, or rows that are far
     /// from holding, are no solution.
     fn believe(&self, mut solution: Solution) -> Result<Solution> {
