@@ -10,6 +10,7 @@ typedef struct {
   PetscObjectId    id;     /* the operator that the solver was made from, and its state then */
   PetscObjectState state;
   PetscInt         body;  /* of this rank; -1: not said */
+  PetscBool        true_residual; /* go on until the residual of the host's equations is below the tolerance */
   PetscBool        stale; /* set up again, whatever the operator says */
   PetscInt         base;  /* iterations of earlier runs of the inner KSP in this solve */
   PetscInt         last;  /* iteration that the monitors have seen last; -1: none */
@@ -52,6 +53,7 @@ static PetscErrorCode Wishes(KSP ksp, FetiFetiWishes *wishes)
 {
   PetscFunctionBegin;
   wishes->body   = (int)((KSP_FETIFETI *)ksp->data)->body;
+  wishes->goal   = -1;
   wishes->rtol   = ksp->rtol;
   wishes->abstol = ksp->abstol;
   wishes->divtol = ksp->divtol;
@@ -121,18 +123,27 @@ static PetscErrorCode Reason(const FetiFetiResult *result, KSPConvergedReason *r
   PetscFunctionReturn(0);
 }
 
+/* r <- b - A x */
+static PetscErrorCode Residual(Mat A, Vec B, Vec X, Vec R, PetscReal *norm)
+{
+  PetscFunctionBegin;
+  PetscCall(MatMult(A, X, R));
+  PetscCall(VecAYPX(R, -1.0, B));
+  PetscCall(VecNorm(R, NORM_2, norm));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
 {
   KSP_FETIFETI  *ff = (KSP_FETIFETI *)ksp->data;
   Mat            A;
-  Vec            X, B, R, D;
+  Vec            B, R, D;
   MatNullSpace   nullsp;
   FetiFetiWishes wishes;
   FetiFetiResult result;
-  PetscBool      kernel = PETSC_FALSE;
-  PetscReal      goal, norm;
-  PetscInt       its  = 0, pass;
-  int            status;
+  PetscBool      kernel;
+  PetscReal      norm, size;
+  int            status = 0;
 
   PetscFunctionBegin;
   PetscCall(KSPSetUp_FETIFETI(ksp)); /* the operator may have changed without KSPSetOperators() */
@@ -142,42 +153,49 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
     PetscCall(VecSetInf(ksp->vec_sol));
     PetscFunctionReturn(0);
   }
-  X = ksp->vec_sol;
-  B = ksp->vec_rhs;
   PetscCall(KSPGetOperators(ksp, &A, NULL));
   PetscCall(MatGetNullSpace(A, &nullsp));
+  PetscCall(VecDuplicate(ksp->vec_rhs, &B));
   PetscCall(VecDuplicate(B, &R));
-  PetscCall(VecDuplicate(X, &D));
-  if (nullsp) PetscCall(MatNullSpaceTest(nullsp, A, &kernel));
-  PetscCall(VecCopy(B, R));
-  if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, R));
-  PetscCall(VecNorm(R, NORM_2, &goal));
-  goal = PetscMax(ksp->rtol * goal, ksp->abstol);
-  if (!ksp->guess_zero) { /* r <- b - A x */
-    PetscCall(MatMult(A, X, D));
-    PetscCall(VecAXPY(R, -1.0, D));
-  }
-  PetscCall(Wishes(ksp, &wishes));
+  PetscCall(VecDuplicate(ksp->vec_sol, &D));
+  PetscCall(VecCopy(ksp->vec_rhs, B));
+  if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, B));
   ff->base = 0;
   ff->last = -1;
-  for (pass = 0;; pass++) {
-    status = fetifeti_plugin_solve(ff->solver, &wishes, R, D, &result);
-    if (status) {
-      PetscCall(VecDestroy(&R));
-      PetscCall(VecDestroy(&D));
-      PetscCall(Raise(ksp, status));
-    }
-    its += result.iterations;
-    PetscCall(VecAXPY(X, 1.0, D)); /* x <- x + d */
-    break;
-  }
-  if (nullsp && kernel) PetscCall(MatNullSpaceRemove(nullsp, X));
+  PetscCall(Wishes(ksp, &wishes));
+  PetscCall(VecNorm(B, NORM_2, &size));
+  PetscCall(VecCopy(B, R));
+  norm = size;
+  if (!ksp->guess_zero) PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
+  /* The inner KSP stops by the jumps between subdomains; the residual of the host's equations is asked for besides. */
+  if (ff->true_residual) wishes.goal = PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol);
+  status = fetifeti_plugin_solve(ff->solver, A, &wishes, R, D, &result);
+  if (!status) PetscCall(VecAXPY(ksp->vec_sol, 1.0, D)); /* x <- x + d */
+  PetscCall(VecDestroy(&B));
   PetscCall(VecDestroy(&R));
   PetscCall(VecDestroy(&D));
-  ksp->its = its;
+  if (status) PetscCall(Raise(ksp, status));
+  if (nullsp) { /* vectors that the operator does not map to zero are no kernel, whatever they are called */
+    PetscCall(MatNullSpaceTest(nullsp, A, &kernel));
+    if (kernel) PetscCall(MatNullSpaceRemove(nullsp, ksp->vec_sol));
+  }
+  ksp->its = result.iterations;
   PetscCall(Reason(&result, &ksp->reason));
-  (void)goal;
-  (void)norm;
+  PetscFunctionReturn(0);
+}
+
+#if PETSC_VERSION_GE(3, 23, 0)
+static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems PetscOptionsObject)
+#else
+static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems *PetscOptionsObject)
+#endif
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+
+  PetscFunctionBegin;
+  PetscOptionsHeadBegin(PetscOptionsObject, "KSP FETIFETI options");
+  PetscCall(PetscOptionsBool("-fetifeti_true_residual", "Go on until the residual of the assembled equations is below the tolerance", NULL, ff->true_residual, &ff->true_residual, NULL));
+  PetscOptionsHeadEnd();
   PetscFunctionReturn(0);
 }
 
@@ -316,12 +334,14 @@ static PetscErrorCode KSPCreate_FETIFETI(KSP ksp)
 
   PetscCall(PetscNew(&ff));
   ff->body                               = -1;
+  ff->true_residual                      = PETSC_TRUE;
   ksp->data                              = (void *)ff;
   ksp->ops->setup                        = KSPSetUp_FETIFETI;
   ksp->ops->solve                        = KSPSolve_FETIFETI;
   ksp->ops->reset                        = KSPReset_FETIFETI;
   ksp->ops->destroy                      = KSPDestroy_FETIFETI;
   ksp->ops->view                         = KSPView_FETIFETI;
+  ksp->ops->setfromoptions               = KSPSetFromOptions_FETIFETI;
   ksp->ops->computeeigenvalues           = KSPComputeEigenvalues_FETIFETI;
   ksp->ops->computeextremesingularvalues = KSPComputeExtremeSingularValues_FETIFETI;
   ksp->ops->buildsolution                = KSPBuildSolution_FETIFETI;

@@ -12,12 +12,13 @@
 
 typedef struct {
   int    body;     /* body of this rank, or -1 */
+  double goal;     /* norm of b - A x to end with, or -1: it does not matter */
   double rtol, abstol, divtol;
   int    max_it;
 } FetiFetiWishes;
 
 typedef struct {
-  int    bodies, floating, kernel, subdomains, primal, held;
+  int    bodies, floating, kernel, subdomains, primal;
   double local_rows, global_rows;
 } FetiFetiFacts;
 
@@ -28,7 +29,7 @@ typedef struct {
 } FetiFetiResult;
 
 int  fetifeti_plugin_setup(MPI_Comm comm, Mat a, const char *prefix, const FetiFetiWishes *wishes, void **solver);
-int  fetifeti_plugin_solve(void *solver, const FetiFetiWishes *wishes, Vec b, Vec x, FetiFetiResult *result);
+int  fetifeti_plugin_solve(void *solver, Mat a, const FetiFetiWishes *wishes, Vec b, Vec x, FetiFetiResult *result);
 int  fetifeti_plugin_solution(void *solver, Vec x, int *there);
 KSP  fetifeti_plugin_inner(void *solver);
 void fetifeti_plugin_facts(void *solver, FetiFetiFacts *facts);

@@ -4,12 +4,14 @@ use super::error::{status, UNFIT};
 use crate::embed::{Embedded, Grouping, Torn};
 use crate::petsc::{raw, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result, Settings};
+use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void, CStr};
 
 /// What the outer KSP wants.
 #[repr(C)]
 pub struct Wishes {
     body: c_int,
+    goal: f64,
     rtol: f64,
     abstol: f64,
     divtol: f64,
@@ -24,7 +26,6 @@ pub struct Facts {
     kernel: c_int,
     subdomains: c_int,
     primal: c_int,
-    held: c_int,
     local_rows: f64,
     global_rows: f64,
 }
@@ -88,10 +89,11 @@ fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
 /// Solves A x = b from zero. Collective.
 ///
 /// # Safety
-/// `solver` comes from [`fetifeti_plugin_setup`]; `b` and `x` are vectors of its matrix, `wishes` and `report` are valid.
+/// `solver` comes from [`fetifeti_plugin_setup`] for `a`; `b` and `x` are vectors of `a`, `wishes` and `report` are valid.
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_solve(
     solver: *mut c_void,
+    a: raw::Mat,
     wishes: *const Wishes,
     b: raw::Vec,
     x: raw::Vec,
@@ -106,7 +108,20 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
             PetscVec::share(x, solver.session())?,
         );
         forward(solver, wishes)?;
-        let outcome = solver.solve(&b, &x)?;
+        let (a, r) = (Mat::share(a, solver.session())?, b.duplicate()?);
+        let best = Cell::new(f64::INFINITY);
+        let outcome = solver.solve(&b, &x, &|x| {
+            if wishes.goal < 0.0 {
+                return Ok(None);
+            }
+            a.mult(x, &r)?;
+            r.aypx(-1.0, &b)?;
+            let norm = r.norm2()?;
+            // What does not halve it any more is rounding.
+            let hopeless = norm > 0.5 * best.replace(norm);
+            let done = norm <= wishes.goal || hopeless || !norm.is_finite();
+            Ok((!done).then_some(0.5 * wishes.goal.max(1e-4 * norm) / norm))
+        })?;
         let mut reason = [0; 64];
         for (to, from) in reason[..63].iter_mut().zip(outcome.reason.bytes()) {
             *to = from as c_char;
@@ -188,7 +203,6 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
             kernel: known.kernel_dimension as c_int,
             subdomains: problem.n_subdomains as c_int,
             primal: known.primal as c_int,
-            held: 0,
             local_rows: known.multipliers_local as f64,
             global_rows: known.multipliers_global as f64,
         }

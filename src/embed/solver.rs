@@ -133,11 +133,17 @@ impl Embedded {
         })
     }
 
-    /// x ← the solution for the right-hand side b. Collective.
+    /// x ← the solution for the right-hand side b. `enough` is asked whenever x satisfies the tolerance of the multipliers' equations: by which
+    /// factor the residual should fall further, or `None`. Collective.
     ///
     /// # Errors
-    /// A load that nothing balances or that acts on an empty row; PETSc's own.
-    pub fn solve(&self, b: &PetscVec, x: &PetscVec) -> Result<Outcome> {
+    /// A load that nothing balances or that acts on an empty row; PETSc's own, and what `enough` returns.
+    pub fn solve(
+        &self,
+        b: &PetscVec,
+        x: &PetscVec,
+        enough: &dyn Fn(&PetscVec) -> Result<Option<f64>>,
+    ) -> Result<Outcome> {
         let mut load = vec![0.0; self.n_ghosts];
         self.halo.fetch(b, &mut load)?;
         let values = self.session.agree(self.known(&load))?;
@@ -153,7 +159,10 @@ impl Embedded {
         let gaps = vec![0.0; self.solver().problem().rows.len()];
         self.solver.borrow_mut().set_loads(loads, &gaps);
         self.values.replace(values);
-        let solution = self.solver().solve()?;
+        let solution = self.solver().solve_until(&|u| {
+            self.put_together(u, x)?;
+            enough(x)
+        })?;
         self.put_together(&solution.u, x)?;
         Ok(Outcome {
             iterations: solution.iterations,

@@ -20,7 +20,7 @@ use super::local::problem::LocalProblem;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::primal::PrimalSpace;
-use super::recover::{self, Solution};
+use super::recover::{self, Judge, Solution};
 use super::refine::{self, Refinement};
 use super::settings::{PcType, Scaling, Settings};
 use super::sharing::Sharing;
@@ -181,6 +181,25 @@ impl FetiFeti {
         self.solve_from(None, &mut |_, _| Ok(()))
     }
 
+    /// The same without inequalities, for those who measure the solution themselves: whenever the tolerance is reached, `enough` is asked for the factor
+    /// by which the residual should fall further, and the iteration goes on from where it is until it says `None`. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::solve`], and what `enough` returns.
+    pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
+        let _staged = self.solve_stage.scope()?;
+        let solution = self.solve_equations(enough)?;
+        let (session, problem) = (&self.session, &self.problem);
+        let solution = correction::refine(session, problem, &self.dual, &self.ksp, solution)?;
+        self.believe(solution)
+    }
+
+    fn solve_equations(&self, enough: &Judge) -> Result<Solution> {
+        let deflate = |dual: &Dual, seen| self.deflate_with(dual, seen);
+        let (session, problem) = (&self.session, &self.problem);
+        recover::solve(session, problem, &self.dual(), &self.ksp, &deflate, enough)
+    }
+
     /// The same from a given state of the contact loop, with a call after each of its steps. Without inequalities the
     /// state is not used. Collective.
     ///
@@ -195,14 +214,7 @@ impl FetiFeti {
         let solution = if self.facts.inequalities > 0 {
             contact::solve(self, start, observe)?
         } else {
-            let deflate = |dual: &Dual, seen| self.deflate_with(dual, seen);
-            recover::solve(
-                &self.session,
-                &self.problem,
-                &self.dual(),
-                &self.ksp,
-                &deflate,
-            )?
+            self.solve_equations(&|_| Ok(None))?
         };
         let (session, problem) = (&self.session, &self.problem);
         let solution = correction::refine(session, problem, &self.dual, &self.ksp, solution)?;
