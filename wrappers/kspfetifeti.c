@@ -26,7 +26,7 @@ static PetscErrorCode Raise(KSP ksp, int status)
 
   PetscFunctionBegin;
   if (status == FF_RAISED) PetscFunctionReturn(PetscError(PETSC_COMM_SELF, __LINE__, PETSC_FUNCTION_NAME, __FILE__, (PetscErrorCode)code, PETSC_ERROR_REPEAT, " "));
-  SETERRQ(PetscObjectComm((PetscObject)ksp), (PetscErrorCode)code, "FETI-FETI: %s", message);
+  SETERRQ(status == FF_ALONE ? PETSC_COMM_SELF : PetscObjectComm((PetscObject)ksp), (PetscErrorCode)code, "FETI-FETI: %s", message);
 }
 
 /* The inner KSP iterates once or several times in a solve; whoever watches the outer one sees a single count. */
@@ -169,7 +169,14 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   if (!ksp->guess_zero) PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
   /* The inner KSP stops by the jumps between subdomains; the residual of the host's equations is asked for besides. */
   if (ff->true_residual) wishes.goal = PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol);
-  status = fetifeti_plugin_solve(ff->solver, A, &wishes, R, D, &result);
+  if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, R));
+  if (!ksp->guess_zero && norm <= PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol)) { /* the guess is a solution */
+    result.iterations = 0;
+    result.converged  = 1;
+    PetscCall(PetscStrcpy(result.reason, norm <= ksp->abstol ? "CONVERGED_ATOL" : "CONVERGED_RTOL"));
+    PetscCall(VecSet(D, 0.0));
+    PetscCall(KSPMonitor_FETIFETI(NULL, 0, norm, ksp));
+  } else status = fetifeti_plugin_solve(ff->solver, A, &wishes, R, D, &result);
   if (!status) PetscCall(VecAXPY(ksp->vec_sol, 1.0, D)); /* x <- x + d */
   PetscCall(VecDestroy(&B));
   PetscCall(VecDestroy(&R));

@@ -5,10 +5,11 @@
 #include <petscksp.h>
 
 /* What a function of Rust returns: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a sentence about a matrix
-   that cannot be factored; or FF_RAISED, after a PETSc error that has been reported. */
+   that cannot be factored; FF_RAISED, after a PETSc error that has been reported; or FF_ALONE, a sentence that other ranks may not have. */
 #define FF_SENTENCE 1
 #define FF_UNFIT    2
 #define FF_RAISED   3
+#define FF_ALONE    4
 
 typedef struct {
   int    body;     /* body of this rank, or -1 */

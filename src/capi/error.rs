@@ -1,6 +1,7 @@
 //! How a Rust error reaches C: a status, and the sentence on request.
 
 use crate::petsc::raw::{caught, settle};
+use crate::petsc::Session;
 use crate::{Error, Result};
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int, CString};
@@ -11,6 +12,8 @@ const SENTENCE: c_int = 1;
 pub const UNFIT: c_int = 2;
 /// PETSc has reported the error already.
 const RAISED: c_int = 3;
+/// An error with a sentence that this rank has and others may not.
+const ALONE: c_int = 4;
 
 /// PETSC_ERR_SUP: what was asked for is not supported.
 const ERR_SUP: c_int = 56;
@@ -23,11 +26,17 @@ thread_local! {
     static LAST: RefCell<(CString, c_int)> = RefCell::default();
 }
 
-/// Runs `body` and turns what comes out into a status; an error that it calls unfit becomes [`UNFIT`].
-pub fn status(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_int {
+/// Runs `body`, on which all ranks of the session that it makes or has are at work, and turns what comes out into a status. A panic is an error like others.
+pub fn status(what: &'static str, body: impl FnOnce(&mut Option<Session>) -> Result<()>) -> c_int {
     // A host that went on after an error has settled it.
     settle();
-    let Err(error) = caught(what, body) else {
+    let mut session = None;
+    let result = caught(what, || body(&mut session));
+    let concluded = match &session {
+        Some(session) => session.conclude(result),
+        None => result.map_err(|error| (error, true)),
+    };
+    let Err((error, common)) = concluded else {
         return 0;
     };
     let (status, code) = match &error {
@@ -35,6 +44,11 @@ pub fn status(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_int {
         Error::Input(_) => (SENTENCE, ERR_SUP),
         Error::NotConverged(_) => (SENTENCE, ERR_NOT_CONVERGED),
         Error::Environment(_) => (SENTENCE, ERR_LIB),
+    };
+    let status = if status == SENTENCE && !common {
+        ALONE
+    } else {
+        status
     };
     let text = error.to_string().replace('\0', " ");
     LAST.set((CString::new(text).unwrap_or_default(), code));

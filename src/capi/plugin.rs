@@ -51,8 +51,9 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
     solver: *mut *mut c_void,
 ) -> c_int {
     let mut unfit = false;
-    let code = status("KSPSetUp_FETIFETI", || {
+    let code = status("KSPSetUp_FETIFETI", |at_work| {
         let session = Session::borrowed(comm)?;
+        *at_work = Some(session.clone());
         let a = Mat::share(a, &session)?;
         // SAFETY: by the caller.
         let (wishes, prefix) = unsafe { (&*wishes, text(prefix)) };
@@ -99,10 +100,11 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
     x: raw::Vec,
     report: *mut Report,
 ) -> c_int {
-    status("KSPSolve_FETIFETI", || {
+    status("KSPSolve_FETIFETI", |at_work| {
         // A monitor may ask for the present solution while this runs: hence no unique reference.
         // SAFETY: by the caller.
         let (solver, wishes) = unsafe { (&*solver.cast::<Embedded>(), &*wishes) };
+        *at_work = Some(solver.session().clone());
         let (b, x) = (
             PetscVec::share(b, solver.session())?,
             PetscVec::share(x, solver.session())?,
@@ -166,7 +168,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solution(
     x: raw::Vec,
     there: *mut c_int,
 ) -> c_int {
-    status("KSPBuildSolution_FETIFETI", || {
+    status("KSPBuildSolution_FETIFETI", |_| {
         // SAFETY: by the caller.
         let solver = unsafe { &*solver.cast::<Embedded>() };
         let x = PetscVec::share(x, solver.session())?;
@@ -215,7 +217,7 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
 /// `solver` comes from [`fetifeti_plugin_setup`] and is not used any more.
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_free(solver: *mut c_void) {
-    status("KSPReset_FETIFETI", || {
+    status("KSPReset_FETIFETI", |_| {
         // SAFETY: by the caller.
         drop(unsafe { Box::from_raw(solver.cast::<Embedded>()) });
         Ok(())

@@ -188,10 +188,16 @@ impl FetiFeti {
     /// As [`FetiFeti::solve`], and what `enough` returns.
     pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
-        let solution = self.solve_equations(enough)?;
+        let found = self.solve_equations(enough)?;
+        let (converged, reason) = (found.converged, found.reason.clone());
         let (session, problem) = (&self.session, &self.problem);
-        let solution = correction::refine(session, problem, &self.dual, &self.ksp, solution)?;
-        self.believe(solution)
+        let refined = correction::refine(session, problem, &self.dual, &self.ksp, found)?;
+        // Digits that refinement was after and did not find are for `enough` to miss: a relative tolerance of zero asks for all there are.
+        self.believe(Solution {
+            converged,
+            reason,
+            ..refined
+        })
     }
 
     fn solve_equations(&self, enough: &Judge) -> Result<Solution> {

@@ -221,6 +221,22 @@ impl Session {
         }
     }
 
+    /// At the end of a piece of work that every rank does: the result, or an error with whether all ranks return it. An error that only some
+    /// ranks have while the others are still at work is not waited for any longer than a second.
+    pub(crate) fn conclude<T>(&self, result: Result<T>) -> std::result::Result<T, (Error, bool)> {
+        if self.size() == 1 {
+            return result.map_err(|error| (error, true));
+        }
+        match (self.first_failure(result.is_err()), result) {
+            (Some(first), result) if first < self.size() => match self.agree(result) {
+                Err(error) => Err((error, true)),
+                Ok(_) => unreachable!("a rank failed"),
+            },
+            (_, Ok(value)) => Ok(value),
+            (_, Err(error)) => Err((error, false)),
+        }
+    }
+
     /// Runs the program's work and returns its exit code: 0, or the error's.
     ///
     /// An error that every rank returns is printed once. An error of some ranks only, while the others are still at work, is printed with its rank
@@ -301,7 +317,12 @@ impl Session {
             if failed && start.elapsed() > grace {
                 return None;
             }
-            std::thread::sleep(Duration::from_millis(2));
+            // The others are usually here, or nearly.
+            if start.elapsed() > Duration::from_millis(1) {
+                std::thread::sleep(Duration::from_millis(2));
+            } else {
+                std::thread::yield_now();
+            }
         }
     }
 }
