@@ -14,7 +14,8 @@ typedef struct {
   PetscBool        stale; /* set up again, whatever the operator says */
   PetscInt         base;  /* iterations of earlier runs of the inner KSP in this solve */
   PetscInt         last;  /* iteration that the monitors have seen last; -1: none */
-  PetscReal        rnorm; /* its residual norm */
+  PetscBool        running; /* the inner KSP is at work */
+  PetscReal        largest, smallest; /* eigenvalues as the longest run of the inner KSP in the last solve saw them */
   KSPConvergedReason failed; /* why there is no solver */
 } KSP_FETIFETI;
 
@@ -41,7 +42,6 @@ static PetscErrorCode KSPMonitor_FETIFETI(KSP inner, PetscInt it, PetscReal rnor
     PetscFunctionReturn(0);
   }
   ff->last   = ff->base + it;
-  ff->rnorm  = rnorm;
   ksp->its   = ff->last;
   ksp->rnorm = rnorm;
   PetscCall(KSPLogResidualHistory(ksp, rnorm));
@@ -162,6 +162,9 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, B));
   ff->base = 0;
   ff->last = -1;
+  ff->running     = PETSC_TRUE;
+  result.largest  = 0;
+  result.smallest = 0;
   PetscCall(Wishes(ksp, &wishes));
   PetscCall(VecNorm(B, NORM_2, &size));
   PetscCall(VecCopy(B, R));
@@ -181,7 +184,10 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   PetscCall(VecDestroy(&B));
   PetscCall(VecDestroy(&R));
   PetscCall(VecDestroy(&D));
+  ff->running = PETSC_FALSE;
   if (status) PetscCall(Raise(ksp, status));
+  ff->largest  = result.largest;
+  ff->smallest = result.smallest;
   if (nullsp) { /* vectors that the operator does not map to zero are no kernel, whatever they are called */
     PetscCall(MatNullSpaceTest(nullsp, A, &kernel));
     if (kernel) PetscCall(MatNullSpaceRemove(nullsp, ksp->vec_sol));
@@ -290,11 +296,16 @@ static PetscErrorCode KSPComputeEigenvalues_FETIFETI(KSP ksp, PetscInt nmax, Pet
 
 static PetscErrorCode KSPComputeExtremeSingularValues_FETIFETI(KSP ksp, PetscReal *emax, PetscReal *emin)
 {
-  KSP inner;
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+  KSP           inner;
 
   PetscFunctionBegin;
   PetscCall(Inner(ksp, &inner));
-  PetscCall(KSPComputeExtremeSingularValues(inner, emax, emin));
+  if (ff->running || !(ff->smallest > 0)) PetscCall(KSPComputeExtremeSingularValues(inner, emax, emin));
+  else {
+    *emax = ff->largest;
+    *emin = ff->smallest;
+  }
   PetscFunctionReturn(0);
 }
 

@@ -24,9 +24,10 @@ typedef struct {
 } FetiFetiFacts;
 
 typedef struct {
-  int  iterations;
-  int  converged;
-  char reason[64];
+  int    iterations;
+  int    converged;
+  double largest, smallest; /* eigenvalues, or 0 */
+  char   reason[64];
 } FetiFetiResult;
 
 int  fetifeti_plugin_setup(MPI_Comm comm, Mat a, const char *prefix, const FetiFetiWishes *wishes, void **solver);

@@ -35,6 +35,8 @@ pub struct Facts {
 pub struct Report {
     iterations: c_int,
     converged: c_int,
+    largest: f64,
+    smallest: f64,
     reason: [c_char; 64],
 }
 
@@ -128,9 +130,12 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
         for (to, from) in reason[..63].iter_mut().zip(outcome.reason.bytes()) {
             *to = from as c_char;
         }
+        let (largest, smallest) = outcome.spectrum.unwrap_or_default();
         // SAFETY: by the caller.
         unsafe {
             *report = Report {
+                largest,
+                smallest,
                 iterations: outcome.iterations as c_int,
                 converged: outcome.converged.into(),
                 reason,

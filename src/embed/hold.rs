@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::classes::Class;
-use super::kernels::{orthogonal, Columns};
+use super::kernels::{combinations, orthogonal, Columns};
 use super::parts::Part;
 use super::sharing::{gather_per_subdomain, Sharers};
 use super::torn::Torn;
@@ -31,13 +31,21 @@ pub struct Bond {
 /// What a constraint must see of a motion of order one to count.
 const SEEN: f64 = 0.1;
 
+/// Where the constraints see less than this of what a motion does to the face, one more node of it is held.
+const WELL_SEEN: f64 = 0.5;
+
 /// What is less than this cannot be seen.
 const LOOSE: f64 = 1e-6;
+
+/// More motions than this are no rigid ones.
+const MANY: usize = 12;
 
 /// The motions of the subdomains, and what holds them.
 pub struct Motions {
     /// An orthogonal basis in every part, entries of order one.
     bases: Vec<Columns>,
+    /// Components of the field.
+    components: usize,
     /// Nodes that hold a motion besides, where rotations are possible but not known.
     nodes: usize,
 }
@@ -58,6 +66,7 @@ impl Motions {
         };
         Motions {
             bases,
+            components: torn.block_size,
             nodes: match (known, torn.block_size) {
                 (None, 2) => 2,
                 (None, 3) => 3,
@@ -137,6 +146,7 @@ impl Motions {
                     all.add(self.row(j, i), LOOSE);
                 }
                 let mut span = Span::default();
+                let mut held: Vec<Vec<f64>> = Vec::new();
                 let mut points: Vec<u32> = Vec::new();
                 let common = classes[j].iter().filter(|c| c.sharers.contains(high));
                 for class in common.clone() {
@@ -145,6 +155,7 @@ impl Motions {
                         || (!class.is_vertex() && shape.primal.takes(kind))
                     {
                         span.add(self.mean(j, &class.dofs), SEEN);
+                        held.push(self.mean(j, &class.dofs));
                         points.push(class.dofs[class.dofs.len() / 2]);
                     }
                 }
@@ -153,6 +164,7 @@ impl Motions {
                     for face in faces {
                         averaged.push(u64::from(low as u32) << 32 | u64::from(*high));
                         span.add(self.mean(j, &face.dofs), SEEN);
+                        held.push(self.mean(j, &face.dofs));
                         points.push(face.dofs[face.dofs.len() / 2]);
                     }
                 }
@@ -165,9 +177,17 @@ impl Motions {
                     };
                     for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, *best)) {
                         span.add(self.row(j, i), LOOSE);
+                        held.push(self.row(j, i));
                         extra.insert(i);
                     }
                     points.push(*best);
+                }
+                while let Some(best) = self.badly_seen(j, dofs, &held) {
+                    for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, best)) {
+                        held.push(self.row(j, i));
+                        extra.insert(i);
+                    }
+                    points.push(best);
                 }
                 if self.nodes > 1 {
                     for best in spread(torn, part, dofs, &points, self.nodes) {
@@ -180,6 +200,52 @@ impl Motions {
         let averaged = gather_per_subdomain(session, &averaged);
         let pair = |w: &u64| ((w >> 32) as u32, *w as u32);
         (averaged.iter().map(pair).collect(), nodes)
+    }
+
+    /// Where rotations are known: the dof of `dofs` that moves most in the motion that `held` sees least of, if that is little.
+    fn badly_seen(&self, j: usize, dofs: &[u32], held: &[Vec<f64>]) -> Option<u32> {
+        let k = self.bases[j].len();
+        if k <= self.components || k > MANY {
+            return None;
+        }
+        let mut gram = vec![0.0; k * k];
+        for &i in dofs {
+            let row = self.row(j, i);
+            for a in 0..k {
+                for b in 0..k {
+                    gram[a + b * k] += row[a] * row[b];
+                }
+            }
+        }
+        // Motions of unit size on the face, and what is seen of them.
+        let motions = combinations(&gram, k);
+        let seen =
+            |row: &Vec<f64>, c: &[f64]| -> f64 { row.iter().zip(c).map(|(r, c)| r * c).sum() };
+        let n = motions.len();
+        let entry = |a: usize, b: usize| {
+            let terms = held
+                .iter()
+                .map(|f| seen(f, &motions[a]) * seen(f, &motions[b]));
+            terms.sum::<f64>()
+        };
+        let eigen = faer::Mat::from_fn(n, n, entry)
+            .self_adjoint_eigen(faer::Side::Lower)
+            .ok()?;
+        let weights = (0..n).map(|a| eigen.U()[(a, 0)]);
+        let mut worst = vec![0.0; k];
+        for (weight, motion) in weights.zip(&motions) {
+            worst
+                .iter_mut()
+                .zip(motion)
+                .for_each(|(w, m)| *w += weight * m);
+        }
+        let moves = |i: &u32| seen(&self.row(j, *i), &worst).abs();
+        let best = *dofs.iter().max_by(|a, b| moves(a).total_cmp(&moves(b)))?;
+        let most = held
+            .iter()
+            .map(|f| seen(f, &worst).abs())
+            .fold(0.0, f64::max);
+        (most < WELL_SEEN * moves(&best)).then_some(best)
     }
 
     /// What dof `i` of part `j` sees of the motions.

@@ -114,7 +114,7 @@ pub fn over_bodies(session: &Session, body_of: &[usize], n_bodies: usize, column
 }
 
 /// Columns c with cᵀ (Gram matrix) c = 1, orthogonal in it.
-fn combinations(gram: &[f64], k: usize) -> Columns {
+pub(super) fn combinations(gram: &[f64], k: usize) -> Columns {
     let length = |a: usize| match gram[a + a * k] {
         d if d > 0.0 => d.sqrt(),
         _ => 1.0,

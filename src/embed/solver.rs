@@ -47,6 +47,8 @@ pub struct Outcome {
     pub converged: bool,
     /// Why it stopped, by PETSc's name.
     pub reason: String,
+    /// (largest, smallest) eigenvalue of the preconditioned operator as the iteration saw them.
+    pub spectrum: Option<(f64, f64)>,
 }
 
 /// FETI-FETI for a torn operator.
@@ -168,6 +170,7 @@ impl Embedded {
             iterations: solution.iterations,
             converged: solution.converged,
             reason: solution.reason,
+            spectrum: solution.estimate.map(|s| (s.lambda_max, s.lambda_min)),
         })
     }
 
