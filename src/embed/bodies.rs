@@ -73,9 +73,19 @@ pub fn bodies(named: &[Option<u64>], bonds: &[Bond], grouping: Grouping) -> Resu
     Ok(label)
 }
 
-/// Groups of nearly equal size, each grown from a corner of what is left: the subdomain with most dofs in common with the group
-/// comes next.
+/// Groups of nearly equal size, each grown from a corner of what is left, in two ways: by what has most in common with the group, or
+/// in rings around its first. The one with less in common between groups is taken: long groups are held badly by their neighbours.
 fn partition(n: usize, bonds: &[Bond], parts: usize) -> Vec<u64> {
+    let cut = |group: &Vec<u64>| -> usize {
+        let cut = bonds.iter().filter(|b| group[b.low] != group[b.high]);
+        cut.map(|b| b.shared).sum()
+    };
+    let ways = [false, true].map(|rings| grown(n, bonds, parts, rings));
+    let best = ways.into_iter().min_by_key(cut);
+    best.expect("there are two ways")
+}
+
+fn grown(n: usize, bonds: &[Bond], parts: usize, rings: bool) -> Vec<u64> {
     let mut near: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
     for bond in bonds.iter().filter(|b| b.holds) {
         near[bond.low].push((bond.high, bond.shared));
@@ -86,20 +96,29 @@ fn partition(n: usize, bonds: &[Bond], parts: usize) -> Vec<u64> {
         let left = group.iter().filter(|&&x| x == u64::MAX).count();
         let size = left.div_ceil(parts - g);
         let mut pull = vec![0usize; n];
+        let mut steps = vec![usize::MAX; n];
         for _ in 0..size {
-            // Dofs in common with the group, then few with the rest, then the lowest number.
-            let rest = |s: usize| -> usize {
-                let free = near[s].iter().filter(|(t, _)| group[*t] == u64::MAX);
-                free.map(|(_, w)| w).sum()
-            };
             let open = (0..n).filter(|&s| group[s] == u64::MAX);
-            let best = open.max_by_key(|&s| (2 * pull[s] as i64 - rest(s) as i64, n - s));
-            let connected = (0..n).filter(|&s| group[s] == u64::MAX && pull[s] > 0);
-            let reached = connected.max_by_key(|&s| (2 * pull[s] as i64 - rest(s) as i64, n - s));
-            let Some(s) = reached.or(best) else { break };
+            // Reached at all, or a new start; the ring; many dofs in common with the group, few with the rest; the lowest number.
+            let rank = |&s: &usize| {
+                let free = near[s].iter().filter(|(t, _)| group[*t] == u64::MAX);
+                let rest: usize = free.map(|(_, w)| w).sum();
+                let ring = if rings { steps[s] } else { 0 };
+                let reached = steps[s] != usize::MAX;
+                (!reached, ring, rest as i64 - 2 * pull[s] as i64, s)
+            };
+            let Some(s) = open.min_by_key(rank) else {
+                break;
+            };
             group[s] = g as u64;
+            let next = if steps[s] == usize::MAX {
+                1
+            } else {
+                steps[s] + 1
+            };
             for &(t, weight) in &near[s] {
                 pull[t] += weight;
+                steps[t] = steps[t].min(next);
             }
         }
     }
@@ -115,10 +134,7 @@ mod tests {
         let mut bonds = Vec::new();
         for low in 0..w * h {
             for high in low + 1..w * h {
-                let (dx, dy) = (
-                    (low % w).abs_diff(high % w),
-                    low.abs_diff(high - high % w + low % w) / w,
-                );
+                let (dx, dy) = ((low % w).abs_diff(high % w), high / w - low / w);
                 if dx <= 1 && dy <= 1 {
                     bonds.push(Bond {
                         low,
@@ -142,6 +158,18 @@ mod tests {
                 let size = body.iter().filter(|&&x| x == b).count();
                 assert!(size == w * h / parts || size == (w * h).div_ceil(parts));
             }
+        }
+    }
+
+    #[test]
+    fn groups_are_round() {
+        // Also where corners hold nothing, as in elasticity.
+        let mut bonds = grid(4, 4);
+        bonds.iter_mut().for_each(|b| b.holds = b.shared > 1);
+        let group = partition(16, &bonds, 4);
+        let block = |s: usize| s % 4 / 2 + 2 * (s / 8);
+        for (s, t) in (0..16).flat_map(|s| (0..16).map(move |t| (s, t))) {
+            assert_eq!(group[s] == group[t], block(s) == block(t), "{group:?}");
         }
     }
 
