@@ -178,9 +178,13 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
     result.converged  = 1;
     PetscCall(PetscStrcpy(result.reason, norm <= ksp->abstol ? "CONVERGED_ATOL" : "CONVERGED_RTOL"));
     PetscCall(VecSet(D, 0.0));
-    PetscCall(KSPMonitor_FETIFETI(NULL, 0, norm, ksp));
   } else status = fetifeti_plugin_solve(ff->solver, A, &wishes, R, D, &result);
   if (!status) PetscCall(VecAXPY(ksp->vec_sol, 1.0, D)); /* x <- x + d */
+  ff->running = PETSC_FALSE;
+  if (!status && ff->last < 0) { /* nothing to iterate on: those who watch see the beginning, which is the end */
+    PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
+    PetscCall(KSPMonitor_FETIFETI(NULL, 0, norm, ksp));
+  }
   PetscCall(VecDestroy(&B));
   PetscCall(VecDestroy(&R));
   PetscCall(VecDestroy(&D));

@@ -5,8 +5,8 @@ program host
   implicit none
   PetscErrorCode :: ierr
   PetscMPIInt :: rank, ranks
-  PetscInt :: n, first, last, count, i, one, two, n1
-  PetscInt, allocatable :: global(:)
+  PetscInt :: n, first, last, count, i, one, two, three, n1
+  PetscInt, allocatable :: global(:), room(:)
   PetscInt :: pair(2), row(1)
   PetscScalar :: ke(4), sum
   PetscReal :: norm, zero
@@ -23,17 +23,19 @@ program host
   n1 = n + 1
   one = 1
   two = 2
+  three = 3
   zero = 0.0
   first = n * rank / ranks
   last = n * (rank + 1) / ranks
   count = last - first + 1
-  allocate (global(count))
+  allocate (global(count), room(n + 1))
+  room = 3
   do i = 1, count
     global(i) = first + i - 1
   end do
   PetscCallA(ISLocalToGlobalMappingCreate(PETSC_COMM_WORLD, one, count, global, PETSC_COPY_VALUES, map, ierr))
   PetscCallA(MatCreateIS(PETSC_COMM_WORLD, one, PETSC_DECIDE, PETSC_DECIDE, n1, n1, map, map, A, ierr))
-  PetscCallA(MatSetUp(A, ierr))
+  PetscCallA(MatISSetPreallocation(A, three, room, three, room, ierr))
   ke = (/1.0, -1.0, -1.0, 1.0/)
   do i = 0, count - 2
     pair = (/i, i + 1/)

@@ -10,9 +10,11 @@ rank, size, n = comm.rank, comm.size, 40
 first, last = n * rank // size, n * (rank + 1) // size
 lgmap = PETSc.LGMap().create(list(range(first, last + 1)), comm=comm)
 A = PETSc.Mat().createIS(((None, n + 1), (None, n + 1)), lgmapr=lgmap, comm=comm)
-A.setUp()
+local = PETSc.Mat().createAIJ([last - first + 1] * 2, nnz=3, comm=PETSc.COMM_SELF)
 for i in range(last - first):
-    A.setValuesLocal([i, i + 1], [i, i + 1], [1.0, -1.0, -1.0, 1.0], addv=True)
+    local.setValues([i, i + 1], [i, i + 1], [1.0, -1.0, -1.0, 1.0], addv=True)
+local.assemble()
+A.setISLocalMat(local)
 A.assemble()
 A.zeroRowsColumns([0] if rank == 0 else [], diag=1.0)
 x, b = A.createVecs()

@@ -61,6 +61,7 @@ impl Program {
             .arg(source)
             .args(pkg_config(&["--cflags", "--libs"]))
             .args(["-llapack", "-lblas", "-lm"])
+            .args((compiler == "mpif90").then_some("-ffree-line-length-0"))
             .current_dir(&scratch.0)
             .output()
             .unwrap_or_else(|e| panic!("{compiler}: {e}"));
