@@ -78,11 +78,7 @@ fn what_a_user_may_watch() {
         assert!(out.stdout.contains(part), "no \"{part}\" in {}", out.all());
     }
     // The last true residual that the monitor showed is below the tolerance.
-    let last = out
-        .stdout
-        .lines()
-        .filter(|l| l.contains("||r(i)||/||b||"))
-        .next_back();
+    let last = out.stdout.lines().rfind(|l| l.contains("||r(i)||/||b||"));
     let ratio: f64 = last
         .and_then(|l| l.split_whitespace().next_back()?.parse().ok())
         .expect("a number");

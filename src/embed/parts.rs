@@ -115,7 +115,8 @@ fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
     for i in (0..piece.dofs.len()).filter(|&i| free(i)) {
         let (col, val) = piece.k.row(i);
         let d = piece.k.get(i, i);
-        if !col.is_empty() && !(d > 0.0 && d.is_finite()) {
+        let usable = d > 0.0 && d.is_finite();
+        if !col.is_empty() && !usable {
             return Err(Error::input(format!(
                 "the local matrix of a subdomain has {d} on the diagonal at global dof {}, expected a positive number (a stiffness matrix)",
                 piece.dofs[i]
@@ -125,7 +126,8 @@ fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
             let j = j as usize;
             let other = piece.k.get(j, i);
             let size = (d * piece.k.get(j, j)).abs().sqrt();
-            if free(j) && !((v - other).abs() <= SYMMETRIC * size) {
+            let same = (v - other).abs() <= SYMMETRIC * size;
+            if free(j) && !same {
                 return Err(Error::input(format!(
                     "the operator is not symmetric: a local matrix has {v} at global dofs ({}, {}) and {other} at ({}, {}), expected equal entries",
                     piece.dofs[i], piece.dofs[j], piece.dofs[j], piece.dofs[i]

@@ -9,7 +9,7 @@ comm = PETSc.COMM_WORLD
 rank, size, n = comm.rank, comm.size, 40
 first, last = n * rank // size, n * (rank + 1) // size
 lgmap = PETSc.LGMap().create(list(range(first, last + 1)), comm=comm)
-A = PETSc.Mat().createIS(((None, n + 1), (None, n + 1)), lgmapr=lgmap, comm=comm)
+A = PETSc.Mat().createIS(((None, n + 1), (None, n + 1)), lgmapr=lgmap, lgmapc=lgmap, comm=comm)
 local = PETSc.Mat().createAIJ([last - first + 1] * 2, nnz=3, comm=PETSc.COMM_SELF)
 for i in range(last - first):
     local.setValues([i, i + 1], [i, i + 1], [1.0, -1.0, -1.0, 1.0], addv=True)
