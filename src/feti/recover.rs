@@ -105,7 +105,7 @@ pub(super) fn solve(
     let watch = dual.watch();
     dual.set_watch(None);
     let mut stalled = false;
-    let mut asked = 0;
+    let (mut asked, mut idle) = (0, false);
     loop {
         residual.evaluate(session, dual, &loads, &lambda)?;
         residual.add_rigid_motion(session, dual)?;
@@ -132,9 +132,13 @@ pub(super) fn solve(
         dual.p_transpose(&residual.r)?;
         let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
         if more.iterations == 0 {
-            // It was there already.
+            // It was there already: the next look is the last one, unless somebody asks for more.
+            if std::mem::replace(&mut idle, true) {
+                break;
+            }
             continue;
         }
+        idle = false;
         // The longest run knows the spectrum best.
         if more.iterations > inner.iterations {
             inner.estimate = more.estimate;
