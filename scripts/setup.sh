@@ -26,7 +26,9 @@ stop() {
 
 # The packages that the build and the tests need. A PETSc or SLEPc named by the user replaces Debian's.
 packages=(build-essential ca-certificates pkg-config libopenmpi-dev openmpi-bin libclang-dev libopenblas0-serial)
-[ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev)
+# PETSc's own examples, a Fortran compiler and petsc4py are for the tests of the plug-in.
+packages+=(gfortran)
+[ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev libpetsc3.18-dev-examples python3-petsc4py-real)
 [ -n "${SLEPC_DIR:-}${PETSC_DIR:-}" ] || packages+=(slepc-dev)
 
 # Rust: rustup's is taken where there is one; a machine without any gets Debian's current toolchain. Debian 12's package

@@ -39,10 +39,11 @@
 //!
 //! ```text
 //! scene.toml → scene → mesh, fem → Substructures → FetiFeti → Solution → report        (a program may enter at Substructures)
+//!              MATIS → embed ──────┘                                                   (other PETSc programs, docs/embedding.md)
 //! ```
 //!
 //! Each stage imports only from stages to its left; [`cli`] puts them in a row and [`baselines`] sends the same scene through
-//! PETSc's own solvers. [`petsc`] is the only module with unsafe code.
+//! PETSc's own solvers. [`petsc`] and [`capi`], what C calls, are the only modules with unsafe code.
 //!
 //! # Only what the problem needs
 //!
@@ -88,8 +89,11 @@
 #![deny(missing_docs)]
 
 pub mod baselines;
+#[allow(unsafe_code)]
+pub mod capi;
 pub mod cli;
 pub mod contact;
+pub mod embed;
 pub mod error;
 pub mod fem;
 pub mod feti;

@@ -183,6 +183,6 @@ fn correct(
     let inner = iterate(dual, ksp, &residual.r, residual.size, &lambda, target)?;
     residual.evaluate(session, dual, &loads, &lambda)?;
     residual.add_rigid_motion(session, dual)?;
-    let u = back(session, dual, loads, &lambda, &mut residual, true)?;
+    let u = back(session, dual, &loads, &lambda, &mut residual, true)?;
     Ok((u, lambda, inner.iterations))
 }

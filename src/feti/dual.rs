@@ -27,6 +27,8 @@ pub struct Dual {
     /// P_2, where it is in use.
     deflation: RefCell<Option<Deflation>>,
     watch: Cell<Option<f64>>,
+    /// What the running iteration adds its correction to.
+    start: RefCell<Option<PetscVec>>,
     session: Session,
     /// Whether G belongs to other rows than those that hold.
     stale: bool,
@@ -54,6 +56,7 @@ impl Dual {
             ],
             deflation: RefCell::new(None),
             watch: Cell::new(None),
+            start: RefCell::new(None),
             session: session.clone(),
             stale: false,
             y: x.duplicate()?,
@@ -149,6 +152,16 @@ impl Dual {
     /// P_2, where it is in use.
     pub fn deflation(&self) -> Ref<'_, Option<Deflation>> {
         self.deflation.borrow()
+    }
+
+    /// What the running iteration adds its correction to, for those who want to know how far it has come.
+    pub fn start(&self) -> Option<PetscVec> {
+        self.start.borrow().clone()
+    }
+
+    /// Says what the next iterations add their corrections to.
+    pub fn set_start(&self, lambda: Option<&PetscVec>) {
+        *self.start.borrow_mut() = lambda.cloned();
     }
 
     /// Eigenvalue from which on an iteration is broken off, so that what is above τ can be deflated.

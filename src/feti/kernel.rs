@@ -71,23 +71,18 @@ pub fn null_combinations(factors: &[Dense]) -> Dense {
     out
 }
 
-/// A basis of the kernel of the body's primal matrix (n × n, both triangles): n × defect.
-pub fn null_space(s_pi: &Dense) -> Dense {
+/// Diagonal entries of S_Π below this fraction of the body's stiffness are rounding: what is left of a dof that nothing else holds.
+const NOTHING: f64 = 1e-12;
+
+/// A basis of the kernel of the body's primal matrix (n × n, both triangles): n × defect. `stiffness` is the largest diagonal entry of K in
+/// the body, or one like it.
+pub fn null_space(s_pi: &Dense, stiffness: f64) -> Dense {
     let n = s_pi.rows;
-    let scale: Vec<f64> = (0..n)
-        .map(|i| match s_pi.get(i, i) {
-            d if d > 0.0 => d.sqrt(),
-            _ => 0.0,
-        })
-        .collect();
-    // A body with one fixing dof and nothing else to hold it: its 1 × 1 matrix is rounding alone.
-    let largest = scale.iter().fold(0.0, |a: f64, &b| a.max(b));
-    let safe = |i: usize| {
-        if scale[i] > 0.0 {
-            scale[i]
-        } else {
-            largest.max(1.0)
-        }
+    // A body with one primal dof and nothing else to hold it has a 1 × 1 matrix of rounding, which is small only beside K.
+    let alone = if stiffness > 0.0 { stiffness } else { 1.0 };
+    let safe = |i: usize| match s_pi.get(i, i) {
+        d if d > NOTHING * stiffness => d.sqrt(),
+        _ => alone.sqrt(),
     };
     let a = faer::Mat::from_fn(n, n, |i, j| s_pi.get(i, j) / (safe(i) * safe(j)));
     let eigen = a
@@ -184,11 +179,17 @@ mod tests {
             (0..k.n()).for_each(|i| (0..k.n()).for_each(|j| a.set(i, j, k.get(i, j))));
             a
         };
-        let z = null_space(&dense(&k));
+        let z = null_space(&dense(&k), 8.0 / 3.0);
         assert_eq!(z.cols, 1);
         assert!(z.data.iter().all(|v| (v.abs() - 1.0).abs() < 1e-10));
         assert_eq!(fixing_rows(&z).len(), 1);
         let (held, _) = grid_laplacian(5, 5, 1e-6);
-        assert_eq!(null_space(&dense(&held)).cols, 0);
+        assert_eq!(null_space(&dense(&held), 8.0 / 3.0).cols, 0);
+        // One dof of a floating body: rounding of either sign, or a spring.
+        for (left, defect) in [(3e-15, 1), (-3e-15, 1), (0.0, 1), (1e-6, 0)] {
+            let mut one = Dense::zeros(1, 1);
+            one.set(0, 0, left);
+            assert_eq!(null_space(&one, 4.0).cols, defect, "{left:e}");
+        }
     }
 }

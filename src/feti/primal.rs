@@ -247,7 +247,8 @@ impl PrimalSpace {
         let mut owned = std::mem::take(&mut self.owned);
         let mut defect = vec![0.0; problem.n_bodies];
         for body in &mut owned {
-            body.z = self.kernel_of(body, &factors, &values);
+            let stiffness = self.local_stiffness(problem, locals, body.body);
+            body.z = self.kernel_of(body, &factors, &values, stiffness);
             body.fixing = kernel::fixing_rows(&body.z);
             defect[body.body] = body.z.cols as f64;
             let first = self.first + body.range.start;
@@ -258,7 +259,6 @@ impl PrimalSpace {
             // Any positive number makes S_Π regular; the mean diagonal keeps it as well conditioned as it was. A body held
             // by nothing but its fixing dof has a diagonal of rounding: then one.
             let trace: f64 = self.entries.iter().filter(inside).map(|e| e.value).sum();
-            let stiffness = self.local_stiffness(problem, locals, body.body);
             let shift = if trace / n > 1e-10 * stiffness {
                 trace / n
             } else {
@@ -305,7 +305,13 @@ impl PrimalSpace {
             .fold(0.0, f64::max)
     }
 
-    fn kernel_of(&self, body: &OwnedBody, factors: &[u64], values: &[u64]) -> Dense {
+    fn kernel_of(
+        &self,
+        body: &OwnedBody,
+        factors: &[u64],
+        values: &[u64],
+        stiffness: f64,
+    ) -> Dense {
         let n = body.range.len();
         let mut mine = Vec::new();
         let mut known = true;
@@ -331,7 +337,7 @@ impl PrimalSpace {
                     s_pi.data[i - body.range.start + (j - body.range.start) * n] += e.value;
                 }
             }
-            return kernel::null_space(&s_pi);
+            return kernel::null_space(&s_pi, stiffness);
         }
         let combinations = kernel::null_combinations(&mine);
         let mut z = Dense::zeros(n, combinations.cols);

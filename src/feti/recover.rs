@@ -13,7 +13,7 @@ use super::kkt::{certify, Kkt};
 use super::solver::FetiFeti;
 use super::spectrum::Spectrum;
 use crate::contact::Step;
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -50,8 +50,14 @@ pub struct Solution {
     pub steps: Vec<Step>,
 }
 
-/// Solves with the rows that hold, as equations. Collective.
-pub(super) fn solve(solver: &FetiFeti) -> Result<Solution> {
+/// Looks at displacements that satisfy the tolerance; the factor by which the residual should fall further, or `None`.
+pub type Judge<'a> = dyn Fn(&[Vec<f64>]) -> Result<Option<f64>> + 'a;
+
+/// The judge is asked this many times at most.
+const ASKED: usize = 8;
+
+/// Solves with the rows that hold, as equations, until the tolerance is reached and `enough`, if there is one, is satisfied. Collective.
+pub(super) fn solve(solver: &FetiFeti, enough: Option<&Judge>) -> Result<Solution> {
     let (session, problem, ksp) = (solver.session(), solver.problem(), solver.ksp());
     let clock = Instant::now();
     let lambda;
@@ -77,12 +83,14 @@ pub(super) fn solve(solver: &FetiFeti) -> Result<Solution> {
         1.0
     };
     let mut tolerance = ease * target(ksp, reference, 0.0, rows)?;
+    let dual = &*solver.dual();
+    let _watched = Watched::new(dual, &lambda);
     let mut inner = solver.reach(&loads, &mut residual, size, &lambda, tolerance)?;
     // What follows is short, and no look at the spectrum may end it.
-    let dual = &*solver.dual();
     let watch = dual.watch();
     dual.set_watch(None);
     let mut stalled = false;
+    let (mut asked, mut idle) = (0, false);
     loop {
         residual.evaluate(session, dual, &loads, &lambda)?;
         residual.add_rigid_motion(session, dual)?;
@@ -91,15 +99,33 @@ pub(super) fn solve(solver: &FetiFeti) -> Result<Solution> {
         // The target of the displacements that have come out.
         let target = target(ksp, reference, residual.length(session), rows)?;
         let target = (ease * target).max(ROUNDING * size);
-        if to_the_end(tolerance, target) || stalled || !inner.reason.converged() {
+        if stalled || !inner.reason.converged() {
             break;
         }
-        tolerance = target;
+        if to_the_end(tolerance, target) {
+            let Some(enough) = enough.filter(|_| asked < ASKED) else {
+                break;
+            };
+            let u = back(session, dual, &loads, &lambda, &mut residual, true)?;
+            let Some(factor) = enough(&u)? else { break };
+            asked += 1;
+            residual.evaluate(session, dual, &loads, &lambda)?;
+            dual.p_transpose(&residual.r)?;
+            // The last iteration may have gone far below its tolerance.
+            tolerance = factor * tolerance.min(residual.r.norm2()?);
+        } else {
+            tolerance = target;
+        }
         dual.p_transpose(&residual.r)?;
         let more = iterate(dual, ksp, &residual.r, size, &lambda, tolerance)?;
         if more.iterations == 0 {
-            break;
+            // It was there already: the next look is the last one, unless somebody asks for more.
+            if std::mem::replace(&mut idle, true) {
+                break;
+            }
+            continue;
         }
+        idle = false;
         // The longest run knows the spectrum best.
         if more.iterations > inner.iterations {
             inner.estimate = more.estimate;
@@ -126,6 +152,42 @@ pub(super) fn solve(solver: &FetiFeti) -> Result<Solution> {
     })
 }
 
+/// Lets [`current`] see the iterations as long as it lives.
+struct Watched<'a>(&'a Dual);
+
+impl Watched<'_> {
+    fn new<'a>(dual: &'a Dual, lambda: &PetscVec) -> Watched<'a> {
+        dual.set_start(Some(lambda));
+        Watched(dual)
+    }
+}
+
+impl Drop for Watched<'_> {
+    fn drop(&mut self) {
+        self.0.set_start(None);
+    }
+}
+
+/// u of the iterate that the running iteration has reached, from inside one of its monitors; `None` where none is running. Collective.
+pub(super) fn current(
+    session: &Session,
+    problem: &Substructures,
+    dual: &Dual,
+    ksp: &Ksp,
+) -> Result<Option<Vec<Vec<f64>>>> {
+    let Some(start) = dual.start() else {
+        return Ok(None);
+    };
+    let lambda = dual.multipliers()?;
+    ksp.current_solution(&lambda)?;
+    dual.p(&lambda)?;
+    dual.p2(&lambda)?;
+    lambda.axpy(1.0, &start)?;
+    let loads = Loads::new(session, problem, dual);
+    let mut residual = Residual::new(dual)?;
+    back(session, dual, &loads, &lambda, &mut residual, false).map(Some)
+}
+
 /// u from λ, with the certificate; `placed` says that `residual` has the displacements of λ, rigid motions included; what only the iterations know is left empty. Collective.
 pub(crate) fn finish(
     session: &Session,
@@ -137,7 +199,7 @@ pub(crate) fn finish(
     placed: bool,
 ) -> Result<Solution> {
     let clock = Instant::now();
-    let u = back(session, dual, loads, lambda, &mut residual, placed)?;
+    let u = back(session, dual, &loads, lambda, &mut residual, placed)?;
     let recover_seconds = clock.elapsed().as_secs_f64();
     let certificate = certify(session, problem, dual, &u, lambda)?;
     Ok(Solution {
@@ -162,14 +224,14 @@ pub(crate) fn finish(
 pub(super) fn back(
     session: &Session,
     dual: &Dual,
-    loads: Loads,
+    loads: &Loads,
     lambda: &PetscVec,
     residual: &mut Residual,
     placed: bool,
 ) -> Result<Vec<Vec<f64>>> {
     let stiffness = &dual.stiffness;
     if !placed {
-        residual.evaluate(session, dual, &loads, lambda)?;
+        residual.evaluate(session, dual, loads, lambda)?;
         residual.add_rigid_motion(session, dual)?;
     }
 
@@ -187,7 +249,7 @@ pub(super) fn back(
             *y -= v;
         }
     });
-    let mut parts: Vec<Vec<f64>> = loads.interiors;
+    let mut parts: Vec<Vec<f64>> = loads.interiors.clone();
     let (work, locals) = (&*work, &stiffness.locals);
     stiffness.team.for_each(&mut parts, |j, part| {
         let interior = std::mem::take(part);

@@ -20,7 +20,7 @@ use super::local::problem::LocalProblem;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::primal::PrimalSpace;
-use super::recover::{self, Solution};
+use super::recover::{self, Judge, Solution};
 use super::refine::{self, Refinement};
 use super::settings::{PcType, Scaling, Settings};
 use super::sharing::Sharing;
@@ -184,6 +184,25 @@ impl FetiFeti {
         self.solve_from(None, &mut |_, _| Ok(()))
     }
 
+    /// The same without inequalities, for those who measure the solution themselves: whenever the tolerance is reached, `enough` is asked for the factor
+    /// by which the residual should fall further, and the iteration goes on from where it is until it says `None`. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::solve`], and what `enough` returns.
+    pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
+        let _staged = self.solve_stage.scope()?;
+        let found = recover::solve(self, Some(enough))?;
+        let (converged, reason) = (found.converged, found.reason.clone());
+        let (session, problem) = (&self.session, &self.problem);
+        let refined = correction::refine(session, problem, &self.dual, &self.ksp, found)?;
+        // Digits that refinement was after and did not find are for `enough` to miss: a relative tolerance of zero asks for all there are.
+        self.believe(Solution {
+            converged,
+            reason,
+            ..refined
+        })
+    }
+
     /// The same from a given state of the contact loop, with a call after each of its steps. Without inequalities the
     /// state is not used. Collective.
     ///
@@ -198,11 +217,20 @@ impl FetiFeti {
         let solution = if self.facts.inequalities > 0 {
             contact::solve(self, start, observe)?
         } else {
-            recover::solve(self)?
+            recover::solve(self, None)?
         };
         let (session, problem) = (&self.session, &self.problem);
         let solution = correction::refine(session, problem, &self.dual, &self.ksp, solution)?;
         self.believe(solution)
+    }
+
+    /// Displacements of each local subdomain for the iterate that has been reached, to be asked for by a monitor of [`FetiFeti::ksp`] during a
+    /// solve without inequalities; `None` where no iteration is running. Costs about as much as an iteration. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn current(&self) -> Result<Option<Vec<Vec<f64>>>> {
+        recover::current(&self.session, &self.problem, &self.dual(), &self.ksp)
     }
 
     /// The certificate has the last word: whatever the iteration says, displacements that are far from equilibrium, or rows that are far

@@ -94,6 +94,12 @@ pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_
     code
 }
 
+/// Runs `body` for C; a panic becomes an error.
+pub(crate) fn caught(what: &'static str, body: impl FnOnce() -> Result<()>) -> Result<()> {
+    catch_unwind(AssertUnwindSafe(body))
+        .unwrap_or_else(|payload| Err(panicked(what, payload.as_ref())))
+}
+
 /// The error that stands for a panic.
 pub(crate) fn panicked(what: &str, payload: &(dyn Any + Send)) -> Error {
     let text = payload

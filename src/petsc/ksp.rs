@@ -237,6 +237,12 @@ impl Ksp {
         })
     }
 
+    /// x ← what has been reached so far, for monitors. Collective.
+    pub fn current_solution(&self, x: &Vec) -> Result<()> {
+        let mut same = std::ptr::null_mut();
+        petsc!(KSPBuildSolution(self.raw(), x.write()?, &mut same))
+    }
+
     /// Iterations of the last solve.
     pub fn iterations(&self) -> Result<usize> {
         let mut n = 0;

@@ -2,9 +2,11 @@
 
 use super::handle::Handle;
 use super::mat::count;
-use super::{Comm, Mat, Session};
-use crate::Result;
+use super::{Comm, Mat, Session, Vec};
+use crate::sparse::Csr;
+use crate::{Error, Result};
 use petsc_sys as sys;
+use petsc_sys::Flag;
 
 impl Mat {
     /// The square matrix Σ Rᵀ A_local R over the ranks; `local_to_global[i]` is the global number of local dof i and `owned` the number of
@@ -55,5 +57,126 @@ impl Mat {
             &mut raw
         ))?;
         Ok(Mat::own(raw, self.session()))
+    }
+}
+
+/// The vectors of a null space that a host program attached to its matrix.
+pub struct Attached {
+    /// Whether the constants belong to it.
+    pub constants: bool,
+    /// The others.
+    pub vectors: std::vec::Vec<Vec>,
+}
+
+impl Mat {
+    /// The type by PETSc's name.
+    pub fn type_name(&self) -> Result<String> {
+        let mut name = std::ptr::null();
+        petsc!(MatGetType(self.raw(), &mut name))?;
+        Ok(super::error::rust_string(name))
+    }
+
+    /// The block size: how many rows belong to a node.
+    pub fn block_size(&self) -> Result<usize> {
+        let mut size = 1;
+        petsc!(MatGetBlockSize(self.raw(), &mut size))?;
+        Ok(size.max(1) as usize)
+    }
+
+    /// For a MATIS: this rank's local matrix, entry by entry as it is stored, and the global number of each local row; a negative
+    /// number means none.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for different maps of rows and columns; PETSc's own where the local matrix has no rows to ask for.
+    pub fn local_part(&self) -> Result<(Csr, std::vec::Vec<i32>)> {
+        let rows = self.local_to_global()?;
+        let mut raw = std::ptr::null_mut();
+        petsc!(MatISGetLocalMat(self.raw(), &mut raw))?;
+        let local = Mat::share(raw, self.session())?;
+        let csr = local.to_csr();
+        drop(local);
+        petsc!(MatISRestoreLocalMat(self.raw(), &mut raw))?;
+        Ok((csr?, rows))
+    }
+
+    /// The rows of a sequential matrix of any type.
+    fn to_csr(&self) -> Result<Csr> {
+        let plain = if self.type_name()? == "seqaij" {
+            self.clone()
+        } else {
+            self.convert("seqaij")?
+        };
+        let (n, _) = plain.size()?;
+        let mut out = Csr {
+            row_ptr: vec![0],
+            ..Csr::default()
+        };
+        for i in 0..n {
+            let (col, val) = plain.row(i)?;
+            out.col.extend(col.iter().map(|&j| j as u32));
+            out.val.extend(val);
+            out.row_ptr.push(out.col.len());
+        }
+        Ok(out)
+    }
+
+    fn local_to_global(&self) -> Result<std::vec::Vec<i32>> {
+        let (mut rows, mut cols) = (std::ptr::null_mut(), std::ptr::null_mut());
+        petsc!(MatISGetLocalToGlobalMapping(
+            self.raw(),
+            &mut rows,
+            &mut cols
+        ))?;
+        let indices = |map| -> Result<std::vec::Vec<i32>> {
+            let (mut n, mut data) = (0, std::ptr::null());
+            petsc!(ISLocalToGlobalMappingGetSize(map, &mut n))?;
+            petsc!(ISLocalToGlobalMappingGetIndices(map, &mut data))?;
+            let copy = if n == 0 {
+                std::vec::Vec::new()
+            } else {
+                // SAFETY: PETSc lends `n` indices until they are restored.
+                unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec()
+            };
+            petsc!(ISLocalToGlobalMappingRestoreIndices(map, &mut data))?;
+            Ok(copy)
+        };
+        let list = indices(rows)?;
+        if cols != rows && indices(cols)? != list {
+            return Err(Error::input(
+                "the rows and the columns of the MATIS have different local-to-global maps, expected the same",
+            ));
+        }
+        Ok(list)
+    }
+
+    /// What MatSetNullSpace attached.
+    pub fn attached_null_space(&self) -> Result<Option<Attached>> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(MatGetNullSpace(self.raw(), &mut raw))?;
+        self.attached(raw)
+    }
+
+    /// What MatSetNearNullSpace attached.
+    pub fn attached_near_null_space(&self) -> Result<Option<Attached>> {
+        let mut raw = std::ptr::null_mut();
+        petsc!(MatGetNearNullSpace(self.raw(), &mut raw))?;
+        self.attached(raw)
+    }
+
+    fn attached(&self, raw: sys::MatNullSpace) -> Result<Option<Attached>> {
+        if raw.is_null() {
+            return Ok(None);
+        }
+        let (mut constants, mut n, mut list) = (Flag::of(false), 0, std::ptr::null());
+        petsc!(MatNullSpaceGetVecs(raw, &mut constants, &mut n, &mut list))?;
+        let mut vectors = std::vec::Vec::new();
+        for i in 0..n as usize {
+            // SAFETY: PETSc lends `n` vectors; each is counted up here.
+            vectors.push(Vec::share(unsafe { *list.add(i) }, self.session())?);
+        }
+        Ok(Some(Attached {
+            constants: constants.get(),
+            vectors,
+        }))
     }
 }

@@ -32,6 +32,7 @@ pub use is::Is;
 pub use ksp::{ConvergedReason, Ksp, NormType};
 pub use log::{Event, Scope, Stage};
 pub use mat::{Mat, MatFlag};
+pub use matis::Attached;
 pub use options::Options;
 pub use pc::Pc;
 pub use scatter::Scatter;
@@ -39,3 +40,9 @@ pub use session::{max_memory, Comm, Session};
 pub use shell::{ShellMat, ShellOp, ShellPc};
 pub use spectrum::extreme_eigenvalues;
 pub use vec::{Array, ArrayMut, Vec};
+
+/// For `capi`, which takes objects from C: PETSc's own types, and the fence against unwinding.
+pub(crate) mod raw {
+    pub(crate) use super::error::{caught, settled as settle};
+    pub(crate) use petsc_sys::{MPI_Comm, Mat, Vec, KSP};
+}

@@ -221,6 +221,22 @@ impl Session {
         }
     }
 
+    /// At the end of a piece of work that every rank does: the result, or an error with whether all ranks return it. An error that only some
+    /// ranks have while the others are still at work is not waited for any longer than a second.
+    pub(crate) fn conclude<T>(&self, result: Result<T>) -> std::result::Result<T, (Error, bool)> {
+        if self.size() == 1 {
+            return result.map_err(|error| (error, true));
+        }
+        match (self.first_failure(result.is_err()), result) {
+            (Some(first), result) if first < self.size() => match self.agree(result) {
+                Err(error) => Err((error, true)),
+                Ok(_) => unreachable!("a rank failed"),
+            },
+            (_, Ok(value)) => Ok(value),
+            (_, Err(error)) => Err((error, false)),
+        }
+    }
+
     /// Runs the program's work and returns its exit code: 0, or the error's.
     ///
     /// An error that every rank returns is printed once. An error of some ranks only, while the others are still at work, is printed with its rank
@@ -271,15 +287,14 @@ impl Session {
         // Of several failing ranks the lowest gives up first, so that one of them speaks and the others are ended.
         let grace = Duration::from_millis(1000 + 200 * self.rank().min(20) as u64);
         let mine = if failed { self.rank() } else { self.size() } as c_int;
-        // The buffers must outlive an operation that may never finish.
-        let buffers: &'static mut [c_int; 2] = Box::leak(Box::new([mine, 0]));
-        let (send, receive) = buffers.split_at_mut(1);
+        // The buffers must outlive an operation that may never finish: then they are leaked.
+        let buffers = Box::into_raw(Box::new([mine, 0 as c_int]));
         let mut request = MaybeUninit::uninit();
-        // SAFETY: the buffers are leaked; the communicator lives as long as the session.
+        // SAFETY: the buffers live until the operation is complete; the communicator lives as long as the session.
         let code = unsafe {
             ffi::MPI_Iallreduce(
-                send.as_ptr() as *const c_void,
-                receive.as_mut_ptr() as *mut c_void,
+                buffers.cast::<c_int>() as *const c_void,
+                buffers.cast::<c_int>().add(1) as *mut c_void,
                 1,
                 ffi::RSMPI_INT32_T,
                 ffi::RSMPI_MIN,
@@ -296,12 +311,19 @@ impl Session {
             // SAFETY: the request was started above and is tested until it completes, no longer.
             unsafe { ffi::MPI_Test(request.as_mut_ptr(), &mut done, ffi::RSMPI_STATUS_IGNORE) };
             if done != 0 {
-                return Some(receive[0] as usize);
+                // SAFETY: from Box::into_raw above, and MPI is done with it.
+                let [_, first] = *unsafe { Box::from_raw(buffers) };
+                return Some(first as usize);
             }
             if failed && start.elapsed() > grace {
                 return None;
             }
-            std::thread::sleep(Duration::from_millis(2));
+            // The others are usually here, or nearly.
+            if start.elapsed() > Duration::from_millis(1) {
+                std::thread::sleep(Duration::from_millis(2));
+            } else {
+                std::thread::yield_now();
+            }
         }
     }
 }

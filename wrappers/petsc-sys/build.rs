@@ -50,6 +50,9 @@ fn main() {
         Vec::new()
     };
     println!("cargo:rpath={}", rpath.join(":"));
+    // For the C sources of the top crate.
+    let include: Vec<String> = include.iter().map(|p| p.display().to_string()).collect();
+    println!("cargo:include={}", include.join(":"));
 }
 
 /// Puts the pkg-config directories below PETSC_DIR and SLEPC_DIR first; tells whether PETSC_DIR is set.

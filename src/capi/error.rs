@@ -1,0 +1,69 @@
+//! How a Rust error reaches C: a status, and the sentence on request.
+
+use crate::petsc::raw::{caught, settle};
+use crate::petsc::Session;
+use crate::{Error, Result};
+use std::cell::RefCell;
+use std::ffi::{c_char, c_int, CString};
+
+/// An error with a sentence, the same on all ranks.
+const SENTENCE: c_int = 1;
+/// The same, about a matrix that cannot be factored.
+pub const UNFIT: c_int = 2;
+/// PETSc has reported the error already.
+const RAISED: c_int = 3;
+/// An error with a sentence that this rank has and others may not.
+const ALONE: c_int = 4;
+
+/// PETSC_ERR_SUP: what was asked for is not supported.
+const ERR_SUP: c_int = 56;
+/// PETSC_ERR_NOT_CONVERGED.
+const ERR_NOT_CONVERGED: c_int = 91;
+/// PETSC_ERR_LIB.
+const ERR_LIB: c_int = 76;
+
+thread_local! {
+    static LAST: RefCell<(CString, c_int)> = RefCell::default();
+}
+
+/// Runs `body`, on which all ranks of the session that it makes or has are at work, and turns what comes out into a status. A panic is an error like others.
+pub fn status(what: &'static str, body: impl FnOnce(&mut Option<Session>) -> Result<()>) -> c_int {
+    // A host that went on after an error has settled it.
+    settle();
+    let mut session = None;
+    let result = caught(what, || body(&mut session));
+    let concluded = match &session {
+        Some(session) => session.conclude(result),
+        None => result.map_err(|error| (error, true)),
+    };
+    let Err((error, common)) = concluded else {
+        return 0;
+    };
+    let (status, code) = match &error {
+        Error::Petsc { code, .. } => (RAISED, *code),
+        Error::Input(_) => (SENTENCE, ERR_SUP),
+        Error::NotConverged(_) => (SENTENCE, ERR_NOT_CONVERGED),
+        Error::Environment(_) => (SENTENCE, ERR_LIB),
+    };
+    let status = if status == SENTENCE && !common {
+        ALONE
+    } else {
+        status
+    };
+    let text = error.to_string().replace('\0', " ");
+    LAST.set((CString::new(text).unwrap_or_default(), code));
+    status
+}
+
+/// The last sentence, valid until the next one, and its PETSc error code.
+///
+/// # Safety
+/// `code` can be written to.
+#[no_mangle]
+pub unsafe extern "C" fn fetifeti_plugin_message(code: *mut c_int) -> *const c_char {
+    LAST.with_borrow(|(text, number)| {
+        // SAFETY: by the caller.
+        unsafe { *code = *number };
+        text.as_ptr()
+    })
+}

@@ -1,0 +1,50 @@
+//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI.
+//!
+//! Nothing unwinds into C, and an error is one sentence: [`plugin`] keeps it for the C side, which hands it to the host's error handler.
+
+mod error;
+pub mod plugin;
+
+use crate::petsc::raw;
+use std::ffi::c_int;
+
+extern "C" {
+    fn ff_plugin_register() -> c_int;
+    fn ff_plugin_set_body(ksp: raw::KSP, body: c_int) -> c_int;
+    fn ff_plugin_get_inner(ksp: raw::KSP, inner: *mut raw::KSP) -> c_int;
+}
+
+/// Called by PETSc when it loads the library (`-dll_append /path/libfetifeti.so`): registers the KSP type "fetifeti".
+#[no_mangle]
+pub extern "C" fn PetscDLLibraryRegister_fetifeti() -> c_int {
+    // SAFETY: PETSc is initialised, or it would not load libraries.
+    unsafe { ff_plugin_register() }
+}
+
+/// The same for programs that link with the library: to be called once after PetscInitialize.
+#[no_mangle]
+pub extern "C" fn FetiFetiInitializePackage() -> c_int {
+    // SAFETY: the caller has initialised PETSc.
+    unsafe { ff_plugin_register() }
+}
+
+/// Says which body this rank's subdomain belongs to: ranks with the same number form a body. Takes effect at the next set-up; other types of
+/// KSP ignore it.
+///
+/// # Safety
+/// `ksp` is a KSP.
+#[no_mangle]
+pub unsafe extern "C" fn KSPFETIFETISetBody(ksp: raw::KSP, body: c_int) -> c_int {
+    // SAFETY: handed on.
+    unsafe { ff_plugin_set_body(ksp, body) }
+}
+
+/// The KSP that iterates on the multipliers, after KSPSetUp.
+///
+/// # Safety
+/// `ksp` is a KSP of type fetifeti, and `inner` can be written to.
+#[no_mangle]
+pub unsafe extern "C" fn KSPFETIFETIGetInnerKSP(ksp: raw::KSP, inner: *mut raw::KSP) -> c_int {
+    // SAFETY: handed on.
+    unsafe { ff_plugin_get_inner(ksp, inner) }
+}

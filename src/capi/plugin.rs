@@ -1,0 +1,240 @@
+//! The functions behind KSPFETIFETI (wrappers/kspfetifeti.h).
+
+use super::error::{status, UNFIT};
+use crate::embed::{Embedded, Grouping, Torn};
+use crate::petsc::{raw, Mat, Options, Session, Vec as PetscVec};
+use crate::{Error, Result, Settings};
+use std::cell::Cell;
+use std::ffi::{c_char, c_int, c_void, CStr};
+
+/// What the outer KSP wants.
+#[repr(C)]
+pub struct Wishes {
+    body: c_int,
+    goal: f64,
+    rtol: f64,
+    abstol: f64,
+    divtol: f64,
+    max_it: c_int,
+}
+
+/// What -ksp_view shows.
+#[repr(C)]
+pub struct Facts {
+    bodies: c_int,
+    floating: c_int,
+    kernel: c_int,
+    subdomains: c_int,
+    primal: c_int,
+    local_rows: f64,
+    global_rows: f64,
+}
+
+/// What a solve did.
+#[repr(C)]
+pub struct Report {
+    iterations: c_int,
+    converged: c_int,
+    largest: f64,
+    smallest: f64,
+    reason: [c_char; 64],
+}
+
+/// Makes a solver for a MATIS. Collective.
+///
+/// # Safety
+/// `comm` is the communicator of `a`, which is a matrix of the host; `prefix` is NULL or a string; `wishes` and `solver` are valid.
+#[no_mangle]
+pub unsafe extern "C" fn fetifeti_plugin_setup(
+    comm: raw::MPI_Comm,
+    a: raw::Mat,
+    prefix: *const c_char,
+    wishes: *const Wishes,
+    solver: *mut *mut c_void,
+) -> c_int {
+    let mut unfit = false;
+    let code = status("KSPSetUp_FETIFETI", |at_work| {
+        let session = Session::borrowed(comm)?;
+        *at_work = Some(session.clone());
+        let a = Mat::share(a, &session)?;
+        // SAFETY: by the caller.
+        let (wishes, prefix) = unsafe { (&*wishes, text(prefix)) };
+        let made = setup(&session, &a, &prefix, wishes);
+        // What the host says wrongly stops it; a matrix that turns out not to be one of stiffness is for KSPGetConvergedReason.
+        unfit = matches!(&made, Err(Error::Input(m)) if m.contains("positive"));
+        // SAFETY: by the caller.
+        unsafe { *solver = Box::into_raw(Box::new(made?)).cast() };
+        Ok(())
+    });
+    if code != 0 && unfit {
+        UNFIT
+    } else {
+        code
+    }
+}
+
+fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Embedded> {
+    let prefix = format!("{prefix}fetifeti_");
+    let settings = Settings {
+        prefix: prefix.clone(),
+        ..Settings::default()
+    };
+    let options = Options::new(session, &prefix);
+    let help = "bodies to group the ranks into; 0: one for every eight subdomains";
+    let grouping = match options.usize("bodies", 0, help)? {
+        0 => Grouping::Auto,
+        n => Grouping::Number(n),
+    };
+    let torn = Torn::from_matis(session, a, u64::try_from(wishes.body).ok())?;
+    Embedded::new(session, &torn, grouping, settings)
+}
+
+/// Solves A x = b from zero. Collective.
+///
+/// # Safety
+/// `solver` comes from [`fetifeti_plugin_setup`] for `a`; `b` and `x` are vectors of `a`, `wishes` and `report` are valid.
+#[no_mangle]
+pub unsafe extern "C" fn fetifeti_plugin_solve(
+    solver: *mut c_void,
+    a: raw::Mat,
+    wishes: *const Wishes,
+    b: raw::Vec,
+    x: raw::Vec,
+    report: *mut Report,
+) -> c_int {
+    status("KSPSolve_FETIFETI", |at_work| {
+        // A monitor may ask for the present solution while this runs: hence no unique reference.
+        // SAFETY: by the caller.
+        let (solver, wishes) = unsafe { (&*solver.cast::<Embedded>(), &*wishes) };
+        *at_work = Some(solver.session().clone());
+        let (b, x) = (
+            PetscVec::share(b, solver.session())?,
+            PetscVec::share(x, solver.session())?,
+        );
+        forward(solver, wishes)?;
+        let (a, r) = (Mat::share(a, solver.session())?, b.duplicate()?);
+        let best = Cell::new(f64::INFINITY);
+        let outcome = solver.solve(&b, &x, &|x| {
+            if wishes.goal < 0.0 {
+                return Ok(None);
+            }
+            a.mult(x, &r)?;
+            r.aypx(-1.0, &b)?;
+            let norm = r.norm2()?;
+            // What does not halve it any more is rounding.
+            let hopeless = norm > 0.5 * best.replace(norm);
+            let done = norm <= wishes.goal || hopeless || !norm.is_finite();
+            Ok((!done).then_some(0.5 * wishes.goal.max(1e-4 * norm) / norm))
+        })?;
+        let mut reason = [0; 64];
+        for (to, from) in reason[..63].iter_mut().zip(outcome.reason.bytes()) {
+            *to = from as c_char;
+        }
+        let (largest, smallest) = outcome.spectrum.unwrap_or_default();
+        // SAFETY: by the caller.
+        unsafe {
+            *report = Report {
+                largest,
+                smallest,
+                iterations: outcome.iterations as c_int,
+                converged: outcome.converged.into(),
+                reason,
+            }
+        };
+        Ok(())
+    })
+}
+
+/// The outer KSP's tolerances hold where no option of the inner one says otherwise.
+fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
+    let ksp = solver.solver().ksp().clone();
+    let options = Options::new(solver.session(), &solver.solver().settings().prefix);
+    let now = ksp.tolerances()?;
+    let f64_of = |name, outer| Ok::<f64, Error>(options.get_f64(name)?.unwrap_or(outer));
+    let max_it = match options.get_usize("ksp_max_it")? {
+        Some(_) => now.3,
+        None => wishes.max_it.max(0) as usize,
+    };
+    ksp.set_tolerances(
+        Some(f64_of("ksp_rtol", wishes.rtol)?),
+        Some(f64_of("ksp_atol", wishes.abstol)?),
+        Some(f64_of("ksp_divtol", wishes.divtol)?),
+        Some(max_it),
+    )
+}
+
+/// x ← what the running iteration has reached, where one is running. Collective.
+///
+/// # Safety
+/// As above; `there` is valid.
+#[no_mangle]
+pub unsafe extern "C" fn fetifeti_plugin_solution(
+    solver: *mut c_void,
+    x: raw::Vec,
+    there: *mut c_int,
+) -> c_int {
+    status("KSPBuildSolution_FETIFETI", |_| {
+        // SAFETY: by the caller.
+        let solver = unsafe { &*solver.cast::<Embedded>() };
+        let x = PetscVec::share(x, solver.session())?;
+        // SAFETY: by the caller.
+        unsafe { *there = solver.current(&x)?.into() };
+        Ok(())
+    })
+}
+
+/// The KSP that iterates on the multipliers, lent.
+///
+/// # Safety
+/// As above.
+#[no_mangle]
+pub unsafe extern "C" fn fetifeti_plugin_inner(solver: *mut c_void) -> raw::KSP {
+    // SAFETY: by the caller.
+    unsafe { &*solver.cast::<Embedded>() }.solver().ksp().raw()
+}
+
+/// What -ksp_view shows.
+///
+/// # Safety
+/// As above; `facts` is valid.
+#[no_mangle]
+pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut Facts) {
+    // SAFETY: by the caller.
+    let solver = unsafe { &*solver.cast::<Embedded>() }.solver();
+    let (known, problem) = (solver.facts(), solver.problem());
+    // SAFETY: by the caller.
+    unsafe {
+        *facts = Facts {
+            bodies: problem.n_bodies as c_int,
+            floating: known.floating_bodies as c_int,
+            kernel: known.kernel_dimension as c_int,
+            subdomains: problem.n_subdomains as c_int,
+            primal: known.primal as c_int,
+            local_rows: known.multipliers_local as f64,
+            global_rows: known.multipliers_global as f64,
+        }
+    };
+}
+
+/// Ends a solver. Collective.
+///
+/// # Safety
+/// `solver` comes from [`fetifeti_plugin_setup`] and is not used any more.
+#[no_mangle]
+pub unsafe extern "C" fn fetifeti_plugin_free(solver: *mut c_void) {
+    status("KSPReset_FETIFETI", |_| {
+        // SAFETY: by the caller.
+        drop(unsafe { Box::from_raw(solver.cast::<Embedded>()) });
+        Ok(())
+    });
+}
+
+/// # Safety
+/// `text` is NULL or a string.
+unsafe fn text(text: *const c_char) -> String {
+    if text.is_null() {
+        return String::new();
+    }
+    // SAFETY: by the caller.
+    unsafe { CStr::from_ptr(text) }.to_string_lossy().into()
+}

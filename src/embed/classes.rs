@@ -1,0 +1,179 @@
+//! Vertices, edges and faces: dofs of one component that the same subdomains hold, in connected pieces.
+//!
+//! Two dofs are connected where the matrix of some subdomain connects their nodes. A subdomain sees only its own side of a face: the
+//! sides are put together by a rank that follows from the list of subdomains.
+
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use super::parts::Part;
+use super::sharing::Sharers;
+use super::torn::Torn;
+use crate::feti::exchange::{exchange_words, max_all};
+use crate::petsc::Session;
+use crate::substructures::EntityKind;
+use mpi::traits::Communicator;
+
+/// A connected piece of interface, as one of its subdomains sees it.
+#[derive(Debug, Clone)]
+pub struct Class {
+    /// The lowest global dof of it; no other class has that.
+    pub root: u32,
+    /// The subdomains that hold it, of all bodies, increasing.
+    pub sharers: Vec<u32>,
+    /// Local dofs, increasing.
+    pub dofs: Vec<u32>,
+}
+
+impl Class {
+    /// A single dof where three subdomains or more meet.
+    pub fn is_vertex(&self) -> bool {
+        self.dofs.len() == 1 && self.sharers.len() > 2
+    }
+
+    /// What it is otherwise. In the plane, lines are all there is, and they count as edges.
+    pub fn kind(&self, space: bool) -> EntityKind {
+        if space && self.sharers.len() == 2 {
+            EntityKind::Face
+        } else {
+            EntityKind::Edge
+        }
+    }
+}
+
+/// The classes of every local subdomain, by root. Collective.
+pub fn classes(
+    session: &Session,
+    torn: &Torn,
+    parts: &[Part],
+    sharers: &Sharers,
+) -> Vec<Vec<Class>> {
+    let comm = session.comm();
+    let size = comm.size() as usize;
+    // Local guesses: lists of (dofs of a locally connected piece, where to ask).
+    let mut guesses: Vec<Vec<(usize, Vec<u32>)>> = Vec::new();
+    let mut asked: Vec<Vec<u64>> = vec![Vec::new(); size];
+    for part in parts {
+        let mut mine = Vec::new();
+        for dofs in connected(torn, part, sharers) {
+            let mut state = DefaultHasher::new();
+            sharers.of(part.dofs[dofs[0] as usize]).hash(&mut state);
+            let home = state.finish() as usize % size;
+            let root = u64::from(part.dofs[dofs[0] as usize]);
+            for &i in &dofs {
+                asked[home].push(u64::from(part.dofs[i as usize]) << 32 | root);
+            }
+            mine.push((home, dofs));
+        }
+        guesses.push(mine);
+    }
+    let received = exchange_words(comm, asked);
+    let mut above: HashMap<u32, u32> = HashMap::new();
+    for word in received.iter().flatten() {
+        join(&mut above, (word >> 32) as u32, *word as u32);
+    }
+    let replies = received
+        .iter()
+        .map(|words| {
+            let root = |w: &u64| u64::from(find(&mut above, (w >> 32) as u32));
+            words.iter().map(root).collect()
+        })
+        .collect();
+    let answers: Vec<Vec<u64>> = exchange_words(comm, replies);
+
+    let mut next = vec![0; size];
+    let mut out = Vec::new();
+    for (part, mine) in parts.iter().zip(guesses) {
+        let mut found: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (home, dofs) in mine {
+            for i in dofs {
+                let root = answers[home][next[home]] as u32;
+                next[home] += 1;
+                found.entry(root).or_default().push(i);
+            }
+        }
+        let class = |(root, mut dofs): (u32, Vec<u32>)| {
+            dofs.sort_unstable();
+            let sharers = sharers.of(part.dofs[dofs[0] as usize]).to_vec();
+            Class {
+                root,
+                sharers,
+                dofs,
+            }
+        };
+        out.push(found.into_iter().map(class).collect());
+    }
+    out
+}
+
+/// Whether the subdomains lie in space, as far as the interfaces tell: somewhere three or more of them meet along a line. Collective.
+pub fn in_space(session: &Session, classes: &[Vec<Class>]) -> bool {
+    let line = |c: &Class| c.sharers.len() > 2 && c.dofs.len() > 1;
+    let mut found = [f64::from(u8::from(classes.iter().flatten().any(line)))];
+    max_all(session.comm(), &mut found);
+    found[0] > 0.0
+}
+
+/// The locally connected pieces of a subdomain's interface: lists of local dofs, increasing.
+fn connected(torn: &Torn, part: &Part, sharers: &Sharers) -> Vec<Vec<u32>> {
+    let n = part.dofs.len();
+    let mut seen = vec![false; n];
+    let mut out = Vec::new();
+    for start in 0..n {
+        let who = sharers.of(part.dofs[start]);
+        if seen[start] || who.is_empty() {
+            continue;
+        }
+        let component = torn.component(part.dofs[start]);
+        seen[start] = true;
+        let mut stack = vec![start];
+        let mut dofs = Vec::new();
+        while let Some(i) = stack.pop() {
+            dofs.push(i as u32);
+            // Any component may connect two nodes: go by the dofs of this node to those of the next.
+            for k in of_node(torn, part, i) {
+                for &j in part.k.row(k).0 {
+                    for l in of_node(torn, part, j as usize) {
+                        let dof = part.dofs[l];
+                        if !seen[l] && torn.component(dof) == component && sharers.of(dof) == who {
+                            seen[l] = true;
+                            stack.push(l);
+                        }
+                    }
+                }
+            }
+        }
+        dofs.sort_unstable();
+        out.push(dofs);
+    }
+    out
+}
+
+/// The local dofs of the node of local dof `i`.
+fn of_node(torn: &Torn, part: &Part, i: usize) -> std::ops::Range<usize> {
+    let node = torn.node(part.dofs[i]);
+    let (mut low, mut high) = (i, i + 1);
+    while low > 0 && torn.node(part.dofs[low - 1]) == node {
+        low -= 1;
+    }
+    while high < part.dofs.len() && torn.node(part.dofs[high]) == node {
+        high += 1;
+    }
+    low..high
+}
+
+fn find(above: &mut HashMap<u32, u32>, dof: u32) -> u32 {
+    let mut root = dof;
+    while let Some(&up) = above.get(&root).filter(|&&up| up != root) {
+        root = up;
+    }
+    // Shortens the way for the next one.
+    above.insert(dof, root);
+    root
+}
+
+/// The lower of two roots becomes the root of both.
+fn join(above: &mut HashMap<u32, u32>, a: u32, b: u32) {
+    let (a, b) = (find(above, a), find(above, b));
+    above.insert(a.max(b), a.min(b));
+}

@@ -1,0 +1,146 @@
+//! Motions that cost no energy: the host's vectors on the subdomains, checked, and a good basis of them for every body.
+
+use super::parts::Part;
+use crate::feti::exchange::{max_all, sum_all};
+use crate::feti::halo::Halo;
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::Result;
+
+/// Rows whose terms cancel to less than this are rows of a free subdomain.
+const CANCELS: f64 = 1e-9;
+
+/// Vectors that are this much shorter after orthogonalisation depend on the others.
+const DEPENDENT: f64 = 1e-8;
+
+/// Columns of one subdomain, by local dof.
+pub type Columns = Vec<Vec<f64>>;
+
+/// The host's vectors at the dofs of every part; `None` where there are none, or where they are no kernels: a part without boundary
+/// conditions whose matrix does not map them to zero (rotations across the seam of a periodic body, a term of order zero). Collective.
+pub fn modes(
+    session: &Session,
+    vectors: Option<&[PetscVec]>,
+    halo: &Halo,
+    ghosts: &[u32],
+    parts: &[Part],
+) -> Result<Option<Vec<Columns>>> {
+    let Some(vectors) = vectors else {
+        return Ok(None);
+    };
+    let mut columns: Vec<Columns> = vec![Vec::new(); parts.len()];
+    let mut values = vec![0.0; ghosts.len()];
+    for vector in vectors {
+        halo.fetch(vector, &mut values)?;
+        let place = |dof: &u32| ghosts.binary_search(dof).expect("a part's dof is a ghost");
+        for (part, list) in parts.iter().zip(&mut columns) {
+            list.push(part.dofs.iter().map(|dof| values[place(dof)]).collect());
+        }
+    }
+    let wrong = |(part, list): (&Part, &Columns)| !part.touched && !annihilates(part, list);
+    let mut bad = [f64::from(u8::from(parts.iter().zip(&columns).any(wrong)))];
+    max_all(session.comm(), &mut bad);
+    Ok((bad[0] == 0.0).then_some(columns))
+}
+
+fn annihilates(part: &Part, columns: &Columns) -> bool {
+    columns.iter().all(|x| {
+        let largest = x.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        (0..part.k.n()).all(|i| {
+            let (col, val) = part.k.row(i);
+            let terms = col.iter().zip(val);
+            let sum: f64 = terms.map(|(&j, v)| v * x[j as usize]).sum();
+            let size: f64 = val.iter().map(|v| v.abs()).sum();
+            sum.abs() <= CANCELS * size * largest
+        })
+    })
+}
+
+/// An orthogonal basis of the span of columns, entries of order one.
+pub fn orthogonal(columns: &Columns) -> Columns {
+    let mut rest = columns.clone();
+    let mut out: Columns = Vec::new();
+    let norm = |x: &Vec<f64>| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let lengths: Vec<f64> = rest.iter().map(norm).collect();
+    for _ in 0..columns.len() {
+        let relative = |c: usize| {
+            if lengths[c] > 0.0 {
+                norm(&rest[c]) / lengths[c]
+            } else {
+                0.0
+            }
+        };
+        let best = (0..rest.len()).max_by(|&a, &b| relative(a).total_cmp(&relative(b)));
+        let Some(best) = best.filter(|&c| relative(c) > DEPENDENT) else {
+            break;
+        };
+        let length = norm(&rest[best]);
+        let q: Vec<f64> = rest[best].iter().map(|v| v / length).collect();
+        // Twice is enough.
+        for _ in 0..2 {
+            for x in &mut rest {
+                let part: f64 = x.iter().zip(&q).map(|(x, q)| x * q).sum();
+                x.iter_mut().zip(&q).for_each(|(x, q)| *x -= part * q);
+            }
+        }
+        rest[best].fill(0.0);
+        let scale = (q.len() as f64).sqrt();
+        out.push(q.iter().map(|v| v * scale).collect());
+    }
+    out
+}
+
+/// Replaces the columns of every part by combinations that are orthogonal over the whole body, entries of order one; the same combinations in
+/// all parts of a body. Collective.
+pub fn over_bodies(session: &Session, body_of: &[usize], n_bodies: usize, columns: &mut [Columns]) {
+    let mut k = [columns.iter().map(Vec::len).max().unwrap_or(0) as f64];
+    max_all(session.comm(), &mut k);
+    let k = k[0] as usize;
+    let width = k * k + 1;
+    let mut gram = vec![0.0; n_bodies * width];
+    for (&body, list) in body_of.iter().zip(columns.iter()) {
+        let mine = &mut gram[body * width..(body + 1) * width];
+        for (a, x) in list.iter().enumerate() {
+            for (b, y) in list.iter().enumerate() {
+                mine[a + b * k] += x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+            }
+        }
+        mine[k * k] += list.first().map_or(0.0, |x| x.len() as f64);
+    }
+    sum_all(session.comm(), &mut gram);
+    for (&body, list) in body_of.iter().zip(columns) {
+        let mine = &gram[body * width..(body + 1) * width];
+        *list = combined(list, &combinations(mine, k), mine[k * k]);
+    }
+}
+
+/// Columns c with cᵀ (Gram matrix) c = 1, orthogonal in it.
+pub(super) fn combinations(gram: &[f64], k: usize) -> Columns {
+    let length = |a: usize| match gram[a + a * k] {
+        d if d > 0.0 => d.sqrt(),
+        _ => 1.0,
+    };
+    let scaled = faer::Mat::from_fn(k, k, |a, b| gram[a + b * k] / (length(a) * length(b)));
+    let Ok(eigen) = scaled.self_adjoint_eigen(faer::Side::Lower) else {
+        return Vec::new();
+    };
+    let values = eigen.S().column_vector();
+    let kept = (0..k).filter(|&c| values[c] > DEPENDENT * DEPENDENT.sqrt() * k as f64);
+    kept.map(|c| {
+        let size = values[c].sqrt();
+        let entry = |a: usize| eigen.U()[(a, c)] / (size * length(a));
+        (0..k).map(entry).collect()
+    })
+    .collect()
+}
+
+fn combined(list: &Columns, combinations: &Columns, n: f64) -> Columns {
+    let one = |c: &Vec<f64>| {
+        let mut sum = vec![0.0; list.first().map_or(0, Vec::len)];
+        for (x, factor) in list.iter().zip(c) {
+            let factor = factor * n.sqrt();
+            sum.iter_mut().zip(x).for_each(|(s, x)| *s += factor * x);
+        }
+        sum
+    };
+    combinations.iter().map(one).collect()
+}

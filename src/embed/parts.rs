@@ -1,0 +1,139 @@
+//! Subdomains: the connected parts of the pieces, without known dofs.
+
+use std::collections::HashMap;
+
+use super::states::State;
+use super::torn::{Piece, Torn};
+use crate::sparse::Csr;
+use crate::{Error, Result};
+
+/// Entries (i, j) and (j, i) may differ by this much of the diagonal.
+const SYMMETRIC: f64 = 1e-9;
+
+/// A subdomain to be.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// The body that the host says it belongs to.
+    pub body: Option<u64>,
+    /// Its matrix, unknowns only.
+    pub k: Csr,
+    /// Global dof of each row, strictly increasing.
+    pub dofs: Vec<u32>,
+    /// Entries in columns of known dofs: (row, global dof, value).
+    pub known: Vec<(u32, u32, f64)>,
+    /// Whether its piece has known dofs: then its matrix need not map rigid motions to zero.
+    pub touched: bool,
+}
+
+/// The parts of this rank's pieces.
+///
+/// # Errors
+/// A matrix that is not symmetric or has a diagonal that no stiffness matrix has.
+pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
+    let mut out = Vec::new();
+    for piece in &torn.pieces {
+        symmetric(piece, states)?;
+        let label = components(torn, piece, states);
+        let n_parts = label.iter().flatten().max().map_or(0, |&l| l as usize + 1);
+        let touched = piece.dofs.iter().any(|dof| !states[dof].is_free());
+        // Place of each dof in its part.
+        let mut place = vec![0; piece.dofs.len()];
+        let mut made: Vec<Part> = (0..n_parts)
+            .map(|_| Part {
+                body: piece.body,
+                k: Csr {
+                    row_ptr: vec![0],
+                    ..Csr::default()
+                },
+                dofs: Vec::new(),
+                known: Vec::new(),
+                touched,
+            })
+            .collect();
+        for (i, l) in label.iter().enumerate() {
+            if let Some(l) = l {
+                let part = &mut made[*l as usize];
+                place[i] = part.dofs.len() as u32;
+                part.dofs.push(piece.dofs[i]);
+            }
+        }
+        for (i, l) in label.iter().enumerate() {
+            let Some(l) = l else { continue };
+            let part = &mut made[*l as usize];
+            let (col, val) = piece.k.row(i);
+            for (&j, &v) in col.iter().zip(val) {
+                let j = j as usize;
+                if label[j].is_some() {
+                    part.k.col.push(place[j]);
+                    part.k.val.push(v);
+                } else {
+                    part.known.push((place[i], piece.dofs[j], v));
+                }
+            }
+            part.k.row_ptr.push(part.k.col.len());
+        }
+        out.append(&mut made);
+    }
+    Ok(out)
+}
+
+/// The part of each dof of a piece, numbered by lowest dof; `None` for known dofs and for copies that the piece has no stiffness for.
+/// Components of a node belong together.
+fn components(torn: &Torn, piece: &Piece, states: &HashMap<u32, State>) -> Vec<Option<u32>> {
+    let n = piece.dofs.len();
+    let unknown = |i: usize| states[&piece.dofs[i]].is_free() && !piece.k.row(i).0.is_empty();
+    let mut label = vec![None; n];
+    let mut next = 0;
+    for start in 0..n {
+        if label[start].is_some() || !unknown(start) {
+            continue;
+        }
+        let mut stack = vec![start];
+        label[start] = Some(next);
+        while let Some(i) = stack.pop() {
+            let mut visit = |j: usize| {
+                if label[j].is_none() && unknown(j) {
+                    label[j] = Some(next);
+                    stack.push(j);
+                }
+            };
+            let neighbours = piece.k.row(i).0.iter();
+            neighbours.for_each(|&j| visit(j as usize));
+            let node = torn.node(piece.dofs[i]);
+            let same = |j: &usize| torn.node(piece.dofs[*j]) == node;
+            (i + 1..n).take_while(same).for_each(&mut visit);
+            (0..i).rev().take_while(same).for_each(&mut visit);
+        }
+        next += 1;
+    }
+    label
+}
+
+/// An error where the matrix between unknowns is not symmetric, or its diagonal not positive.
+fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
+    let free = |i: usize| states[&piece.dofs[i]].is_free();
+    for i in (0..piece.dofs.len()).filter(|&i| free(i)) {
+        let (col, val) = piece.k.row(i);
+        let d = piece.k.get(i, i);
+        let usable = d > 0.0 && d.is_finite();
+        if !col.is_empty() && !usable {
+            return Err(Error::input(format!(
+                "the local matrix of a subdomain has {d} on the diagonal at global dof {}, expected a positive number (a stiffness matrix)",
+                piece.dofs[i]
+            )));
+        }
+        for (&j, &v) in col.iter().zip(val) {
+            let j = j as usize;
+            let other = piece.k.get(j, i);
+            let size = (d * piece.k.get(j, j)).abs().sqrt();
+            let same = (v - other).abs() <= SYMMETRIC * size;
+            if free(j) && !same {
+                return Err(Error::input(format!(
+                    "the operator is not symmetric: a local matrix has {v} at global dofs ({}, {}) and {other} at ({}, {}), expected equal entries",
+                    piece.dofs[i], piece.dofs[j], piece.dofs[j], piece.dofs[i]
+                )));
+            }
+        }
+    }
+    Ok(())
+}

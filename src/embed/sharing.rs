@@ -1,0 +1,98 @@
+//! Who shares what, over all bodies: the subdomains that hold each dof.
+
+use std::collections::HashMap;
+
+use super::parts::Part;
+use crate::feti::exchange::{exchange_words, gather_all, offsets};
+use crate::petsc::Session;
+use mpi::traits::Communicator;
+
+/// The subdomains of all ranks, and those that hold the dofs of this rank's.
+pub struct Sharers {
+    /// Index of this rank's first subdomain; the others follow.
+    pub first: usize,
+    /// Subdomains over all ranks.
+    pub n_subdomains: usize,
+    /// For each shared dof of this rank's subdomains, who holds it, increasing.
+    pub of: HashMap<u32, Vec<u32>>,
+    /// Neighbours of each local subdomain, increasing, and the local dofs that both hold.
+    pub neighbours: Vec<Vec<(u32, Vec<u32>)>>,
+}
+
+impl Sharers {
+    /// Finds them. Collective.
+    pub fn new(session: &Session, parts: &[Part]) -> Sharers {
+        let comm = session.comm();
+        let size = comm.size() as usize;
+        let (first, n_subdomains) = offsets(comm, parts.len());
+        let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
+        for (j, part) in parts.iter().enumerate() {
+            for &dof in &part.dofs {
+                let word = u64::from(dof) << 32 | (first + j) as u64;
+                reports[dof as usize % size].push(word);
+            }
+        }
+        let received = exchange_words(comm, reports);
+        let mut all: Vec<(u64, u32)> = Vec::new();
+        for (rank, words) in received.iter().enumerate() {
+            all.extend(words.iter().map(|&w| (w, rank as u32)));
+        }
+        all.sort_unstable();
+        // Every rank that holds a shared dof gets [dof, count, subdomains…] once.
+        let mut replies: Vec<Vec<u64>> = vec![Vec::new(); size];
+        for group in all.chunk_by(|a, b| a.0 >> 32 == b.0 >> 32) {
+            if group.len() < 2 {
+                continue;
+            }
+            let mut ranks: Vec<u32> = group.iter().map(|g| g.1).collect();
+            ranks.dedup();
+            for &r in &ranks {
+                let list = &mut replies[r as usize];
+                list.extend([group[0].0 >> 32, group.len() as u64]);
+                list.extend(group.iter().map(|g| g.0 & u64::from(u32::MAX)));
+            }
+        }
+        let mut of = HashMap::new();
+        for words in exchange_words(comm, replies) {
+            let mut rest = &words[..];
+            while let [dof, n, tail @ ..] = rest {
+                let (list, tail) = tail.split_at(*n as usize);
+                of.insert(*dof as u32, list.iter().map(|&s| s as u32).collect());
+                rest = tail;
+            }
+        }
+        let mut sharers = Sharers {
+            first,
+            n_subdomains,
+            of,
+            neighbours: Vec::new(),
+        };
+        sharers.neighbours = (0..parts.len())
+            .map(|j| sharers.of_part(j, &parts[j]))
+            .collect();
+        sharers
+    }
+
+    /// Who holds a dof, where more than one does.
+    pub fn of(&self, dof: u32) -> &[u32] {
+        self.of.get(&dof).map_or(&[], |list| &list[..])
+    }
+
+    fn of_part(&self, j: usize, part: &Part) -> Vec<(u32, Vec<u32>)> {
+        let mut found: HashMap<u32, Vec<u32>> = HashMap::new();
+        let me = (self.first + j) as u32;
+        for (i, &dof) in part.dofs.iter().enumerate() {
+            for &t in self.of(dof).iter().filter(|&&t| t != me) {
+                found.entry(t).or_default().push(i as u32);
+            }
+        }
+        let mut list: Vec<(u32, Vec<u32>)> = found.into_iter().collect();
+        list.sort_unstable();
+        list
+    }
+}
+
+/// Concatenates what every subdomain has to say, in the order of the subdomains; all ranks get all of it. Collective.
+pub fn gather_per_subdomain(session: &Session, mine: &[u64]) -> Vec<u64> {
+    gather_all(session.comm(), mine).concat()
+}

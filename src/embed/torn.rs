@@ -1,0 +1,132 @@
+//! What a host program hands over: matrices of subdomains, as yet without a shape.
+
+use crate::feti::halo::Halo;
+use crate::petsc::{Attached, Mat, Session, Vec as PetscVec};
+use crate::sparse::Csr;
+use crate::{Error, Result};
+
+/// One subdomain matrix of the host.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// Its rows and columns, exact zeros left out.
+    pub k: Csr,
+    /// Global number of each of its dofs, strictly increasing.
+    pub dofs: Vec<u32>,
+    /// The body that the host says it belongs to.
+    pub body: Option<u64>,
+}
+
+/// The operator Σ Rᵀ K R, torn.
+pub struct Torn {
+    /// Global dofs.
+    pub n_global: usize,
+    /// Consecutive global dofs that belong to one node: the components of the field.
+    pub block_size: usize,
+    /// This rank's pieces.
+    pub pieces: Vec<Piece>,
+    /// A vector of the host's layout.
+    pub layout: PetscVec,
+    /// Vectors that span every kernel that a subdomain without boundary conditions may have.
+    pub modes: Option<Vec<PetscVec>>,
+}
+
+impl Torn {
+    /// The pieces of a MATIS, one on every rank; `body` is that of this rank. Collective.
+    ///
+    /// # Errors
+    /// A matrix of another type, or one that is not square.
+    pub fn from_matis(session: &Session, a: &Mat, body: Option<u64>) -> Result<Torn> {
+        let kind = a.type_name()?;
+        if kind != "is" {
+            return Err(Error::input(format!(
+                "the operator is of type {kind}, expected is (MATIS): an assembled matrix cannot be torn into subdomains without its elements; \
+                 assemble into a MATIS instead (-dm_mat_type is, or MatSetType(A, MATIS) before assembly)"
+            )));
+        }
+        let (rows, cols) = a.size()?;
+        if rows != cols {
+            return Err(Error::input(format!(
+                "the operator has {rows} rows and {cols} columns, expected a square matrix"
+            )));
+        }
+        let (k, map) = session.agree(a.local_part())?;
+        let pieces = piece(&k, &map, body).into_iter().collect();
+        let mut torn = Torn {
+            n_global: rows,
+            block_size: a.block_size()?,
+            pieces,
+            layout: a.right_vec()?,
+            modes: None,
+        };
+        torn.modes = modes(&torn, a)?;
+        Ok(torn)
+    }
+
+    /// Number of nodes' components.
+    pub fn component(&self, dof: u32) -> usize {
+        dof as usize % self.block_size
+    }
+
+    /// The node of a global dof.
+    pub fn node(&self, dof: u32) -> u32 {
+        dof / self.block_size as u32
+    }
+
+    /// The global dofs that this rank's pieces touch, increasing, and a halo for them. Collective.
+    pub fn halo(&self, session: &Session) -> Result<(Vec<u32>, Halo)> {
+        let mut ghosts: Vec<u32> = self.pieces.iter().flat_map(|p| p.dofs.clone()).collect();
+        ghosts.sort_unstable();
+        ghosts.dedup();
+        let halo = Halo::new(session, &self.layout, &ghosts)?;
+        Ok((ghosts, halo))
+    }
+}
+
+/// A local matrix by increasing global dofs: rows that stand for the same dof are added up (a periodic mesh on one rank has such),
+/// rows without a dof are left out; `None` for a rank without any.
+fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
+    let mut dofs: Vec<u32> = map.iter().filter(|&&g| g >= 0).map(|&g| g as u32).collect();
+    dofs.sort_unstable();
+    dofs.dedup();
+    if dofs.is_empty() {
+        return None;
+    }
+    let place =
+        |i: usize| u32::try_from(map[i]).map(|g| dofs.binary_search(&g).unwrap_or(0) as u32);
+    let mut triplets = Vec::with_capacity(k.nnz());
+    for i in 0..k.n() {
+        let Ok(row) = place(i) else { continue };
+        let (col, val) = k.row(i);
+        for (&j, &v) in col.iter().zip(val) {
+            if let (Ok(at), true) = (place(j as usize), v != 0.0) {
+                triplets.push((row, at, v));
+            }
+        }
+    }
+    let k = Csr::from_triplets(dofs.len(), &triplets);
+    Some(Piece { k, dofs, body })
+}
+
+/// The host's own idea of the kernel: its near-null space, or a null space rich enough to hold all motions of a subdomain.
+fn modes(torn: &Torn, a: &Mat) -> Result<Option<Vec<PetscVec>>> {
+    let attached = match a.attached_near_null_space()? {
+        Some(near) => Some(near),
+        None => a.attached_null_space()?,
+    };
+    let Some(Attached { constants, vectors }) = attached else {
+        return Ok(None);
+    };
+    let mut modes = vectors;
+    if constants {
+        let ones = torn.layout.duplicate()?;
+        ones.set(1.0)?;
+        modes.push(ones);
+    }
+    // In elasticity the translations alone, all that a periodic body has, are not all that its subdomains have.
+    let least = match torn.block_size {
+        2 => 3,
+        3 => 6,
+        n => n,
+    };
+    Ok((modes.len() >= least).then_some(modes))
+}

@@ -1,0 +1,105 @@
+//! The plug-in under mpirun: PETSc's own example programs and ours, compiled here, with the library loaded into them.
+#![allow(dead_code)] // every test file uses its own part
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::mpi::{mpirun, Output, Scratch};
+
+/// The library that cargo built beside this test.
+pub fn library() -> String {
+    let own = std::env::current_exe().expect("the test knows its own path");
+    let deps = own.parent().expect("a test lies in a directory");
+    let path = deps.join("libfetifeti.so");
+    assert!(path.is_file(), "{} is missing", path.display());
+    path.display().to_string()
+}
+
+/// What pkg-config says of PETSc.
+fn pkg_config(args: &[&str]) -> Vec<String> {
+    for name in ["PETSc", "petsc"] {
+        let out = Command::new("pkg-config").args(args).arg(name).output();
+        let out = out.expect("pkg-config runs");
+        if out.status.success() {
+            let text = String::from_utf8_lossy(&out.stdout).into_owned();
+            return text.split_whitespace().map(String::from).collect();
+        }
+    }
+    panic!("pkg-config does not know PETSc");
+}
+
+/// Where PETSc's ksp tutorials lie (Debian: libpetsc3.18-dev-examples).
+fn tutorial(name: &str) -> PathBuf {
+    let below = "share/petsc/examples/src/ksp/ksp/tutorials";
+    let prefix = pkg_config(&["--variable=prefix"]).join(" ");
+    let places = [PathBuf::from(prefix), "/usr/share/petsc/3.18".into()];
+    let found = places.iter().map(|p| p.join(below).join(name));
+    let found = found.into_iter().find(|p| p.is_file());
+    found.unwrap_or_else(|| panic!("PETSc's example {name} is not installed: run scripts/setup.sh"))
+}
+
+/// A program that was compiled for a test.
+pub struct Program(String);
+
+impl Program {
+    /// One of PETSc's ksp tutorials.
+    pub fn tutorial(scratch: &Scratch, name: &str) -> Program {
+        Program::compile("mpicc", scratch, &tutorial(&format!("{name}.c")))
+    }
+
+    /// A source of ours, from tests/plugin.
+    pub fn own(compiler: &str, scratch: &Scratch, name: &str) -> Program {
+        let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/plugin");
+        Program::compile(compiler, scratch, &dir.join(name))
+    }
+
+    fn compile(compiler: &str, scratch: &Scratch, source: &Path) -> Program {
+        let stem = source.file_stem().expect("a source has a name");
+        let program = scratch.path(&stem.to_string_lossy());
+        let out = Command::new(compiler)
+            .args(["-O1", "-o", &program])
+            .arg(source)
+            .args(pkg_config(&["--cflags", "--libs"]))
+            .args(["-llapack", "-lblas", "-lm"])
+            .args((compiler == "mpif90").then_some("-ffree-line-length-0"))
+            .current_dir(&scratch.0)
+            .output()
+            .unwrap_or_else(|e| panic!("{compiler}: {e}"));
+        let said = String::from_utf8_lossy(&out.stderr);
+        assert!(out.status.success(), "{}: {said}", source.display());
+        Program(program)
+    }
+
+    /// Runs it with these options, words separated by blanks.
+    pub fn run(&self, ranks: usize, options: &str) -> Output {
+        let args: Vec<&str> = options.split_whitespace().collect();
+        mpirun(ranks, &self.0, &args, &[])
+    }
+
+    /// The same with the plug-in loaded.
+    pub fn with_plugin(&self, ranks: usize, options: &str) -> Output {
+        self.run(ranks, &format!("{options} -dll_append {}", library()))
+    }
+}
+
+/// A vector that PETSc wrote to a binary file.
+pub fn vector(path: &str) -> Vec<f64> {
+    let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let word = |at: usize| i32::from_be_bytes(bytes[at..at + 4].try_into().expect("four bytes"));
+    assert_eq!(word(0), 1_211_214, "{path} is no vector");
+    let entries = bytes[8..].chunks_exact(8);
+    let out: Vec<f64> = entries
+        .map(|b| f64::from_be_bytes(b.try_into().expect("eight bytes")))
+        .collect();
+    assert_eq!(out.len(), word(4) as usize);
+    out
+}
+
+/// The number that follows `text` in what a run printed.
+pub fn number_after(out: &Output, text: &str) -> f64 {
+    let at = out.stdout.find(text);
+    let at = at.unwrap_or_else(|| panic!("no \"{text}\" in {}", out.all()));
+    let rest = out.stdout[at + text.len()..].split_whitespace().next();
+    rest.and_then(|w| w.trim_end_matches(',').parse().ok())
+        .unwrap_or_else(|| panic!("no number after \"{text}\" in {}", out.all()))
+}

@@ -1,0 +1,408 @@
+/*
+   KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. Everything that takes thought is in Rust
+   (src/embed, src/capi); this file is what a KSP needs to be one.
+*/
+#include "kspfetifeti.h"
+#include <petsc/private/kspimpl.h>
+
+typedef struct {
+  void            *solver; /* of Rust; NULL before set-up, and after one that failed */
+  PetscObjectId    id;     /* the operator that the solver was made from, and its state then */
+  PetscObjectState state;
+  PetscInt         body;  /* of this rank; -1: not said */
+  PetscBool        true_residual; /* go on until the residual of the host's equations is below the tolerance */
+  PetscBool        stale; /* set up again, whatever the operator says */
+  PetscInt         base;  /* iterations of earlier runs of the inner KSP in this solve */
+  PetscInt         last;  /* iteration that the monitors have seen last; -1: none */
+  PetscBool        running; /* the inner KSP is at work */
+  PetscReal        largest, smallest; /* eigenvalues as the longest run of the inner KSP in the last solve saw them */
+  KSPConvergedReason failed; /* why there is no solver */
+} KSP_FETIFETI;
+
+/* Turns what Rust returned into a PETSc error. */
+static PetscErrorCode Raise(KSP ksp, int status)
+{
+  int         code;
+  const char *message = fetifeti_plugin_message(&code);
+
+  PetscFunctionBegin;
+  if (status == FF_RAISED) PetscFunctionReturn(PetscError(PETSC_COMM_SELF, __LINE__, PETSC_FUNCTION_NAME, __FILE__, (PetscErrorCode)code, PETSC_ERROR_REPEAT, " "));
+  SETERRQ(status == FF_ALONE ? PETSC_COMM_SELF : PetscObjectComm((PetscObject)ksp), (PetscErrorCode)code, "FETI-FETI: %s", message);
+}
+
+/* The inner KSP iterates once or several times in a solve; whoever watches the outer one sees a single count. */
+static PetscErrorCode KSPMonitor_FETIFETI(KSP inner, PetscInt it, PetscReal rnorm, void *ctx)
+{
+  KSP           ksp = (KSP)ctx;
+  KSP_FETIFETI *ff  = (KSP_FETIFETI *)ksp->data;
+
+  PetscFunctionBegin;
+  if (it == 0 && ff->last >= 0) {
+    ff->base = ff->last;
+    PetscFunctionReturn(0);
+  }
+  ff->last   = ff->base + it;
+  ksp->its   = ff->last;
+  ksp->rnorm = rnorm;
+  PetscCall(KSPLogResidualHistory(ksp, rnorm));
+  PetscCall(KSPMonitor(ksp, ff->last, rnorm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Wishes(KSP ksp, FetiFetiWishes *wishes)
+{
+  PetscFunctionBegin;
+  wishes->body   = (int)((KSP_FETIFETI *)ksp->data)->body;
+  wishes->goal   = -1;
+  wishes->rtol   = ksp->rtol;
+  wishes->abstol = ksp->abstol;
+  wishes->divtol = ksp->divtol;
+  wishes->max_it = (int)ksp->max_it;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPReset_FETIFETI(KSP ksp)
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+
+  PetscFunctionBegin;
+  if (ff->solver) fetifeti_plugin_free(ff->solver);
+  ff->solver = NULL;
+  ff->failed = KSP_CONVERGED_ITERATING;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
+{
+  KSP_FETIFETI    *ff = (KSP_FETIFETI *)ksp->data;
+  Mat              A;
+  PetscObjectId    id;
+  PetscObjectState state;
+  FetiFetiWishes   wishes;
+  KSP              inner;
+  int              status;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetOperators(ksp, &A, NULL));
+  PetscCall(PetscObjectGetId((PetscObject)A, &id));
+  PetscCall(PetscObjectStateGet((PetscObject)A, &state));
+  if ((ff->solver || ff->failed) && !ff->stale && id == ff->id && state == ff->state) PetscFunctionReturn(0);
+  PetscCall(KSPReset_FETIFETI(ksp));
+  PetscCall(Wishes(ksp, &wishes));
+  status = fetifeti_plugin_setup(PetscObjectComm((PetscObject)ksp), A, ((PetscObject)ksp)->prefix, &wishes, &ff->solver);
+  ff->id    = id;
+  ff->stale = PETSC_FALSE;
+  if (status == FF_UNFIT && !ksp->errorifnotconverged) {
+    int code;
+
+    PetscCall(PetscInfo(ksp, "Set-up failed: %s\n", fetifeti_plugin_message(&code)));
+    ff->failed = KSP_DIVERGED_PC_FAILED;
+  } else if (status) PetscCall(Raise(ksp, status));
+  /* Reading a local matrix counts as a change of the operator. */
+  PetscCall(PetscObjectStateGet((PetscObject)A, &ff->state));
+  if (ff->solver) {
+    inner = fetifeti_plugin_inner(ff->solver);
+    PetscCall(PetscObjectIncrementTabLevel((PetscObject)inner, (PetscObject)ksp, 1));
+    PetscCall(KSPMonitorSet(inner, KSPMonitor_FETIFETI, ksp, NULL));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Reason(const FetiFetiResult *result, KSPConvergedReason *reason)
+{
+  PetscInt  code;
+  PetscBool same;
+
+  PetscFunctionBegin;
+  *reason = result->converged ? KSP_CONVERGED_RTOL : KSP_DIVERGED_BREAKDOWN;
+  for (code = -11; code <= 9; code++) {
+    if (!code) continue;
+    PetscCall(PetscStrcmp(KSPConvergedReasons[code], result->reason, &same));
+    if (same) *reason = (KSPConvergedReason)code;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* r <- b - A x */
+static PetscErrorCode Residual(Mat A, Vec B, Vec X, Vec R, PetscReal *norm)
+{
+  PetscFunctionBegin;
+  PetscCall(MatMult(A, X, R));
+  PetscCall(VecAYPX(R, -1.0, B));
+  PetscCall(VecNorm(R, NORM_2, norm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
+{
+  KSP_FETIFETI  *ff = (KSP_FETIFETI *)ksp->data;
+  Mat            A;
+  Vec            B, R, D;
+  MatNullSpace   nullsp;
+  FetiFetiWishes wishes;
+  FetiFetiResult result;
+  PetscBool      kernel;
+  PetscReal      norm, size;
+  int            status = 0;
+
+  PetscFunctionBegin;
+  PetscCall(KSPSetUp_FETIFETI(ksp)); /* the operator may have changed without KSPSetOperators() */
+  ksp->its = 0;
+  if (!ff->solver) {
+    ksp->reason = ff->failed;
+    PetscCall(VecSetInf(ksp->vec_sol));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(KSPGetOperators(ksp, &A, NULL));
+  PetscCall(MatGetNullSpace(A, &nullsp));
+  PetscCall(VecDuplicate(ksp->vec_rhs, &B));
+  PetscCall(VecDuplicate(B, &R));
+  PetscCall(VecDuplicate(ksp->vec_sol, &D));
+  PetscCall(VecCopy(ksp->vec_rhs, B));
+  if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, B));
+  ff->base = 0;
+  ff->last = -1;
+  ff->running     = PETSC_TRUE;
+  result.largest  = 0;
+  result.smallest = 0;
+  PetscCall(Wishes(ksp, &wishes));
+  PetscCall(VecNorm(B, NORM_2, &size));
+  PetscCall(VecCopy(B, R));
+  norm = size;
+  if (!ksp->guess_zero) PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
+  /* The inner KSP stops by the jumps between subdomains; the residual of the host's equations is asked for besides. */
+  if (ff->true_residual) wishes.goal = PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol);
+  if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, R));
+  if (!ksp->guess_zero && norm <= PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol)) { /* the guess is a solution */
+    result.iterations = 0;
+    result.converged  = 1;
+    PetscCall(PetscStrcpy(result.reason, norm <= ksp->abstol ? "CONVERGED_ATOL" : "CONVERGED_RTOL"));
+    PetscCall(VecSet(D, 0.0));
+  } else status = fetifeti_plugin_solve(ff->solver, A, &wishes, R, D, &result);
+  if (!status) PetscCall(VecAXPY(ksp->vec_sol, 1.0, D)); /* x <- x + d */
+  ff->running = PETSC_FALSE;
+  if (!status && ff->last < 0) { /* nothing to iterate on: those who watch see the beginning, which is the end */
+    PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
+    PetscCall(KSPMonitor_FETIFETI(NULL, 0, norm, ksp));
+  }
+  PetscCall(VecDestroy(&B));
+  PetscCall(VecDestroy(&R));
+  PetscCall(VecDestroy(&D));
+  ff->running = PETSC_FALSE;
+  if (status) PetscCall(Raise(ksp, status));
+  ff->largest  = result.largest;
+  ff->smallest = result.smallest;
+  if (nullsp) { /* vectors that the operator does not map to zero are no kernel, whatever they are called */
+    PetscCall(MatNullSpaceTest(nullsp, A, &kernel));
+    if (kernel) PetscCall(MatNullSpaceRemove(nullsp, ksp->vec_sol));
+  }
+  ksp->its = result.iterations;
+  PetscCall(Reason(&result, &ksp->reason));
+  PetscFunctionReturn(0);
+}
+
+#if PETSC_VERSION_GE(3, 23, 0)
+static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems PetscOptionsObject)
+#else
+static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems *PetscOptionsObject)
+#endif
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+
+  PetscFunctionBegin;
+  PetscOptionsHeadBegin(PetscOptionsObject, "KSP FETIFETI options");
+  PetscCall(PetscOptionsBool("-fetifeti_true_residual", "Go on until the residual of the assembled equations is below the tolerance", NULL, ff->true_residual, &ff->true_residual, NULL));
+  PetscOptionsHeadEnd();
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPDestroy_FETIFETI(KSP ksp)
+{
+  PetscFunctionBegin;
+  PetscCall(KSPReset_FETIFETI(ksp));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBody_C", NULL));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETIGetInnerKSP_C", NULL));
+  PetscCall(KSPDestroyDefault(ksp));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPView_FETIFETI(KSP ksp, PetscViewer viewer)
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+  FetiFetiFacts facts;
+  PetscBool     ascii;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
+  if (!ff->solver) {
+    if (ascii) PetscCall(PetscViewerASCIIPrintf(viewer, "  not set up\n"));
+    PetscFunctionReturn(0);
+  }
+  fetifeti_plugin_facts(ff->solver, &facts);
+  if (ascii) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  bodies: %d (%d floating, kernels of dimension %d), subdomains: %d\n", facts.bodies, facts.floating, facts.kernel, facts.subdomains));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  multipliers: %.0f inside bodies, %.0f between bodies\n", facts.local_rows, facts.global_rows));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  primal dofs: %d\n", facts.primal));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "Inner KSP solver details\n"));
+  }
+  PetscCall(PetscViewerASCIIPushTab(viewer));
+  PetscCall(KSPView(fetifeti_plugin_inner(ff->solver), viewer));
+  PetscCall(PetscViewerASCIIPopTab(viewer));
+  PetscFunctionReturn(0);
+}
+
+/* The solution: what has been reached so far while the inner KSP iterates, for monitors. */
+static PetscErrorCode KSPBuildSolution_FETIFETI(KSP ksp, Vec v, Vec *V)
+{
+  KSP_FETIFETI *ff    = (KSP_FETIFETI *)ksp->data;
+  int           there = 0, status;
+  Vec           now;
+
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(ksp->vec_sol, &now));
+  if (ff->solver) {
+    status = fetifeti_plugin_solution(ff->solver, now, &there);
+    if (status) PetscCall(Raise(ksp, status));
+  }
+  if (there) PetscCall(VecAXPY(now, 1.0, ksp->vec_sol)); /* iterations bring the correction of what there was */
+  else PetscCall(VecCopy(ksp->vec_sol, now));
+  if (v) {
+    PetscCall(VecCopy(now, v));
+    *V = v;
+  } else {
+    /* lent until the next call, as KSPBuildSolution() does it */
+    PetscCall(PetscObjectCompose((PetscObject)ksp, "FetiFetiSolution", (PetscObject)now));
+    *V = now;
+  }
+  PetscCall(VecDestroy(&now));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Inner(KSP ksp, KSP *inner)
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+
+  PetscFunctionBegin;
+  PetscCheck(ff->solver, PetscObjectComm((PetscObject)ksp), PETSC_ERR_ARG_WRONGSTATE, "Must call KSPSetUp() first");
+  *inner = fetifeti_plugin_inner(ff->solver);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPComputeEigenvalues_FETIFETI(KSP ksp, PetscInt nmax, PetscReal *r, PetscReal *c, PetscInt *neig)
+{
+  KSP inner;
+
+  PetscFunctionBegin;
+  PetscCall(Inner(ksp, &inner));
+  PetscCall(KSPComputeEigenvalues(inner, nmax, r, c, neig));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPComputeExtremeSingularValues_FETIFETI(KSP ksp, PetscReal *emax, PetscReal *emin)
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+  KSP           inner;
+
+  PetscFunctionBegin;
+  PetscCall(Inner(ksp, &inner));
+  if (ff->running || !(ff->smallest > 0)) PetscCall(KSPComputeExtremeSingularValues(inner, emax, emin));
+  else {
+    *emax = ff->largest;
+    *emin = ff->smallest;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPFETIFETISetBody_FETIFETI(KSP ksp, PetscInt body)
+{
+  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+
+  PetscFunctionBegin;
+  PetscCheck(body >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The body of a rank is %" PetscInt_FMT ", expected a number of at least 0", body);
+  ff->stale = (PetscBool)(ff->stale || ff->body != body);
+  ff->body  = body;
+  PetscFunctionReturn(0);
+}
+
+int ff_plugin_set_body(KSP ksp, PetscInt body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ksp, KSP_CLASSID, 1);
+  PetscTryMethod((PetscObject)ksp, "KSPFETIFETISetBody_C", (KSP, PetscInt), (ksp, body));
+  PetscFunctionReturn(0);
+}
+
+int ff_plugin_get_inner(KSP ksp, KSP *inner)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ksp, KSP_CLASSID, 1);
+  PetscUseMethod((PetscObject)ksp, "KSPFETIFETIGetInnerKSP_C", (KSP, KSP *), (ksp, inner));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KSPCreate_FETIFETI(KSP ksp)
+{
+  KSP_FETIFETI *ff;
+  PC            pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_NONE, PC_LEFT, 3));
+  PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_NONE, PC_RIGHT, 2));
+  PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_PRECONDITIONED, PC_LEFT, 2));
+  PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_PRECONDITIONED, PC_RIGHT, 2));
+  PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_UNPRECONDITIONED, PC_LEFT, 2));
+  PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_UNPRECONDITIONED, PC_RIGHT, 2));
+  PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_NATURAL, PC_LEFT, 2));
+
+  PetscCall(PetscNew(&ff));
+  ff->body                               = -1;
+  ff->true_residual                      = PETSC_TRUE;
+  ksp->data                              = (void *)ff;
+  ksp->ops->setup                        = KSPSetUp_FETIFETI;
+  ksp->ops->solve                        = KSPSolve_FETIFETI;
+  ksp->ops->reset                        = KSPReset_FETIFETI;
+  ksp->ops->destroy                      = KSPDestroy_FETIFETI;
+  ksp->ops->view                         = KSPView_FETIFETI;
+  ksp->ops->setfromoptions               = KSPSetFromOptions_FETIFETI;
+  ksp->ops->computeeigenvalues           = KSPComputeEigenvalues_FETIFETI;
+  ksp->ops->computeextremesingularvalues = KSPComputeExtremeSingularValues_FETIFETI;
+  ksp->ops->buildsolution                = KSPBuildSolution_FETIFETI;
+  ksp->ops->buildresidual                = KSPBuildResidualDefault;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBody_C", KSPFETIFETISetBody_FETIFETI));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETIGetInnerKSP_C", Inner));
+  /* set up again with a new operator */
+  ksp->setupnewmatrix = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* The PETSc that runs may be another one than this file was compiled against: nothing here may depend on its types. */
+static PetscErrorCode Suits(void)
+{
+  /* -1 in both halves: a PETSc with 64-bit indices overwrites both, one with 32-bit indices the first */
+  union
+  {
+    PetscInt64 both;
+    PetscInt   half[2];
+  } major = {-1}, minor = {-1};
+  PetscDataType scalar = PETSC_DATATYPE_UNKNOWN;
+  PetscBool     found;
+
+  PetscFunctionBegin;
+  PetscCall(PetscGetVersionNumber(major.half, minor.half, NULL, NULL));
+  PetscCheck(major.half[1] == -1, PETSC_COMM_SELF, PETSC_ERR_SUP, "libfetifeti.so was built for a PETSc with 32-bit indices, this one has 64-bit indices: load it into a PETSc with 32-bit indices");
+  PetscCheck(major.half[0] == PETSC_VERSION_MAJOR && minor.half[0] == PETSC_VERSION_MINOR, PETSC_COMM_SELF, PETSC_ERR_SUP, "libfetifeti.so was built for PETSc %d.%d, this is PETSc %d.%d: build it again for this one", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, (int)major.half[0],
+             (int)minor.half[0]);
+  PetscCall(PetscDataTypeFromString("scalar", &scalar, &found));
+  PetscCheck(scalar == PETSC_SCALAR, PETSC_COMM_SELF, PETSC_ERR_SUP, "libfetifeti.so was built for a PETSc with real double scalars, this one has %s: load it into a PETSc with real scalars", scalar == PETSC_COMPLEX ? "complex scalars" : "others");
+  PetscFunctionReturn(0);
+}
+
+int ff_plugin_register(void)
+{
+  PetscFunctionBegin;
+  PetscCall(Suits());
+  PetscCall(KSPRegister("fetifeti", KSPCreate_FETIFETI));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,47 @@
+/* Between the KSP in C and the method in Rust (src/capi). The public header is fetifeti.h. */
+#if !defined(KSPFETIFETI_H)
+#define KSPFETIFETI_H
+
+#include <petscksp.h>
+
+/* What a function of Rust returns: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a sentence about a matrix
+   that cannot be factored; FF_RAISED, after a PETSc error that has been reported; or FF_ALONE, a sentence that other ranks may not have. */
+#define FF_SENTENCE 1
+#define FF_UNFIT    2
+#define FF_RAISED   3
+#define FF_ALONE    4
+
+typedef struct {
+  int    body;     /* body of this rank, or -1 */
+  double goal;     /* norm of b - A x to end with, or -1: it does not matter */
+  double rtol, abstol, divtol;
+  int    max_it;
+} FetiFetiWishes;
+
+typedef struct {
+  int    bodies, floating, kernel, subdomains, primal;
+  double local_rows, global_rows;
+} FetiFetiFacts;
+
+typedef struct {
+  int    iterations;
+  int    converged;
+  double largest, smallest; /* eigenvalues, or 0 */
+  char   reason[64];
+} FetiFetiResult;
+
+int  fetifeti_plugin_setup(MPI_Comm comm, Mat a, const char *prefix, const FetiFetiWishes *wishes, void **solver);
+int  fetifeti_plugin_solve(void *solver, Mat a, const FetiFetiWishes *wishes, Vec b, Vec x, FetiFetiResult *result);
+int  fetifeti_plugin_solution(void *solver, Vec x, int *there);
+KSP  fetifeti_plugin_inner(void *solver);
+void fetifeti_plugin_facts(void *solver, FetiFetiFacts *facts);
+void fetifeti_plugin_free(void *solver);
+/* The last sentence, and its PETSc error code. */
+const char *fetifeti_plugin_message(int *code);
+
+/* Called by the symbols that the library exports. */
+int ff_plugin_register(void);
+int ff_plugin_set_body(KSP ksp, PetscInt body);
+int ff_plugin_get_inner(KSP ksp, KSP *inner);
+
+#endif
