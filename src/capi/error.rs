@@ -1,10 +1,10 @@
 //! How a Rust error reaches C: a status, and the sentence on request.
 
-use crate::petsc::raw::{caught, settle};
+use crate::petsc::raw::{self, caught, settle};
 use crate::petsc::Session;
 use crate::{Error, Result};
 use std::cell::RefCell;
-use std::ffi::{c_char, c_int, CString};
+use std::ffi::{c_char, c_int, CStr, CString};
 
 /// An error with a sentence, the same on all ranks.
 const SENTENCE: c_int = 1;
@@ -53,6 +53,33 @@ pub fn status(what: &'static str, body: impl FnOnce(&mut Option<Session>) -> Res
     let text = error.to_string().replace('\0', " ");
     LAST.set((CString::new(text).unwrap_or_default(), code));
     status
+}
+
+/// Hands what [`status`] returned to the host's error handler; the PETSc error code. `comm` where all ranks of it are in the same call, and `None` else.
+pub fn raise(status: c_int, name: &CStr, comm: Option<raw::MPI_Comm>) -> c_int {
+    if status == 0 {
+        return 0;
+    }
+    let (text, code) = LAST.with_borrow(|(text, code)| (text.clone(), *code));
+    if status == RAISED {
+        return code;
+    }
+    // SAFETY: without arguments.
+    let own = unsafe { raw::ff_comm_self() };
+    let comm = comm.filter(|_| status != ALONE).unwrap_or(own);
+    let file = c"src/capi/api.rs";
+    let line = line!() as c_int;
+    // SAFETY: strings that live, and a communicator of the caller's.
+    unsafe {
+        raw::ff_error(
+            comm,
+            line,
+            name.as_ptr(),
+            file.as_ptr(),
+            code,
+            text.as_ptr(),
+        )
+    }
 }
 
 /// The last sentence, valid until the next one, and its PETSc error code.

@@ -1,8 +1,10 @@
-//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI.
+//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI, and the functions of `wrappers/fetifeti.h` ([`api`]).
 //!
 //! Nothing unwinds into C, and an error is one sentence: [`plugin`] keeps it for the C side, which hands it to the host's error handler.
 
+pub mod api;
 mod error;
+mod object;
 pub mod plugin;
 
 use crate::petsc::raw;

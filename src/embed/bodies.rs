@@ -39,7 +39,7 @@ pub fn bodies(named: &[Option<u64>], bonds: &[Bond], grouping: Grouping) -> Resu
             None => named.iter().map(|b| b.unwrap_or(0)).collect(),
             Some(s) => {
                 return Err(Error::input(format!(
-                    "subdomain {s} was given no body but others were, expected KSPFETIFETISetBody on all ranks or on none"
+                    "subdomain {s} was given no body but others were, expected a body for every subdomain (KSPFETIFETISetBody on all ranks) or for none"
                 )))
             }
         }

@@ -6,10 +6,11 @@
 //!
 //! A host program knows dofs by their global numbers and has one matrix per subdomain. What the method wants besides is
 //! found here from the matrices and the numbers: which dofs are held ([`states`]), who shares what ([`sharing`]), which subdomains form a body
-//! ([`bodies`]), vertices, edges and faces ([`classes`]), and constraints enough that no subdomain is loose ([`hold`]).
+//! ([`bodies`]), rows between bodies and the host's own ([`rows`], [`contact`]), vertices, edges and faces ([`classes`]), and constraints enough that no subdomain is loose ([`hold`]).
 
 pub mod bodies;
 pub mod classes;
+pub mod contact;
 pub mod hold;
 pub mod kernels;
 pub mod parts;
@@ -21,4 +22,4 @@ pub mod torn;
 
 pub use bodies::Grouping;
 pub use solver::{Embedded, Outcome};
-pub use torn::{Piece, Torn};
+pub use torn::{GivenRow, Piece, Torn};

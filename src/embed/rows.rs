@@ -1,7 +1,10 @@
 //! Ties: where several bodies hold a global dof, their displacements are equal.
 
+use super::contact::Contact;
 use super::parts::Part;
 use super::sharing::Sharers;
+use crate::feti::exchange::exchange_words;
+use crate::petsc::Session;
 use crate::substructures::{InterfaceRow, RowKind};
 
 /// The number of a global dof as one body sees it.
@@ -9,14 +12,28 @@ pub fn body_dof(n_global: usize, body: usize, dof: u32) -> u64 {
     body as u64 * n_global as u64 + u64::from(dof)
 }
 
-/// u_a − u_b = 0 for every pair of bodies a < b at every dof; provided by the rank of the dof's lowest subdomain.
+/// u_a − u_b = 0 for every pair of bodies a < b at every dof; provided by the rank of the dof's lowest subdomain, or, where rows of the host
+/// touch the dof, by the rank that has those. Collective.
 pub fn rows(
+    session: &Session,
     n_global: usize,
     parts: &[Part],
     sharers: &Sharers,
     body_of: &[usize],
+    contact: &Contact,
 ) -> Vec<InterfaceRow> {
+    let tie = |a: u64, b: u64, dof: u32| InterfaceRow {
+        terms: vec![
+            (body_dof(n_global, a as usize, dof), 1.0),
+            (body_dof(n_global, b as usize, dof), -1.0),
+        ],
+        gap: 0.0,
+        kind: RowKind::Equality,
+        holds: true,
+        block: u64::from(contact.block(dof).unwrap_or(dof)),
+    };
     let mut out = Vec::new();
+    let mut elsewhere: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
     for (j, part) in parts.iter().enumerate() {
         let me = (sharers.first + j) as u32;
         for &dof in &part.dofs {
@@ -24,24 +41,25 @@ pub fn rows(
             if who.first() != Some(&me) {
                 continue;
             }
-            let mut bodies: Vec<usize> = who.iter().map(|&s| body_of[s as usize]).collect();
+            let mut bodies: Vec<u64> = who.iter().map(|&s| body_of[s as usize] as u64).collect();
             bodies.sort_unstable();
             bodies.dedup();
             for (k, &a) in bodies.iter().enumerate() {
                 for &b in &bodies[k + 1..] {
-                    out.push(InterfaceRow {
-                        terms: vec![
-                            (body_dof(n_global, a, dof), 1.0),
-                            (body_dof(n_global, b, dof), -1.0),
-                        ],
-                        gap: 0.0,
-                        kind: RowKind::Equality,
-                        holds: true,
-                        block: u64::from(dof),
-                    });
+                    match contact.block(dof) {
+                        None => out.push(tie(a, b, dof)),
+                        Some(root) => {
+                            elsewhere[root as usize % session.size()].extend([a, b, dof.into()])
+                        }
+                    }
                 }
             }
         }
+    }
+    if contact.is_any() {
+        let received = exchange_words(session.comm(), elsewhere).concat();
+        let words = received.chunks_exact(3);
+        out.extend(words.map(|w| tie(w[0], w[1], w[2] as u32)));
     }
     out
 }

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::bodies::{bodies, Grouping};
 use super::classes::{classes, in_space, Class};
+use super::contact::Contact;
 use super::hold::{Motions, Shape};
 use super::kernels::{self, Columns};
 use super::parts::{parts, Part};
@@ -12,8 +13,10 @@ use super::rows::{body_dof, rows};
 use super::sharing::{gather_per_subdomain, Sharers};
 use super::states::{states, State};
 use super::torn::Torn;
+use crate::contact::State as ContactState;
 use crate::feti::halo::Halo;
-use crate::feti::{FetiFeti, Settings};
+use crate::feti::kkt::Kkt;
+use crate::feti::{FetiFeti, Settings, Solution};
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::{Entity, EntityKind, Subdomain, Substructures};
 use crate::{Error, Result};
@@ -36,6 +39,8 @@ struct Fixed {
     diagonal: f64,
     /// This rank's part of the value.
     weight: f64,
+    /// Held by the host, whatever the row says.
+    held: bool,
 }
 
 /// What one solve did.
@@ -49,6 +54,10 @@ pub struct Outcome {
     pub reason: String,
     /// (largest, smallest) eigenvalue of the preconditioned operator as the iteration saw them.
     pub spectrum: Option<(f64, f64)>,
+    /// How well the optimality conditions hold.
+    pub kkt: Kkt,
+    /// Steps of the contact loop.
+    pub steps: usize,
 }
 
 /// FETI-FETI for a torn operator.
@@ -62,6 +71,11 @@ pub struct Embedded {
     solver: RefCell<FetiFeti>,
     /// Known dofs of the present load, by ghost.
     values: RefCell<HashMap<u32, f64>>,
+    contact: Contact,
+    /// Rows that tie bodies; those of the host come after them.
+    n_ties: usize,
+    /// Where the next contact loop starts, and the multipliers of the rows that this rank gave.
+    reached: RefCell<Option<(ContactState, Vec<f64>)>>,
 }
 
 impl Embedded {
@@ -106,7 +120,18 @@ impl Embedded {
             body_of,
             primal,
         };
-        let (averaged, nodes) = motions.missing(session, torn, &parts, &sharers, &classes, &shape);
+        let (averaged, mut nodes) =
+            motions.missing(session, torn, &parts, &sharers, &classes, &shape);
+        for (part, nodes) in parts.iter().zip(&mut nodes) {
+            let wanted = |i: &u32| torn.primal.contains(&part.dofs[*i as usize]);
+            nodes.extend((0..part.dofs.len() as u32).filter(wanted));
+        }
+        let mine = &shape.body_of[sharers.first..sharers.first + parts.len()];
+        let contact = Contact::new(session, torn, &parts, &states, mine)?;
+        let (n, body_of) = (torn.n_global, &shape.body_of);
+        let mut rows = rows(session, n, &parts, &sharers, body_of, &contact);
+        let n_ties = rows.len();
+        rows.extend(contact.rows());
         let problem = Substructures {
             n_bodies,
             n_subdomains: sharers.n_subdomains,
@@ -119,7 +144,7 @@ impl Embedded {
                         .subdomain
                 })
                 .collect(),
-            rows: rows(torn.n_global, &parts, &sharers, &shape.body_of),
+            rows,
         };
         let shares = shares(&parts, &states, &ghosts);
         let fixed = fixed(torn, &states, &ghosts);
@@ -132,6 +157,9 @@ impl Embedded {
             fixed,
             solver: RefCell::new(solver),
             values: RefCell::default(),
+            contact,
+            n_ties,
+            reached: RefCell::default(),
         })
     }
 
@@ -146,9 +174,72 @@ impl Embedded {
         x: &PetscVec,
         enough: &dyn Fn(&PetscVec) -> Result<Option<f64>>,
     ) -> Result<Outcome> {
+        self.load(b, None)?;
+        let solution = self.solver().solve_until(&|u| {
+            self.put_together(u, x)?;
+            enough(x)
+        })?;
+        self.put_together(&solution.u, x)?;
+        Ok(outcome(&solution))
+    }
+
+    /// x ← the solution for the right-hand side b with the rows that the host gave; `held` has the values of the dofs that it holds, zero where
+    /// there is none. A contact loop starts from where the last one ended. Collective.
+    ///
+    /// # Errors
+    /// As [`Embedded::solve`], and rows that contradict each other.
+    pub fn solve_with_rows(
+        &self,
+        b: &PetscVec,
+        held: Option<&PetscVec>,
+        x: &PetscVec,
+    ) -> Result<Outcome> {
+        self.load(b, held)?;
+        let start = self.reached.take().map(|(state, _)| state);
+        let start = start.filter(|_| self.contact.has_inequalities());
+        let solution = self
+            .solver()
+            .solve_from(start.as_ref(), &mut |_, _| Ok(()))?;
+        self.put_together(&solution.u, x)?;
+        let multipliers = self.of_given_rows(&solution.lambda);
+        self.reached
+            .replace(Some((ContactState::warm(&solution), multipliers)));
+        Ok(outcome(&solution))
+    }
+
+    /// Rows of the host over all ranks.
+    pub fn n_given_rows(&self) -> usize {
+        self.contact.n_global()
+    }
+
+    /// The multipliers of the rows that this rank gave, in its order, after [`Embedded::solve_with_rows`].
+    pub fn multipliers(&self) -> Option<Vec<f64>> {
+        self.reached.borrow().as_ref().map(|(_, l)| l.clone())
+    }
+
+    /// What belongs to the rows of the host, from a vector of this rank's multipliers. Collective.
+    fn of_given_rows(&self, owned: &[f64]) -> Vec<f64> {
+        let solver = self.solver();
+        let dual = solver.dual();
+        let jump = &dual.stiffness.jump;
+        let mut mine = vec![0.0; solver.problem().rows.len() - self.n_ties];
+        for (k, &r) in jump.order.iter().enumerate() {
+            if r >= self.n_ties {
+                mine[r - self.n_ties] = owned[jump.n_owned_local + k];
+            }
+        }
+        self.contact.back(&self.session, &mine)
+    }
+
+    /// Hands loads and gaps to the solver. Collective.
+    fn load(&self, b: &PetscVec, held: Option<&PetscVec>) -> Result<()> {
         let mut load = vec![0.0; self.n_ghosts];
         self.halo.fetch(b, &mut load)?;
-        let values = self.session.agree(self.known(&load))?;
+        let mut given = vec![0.0; self.n_ghosts];
+        if let Some(held) = held {
+            self.halo.fetch(held, &mut given)?;
+        }
+        let values = self.session.agree(self.known(&load, &given))?;
         let loads = self.shares.iter().map(|share| {
             let terms = share.ghost.iter().zip(&share.weight);
             let mut f: Vec<f64> = terms.map(|(&g, w)| w * load[g as usize]).collect();
@@ -158,20 +249,13 @@ impl Embedded {
             f
         });
         let loads = loads.collect();
-        let gaps = vec![0.0; self.solver().problem().rows.len()];
+        let mut gaps = vec![0.0; self.n_ties];
+        let by_dof = |fixed: &Fixed| (fixed.dof, values[&fixed.ghost]);
+        let known = self.fixed.iter().map(by_dof).collect();
+        gaps.extend(self.contact.gaps(&self.session, &known));
         self.solver.borrow_mut().set_loads(loads, &gaps);
         self.values.replace(values);
-        let solution = self.solver().solve_until(&|u| {
-            self.put_together(u, x)?;
-            enough(x)
-        })?;
-        self.put_together(&solution.u, x)?;
-        Ok(Outcome {
-            iterations: solution.iterations,
-            converged: solution.converged,
-            reason: solution.reason,
-            spectrum: solution.estimate.map(|s| (s.lambda_max, s.lambda_min)),
-        })
+        Ok(())
     }
 
     /// x ← what the running iteration has reached, for monitors; `false` where none is running. Collective.
@@ -197,9 +281,13 @@ impl Embedded {
     }
 
     /// Values of the known dofs, by ghost.
-    fn known(&self, load: &[f64]) -> Result<HashMap<u32, f64>> {
+    fn known(&self, load: &[f64], given: &[f64]) -> Result<HashMap<u32, f64>> {
         let mut values = HashMap::new();
         for fixed in &self.fixed {
+            if fixed.held {
+                values.insert(fixed.ghost, given[fixed.ghost as usize]);
+                continue;
+            }
             let b = load[fixed.ghost as usize];
             if fixed.diagonal == 0.0 && b != 0.0 {
                 return Err(Error::input(format!(
@@ -230,6 +318,18 @@ impl Embedded {
             ghost[fixed.ghost as usize] += fixed.weight * values[&fixed.ghost];
         }
         self.halo.sum(&ghost, x)
+    }
+}
+
+fn outcome(solution: &Solution) -> Outcome {
+    let estimate = solution.estimate.as_ref();
+    Outcome {
+        iterations: solution.iterations,
+        converged: solution.converged,
+        reason: solution.reason.clone(),
+        spectrum: estimate.map(|s| (s.lambda_max, s.lambda_min)),
+        kkt: solution.kkt,
+        steps: solution.steps.len(),
     }
 }
 
@@ -338,6 +438,7 @@ fn fixed(torn: &Torn, states: &HashMap<u32, State>, ghosts: &[u32]) -> Vec<Fixed
             } else {
                 mine / diagonal
             },
+            held: torn.held.contains(&dof),
         }
     };
     found.into_iter().map(one).collect()

@@ -1,6 +1,6 @@
 //! Which dofs are unknown: those whose row of the assembled operator has only its diagonal are known beforehand.
 //!
-//! MatZeroRowsColumns and MatZeroRows leave such rows behind for boundary conditions, u = b / diagonal.
+//! MatZeroRowsColumns and MatZeroRows leave such rows behind for boundary conditions, u = b / diagonal. So are those that the host says are held.
 
 use std::collections::HashMap;
 
@@ -40,7 +40,8 @@ pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, State> {
     for piece in &torn.pieces {
         for (i, &dof) in piece.dofs.iter().enumerate() {
             let (col, _) = piece.k.row(i);
-            let full = col.iter().any(|&j| j as usize != i);
+            let coupled = col.iter().any(|&j| j as usize != i);
+            let full = coupled && !torn.held.contains(&dof);
             let word = u64::from(dof) << 1 | u64::from(full);
             reports[dof as usize % size].extend([word, piece.k.get(i, i).to_bits()]);
         }

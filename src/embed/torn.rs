@@ -3,7 +3,9 @@
 use crate::feti::halo::Halo;
 use crate::petsc::{Attached, Mat, Session, Vec as PetscVec};
 use crate::sparse::Csr;
+use crate::substructures::RowKind;
 use crate::{Error, Result};
+use std::collections::HashSet;
 
 /// One subdomain matrix of the host.
 #[derive(Debug, Clone)]
@@ -14,6 +16,17 @@ pub struct Piece {
     pub dofs: Vec<u32>,
     /// The body that the host says it belongs to.
     pub body: Option<u64>,
+}
+
+/// A row that the host adds: Σ coefficient · u(global dof) = or ≤ gap.
+#[derive(Debug, Clone)]
+pub struct GivenRow {
+    /// (global dof, coefficient) pairs.
+    pub terms: Vec<(u32, f64)>,
+    /// Right-hand side.
+    pub gap: f64,
+    /// Equation or inequality.
+    pub kind: RowKind,
 }
 
 /// The operator Σ Rᵀ K R, torn.
@@ -28,6 +41,12 @@ pub struct Torn {
     pub layout: PetscVec,
     /// Vectors that span every kernel that a subdomain without boundary conditions may have.
     pub modes: Option<Vec<PetscVec>>,
+    /// Those of this rank's global dofs that are held at given values, whatever their rows say.
+    pub held: HashSet<u32>,
+    /// Those of this rank's global dofs that are to be primal where subdomains of a body share them.
+    pub primal: HashSet<u32>,
+    /// The rows that this rank gives besides.
+    pub rows: Vec<GivenRow>,
 }
 
 impl Torn {
@@ -57,6 +76,9 @@ impl Torn {
             pieces,
             layout: a.right_vec()?,
             modes: None,
+            held: HashSet::new(),
+            primal: HashSet::new(),
+            rows: Vec::new(),
         };
         torn.modes = modes(&torn, a)?;
         Ok(torn)
@@ -84,7 +106,7 @@ impl Torn {
 
 /// A local matrix by increasing global dofs: rows that stand for the same dof are added up (a periodic mesh on one rank has such),
 /// rows without a dof are left out; `None` for a rank without any.
-fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
+pub fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
     let mut dofs: Vec<u32> = map.iter().filter(|&&g| g >= 0).map(|&g| g as u32).collect();
     dofs.sort_unstable();
     dofs.dedup();
@@ -107,21 +129,27 @@ fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
     Some(Piece { k, dofs, body })
 }
 
+/// The vectors of a null space, the constants among them.
+pub fn spanned(layout: &PetscVec, attached: Attached) -> Result<Vec<PetscVec>> {
+    let mut modes = attached.vectors;
+    if attached.constants {
+        let ones = layout.duplicate()?;
+        ones.set(1.0)?;
+        modes.push(ones);
+    }
+    Ok(modes)
+}
+
 /// The host's own idea of the kernel: its near-null space, or a null space rich enough to hold all motions of a subdomain.
 fn modes(torn: &Torn, a: &Mat) -> Result<Option<Vec<PetscVec>>> {
     let attached = match a.attached_near_null_space()? {
         Some(near) => Some(near),
         None => a.attached_null_space()?,
     };
-    let Some(Attached { constants, vectors }) = attached else {
+    let Some(attached) = attached else {
         return Ok(None);
     };
-    let mut modes = vectors;
-    if constants {
-        let ones = torn.layout.duplicate()?;
-        ones.set(1.0)?;
-        modes.push(ones);
-    }
+    let modes = spanned(&torn.layout, attached)?;
     // In elasticity the translations alone, all that a periodic body has, are not all that its subdomains have.
     let least = match torn.block_size {
         2 => 3,

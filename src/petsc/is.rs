@@ -23,6 +23,10 @@ impl Is {
         Ok(Is(Handle::own(raw, session)))
     }
 
+    pub(crate) fn share(raw: sys::IS, session: &Session) -> Result<Is> {
+        Ok(Is(Handle::share(raw, session)?))
+    }
+
     /// Number of indices on this rank.
     pub fn local_len(&self) -> Result<usize> {
         let mut n = 0;

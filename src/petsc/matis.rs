@@ -127,21 +127,8 @@ impl Mat {
             &mut rows,
             &mut cols
         ))?;
-        let indices = |map| -> Result<std::vec::Vec<i32>> {
-            let (mut n, mut data) = (0, std::ptr::null());
-            petsc!(ISLocalToGlobalMappingGetSize(map, &mut n))?;
-            petsc!(ISLocalToGlobalMappingGetIndices(map, &mut data))?;
-            let copy = if n == 0 {
-                std::vec::Vec::new()
-            } else {
-                // SAFETY: PETSc lends `n` indices until they are restored.
-                unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec()
-            };
-            petsc!(ISLocalToGlobalMappingRestoreIndices(map, &mut data))?;
-            Ok(copy)
-        };
-        let list = indices(rows)?;
-        if cols != rows && indices(cols)? != list {
+        let list = mapped(rows)?;
+        if cols != rows && mapped(cols)? != list {
             return Err(Error::input(
                 "the rows and the columns of the MATIS have different local-to-global maps, expected the same",
             ));
@@ -164,6 +151,13 @@ impl Mat {
     }
 
     fn attached(&self, raw: sys::MatNullSpace) -> Result<Option<Attached>> {
+        Attached::of(raw, self.session())
+    }
+}
+
+impl Attached {
+    /// What a null space consists of; `None` for none.
+    pub(crate) fn of(raw: sys::MatNullSpace, session: &Session) -> Result<Option<Attached>> {
         if raw.is_null() {
             return Ok(None);
         }
@@ -172,11 +166,26 @@ impl Mat {
         let mut vectors = std::vec::Vec::new();
         for i in 0..n as usize {
             // SAFETY: PETSc lends `n` vectors; each is counted up here.
-            vectors.push(Vec::share(unsafe { *list.add(i) }, self.session())?);
+            vectors.push(Vec::share(unsafe { *list.add(i) }, session)?);
         }
         Ok(Some(Attached {
             constants: constants.get(),
             vectors,
         }))
     }
+}
+
+/// The global number of each local index of a map that a host program lent.
+pub(crate) fn mapped(map: sys::ISLocalToGlobalMapping) -> Result<std::vec::Vec<i32>> {
+    let (mut n, mut data) = (0, std::ptr::null());
+    petsc!(ISLocalToGlobalMappingGetSize(map, &mut n))?;
+    petsc!(ISLocalToGlobalMappingGetIndices(map, &mut data))?;
+    let copy = if n == 0 {
+        std::vec::Vec::new()
+    } else {
+        // SAFETY: PETSc lends `n` indices until they are restored.
+        unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec()
+    };
+    petsc!(ISLocalToGlobalMappingRestoreIndices(map, &mut data))?;
+    Ok(copy)
 }

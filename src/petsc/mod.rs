@@ -44,5 +44,20 @@ pub use vec::{Array, ArrayMut, Vec};
 /// For `capi`, which takes objects from C: PETSc's own types, and the fence against unwinding.
 pub(crate) mod raw {
     pub(crate) use super::error::{caught, settled as settle};
-    pub(crate) use petsc_sys::{MPI_Comm, Mat, Vec, KSP};
+    pub(crate) use super::matis::mapped;
+    pub(crate) use petsc_sys::{
+        ff_comm_self, ff_comm_f2c, ff_error, ISLocalToGlobalMapping, MPI_Comm, Mat,
+        MatNullSpace, PetscViewer, Vec, IS, KSP,
+    };
+
+    /// Prints to a viewer, if it is one for text.
+    pub(crate) fn show(viewer: PetscViewer, text: &str) -> crate::Result<()> {
+        let mut ascii = 0;
+        petsc!(ff_viewer_is_ascii(viewer, &mut ascii))?;
+        if ascii != 0 {
+            let text = super::error::c_string(text);
+            petsc!(ff_viewer_print(viewer, text.as_ptr()))?;
+        }
+        Ok(())
+    }
 }

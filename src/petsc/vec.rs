@@ -46,6 +46,17 @@ impl Vec {
         Vec::sized(session, Comm::World, sys::PETSC_DECIDE, count(global)?)
     }
 
+    /// A zero vector over all ranks with these numbers of entries; PETSc decides what is left open. Collective.
+    pub fn over_ranks(
+        session: &Session,
+        local: Option<usize>,
+        global: Option<usize>,
+    ) -> Result<Vec> {
+        let local = local.map_or(Ok(sys::PETSC_DECIDE), count)?;
+        let global = global.map_or(Ok(sys::PETSC_DETERMINE), count)?;
+        Vec::sized(session, Comm::World, local, global)
+    }
+
     /// A vector of this rank alone with these entries.
     pub fn from_slice(session: &Session, entries: &[f64]) -> Result<Vec> {
         let vec = Vec::seq(session, entries.len())?;

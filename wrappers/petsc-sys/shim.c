@@ -11,6 +11,11 @@ MPI_Comm ff_comm_self(void)
   return PETSC_COMM_SELF;
 }
 
+MPI_Comm ff_comm_f2c(int comm)
+{
+  return MPI_Comm_f2c((MPI_Fint)comm);
+}
+
 int ff_error(MPI_Comm comm, int line, const char *function, const char *file, int code, const char *message)
 {
   return (int)PetscError(comm, line, function, file, (PetscErrorCode)code, PETSC_ERROR_INITIAL, "%s", message);

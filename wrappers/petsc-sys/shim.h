@@ -10,6 +10,8 @@
 /* PETSC_COMM_WORLD is a variable, PETSC_COMM_SELF a macro. */
 MPI_Comm ff_comm_world(void);
 MPI_Comm ff_comm_self(void);
+/* A communicator of Fortran. */
+MPI_Comm ff_comm_f2c(int comm);
 
 /* PetscError() for the first frame of an error; it is variadic and takes the message as a format. */
 int ff_error(MPI_Comm comm, int line, const char *function, const char *file, int code, const char *message);

@@ -1,0 +1,271 @@
+//! Rows that the host adds to what it assembled: contact between bodies, obstacles, equations.
+//!
+//! The host names global dofs, the method names dofs of bodies, and wants rows that share one on the same rank. So all ranks see all
+//! rows (there are few: they live on surfaces), find the blocks, and the rank that follows from a block's lowest dof takes it.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::parts::Part;
+use super::rows::body_dof;
+use super::states::State;
+use super::torn::Torn;
+use crate::feti::exchange::{exchange_words, gather_all};
+use crate::petsc::Session;
+use crate::substructures::{InterfaceRow, RowKind};
+use crate::{Error, Result};
+
+/// A row on the rank that takes it.
+struct Taken {
+    /// The rank that gave it, and its number among the rows given there.
+    from: (usize, usize),
+    /// What the method gets.
+    row: InterfaceRow,
+    /// (global dof, coefficient) of its terms that are known beforehand.
+    known: Vec<(u32, f64)>,
+}
+
+/// The host's rows, dealt out.
+#[derive(Default)]
+pub struct Contact {
+    taken: Vec<Taken>,
+    /// The block of every unknown that rows touch, by global dof: its lowest dof.
+    block: HashMap<u32, u32>,
+    /// Rows that this rank gave.
+    n_given: usize,
+    /// Whether some row anywhere has a known term.
+    some_known: bool,
+    /// Rows over all ranks.
+    n_global: usize,
+    /// Whether one of them is an inequality.
+    inequalities: bool,
+}
+
+/// A row as every rank sees it.
+struct Seen {
+    from: (usize, usize),
+    kind: RowKind,
+    gap: f64,
+    terms: Vec<(u32, f64)>,
+}
+
+/// A known dof among those that rows touch.
+const KNOWN: u64 = u64::MAX;
+
+impl Contact {
+    /// Deals the rows out; `body_of` has the body of every local part. Collective.
+    ///
+    /// # Errors
+    /// A row that names a dof of no subdomain; the same on all ranks.
+    pub fn new(
+        session: &Session,
+        torn: &Torn,
+        parts: &[Part],
+        states: &HashMap<u32, State>,
+        body_of: &[usize],
+    ) -> Result<Contact> {
+        let seen = everywhere(session, torn);
+        let mut out = Contact {
+            n_given: torn.rows.len(),
+            n_global: seen.len(),
+            inequalities: seen.iter().any(|s| s.kind == RowKind::Inequality),
+            ..Contact::default()
+        };
+        if seen.is_empty() {
+            return Ok(out);
+        }
+        let owner = lowest_bodies(session, &seen, parts, states, body_of);
+        for row in &seen {
+            if let Some((dof, _)) = row.terms.iter().find(|t| !owner.contains_key(&t.0)) {
+                return Err(Error::input(format!(
+                    "contact row {} of rank {} has a coefficient at unknown {dof}, which no subdomain has, expected unknowns of subdomains",
+                    row.from.1, row.from.0
+                )));
+            }
+        }
+        let free = |dof: &u32| owner[dof] != KNOWN;
+        out.some_known = seen.iter().flat_map(|s| &s.terms).any(|t| !free(&t.0));
+        out.block = blocks(&seen, free);
+        for row in seen {
+            type Terms = Vec<(u32, f64)>;
+            let (unknown, known): (Terms, Terms) = row.terms.iter().partition(|t| free(&t.0));
+            // A row without unknowns holds or does not: nothing here can change that.
+            let Some(first) = unknown.first() else {
+                continue;
+            };
+            let root = out.block[&first.0];
+            if root as usize % session.size() != session.rank() {
+                continue;
+            }
+            let term = |&(dof, c): &(u32, f64)| {
+                (body_dof(torn.n_global, owner[&dof] as usize, dof), c)
+            };
+            out.taken.push(Taken {
+                from: row.from,
+                row: InterfaceRow {
+                    terms: unknown.iter().map(term).collect(),
+                    gap: row.gap,
+                    kind: row.kind,
+                    holds: true,
+                    block: root.into(),
+                },
+                known,
+            });
+        }
+        Ok(out)
+    }
+
+    /// The block of a global dof that rows touch.
+    pub fn block(&self, dof: u32) -> Option<u32> {
+        self.block.get(&dof).copied()
+    }
+
+    /// Rows over all ranks.
+    pub fn n_global(&self) -> usize {
+        self.n_global
+    }
+
+    /// Whether there are rows on any rank.
+    pub fn is_any(&self) -> bool {
+        self.n_global > 0
+    }
+
+    /// Whether there are inequalities on any rank.
+    pub fn has_inequalities(&self) -> bool {
+        self.inequalities
+    }
+
+    /// This rank's rows for the method.
+    pub fn rows(&self) -> impl Iterator<Item = InterfaceRow> + '_ {
+        self.taken.iter().map(|t| t.row.clone())
+    }
+
+    /// Right-hand sides of this rank's rows for given values of the known dofs (by global dof; those of this rank's subdomains). Collective.
+    pub fn gaps(&self, session: &Session, values: &HashMap<u32, f64>) -> Vec<f64> {
+        if !self.some_known {
+            return self.taken.iter().map(|t| t.row.gap).collect();
+        }
+        let mine: Vec<u64> = values
+            .iter()
+            .flat_map(|(&dof, v)| [u64::from(dof), v.to_bits()])
+            .collect();
+        let all: HashMap<u64, f64> = gather_all(session.comm(), &mine)
+            .concat()
+            .chunks_exact(2)
+            .map(|w| (w[0], f64::from_bits(w[1])))
+            .collect();
+        let value = |dof: u32| all.get(&u64::from(dof)).copied().unwrap_or(0.0);
+        let gap = |t: &Taken| {
+            let moved: f64 = t.known.iter().map(|&(dof, c)| c * value(dof)).sum();
+            t.row.gap - moved
+        };
+        self.taken.iter().map(gap).collect()
+    }
+
+    /// What belongs to this rank's rows, brought back to the ranks that gave them; zero for rows without unknowns. Collective.
+    pub fn back(&self, session: &Session, mine: &[f64]) -> Vec<f64> {
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        for (t, v) in self.taken.iter().zip(mine) {
+            outgoing[t.from.0].extend([t.from.1 as u64, v.to_bits()]);
+        }
+        let mut out = vec![0.0; self.n_given];
+        for w in exchange_words(session.comm(), outgoing)
+            .concat()
+            .chunks_exact(2)
+        {
+            out[w[0] as usize] = f64::from_bits(w[1]);
+        }
+        out
+    }
+}
+
+/// All rows on all ranks.
+fn everywhere(session: &Session, torn: &Torn) -> Vec<Seen> {
+    let mut mine = Vec::new();
+    for (r, row) in torn.rows.iter().enumerate() {
+        let kind = u64::from(row.kind == RowKind::Inequality);
+        // Terms at the same dof are added up.
+        let mut terms: BTreeMap<u32, f64> = BTreeMap::new();
+        for &(dof, c) in &row.terms {
+            *terms.entry(dof).or_default() += c;
+        }
+        mine.extend([r as u64, kind, row.gap.to_bits(), terms.len() as u64]);
+        mine.extend(terms.iter().flat_map(|(&d, c)| [u64::from(d), c.to_bits()]));
+    }
+    let mut seen = Vec::new();
+    for (rank, words) in gather_all(session.comm(), &mine).iter().enumerate() {
+        let mut rest = &words[..];
+        while let [r, kind, gap, n, tail @ ..] = rest {
+            let (terms, tail) = tail.split_at(2 * *n as usize);
+            seen.push(Seen {
+                from: (rank, *r as usize),
+                kind: match kind {
+                    0 => RowKind::Equality,
+                    _ => RowKind::Inequality,
+                },
+                gap: f64::from_bits(*gap),
+                terms: terms
+                    .chunks_exact(2)
+                    .map(|w| (w[0] as u32, f64::from_bits(w[1])))
+                    .collect(),
+            });
+            rest = tail;
+        }
+    }
+    seen
+}
+
+/// For every dof that rows touch the lowest body that holds it (others are tied to that one), or [`KNOWN`].
+fn lowest_bodies(
+    session: &Session,
+    seen: &[Seen],
+    parts: &[Part],
+    states: &HashMap<u32, State>,
+    body_of: &[usize],
+) -> HashMap<u32, u64> {
+    let mut touched: Vec<u32> = seen.iter().flat_map(|s| &s.terms).map(|t| t.0).collect();
+    touched.sort_unstable();
+    touched.dedup();
+    let mut mine = Vec::new();
+    for &dof in &touched {
+        if states.get(&dof).is_some_and(|s| !s.is_free()) {
+            mine.extend([u64::from(dof), KNOWN]);
+        }
+        for (part, &body) in parts.iter().zip(body_of) {
+            if part.dofs.binary_search(&dof).is_ok() {
+                mine.extend([u64::from(dof), body as u64]);
+            }
+        }
+    }
+    let mut lowest = HashMap::new();
+    for w in gather_all(session.comm(), &mine).concat().chunks_exact(2) {
+        let entry = lowest.entry(w[0] as u32).or_insert(w[1]);
+        *entry = w[1].min(*entry);
+    }
+    lowest
+}
+
+/// The lowest dof of each set of unknowns that rows connect.
+fn blocks(seen: &[Seen], free: impl Fn(&u32) -> bool) -> HashMap<u32, u32> {
+    let mut above: HashMap<u32, u32> = HashMap::new();
+    for row in seen {
+        let mut dofs = row.terms.iter().map(|t| t.0).filter(&free);
+        let Some(first) = dofs.next() else { continue };
+        above.entry(first).or_insert(first);
+        for dof in dofs {
+            above.entry(dof).or_insert(dof);
+            let (a, b) = (root(&above, first), root(&above, dof));
+            above.insert(a.max(b), a.min(b));
+        }
+    }
+    let dofs: Vec<u32> = above.keys().copied().collect();
+    dofs.into_iter()
+        .map(|dof| (dof, root(&above, dof)))
+        .collect()
+}
+
+fn root(above: &HashMap<u32, u32>, mut dof: u32) -> u32 {
+    while above[&dof] != dof {
+        dof = above[&dof];
+    }
+    dof
+}
