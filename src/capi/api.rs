@@ -279,16 +279,16 @@ pub unsafe extern "C" fn FetiFetiSetMatIS(ff: Handle, a: raw::Mat, body: c_int) 
 pub unsafe extern "C" fn FetiFetiAddMatIS(
     ff: Handle,
     a: raw::Mat,
-    map: raw::ISLocalToGlobalMapping,
+    numbers: raw::IS,
     body: c_int,
 ) -> c_int {
     together(ff, c"FetiFetiAddMatIS", |o| {
         let a = Mat::share(not_null(a, "Mat")?, &o.session)?;
-        let map = match map.is_null() {
+        let numbers = match numbers.is_null() {
             true => None,
-            false => Some(raw::mapped(map)?),
+            false => Some(list(o, numbers)?),
         };
-        o.add_matis(&a, map, body)
+        o.add_matis(&a, numbers, body)
     })
 }
 

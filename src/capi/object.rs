@@ -89,9 +89,10 @@ impl Object {
         Options::new(&self.session, &format!("{}fetifeti_", self.prefix))
     }
 
-    /// Adds the local matrix of a MATIS; `map` takes its local rows to unknowns, and `None` is its own map. Collective.
-    pub fn add_matis(&mut self, a: &Mat, map: Option<Vec<i32>>, body: i32) -> Result<()> {
-        let own = map.is_none();
+    /// Adds the local matrix of a MATIS; `numbers` has the unknown of each row of `a` that this rank owns, and `None` means the row's own number.
+    /// Collective.
+    pub fn add_matis(&mut self, a: &Mat, numbers: Option<Vec<i32>>, body: i32) -> Result<()> {
+        let own = numbers.is_none();
         let kind = a.type_name()?;
         if kind != "is" {
             return Err(Error::input(format!(
@@ -99,15 +100,10 @@ impl Object {
             )));
         }
         let (k, dofs) = self.session.agree(a.local_part())?;
-        let dofs = map.unwrap_or(dofs);
-        let wrong = (dofs.len() != k.n()).then(|| {
-            Error::input(format!(
-                "the map has {} entries and the local matrix {} rows, expected as many",
-                dofs.len(),
-                k.n()
-            ))
-        });
-        self.session.agree(wrong.map_or(Ok(()), Err))?;
+        let dofs = match numbers {
+            None => dofs,
+            Some(numbers) => self.renumbered(&a.right_vec()?, &dofs, &numbers)?,
+        };
         if own {
             self.layout = Some(a.right_vec()?);
         }
@@ -122,6 +118,30 @@ impl Object {
             self.subdomains.push(Given { k, dofs, body });
         }
         Ok(())
+    }
+
+    /// What `numbers`, by owned entries of vectors like `layout`, has for these entries; negative ones stay. Collective.
+    fn renumbered(&self, layout: &PetscVec, dofs: &[i32], numbers: &[i32]) -> Result<Vec<i32>> {
+        let n = layout.local_len();
+        let wrong = (numbers.len() != n).then(|| {
+            Error::input(format!(
+                "rank {} gave {} numbers for the {n} rows of the matrix that it owns, expected as many",
+                self.session.rank(),
+                numbers.len()
+            ))
+        });
+        self.session.agree(wrong.map_or(Ok(()), Err))?;
+        let new = layout.duplicate()?;
+        for (to, &number) in new.array_mut()?.iter_mut().zip(numbers) {
+            *to = f64::from(number);
+        }
+        let ghosts: Vec<u32> = dofs.iter().map(|&d| d.max(0) as u32).collect();
+        let mut values = vec![0.0; ghosts.len()];
+        Halo::new(&self.session, layout, &ghosts)?.fetch(&new, &mut values)?;
+        let pairs = dofs.iter().zip(values);
+        Ok(pairs
+            .map(|(&d, v)| if d < 0 { d } else { v as i32 })
+            .collect())
     }
 
     /// Makes the solver, if there is none or something has changed. Collective.

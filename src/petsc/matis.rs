@@ -176,7 +176,7 @@ impl Attached {
 }
 
 /// The global number of each local index of a map that a host program lent.
-pub(crate) fn mapped(map: sys::ISLocalToGlobalMapping) -> Result<std::vec::Vec<i32>> {
+fn mapped(map: sys::ISLocalToGlobalMapping) -> Result<std::vec::Vec<i32>> {
     let (mut n, mut data) = (0, std::ptr::null());
     petsc!(ISLocalToGlobalMappingGetSize(map, &mut n))?;
     petsc!(ISLocalToGlobalMappingGetIndices(map, &mut data))?;

@@ -44,9 +44,8 @@ pub use vec::{Array, ArrayMut, Vec};
 /// For `capi`, which takes objects from C: PETSc's own types, and the fence against unwinding.
 pub(crate) mod raw {
     pub(crate) use super::error::{caught, settled as settle};
-    pub(crate) use super::matis::mapped;
     pub(crate) use petsc_sys::{
-        ff_comm_self, ff_comm_f2c, ff_error, ISLocalToGlobalMapping, MPI_Comm, Mat,
+        ff_comm_self, ff_comm_f2c, ff_error, MPI_Comm, Mat,
         MatNullSpace, PetscViewer, Vec, IS, KSP,
     };
 

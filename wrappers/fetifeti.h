@@ -1,0 +1,577 @@
+/*
+   FETI-FETI for programs that run on PETSc: FETI-DP inside bodies, one-level FETI between bodies, contact between them.
+
+   Link with libfetifeti.so. All functions return a PETSc error code; errors go through PETSc's error handler as one sentence. "Collective" functions are
+   to be called by all ranks of the communicator of FetiFetiCreate(), the others by each as often as it likes.
+*/
+#if !defined(FETIFETI_H)
+#define FETIFETI_H
+
+#include <petscksp.h>
+
+/*S
+   FetiFeti - A solver for several bodies that are tied together or in contact: min 1/2 u'Ku - f'u subject to rows B u = c, B u <= c
+
+   Level: beginner
+
+   Notes:
+   All unknowns of all bodies have numbers in one numbering, that of the entries of the right-hand side and the solution. Two subdomains of one body
+   share an unknown when both list its number. Two of different bodies that do so are tied: one-level FETI between them.
+
+.seealso: `FetiFetiCreate()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactRows()`, `FetiFetiSolve()`
+S*/
+typedef struct _p_FetiFeti *FetiFeti;
+
+/*E
+   FetiFetiRowKind - How a row of FetiFetiSetContactRows() holds
+
+   Level: beginner
+
+   Values:
++  FETIFETI_EQUALITY   - (B u)_r = gap_r
+-  FETIFETI_INEQUALITY - (B u)_r <= gap_r, with a multiplier that is not negative
+
+.seealso: `FetiFetiSetContactRows()`
+E*/
+#define FETIFETI_EQUALITY   0
+#define FETIFETI_INEQUALITY 1
+
+/*@C
+   FetiFetiInitializePackage - Registers the KSP type "fetifeti" in a program that links with the library
+
+   Not Collective
+
+   Level: intermediate
+
+   Note:
+   Objects of this header need no registration.
+
+.seealso: `KSPFETIFETISetBody()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiInitializePackage(void);
+
+/*@
+   KSPFETIFETISetBody - Says which body this rank's subdomain belongs to, for a KSP of type "fetifeti"
+
+   Logically Collective
+
+   Input Parameters:
++  ksp  - the KSP
+-  body - ranks with the same number form a body
+
+   Level: intermediate
+
+.seealso: `KSPFETIFETIGetInnerKSP()`
+@*/
+PETSC_EXTERN PetscErrorCode KSPFETIFETISetBody(KSP ksp, PetscInt body);
+
+/*@
+   KSPFETIFETIGetInnerKSP - Gets the KSP that iterates on the multipliers, of a KSP of type "fetifeti"
+
+   Not Collective
+
+   Input Parameter:
+.  ksp - the KSP, after KSPSetUp()
+
+   Output Parameter:
+.  inner - its inner KSP, not to be destroyed
+
+   Level: advanced
+
+.seealso: `KSPFETIFETISetBody()`
+@*/
+PETSC_EXTERN PetscErrorCode KSPFETIFETIGetInnerKSP(KSP ksp, KSP *inner);
+
+/*@
+   FetiFetiCreate - Creates a solver
+
+   Collective
+
+   Input Parameter:
+.  comm - the communicator
+
+   Output Parameter:
+.  ff - the solver
+
+   Level: beginner
+
+   Note:
+   From Fortran call FetiFetiCreateFortran(), which takes the communicator as Fortran numbers it (wrappers/fetifeti.f90).
+
+.seealso: `FetiFetiDestroy()`, `FetiFetiSolve()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiCreate(MPI_Comm comm, FetiFeti *ff);
+PETSC_EXTERN PetscErrorCode FetiFetiCreateFortran(int comm, FetiFeti *ff);
+
+/*@
+   FetiFetiDestroy - Destroys a solver
+
+   Collective
+
+   Input Parameter:
+.  ff - the solver; NULL afterwards
+
+   Level: beginner
+
+   Note:
+   To be called before PetscFinalize(). A pointer to NULL is left alone.
+
+.seealso: `FetiFetiCreate()`, `FetiFetiReset()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiDestroy(FetiFeti *ff);
+
+/*@
+   FetiFetiReset - Forgets subdomains, rows and everything else but the prefix and what FetiFetiSetFromOptions() has read
+
+   Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Level: intermediate
+
+.seealso: `FetiFetiDestroy()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiReset(FetiFeti ff);
+
+/*@
+   FetiFetiSetOptionsPrefix - Sets the prefix of all options
+
+   Logically Collective
+
+   Input Parameters:
++  ff     - the solver
+-  prefix - the prefix P, without a hyphen, or NULL; options begin with -Pfetifeti_
+
+   Level: intermediate
+
+.seealso: `FetiFetiSetFromOptions()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetOptionsPrefix(FetiFeti ff, const char prefix[]);
+
+/*@
+   FetiFetiSetFromOptions - Reads the options of the object itself
+
+   Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Options Database Keys:
++  -fetifeti_bodies <n>    - bodies to group subdomains into that were given none; 0: one for every eight subdomains
+.  -fetifeti_view          - show the solver after set-up
+.  -fetifeti_ksp_rtol <r>  - relative tolerance of the iteration; all options of a KSP with this prefix
+-  -fetifeti_contact_...   - the contact loop; see docs/options.md
+
+   Level: beginner
+
+   Note:
+   The options of the method and of the inner KSP are read by FetiFetiSetUp(), whether or not this function is called.
+
+.seealso: `FetiFetiSetOptionsPrefix()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetFromOptions(FetiFeti ff);
+
+/*@C
+   FetiFetiView - Shows bodies, multipliers and what the last solve did
+
+   Collective
+
+   Input Parameters:
++  ff     - the solver
+-  viewer - an ASCII viewer; NULL: the standard output of the first rank
+
+   Level: beginner
+
+.seealso: `FetiFetiSetFromOptions()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiView(FetiFeti ff, PetscViewer viewer);
+
+/*@
+   FetiFetiSetSizes - Sets the numbers of unknowns of all bodies together, as VecSetSizes() does
+
+   Logically Collective
+
+   Input Parameters:
++  ff - the solver
+.  n  - entries of right-hand side and solution on this rank, or PETSC_DECIDE
+-  N  - entries on all ranks, or PETSC_DETERMINE
+
+   Level: beginner
+
+   Note:
+   Without this function the layout is that of the matrix of FetiFetiSetMatIS(), else the one that PETSC_DECIDE gives for one more than
+   the highest number of an unknown in a subdomain.
+
+.seealso: `FetiFetiAddSubdomain()`, `FetiFetiSetBlockSize()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetSizes(FetiFeti ff, PetscInt n, PetscInt N);
+
+/*@
+   FetiFetiSetBlockSize - Sets how many consecutive unknowns belong to a node
+
+   Logically Collective
+
+   Input Parameters:
++  ff - the solver
+-  bs - the block size; 1 unless a MATIS says otherwise
+
+   Level: beginner
+
+   Note:
+   Displacements in the plane have 2, in space 3. Constraints and bodies are found better with it.
+
+.seealso: `FetiFetiSetCoordinates()`, `FetiFetiSetNearNullSpace()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetBlockSize(FetiFeti ff, PetscInt bs);
+
+/*@
+   FetiFetiAddSubdomain - Hands over the stiffness matrix of one subdomain
+
+   Not Collective
+
+   Input Parameters:
++  ff   - the solver
+.  body - number of the body that it belongs to, or PETSC_DECIDE: then say so for all subdomains, and bodies are found by a graph partition
+.  n    - rows of the matrix
+.  ia   - start of each row in ja and a, length n + 1, from 0
+.  ja   - columns, in any order; entries at the same place are added up
+.  a    - entries
+-  dofs - global number of the unknown of each row; a negative one is left out
+
+   Level: beginner
+
+   Notes:
+   A rank may call this as often as it likes, or never. The arrays are copied. The matrix is that of the elements of the subdomain alone, without the
+   contributions of its neighbours: the sum over all subdomains is the assembled matrix. It must be symmetric.
+
+   A row with its diagonal alone in all subdomains is taken as a boundary condition, u = b / diagonal, as MatZeroRowsColumns() leaves it; so is an empty one.
+
+   A body whose subdomains are not in one piece becomes several.
+
+.seealso: `FetiFetiSetMatIS()`, `FetiFetiAddMatIS()`, `FetiFetiSetDirichletBoundaries()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiAddSubdomain(FetiFeti ff, PetscInt body, PetscInt n, const PetscInt ia[], const PetscInt ja[], const PetscScalar a[], const PetscInt dofs[]);
+
+/*@
+   FetiFetiSetMatIS - Takes the subdomains from a matrix of type MATIS, one on each rank, instead of those that were given before
+
+   Collective
+
+   Input Parameters:
++  ff   - the solver
+.  A    - the matrix
+-  body - the body of this rank's subdomain, or PETSC_DECIDE on all ranks
+
+   Level: beginner
+
+   Note:
+   The layout of vectors, the block size and the near-null space come from the matrix, too. Entries are copied: after a change of the matrix call this again.
+
+.seealso: `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetMatIS(FetiFeti ff, Mat A, PetscInt body);
+
+/*@
+   FetiFetiAddMatIS - Adds the local matrices of a MATIS of one body of several that were discretised by themselves
+
+   Collective
+
+   Input Parameters:
++  ff      - the solver
+.  A       - the matrix of the body
+.  numbers - for each row of A that this rank owns, its number among the unknowns of all bodies, as DMCompositeGetGlobalISs() gives them. NULL: that in A
+-  body    - number of the body
+
+   Level: beginner
+
+   Note:
+   With other numbers the near-null space of A is not looked at: its vectors belong to another numbering. Give one by FetiFetiSetNearNullSpace() or
+   FetiFetiSetCoordinates().
+
+.seealso: `FetiFetiSetMatIS()`, `FetiFetiAddSubdomain()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiAddMatIS(FetiFeti ff, Mat A, IS numbers, PetscInt body);
+
+/*@
+   FetiFetiSetNearNullSpace - Gives vectors that span every kernel that a subdomain without boundary conditions may have
+
+   Collective
+
+   Input Parameters:
++  ff    - the solver
+-  space - rigid body motions, in the layout of the solution; NULL: none
+
+   Level: intermediate
+
+   Note:
+   Vectors that turn out not to be kernels are not used: then kernels are found from the matrices.
+
+.seealso: `FetiFetiSetCoordinates()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetNearNullSpace(FetiFeti ff, MatNullSpace space);
+
+/*@
+   FetiFetiSetCoordinates - Gives the places of the nodes: rigid body motions are made from them where no near-null space is given
+
+   Logically Collective
+
+   Input Parameters:
++  ff     - the solver
+.  dim    - 1, 2 or 3
+.  n      - nodes whose unknowns are on this rank: entries of the solution over the block size
+-  coords - dim numbers for each
+
+   Level: intermediate
+
+   Note:
+   Rotations are made where the block size is the dimension, else one constant for each component. Otherwise places are not used.
+
+.seealso: `FetiFetiSetNearNullSpace()`, `FetiFetiSetBlockSize()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetCoordinates(FetiFeti ff, PetscInt dim, PetscInt n, const PetscReal coords[]);
+
+/*@
+   FetiFetiSetDirichletBoundaries - Holds unknowns at given values
+
+   Collective
+
+   Input Parameters:
++  ff     - the solver
+.  dofs   - unknowns, listed by any rank, also by several; NULL: none
+-  values - has their values, in the layout of the solution; NULL: zero
+
+   Level: beginner
+
+   Notes:
+   As with PCBDDCSetDirichletBoundaries() the unknowns may be listed on any rank; but the matrices need not know of the conditions: rows and columns
+   of held unknowns are not used. Values are read at each FetiFetiSolve(), and may change between solves.
+
+.seealso: `FetiFetiSetNeumannBoundaries()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetDirichletBoundaries(FetiFeti ff, IS dofs, Vec values);
+
+/*@
+   FetiFetiSetNeumannBoundaries - Accepted for the likeness to PCBDDCSetNeumannBoundaries(); has no effect
+
+   Collective
+
+   Input Parameters:
++  ff   - the solver
+-  dofs - unknowns with natural conditions
+
+   Level: advanced
+
+   Note:
+   PCBDDC classifies interface nodes by it. Here vertices, edges and faces follow from who shares what.
+
+.seealso: `FetiFetiSetDirichletBoundaries()`, `FetiFetiSetPrimalDofs()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetNeumannBoundaries(FetiFeti ff, IS dofs);
+
+/*@
+   FetiFetiSetPrimalDofs - Makes unknowns primal where subdomains of one body share them
+
+   Collective
+
+   Input Parameters:
++  ff   - the solver
+-  dofs - unknowns, listed by any rank; NULL: none besides those that are chosen anyway
+
+   Level: advanced
+
+.seealso: `FetiFetiAddSubdomain()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetPrimalDofs(FetiFeti ff, IS dofs);
+
+/*@
+   FetiFetiSetContactRows - Gives rows (B u)_r = gap_r or (B u)_r <= gap_r: contact, obstacles, equations
+
+   Not Collective
+
+   Input Parameters:
++  ff   - the solver
+.  n    - rows that this rank gives, instead of those that it gave before
+.  ia   - start of each row in ja and b, length n + 1, from 0
+.  ja   - numbers of unknowns
+.  b    - coefficients
+.  gap  - right-hand sides
+-  kind - FETIFETI_EQUALITY or FETIFETI_INEQUALITY, for each row
+
+   Level: beginner
+
+   Notes:
+   Each row is given by one rank, any one. For two nodes that face each other with the normal n from the first to the second: coefficients n at the first one, -n at
+   the second one, and the distance as gap. A multiplier is then the force with which the second one is pressed away.
+
+   Terms at held unknowns go to the right-hand side. A row all of whose unknowns are held has no effect, and a multiplier of zero.
+
+.seealso: `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, const PetscInt ia[], const PetscInt ja[], const PetscScalar b[], const PetscReal gap[], const PetscInt kind[]);
+
+/*@
+   FetiFetiSetUp - Finds bodies, interfaces and constraints, and factors
+
+   Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Level: intermediate
+
+   Note:
+   FetiFetiSolve() does this if it has not been done since something was set on any rank.
+
+.seealso: `FetiFetiSolve()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetUp(FetiFeti ff);
+
+/*@
+   FetiFetiSolve - Solves
+
+   Collective
+
+   Input Parameters:
++  ff - the solver
+-  b  - the right-hand side, assembled over all subdomains
+
+   Output Parameter:
+.  x - the solution; what it was before does not matter
+
+   Level: beginner
+
+   Notes:
+   A solve that follows another one with inequalities starts from its multipliers. An iteration that stops early is no error: ask
+   FetiFetiGetConvergedReason(). Rows that contradict each other, or a body that the load pushes away for ever, are.
+
+.seealso: `FetiFetiGetConvergedReason()`, `FetiFetiGetKKT()`, `FetiFetiGetMultipliers()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSolve(FetiFeti ff, Vec b, Vec x);
+
+/*@
+   FetiFetiGetIterations - Gets the number of Krylov iterations of the last solve, over all steps of the contact loop
+
+   Not Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Output Parameter:
+.  its - iterations
+
+   Level: beginner
+
+.seealso: `FetiFetiGetContactSteps()`, `FetiFetiGetConvergedReason()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetIterations(FetiFeti ff, PetscInt *its);
+
+/*@
+   FetiFetiGetContactSteps - Gets the number of steps of the contact loop in the last solve; 0 without inequalities
+
+   Not Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Output Parameter:
+.  steps - steps
+
+   Level: intermediate
+
+.seealso: `FetiFetiGetIterations()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetContactSteps(FetiFeti ff, PetscInt *steps);
+
+/*@
+   FetiFetiGetConvergedReason - Gets why the last solve ended
+
+   Not Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Output Parameter:
+.  reason - positive where everything reached its tolerance, negative otherwise
+
+   Level: beginner
+
+.seealso: `FetiFetiGetKKT()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetConvergedReason(FetiFeti ff, KSPConvergedReason *reason);
+
+/*@
+   FetiFetiGetSpectrum - Gets the extreme eigenvalues of the preconditioned operator as the last iteration saw them
+
+   Not Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Output Parameters:
++  min - the smallest one, 0 where nothing was iterated
+-  max - the largest one
+
+   Level: intermediate
+
+.seealso: `FetiFetiGetIterations()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetSpectrum(FetiFeti ff, PetscReal *min, PetscReal *max);
+
+/*@
+   FetiFetiGetKKT - Gets how well the last solution satisfies the optimality conditions
+
+   Not Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Output Parameter:
+.  kkt - stationarity |K u - f + B'l| / (|f| + |B'l|), the largest violation of a row over the largest |u|, the largest |l_r (B u - c)_r| over max |l| max |u|,
+         the smallest multiplier of an inequality over max |l|
+
+   Level: beginner
+
+.seealso: `FetiFetiGetConvergedReason()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetKKT(FetiFeti ff, PetscReal kkt[4]);
+
+/*@
+   FetiFetiGetMultipliers - Gets the multipliers of the rows that this rank gave
+
+   Not Collective
+
+   Input Parameters:
++  ff - the solver
+-  n  - how many, as in FetiFetiSetContactRows()
+
+   Output Parameter:
+.  lambda - the multipliers, in the order of the rows: K u + B'lambda = f
+
+   Level: beginner
+
+.seealso: `FetiFetiSetContactRows()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetMultipliers(FetiFeti ff, PetscInt n, PetscReal lambda[]);
+
+/*@
+   FetiFetiGetInnerKSP - Gets the KSP that iterates on the multipliers
+
+   Not Collective
+
+   Input Parameter:
+.  ff - the solver, after FetiFetiSetUp()
+
+   Output Parameter:
+.  ksp - the KSP, not to be destroyed
+
+   Level: advanced
+
+   Note:
+   Tolerances and monitors may be set. A new set-up makes a new one.
+
+.seealso: `FetiFetiSetUp()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetInnerKSP(FetiFeti ff, KSP *ksp);
+
+#endif
