@@ -92,17 +92,15 @@ static PetscErrorCode Assemble(DM da, PetscInt m, PetscBool hold, PetscBool pres
 
 /* contact */
 /* The number of node (i, j)'s vertical displacement of body k among the unknowns of both. */
-static PetscErrorCode Number(DM da[2], Vec part[2], Vec all, PetscInt k, PetscInt m, PetscInt i, PetscInt j, PetscInt *dof)
+static PetscErrorCode Number(AO ao[2], Vec part[2], Vec all, PetscInt k, PetscInt m, PetscInt i, PetscInt j, PetscInt *dof)
 {
   const PetscInt *first[2], *whole;
   PetscLayout     layout;
   PetscMPIInt     rank;
-  AO              ao;
 
   PetscFunctionBeginUser;
   *dof = 2 * (j * m + i) + 1;
-  PetscCall(DMDAGetAO(da[k], &ao));
-  PetscCall(AOApplicationToPetsc(ao, 1, dof));
+  PetscCall(AOApplicationToPetsc(ao[k], 1, dof));
   PetscCall(VecGetLayout(part[k], &layout));
   PetscCall(PetscLayoutFindOwner(layout, *dof, &rank));
   PetscCall(VecGetOwnershipRanges(part[0], &first[0]));
@@ -193,6 +191,7 @@ int main(int argc, char **argv)
     /* contact */
     DM                      pack;
     FetiFeti                ff;
+    AO                      ao[2];
     Vec                     load, where, from, to[2];
     IS                     *numbers;
     const PetscScalar      *xy;
@@ -228,9 +227,10 @@ int main(int argc, char **argv)
     PetscCall(DMCompositeGetGlobalISs(pack, &numbers));
     for (k = 0; k < 2; k++) PetscCall(FetiFetiAddMatIS(ff, A[k], numbers[k], k));
     PetscCall(PetscMalloc6(rows + 1, &ia, 2 * rows, &ja, rows, &gap, rows, &kind, 2 * rows, &coefficient, rows, &lambda)); /* the rows: u_y(below) - u_y(above) <= gap */
+    for (k = 0; k < 2; k++) PetscCall(DMDAGetAO(da[k], &ao[k]));
     for (r = 0; r < rows; r++) {
-      PetscCall(Number(da, b, load, 0, m, r, m - 1, &ja[2 * r]));
-      PetscCall(Number(da, b, load, 1, m, r, 0, &ja[2 * r + 1]));
+      PetscCall(Number(ao, b, load, 0, m, r, m - 1, &ja[2 * r]));
+      PetscCall(Number(ao, b, load, 1, m, r, 0, &ja[2 * r + 1]));
       coefficient[2 * r]     = 1;
       coefficient[2 * r + 1] = -1;
       gap[r]                 = 0.05 + 0.4 * PetscSqr((PetscReal)r / (m - 1));

@@ -180,14 +180,11 @@ pub unsafe extern "C" fn FetiFetiView(ff: Handle, viewer: raw::PetscViewer) -> c
 }
 
 fn show(o: &Object, viewer: raw::PetscViewer) -> Result<()> {
-    let text = o.text();
     if viewer.is_null() {
-        if o.session.rank() == 0 {
-            print!("{text}");
-        }
+        o.print();
         return Ok(());
     }
-    crate::petsc::raw::show(viewer, &text)
+    raw::show(viewer, &o.text())
 }
 
 #[no_mangle]
@@ -450,13 +447,7 @@ fn contact_row(
 #[no_mangle]
 #[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetUp(ff: Handle) -> c_int {
-    together(ff, c"FetiFetiSetUp", |o| {
-        o.set_up()?;
-        if o.view {
-            show(o, std::ptr::null_mut())?;
-        }
-        Ok(())
-    })
+    together(ff, c"FetiFetiSetUp", Object::set_up)
 }
 
 #[no_mangle]

@@ -164,7 +164,17 @@ impl Object {
         };
         self.solver = Some(Embedded::new(&self.session, &torn, grouping, settings)?);
         self.stale = false;
+        if self.view {
+            self.print();
+        }
         Ok(())
+    }
+
+    /// Shows the solver on the standard output of the first rank.
+    pub fn print(&self) {
+        if self.session.rank() == 0 {
+            print!("{}", self.text());
+        }
     }
 
     /// Everything that was said, in one piece. Collective.
