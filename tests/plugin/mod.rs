@@ -44,21 +44,35 @@ pub struct Program(String);
 impl Program {
     /// One of PETSc's ksp tutorials.
     pub fn tutorial(scratch: &Scratch, name: &str) -> Program {
-        Program::compile("mpicc", scratch, &tutorial(&format!("{name}.c")))
+        Program::compile("mpicc", scratch, &tutorial(&format!("{name}.c")), &[])
     }
 
     /// A source of ours, from tests/plugin.
     pub fn own(compiler: &str, scratch: &Scratch, name: &str) -> Program {
         let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/plugin");
-        Program::compile(compiler, scratch, &dir.join(name))
+        Program::compile(compiler, scratch, &dir.join(name), &[])
     }
 
-    fn compile(compiler: &str, scratch: &Scratch, source: &Path) -> Program {
+    /// A source of ours, by its path in the repository, that uses wrappers/fetifeti.h and is linked with the library.
+    pub fn linked(compiler: &str, scratch: &Scratch, path: &str) -> Program {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let (library, headers) = (library(), root.join("wrappers"));
+        let dir = Path::new(&library).parent().expect("it lies in a directory");
+        let more = [
+            format!("-I{}", headers.display()),
+            library.clone(),
+            format!("-Wl,-rpath,{}", dir.display()),
+        ];
+        Program::compile(compiler, scratch, &root.join(path), &more)
+    }
+
+    fn compile(compiler: &str, scratch: &Scratch, source: &Path, more: &[String]) -> Program {
         let stem = source.file_stem().expect("a source has a name");
         let program = scratch.path(&stem.to_string_lossy());
         let out = Command::new(compiler)
             .args(["-O1", "-o", &program])
             .arg(source)
+            .args(more)
             .args(pkg_config(&["--cflags", "--libs"]))
             .args(["-llapack", "-lblas", "-lm"])
             .args((compiler == "mpif90").then_some("-ffree-line-length-0"))

@@ -1,0 +1,171 @@
+! The functions of fetifeti.h for Fortran; their manual pages are there. PETSc objects are passed by their %v, NULL is 0:
+!
+!   type(c_ptr) :: ff
+!   ierr = FetiFetiCreateFortran(PETSC_COMM_WORLD, ff)
+!   ierr = FetiFetiSolve(ff, b%v, x%v)
+module fetifeti
+  use, intrinsic :: iso_c_binding
+  implicit none
+
+  integer(c_int), parameter :: FETIFETI_EQUALITY = 0, FETIFETI_INEQUALITY = 1
+
+  interface
+    function FetiFetiCreateFortran(comm, ff) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      integer(c_int), value :: comm
+      type(c_ptr) :: ff
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiDestroy(ff) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr) :: ff
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiReset(ff) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetOptionsPrefix(ff, prefix) bind(C) result(ierr) ! ends with c_null_char
+      import :: c_int, c_ptr, c_char
+      type(c_ptr), value :: ff
+      character(c_char) :: prefix(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetFromOptions(ff) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiView(ff, viewer) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: viewer
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetSizes(ff, n, nall) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n, nall
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetBlockSize(ff, bs) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int), value :: bs
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiAddSubdomain(ff, body, n, ia, ja, a, dofs) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: body, n
+      integer(c_int), intent(in) :: ia(*), ja(*), dofs(*)
+      real(c_double), intent(in) :: a(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetMatIS(ff, mat, body) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: mat
+      integer(c_int), value :: body
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiAddMatIS(ff, mat, numbers, body) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: mat, numbers
+      integer(c_int), value :: body
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetNearNullSpace(ff, space) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: space
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetCoordinates(ff, dim, n, coords) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: dim, n
+      real(c_double), intent(in) :: coords(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetDirichletBoundaries(ff, dofs, values) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: dofs, values
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetNeumannBoundaries(ff, dofs) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: dofs
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetPrimalDofs(ff, dofs) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: dofs
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetContactRows(ff, n, ia, ja, b, gap, kind) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n
+      integer(c_int), intent(in) :: ia(*), ja(*), kind(*)
+      real(c_double), intent(in) :: b(*), gap(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetUp(ff) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSolve(ff, b, x) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t), value :: b, x
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiGetIterations(ff, its) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: its, ierr
+    end function
+    function FetiFetiGetContactSteps(ff, steps) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: steps, ierr
+    end function
+    function FetiFetiGetConvergedReason(ff, reason) bind(C) result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: reason, ierr
+    end function
+    function FetiFetiGetSpectrum(ff, least, most) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      real(c_double) :: least, most
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiGetKKT(ff, kkt) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      real(c_double) :: kkt(4)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiGetMultipliers(ff, n, lambda) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n
+      real(c_double) :: lambda(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiGetInnerKSP(ff, ksp) bind(C) result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_intptr_t) :: ksp
+      integer(c_int) :: ierr
+    end function
+  end interface
+end module fetifeti
