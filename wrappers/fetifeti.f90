@@ -10,52 +10,52 @@ module fetifeti
   integer(c_int), parameter :: FETIFETI_EQUALITY = 0, FETIFETI_INEQUALITY = 1
 
   interface
-    function FetiFetiCreateFortran(comm, ff) bind(C) result(ierr)
+    function FetiFetiCreateFortran(comm, ff) bind(C, name="FetiFetiCreateFortran") result(ierr)
       import :: c_int, c_ptr
       integer(c_int), value :: comm
       type(c_ptr) :: ff
       integer(c_int) :: ierr
     end function
-    function FetiFetiDestroy(ff) bind(C) result(ierr)
+    function FetiFetiDestroy(ff) bind(C, name="FetiFetiDestroy") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr) :: ff
       integer(c_int) :: ierr
     end function
-    function FetiFetiReset(ff) bind(C) result(ierr)
+    function FetiFetiReset(ff) bind(C, name="FetiFetiReset") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetOptionsPrefix(ff, prefix) bind(C) result(ierr) ! ends with c_null_char
+    function FetiFetiSetOptionsPrefix(ff, prefix) bind(C, name="FetiFetiSetOptionsPrefix") result(ierr) ! ends with c_null_char
       import :: c_int, c_ptr, c_char
       type(c_ptr), value :: ff
       character(c_char) :: prefix(*)
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetFromOptions(ff) bind(C) result(ierr)
+    function FetiFetiSetFromOptions(ff) bind(C, name="FetiFetiSetFromOptions") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int) :: ierr
     end function
-    function FetiFetiView(ff, viewer) bind(C) result(ierr)
+    function FetiFetiView(ff, viewer) bind(C, name="FetiFetiView") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: viewer
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetSizes(ff, n, nall) bind(C) result(ierr)
+    function FetiFetiSetSizes(ff, n, nall) bind(C, name="FetiFetiSetSizes") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int), value :: n, nall
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetBlockSize(ff, bs) bind(C) result(ierr)
+    function FetiFetiSetBlockSize(ff, bs) bind(C, name="FetiFetiSetBlockSize") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int), value :: bs
       integer(c_int) :: ierr
     end function
-    function FetiFetiAddSubdomain(ff, body, n, ia, ja, a, dofs) bind(C) result(ierr)
+    function FetiFetiAddSubdomain(ff, body, n, ia, ja, a, dofs) bind(C, name="FetiFetiAddSubdomain") result(ierr)
       import :: c_int, c_ptr, c_double
       type(c_ptr), value :: ff
       integer(c_int), value :: body, n
@@ -63,52 +63,52 @@ module fetifeti
       real(c_double), intent(in) :: a(*)
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetMatIS(ff, mat, body) bind(C) result(ierr)
+    function FetiFetiSetMatIS(ff, mat, body) bind(C, name="FetiFetiSetMatIS") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: mat
       integer(c_int), value :: body
       integer(c_int) :: ierr
     end function
-    function FetiFetiAddMatIS(ff, mat, numbers, body) bind(C) result(ierr)
+    function FetiFetiAddMatIS(ff, mat, numbers, body) bind(C, name="FetiFetiAddMatIS") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: mat, numbers
       integer(c_int), value :: body
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetNearNullSpace(ff, space) bind(C) result(ierr)
+    function FetiFetiSetNearNullSpace(ff, space) bind(C, name="FetiFetiSetNearNullSpace") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: space
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetCoordinates(ff, dim, n, coords) bind(C) result(ierr)
+    function FetiFetiSetCoordinates(ff, dim, n, coords) bind(C, name="FetiFetiSetCoordinates") result(ierr)
       import :: c_int, c_ptr, c_double
       type(c_ptr), value :: ff
       integer(c_int), value :: dim, n
       real(c_double), intent(in) :: coords(*)
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetDirichletBoundaries(ff, dofs, values) bind(C) result(ierr)
+    function FetiFetiSetDirichletBoundaries(ff, dofs, values) bind(C, name="FetiFetiSetDirichletBoundaries") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: dofs, values
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetNeumannBoundaries(ff, dofs) bind(C) result(ierr)
+    function FetiFetiSetNeumannBoundaries(ff, dofs) bind(C, name="FetiFetiSetNeumannBoundaries") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: dofs
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetPrimalDofs(ff, dofs) bind(C) result(ierr)
+    function FetiFetiSetPrimalDofs(ff, dofs) bind(C, name="FetiFetiSetPrimalDofs") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: dofs
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetContactRows(ff, n, ia, ja, b, gap, kind) bind(C) result(ierr)
+    function FetiFetiSetContactRows(ff, n, ia, ja, b, gap, kind) bind(C, name="FetiFetiSetContactRows") result(ierr)
       import :: c_int, c_ptr, c_double
       type(c_ptr), value :: ff
       integer(c_int), value :: n
@@ -116,52 +116,52 @@ module fetifeti
       real(c_double), intent(in) :: b(*), gap(*)
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetUp(ff) bind(C) result(ierr)
+    function FetiFetiSetUp(ff) bind(C, name="FetiFetiSetUp") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int) :: ierr
     end function
-    function FetiFetiSolve(ff, b, x) bind(C) result(ierr)
+    function FetiFetiSolve(ff, b, x) bind(C, name="FetiFetiSolve") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: b, x
       integer(c_int) :: ierr
     end function
-    function FetiFetiGetIterations(ff, its) bind(C) result(ierr)
+    function FetiFetiGetIterations(ff, its) bind(C, name="FetiFetiGetIterations") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int) :: its, ierr
     end function
-    function FetiFetiGetContactSteps(ff, steps) bind(C) result(ierr)
+    function FetiFetiGetContactSteps(ff, steps) bind(C, name="FetiFetiGetContactSteps") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int) :: steps, ierr
     end function
-    function FetiFetiGetConvergedReason(ff, reason) bind(C) result(ierr)
+    function FetiFetiGetConvergedReason(ff, reason) bind(C, name="FetiFetiGetConvergedReason") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
       integer(c_int) :: reason, ierr
     end function
-    function FetiFetiGetSpectrum(ff, least, most) bind(C) result(ierr)
+    function FetiFetiGetSpectrum(ff, least, most) bind(C, name="FetiFetiGetSpectrum") result(ierr)
       import :: c_int, c_ptr, c_double
       type(c_ptr), value :: ff
       real(c_double) :: least, most
       integer(c_int) :: ierr
     end function
-    function FetiFetiGetKKT(ff, kkt) bind(C) result(ierr)
+    function FetiFetiGetKKT(ff, kkt) bind(C, name="FetiFetiGetKKT") result(ierr)
       import :: c_int, c_ptr, c_double
       type(c_ptr), value :: ff
       real(c_double) :: kkt(4)
       integer(c_int) :: ierr
     end function
-    function FetiFetiGetMultipliers(ff, n, lambda) bind(C) result(ierr)
+    function FetiFetiGetMultipliers(ff, n, lambda) bind(C, name="FetiFetiGetMultipliers") result(ierr)
       import :: c_int, c_ptr, c_double
       type(c_ptr), value :: ff
       integer(c_int), value :: n
       real(c_double) :: lambda(*)
       integer(c_int) :: ierr
     end function
-    function FetiFetiGetInnerKSP(ff, ksp) bind(C) result(ierr)
+    function FetiFetiGetInnerKSP(ff, ksp) bind(C, name="FetiFetiGetInnerKSP") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t) :: ksp

@@ -66,6 +66,29 @@ impl Program {
         Program::compile(compiler, scratch, &root.join(path), &more)
     }
 
+    /// The same in Fortran, with the module of wrappers/fetifeti.f90.
+    pub fn fortran_with_module(scratch: &Scratch, path: &str) -> Program {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let module = root.join("wrappers/fetifeti.f90").display().to_string();
+        let object = scratch.path("module.o");
+        let out = Command::new("mpif90")
+            .args(["-c", "-ffree-line-length-0", "-o", &object, &module])
+            .current_dir(&scratch.0)
+            .output()
+            .expect("mpif90 runs");
+        let said = String::from_utf8_lossy(&out.stderr);
+        assert!(out.status.success(), "{module}: {said}");
+        let library = library();
+        let dir = Path::new(&library).parent().expect("it lies in a directory");
+        let rpath = format!("-Wl,-rpath,{}", dir.display());
+        Program::compile(
+            "mpif90",
+            scratch,
+            &root.join(path),
+            &[object, library.clone(), rpath],
+        )
+    }
+
     fn compile(compiler: &str, scratch: &Scratch, source: &Path, more: &[String]) -> Program {
         let stem = source.file_stem().expect("a source has a name");
         let program = scratch.path(&stem.to_string_lossy());
