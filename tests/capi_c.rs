@@ -10,14 +10,27 @@ use plugin::{number_after, Program};
 fn bars_by_raw_arrays() {
     let scratch = Scratch::new("capi-bars");
     let program = Program::linked("mpicc", &scratch, "tests/plugin/capi.c");
-    for (ranks, options) in [(1, ""), (2, ""), (4, ""), (7, "")] {
+    for (ranks, options) in [
+        (1, ""),
+        (2, ""),
+        (4, ""),
+        (7, ""),
+        (1, "-tied"),
+        (3, "-tied"),
+        (4, "-tied"),
+    ] {
         let out = program.run(
             ranks,
             &format!("-bar_fetifeti_ksp_rtol 1e-10 -malloc_dump {options}"),
         );
         assert_eq!(out.code, 0, "{ranks} ranks: {}", out.all());
         assert!(out.stdout.trim_end().ends_with("ok"), "{}", out.all());
-        assert!(out.stdout.contains("bodies: 2"), "{}", out.all());
+        let bodies = if options.is_empty() {
+            "bodies: 2"
+        } else {
+            "bodies: 4"
+        };
+        assert!(out.stdout.contains(bodies), "{}", out.all());
     }
 }
 

@@ -27,7 +27,9 @@ fn bars_from_petsc4py() {
     let path = std::env::var("PYTHONPATH").unwrap_or_default();
     let path = format!("{modules}:{path}");
     let library = library();
-    let dir = Path::new(&library).parent().expect("it lies in a directory");
+    let dir = Path::new(&library)
+        .parent()
+        .expect("it lies in a directory");
     let others = std::env::var("LD_LIBRARY_PATH").unwrap_or_default();
     let places = format!("{}:{others}", dir.display());
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/embedding/contact.py");

@@ -1,6 +1,6 @@
 //! The functions of `wrappers/fetifeti.h`, where their manual pages are.
 //!
-//! Each takes what C hands over, checks it, and gives it to an [`Object`]. Errors go to PETSc's error handler as one sentence.
+//! Each takes what C hands over, checks it, and gives it to an `Object`. Errors go to PETSc's error handler as one sentence.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::error::{raise, status};
@@ -39,7 +39,11 @@ fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
 }
 
 /// A call in which all ranks of the object are.
-fn together(ff: Handle, name: &'static CStr, work: impl FnOnce(&mut Object) -> Result<()>) -> c_int {
+fn together(
+    ff: Handle,
+    name: &'static CStr,
+    work: impl FnOnce(&mut Object) -> Result<()>,
+) -> c_int {
     let comm = held(ff).ok().map(|h| h.comm);
     let code = status("fetifeti.h", |at_work| {
         let object = &mut held(ff)?.object;

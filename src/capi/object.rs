@@ -279,7 +279,12 @@ impl Object {
         let solver = self.solver.as_ref().expect("set-up has made it");
         let layout = self.vector()?;
         let mut problem = Ok(());
-        for (name, v) in [("right-hand side", b), ("solution", x)] {
+        let held = self
+            .held_values
+            .as_ref()
+            .map(|v| ("vector of held values", v));
+        let vectors = [("right-hand side", b), ("solution", x)];
+        for (name, v) in vectors.into_iter().chain(held) {
             let (found, wanted) = (v.ownership_range(), layout.ownership_range());
             if found != wanted && problem.is_ok() {
                 problem = Err(Error::input(format!(

@@ -96,9 +96,8 @@ impl Contact {
             if root as usize % session.size() != session.rank() {
                 continue;
             }
-            let term = |&(dof, c): &(u32, f64)| {
-                (body_dof(torn.n_global, owner[&dof] as usize, dof), c)
-            };
+            let term =
+                |&(dof, c): &(u32, f64)| (body_dof(torn.n_global, owner[&dof] as usize, dof), c);
             out.taken.push(Taken {
                 from: row.from,
                 row: InterfaceRow {

@@ -45,8 +45,7 @@ pub use vec::{Array, ArrayMut, Vec};
 pub(crate) mod raw {
     pub(crate) use super::error::{caught, settled as settle};
     pub(crate) use petsc_sys::{
-        ff_comm_self, ff_comm_f2c, ff_error, MPI_Comm, Mat,
-        MatNullSpace, PetscViewer, Vec, IS, KSP,
+        ff_comm_f2c, ff_comm_self, ff_error, MPI_Comm, Mat, MatNullSpace, PetscViewer, Vec, IS, KSP,
     };
 
     /// Prints to a viewer, if it is one for text.

@@ -12,11 +12,15 @@ static const char help[] = "The functions of fetifeti.h on bars.\n";
 
 static PetscErrorCode Bar(FetiFeti ff, PetscInt body, PetscInt s, const char wrong[])
 {
-  PetscInt    ia[LENGTH + 2], ja[3 * (LENGTH + 1)], dofs[LENGTH + 1], i, nnz = 0;
+  static PetscBool tied = PETSC_FALSE;
+  PetscInt    ia[LENGTH + 2], ja[3 * (LENGTH + 1)], dofs[LENGTH + 1], i, nnz = 0, own = body;
   PetscScalar a[3 * (LENGTH + 1)];
   PetscBool   is;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-tied", &tied, NULL)); /* the last subdomain of bar 0 is a body by itself, tied to the others */
+  if (tied && body == 0 && s == SUBDOMAINS - 1) own = 7;
+  if (tied && body == 1 && s == 0) own = 0; /* of a body that is in two pieces */
   for (i = 0; i <= LENGTH; i++) {
     ia[i]   = nnz;
     dofs[i] = body * (N + 1) + s * LENGTH + i;
@@ -41,7 +45,7 @@ static PetscErrorCode Bar(FetiFeti ff, PetscInt body, PetscInt s, const char wro
   PetscCall(PetscStrcmp(wrong, "dof", &is));
   if (is) dofs[1] = 1000;
   PetscCall(PetscStrcmp(wrong, "bodies", &is));
-  PetscCall(FetiFetiAddSubdomain(ff, is && s == 1 ? PETSC_DECIDE : body, LENGTH + 1, ia, ja, a, dofs));
+  PetscCall(FetiFetiAddSubdomain(ff, is && s == 1 ? PETSC_DECIDE : own, LENGTH + 1, ia, ja, a, dofs));
   PetscFunctionReturn(0);
 }
 
@@ -63,7 +67,7 @@ static PetscErrorCode Check(FetiFeti ff, Vec held, Vec b, Vec x, PetscReal d, Pe
   PetscCheck(reason > 0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "reason %d", (int)reason);
   PetscCall(FetiFetiGetKKT(ff, kkt));
   PetscCheck(kkt[0] < 1e-5 && kkt[3] >= 0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "kkt %g %g", (double)kkt[0], (double)kkt[3]);
-  PetscCall(FetiFetiGetMultipliers(ff, mine, &lambda));
+  if (mine) PetscCall(FetiFetiGetMultipliers(ff, 1, &lambda));
   if (mine) worst = PetscAbsReal(lambda - force) * N;
   PetscCall(VecGetOwnershipRange(x, &first, &last));
   PetscCall(VecGetArrayRead(x, &u));
@@ -131,6 +135,18 @@ int main(int argc, char **argv)
   PetscCall(FetiFetiGetSpectrum(ff, &least, &most));
   PetscCall(FetiFetiGetInnerKSP(ff, &inner));
   PetscCall(FetiFetiView(ff, PETSC_VIEWER_STDOUT_WORLD));
+  { /* a second row, at an unknown that bodies may share, by another rank: it does not bind */
+    PetscInt    start[2] = {0, 1}, at = N - LENGTH, two = FETIFETI_INEQUALITY;
+    PetscScalar one  = 1;
+    PetscReal   far  = 0.001;
+
+    if (size > 1) {
+      PetscCall(FetiFetiSetContactRows(ff, rank == 0, start, &at, &one, &far, &two));
+      if (last) PetscCall(FetiFetiSetContactRows(ff, 1, ia, ja, row, &gap, &kind));
+      PetscCall(Check(ff, held, b, x, 2, gap, kind, last));
+      PetscCall(FetiFetiSetContactRows(ff, 0, NULL, NULL, NULL, NULL, NULL));
+    }
+  }
   kind = FETIFETI_EQUALITY; /* the same as an equation: it pulls, too */
   PetscCall(FetiFetiSetContactRows(ff, last, ia, ja, row, &gap, &kind));
   for (k = 0; k < 2; k++) PetscCall(Check(ff, held, b, x, k, gap, kind, last));

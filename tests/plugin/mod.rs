@@ -57,7 +57,9 @@ impl Program {
     pub fn linked(compiler: &str, scratch: &Scratch, path: &str) -> Program {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let (library, headers) = (library(), root.join("wrappers"));
-        let dir = Path::new(&library).parent().expect("it lies in a directory");
+        let dir = Path::new(&library)
+            .parent()
+            .expect("it lies in a directory");
         let more = [
             format!("-I{}", headers.display()),
             library.clone(),
@@ -79,7 +81,9 @@ impl Program {
         let said = String::from_utf8_lossy(&out.stderr);
         assert!(out.status.success(), "{module}: {said}");
         let library = library();
-        let dir = Path::new(&library).parent().expect("it lies in a directory");
+        let dir = Path::new(&library)
+            .parent()
+            .expect("it lies in a directory");
         let rpath = format!("-Wl,-rpath,{}", dir.display());
         Program::compile(
             "mpif90",
