@@ -183,7 +183,7 @@ impl Object {
         let layout = self.vector()?;
         let n_global = layout.global_len();
         let bs = self.block_size;
-        if !n_global.is_multiple_of(bs) {
+        if n_global % bs != 0 {
             return Err(Error::input(format!(
                 "there are {n_global} unknowns in blocks of {bs}, expected a multiple"
             )));
