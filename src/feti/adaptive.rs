@@ -35,7 +35,8 @@ pub fn find(
     let (tau, all) = match adaptive {
         Adaptive::Off => return Vec::new(),
         Adaptive::Auto => (Adaptive::USUAL, false),
-        Adaptive::Below(tau) => (tau, true),
+        // Where coefficients do not vary along a class its eigenvalues are those of the mesh, below ten or so; the deflation knows of them, too.
+        Adaptive::Below(tau) => (tau, tau < Adaptive::USUAL),
     };
     if !all && !classes::anywhere(comm, problem, locals) {
         return Vec::new();

@@ -27,6 +27,8 @@ pub struct Dual {
     /// P_2, where it is in use.
     deflation: RefCell<Option<Deflation>>,
     watch: Cell<Option<f64>>,
+    /// Iterations before the first look at the spectrum.
+    pub watched_from: usize,
     /// What the running iteration adds its correction to.
     start: RefCell<Option<PetscVec>>,
     session: Session,
@@ -56,6 +58,7 @@ impl Dual {
             ],
             deflation: RefCell::new(None),
             watch: Cell::new(None),
+            watched_from: 0,
             start: RefCell::new(None),
             session: session.clone(),
             stale: false,

@@ -17,9 +17,6 @@ use crate::Result;
 /// A residual below this fraction of the displacements it was formed from is rounding: nothing is left to iterate on.
 pub const ROUNDING: f64 = 1e-14;
 
-/// Iterations before the first look at the spectrum.
-const WATCHED_FROM: usize = 5;
-
 /// An iteration is not broken off any more when its residual is less than this many times what it is to end with.
 const NEARLY: f64 = 30.0;
 
@@ -240,7 +237,7 @@ pub fn iterate(
     rtol_of(target / start)?;
     let solved = match dual.watch() {
         Some(limit) if ksp.type_name()? == "cg" => {
-            ksp.solve_watched(residual, &x, WATCHED_FROM, limit, NEARLY * target)
+            ksp.solve_watched(residual, &x, dual.watched_from, limit, NEARLY * target)
         }
         _ => ksp.solve(residual, &x).map(|()| false),
     };

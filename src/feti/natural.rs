@@ -98,8 +98,7 @@ impl NaturalCoarse {
             let auto = wanted == ProjectorKind::Auto;
             if auto && natural.projector == ProjectorKind::Preconditioner {
                 let defect = natural.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
-                // Written so that NaN is no small defect.
-                if !(defect <= SOUND) {
+                if defect.is_nan() || defect > SOUND {
                     natural.projector = ProjectorKind::Diagonal;
                     natural.renew(session, problem, stiffness, preconditioner)?;
                 }

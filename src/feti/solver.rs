@@ -39,6 +39,11 @@ const CITATION: &str = "@techreport{Lee2010,
 }
 ";
 
+/// Iterations before the first look at the spectrum. A search costs about twenty; most steps of a contact loop take no more, and the matrices of the
+/// deflation would have to be renewed in each of them.
+const WATCHED_FROM: usize = 5;
+const WATCHED_FROM_IN_STEPS: usize = 20;
+
 /// The residual may become this many times the first one before the iteration counts as divergent.
 const GROWTH: f64 = 1e12;
 
@@ -154,7 +159,11 @@ impl FetiFeti {
             &format!("{prefix}gtg_"),
         )?;
         let mut facts = facts(&stiffness, &natural, comm);
-        let dual = Dual::new(session, stiffness, preconditioner, natural)?;
+        let mut dual = Dual::new(session, stiffness, preconditioner, natural)?;
+        dual.watched_from = match facts.inequalities {
+            0 => WATCHED_FROM,
+            _ => WATCHED_FROM_IN_STEPS,
+        };
         let dual = Rc::new(RefCell::new(dual));
         let ksp = krylov(session, &dual, &settings)?;
         dual.borrow()
