@@ -333,7 +333,7 @@ impl Court<'_> {
     }
 }
 
-/// What the last digit of every displacement is worth in the energy norm: with jumps of 10⁶ it is a thousand times the unit of rounding.
+/// What the last digit of every displacement is worth in the energy norm.
 fn last_place(direct: &Direct) -> f64 {
     let up_or_down = |(i, u): (usize, &f64)| {
         let up = i.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 63 == 0;
