@@ -187,6 +187,31 @@ fn every_krylov_method_works_in_the_complement() {
     });
 }
 
+/// Only CG shows Ritz values on the way; the others search before they begin, and are not left with a κ of 10⁵.
+#[test]
+fn methods_without_ritz_values_search_at_once() {
+    let scratch = mpi::Scratch::new("deflation-methods");
+    let file = scratch.file("channels.toml", &channels("scalar"));
+    let iterations = |method: &str| {
+        let json = scratch.path(&format!("{method}.json"));
+        let (out, name) = (scratch.path("out"), "-fetifeti_ksp_type");
+        let run = mpi::fetifeti(&[
+            "solve", &file, "--out", &out, "--json", &json, "--quiet", name, method,
+        ]);
+        assert_eq!(run.code, 0, "{}", run.all());
+        let text = std::fs::read_to_string(&json).expect("a report");
+        let report: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let vectors = &report["adaptive"]["deflation"]["vectors"];
+        assert!(vectors.as_u64().is_some_and(|n| n > 0), "{method}: {text}");
+        report["iterations"]["total"].as_u64().expect("a number")
+    };
+    let cg = iterations("cg");
+    for method in ["fcg", "pipecg", "gmres"] {
+        let n = iterations(method);
+        assert!(n <= cg + 5, "{method} takes {n} iterations, cg {cg}");
+    }
+}
+
 #[test]
 fn contact_keeps_its_vectors() {
     // Two columns of bodies, each held on its outer side: none can be pushed away.

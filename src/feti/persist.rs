@@ -4,7 +4,9 @@
 //! With coefficients that jump by 10⁶ and more, P M⁻¹ Pᵀ and P_2 lose so many digits that CG may meet rᵀ z < 0 long before rounding ends the
 //! iteration as a whole. The λ that it has reached is good: a residual evaluated afresh and a new Krylov space lead further.
 
+use super::deflation;
 use super::inner::{iterate, Inner, Loads, Residual};
+use super::settings::Adaptive;
 use super::solver::FetiFeti;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
@@ -27,6 +29,9 @@ impl FetiFeti {
         tolerance: f64,
     ) -> Result<Inner> {
         let session = self.session();
+        if self.blind()? {
+            self.search(None)?;
+        }
         let mut so_far: Option<Inner> = None;
         let mut starts = 0;
         loop {
@@ -63,5 +68,18 @@ impl FetiFeti {
             residual.evaluate(session, &self.dual(), loads, lambda)?;
             self.dual().p_transpose(&residual.r)?;
         }
+    }
+
+    /// Whether large eigenvalues are to be expected, or a bound is asked for, while only CG lets its Ritz values be seen: then the search cannot wait for them.
+    fn blind(&self) -> Result<bool> {
+        let dual = self.dual();
+        let expected = dual
+            .watch()
+            .is_some_and(|limit| match self.settings().adaptive {
+                Adaptive::Below(_) => true,
+                _ => limit <= deflation::EXPECTED,
+            });
+        let searched = dual.deflation().is_some();
+        Ok(expected && !searched && self.ksp().type_name()? != "cg")
     }
 }

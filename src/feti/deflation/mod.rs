@@ -67,6 +67,9 @@ pub struct Cost {
 /// Coefficients of a body whose largest is more than this many times the smallest jump.
 pub const JUMPS: f64 = 1e2;
 
+/// Where coefficients jump, an iteration is broken off at this eigenvalue; elsewhere one has to be far larger.
+pub const EXPECTED: f64 = 1.5 * Adaptive::USUAL;
+
 /// The largest ratio of two scaling weights in one body. Collective.
 pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
     let n = problem.n_bodies;
@@ -93,7 +96,7 @@ pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
 pub fn watch(adaptive: Adaptive, varies: f64) -> Option<f64> {
     match adaptive {
         Adaptive::Off => None,
-        Adaptive::Auto if varies > JUMPS => Some(1.5 * Adaptive::USUAL),
+        Adaptive::Auto if varies > JUMPS => Some(EXPECTED),
         Adaptive::Auto => Some(20.0 * Adaptive::USUAL),
         Adaptive::Below(tau) => Some(1.2 * tau),
     }
