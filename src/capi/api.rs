@@ -1,4 +1,5 @@
-//! The functions of `wrappers/fetifeti.h`, where their manual pages are.
+//! The functions of `wrappers/fetifeti.h` that take what a program says, and solve; their manual pages are there. Those that answer are in
+//! [`results`](super::results).
 //!
 //! Each takes what C hands over, checks it, and gives it to an `Object`. Errors go to PETSc's error handler as one sentence.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
@@ -24,7 +25,7 @@ pub struct Held {
 const MAGIC: u64 = 0x4645_5449_4645_5449;
 
 /// What C calls a `FetiFeti`.
-type Handle = *mut Held;
+pub(super) type Handle = *mut Held;
 
 fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
     let none = || Error::input("the FetiFeti is NULL, expected one from FetiFetiCreate");
@@ -39,7 +40,7 @@ fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
 }
 
 /// A call in which all ranks of the object are.
-fn together(
+pub(super) fn together(
     ff: Handle,
     name: &'static CStr,
     work: impl FnOnce(&mut Object) -> Result<()>,
@@ -54,7 +55,11 @@ fn together(
 }
 
 /// A call that ranks make for themselves.
-fn alone(ff: Handle, name: &'static CStr, work: impl FnOnce(&mut Object) -> Result<()>) -> c_int {
+pub(super) fn alone(
+    ff: Handle,
+    name: &'static CStr,
+    work: impl FnOnce(&mut Object) -> Result<()>,
+) -> c_int {
     let code = status("fetifeti.h", |_| work(&mut held(ff)?.object));
     raise(code, name, None)
 }
@@ -75,7 +80,7 @@ fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [T]> {
     Ok(unsafe { std::slice::from_raw_parts(data, n) })
 }
 
-fn put<T>(to: *mut T, value: T) {
+pub(super) fn put<T>(to: *mut T, value: T) {
     if !to.is_null() {
         // SAFETY: NULL, or a place for the value.
         unsafe { to.write(value) }
@@ -239,23 +244,23 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
         let ia = array(ia, n.saturating_add(1), "ia")?;
         let nnz = starts(ia)? as c_int;
         let (ja, a) = (array(ja, nnz, "ja")?, array(a, nnz, "a")?);
-        let row_of = |e: usize| ia.partition_point(|&s| s as usize <= e) - 1;
-        if let Some(e) = ja.iter().position(|j| !(0..n).contains(j)) {
-            return Err(Error::input(format!(
-                "row {} of the subdomain has an entry in column {}, expected columns from 0 to below {n}",
-                row_of(e),
-                ja[e]
-            )));
+        let mut triplets = Vec::with_capacity(nnz as usize);
+        for (row, range) in ia.windows(2).enumerate() {
+            let range = range[0] as usize..range[1] as usize;
+            for (&j, &v) in ja[range.clone()].iter().zip(&a[range]) {
+                if !(0..n).contains(&j) {
+                    return Err(Error::input(format!(
+                        "row {row} of the subdomain has an entry in column {j}, expected columns from 0 to below {n}"
+                    )));
+                }
+                if !v.is_finite() {
+                    return Err(Error::input(format!(
+                        "row {row} of the subdomain has the entry {v}, expected a finite number"
+                    )));
+                }
+                triplets.push((row as u32, j as u32, v));
+            }
         }
-        if let Some(e) = a.iter().position(|v| !v.is_finite()) {
-            return Err(Error::input(format!(
-                "row {} of the subdomain has the entry {}, expected a finite number",
-                row_of(e),
-                a[e]
-            )));
-        }
-        let entry = |e: usize| (row_of(e) as u32, ja[e] as u32, a[e]);
-        let triplets: Vec<_> = (0..nnz as usize).map(entry).collect();
         let k = Csr::from_triplets(n as usize, &triplets);
         if n > 0 {
             o.subdomains.push(Given { k, dofs, body });
@@ -461,105 +466,5 @@ pub unsafe extern "C" fn FetiFetiSolve(ff: Handle, b: raw::Vec, x: raw::Vec) -> 
         let b = PetscVec::share(not_null(b, "right-hand side")?, &o.session)?;
         let x = PetscVec::share(not_null(x, "solution")?, &o.session)?;
         o.solve(&b, &x)
-    })
-}
-
-#[no_mangle]
-#[allow(missing_docs)]
-pub unsafe extern "C" fn FetiFetiGetIterations(ff: Handle, its: *mut c_int) -> c_int {
-    alone(ff, c"FetiFetiGetIterations", |o| {
-        put(its, o.outcome()?.iterations as c_int);
-        Ok(())
-    })
-}
-
-#[no_mangle]
-#[allow(missing_docs)]
-pub unsafe extern "C" fn FetiFetiGetConvergedReason(ff: Handle, reason: *mut c_int) -> c_int {
-    alone(ff, c"FetiFetiGetConvergedReason", |o| {
-        let outcome = o.outcome()?;
-        put(reason, code(&outcome.reason, outcome.converged));
-        Ok(())
-    })
-}
-
-/// KSPConvergedReason; reasons of the contact loop count as the nearest of them.
-fn code(reason: &str, converged: bool) -> c_int {
-    match (reason, converged) {
-        ("CONVERGED_ATOL", _) => 3,
-        ("CONVERGED_ITS", _) => 4,
-        (_, true) => 2,
-        ("DIVERGED_ITS" | "DIVERGED_MAX_IT", _) => -3,
-        ("DIVERGED_DTOL", _) => -4,
-        ("DIVERGED_NANORINF", _) => -9,
-        ("DIVERGED_INDEFINITE_MAT", _) => -10,
-        _ => -5,
-    }
-}
-
-#[no_mangle]
-#[allow(missing_docs)]
-pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: Handle, steps: *mut c_int) -> c_int {
-    alone(ff, c"FetiFetiGetContactSteps", |o| {
-        put(steps, o.outcome()?.steps as c_int);
-        Ok(())
-    })
-}
-
-#[no_mangle]
-#[allow(missing_docs)]
-pub unsafe extern "C" fn FetiFetiGetSpectrum(ff: Handle, min: *mut f64, max: *mut f64) -> c_int {
-    alone(ff, c"FetiFetiGetSpectrum", |o| {
-        let (largest, smallest) = o.outcome()?.spectrum.unwrap_or_default();
-        put(min, smallest);
-        put(max, largest);
-        Ok(())
-    })
-}
-
-#[no_mangle]
-#[allow(missing_docs)]
-pub unsafe extern "C" fn FetiFetiGetKKT(ff: Handle, kkt: *mut f64) -> c_int {
-    alone(ff, c"FetiFetiGetKKT", |o| {
-        let k = o.outcome()?.kkt;
-        put(
-            kkt.cast::<[f64; 4]>(),
-            [
-                k.stationarity,
-                k.feasibility,
-                k.complementarity,
-                k.min_multiplier,
-            ],
-        );
-        Ok(())
-    })
-}
-
-#[no_mangle]
-#[allow(missing_docs)]
-pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *mut f64) -> c_int {
-    alone(ff, c"FetiFetiGetMultipliers", |o| {
-        o.outcome()?;
-        let found = o.solver()?.multipliers().unwrap_or_default();
-        if n as usize != found.len() || (lambda.is_null() && n > 0) {
-            return Err(Error::input(format!(
-                "there is room for {n} multipliers, expected {}: as many as this rank gave rows",
-                found.len()
-            )));
-        }
-        for (i, value) in found.into_iter().enumerate() {
-            // SAFETY: room for n numbers.
-            put(unsafe { lambda.add(i) }, value);
-        }
-        Ok(())
-    })
-}
-
-#[no_mangle]
-#[allow(missing_docs)]
-pub unsafe extern "C" fn FetiFetiGetInnerKSP(ff: Handle, ksp: *mut raw::KSP) -> c_int {
-    alone(ff, c"FetiFetiGetInnerKSP", |o| {
-        put(ksp, o.solver()?.solver().ksp().raw());
-        Ok(())
     })
 }

@@ -1,4 +1,4 @@
-//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI, and the functions of `wrappers/fetifeti.h` ([`api`]).
+//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI, and the functions of `wrappers/fetifeti.h` ([`api`], [`results`]).
 //!
 //! Nothing unwinds into C, and an error is one sentence: [`plugin`] keeps it for the C side, which hands it to the host's error handler.
 
@@ -6,6 +6,7 @@ pub mod api;
 mod error;
 mod object;
 pub mod plugin;
+pub mod results;
 
 use crate::petsc::raw;
 use std::ffi::c_int;

@@ -1,6 +1,6 @@
 //! The object behind `FetiFeti` of fetifeti.h: what the host has said so far, and the solver made of it.
 
-use crate::embed::torn::{piece, spanned};
+use crate::embed::torn::{piece, spanned, unassembled};
 use crate::embed::{Embedded, GivenRow, Grouping, Outcome, Torn};
 use crate::feti::exchange::{gather_all, max_all};
 use crate::feti::halo::Halo;
@@ -93,12 +93,7 @@ impl Object {
     /// Collective.
     pub fn add_matis(&mut self, a: &Mat, numbers: Option<Vec<i32>>, body: i32) -> Result<()> {
         let own = numbers.is_none();
-        let kind = a.type_name()?;
-        if kind != "is" {
-            return Err(Error::input(format!(
-                "the matrix is of type {kind}, expected is (MATIS): an assembled matrix cannot be torn into subdomains without its elements"
-            )));
-        }
+        unassembled(a)?;
         let (k, dofs) = self.session.agree(a.local_part())?;
         let dofs = match numbers {
             None => dofs,

@@ -55,13 +55,7 @@ impl Torn {
     /// # Errors
     /// A matrix of another type, or one that is not square.
     pub fn from_matis(session: &Session, a: &Mat, body: Option<u64>) -> Result<Torn> {
-        let kind = a.type_name()?;
-        if kind != "is" {
-            return Err(Error::input(format!(
-                "the operator is of type {kind}, expected is (MATIS): an assembled matrix cannot be torn into subdomains without its elements; \
-                 assemble into a MATIS instead (-dm_mat_type is, or MatSetType(A, MATIS) before assembly)"
-            )));
-        }
+        unassembled(a)?;
         let (rows, cols) = a.size()?;
         if rows != cols {
             return Err(Error::input(format!(
@@ -102,6 +96,18 @@ impl Torn {
         let halo = Halo::new(session, &self.layout, &ghosts)?;
         Ok((ghosts, halo))
     }
+}
+
+/// An error where the matrix is no MATIS.
+pub fn unassembled(a: &Mat) -> Result<()> {
+    let kind = a.type_name()?;
+    if kind == "is" {
+        return Ok(());
+    }
+    Err(Error::input(format!(
+        "the operator is of type {kind}, expected is (MATIS): an assembled matrix cannot be torn into subdomains without its elements; \
+         assemble into a MATIS instead (-dm_mat_type is, or MatSetType(A, MATIS) before assembly)"
+    )))
 }
 
 /// A local matrix by increasing global dofs: rows that stand for the same dof are added up (a periodic mesh on one rank has such),

@@ -54,25 +54,19 @@ impl FetiFeti {
             Adaptive::Below(tau) => tau,
             _ => Adaptive::USUAL,
         };
-        let most = self.settings().adaptive_max;
         let bounded = matches!(self.settings().adaptive, Adaptive::Below(_));
         // Modes that bodies share come second, and only where a bound is asked for.
-        let (deflation, more) = match dual.take_deflation() {
-            Some(given_up) if given_up.cost.given_up => (given_up, false),
-            Some(mut deflation) => {
-                let bound = SHARED * tau;
-                let found = deflation.polish(self.session(), dual, bound, most)?;
-                (deflation, found > 0)
-            }
-            None => {
-                let mut deflation =
-                    Deflation::new(self.session(), self.problem(), dual, tau, most)?;
-                deflation.cost.before = before;
-                (deflation, true)
-            }
+        let searched = dual.deflation().is_some();
+        let more = if searched {
+            self.polish(SHARED * tau)?
+        } else {
+            let most = self.settings().adaptive_max;
+            let mut deflation = Deflation::new(self.session(), self.problem(), dual, tau, most)?;
+            deflation.cost.before = before;
+            dual.deflate(Some(deflation));
+            true
         };
         dual.set_watch((bounded && more).then_some(KEPT * tau));
-        dual.deflate(Some(deflation));
         Ok(())
     }
 

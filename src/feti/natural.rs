@@ -58,13 +58,13 @@ pub struct KernelLoad {
 }
 
 impl NaturalCoarse {
-    /// Assembles G and Gᵀ Q G for the active rows. Collective.
+    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body. Collective.
     pub fn new(
         session: &Session,
         problem: &Substructures,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
-        wanted: ProjectorKind,
+        (wanted, varies): (ProjectorKind, f64),
         prefix: &str,
     ) -> Result<NaturalCoarse> {
         let comm = session.comm();
@@ -93,7 +93,7 @@ impl NaturalCoarse {
             prefix: prefix.into(),
         };
         if r > 0 {
-            natural.projector = choose(comm, problem, stiffness, preconditioner, wanted);
+            natural.projector = choose(comm, problem, stiffness, preconditioner, wanted, varies);
             natural.renew(session, problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
             if auto && natural.projector == ProjectorKind::Preconditioner {
@@ -421,6 +421,7 @@ fn choose(
     stiffness: &Stiffness,
     preconditioner: &Preconditioner,
     wanted: ProjectorKind,
+    varies: f64,
 ) -> ProjectorKind {
     if wanted != ProjectorKind::Auto {
         return match (wanted, preconditioner.kind()) {
@@ -446,7 +447,7 @@ fn choose(
         (l.min(m), h.max(m))
     });
     // A factor of two comes from corners and mesh sizes alone.
-    let differ = high > 3.0 * low || deflation::varies(comm, problem) > deflation::JUMPS;
+    let differ = high > 3.0 * low || varies > deflation::JUMPS;
     match (differ, preconditioner.kind()) {
         (false, _) => ProjectorKind::Identity,
         (true, PcType::None) => ProjectorKind::Diagonal,

@@ -155,7 +155,7 @@ impl FetiFeti {
             &problem,
             &stiffness,
             &preconditioner,
-            settings.projector,
+            (settings.projector, varies),
             &format!("{prefix}gtg_"),
         )?;
         let mut facts = facts(&stiffness, &natural, comm);

@@ -1,0 +1,107 @@
+//! The functions of `wrappers/fetifeti.h` that tell what a solve has found.
+#![allow(clippy::missing_safety_doc)] // the header says what each function needs
+
+use super::api::{alone, put, Handle};
+use crate::petsc::raw;
+use crate::Error;
+use std::ffi::c_int;
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiGetIterations(ff: Handle, its: *mut c_int) -> c_int {
+    alone(ff, c"FetiFetiGetIterations", |o| {
+        put(its, o.outcome()?.iterations as c_int);
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiGetConvergedReason(ff: Handle, reason: *mut c_int) -> c_int {
+    alone(ff, c"FetiFetiGetConvergedReason", |o| {
+        let outcome = o.outcome()?;
+        put(reason, code(&outcome.reason, outcome.converged));
+        Ok(())
+    })
+}
+
+/// KSPConvergedReason; reasons of the contact loop count as the nearest of them.
+fn code(reason: &str, converged: bool) -> c_int {
+    match (reason, converged) {
+        ("CONVERGED_ATOL", _) => 3,
+        ("CONVERGED_ITS", _) => 4,
+        (_, true) => 2,
+        ("DIVERGED_ITS" | "DIVERGED_MAX_IT", _) => -3,
+        ("DIVERGED_DTOL", _) => -4,
+        ("DIVERGED_NANORINF", _) => -9,
+        ("DIVERGED_INDEFINITE_MAT", _) => -10,
+        _ => -5,
+    }
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: Handle, steps: *mut c_int) -> c_int {
+    alone(ff, c"FetiFetiGetContactSteps", |o| {
+        put(steps, o.outcome()?.steps as c_int);
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiGetSpectrum(ff: Handle, min: *mut f64, max: *mut f64) -> c_int {
+    alone(ff, c"FetiFetiGetSpectrum", |o| {
+        let (largest, smallest) = o.outcome()?.spectrum.unwrap_or_default();
+        put(min, smallest);
+        put(max, largest);
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiGetKKT(ff: Handle, kkt: *mut f64) -> c_int {
+    alone(ff, c"FetiFetiGetKKT", |o| {
+        let k = o.outcome()?.kkt;
+        put(
+            kkt.cast::<[f64; 4]>(),
+            [
+                k.stationarity,
+                k.feasibility,
+                k.complementarity,
+                k.min_multiplier,
+            ],
+        );
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *mut f64) -> c_int {
+    alone(ff, c"FetiFetiGetMultipliers", |o| {
+        o.outcome()?;
+        let found = o.solver()?.multipliers().unwrap_or_default();
+        if n as usize != found.len() || (lambda.is_null() && n > 0) {
+            return Err(Error::input(format!(
+                "there is room for {n} multipliers, expected {}: as many as this rank gave rows",
+                found.len()
+            )));
+        }
+        for (i, value) in found.into_iter().enumerate() {
+            // SAFETY: room for n numbers.
+            put(unsafe { lambda.add(i) }, value);
+        }
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiGetInnerKSP(ff: Handle, ksp: *mut raw::KSP) -> c_int {
+    alone(ff, c"FetiFetiGetInnerKSP", |o| {
+        put(ksp, o.solver()?.solver().ksp().raw());
+        Ok(())
+    })
+}
