@@ -1,6 +1,7 @@
 //! The object behind `FetiFeti` of fetifeti.h: what the host has said so far, and the solver made of it.
 
-use crate::embed::torn::{piece, spanned, unassembled};
+use crate::embed::pieces::piece;
+use crate::embed::torn::{spanned, unassembled};
 use crate::embed::{Embedded, GivenRow, Grouping, Outcome, Torn};
 use crate::feti::exchange::{gather_all, max_all};
 use crate::feti::halo::Halo;
@@ -201,6 +202,7 @@ impl Object {
             held: HashSet::new(),
             primal: HashSet::new(),
             rows: self.rows.clone(),
+            named: None,
         };
         let (ghosts, halo) = torn.halo(session)?;
         torn.held = self.marked(&torn.layout, &self.held, &ghosts, &halo)?;
