@@ -19,7 +19,11 @@ static PetscErrorCode Mesh(DM *dm)
   DMLabel        label;
 
   PetscFunctionBeginUser;
+#if PETSC_VERSION_GE(3, 22, 0)
+  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, NULL, NULL, PETSC_TRUE, 0, PETSC_TRUE, dm));
+#else
   PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, NULL, NULL, PETSC_TRUE, dm));
+#endif
   PetscCall(DMCreateLabel(*dm, "material"));
   PetscCall(DMGetLabel(*dm, "material", &label));
   PetscCall(DMPlexGetHeightStratum(*dm, 0, &first, &last));
