@@ -35,6 +35,11 @@ impl Csr {
         col.binary_search(&(j as u32)).map_or(0.0, |k| val[k])
     }
 
+    /// The diagonal, zero where no entry is stored.
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.n()).map(|i| self.get(i, i)).collect()
+    }
+
     /// y ← A x.
     pub fn mul(&self, x: &[f64], y: &mut [f64]) {
         for (i, yi) in y.iter_mut().enumerate().take(self.n()) {

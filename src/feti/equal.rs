@@ -8,17 +8,31 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
 use super::jump::Jump;
+use super::team::Team;
 use crate::substructures::Substructures;
 
 /// For every local subdomain, the first one that equals it.
-pub fn representatives(problem: &Substructures, jump: &Jump) -> Vec<usize> {
-    let mut found: HashMap<u64, Vec<usize>> = HashMap::new();
+pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<usize> {
     let n = problem.local.len();
+    let mut found: HashMap<u64, Vec<usize>> = HashMap::new();
+    let buckets: Vec<u64> = (0..n).map(|j| hash(problem, jump, j)).collect();
+    for (j, &bucket) in buckets.iter().enumerate() {
+        found.entry(bucket).or_insert_with(|| vec![j]);
+    }
+    // Reading the matrices is what it costs: all at once, each beside the first of its bucket.
+    let equal: Vec<bool> = team.map(n, |j| {
+        let first = found[&buckets[j]][0];
+        first == j || same(problem, jump, first, j)
+    });
     let mut out = Vec::with_capacity(n);
-    for j in 0..n {
-        let candidates = found.entry(hash(problem, jump, j)).or_default();
-        let equal = |&i: &usize| same(problem, jump, i, j);
-        match candidates.iter().copied().find(equal) {
+    for (j, bucket) in buckets.iter().enumerate() {
+        let candidates = found.entry(*bucket).or_default();
+        if equal[j] {
+            out.push(candidates[0]);
+            continue;
+        }
+        let others = candidates[1..].iter().copied();
+        match others.into_iter().find(|&i| same(problem, jump, i, j)) {
             Some(i) => out.push(i),
             None => {
                 candidates.push(j);
@@ -29,14 +43,17 @@ pub fn representatives(problem: &Substructures, jump: &Jump) -> Vec<usize> {
     out
 }
 
-/// Hash of what [`same`] compares. Values alone tell matrices apart well enough; patterns are compared, not hashed.
+/// Entries of a matrix that its hash looks at.
+const SAMPLES: usize = 64;
+
+/// Hash of some of what [`same`] compares: enough to tell most matrices apart.
 fn hash(problem: &Substructures, jump: &Jump, j: usize) -> u64 {
     let k = &problem.local[j].k;
     let mut state = DefaultHasher::new();
     (k.n(), k.nnz(), &jump.delta[j], &jump.primal[j]).hash(&mut state);
-    let mix =
-        |h: u64, v: &f64| (h.rotate_left(5) ^ v.to_bits()).wrapping_mul(0x517C_C1B7_2722_0A95);
-    k.val.iter().fold(0, mix).hash(&mut state);
+    let step = (k.nnz() / SAMPLES).max(1);
+    let samples = k.val.iter().step_by(step);
+    samples.for_each(|v| v.to_bits().hash(&mut state));
     state.finish()
 }
 
@@ -66,7 +83,7 @@ mod tests {
             let sharing = Sharing::new(session.comm(), &problem, &weights, Primal::default())
                 .expect("shared");
             let jump = Jump::new(session.comm(), &problem, &sharing);
-            let first = representatives(&problem, &jump);
+            let first = representatives(&problem, &jump, &Team::new(2).expect("threads"));
             let mut kinds = first.clone();
             kinds.sort_unstable();
             kinds.dedup();

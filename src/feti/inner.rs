@@ -7,6 +7,7 @@
 
 use super::dual::Dual;
 use super::exchange::{max_all, sum_all};
+use super::local::lanes::LANES;
 use super::natural::KernelLoad;
 use super::spectrum::Spectrum;
 use super::stiffness::Work;
@@ -40,10 +41,11 @@ impl Loads {
     /// Condenses given loads, one vector for each local subdomain. Collective.
     pub fn of(session: &Session, dual: &Dual, f: &[&[f64]]) -> Loads {
         let stiffness = &dual.stiffness;
-        let locals = &stiffness.locals;
-        let condensed = stiffness
-            .team
-            .map(locals.len(), |j| locals[j].condense(f[j]));
+        let batches = stiffness.batches(LANES);
+        let condensed = stiffness.by_batch(&batches, |local, members| {
+            let loads: Vec<&[f64]> = members.iter().map(|&j| f[j]).collect();
+            local.condense_many(&loads)
+        });
         let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
         let kernel = dual.natural.kernel_load(session.comm(), f, &g);
         Loads {

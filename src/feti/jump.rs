@@ -267,9 +267,10 @@ impl Jump {
                     dual.push(e.local);
                 }
             }
-            let shared = (0..sub.dofs.len() as u32)
-                .filter(|&i| Sharing::is_primal(sharing.shared(sub.dofs[i as usize])));
-            let mut primal: Vec<u32> = shared.collect();
+            let shared = sharing.shared_dofs[j].iter().copied();
+            let mut primal: Vec<u32> = shared
+                .filter(|&i| Sharing::is_primal(sharing.shared(sub.dofs[i as usize])))
+                .collect();
             corners.dedup();
             dual.dedup();
             dual.retain(|i| primal.binary_search(i).is_err());
@@ -303,10 +304,10 @@ fn local_groups<'a>(
     let mut groups = Vec::new();
     let mut start = vec![0];
     let mut rows = 0;
-    for sub in problem.local.iter() {
+    for (sub, shared) in problem.local.iter().zip(&sharing.shared_dofs) {
         debug_assert_eq!(sharing.rank_of[sub.index], rank);
-        for &dof in &sub.dofs {
-            let copies = sharing.shared(dof);
+        for &i in shared {
+            let copies = sharing.shared(sub.dofs[i as usize]);
             let lowest = copies
                 .first()
                 .is_some_and(|c| c.subdomain as usize == sub.index);

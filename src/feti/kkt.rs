@@ -2,8 +2,10 @@
 
 use super::dual::Dual;
 use super::exchange::{max_all, min_all, sum_all};
+use super::jump::JumpColumns;
+use super::local::problem::LocalProblem;
 use crate::petsc::{Session, Vec as PetscVec};
-use crate::substructures::Substructures;
+use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
 /// How well the optimality conditions hold, relative to the sizes of their terms.
@@ -45,54 +47,26 @@ pub fn certify(
     let mut ghost = vec![0.0; jump.ghosts.len()];
     stiffness.dual_halo.fetch(lambda, &mut ghost)?;
 
-    // [Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d, energy] with d = diag(K); residuals and d of primal dofs, to be summed over copies
+    let (locals, places) = (&stiffness.locals, &stiffness.space.of_subdomain);
+    let examined = stiffness.team.map(locals.len(), |j| {
+        let (sub, columns) = (&problem.local[j], &jump.columns[j]);
+        examine((sub, &u[j]), &locals[j], (columns, &ghost), &places[j])
+    });
     let mut sums = [0.0; 4];
     let mut primal = vec![0.0; stiffness.space.ghosts.len()];
     let mut primal_d = primal.clone();
     let mut work = stiffness.work();
-    for (j, sub) in problem.local.iter().enumerate() {
-        let local = &stiffness.locals[j];
-        let mut r = vec![0.0; sub.k.n()];
-        sub.k.mul(&u[j], &mut r);
-        let products = u[j].iter().zip(&r).zip(&sub.f);
-        sums[3] += products.map(|((u, ku), f)| u * (0.5 * ku - f)).sum::<f64>();
-        let d: Vec<f64> = (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect();
-        sums[1] += sub.f.iter().zip(&d).map(|(f, d)| f * f / d).sum::<f64>();
-        r.iter_mut().zip(&sub.f).for_each(|(r, f)| *r -= f);
-        jump.columns[j].b_transpose_all(&ghost, &mut work[j].v);
-        for (&i, v) in local.interface.iter().zip(&work[j].v) {
-            r[i as usize] += v;
-            sums[2] += v * v / d[i as usize];
+    for (part, work) in examined.into_iter().zip(&mut work) {
+        sums.iter_mut().zip(part.sums).for_each(|(s, p)| *s += p);
+        for (at, r, d) in part.primal {
+            primal[at as usize] += r;
+            primal_d[at as usize] += d;
         }
-        let places = &stiffness.space.of_subdomain[j];
-        let fixing = places[local.n_pi() - local.fixing.len()..].iter();
         // Fixing dofs take nothing over: no residual, any divisor.
-        fixing.for_each(|&at| primal_d[at as usize] = 1.0);
-        // What a copy takes over from another one: a force at a vertex, one along a functional on an edge or face.
-        let mut on_gamma: Vec<f64> = local.interface.iter().map(|&i| r[i as usize]).collect();
-        let stiff: Vec<f64> = local.interface.iter().map(|&i| d[i as usize]).collect();
-        for (i, &at) in (local.n_delta..local.n_gamma()).zip(places) {
-            primal[at as usize] += std::mem::take(&mut on_gamma[i]);
-            primal_d[at as usize] += stiff[i];
-        }
-        if !local.basis.is_empty() {
-            local.basis.to_coordinates(&mut on_gamma);
-            let vectors = local.basis.vectors(stiff.len());
-            let pivots = local.basis.pivots().into_iter().zip(&vectors);
-            for ((p, q), &at) in pivots.zip(&places[local.n_vertices()..]) {
-                primal[at as usize] += std::mem::take(&mut on_gamma[p]);
-                let weights = q.iter().zip(&stiff);
-                primal_d[at as usize] += weights.map(|(q, d)| q * q * d).sum::<f64>();
-            }
-            local.basis.to_nodes(&mut on_gamma);
-        }
-        for (&i, v) in local.interface.iter().zip(&on_gamma) {
-            r[i as usize] = *v;
-        }
-        sums[0] += r.iter().zip(&d).map(|(r, d)| r * r / d).sum::<f64>();
-        for (y, &i) in work[j].y.iter_mut().zip(&local.interface) {
-            *y = u[j][i as usize];
-        }
+        part.fixing
+            .iter()
+            .for_each(|&at| primal_d[at as usize] = 1.0);
+        work.y = part.on_interface;
     }
     let rows = dual.multipliers()?;
     stiffness.jump_of_all(&work, &rows)?;
@@ -131,6 +105,68 @@ pub fn certify(
         energy: sums[3],
         gaps,
     })
+}
+
+/// What one subdomain adds to the certificate.
+struct Examined {
+    /// Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d and the energy, with d = diag(K).
+    sums: [f64; 4],
+    /// Residuals and d of primal dofs, to be summed over copies: (ghost, r, d).
+    primal: Vec<(u32, f64, f64)>,
+    /// Ghosts of fixing dofs.
+    fixing: Vec<u32>,
+    /// u on Γ.
+    on_interface: Vec<f64>,
+}
+
+fn examine(
+    (sub, u): (&Subdomain, &[f64]),
+    local: &LocalProblem,
+    (columns, ghost): (&JumpColumns, &[f64]),
+    places: &[u32],
+) -> Examined {
+    let mut sums = [0.0; 4];
+    let mut primal = Vec::new();
+    let mut r = vec![0.0; sub.k.n()];
+    sub.k.mul(u, &mut r);
+    let products = u.iter().zip(&r).zip(&sub.f);
+    sums[3] = products.map(|((u, ku), f)| u * (0.5 * ku - f)).sum();
+    let d = sub.k.diagonal();
+    sums[1] = sub.f.iter().zip(&d).map(|(f, d)| f * f / d).sum();
+    r.iter_mut().zip(&sub.f).for_each(|(r, f)| *r -= f);
+    let mut pull = vec![0.0; local.n_gamma()];
+    columns.b_transpose_all(ghost, &mut pull);
+    for (&i, v) in local.interface.iter().zip(&pull) {
+        r[i as usize] += v;
+        sums[2] += v * v / d[i as usize];
+    }
+    let on = |x: &[f64]| -> Vec<f64> { local.interface.iter().map(|&i| x[i as usize]).collect() };
+    // What a copy takes over from another one: a force at a vertex, one along a functional on an edge or face.
+    let (mut on_gamma, stiff) = (on(&r), on(&d));
+    for (i, &at) in (local.n_delta..local.n_gamma()).zip(places) {
+        primal.push((at, std::mem::take(&mut on_gamma[i]), stiff[i]));
+    }
+    if !local.basis.is_empty() {
+        local.basis.to_coordinates(&mut on_gamma);
+        let vectors = local.basis.vectors(stiff.len());
+        let pivots = local.basis.pivots().into_iter().zip(&vectors);
+        for ((p, q), &at) in pivots.zip(&places[local.n_vertices()..]) {
+            let weights = q.iter().zip(&stiff);
+            let d = weights.map(|(q, d)| q * q * d).sum::<f64>();
+            primal.push((at, std::mem::take(&mut on_gamma[p]), d));
+        }
+        local.basis.to_nodes(&mut on_gamma);
+    }
+    for (&i, v) in local.interface.iter().zip(&on_gamma) {
+        r[i as usize] = *v;
+    }
+    sums[0] = r.iter().zip(&d).map(|(r, d)| r * r / d).sum();
+    Examined {
+        sums,
+        primal,
+        fixing: places[local.n_pi() - local.fixing.len()..].to_vec(),
+        on_interface: on(u),
+    }
 }
 
 /// A divisor: one in place of zero, for problems without load.

@@ -3,7 +3,8 @@
 pub mod adaptive;
 pub mod blocks;
 pub mod bounded;
-pub mod check;
+pub mod candidates;
+mod check;
 pub mod classes;
 pub mod coarse;
 pub mod correction;

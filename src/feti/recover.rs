@@ -10,6 +10,7 @@ use super::correction::TIGHT;
 use super::dual::Dual;
 use super::inner::{iterate, target, to_the_end, Loads, Residual, ROUNDING};
 use super::kkt::{certify, Kkt};
+use super::local::lanes::LANES;
 use super::solver::FetiFeti;
 use super::spectrum::Spectrum;
 use crate::contact::Step;
@@ -249,11 +250,11 @@ pub(super) fn back(
             *y -= v;
         }
     });
-    let mut parts: Vec<Vec<f64>> = loads.interiors.clone();
-    let (work, locals) = (&*work, &stiffness.locals);
-    stiffness.team.for_each(&mut parts, |j, part| {
-        let interior = std::mem::take(part);
-        *part = locals[j].recover(interior, &work[j].y);
-    });
-    Ok(parts)
+    let work = &*work;
+    let batches = stiffness.batches(LANES);
+    Ok(stiffness.by_batch(&batches, |local, members| {
+        let part = |&j: &usize| (&loads.interiors[j][..], &work[j].y[..]);
+        let parts: Vec<_> = members.iter().map(part).collect();
+        local.recover_many(&parts)
+    }))
 }

@@ -4,15 +4,14 @@
 //! number; that rank sees all copies of the dof and tells those who hold one. Memory and messages
 //! are proportional to the dofs that a rank holds, never to the whole problem.
 
-use std::collections::HashMap;
-
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::candidates::{candidates, DofMap};
 use super::entities::{self, Average};
 use super::exchange::{exchange, exchange_words, gather_all, Record};
 use super::settings::Primal;
-use crate::substructures::Substructures;
+use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
 /// One subdomain's instance of a body dof.
@@ -33,7 +32,9 @@ pub struct Copy {
 pub struct Sharing {
     /// Copies, by increasing subdomain, of every dof that a subdomain of this rank shares with another one, and of every
     /// dof in a row that this rank provides.
-    pub copies: HashMap<u64, Vec<Copy>>,
+    pub copies: DofMap<Vec<Copy>>,
+    /// The local dofs of each local subdomain that it shares with others, increasing.
+    pub shared_dofs: Vec<Vec<u32>>,
     /// Rank that holds each subdomain; length n_subdomains.
     pub rank_of: Vec<u32>,
     /// Body of each subdomain; length n_subdomains.
@@ -81,12 +82,14 @@ impl Sharing {
         let (rank_of, body_of) = locate(comm, problem)?;
 
         let mut reports: Vec<Vec<(u64, Copy)>> = vec![Vec::new(); size];
-        for (sub, weight) in problem.local.iter().zip(weights) {
+        let possible = candidates(comm, problem, &home);
+        for ((sub, weight), possible) in problem.local.iter().zip(weights).zip(&possible) {
             let mut primal = vec![false; sub.dofs.len()];
             if constraints.vertices {
                 sub.primal.iter().for_each(|&i| primal[i as usize] = true);
             }
-            for (i, &dof) in sub.dofs.iter().enumerate() {
+            for &i in possible {
+                let (dof, i) = (sub.dofs[i as usize], i as usize);
                 let copy = Copy {
                     subdomain: sub.index as u32,
                     local: i as u32,
@@ -113,7 +116,8 @@ impl Sharing {
             }
         }
         let mut sharing = Sharing {
-            copies: HashMap::new(),
+            copies: DofMap::default(),
+            shared_dofs: Vec::new(),
             rank_of,
             body_of,
             averages: Vec::new(),
@@ -146,6 +150,12 @@ impl Sharing {
             })
             .collect();
         sharing.absorb(exchange(comm, &answers).concat());
+        let shared = |(sub, possible): (&Subdomain, Vec<u32>)| {
+            let kept = possible.into_iter();
+            kept.filter(|&i| !sharing.shared(sub.dofs[i as usize]).is_empty())
+                .collect()
+        };
+        sharing.shared_dofs = problem.local.iter().zip(possible).map(shared).collect();
         let averages = entities::averages(comm, problem, &sharing, constraints);
         sharing.check(problem)?;
         sharing.averages = averages?;

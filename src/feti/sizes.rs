@@ -59,7 +59,7 @@ impl Sizes {
         let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
         let sharing = Sharing::new(comm, problem, &weights, constraints)?;
         let jump = Jump::new(comm, problem, &sharing);
-        let first = equal::representatives(problem, &jump);
+        let first = equal::representatives(problem, &jump, team);
         let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
         let entries = team.map(kinds.len(), |k| {
             let j = kinds[k];

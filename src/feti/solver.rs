@@ -341,7 +341,7 @@ fn threads(session: &Session, settings: &Settings) -> usize {
 
 /// Factors one of each kind of subdomain.
 fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<LocalProblem>>> {
-    let first = equal::representatives(problem, jump);
+    let first = equal::representatives(problem, jump, team);
     let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
     let factored = team.map(kinds.len(), |k| {
         let sub = &problem.local[kinds[k]];

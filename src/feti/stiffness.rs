@@ -5,6 +5,7 @@
 //! ```
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::coarse::PrimalProblem;
@@ -290,6 +291,33 @@ impl Stiffness {
             columns.add_contact(&w.y, &mut sum);
         }
         self.dual_halo.sum(&sum, out)
+    }
+
+    /// The subdomains of this rank in groups of at most `most` that share their operators.
+    pub fn batches(&self, most: usize) -> Vec<Vec<usize>> {
+        let mut kinds: BTreeMap<*const LocalProblem, Vec<usize>> = BTreeMap::new();
+        for (j, local) in self.locals.iter().enumerate() {
+            kinds.entry(Arc::as_ptr(local)).or_default().push(j);
+        }
+        let mut kinds: Vec<Vec<usize>> = kinds.into_values().collect();
+        // Addresses are not the same from run to run.
+        kinds.sort_unstable();
+        let chunks = kinds.iter().flat_map(|kind| kind.chunks(most));
+        chunks.map(<[usize]>::to_vec).collect()
+    }
+
+    /// `work` of every batch at once, the results by local subdomain.
+    pub fn by_batch<T: Send>(
+        &self,
+        batches: &[Vec<usize>],
+        work: impl Fn(&LocalProblem, &[usize]) -> Vec<T> + Sync + Send,
+    ) -> Vec<T> {
+        let locals = &self.locals;
+        let of = |b: usize| work(&locals[batches[b][0]], &batches[b]);
+        let done = self.team.map(batches.len(), of).into_iter().flatten();
+        let mut placed: Vec<(usize, T)> = batches.iter().flatten().copied().zip(done).collect();
+        placed.sort_unstable_by_key(|(j, _)| *j);
+        placed.into_iter().map(|(_, value)| value).collect()
     }
 
     /// Fresh buffers for all subdomains of this rank.

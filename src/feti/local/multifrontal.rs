@@ -37,31 +37,31 @@ pub struct Symbolic {
     interface: Vec<u32>,
     /// Position of each dof in [interior, interface].
     position: Vec<u32>,
-    fronts: Vec<Front>,
+    pub(super) fronts: Vec<Front>,
     /// Length of all panels together.
     storage: usize,
 }
 
 #[derive(Debug)]
-struct Front {
+pub(super) struct Front {
     /// Eliminated positions `start..end`.
-    start: usize,
-    end: usize,
+    pub(super) start: usize,
+    pub(super) end: usize,
     /// Positions below the pivot block, increasing.
-    below: Vec<u32>,
+    pub(super) below: Vec<u32>,
     /// The front that takes this one's update; `None`: S does.
     parent: Option<usize>,
     /// Place of each entry of `below` in the parent's front (or in S).
     into_parent: Vec<u32>,
     /// Start of this front's panel (end − start columns of size rows) in the storage.
-    panel: usize,
+    pub(super) panel: usize,
 }
 
 impl Front {
-    fn width(&self) -> usize {
+    pub(super) fn width(&self) -> usize {
         self.end - self.start
     }
-    fn size(&self) -> usize {
+    pub(super) fn size(&self) -> usize {
         self.width() + self.below.len()
     }
 }
@@ -149,6 +149,16 @@ impl Symbolic {
         }
     }
 
+    /// Number of dofs.
+    pub(super) fn n(&self) -> usize {
+        self.position.len()
+    }
+
+    /// The dofs in the order [interior, interface].
+    pub(super) fn dofs(&self) -> impl Iterator<Item = u32> + '_ {
+        self.interior.iter().chain(&self.interface).copied()
+    }
+
     /// Number of interior dofs.
     pub fn n_interior(&self) -> usize {
         self.interior.len()
@@ -179,8 +189,8 @@ fn place_in(rows: &[u32], t: &Front) -> Vec<u32> {
 /// The factor [L_II; L_ΓI] of one subdomain.
 #[derive(Debug)]
 pub struct PartialCholesky {
-    symbolic: Arc<Symbolic>,
-    panels: Vec<f64>,
+    pub(super) symbolic: Arc<Symbolic>,
+    pub(super) panels: Vec<f64>,
 }
 
 impl PartialCholesky {

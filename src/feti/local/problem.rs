@@ -192,6 +192,37 @@ impl LocalProblem {
         work
     }
 
+    /// [`condense`](Self::condense) of several loads, at most [`LANES`](super::lanes::LANES).
+    pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
+        if let [f] = loads {
+            return vec![self.condense(f)];
+        }
+        let mut work: Vec<Vec<f64>> = loads.iter().map(|f| f.to_vec()).collect();
+        self.factor.forward_many(&mut work);
+        let on_gamma = |w: &Vec<f64>| self.interface.iter().map(|&i| w[i as usize]).collect();
+        work.into_iter()
+            .map(|w| (on_gamma(&w), w))
+            .map(|(g, w)| (w, g))
+            .collect()
+    }
+
+    /// [`recover`](Self::recover) of several solutions, at most [`LANES`](super::lanes::LANES): (`work`, `u_gamma`) of each.
+    pub fn recover_many(&self, parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
+        if let [(work, u_gamma)] = parts {
+            return vec![self.recover(work.to_vec(), u_gamma)];
+        }
+        let placed = |(work, u_gamma): &(&[f64], &[f64])| {
+            let mut x = work.to_vec();
+            for (&i, &u) in self.interface.iter().zip(*u_gamma) {
+                x[i as usize] = u;
+            }
+            x
+        };
+        let mut x: Vec<Vec<f64>> = parts.iter().map(placed).collect();
+        self.factor.backward_many(&mut x);
+        x
+    }
+
     /// p ← Ψᵀ v, v on Γ.
     pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
         let (vertices, others) = p.split_at_mut(self.n_vertices());
