@@ -289,7 +289,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetMatIS(FetiFeti ff, Mat A, PetscInt body);
    Level: beginner
 
    Notes:
-   Without numbers the unknowns on each rank are its rows of the first matrix, then those of the second, and so on, as DMComposite and VecConcatenate()
+   Without numbers the unknowns on each rank are its rows of the first matrix, then those of the second, and so on, as DMComposite and nested matrices
    number them. FetiFetiSolve() takes vectors of type VECNEST with a part for each matrix. No other function for sizes is needed. The motions of a body that cost no
    energy are those of MatSetNearNullSpace() on its matrix, else of MatSetNullSpace(); where one matrix has neither, the motions of all are found from the matrices, or
    from FetiFetiSetCoordinates().
