@@ -28,19 +28,19 @@ impl Given {
             None => fits(session, v, layout, what)?,
             Some(_) if stack.is_empty() => {
                 return Err(Kind::Wrong.error(format!(
-                    "the {what} is a nested vector, expected a plain one: only matrices added without numbers have parts"
+                    "{what} is a nested vector, expected a plain one: only matrices added without numbers have parts"
                 )))
             }
             Some(parts) if parts.len() != stack.len() => {
                 return Err(Kind::Sizes.error(format!(
-                    "the {what} is nested and has {} parts, expected {}: one for each matrix",
+                    "{what} is nested and has {} parts, expected {}: one for each matrix",
                     parts.len(),
                     stack.len()
                 )))
             }
             Some(parts) => {
                 for (k, (part, layout)) in parts.iter().zip(stack.layouts()).enumerate() {
-                    fits(session, part, layout, &format!("part {k} of the {what}"))?;
+                    fits(session, part, layout, &format!("part {k} of {what}"))?;
                 }
             }
         }

@@ -258,7 +258,7 @@ impl Object {
         if let Some(near) = &self.near {
             let mut vectors = Vec::new();
             for v in &near.vectors {
-                let given = self.checked(v, "near-null space", layout);
+                let given = self.checked(v, "the near-null space", layout);
                 vectors.push(self.session.agree(given)?.plain(|| layout.duplicate())?);
             }
             let constants = near.constants;
@@ -297,7 +297,7 @@ impl Object {
         if let Some((local, global)) = self.sizes {
             let said = PetscVec::over_ranks(&self.session, local, global)?;
             if let Some(layout) = &stacked {
-                let what = "layout of FetiFetiSetSizes";
+                let what = "the layout of FetiFetiSetSizes";
                 self.session
                     .agree(fits(&self.session, &said, layout, what))?;
             }

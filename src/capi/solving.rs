@@ -31,11 +31,11 @@ impl Object {
 
     /// Right-hand side, solution and, where there are some, held values.
     fn vectors(&self, b: &PetscVec, x: &PetscVec, layout: &PetscVec) -> Result<Vec<Given>> {
-        let named = [("right-hand side", b), ("solution", x)];
+        let named = [("the right-hand side", b), ("the solution", x)];
         let held = self
             .held_values
             .iter()
-            .map(|v| ("vector of held values", v));
+            .map(|v| ("the vector of held values", v));
         let all = named.into_iter().chain(held);
         all.map(|(name, v)| self.checked(v, name, layout)).collect()
     }

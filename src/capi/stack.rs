@@ -56,7 +56,7 @@ impl Local {
                 session,
                 mode,
                 &layout,
-                "near-null space of the matrix",
+                "the near-null space of the matrix",
             ))?;
         }
         Ok(Local {
@@ -76,7 +76,7 @@ pub fn fits(session: &Session, v: &PetscVec, layout: &PetscVec, what: &str) -> R
         return Ok(());
     }
     Err(Kind::Sizes.error(format!(
-        "the {what} has entries {found:?} on rank {}, expected {wanted:?}",
+        "{what} has entries {found:?} on rank {}, expected {wanted:?}",
         session.rank()
     )))
 }
