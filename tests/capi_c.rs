@@ -120,6 +120,22 @@ fn matrices_against_a_direct_solver() {
 }
 
 #[test]
+fn motions_of_stacked_matrices_are_used() {
+    let scratch = Scratch::new("capi-motions");
+    let program = Program::linked("mpicc", &scratch, "tests/plugin/capi_matis.c");
+    let primal = |options: &str| {
+        let out = program.run(2, &format!("-fetifeti_ksp_rtol 1e-10 {options}"));
+        assert_eq!(out.code, 0, "{}", out.all());
+        let kernel = "bodies: 2 (1 floating, kernels of dimension 3)";
+        assert!(out.stdout.contains(kernel), "{}", out.all());
+        number_after(&out, "primal dofs:")
+    };
+    // Where rotations are known, more nodes of a straight face are constrained than where they are guessed.
+    let (with, without) = (primal("-fetifeti_view"), primal("-fetifeti_view -near 0"));
+    assert!(with > without, "{with} and {without}");
+}
+
+#[test]
 fn cycles_leave_nothing_behind() {
     let scratch = Scratch::new("capi-cycles");
     let program = Program::linked("mpicc", &scratch, "tests/plugin/capi_matis.c");

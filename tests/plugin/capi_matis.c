@@ -404,19 +404,20 @@ int main(int argc, char **argv)
   Vec            b[2];
   PetscInt       m = 9, cycles = 0, i, k;
   char           what[20] = "stack", wrong[20] = "";
-  PetscBool      two, raw;
+  PetscBool      two, raw, near = PETSC_TRUE;
   PetscLogDouble before = 0, after = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(&argc, &argv, NULL, help));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-m", &m, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-cycles", &cycles, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-near", &near, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-do", what, sizeof(what), NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-wrong", wrong, sizeof(wrong), NULL));
   PetscCall(PetscStrcmp(what, "stack", &two));
   PetscCall(PetscStrcmp(what, "raw", &raw));
   if (two) {
-    for (k = 0; k < 2; k++) PetscCall(Block(m, (PetscBool)!k, PETSC_TRUE, &da[k], &A[k], &b[k]));
+    for (k = 0; k < 2; k++) PetscCall(Block(m, (PetscBool)!k, near, &da[k], &A[k], &b[k]));
     for (i = 0; i < PetscMax(1, cycles); i++) {
       PetscCall(FetiFetiCreate(PETSC_COMM_WORLD, &ff));
       PetscCall(FetiFetiSetFromOptions(ff));
