@@ -112,6 +112,7 @@ fn matrices_against_a_direct_solver() {
         ("missing", NULL, "the second IS is NULL"),
         ("length", SIZES, "rank 0 gave 0 unknowns on the first side"),
         ("range", RANGE, "has unknown 162, expected numbers from 0"),
+        ("gone", RANGE, "name matrix 1 but 1 have been added"),
         ("nest", SIZES, "has 3 parts, expected 2"),
         ("part", SIZES, "part 1 of the right-hand side has entries"),
     ] {

@@ -183,6 +183,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetFromOptions(FetiFeti ff);
 +  ff     - the solver
 -  viewer - an ASCII viewer; NULL: the standard output of the first rank
 
+   Options Database Key:
+.  -fetifeti_view - does this at the end of FetiFetiSetUp(), after FetiFetiSetFromOptions()
+
    Level: beginner
 
 .seealso: `FetiFetiSetFromOptions()`
@@ -487,8 +490,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetUp(FetiFeti ff);
 .  x - the solution; what it was before does not matter
 
    Options Database Keys:
-+  -fetifeti_ksp_rtol <r>                       - relative tolerance of the iteration, and all other options of a KSP
-.  -fetifeti_ksp_monitor                        - show the residuals
++  -fetifeti_ksp_rtol <r>                      - relative tolerance of the iteration, and all other options of a KSP
+.  -fetifeti_ksp_monitor                       - show the residuals
 -  -fetifeti_contact_type <active_set, smalbe> - the contact loop; see docs/options.md for this and the rest
 
    Level: beginner

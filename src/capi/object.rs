@@ -235,7 +235,7 @@ impl Object {
             layout,
             held: HashSet::new(),
             primal: HashSet::new(),
-            rows: self.given_rows(),
+            rows: session.agree(self.given_rows())?,
         };
         let (ghosts, halo) = torn.halo(session)?;
         torn.held = self.marked(&torn.layout, &self.held, &ghosts, &halo)?;

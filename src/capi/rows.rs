@@ -122,15 +122,33 @@ pub fn pairs(
 
 impl Object {
     /// This rank's rows, by unknowns of all bodies.
-    pub fn given_rows(&self) -> Vec<GivenRow> {
-        let number = |&(whose, dof, c): &(Numbering, u32, f64)| match whose {
-            Numbering::Matrix(k) if !self.stack.is_empty() => (self.stack.number(k, dof), c),
-            _ => (dof, c),
+    ///
+    /// # Errors
+    /// Rows of matrices that are not there any more.
+    pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
+        let number = |&(whose, dof, c): &(Numbering, u32, f64)| {
+            let Numbering::Matrix(k) = whose else {
+                return Ok((dof, c));
+            };
+            let n = self.size_of(k)?;
+            if dof as usize >= n {
+                return Err(Kind::OutOfRange.error(format!(
+                    "a contact pair of rank {} has unknown {dof} of matrix {k}, which has {n} by now, expected pairs of the present matrices",
+                    self.session.rank()
+                )));
+            }
+            match self.stack.is_empty() {
+                true => Ok((dof, c)),
+                false => Ok((self.stack.number(k, dof), c)),
+            }
         };
-        let row = |row: &Row| GivenRow {
-            terms: row.terms.iter().map(number).collect(),
-            gap: row.gap,
-            kind: row.kind,
+        let row = |row: &Row| {
+            let terms: Result<Vec<(u32, f64)>> = row.terms.iter().map(number).collect();
+            Ok(GivenRow {
+                terms: terms?,
+                gap: row.gap,
+                kind: row.kind,
+            })
         };
         self.rows.iter().map(row).collect()
     }

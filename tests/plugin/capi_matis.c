@@ -289,6 +289,8 @@ static PetscErrorCode Two(FetiFeti ff, PetscInt m, DM da[2], Mat A[2], Vec b[2],
   }
   PetscCall(FetiFetiSetContactPairs(ff, 0, side[0][0], 1, side[1][0], NULL, FETIFETI_EQUALITY));
   PetscCall(FetiFetiSetContactPairs(ff, 0, side[0][1], 1, side[1][1], gap, FETIFETI_EQUALITY));
+  PetscCall(PetscStrcmp(wrong, "gone", &is));
+  if (is) PetscCall(FetiFetiSetMatIS(ff, A[0], PETSC_DECIDE));
   PetscCall(PetscStrcmp(wrong, "nest", &is));
   if (is) {
     Vec three[3] = {b[0], b[1], b[1]};
