@@ -5,85 +5,9 @@
 static const char help[] = "Matrices and the C API.\n";
 
 #include <petscdmcomposite.h>
-#include <petscdmda.h>
 #include <math.h>
+#include "elastic.h"
 #include "fetifeti.h"
-
-/* Plane strain or so: lambda = mu = 1 on a square of bilinear functions, by two points in each direction. */
-static void Stiffness(PetscScalar k[64])
-{
-  const PetscReal sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
-  PetscInt        q, i, j;
-
-  for (i = 0; i < 64; i++) k[i] = 0;
-  for (q = 0; q < 4; q++) {
-    PetscReal g[4][2];
-
-    for (i = 0; i < 4; i++) {
-      g[i][0] = sx[i] * (1 + sy[i] * sy[q] / PetscSqrtReal(3.0)) / 4;
-      g[i][1] = sy[i] * (1 + sx[i] * sx[q] / PetscSqrtReal(3.0)) / 4;
-    }
-    for (i = 0; i < 8; i++)
-      for (j = 0; j < 8; j++) {
-        const PetscReal *a = g[i / 2], *b = g[j / 2];
-        const PetscInt   c = i % 2, d = j % 2;
-
-        k[8 * i + j] += a[c] * b[d] + a[d] * b[c] + (c == d ? a[0] * b[0] + a[1] * b[1] : 0);
-      }
-  }
-}
-
-/* m x m nodes, the bottom held where that is wanted; a load that is nowhere zero. */
-static PetscErrorCode Block(PetscInt m, PetscBool hold, PetscBool near, DM *da, Mat *A, Vec *b)
-{
-  PetscScalar     ke[64];
-  const PetscInt *e;
-  PetscInt        n, nodes, i, k, first, last;
-  AO              ao;
-  IS              low;
-  Vec             places;
-  MatNullSpace    motions;
-
-  PetscFunctionBeginUser;
-  PetscCall(DMDACreate2d(PETSC_COMM_WORLD, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_BOX, m, m, PETSC_DECIDE, PETSC_DECIDE, 2, 1, NULL, NULL, da));
-  PetscCall(DMSetMatType(*da, MATIS));
-  PetscCall(DMSetUp(*da));
-  PetscCall(DMDASetElementType(*da, DMDA_ELEMENT_Q1));
-  PetscCall(DMDASetUniformCoordinates(*da, 0, 1, 0, 1, 0, 0));
-  PetscCall(DMCreateMatrix(*da, A));
-  Stiffness(ke);
-  PetscCall(DMDAGetElements(*da, &n, &nodes, &e));
-  for (i = 0; i < n; i++) {
-    PetscInt dofs[8];
-
-    for (k = 0; k < 8; k++) dofs[k] = 2 * e[4 * i + k / 2] + k % 2;
-    PetscCall(MatSetValuesLocal(*A, 8, dofs, 8, dofs, ke, ADD_VALUES));
-  }
-  PetscCall(DMDARestoreElements(*da, &n, &nodes, &e));
-  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
-  if (near) {
-    PetscCall(DMGetCoordinates(*da, &places));
-    PetscCall(MatNullSpaceCreateRigidBody(places, &motions));
-    PetscCall(MatSetNearNullSpace(*A, motions));
-    PetscCall(MatNullSpaceDestroy(&motions));
-  }
-  PetscCall(DMCreateGlobalVector(*da, b));
-  PetscCall(VecGetOwnershipRange(*b, &first, &last));
-  for (i = first; i < last; i++) PetscCall(VecSetValue(*b, i, PetscSinReal(1 + 0.37 * i) / m, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(*b));
-  PetscCall(VecAssemblyEnd(*b));
-  if (hold) {
-    PetscCall(DMDAGetAO(*da, &ao));
-    for (k = 0; k < 2; k++) {
-      PetscCall(ISCreateStride(PETSC_COMM_WORLD, first ? 0 : m, k, 2, &low));
-      PetscCall(AOApplicationToPetscIS(ao, low));
-      PetscCall(MatZeroRowsColumnsIS(*A, low, 1.0, NULL, NULL));
-      PetscCall(ISDestroy(&low));
-    }
-  }
-  PetscFunctionReturn(0);
-}
 
 /* Compares with a direct solver. */
 static PetscErrorCode Compare(Mat A, Vec b, Vec x, const char what[])
@@ -204,12 +128,35 @@ static PetscErrorCode Balance(Mat A[2], Vec b[2], Vec u[2], IS side[2][2], Petsc
   PetscFunctionReturn(0);
 }
 
+/* The numbers among all unknowns of those of one matrix; `where` has them for the rows that a rank owns. */
+static PetscErrorCode Numbers(Vec b, IS where, IS side, IS *all)
+{
+  PetscInt        total, n, i, first, last, *mine, *every;
+  const PetscInt *list;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetSize(b, &total));
+  PetscCall(VecGetOwnershipRange(b, &first, &last));
+  PetscCall(PetscCalloc2(total, &mine, total, &every));
+  PetscCall(ISGetIndices(where, &list));
+  for (i = first; i < last; i++) mine[i] = list[i - first];
+  PetscCall(ISRestoreIndices(where, &list));
+  PetscCallMPI(MPI_Allreduce(mine, every, total, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  PetscCall(ISGetLocalSize(side, &n));
+  PetscCall(ISGetIndices(side, &list));
+  for (i = 0; i < n; i++) mine[i] = every[list[i]];
+  PetscCall(ISRestoreIndices(side, &list));
+  PetscCall(ISCreateGeneral(PETSC_COMM_WORLD, n, mine, PETSC_COPY_VALUES, all));
+  PetscCall(PetscFree2(mine, every));
+  PetscFunctionReturn(0);
+}
+
 /* Two blocks one after the other; the top of the one and the bottom of the other are tied with a gap in between. */
 static PetscErrorCode Two(FetiFeti ff, PetscInt m, DM da[2], Mat A[2], Vec b[2], PetscBool judge, const char wrong[])
 {
   DM             pack;
   Vec            load, u, plain, x, values, to[2], *parts;
-  IS             side[2][2], own, *where, held;
+  IS             side[2][2], all[2], own, *where, held;
   AO             ao;
   PetscReal     *gap, *lambda, norm[2], other;
   PetscInt       k, c, i, n, *ia, *ja, *kind, count;
@@ -321,47 +268,22 @@ static PetscErrorCode Two(FetiFeti ff, PetscInt m, DM da[2], Mat A[2], Vec b[2],
 
     PetscCall(FetiFetiSetContactPairs(ff, 0, NULL, 0, NULL, NULL, 0)); /* the first component by pairs of all unknowns, the other one by rows */
     for (k = 0; k < 2; k++) {
-      IS all[2];
-
-      PetscCall(ISGetIndices(side[k][1], &number)); /* the side by the numbers of all unknowns */
-      {
-        PetscInt total, *gather, *mine, first, last;
-
-        PetscCall(VecGetSize(b[k], &total));
-        PetscCall(PetscCalloc2(total, &gather, total, &mine));
-        PetscCall(VecGetOwnershipRange(b[k], &first, &last));
-        {
-          const PetscInt *list;
-
-          PetscCall(ISGetIndices(where[k], &list));
-          for (i = first; i < last; i++) mine[i] = list[i - first];
-          PetscCall(ISRestoreIndices(where[k], &list));
-        }
-        PetscCallMPI(MPI_Allreduce(mine, gather, total, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
-        for (i = 0; i < n; i++) ja[2 * i + k] = gather[number[i]];
-        PetscCall(ISRestoreIndices(side[k][1], &number));
-        PetscCall(ISGetIndices(side[k][0], &number));
-        for (i = 0; i < n; i++) mine[i] = gather[number[i]];
-        PetscCall(ISRestoreIndices(side[k][0], &number));
-        PetscCall(ISCreateGeneral(PETSC_COMM_WORLD, n, mine, PETSC_COPY_VALUES, &all[k]));
-        PetscCall(PetscFree2(gather, mine));
+      PetscCall(Numbers(b[k], where[k], side[k][0], &all[k]));
+      PetscCall(Numbers(b[k], where[k], side[k][1], &own));
+      PetscCall(ISGetIndices(own, &number));
+      for (i = 0; i < n; i++) {
+        ja[2 * i + k]  = number[i];
+        row[2 * i + k] = k ? -1 : 1;
+        ia[i + 1]      = 2 * (i + 1);
+        kind[i]        = FETIFETI_EQUALITY;
       }
-      if (k == 0) own = all[0];
-      else {
-        for (i = 0; i < n; i++) {
-          ia[i]          = 2 * i;
-          row[2 * i]     = 1;
-          row[2 * i + 1] = -1;
-          kind[i]        = FETIFETI_EQUALITY;
-        }
-        ia[n] = 2 * n;
-        PetscCall(FetiFetiSetContactRows(ff, n, ia, ja, row, gap, kind));
-        PetscCall(FetiFetiSetContactPairs(ff, PETSC_DECIDE, own, PETSC_DECIDE, all[1], NULL, FETIFETI_EQUALITY));
-        PetscCall(FetiFetiSetContactRows(ff, n, ia, ja, row, gap, kind)); /* again: after the pairs now */
-        PetscCall(ISDestroy(&all[1]));
-        PetscCall(ISDestroy(&own));
-      }
+      PetscCall(ISRestoreIndices(own, &number));
+      PetscCall(ISDestroy(&own));
     }
+    PetscCall(FetiFetiSetContactRows(ff, n, ia, ja, row, gap, kind));
+    PetscCall(FetiFetiSetContactPairs(ff, PETSC_DECIDE, all[0], PETSC_DECIDE, all[1], NULL, FETIFETI_EQUALITY));
+    PetscCall(FetiFetiSetContactRows(ff, n, ia, ja, row, gap, kind)); /* again: after the pairs now */
+    for (k = 0; k < 2; k++) PetscCall(ISDestroy(&all[k]));
     PetscCall(FetiFetiSolve(ff, load, u));
     PetscCall(FetiFetiGetMultipliers(ff, 2 * n, lambda));
     PetscCall(Balance(A, b, parts, side, n, lambda, 0.125));
