@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup build run test fmt lint docs clean
+.PHONY: help setup build run test test-newer fmt lint docs clean
 
 OUT ?= out
 TARGET := $(if $(CARGO_TARGET_DIR),$(CARGO_TARGET_DIR),target)
@@ -28,7 +28,7 @@ export OMP_THREAD_LIMIT ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
 help: ## Say what can be made
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s%s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s%s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 setup: ## Install the Debian packages that are missing
 	@scripts/setup.sh
@@ -61,6 +61,17 @@ test: setup ## Check format, lints and documentation, then run every test
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
 	cargo test --workspace --no-fail-fast
+
+# A newer PETSc than Debian's, from the source packages of the Python registry.
+NEWER_DIR ?= $(TARGET)/newer
+NEWER_PETSC ?= 3.22.5
+NEWER_SLEPC ?= 3.22.2
+
+test-newer: setup ## Build a newer PETSc and SLEPc, and test the plug-in, the C API and the solver with them
+	scripts/newer_petsc.sh "$(NEWER_DIR)" "$(NEWER_PETSC)" "$(NEWER_SLEPC)"
+	source "$(NEWER_DIR)/env" && export CARGO_TARGET_DIR="$(NEWER_DIR)/build-$(NEWER_PETSC)" && \
+	cargo test --no-fail-fast --lib --test 'embed_*' --test 'capi_*' --test 'solve_*' --test ranks --test deflation \
+		--test contact_oracle -- --skip petsc4py --skip fortran
 
 fmt: ## Format the sources
 	cargo fmt --all

@@ -4,7 +4,7 @@
 fn main() {
     println!("cargo:rerun-if-env-changed=DEP_PETSC_RPATH");
     println!("cargo:rerun-if-env-changed=DEP_PETSC_INCLUDE");
-    for file in ["kspfetifeti.c", "kspfetifeti.h"] {
+    for file in ["kspfetifeti.c", "kspbodies.c", "kspfetifeti.h"] {
         println!("cargo:rerun-if-changed=wrappers/{file}");
     }
     let rpath = std::env::var("DEP_PETSC_RPATH").unwrap_or_default();
@@ -14,6 +14,7 @@ fn main() {
     let include = std::env::var("DEP_PETSC_INCLUDE").unwrap_or_default();
     cc::Build::new()
         .file("wrappers/kspfetifeti.c")
+        .file("wrappers/kspbodies.c")
         .includes(include.split(':').filter(|dir| !dir.is_empty()))
         .define("PETSC_SKIP_COMPLEX", None)
         .flag_if_supported("-Wno-unused-parameter")

@@ -193,3 +193,25 @@ fn an_assembled_matrix_is_refused_in_one_sentence() {
         assert!(!said.contains("Segmentation"), "{said}");
     }
 }
+
+/// Every element a subdomain, many of them on a rank: MatISSetAllowRepeated, which PETSc has from 3.21 on (`make test-newer`).
+#[test]
+fn ex71_with_many_subdomains_on_a_rank() {
+    if plugin::petsc_version() < (3, 21) {
+        println!("this PETSc has no MatISSetAllowRepeated");
+        return;
+    }
+    let scratch = Scratch::new("embed-multi-element");
+    let program = Program::tutorial(&scratch, "ex71");
+    for (ranks, options, ours) in [
+        (1, "-dim 2 -cells 6,6", ""),
+        (4, "-dim 2 -cells 6,6", "-fetifeti_bodies 3"),
+        (4, "-dim 3 -cells 3,3,3", ""),
+        (2, "-dim 2 -cells 6,6 -pde_type Elasticity", ""),
+        (4, "-dim 3 -cells 3,3,3 -pde_type Elasticity", ""),
+    ] {
+        let options = format!("{options} -multi_element");
+        let iterations = agrees(&program, &scratch, ranks, "", &options, ours);
+        assert!(iterations > 0, "{options}: there was one subdomain only");
+    }
+}

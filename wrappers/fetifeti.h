@@ -63,9 +63,53 @@ PETSC_EXTERN PetscErrorCode FetiFetiInitializePackage(void);
 
    Level: intermediate
 
-.seealso: `KSPFETIFETIGetInnerKSP()`
+   Note:
+   A rank without rows has no subdomain and need not call. All other ranks must, or none. The last of KSPFETIFETISetBody(), KSPFETIFETISetBodyIS() and
+   KSPFETIFETISetBodyLabel() counts.
+
+.seealso: `KSPFETIFETISetBodyIS()`, `KSPFETIFETISetBodyLabel()`, `KSPFETIFETIGetInnerKSP()`
 @*/
 PETSC_EXTERN PetscErrorCode KSPFETIFETISetBody(KSP ksp, PetscInt body);
+
+/*@
+   KSPFETIFETISetBodyIS - Says which body each row of the operator belongs to, for a KSP of type "fetifeti"
+
+   Collective
+
+   Input Parameters:
++  ksp    - the KSP
+-  bodies - the number of a body for each row of the operator that this rank owns, as MatPartitioningApply() returns it
+
+   Level: intermediate
+
+   Note:
+   A subdomain belongs to the body that most of its unknowns name, the lowest of several. The index set is referenced, not copied.
+
+.seealso: `KSPFETIFETISetBody()`, `KSPFETIFETISetBodyLabel()`
+@*/
+PETSC_EXTERN PetscErrorCode KSPFETIFETISetBodyIS(KSP ksp, IS bodies);
+
+/*@
+   KSPFETIFETISetBodyLabel - Says that a label of the cells of a DMPlex names the bodies, for a KSP of type "fetifeti"
+
+   Logically Collective
+
+   Input Parameters:
++  ksp  - the KSP
+-  name - name of the label
+
+   Options Database Key:
+.  -fetifeti_body_label name - the same
+
+   Level: intermediate
+
+   Note:
+   The mesh is that of KSPSetDM(), else the one that made the operator (DMCreateMatrix()). The subdomain of a rank belongs to the value that most of the rank's
+   cells have, the lowest of several; cells without a value do not count.
+
+.seealso: `KSPFETIFETISetBody()`, `KSPFETIFETISetBodyIS()`
+@*/
+PETSC_EXTERN PetscErrorCode KSPFETIFETISetBodyLabel(KSP ksp, const char name[]);
 
 /*@
    KSPFETIFETIGetInnerKSP - Gets the KSP that iterates on the multipliers, of a KSP of type "fetifeti"

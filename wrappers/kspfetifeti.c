@@ -1,23 +1,9 @@
 /*
    KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. Everything that takes thought is in Rust
-   (src/embed, src/capi); this file is what a KSP needs to be one.
+   (src/embed, src/capi); this file is what a KSP needs to be one, kspbodies.c has its bodies.
 */
 #include "kspfetifeti.h"
-#include <petsc/private/kspimpl.h>
 
-typedef struct {
-  void            *solver; /* of Rust; NULL before set-up, and after one that failed */
-  PetscObjectId    id;     /* the operator that the solver was made from, and its state then */
-  PetscObjectState state;
-  PetscInt         body;  /* of this rank; -1: not said */
-  PetscBool        true_residual; /* go on until the residual of the host's equations is below the tolerance */
-  PetscBool        stale; /* set up again, whatever the operator says */
-  PetscInt         base;  /* iterations of earlier runs of the inner KSP in this solve */
-  PetscInt         last;  /* iteration that the monitors have seen last; -1: none */
-  PetscBool        running; /* the inner KSP is at work */
-  PetscReal        largest, smallest; /* eigenvalues as the longest run of the inner KSP in the last solve saw them */
-  KSPConvergedReason failed; /* why there is no solver */
-} KSP_FETIFETI;
 
 /* Turns what Rust returned into a PETSc error. */
 static PetscErrorCode Raise(KSP ksp, int status)
@@ -53,6 +39,7 @@ static PetscErrorCode Wishes(KSP ksp, FetiFetiWishes *wishes)
 {
   PetscFunctionBegin;
   wishes->body   = (int)((KSP_FETIFETI *)ksp->data)->body;
+  wishes->bodies = ((KSP_FETIFETI *)ksp->data)->bodies;
   wishes->goal   = -1;
   wishes->rtol   = ksp->rtol;
   wishes->abstol = ksp->abstol;
@@ -89,6 +76,13 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
   if ((ff->solver || ff->failed) && !ff->stale && id == ff->id && state == ff->state) PetscFunctionReturn(0);
   PetscCall(KSPReset_FETIFETI(ksp));
   PetscCall(Wishes(ksp, &wishes));
+  if (ff->label) {
+    PetscInt body;
+
+    PetscCall(ff_label_body(ksp, A, ff->label, &body));
+    wishes.body   = (int)body;
+    wishes.bodies = NULL;
+  }
   status = fetifeti_plugin_setup(PetscObjectComm((PetscObject)ksp), A, ((PetscObject)ksp)->prefix, &wishes, &ff->solver);
   ff->id    = id;
   ff->stale = PETSC_FALSE;
@@ -150,7 +144,11 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   ksp->its = 0;
   if (!ff->solver) {
     ksp->reason = ff->failed;
+#if PETSC_VERSION_GE(3, 22, 0)
+    PetscCall(VecFlag(ksp->vec_sol, PETSC_TRUE));
+#else
     PetscCall(VecSetInf(ksp->vec_sol));
+#endif
     PetscFunctionReturn(0);
   }
   PetscCall(KSPGetOperators(ksp, &A, NULL));
@@ -208,9 +206,13 @@ static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems *Pets
 #endif
 {
   KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
+  char          name[PETSC_MAX_PATH_LEN];
+  PetscBool     set;
 
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "KSP FETIFETI options");
+  PetscCall(PetscOptionsString("-fetifeti_body_label", "Label of the DMPlex's cells that names the bodies", "KSPFETIFETISetBodyLabel", ff->label ? ff->label : "", name, sizeof(name), &set));
+  if (set) PetscCall(ff_plugin_set_body_label(ksp, name));
   PetscCall(PetscOptionsBool("-fetifeti_true_residual", "Go on until the residual of the assembled equations is below the tolerance", NULL, ff->true_residual, &ff->true_residual, NULL));
   PetscOptionsHeadEnd();
   PetscFunctionReturn(0);
@@ -220,7 +222,7 @@ static PetscErrorCode KSPDestroy_FETIFETI(KSP ksp)
 {
   PetscFunctionBegin;
   PetscCall(KSPReset_FETIFETI(ksp));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBody_C", NULL));
+  PetscCall(ff_forget_bodies(ksp));
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETIGetInnerKSP_C", NULL));
   PetscCall(KSPDestroyDefault(ksp));
   PetscFunctionReturn(0);
@@ -313,25 +315,6 @@ static PetscErrorCode KSPComputeExtremeSingularValues_FETIFETI(KSP ksp, PetscRea
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KSPFETIFETISetBody_FETIFETI(KSP ksp, PetscInt body)
-{
-  KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
-
-  PetscFunctionBegin;
-  PetscCheck(body >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The body of a rank is %" PetscInt_FMT ", expected a number of at least 0", body);
-  ff->stale = (PetscBool)(ff->stale || ff->body != body);
-  ff->body  = body;
-  PetscFunctionReturn(0);
-}
-
-int ff_plugin_set_body(KSP ksp, PetscInt body)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(ksp, KSP_CLASSID, 1);
-  PetscTryMethod((PetscObject)ksp, "KSPFETIFETISetBody_C", (KSP, PetscInt), (ksp, body));
-  PetscFunctionReturn(0);
-}
-
 int ff_plugin_get_inner(KSP ksp, KSP *inner)
 {
   PetscFunctionBegin;
@@ -370,7 +353,7 @@ static PetscErrorCode KSPCreate_FETIFETI(KSP ksp)
   ksp->ops->buildresidual                = KSPBuildResidualDefault;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBody_C", KSPFETIFETISetBody_FETIFETI));
+  PetscCall(ff_compose_bodies(ksp));
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETIGetInnerKSP_C", Inner));
   /* set up again with a new operator */
   ksp->setupnewmatrix = PETSC_TRUE;

@@ -2,7 +2,24 @@
 #if !defined(KSPFETIFETI_H)
 #define KSPFETIFETI_H
 
-#include <petscksp.h>
+#include <petsc/private/kspimpl.h>
+
+/* The data of a KSP of this type. */
+typedef struct {
+  void            *solver; /* of Rust; NULL before set-up, and after one that failed */
+  PetscObjectId    id;     /* the operator that the solver was made from, and its state then */
+  PetscObjectState state;
+  PetscInt         body;   /* of this rank; -1: not said */
+  IS               bodies; /* of each row that this rank owns; NULL: not said */
+  char            *label;  /* of the mesh's cells that names bodies; NULL: none */
+  PetscBool        true_residual; /* go on until the residual of the host's equations is below the tolerance */
+  PetscBool        stale; /* set up again, whatever the operator says */
+  PetscInt         base;  /* iterations of earlier runs of the inner KSP in this solve */
+  PetscInt         last;  /* iteration that the monitors have seen last; -1: none */
+  PetscBool        running; /* the inner KSP is at work */
+  PetscReal        largest, smallest; /* eigenvalues as the longest run of the inner KSP in the last solve saw them */
+  KSPConvergedReason failed; /* why there is no solver */
+} KSP_FETIFETI;
 
 /* What a function of Rust returns: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a sentence about a matrix
    that cannot be factored; FF_RAISED, after a PETSc error that has been reported; or FF_ALONE, a sentence that other ranks may not have. */
@@ -13,6 +30,7 @@
 
 typedef struct {
   int    body;     /* body of this rank, or -1 */
+  IS     bodies;   /* body of each row that this rank owns, or NULL */
   double goal;     /* norm of b - A x to end with, or -1: it does not matter */
   double rtol, abstol, divtol;
   int    max_it;
@@ -42,6 +60,13 @@ const char *fetifeti_plugin_message(int *code);
 /* Called by the symbols that the library exports. */
 int ff_plugin_register(void);
 int ff_plugin_set_body(KSP ksp, PetscInt body);
+int ff_plugin_set_body_is(KSP ksp, IS bodies);
+int ff_plugin_set_body_label(KSP ksp, const char *name);
 int ff_plugin_get_inner(KSP ksp, KSP *inner);
+
+/* Bodies (kspbodies.c). */
+PetscErrorCode ff_label_body(KSP ksp, Mat A, const char *name, PetscInt *body);
+PetscErrorCode ff_compose_bodies(KSP ksp);
+PetscErrorCode ff_forget_bodies(KSP ksp);
 
 #endif

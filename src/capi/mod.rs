@@ -17,11 +17,13 @@ mod solving;
 mod stack;
 
 use crate::petsc::raw;
-use std::ffi::c_int;
+use std::ffi::{c_char, c_int};
 
 extern "C" {
     fn ff_plugin_register() -> c_int;
     fn ff_plugin_set_body(ksp: raw::KSP, body: c_int) -> c_int;
+    fn ff_plugin_set_body_is(ksp: raw::KSP, bodies: raw::IS) -> c_int;
+    fn ff_plugin_set_body_label(ksp: raw::KSP, name: *const c_char) -> c_int;
     fn ff_plugin_get_inner(ksp: raw::KSP, inner: *mut raw::KSP) -> c_int;
 }
 
@@ -48,6 +50,27 @@ pub extern "C" fn FetiFetiInitializePackage() -> c_int {
 pub unsafe extern "C" fn KSPFETIFETISetBody(ksp: raw::KSP, body: c_int) -> c_int {
     // SAFETY: handed on.
     unsafe { ff_plugin_set_body(ksp, body) }
+}
+
+/// Says which body each row of the operator belongs to, by an index set with one number for each row that this rank owns, such as
+/// MatPartitioningApply returns. A subdomain belongs to the body that most of its unknowns name.
+///
+/// # Safety
+/// `ksp` is a KSP, `bodies` an index set.
+#[no_mangle]
+pub unsafe extern "C" fn KSPFETIFETISetBodyIS(ksp: raw::KSP, bodies: raw::IS) -> c_int {
+    // SAFETY: handed on.
+    unsafe { ff_plugin_set_body_is(ksp, bodies) }
+}
+
+/// Says that a label of the mesh's cells (DMPlex) names the bodies: a rank's subdomain belongs to the value that most of its cells have.
+///
+/// # Safety
+/// `ksp` is a KSP, `name` a string.
+#[no_mangle]
+pub unsafe extern "C" fn KSPFETIFETISetBodyLabel(ksp: raw::KSP, name: *const c_char) -> c_int {
+    // SAFETY: handed on.
+    unsafe { ff_plugin_set_body_label(ksp, name) }
 }
 
 /// The KSP that iterates on the multipliers, after KSPSetUp.

@@ -5,7 +5,8 @@ use super::error::Kind;
 use super::nested::Given as GivenVector;
 use super::rows::Row;
 use super::stack::{fits, Local, Stack};
-use crate::embed::torn::{piece, spanned};
+use crate::embed::pieces::piece;
+use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Grouping, Outcome, Torn};
 use crate::feti::exchange::{gather_all, max_all};
 use crate::feti::halo::Halo;
@@ -236,6 +237,7 @@ impl Object {
             held: HashSet::new(),
             primal: HashSet::new(),
             rows: session.agree(self.given_rows())?,
+            named: None,
         };
         let (ghosts, halo) = torn.halo(session)?;
         torn.held = self.marked(&torn.layout, &self.held, &ghosts, &halo)?;

@@ -2,7 +2,7 @@
 
 use super::error::{status, UNFIT};
 use crate::embed::{Embedded, Grouping, Torn};
-use crate::petsc::{raw, Mat, Options, Session, Vec as PetscVec};
+use crate::petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result, Settings};
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void, CStr};
@@ -11,6 +11,7 @@ use std::ffi::{c_char, c_int, c_void, CStr};
 #[repr(C)]
 pub struct Wishes {
     body: c_int,
+    bodies: raw::IS,
     goal: f64,
     rtol: f64,
     abstol: f64,
@@ -85,8 +86,34 @@ fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
         0 => Grouping::Auto,
         n => Grouping::Number(n),
     };
-    let torn = Torn::from_matis(session, a, u64::try_from(wishes.body).ok())?;
+    let mut torn = Torn::from_matis(session, a, u64::try_from(wishes.body).ok())?;
+    if !wishes.bodies.is_null() {
+        torn.named = Some(numbers(
+            session,
+            &torn.layout,
+            &Is::share(wishes.bodies, session)?,
+        )?);
+    }
     Embedded::new(session, &torn, grouping, settings)
+}
+
+/// The entries of an index set, as long as this rank's part of the layout, as a vector.
+fn numbers(session: &Session, layout: &PetscVec, is: &Is) -> Result<PetscVec> {
+    let (found, wanted) = (is.indices()?, layout.local_len());
+    session.agree(if found.len() == wanted {
+        Ok(())
+    } else {
+        Err(Error::input(format!(
+            "the bodies' index set has {} entries on rank {}, expected one for each of the {wanted} rows of the operator there",
+            found.len(),
+            session.rank()
+        )))
+    })?;
+    let vector = layout.duplicate()?;
+    for (to, from) in vector.array_mut()?.iter_mut().zip(found) {
+        *to = f64::from(from);
+    }
+    Ok(vector)
 }
 
 /// Solves A x = b from zero. Collective.

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
+use super::pieces::Piece;
 use super::states::State;
-use super::torn::{Piece, Torn};
+use super::torn::Torn;
 use crate::sparse::Csr;
 use crate::{Error, Result};
 
@@ -35,7 +36,7 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
         symmetric(piece, states)?;
         let label = components(torn, piece, states);
         let n_parts = label.iter().flatten().max().map_or(0, |&l| l as usize + 1);
-        let touched = piece.dofs.iter().any(|dof| !states[dof].is_free());
+        let touched = piece.cut || piece.dofs.iter().any(|dof| !states[dof].is_free());
         // Place of each dof in its part.
         let mut place = vec![0; piece.dofs.len()];
         let mut made: Vec<Part> = (0..n_parts)

@@ -1,22 +1,11 @@
 //! What a host program hands over: matrices of subdomains, as yet without a shape.
 
+use super::pieces::{piece, pieces, Piece};
 use crate::feti::halo::Halo;
 use crate::petsc::{Attached, Mat, Session, Vec as PetscVec};
-use crate::sparse::Csr;
 use crate::substructures::RowKind;
 use crate::{Error, Result};
 use std::collections::HashSet;
-
-/// One subdomain matrix of the host.
-#[derive(Debug, Clone)]
-pub struct Piece {
-    /// Its rows and columns, exact zeros left out.
-    pub k: Csr,
-    /// Global number of each of its dofs, strictly increasing.
-    pub dofs: Vec<u32>,
-    /// The body that the host says it belongs to.
-    pub body: Option<u64>,
-}
 
 /// A row that the host adds: Σ coefficient · u(global dof) = or ≤ gap.
 #[derive(Debug, Clone)]
@@ -47,6 +36,8 @@ pub struct Torn {
     pub primal: HashSet<u32>,
     /// The rows that this rank gives besides.
     pub rows: Vec<GivenRow>,
+    /// The body of each global dof where the host names bodies by dofs: a subdomain belongs to the one that most of its dofs name.
+    pub named: Option<PetscVec>,
 }
 
 impl Torn {
@@ -63,8 +54,12 @@ impl Torn {
             )));
         }
         let (k, map) = session.agree(a.local_part())?;
-        let pieces = piece(&k, &map, body).into_iter().collect();
         let (layout, block_size) = (a.right_vec()?, a.block_size()?);
+        let pieces = if a.is_repeated()? {
+            pieces(&k, &map, block_size, body)
+        } else {
+            piece(&k, &map, body).into_iter().collect()
+        };
         Ok(Torn {
             n_global: rows,
             block_size,
@@ -74,6 +69,7 @@ impl Torn {
             held: HashSet::new(),
             primal: HashSet::new(),
             rows: Vec::new(),
+            named: None,
         })
     }
 
@@ -107,31 +103,6 @@ pub fn unassembled(a: &Mat) -> Result<()> {
         "the operator is of type {kind}, expected is (MATIS): an assembled matrix cannot be torn into subdomains without its elements; \
          assemble into a MATIS instead (-dm_mat_type is, or MatSetType(A, MATIS) before assembly)"
     )))
-}
-
-/// A local matrix by increasing global dofs: rows that stand for the same dof are added up (a periodic mesh on one rank has such),
-/// rows without a dof are left out; `None` for a rank without any.
-pub fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
-    let mut dofs: Vec<u32> = map.iter().filter(|&&g| g >= 0).map(|&g| g as u32).collect();
-    dofs.sort_unstable();
-    dofs.dedup();
-    if dofs.is_empty() {
-        return None;
-    }
-    let place =
-        |i: usize| u32::try_from(map[i]).map(|g| dofs.binary_search(&g).unwrap_or(0) as u32);
-    let mut triplets = Vec::with_capacity(k.nnz());
-    for i in 0..k.n() {
-        let Ok(row) = place(i) else { continue };
-        let (col, val) = k.row(i);
-        for (&j, &v) in col.iter().zip(val) {
-            if let (Ok(at), true) = (place(j as usize), v != 0.0) {
-                triplets.push((row, at, v));
-            }
-        }
-    }
-    let k = Csr::from_triplets(dofs.len(), &triplets);
-    Some(Piece { k, dofs, body })
 }
 
 /// The vectors of a null space, the constants among them.

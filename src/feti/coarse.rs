@@ -45,16 +45,25 @@ impl PrimalProblem {
         ksp.set_options_prefix(prefix)?;
         ksp.set_type("preonly")?;
         let pc = ksp.pc()?;
+        let options = Options::new(session, prefix);
+        let mut lent = Vec::new();
         if session.size() == 1 {
             pc.set_type("cholesky")?;
         } else {
+            // Every body's primal dofs are on one rank.
             pc.set_type("bjacobi")?;
-            let options = Options::new(session, prefix);
-            options.set_default("sub_ksp_type", "preonly")?;
-            options.set_default("sub_pc_type", "cholesky")?;
+            for (name, value) in [("sub_ksp_type", "preonly"), ("sub_pc_type", "cholesky")] {
+                if options.set_default(name, value)? {
+                    lent.push(name);
+                }
+            }
         }
         ksp.set_from_options()?;
         ksp.setup()?;
+        // The blocks have read theirs; a host's database is not ours to keep things in.
+        for name in lent {
+            options.clear_value(name)?;
+        }
         let halo = Halo::new(session, &rhs, &space.ghosts)?;
         Ok(PrimalProblem {
             parts: Some(Parts {

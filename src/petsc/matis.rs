@@ -99,6 +99,13 @@ impl Mat {
         Ok((csr?, rows))
     }
 
+    /// For a MATIS: whether its map may name a dof several times, once for each of several subdomains on this rank (MatISSetAllowRepeated).
+    pub fn is_repeated(&self) -> Result<bool> {
+        let mut repeated = 0;
+        petsc!(ff_is_repeated(self.raw(), &mut repeated))?;
+        Ok(repeated != 0)
+    }
+
     /// The rows of a sequential matrix of any type.
     fn to_csr(&self) -> Result<Csr> {
         let plain = if self.type_name()? == "seqaij" {

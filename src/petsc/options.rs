@@ -176,8 +176,8 @@ impl Options {
         petsc!(PetscOptionsSetValue(null_mut(), full.as_ptr(), value))
     }
 
-    /// Sets an option unless the user has.
-    pub fn set_default(&self, name: &str, value: &str) -> Result<()> {
+    /// Sets an option unless the user has; tells whether it did.
+    pub fn set_default(&self, name: &str, value: &str) -> Result<bool> {
         let full = c_string(&self.full_name(name));
         let mut set = Flag::of(false);
         // HasName asks without marking the option as used.
@@ -188,9 +188,10 @@ impl Options {
             &mut set
         ))?;
         if set.get() {
-            return Ok(());
+            return Ok(false);
         }
-        self.set_value(name, Some(value))
+        self.set_value(name, Some(value))?;
+        Ok(true)
     }
 
     /// Forgets an option.

@@ -28,13 +28,23 @@ fn pkg_config(args: &[&str]) -> Vec<String> {
     panic!("pkg-config does not know PETSc");
 }
 
+/// The first two numbers of PETSc's version.
+pub fn petsc_version() -> (u32, u32) {
+    let text = pkg_config(&["--modversion"]).join("");
+    let mut numbers = text.split('.').map(|n| n.parse().expect("a number"));
+    let mut next = || numbers.next().expect("a version has two numbers");
+    (next(), next())
+}
+
 /// Where PETSc's ksp tutorials lie (Debian: libpetsc3.18-dev-examples).
 fn tutorial(name: &str) -> PathBuf {
     let below = "share/petsc/examples/src/ksp/ksp/tutorials";
     let prefix = pkg_config(&["--variable=prefix"]).join(" ");
-    let places = [PathBuf::from(prefix), "/usr/share/petsc/3.18".into()];
-    let found = places.iter().map(|p| p.join(below).join(name));
-    let found = found.into_iter().find(|p| p.is_file());
+    let own =
+        std::env::var("PETSC_DIR").map(|dir| PathBuf::from(dir).join("src/ksp/ksp/tutorials"));
+    let installed = [PathBuf::from(prefix), "/usr/share/petsc/3.18".into()];
+    let places = own.into_iter().chain(installed.map(|p| p.join(below)));
+    let found = places.map(|p| p.join(name)).find(|p| p.is_file());
     found.unwrap_or_else(|| panic!("PETSc's example {name} is not installed: run scripts/setup.sh"))
 }
 
@@ -45,6 +55,40 @@ impl Program {
     /// One of PETSc's ksp tutorials.
     pub fn tutorial(scratch: &Scratch, name: &str) -> Program {
         Program::compile("mpicc", scratch, &tutorial(&format!("{name}.c")), &[])
+    }
+
+    /// One of PETSc's ksp tutorials with another build of PETSc: a folder below Debian's /usr/lib/petscdir, `*` for the machine.
+    pub fn tutorial_of(scratch: &Scratch, name: &str, build: &str) -> Program {
+        let (above, pattern) = build.split_once('/').expect("two folders");
+        let end = pattern.trim_start_matches('*');
+        let above = Path::new("/usr/lib/petscdir").join(above);
+        let entries = std::fs::read_dir(&above).into_iter().flatten().flatten();
+        let found = entries
+            .map(|e| e.path())
+            .find(|p| p.to_string_lossy().ends_with(end));
+        let dir = found.unwrap_or_else(|| panic!("{build} is not installed: run scripts/setup.sh"));
+        let flags = Command::new("pkg-config")
+            .args(["--cflags", "--libs"])
+            .args(
+                std::fs::read_dir(dir.join("lib/pkgconfig"))
+                    .into_iter()
+                    .flatten()
+                    .flatten()
+                    .map(|e| e.path())
+                    .take(1),
+            )
+            .output()
+            .expect("pkg-config runs");
+        assert!(
+            flags.status.success(),
+            "{build}: {}",
+            String::from_utf8_lossy(&flags.stderr)
+        );
+        let flags = String::from_utf8_lossy(&flags.stdout).into_owned();
+        let flags: Vec<String> = flags.split_whitespace().map(String::from).collect();
+        let source = Path::new("/usr/share/petsc/3.18/share/petsc/examples/src/ksp/ksp/tutorials")
+            .join(format!("{name}.c"));
+        Program::compile_with("mpicc", scratch, &source, &flags)
     }
 
     /// A source of ours, from tests/plugin.
@@ -94,13 +138,17 @@ impl Program {
     }
 
     fn compile(compiler: &str, scratch: &Scratch, source: &Path, more: &[String]) -> Program {
+        let all = [more, &pkg_config(&["--cflags", "--libs"])].concat();
+        Program::compile_with(compiler, scratch, source, &all)
+    }
+
+    fn compile_with(compiler: &str, scratch: &Scratch, source: &Path, more: &[String]) -> Program {
         let stem = source.file_stem().expect("a source has a name");
         let program = scratch.path(&stem.to_string_lossy());
         let out = Command::new(compiler)
             .args(["-O1", "-o", &program])
             .arg(source)
             .args(more)
-            .args(pkg_config(&["--cflags", "--libs"]))
             .args(["-llapack", "-lblas", "-lm"])
             .args((compiler == "mpif90").then_some("-ffree-line-length-0"))
             .current_dir(&scratch.0)

@@ -179,6 +179,58 @@ int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double 
   return (int)code;
 }
 
+/* ---- graphs and MATIS ---- */
+
+int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen, int *part, int *done)
+{
+  MatPartitioning partitioning;
+  Mat             graph;
+  IS              is;
+  const PetscInt *found;
+  PetscInt       *i, *j, *w, k;
+
+  *done = 0;
+#if !defined(PETSC_HAVE_PTSCOTCH)
+  if (!chosen) return 0;
+#endif
+  /* The matrix frees these. */
+  PetscCall(PetscMalloc1(n + 1, &i));
+  PetscCall(PetscMalloc1(row[n], &j));
+  PetscCall(PetscMalloc1(row[n], &w));
+  for (k = 0; k <= n; k++) i[k] = row[k];
+  for (k = 0; k < row[n]; k++) j[k] = col[k], w[k] = weight[k];
+  PetscCall(MatCreateMPIAdj(PETSC_COMM_SELF, n, n, i, j, w, &graph));
+  PetscCall(MatPartitioningCreate(PETSC_COMM_SELF, &partitioning));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)partitioning, prefix));
+  PetscCall(MatPartitioningSetAdjacency(partitioning, graph));
+  PetscCall(MatPartitioningSetNParts(partitioning, parts));
+  PetscCall(MatPartitioningSetUseEdgeWeights(partitioning, PETSC_TRUE));
+  if (!chosen) PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
+  PetscCall(MatPartitioningSetFromOptions(partitioning));
+  PetscCall(MatPartitioningApply(partitioning, &is));
+  PetscCall(ISGetIndices(is, &found));
+  for (k = 0; k < n; k++) part[k] = (int)found[k];
+  PetscCall(ISRestoreIndices(is, &found));
+  PetscCall(ISDestroy(&is));
+  PetscCall(MatPartitioningDestroy(&partitioning));
+  PetscCall(MatDestroy(&graph));
+  *done = 1;
+  return 0;
+}
+
+int ff_is_repeated(Mat mat, int *repeated)
+{
+  PetscBool flag = PETSC_FALSE;
+
+#if PETSC_VERSION_GE(3, 21, 0)
+  PetscCall(MatISGetAllowRepeated(mat, &flag));
+#else
+  (void)mat;
+#endif
+  *repeated = flag ? 1 : 0;
+  return 0;
+}
+
 /* ---- log, citations, printing ---- */
 
 int ff_event_begin(int event)

@@ -38,6 +38,13 @@ int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double 
 typedef void (*ff_trace)(int line, const char *function, const char *file, int code, int initial, const char *message);
 int ff_push_error_handler(ff_trace trace);
 
+/* part[i] of each vertex of a symmetric graph with edge weights in compressed rows, by MatPartitioning on this process alone; the options have this prefix.
+   Without the option -<prefix>mat_partitioning_type it is PT-Scotch, and `done` is 0 where PETSc has none. */
+int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen, int *part, int *done);
+
+/* Whether the local-to-global map of a MATIS may name a dof several times, once for each of several subdomains (PETSc 3.21 and later). */
+int ff_is_repeated(Mat mat, int *repeated);
+
 int ff_event_begin(int event);
 int ff_event_end(int event);
 int ff_citation(const char *text, int *set);

@@ -1,0 +1,165 @@
+//! Groups of subdomains where the host names none: a partition of their graph, whose edges are the dofs in common.
+//!
+//! The graph is small, one vertex for each subdomain, and known to all ranks: the first one partitions it, so that the groups do not depend on how
+//! subdomains are spread over ranks.
+
+use super::bodies::bodies;
+use super::hold::Bond;
+use crate::feti::exchange::sum_all;
+use crate::petsc::{partition as by_petsc, Options, Session};
+use crate::Result;
+
+/// `parts` groups of about equal size: by PETSc's MatPartitioning of the type that `-<prefix>mat_partitioning_type` names. Without this option there are three
+/// candidates, that of PT-Scotch (where PETSc has it) and two that are grown here; the one with the right number of connected groups and the least in common
+/// between them is taken, since long groups are held badly by their neighbours. Collective.
+///
+/// # Errors
+/// PETSc's own.
+pub fn partition(
+    session: &Session,
+    prefix: &str,
+    n: usize,
+    bonds: &[Bond],
+    parts: usize,
+) -> Result<Vec<u64>> {
+    let chosen = Options::new(session, prefix).has("mat_partitioning_type")?;
+    let found = if session.rank() == 0 && parts > 1 {
+        let (row, col, weight) = graph(n, bonds);
+        by_petsc(session, prefix, chosen, (&row, &col, &weight), parts)
+    } else {
+        Ok(None)
+    };
+    let found = session.agree(found)?;
+    let mut candidates = Vec::new();
+    candidates.extend(found);
+    if !chosen || parts == 1 {
+        candidates.extend([false, true].map(|rings| grown(n, bonds, parts, rings)));
+    }
+    let score = |group: &Vec<u64>| -> (usize, usize) {
+        let n_bodies = bodies(group, bonds).iter().max().map_or(0, |b| b + 1);
+        let cut = bonds.iter().filter(|b| group[b.low] != group[b.high]);
+        (n_bodies.abs_diff(parts), cut.map(|b| b.shared).sum())
+    };
+    let best = candidates.into_iter().min_by_key(score);
+    // The other ranks have candidates of their own, and take the first one's choice.
+    let mut words: Vec<f64> = match best {
+        Some(group) if session.rank() == 0 => group.iter().map(|&g| g as f64).collect(),
+        _ => vec![0.0; n],
+    };
+    sum_all(session.comm(), &mut words);
+    Ok(words.iter().map(|&g| g as u64).collect())
+}
+
+/// The bonds that hold as a symmetric graph in compressed rows, weighted by the number of common dofs.
+fn graph(n: usize, bonds: &[Bond]) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
+    let mut near: Vec<Vec<(i32, i32)>> = vec![Vec::new(); n];
+    for bond in bonds.iter().filter(|b| b.holds) {
+        near[bond.low].push((bond.high as i32, bond.shared as i32));
+        near[bond.high].push((bond.low as i32, bond.shared as i32));
+    }
+    let mut row = vec![0];
+    let (mut col, mut weight) = (Vec::new(), Vec::new());
+    for list in &mut near {
+        list.sort_unstable();
+        col.extend(list.iter().map(|l| l.0));
+        weight.extend(list.iter().map(|l| l.1));
+        row.push(col.len() as i32);
+    }
+    (row, col, weight)
+}
+
+/// Groups grown one after the other from a corner of what is left: by what has most in common with the group, or in rings around its first.
+fn grown(n: usize, bonds: &[Bond], parts: usize, rings: bool) -> Vec<u64> {
+    let mut near: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
+    for bond in bonds.iter().filter(|b| b.holds) {
+        near[bond.low].push((bond.high, bond.shared));
+        near[bond.high].push((bond.low, bond.shared));
+    }
+    let mut group = vec![u64::MAX; n];
+    for g in 0..parts {
+        let left = group.iter().filter(|&&x| x == u64::MAX).count();
+        let size = left.div_ceil(parts - g);
+        let mut pull = vec![0usize; n];
+        let mut steps = vec![usize::MAX; n];
+        for _ in 0..size {
+            let open = (0..n).filter(|&s| group[s] == u64::MAX);
+            // Reached at all, or a new start; the ring; many dofs in common with the group, few with the rest; the lowest number.
+            let rank = |&s: &usize| {
+                let free = near[s].iter().filter(|(t, _)| group[*t] == u64::MAX);
+                let rest: usize = free.map(|(_, w)| w).sum();
+                let ring = if rings { steps[s] } else { 0 };
+                let reached = steps[s] != usize::MAX;
+                (!reached, ring, rest as i64 - 2 * pull[s] as i64, s)
+            };
+            let Some(s) = open.min_by_key(rank) else {
+                break;
+            };
+            group[s] = g as u64;
+            let next = if steps[s] == usize::MAX {
+                1
+            } else {
+                steps[s] + 1
+            };
+            for &(t, weight) in &near[s] {
+                pull[t] += weight;
+                steps[t] = steps[t].min(next);
+            }
+        }
+    }
+    group
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::petsc::testing::with_session;
+
+    /// Bonds of a w × h grid of subdomains: 9 dofs along sides, 1 at corners.
+    fn grid(w: usize, h: usize) -> Vec<Bond> {
+        let mut bonds = Vec::new();
+        for low in 0..w * h {
+            for high in low + 1..w * h {
+                let (dx, dy) = ((low % w).abs_diff(high % w), high / w - low / w);
+                if dx <= 1 && dy <= 1 {
+                    bonds.push(Bond {
+                        low,
+                        high,
+                        shared: if dx + dy == 1 { 9 } else { 1 },
+                        holds: true,
+                    });
+                }
+            }
+        }
+        bonds
+    }
+
+    fn parted(n: usize, bonds: &[Bond], parts: usize) -> Vec<u64> {
+        let bonds = bonds.to_vec();
+        with_session(move |session| partition(session, "part_", n, &bonds, parts).unwrap())
+    }
+
+    #[test]
+    fn groups_are_equal_and_connected() {
+        for (w, h, parts) in [(4, 4, 2), (4, 4, 4), (6, 4, 3), (3, 3, 2), (5, 1, 2)] {
+            let group = parted(w * h, &grid(w, h), parts);
+            let body = bodies(&group, &grid(w, h));
+            assert_eq!(body.iter().max().unwrap() + 1, parts, "{group:?}");
+            for b in 0..parts {
+                let size = body.iter().filter(|&&x| x == b).count();
+                assert!(size == w * h / parts || size == (w * h).div_ceil(parts));
+            }
+        }
+    }
+
+    #[test]
+    fn groups_are_round() {
+        // Also where corners hold nothing, as in elasticity.
+        let mut bonds = grid(4, 4);
+        bonds.iter_mut().for_each(|b| b.holds = b.shared > 1);
+        let group = parted(16, &bonds, 4);
+        let block = |s: usize| s % 4 / 2 + 2 * (s / 8);
+        for (s, t) in (0..16).flat_map(|s| (0..16).map(move |t| (s, t))) {
+            assert_eq!(group[s] == group[t], block(s) == block(t), "{group:?}");
+        }
+    }
+}

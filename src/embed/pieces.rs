@@ -1,0 +1,159 @@
+//! Local matrices as the host stores them, and the subdomain matrices in them.
+
+use crate::sparse::Csr;
+use std::collections::HashMap;
+
+/// One subdomain matrix of the host.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// Its rows and columns, exact zeros left out.
+    pub k: Csr,
+    /// Global number of each of its dofs, strictly increasing.
+    pub dofs: Vec<u32>,
+    /// The body that the host says it belongs to.
+    pub body: Option<u64>,
+    /// Whether known dofs may have been cut off it: then its matrix need not map rigid motions to zero.
+    pub cut: bool,
+}
+
+/// A local matrix by increasing global dofs: rows that stand for the same dof are added up (a periodic mesh on one rank has such),
+/// rows without a dof are left out; `None` for a rank without any.
+pub fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
+    let mut dofs: Vec<u32> = map.iter().filter(|&&g| g >= 0).map(|&g| g as u32).collect();
+    dofs.sort_unstable();
+    dofs.dedup();
+    if dofs.is_empty() {
+        return None;
+    }
+    let place =
+        |i: usize| u32::try_from(map[i]).map(|g| dofs.binary_search(&g).unwrap_or(0) as u32);
+    let mut triplets = Vec::with_capacity(k.nnz());
+    for i in 0..k.n() {
+        let Ok(row) = place(i) else { continue };
+        let (col, val) = k.row(i);
+        for (&j, &v) in col.iter().zip(val) {
+            if let (Ok(at), true) = (place(j as usize), v != 0.0) {
+                triplets.push((row, at, v));
+            }
+        }
+    }
+    let k = Csr::from_triplets(dofs.len(), &triplets);
+    Some(Piece {
+        k,
+        dofs,
+        body,
+        cut: false,
+    })
+}
+
+/// The pieces of a local matrix whose map may name a dof several times, once for each subdomain that has it: the connected parts of the matrix, whose
+/// `block_size` consecutive rows belong together. Rows that are coupled with nothing (boundary conditions) can be of any of them and make a piece of their own.
+pub fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Piece> {
+    let n = k.n();
+    let node = |i: usize| i / block_size;
+    let alone = |i: usize| {
+        let (col, val) = k.row(i);
+        col.iter()
+            .zip(val)
+            .all(|(&j, &v)| j as usize == i || v == 0.0)
+    };
+    let mut label: Vec<Option<usize>> = vec![None; n];
+    let mut n_parts = 0;
+    for start in 0..n {
+        if label[start].is_some() || alone(start) {
+            continue;
+        }
+        label[start] = Some(n_parts);
+        let mut stack = vec![start];
+        while let Some(i) = stack.pop() {
+            let (col, val) = k.row(i);
+            let coupled = col.iter().zip(val).filter(|(_, v)| **v != 0.0);
+            let first = node(i) * block_size;
+            let siblings = (first..(first + block_size).min(n)).filter(|&j| !alone(j));
+            for j in coupled.map(|(&j, _)| j as usize).chain(siblings) {
+                if label[j].is_none() {
+                    label[j] = Some(n_parts);
+                    stack.push(j);
+                }
+            }
+        }
+        n_parts += 1;
+    }
+    // Rows that are alone come last, together.
+    let loose = label.iter().any(Option::is_none);
+    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); n_parts + usize::from(loose)];
+    for (i, l) in label.iter().enumerate() {
+        rows[l.unwrap_or(n_parts)].push(i);
+    }
+    let mut out = Vec::new();
+    for rows in rows {
+        let mut place = HashMap::new();
+        for (new, &i) in rows.iter().enumerate() {
+            place.insert(i as u32, new as u32);
+        }
+        let mut triplets = Vec::new();
+        for (new, &i) in rows.iter().enumerate() {
+            let (col, val) = k.row(i);
+            for (j, &v) in col.iter().zip(val) {
+                if let Some(&to) = place.get(j) {
+                    triplets.push((new as u32, to, v));
+                }
+            }
+        }
+        let part = Csr::from_triplets(rows.len(), &triplets);
+        let dofs: Vec<i32> = rows.iter().map(|&i| map[i]).collect();
+        out.extend(piece(&part, &dofs, body).map(|p| Piece { cut: loose, ..p }));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Springs of stiffness one between rows, two components a node: the first rows of the nodes are coupled, and so are the second ones.
+    fn springs(n: usize, pairs: &[(u32, u32)]) -> Csr {
+        let mut triplets = Vec::new();
+        for &(a, b) in pairs {
+            triplets.extend([(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)]);
+        }
+        Csr::from_triplets(n, &triplets)
+    }
+
+    #[test]
+    fn two_bars_that_share_an_end() {
+        // Rows 0, 1 | 2, 3: the dofs 5, 6 | 6, 7.
+        let k = springs(4, &[(0, 1), (2, 3)]);
+        let out = pieces(&k, &[5, 6, 6, 7], 1, Some(2));
+        assert_eq!(out.len(), 2);
+        assert_eq!(
+            (&out[0].dofs[..], &out[1].dofs[..]),
+            (&[5, 6][..], &[6, 7][..])
+        );
+        assert!(out
+            .iter()
+            .all(|p| p.k.get(1, 1) == 1.0 && !p.cut && p.body == Some(2)));
+        // Without repetition they are one piece, and the shared end has both stiffnesses.
+        let whole = piece(&k, &[5, 6, 6, 7], None).unwrap();
+        assert_eq!(whole.k.get(1, 1), 2.0);
+    }
+
+    #[test]
+    fn components_of_a_node_are_in_one_piece() {
+        // Two nodes of two components; the components are not coupled by the matrix.
+        let k = springs(4, &[(0, 2), (1, 3)]);
+        assert_eq!(pieces(&k, &[0, 1, 2, 3], 2, None).len(), 1);
+        assert_eq!(pieces(&k, &[0, 1, 2, 3], 1, None).len(), 2);
+    }
+
+    #[test]
+    fn rows_that_are_alone_are_a_piece_of_their_own() {
+        let mut triplets = vec![(0, 0, 3.0), (3, 3, 4.0)];
+        triplets.extend([(1, 1, 1.0), (2, 2, 1.0), (1, 2, -1.0), (2, 1, -1.0)]);
+        let out = pieces(&Csr::from_triplets(4, &triplets), &[8, 9, 4, 8], 1, None);
+        assert_eq!(out.len(), 2);
+        assert!(out.iter().all(|p| p.cut));
+        assert_eq!(out[0].dofs, [4, 9]);
+        assert_eq!((&out[1].dofs[..], out[1].k.get(0, 0)), (&[8][..], 7.0));
+    }
+}

@@ -1,0 +1,164 @@
+//! Global vectors to subdomains and back: loads torn apart, known dofs, solutions put together.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::parts::Part;
+use super::states::State;
+use super::torn::Torn;
+use crate::feti::halo::Halo;
+use crate::petsc::Session;
+use crate::{Error, Result};
+
+/// A subdomain's share in global vectors.
+struct Share {
+    /// Place of each local dof among the ghosts.
+    ghost: Vec<u32>,
+    /// Part of the load that each copy gets, and of the solution that it gives; copies add up to one.
+    weight: Vec<f64>,
+    /// (local dof, ghost, value) of the columns of known dofs.
+    known: Vec<(u32, u32, f64)>,
+}
+
+/// A dof that its own row or the host determines.
+struct Fixed {
+    ghost: u32,
+    dof: u32,
+    /// The row's diagonal over all copies; 0 for an empty row.
+    diagonal: f64,
+    /// This rank's part of the value.
+    weight: f64,
+    /// Held by the host, whatever the row says.
+    held: bool,
+}
+
+/// The shares of this rank's subdomains, and the known dofs of its pieces.
+pub struct Shares {
+    n_ghosts: usize,
+    shares: Vec<Share>,
+    fixed: Vec<Fixed>,
+}
+
+/// Values of known dofs, by ghost.
+pub type Values = HashMap<u32, f64>;
+
+impl Shares {
+    /// Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn new(
+        session: &Session,
+        torn: &Torn,
+        parts: &[Part],
+        states: &HashMap<u32, State>,
+        (ghosts, halo): (&[u32], &Halo),
+    ) -> Result<Shares> {
+        let place = |dof: &u32| ghosts.binary_search(dof).expect("all dofs are ghosts") as u32;
+        let share = |part: &Part| Share {
+            ghost: part.dofs.iter().map(place).collect(),
+            weight: (0..part.k.n())
+                .map(|i| part.k.get(i, i) / states[&part.dofs[i]].diagonal())
+                .collect(),
+            known: part
+                .known
+                .iter()
+                .map(|(i, dof, v)| (*i, place(dof), *v))
+                .collect(),
+        };
+        // This rank's part of the diagonal of every known dof.
+        let mut found: BTreeMap<u32, f64> = BTreeMap::new();
+        for piece in &torn.pieces {
+            for (i, &dof) in piece.dofs.iter().enumerate() {
+                if !states[&dof].is_free() {
+                    *found.entry(dof).or_default() += piece.k.get(i, i);
+                }
+            }
+        }
+        // Where the diagonal is zero, all ranks that have the dof give the same part of it.
+        let mut ranks = vec![0.0; ghosts.len()];
+        found
+            .keys()
+            .for_each(|dof| ranks[place(dof) as usize] = 1.0);
+        let counted = torn.layout.duplicate()?;
+        halo.sum(&ranks, &counted)?;
+        halo.fetch(&counted, &mut ranks)?;
+        let fixed = |(dof, mine): (u32, f64)| {
+            let (ghost, diagonal) = (place(&dof), states[&dof].diagonal());
+            Fixed {
+                ghost,
+                dof,
+                diagonal,
+                weight: if diagonal == 0.0 {
+                    1.0 / ranks[ghost as usize]
+                } else {
+                    mine / diagonal
+                },
+                held: torn.held.contains(&dof),
+            }
+        };
+        let shares = Shares {
+            n_ghosts: ghosts.len(),
+            shares: parts.iter().map(share).collect(),
+            fixed: found.into_iter().map(fixed).collect(),
+        };
+        session.agree(Ok(shares))
+    }
+
+    /// Values of the known dofs for a load and the values that the host gives, both by ghost.
+    ///
+    /// # Errors
+    /// A load on an empty row.
+    pub fn known(&self, load: &[f64], given: &[f64]) -> Result<Values> {
+        let value = |fixed: &Fixed| {
+            let b = load[fixed.ghost as usize];
+            if fixed.held {
+                Ok(given[fixed.ghost as usize])
+            } else if fixed.diagonal != 0.0 {
+                Ok(b / fixed.diagonal)
+            } else if b == 0.0 {
+                Ok(0.0)
+            } else {
+                Err(Error::input(format!(
+                    "row {} of the operator is empty but the right-hand side has {b} there, expected zero",
+                    fixed.dof
+                )))
+            }
+        };
+        let pair = |fixed: &Fixed| Ok((fixed.ghost, value(fixed)?));
+        self.fixed.iter().map(pair).collect()
+    }
+
+    /// The values of the known dofs by global number.
+    pub fn by_dof(&self, values: &Values) -> HashMap<u32, f64> {
+        let pair = |fixed: &Fixed| (fixed.dof, values[&fixed.ghost]);
+        self.fixed.iter().map(pair).collect()
+    }
+
+    /// The load of every subdomain.
+    pub fn loads(&self, load: &[f64], values: &Values) -> Vec<Vec<f64>> {
+        let torn = |share: &Share| {
+            let terms = share.ghost.iter().zip(&share.weight);
+            let mut f: Vec<f64> = terms.map(|(&g, w)| w * load[g as usize]).collect();
+            for &(i, g, v) in &share.known {
+                f[i as usize] -= v * values.get(&g).copied().unwrap_or(0.0);
+            }
+            f
+        };
+        self.shares.iter().map(torn).collect()
+    }
+
+    /// This rank's part of the solution by ghost, from displacements of its subdomains; where bodies still differ by what the tolerance
+    /// allows, the stiffer copy counts for more.
+    pub fn together(&self, u: &[Vec<f64>], values: &Values) -> Vec<f64> {
+        let mut ghost = vec![0.0; self.n_ghosts];
+        for (share, u) in self.shares.iter().zip(u) {
+            for ((&g, w), u) in share.ghost.iter().zip(&share.weight).zip(u) {
+                ghost[g as usize] += w * u;
+            }
+        }
+        for fixed in &self.fixed {
+            ghost[fixed.ghost as usize] += fixed.weight * values[&fixed.ghost];
+        }
+        ghost
+    }
+}

@@ -1,0 +1,53 @@
+//! Subdomains of [`Substructures`](crate::Substructures) from parts, their classes and what holds them.
+
+use super::classes::Class;
+use super::hold::Shape;
+use super::kernels::Columns;
+use super::parts::Part;
+use super::rows::body_dof;
+use crate::substructures::{Entity, EntityKind, Subdomain};
+use std::collections::BTreeSet;
+
+/// What is known of a part besides its matrix.
+pub struct Known<'a> {
+    /// Its number among all subdomains.
+    pub index: usize,
+    /// Motions that cost no energy.
+    pub near_kernel: Option<Columns>,
+    /// Vertices, edges and faces.
+    pub classes: &'a [Class],
+    /// Pairs of subdomains whose common faces are averaged like edges.
+    pub averaged: &'a BTreeSet<(u32, u32)>,
+    /// Local dofs that are primal besides the vertices.
+    pub nodes: &'a BTreeSet<u32>,
+}
+
+/// The subdomain, without a load; `n_global` is the number of global dofs.
+pub fn subdomain(n_global: usize, part: &Part, shape: &Shape, known: Known) -> Subdomain {
+    let body = shape.body_of[known.index];
+    let (vertices, others): (Vec<&Class>, Vec<&Class>) =
+        known.classes.iter().partition(|c| c.is_vertex());
+    let vertices = vertices.iter().flat_map(|c| &c.dofs);
+    let primal: BTreeSet<u32> = vertices.chain(known.nodes).copied().collect();
+    let entity = |c: &&Class| Entity {
+        kind: match c.sharers[..] {
+            [a, b] if known.averaged.contains(&(a, b)) => EntityKind::Edge,
+            _ => c.kind(shape.space),
+        },
+        key: body_dof(n_global, body, c.root),
+        dofs: c.dofs.clone(),
+    };
+    let number = |&dof: &u32| body_dof(n_global, body, dof);
+    Subdomain {
+        index: known.index,
+        body,
+        f: vec![0.0; part.dofs.len()],
+        dofs: part.dofs.iter().map(number).collect(),
+        rho: (0..part.k.n()).map(|i| part.k.get(i, i)).collect(),
+        k: part.k.clone(),
+        primal: primal.into_iter().collect(),
+        entities: others.iter().map(entity).collect(),
+        near_kernel: known.near_kernel,
+        coordinates: None,
+    }
+}
