@@ -116,6 +116,14 @@ module fetifeti
       real(c_double), intent(in) :: b(*), gap(*)
       integer(c_int) :: ierr
     end function
+    function FetiFetiSetContactPairs(ff, a, first, b, second, gap, kind) bind(C, name="FetiFetiSetContactPairs") result(ierr)
+      import :: c_int, c_ptr, c_double, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_int), value :: a, b, kind
+      integer(c_intptr_t), value :: first, second
+      real(c_double), intent(in), optional :: gap(*)
+      integer(c_int) :: ierr
+    end function
     function FetiFetiSetUp(ff) bind(C, name="FetiFetiSetUp") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff

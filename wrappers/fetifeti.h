@@ -18,12 +18,14 @@
    All unknowns of all bodies have numbers in one numbering, that of the entries of the right-hand side and the solution. Two subdomains of one body
    share an unknown when both list its number. Two of different bodies that do so are tied: one-level FETI between them.
 
-.seealso: `FetiFetiCreate()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactRows()`, `FetiFetiSolve()`
+   Matrices that were assembled body by body need no common numbers: see FetiFetiAddMatIS().
+
+.seealso: `FetiFetiCreate()`, `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactPairs()`, `FetiFetiSetContactRows()`, `FetiFetiSolve()`
 S*/
 typedef struct _p_FetiFeti *FetiFeti;
 
 /*E
-   FetiFetiRowKind - How a row of FetiFetiSetContactRows() holds
+   FetiFetiRowKind - How a row of FetiFetiSetContactRows() or FetiFetiSetContactPairs() holds
 
    Level: beginner
 
@@ -31,7 +33,7 @@ typedef struct _p_FetiFeti *FetiFeti;
 +  FETIFETI_EQUALITY   - (B u)_r = gap_r
 -  FETIFETI_INEQUALITY - (B u)_r <= gap_r, with a multiplier that is not negative
 
-.seealso: `FetiFetiSetContactRows()`
+.seealso: `FetiFetiSetContactRows()`, `FetiFetiSetContactPairs()`
 E*/
 #define FETIFETI_EQUALITY   0
 #define FETIFETI_INEQUALITY 1
@@ -225,6 +227,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetFromOptions(FetiFeti ff);
 +  ff     - the solver
 -  viewer - an ASCII viewer; NULL: the standard output of the first rank
 
+   Options Database Key:
+.  -fetifeti_view - does this at the end of FetiFetiSetUp(), after FetiFetiSetFromOptions()
+
    Level: beginner
 
 .seealso: `FetiFetiSetFromOptions()`
@@ -244,8 +249,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiView(FetiFeti ff, PetscViewer viewer);
    Level: beginner
 
    Note:
-   Without this function the layout is that of the matrix of FetiFetiSetMatIS(), else the one that PETSC_DECIDE gives for one more than
-   the highest number of an unknown in a subdomain.
+   Without this function the layout is that of the matrix of FetiFetiSetMatIS(), or that of all matrices of FetiFetiAddMatIS() without numbers, one after the
+   other on each rank; else the one that PETSC_DECIDE gives for one more than the highest number of an unknown in a subdomain.
 
 .seealso: `FetiFetiAddSubdomain()`, `FetiFetiSetBlockSize()`
 @*/
@@ -258,7 +263,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetSizes(FetiFeti ff, PetscInt n, PetscInt N
 
    Input Parameters:
 +  ff - the solver
--  bs - the block size; 1 unless a MATIS says otherwise
+-  bs - the block size; without this function that of the MATIS, or 1
 
    Level: beginner
 
@@ -310,30 +315,40 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddSubdomain(FetiFeti ff, PetscInt body, Pet
    Level: beginner
 
    Note:
-   The layout of vectors, the block size and the near-null space come from the matrix, too. Entries are copied: after a change of the matrix call this again.
+   The layout of vectors, the block size and the motions (the near-null space, else the null space) come from the matrix, too. Entries are copied: after a change of
+   the matrix call this again.
 
 .seealso: `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetMatIS(FetiFeti ff, Mat A, PetscInt body);
 
 /*@
-   FetiFetiAddMatIS - Adds the local matrices of a MATIS of one body of several that were discretised by themselves
+   FetiFetiAddMatIS - Adds the matrix of one body of several that were discretised by themselves
 
    Collective
 
    Input Parameters:
 +  ff      - the solver
-.  A       - the matrix of the body
-.  numbers - for each row of A that this rank owns, its number among the unknowns of all bodies, as DMCompositeGetGlobalISs() gives them. NULL: that in A
--  body    - number of the body
+.  A       - the matrix of the body, of type MATIS
+.  numbers - NULL: the matrices are numbered one after the other; else for each row of A that this rank owns its number among the unknowns of all bodies
+-  body    - number of the body, or PETSC_DECIDE for all matrices
 
    Level: beginner
 
-   Note:
-   With other numbers the near-null space of A is not looked at: its vectors belong to another numbering. Give one by FetiFetiSetNearNullSpace() or
-   FetiFetiSetCoordinates().
+   Notes:
+   Without numbers the unknowns on each rank are its rows of the first matrix, then those of the second, and so on, as DMComposite and nested matrices
+   number them. FetiFetiSolve() takes vectors of type VECNEST with a part for each matrix. No other function for sizes is needed. The motions of a body that cost no
+   energy are those of MatSetNearNullSpace() on its matrix, else of MatSetNullSpace(); where one matrix has neither, the motions of all are found from the matrices, or
+   from FetiFetiSetCoordinates().
 
-.seealso: `FetiFetiSetMatIS()`, `FetiFetiAddSubdomain()`
+   With numbers (as DMCompositeGetGlobalISs() gives them) null spaces of A are not looked at: their vectors belong to another numbering. Give motions by
+   FetiFetiSetNearNullSpace() or FetiFetiSetCoordinates().
+
+   All matrices of a solver are added in one of the two ways, and FetiFetiAddSubdomain() and FetiFetiSetMatIS() go together with numbers only.
+
+   Entries are copied: after a change of a matrix call FetiFetiReset() and add all again.
+
+.seealso: `FetiFetiSetMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactPairs()`, `FetiFetiSolve()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiAddMatIS(FetiFeti ff, Mat A, IS numbers, PetscInt body);
 
@@ -344,7 +359,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddMatIS(FetiFeti ff, Mat A, IS numbers, Pet
 
    Input Parameters:
 +  ff    - the solver
--  space - rigid body motions, in the layout of the solution; NULL: none
+-  space - rigid body motions, vectors as FetiFetiSolve() takes them; NULL: those of the matrices, if they have some
 
    Level: intermediate
 
@@ -383,7 +398,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetCoordinates(FetiFeti ff, PetscInt dim, Pe
    Input Parameters:
 +  ff     - the solver
 .  dofs   - unknowns, listed by any rank, also by several; NULL: none
--  values - has their values, in the layout of the solution; NULL: zero
+-  values - has their values, a vector as FetiFetiSolve() takes it; NULL: zero
 
    Level: beginner
 
@@ -450,9 +465,44 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetPrimalDofs(FetiFeti ff, IS dofs);
 
    Terms at held unknowns go to the right-hand side. A row all of whose unknowns are held has no effect, and a multiplier of zero.
 
-.seealso: `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
+   Rows of FetiFetiSetContactPairs() stay.
+
+.seealso: `FetiFetiSetContactPairs()`, `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, const PetscInt ia[], const PetscInt ja[], const PetscScalar b[], const PetscReal gap[], const PetscInt kind[]);
+
+/*@
+   FetiFetiSetContactPairs - Gives rows u_first - u_second <= gap, or = gap, for pairs of unknowns that face each other
+
+   Collective
+
+   Input Parameters:
++  ff     - the solver
+.  a      - the matrix whose unknowns `first` lists, 0 for the first one of FetiFetiAddMatIS(); PETSC_DECIDE: numbers among the unknowns of all bodies
+.  first  - unknowns; NULL together with `second`: forgets all pairs that were given before
+.  b      - the matrix whose unknowns `second` lists, or PETSC_DECIDE
+.  second - unknowns, as many on each rank as in `first`
+.  gap    - right-hand sides, one for each pair of this rank; NULL: zero
+-  kind   - FETIFETI_EQUALITY or FETIFETI_INEQUALITY
+
+   Level: beginner
+
+   Notes:
+   May be called several times: pairs are added to the rows that were given before. Entry r of the one index set on this rank belongs to entry r of the other. They may
+   name unknowns of other ranks; each pair is given by one rank. Matrices are those that were added without numbers so far, or the one of FetiFetiSetMatIS().
+
+   Two sides of DMDAs, here of one unknown in every node, first in the numbering of the grid:
+.vb
+   ISCreateStride(comm, rank ? 0 : m, first, step, &side);
+   DMDAGetAO(da, &ao);
+   AOApplicationToPetscIS(ao, side);
+.ve
+
+   Where normals have several components use FetiFetiSetContactRows().
+
+.seealso: `FetiFetiAddMatIS()`, `FetiFetiSetContactRows()`, `FetiFetiGetMultipliers()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactPairs(FetiFeti ff, PetscInt a, IS first, PetscInt b, IS second, const PetscReal gap[], PetscInt kind);
 
 /*@
    FetiFetiSetUp - Finds bodies, interfaces and constraints, and factors
@@ -483,9 +533,16 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetUp(FetiFeti ff);
    Output Parameter:
 .  x - the solution; what it was before does not matter
 
+   Options Database Keys:
++  -fetifeti_ksp_rtol <r>                      - relative tolerance of the iteration, and all other options of a KSP
+.  -fetifeti_ksp_monitor                       - show the residuals
+-  -fetifeti_contact_type <active_set, smalbe> - the contact loop; see docs/options.md for this and the rest
+
    Level: beginner
 
    Notes:
+   With matrices of FetiFetiAddMatIS() without numbers vectors may be of type VECNEST, with a part for each matrix.
+
    A solve that follows another one with inequalities starts from its multipliers. An iteration that stops early is no error: ask
    FetiFetiGetConvergedReason(). Rows that contradict each other, or a body that the load pushes away for ever, are.
 
@@ -587,14 +644,14 @@ PETSC_EXTERN PetscErrorCode FetiFetiGetKKT(FetiFeti ff, PetscReal kkt[4]);
 
    Input Parameters:
 +  ff - the solver
--  n  - how many, as in FetiFetiSetContactRows()
+-  n  - how many rows this rank gave, by FetiFetiSetContactRows() and FetiFetiSetContactPairs()
 
    Output Parameter:
-.  lambda - the multipliers, in the order of the rows: K u + B'lambda = f
+.  lambda - the multipliers, in the order in which the rows were given: K u + B'lambda = f
 
    Level: beginner
 
-.seealso: `FetiFetiSetContactRows()`
+.seealso: `FetiFetiSetContactRows()`, `FetiFetiSetContactPairs()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiGetMultipliers(FetiFeti ff, PetscInt n, PetscReal lambda[]);
 

@@ -9,13 +9,13 @@ program bars
   real(c_double), parameter :: d = 1.0d0, g = 0.25d0
   type(c_ptr) :: ff
   Vec :: b, x, held
-  IS :: dofs
+  IS :: dofs, first, second
   PetscErrorCode :: ierr
   PetscMPIInt :: rank, ranks
-  PetscInt :: nall, none, ends(2), last(1)
+  PetscInt :: nall, none, ends(2), last(1), step
   PetscScalar :: value(1)
-  integer(c_int) :: s, i, nnz, ia(length + 2), ja(3 * length + 1), global(length + 1), reason, rows, kind(1)
-  real(c_double) :: a(3 * length + 1), gap(1), lambda(1)
+  integer(c_int) :: s, i, nnz, ia(length + 2), ja(3 * length + 1), global(length + 1), reason, rows
+  real(c_double) :: a(3 * length + 1), lambda(2)
 
   PetscCallA(PetscInitialize(ierr))
   call MPI_Comm_rank(PETSC_COMM_WORLD, rank, ierr)
@@ -50,18 +50,23 @@ program bars
   PetscCallA(ISCreateGeneral(PETSC_COMM_WORLD, none, ends, PETSC_COPY_VALUES, dofs, ierr))
   ierr = FetiFetiSetDirichletBoundaries(ff, dofs%v, held%v); CHKERRA(ierr)
   rows = merge(1, 0, rank == 0)
-  gap = g
-  kind = FETIFETI_INEQUALITY
-  ierr = FetiFetiSetContactRows(ff, rows, [0, 2], [n, n + 1], [1.0d0, -1.0d0], gap, kind); CHKERRA(ierr)
+  step = 1 ! u_n - u_{n+1} <= g, by the numbers of all unknowns
+  PetscCallA(ISCreateStride(PETSC_COMM_WORLD, rows, n, step, first, ierr))
+  PetscCallA(ISCreateStride(PETSC_COMM_WORLD, rows, n + 1, step, second, ierr))
+  ierr = FetiFetiSetContactPairs(ff, PETSC_DECIDE, first%v, PETSC_DECIDE, second%v, [g], FETIFETI_INEQUALITY); CHKERRA(ierr)
+  ! An obstacle that is never reached: -u_n <= d.
+  ierr = FetiFetiSetContactRows(ff, rows, [0, 1], [n], [-1.0d0], [d], [FETIFETI_INEQUALITY]); CHKERRA(ierr)
   ierr = FetiFetiSolve(ff, b%v, x%v); CHKERRA(ierr)
   ierr = FetiFetiGetConvergedReason(ff, reason); CHKERRA(ierr)
-  ierr = FetiFetiGetMultipliers(ff, rows, lambda); CHKERRA(ierr)
-  if (rank == 0) print '(a,i3,a,f12.8,a,f12.8)', 'reason', reason, ' force ', lambda, ' exact ', (d - g) / (2 * n)
+  ierr = FetiFetiGetMultipliers(ff, 2 * rows, lambda); CHKERRA(ierr)
+  if (rank == 0) print '(a,i3,3(a,f12.8))', 'reason', reason, ' force ', lambda(1), ' obstacle ', lambda(2), ' exact ', (d - g) / (2 * n)
   ierr = FetiFetiDestroy(ff); CHKERRA(ierr)
   PetscCallA(VecDestroy(b, ierr))
   PetscCallA(VecDestroy(x, ierr))
   PetscCallA(VecDestroy(held, ierr))
   PetscCallA(ISDestroy(dofs, ierr))
+  PetscCallA(ISDestroy(first, ierr))
+  PetscCallA(ISDestroy(second, ierr))
   PetscCallA(PetscFinalize(ierr))
 contains
   subroutine entry(column, v)

@@ -10,8 +10,7 @@ static const char help[] = "An elastic block under a press, or two of them in co
 
 #include <petscdmda.h>
 #include <petscksp.h>
-#include <petscdmcomposite.h> /* contact */
-#include "fetifeti.h"         /* contact */
+#include "fetifeti.h" /* contact */
 
 /* Stiffness of a bilinear square under plane stress, E = 1, nu = 0.3; nodes anticlockwise from the lower left. */
 static void Stiffness(PetscScalar k[64])
@@ -55,6 +54,8 @@ static PetscErrorCode Block(PetscInt m, DM *da)
 /* Its matrix and load; the bottom is held and the top pressed where that is wanted. */
 static PetscErrorCode Assemble(DM da, PetscInt m, PetscBool hold, PetscBool press, Mat *A, Vec *b)
 {
+  Vec             places;
+  MatNullSpace    motions;
   PetscScalar     ke[64], ***load;
   const PetscInt *e;
   PetscInt        n, nodes, i, j, k, xs, ys, xm, ym, held = 0;
@@ -73,6 +74,10 @@ static PetscErrorCode Assemble(DM da, PetscInt m, PetscBool hold, PetscBool pres
   PetscCall(DMDARestoreElements(da, &n, &nodes, &e));
   PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(DMGetCoordinates(da, &places));
+  PetscCall(MatNullSpaceCreateRigidBody(places, &motions));
+  PetscCall(MatSetNearNullSpace(*A, motions));
+  PetscCall(MatNullSpaceDestroy(&motions));
   PetscCall(DMCreateGlobalVector(da, b));
   PetscCall(DMDAGetCorners(da, &xs, &ys, NULL, &xm, &ym, NULL));
   PetscCall(PetscMalloc1(xm + ym, &rows));
@@ -90,84 +95,66 @@ static PetscErrorCode Assemble(DM da, PetscInt m, PetscBool hold, PetscBool pres
   PetscFunctionReturn(0);
 }
 
-/* contact */
-/* The number of node (i, j)'s vertical displacement of body k among the unknowns of both. */
-static PetscErrorCode Number(AO ao[2], Vec part[2], Vec all, PetscInt k, PetscInt m, PetscInt i, PetscInt j, PetscInt *dof)
+/* How far u and the multipliers of the pairs are from the solution, by the host's own matrices: this proves that it is one, as the problem is convex. */
+static PetscErrorCode Judge(Mat A[2], Vec b[2], Vec u[2], IS side[2], PetscInt n, const PetscReal gap[], const PetscReal lambda[])
 {
-  const PetscInt *first[2], *whole;
-  PetscLayout     layout;
-  PetscMPIInt     rank;
-
-  PetscFunctionBeginUser;
-  *dof = 2 * (j * m + i) + 1;
-  PetscCall(AOApplicationToPetsc(ao[k], 1, dof));
-  PetscCall(VecGetLayout(part[k], &layout));
-  PetscCall(PetscLayoutFindOwner(layout, *dof, &rank));
-  PetscCall(VecGetOwnershipRanges(part[0], &first[0]));
-  PetscCall(VecGetOwnershipRanges(part[1], &first[1]));
-  PetscCall(VecGetOwnershipRanges(all, &whole));
-  *dof += whole[rank] - first[k][rank] + (k ? first[0][rank + 1] - first[0][rank] : 0);
-  PetscFunctionReturn(0);
-}
-/* end of contact */
-
-/* How far u and the multipliers of the rows are from the solution, by the host's own matrices: this proves that it is one, as the problem is convex. */
-static PetscErrorCode Judge(DM pack, Mat A[2], Vec b, Vec u, PetscInt n, const PetscInt ja[], const PetscReal gap[], const PetscReal lambda[])
-{
-  Vec                r, ub[2], rb[2], local;
+  Vec                r, local[2];
   VecScatter         scatter;
-  PetscReal          norm, size, pull = 0, open = 0, product = 0, force = 0;
-  const PetscScalar *v;
-  PetscInt           k, active = 0;
+  PetscReal          norm, size, equilibrium = 0, load = 0, pull = 0, open = 0, product = 0, force = 0;
+  const PetscScalar *v[2];
+  const PetscInt    *dof[2];
+  PetscInt           k, i, active = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(b, &r));
-  PetscCall(DMCompositeGetAccess(pack, u, &ub[0], &ub[1]));
-  PetscCall(DMCompositeGetAccess(pack, r, &rb[0], &rb[1]));
-  for (k = 0; k < 2; k++) PetscCall(MatMult(A[k], ub[k], rb[k]));
-  PetscCall(DMCompositeRestoreAccess(pack, u, &ub[0], &ub[1]));
-  PetscCall(DMCompositeRestoreAccess(pack, r, &rb[0], &rb[1]));
-  PetscCall(VecAXPY(r, -1.0, b));
-  for (k = 0; k < n; k++) {
-    PetscCall(VecSetValue(r, ja[2 * k], lambda[k], ADD_VALUES));
-    PetscCall(VecSetValue(r, ja[2 * k + 1], -lambda[k], ADD_VALUES));
+  for (k = 0; k < 2; k++) {
+    PetscCall(ISGetIndices(side[k], &dof[k]));
+    PetscCall(VecDuplicate(b[k], &r));
+    PetscCall(MatMult(A[k], u[k], r));
+    PetscCall(VecAXPY(r, -1.0, b[k]));
+    for (i = 0; i < n; i++) PetscCall(VecSetValue(r, dof[k][i], k ? -lambda[i] : lambda[i], ADD_VALUES));
+    PetscCall(VecAssemblyBegin(r));
+    PetscCall(VecAssemblyEnd(r));
+    PetscCall(VecNorm(r, NORM_2, &norm));
+    PetscCall(VecNorm(b[k], NORM_2, &size));
+    equilibrium += norm * norm;
+    load += size * size;
+    PetscCall(VecDestroy(&r));
+    PetscCall(VecScatterCreateToZero(u[k], &scatter, &local[k]));
+    PetscCall(VecScatterBegin(scatter, u[k], local[k], INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterEnd(scatter, u[k], local[k], INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterDestroy(&scatter));
+    PetscCall(VecGetArrayRead(local[k], &v[k]));
   }
-  PetscCall(VecAssemblyBegin(r));
-  PetscCall(VecAssemblyEnd(r));
-  PetscCall(VecNorm(r, NORM_2, &norm));
-  PetscCall(VecNorm(b, NORM_2, &size));
-  PetscCall(VecScatterCreateToZero(u, &scatter, &local));
-  PetscCall(VecScatterBegin(scatter, u, local, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(scatter, u, local, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecGetArrayRead(local, &v));
-  for (k = 0; k < n; k++) {
-    const PetscReal over = v[ja[2 * k]] - v[ja[2 * k + 1]] - gap[k];
+  for (i = 0; i < n; i++) {
+    const PetscReal over = v[0][dof[0][i]] - v[1][dof[1][i]] - gap[i];
 
-    pull    = PetscMax(pull, -lambda[k]);
+    pull    = PetscMax(pull, -lambda[i]);
     open    = PetscMax(open, over);
-    product = PetscMax(product, PetscAbsReal(over * lambda[k]));
-    force += lambda[k];
-    active += lambda[k] > 1e-10;
+    product = PetscMax(product, PetscAbsReal(over * lambda[i]));
+    force += lambda[i];
+    active += lambda[i] > 1e-10;
   }
-  PetscCall(VecRestoreArrayRead(local, &v));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equilibrium %.2e overlap %.2e pull %.2e product %.2e\n", (double)(norm / size), (double)open, (double)pull, (double)product));
+  for (k = 0; k < 2; k++) {
+    PetscCall(VecRestoreArrayRead(local[k], &v[k]));
+    PetscCall(ISRestoreIndices(side[k], &dof[k]));
+    PetscCall(VecDestroy(&local[k]));
+  }
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equilibrium %.2e overlap %.2e pull %.2e product %.2e\n", (double)PetscSqrtReal(equilibrium / load), (double)open, (double)pull, (double)product));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%" PetscInt_FMT " of %" PetscInt_FMT " nodes touch, force %.9f\n", active, n, (double)force));
-  PetscCall(VecScatterDestroy(&scatter));
-  PetscCall(VecDestroy(&local));
-  PetscCall(VecDestroy(&r));
   PetscFunctionReturn(0);
 }
 
 int main(int argc, char **argv)
 {
-  PetscInt    m = 17, its;
-  PetscBool   contact = PETSC_FALSE;
-  PetscMPIInt rank;
-  DM          da[2];
-  Mat         A[2];
-  Vec         b[2], u;
-  KSP         ksp;
-  PetscReal   energy;
+  PetscInt           m = 17, its;
+  PetscBool          contact = PETSC_FALSE;
+  PetscMPIInt        rank;
+  DM                 da[2];
+  Mat                A[2];
+  Vec                b[2], u, *parts;
+  KSP                ksp;
+  PetscReal          energy;
+  KSPConvergedReason reason;
 
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(&argc, &argv, NULL, help));
@@ -189,74 +176,46 @@ int main(int argc, char **argv)
     PetscCall(KSPDestroy(&ksp));
   } else {
     /* contact */
-    DM                      pack;
-    FetiFeti                ff;
-    AO                      ao[2];
-    Vec                     load, where, from, to[2];
-    IS                     *numbers;
-    const PetscScalar      *xy;
-    KSPConvergedReason      reason;
-    PetscInt                n, k, r, rows = rank == 0 ? m : 0, *ia, *ja, *kind;
-    PetscReal              *gap, *lambda, kkt[4];
-    PetscScalar            *coefficient;
+    PetscInt   k, n = rank ? 0 : m; /* the first rank gives the rows */
+    PetscReal *gap, *force;
+    Vec        load;
+    IS         side[2];
+    AO         ao;
+    FetiFeti   ff;
 
     PetscCall(Block(m, &da[1]));
     PetscCall(Assemble(da[1], m, PETSC_FALSE, PETSC_TRUE, &A[1], &b[1]));
-    PetscCall(DMCompositeCreate(PETSC_COMM_WORLD, &pack)); /* one numbering for both bodies */
-    for (k = 0; k < 2; k++) PetscCall(DMCompositeAddDM(pack, da[k]));
-    PetscCall(DMCreateGlobalVector(pack, &load));
-    PetscCall(VecDuplicate(load, &where));
+    PetscCall(VecCreateNest(PETSC_COMM_WORLD, 2, NULL, b, &load));
     PetscCall(VecDuplicate(load, &u));
-    PetscCall(DMCompositeGetAccess(pack, load, &to[0], &to[1]));
-    for (k = 0; k < 2; k++) PetscCall(VecCopy(b[k], to[k]));
-    PetscCall(DMCompositeRestoreAccess(pack, load, &to[0], &to[1]));
-    PetscCall(DMCompositeGetAccess(pack, where, &to[0], &to[1]));
-    for (k = 0; k < 2; k++) {
-      PetscCall(DMGetCoordinates(da[k], &from));
-      PetscCall(VecCopy(from, to[k]));
+    for (k = 0; k < 2; k++) { /* vertical displacements of the upper side of block 0, and of the lower side of block 1 */
+      PetscCall(ISCreateStride(PETSC_COMM_WORLD, n, k ? 1 : 2 * m * (m - 1) + 1, 2, &side[k]));
+      PetscCall(DMDAGetAO(da[k], &ao));
+      PetscCall(AOApplicationToPetscIS(ao, side[k]));
     }
-    PetscCall(DMCompositeRestoreAccess(pack, where, &to[0], &to[1]));
-    PetscCall(FetiFetiCreate(PETSC_COMM_WORLD, &ff)); /* the bodies */
+    PetscCall(PetscMalloc2(n, &gap, n, &force));
+    for (k = 0; k < n; k++) gap[k] = 0.05 + 0.4 * PetscSqr((PetscReal)k / (m - 1));
+    PetscCall(FetiFetiCreate(PETSC_COMM_WORLD, &ff));
     PetscCall(FetiFetiSetFromOptions(ff));
-    PetscCall(VecGetLocalSize(load, &n));
-    PetscCall(FetiFetiSetSizes(ff, n, PETSC_DETERMINE));
-    PetscCall(FetiFetiSetBlockSize(ff, 2));
-    PetscCall(VecGetArrayRead(where, &xy));
-    PetscCall(FetiFetiSetCoordinates(ff, 2, n / 2, xy));
-    PetscCall(VecRestoreArrayRead(where, &xy));
-    PetscCall(DMCompositeGetGlobalISs(pack, &numbers));
-    for (k = 0; k < 2; k++) PetscCall(FetiFetiAddMatIS(ff, A[k], numbers[k], k));
-    PetscCall(PetscMalloc6(rows + 1, &ia, 2 * rows, &ja, rows, &gap, rows, &kind, 2 * rows, &coefficient, rows, &lambda)); /* the rows: u_y(below) - u_y(above) <= gap */
-    for (k = 0; k < 2; k++) PetscCall(DMDAGetAO(da[k], &ao[k]));
-    for (r = 0; r < rows; r++) {
-      PetscCall(Number(ao, b, load, 0, m, r, m - 1, &ja[2 * r]));
-      PetscCall(Number(ao, b, load, 1, m, r, 0, &ja[2 * r + 1]));
-      coefficient[2 * r]     = 1;
-      coefficient[2 * r + 1] = -1;
-      gap[r]                 = 0.05 + 0.4 * PetscSqr((PetscReal)r / (m - 1));
-      kind[r]                = FETIFETI_INEQUALITY;
-    }
-    for (r = 0; r <= rows; r++) ia[r] = 2 * r;
-    PetscCall(FetiFetiSetContactRows(ff, rows, ia, ja, coefficient, gap, kind));
+    for (k = 0; k < 2; k++) PetscCall(FetiFetiAddMatIS(ff, A[k], NULL, k));
+    PetscCall(FetiFetiSetContactPairs(ff, 0, side[0], 1, side[1], gap, FETIFETI_INEQUALITY));
     PetscCall(FetiFetiSolve(ff, load, u));
-    PetscCall(FetiFetiGetMultipliers(ff, rows, lambda));
+    PetscCall(FetiFetiGetMultipliers(ff, n, force));
+    /* end of contact */
     PetscCall(FetiFetiGetConvergedReason(ff, &reason));
     PetscCall(FetiFetiGetIterations(ff, &its));
-    PetscCall(FetiFetiGetKKT(ff, kkt));
     PetscCall(VecDot(load, u, &energy));
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "reason %d, %" PetscInt_FMT " iterations, work %.9f, kkt %.1e\n", (int)reason, its, (double)-energy, (double)kkt[0]));
-    /* end of contact */
-    PetscCall(Judge(pack, A, load, u, rows, ja, gap, lambda));
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "reason %d, %" PetscInt_FMT " iterations, work %.9f\n", (int)reason, its, (double)-energy));
+    PetscCall(VecNestGetSubVecs(u, NULL, &parts));
+    PetscCall(Judge(A, b, parts, side, n, gap, force));
+    /* contact */
     PetscCall(FetiFetiDestroy(&ff));
-    for (k = 0; k < 2; k++) PetscCall(ISDestroy(&numbers[k]));
-    PetscCall(PetscFree(numbers));
-    PetscCall(PetscFree6(ia, ja, gap, kind, coefficient, lambda));
+    PetscCall(PetscFree2(gap, force));
+    for (k = 0; k < 2; k++) PetscCall(ISDestroy(&side[k]));
     PetscCall(VecDestroy(&load));
-    PetscCall(VecDestroy(&where));
     PetscCall(VecDestroy(&b[1]));
     PetscCall(MatDestroy(&A[1]));
     PetscCall(DMDestroy(&da[1]));
-    PetscCall(DMDestroy(&pack));
+    /* end of contact */
   }
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&b[0]));

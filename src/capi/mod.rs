@@ -1,12 +1,20 @@
-//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI, and the functions of `wrappers/fetifeti.h` ([`api`], [`results`]).
+//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI, and the functions of `wrappers/fetifeti.h` ([`life`], [`bodies`], [`conditions`], [`results`]).
 //!
 //! Nothing unwinds into C, and an error is one sentence: [`plugin`] keeps it for the C side, which hands it to the host's error handler.
 
-pub mod api;
+pub mod bodies;
+pub mod conditions;
+mod coordinates;
 mod error;
+mod handle;
+pub mod life;
+mod nested;
 mod object;
 pub mod plugin;
 pub mod results;
+mod rows;
+mod solving;
+mod stack;
 
 use crate::petsc::raw;
 use std::ffi::{c_char, c_int};

@@ -1,11 +1,16 @@
 //! The object behind `FetiFeti` of fetifeti.h: what the host has said so far, and the solver made of it.
 
+use super::coordinates::{rigid, Coordinates};
+use super::error::Kind;
+use super::nested::Given as GivenVector;
+use super::rows::Row;
+use super::stack::{fits, Local, Stack};
 use crate::embed::pieces::piece;
-use crate::embed::torn::{spanned, unassembled};
-use crate::embed::{Embedded, GivenRow, Grouping, Outcome, Torn};
+use crate::embed::torn::spanned;
+use crate::embed::{Embedded, Grouping, Outcome, Torn};
 use crate::feti::exchange::{gather_all, max_all};
 use crate::feti::halo::Halo;
-use crate::petsc::{Is, Mat, Options, Session, Vec as PetscVec};
+use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
 use crate::sparse::Csr;
 use crate::{Error, Result, Settings};
 use std::collections::HashSet;
@@ -20,36 +25,44 @@ pub struct Given {
     pub body: i32,
 }
 
-/// Positions of nodes.
-pub struct Coordinates {
-    /// 1, 2 or 3.
-    pub dim: usize,
-    /// Those of the nodes that this rank owns, node by node.
-    pub of_node: Vec<f64>,
-}
-
 /// What a `FetiFeti` is.
 pub struct Object {
     pub session: Session,
     pub prefix: String,
     /// (local, global) numbers of unknowns, where they were said.
     pub sizes: Option<(Option<usize>, Option<usize>)>,
-    pub block_size: usize,
+    /// As it was said.
+    pub block_size: Option<usize>,
+    /// Subdomains by numbers of all unknowns.
     pub subdomains: Vec<Given>,
-    /// A vector of the host's layout, where a matrix or a null space has shown one.
-    pub layout: Option<PetscVec>,
-    pub near: Option<Vec<PetscVec>>,
+    /// Matrices that are numbered one after the other; then there are no other subdomains.
+    pub stack: Stack,
+    /// What the matrix of FetiFetiSetMatIS has told.
+    pub matis: Option<Told>,
+    /// The block size of a matrix that was added with numbers.
+    pub block_size_of_added: usize,
+    pub near: Option<Attached>,
     pub coordinates: Option<Coordinates>,
     pub held: Vec<i32>,
     pub held_values: Option<PetscVec>,
     pub primal: Vec<i32>,
-    pub rows: Vec<GivenRow>,
+    /// The rows that this rank gives, in this order.
+    pub rows: Vec<Row>,
     pub bodies: usize,
     pub view: bool,
     /// Whether something has changed on this rank since the last set-up.
     pub stale: bool,
     pub solver: Option<Embedded>,
     pub outcome: Option<Outcome>,
+    /// Plain copies of nested vectors: right-hand side, solution, held values.
+    pub(super) work: [Option<PetscVec>; 3],
+}
+
+/// What a matrix of all unknowns tells besides its entries.
+pub struct Told {
+    pub layout: PetscVec,
+    pub block_size: usize,
+    pub modes: Option<Vec<PetscVec>>,
 }
 
 impl Object {
@@ -58,9 +71,11 @@ impl Object {
             session,
             prefix: String::new(),
             sizes: None,
-            block_size: 1,
+            block_size: None,
             subdomains: Vec::new(),
-            layout: None,
+            stack: Stack::default(),
+            matis: None,
+            block_size_of_added: 1,
             near: None,
             coordinates: None,
             held: Vec::new(),
@@ -72,6 +87,7 @@ impl Object {
             stale: true,
             solver: None,
             outcome: None,
+            work: [None, None, None],
         }
     }
 
@@ -90,37 +106,65 @@ impl Object {
         Options::new(&self.session, &format!("{}fetifeti_", self.prefix))
     }
 
-    /// Adds the local matrix of a MATIS; `numbers` has the unknown of each row of `a` that this rank owns, and `None` means the row's own number.
-    /// Collective.
-    pub fn add_matis(&mut self, a: &Mat, numbers: Option<Vec<i32>>, body: i32) -> Result<()> {
-        let own = numbers.is_none();
-        unassembled(a)?;
-        let (k, dofs) = self.session.agree(a.local_part())?;
-        let dofs = match numbers {
-            None => dofs,
-            Some(numbers) => self.renumbered(&a.right_vec()?, &dofs, &numbers)?,
-        };
-        if own {
-            self.layout = Some(a.right_vec()?);
-        }
-        if self.block_size == 1 {
-            self.block_size = a.block_size()?;
-        }
-        if let (true, None, Some(near)) = (own, &self.near, a.attached_near_null_space()?) {
-            self.near = Some(spanned(&a.right_vec()?, near)?);
-        }
+    /// Takes the local matrices of a MATIS of all unknowns, instead of everything before. Collective.
+    pub fn set_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
+        let local = Local::of(&self.session, a)?;
+        self.stack.clear();
+        self.subdomains.clear();
+        self.push(local.k, local.map, body);
+        self.matis = Some(Told {
+            layout: local.layout,
+            block_size: local.block_size,
+            modes: local.modes,
+        });
+        Ok(())
+    }
+
+    /// Puts the unknowns of a MATIS after those of the matrices before. Collective.
+    pub fn stack_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
+        let others = !self.subdomains.is_empty() || self.matis.is_some();
+        let others = others.then(|| self.mixed()).map_or(Ok(()), Err);
+        self.session.agree(others)?;
+        let local = Local::of(&self.session, a)?;
+        self.stack.push(&self.session, local, body);
         self.stale = true;
+        Ok(())
+    }
+
+    /// Adds the local matrices of a MATIS; `numbers` has the unknown of each row that this rank owns. Collective.
+    pub fn add_matis(&mut self, a: &Mat, numbers: &[i32], body: i32) -> Result<()> {
+        if !self.stack.is_empty() {
+            return Err(self.mixed());
+        }
+        let local = Local::of(&self.session, a)?;
+        let dofs = self.renumbered(&local.layout, &local.map, numbers)?;
+        if self.block_size_of_added == 1 {
+            self.block_size_of_added = local.block_size;
+        }
+        self.push(local.k, dofs, body);
+        Ok(())
+    }
+
+    fn push(&mut self, k: Csr, dofs: Vec<i32>, body: i32) {
         if k.n() > 0 {
             self.subdomains.push(Given { k, dofs, body });
         }
-        Ok(())
+        self.stale = true;
+    }
+
+    /// The error where subdomains are numbered in two ways.
+    pub fn mixed(&self) -> Error {
+        Kind::WrongState.error(
+            "some matrices were added without numbers, which follows their order, and other subdomains with numbers of unknowns, \
+             expected one way for all of a FetiFeti",
+        )
     }
 
     /// What `numbers`, by owned entries of vectors like `layout`, has for these entries; negative ones stay. Collective.
     fn renumbered(&self, layout: &PetscVec, dofs: &[i32], numbers: &[i32]) -> Result<Vec<i32>> {
         let n = layout.local_len();
         let wrong = (numbers.len() != n).then(|| {
-            Error::input(format!(
+            Kind::Sizes.error(format!(
                 "rank {} gave {} numbers for the {n} rows of the matrix that it owns, expected as many",
                 self.session.rank(),
                 numbers.len()
@@ -149,6 +193,7 @@ impl Object {
         }
         self.solver = None;
         self.outcome = None;
+        self.work = [None, None, None];
         let torn = self.torn()?;
         let grouping = match self.bodies {
             0 => Grouping::Auto,
@@ -166,42 +211,32 @@ impl Object {
         Ok(())
     }
 
-    /// Shows the solver on the standard output of the first rank.
-    pub fn print(&self) {
-        if self.session.rank() == 0 {
-            print!("{}", self.text());
-        }
-    }
-
     /// Everything that was said, in one piece. Collective.
     fn torn(&self) -> Result<Torn> {
         let session = &self.session;
         let layout = self.vector()?;
         let n_global = layout.global_len();
-        let bs = self.block_size;
+        let bs = self.nodes();
         if n_global % bs != 0 {
-            return Err(Error::input(format!(
+            return Err(Kind::Sizes.error(format!(
                 "there are {n_global} unknowns in blocks of {bs}, expected a multiple"
             )));
         }
         session.agree(self.in_range(n_global))?;
-        let pieces = self.subdomains.iter().filter_map(|s| {
-            let body = u64::try_from(s.body).ok();
-            piece(&s.k, &s.dofs, body)
-        });
+        let body = |b: i32| u64::try_from(b).ok();
+        let numbered = self.subdomains.iter();
+        let numbered = numbered.filter_map(|s| piece(&s.k, &s.dofs, body(s.body)));
+        let stacked = self.stack.subdomains();
+        let stacked = stacked.filter_map(|(k, dofs, b)| piece(k, &dofs, body(b)));
         let mut torn = Torn {
             n_global,
             block_size: bs,
-            pieces: pieces.collect(),
-            modes: match (&self.near, &self.coordinates) {
-                (Some(near), _) => Some(near.clone()),
-                (None, Some(c)) => Some(session.agree(rigid(&layout, bs, c))?),
-                (None, None) => None,
-            },
+            pieces: numbered.chain(stacked).collect(),
+            modes: self.modes(&layout)?,
             layout,
             held: HashSet::new(),
             primal: HashSet::new(),
-            rows: self.rows.clone(),
+            rows: session.agree(self.given_rows())?,
             named: None,
         };
         let (ghosts, halo) = torn.halo(session)?;
@@ -210,13 +245,71 @@ impl Object {
         Ok(torn)
     }
 
+    /// Unknowns of a node.
+    fn nodes(&self) -> usize {
+        let of_matrices = match &self.matis {
+            _ if !self.stack.is_empty() => self.stack.block_size(),
+            Some(told) => told.block_size,
+            None => self.block_size_of_added,
+        };
+        self.block_size.unwrap_or(of_matrices)
+    }
+
+    /// Motions that cost no energy: as they were given, else those of the matrices, else from the places of the nodes. Collective.
+    fn modes(&self, layout: &PetscVec) -> Result<Option<Vec<PetscVec>>> {
+        if let Some(near) = &self.near {
+            let mut vectors = Vec::new();
+            for v in &near.vectors {
+                let given = self.checked(v, "the near-null space", layout);
+                vectors.push(self.session.agree(given)?.plain(|| layout.duplicate())?);
+            }
+            let constants = near.constants;
+            return Ok(Some(spanned(layout, Attached { constants, vectors })?));
+        }
+        let of_matrices = match &self.matis {
+            _ if !self.stack.is_empty() => self.stack.modes(layout)?,
+            Some(told) if told.layout.global_len() == layout.global_len() => told.modes.clone(),
+            _ => None,
+        };
+        match (of_matrices, &self.coordinates) {
+            (Some(modes), _) => Ok(Some(modes)),
+            (None, Some(c)) => {
+                let modes = rigid(layout, self.nodes(), c);
+                Ok(Some(self.session.agree(modes)?))
+            }
+            (None, None) => Ok(None),
+        }
+    }
+
+    pub(super) fn checked(
+        &self,
+        v: &PetscVec,
+        what: &str,
+        layout: &PetscVec,
+    ) -> Result<GivenVector> {
+        GivenVector::new(&self.session, v, what, layout, &self.stack)
+    }
+
     /// A vector of the layout of right-hand sides. Collective.
     pub fn vector(&self) -> Result<PetscVec> {
+        let stacked = match self.stack.is_empty() {
+            true => None,
+            false => Some(self.stack.vector(&self.session)?),
+        };
         if let Some((local, global)) = self.sizes {
-            return PetscVec::over_ranks(&self.session, local, global);
+            let said = PetscVec::over_ranks(&self.session, local, global)?;
+            if let Some(layout) = &stacked {
+                let what = "the layout of FetiFetiSetSizes";
+                self.session
+                    .agree(fits(&self.session, &said, layout, what))?;
+            }
+            return Ok(said);
         }
-        if let Some(layout) = &self.layout {
-            return layout.duplicate();
+        if let Some(layout) = stacked {
+            return Ok(layout);
+        }
+        if let Some(told) = &self.matis {
+            return told.layout.duplicate();
         }
         let dofs = self.subdomains.iter().flat_map(|s| &s.dofs);
         let mut n = [dofs.max().map_or(0.0, |&d| f64::from(d) + 1.0)];
@@ -228,7 +321,7 @@ impl Object {
         let out = |dof: &&i32| **dof >= n as i32;
         for (s, sub) in self.subdomains.iter().enumerate() {
             if let Some(dof) = sub.dofs.iter().find(out) {
-                return Err(Error::input(format!(
+                return Err(Kind::OutOfRange.error(format!(
                     "subdomain {s} of rank {} has unknown {dof}, expected numbers below {n}",
                     self.session.rank()
                 )));
@@ -236,7 +329,7 @@ impl Object {
         }
         for (what, list) in [("held", &self.held), ("primal", &self.primal)] {
             if let Some(dof) = list.iter().find(|d| **d < 0 || **d >= n as i32) {
-                return Err(Error::input(format!(
+                return Err(Kind::OutOfRange.error(format!(
                     "unknown {dof} is to be {what}, expected numbers from 0 to below {n}"
                 )));
             }
@@ -269,120 +362,4 @@ impl Object {
         let marked = ghosts.iter().zip(values).filter(|(_, v)| *v != 0.0);
         Ok(marked.map(|(&d, _)| d).collect())
     }
-
-    /// x ← the solution for b. Collective.
-    pub fn solve(&mut self, b: &PetscVec, x: &PetscVec) -> Result<()> {
-        self.set_up()?;
-        let solver = self.solver.as_ref().expect("set-up has made it");
-        let layout = self.vector()?;
-        let mut problem = Ok(());
-        let held = self
-            .held_values
-            .as_ref()
-            .map(|v| ("vector of held values", v));
-        let vectors = [("right-hand side", b), ("solution", x)];
-        for (name, v) in vectors.into_iter().chain(held) {
-            let (found, wanted) = (v.ownership_range(), layout.ownership_range());
-            if found != wanted && problem.is_ok() {
-                problem = Err(Error::input(format!(
-                    "the {name} has entries {found:?} on rank {}, expected {wanted:?}",
-                    self.session.rank()
-                )));
-            }
-        }
-        self.session.agree(problem)?;
-        self.outcome = None;
-        let outcome = solver.solve_with_rows(b, self.held_values.as_ref(), x)?;
-        self.outcome = Some(outcome);
-        Ok(())
-    }
-
-    /// What the last solve did.
-    ///
-    /// # Errors
-    /// There was none.
-    pub fn outcome(&self) -> Result<&Outcome> {
-        let none = || Error::input("nothing has been solved yet, expected FetiFetiSolve before");
-        self.outcome.as_ref().ok_or_else(none)
-    }
-
-    /// The solver.
-    ///
-    /// # Errors
-    /// There is none yet.
-    pub fn solver(&self) -> Result<&Embedded> {
-        let none = || Error::input("there is no solver yet, expected FetiFetiSetUp before");
-        self.solver.as_ref().ok_or_else(none)
-    }
-
-    /// What FetiFetiView shows.
-    pub fn text(&self) -> String {
-        let Some(solver) = &self.solver else {
-            return "FetiFeti Object: not set up\n".into();
-        };
-        let (solver, n) = (solver.solver(), solver.n_given_rows());
-        let (known, problem) = (solver.facts(), solver.problem());
-        let mut text = format!(
-            "FetiFeti Object: {} MPI processes\n  bodies: {} ({} floating, kernels of dimension {}), subdomains: {}\n  \
-             multipliers: {} inside bodies, {} between bodies, {n} of these for rows given ({} inequalities)\n  primal dofs: {}\n",
-            self.session.size(),
-            problem.n_bodies,
-            known.floating_bodies,
-            known.kernel_dimension,
-            problem.n_subdomains,
-            known.multipliers_local,
-            known.multipliers_global,
-            known.inequalities,
-            known.primal
-        );
-        if let Some(o) = &self.outcome {
-            text += &format!(
-                "  last solve: {} after {} iterations, {} steps of the contact loop\n",
-                o.reason, o.iterations, o.steps
-            );
-        }
-        text
-    }
-}
-
-/// A list of unknowns from an index set, or none.
-pub fn indices(is: Option<&Is>) -> Result<Vec<i32>> {
-    is.map_or(Ok(Vec::new()), Is::indices)
-}
-
-/// Translations and rotations where there are as many components as dimensions, one constant per component else.
-fn rigid(layout: &PetscVec, bs: usize, c: &Coordinates) -> Result<Vec<PetscVec>> {
-    let nodes = layout.local_len() / bs;
-    if c.of_node.len() != nodes * c.dim {
-        return Err(Error::input(format!(
-            "{} coordinates were given for {nodes} nodes in {} dimensions, expected {}",
-            c.of_node.len(),
-            c.dim,
-            nodes * c.dim
-        )));
-    }
-    let pairs: &[(usize, usize)] = match (bs == c.dim, bs) {
-        (true, 2) => &[(0, 1)],
-        (true, 3) => &[(0, 1), (1, 2), (2, 0)],
-        _ => &[],
-    };
-    let mut modes = Vec::new();
-    for k in 0..bs + pairs.len() {
-        let mode = layout.duplicate()?;
-        mode.set(0.0)?;
-        {
-            let mut entries = mode.array_mut()?;
-            for node in 0..nodes {
-                if k < bs {
-                    entries[node * bs + k] = 1.0;
-                } else {
-                    let (a, b) = pairs[k - bs];
-                    entries[node * bs + a] = -c.of_node[node * c.dim + b];
-                    entries[node * bs + b] = c.of_node[node * c.dim + a];
-                }
-            }
-        }
-        modes.push(mode);
-    }
-    Ok(modes)
 }

@@ -54,25 +54,23 @@ impl Torn {
             )));
         }
         let (k, map) = session.agree(a.local_part())?;
-        let block_size = a.block_size()?;
+        let (layout, block_size) = (a.right_vec()?, a.block_size()?);
         let pieces = if a.is_repeated()? {
             pieces(&k, &map, block_size, body)
         } else {
             piece(&k, &map, body).into_iter().collect()
         };
-        let mut torn = Torn {
+        Ok(Torn {
             n_global: rows,
             block_size,
             pieces,
-            layout: a.right_vec()?,
-            modes: None,
+            modes: modes(&layout, block_size, a)?,
+            layout,
             held: HashSet::new(),
             primal: HashSet::new(),
             rows: Vec::new(),
             named: None,
-        };
-        torn.modes = modes(&torn, a)?;
-        Ok(torn)
+        })
     }
 
     /// Number of nodes' components.
@@ -119,7 +117,7 @@ pub fn spanned(layout: &PetscVec, attached: Attached) -> Result<Vec<PetscVec>> {
 }
 
 /// The host's own idea of the kernel: its near-null space, or a null space rich enough to hold all motions of a subdomain.
-fn modes(torn: &Torn, a: &Mat) -> Result<Option<Vec<PetscVec>>> {
+pub fn modes(layout: &PetscVec, block_size: usize, a: &Mat) -> Result<Option<Vec<PetscVec>>> {
     let attached = match a.attached_near_null_space()? {
         Some(near) => Some(near),
         None => a.attached_null_space()?,
@@ -127,9 +125,9 @@ fn modes(torn: &Torn, a: &Mat) -> Result<Option<Vec<PetscVec>>> {
     let Some(attached) = attached else {
         return Ok(None);
     };
-    let modes = spanned(&torn.layout, attached)?;
+    let modes = spanned(layout, attached)?;
     // In elasticity the translations alone, all that a periodic body has, are not all that its subdomains have.
-    let least = match torn.block_size {
+    let least = match block_size {
         2 => 3,
         3 => 6,
         n => n,

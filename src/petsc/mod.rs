@@ -17,6 +17,7 @@ mod ksp;
 mod log;
 mod mat;
 mod matis;
+mod nested;
 mod options;
 mod partition;
 mod pc;

@@ -23,7 +23,7 @@ thread_local! {
 /// While entries are lent out by [`Vec::array`] nothing may write to the vector, and while they are lent out by [`Vec::array_mut`] nothing may
 /// use it: such calls return an error.
 #[derive(Clone)]
-pub struct Vec(Handle<sys::_p_Vec>);
+pub struct Vec(pub(super) Handle<sys::_p_Vec>);
 
 impl Vec {
     /// A zero vector with `local` entries on this rank.

@@ -83,6 +83,7 @@ const FUNCTIONS: &[&str] = &[
     "VecAbs",
     "VecView",
     "VecLoad",
+    "VecNestGetSubVecs",
     // index sets, scatters
     "ISCreateGeneral",
     "ISCreateStride",

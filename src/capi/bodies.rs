@@ -1,0 +1,146 @@
+//! The functions of `wrappers/fetifeti.h` by which a program hands over its bodies: sizes, matrices, motions; their manual pages are there.
+#![allow(clippy::missing_safety_doc)] // the header says what each function needs
+
+use super::coordinates::Coordinates;
+use super::error::Kind;
+use super::handle::{alone, array, list, not_null, starts, together, Handle};
+use super::object::Given;
+use crate::petsc::{raw, Attached, Mat};
+use crate::sparse::Csr;
+use std::ffi::c_int;
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetSizes(ff: Handle, local: c_int, global: c_int) -> c_int {
+    alone(ff, c"FetiFetiSetSizes", |o| {
+        // PETSC_DECIDE and PETSC_DETERMINE are negative.
+        let size = |n: c_int| usize::try_from(n).ok();
+        if size(local).is_none() && size(global).is_none() {
+            return Err(Kind::Wrong.error(
+                "neither the local nor the global number of unknowns was given, expected one of them",
+            ));
+        }
+        o.sizes = Some((size(local), size(global)));
+        o.stale = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: Handle, bs: c_int) -> c_int {
+    alone(ff, c"FetiFetiSetBlockSize", |o| {
+        if bs < 1 {
+            return Err(
+                Kind::OutOfRange.error(format!("the block size is {bs}, expected at least 1"))
+            );
+        }
+        o.block_size = Some(bs as usize);
+        o.stale = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiAddSubdomain(
+    ff: Handle,
+    body: c_int,
+    n: c_int,
+    ia: *const c_int,
+    ja: *const c_int,
+    a: *const f64,
+    dofs: *const c_int,
+) -> c_int {
+    alone(ff, c"FetiFetiAddSubdomain", |o| {
+        if !o.stack.is_empty() {
+            return Err(o.mixed());
+        }
+        let dofs = array(dofs, n, "dofs")?.to_vec();
+        let ia = array(ia, n.saturating_add(1), "ia")?;
+        let nnz = starts(ia)? as c_int;
+        let (ja, a) = (array(ja, nnz, "ja")?, array(a, nnz, "a")?);
+        let mut triplets = Vec::with_capacity(nnz as usize);
+        for (row, range) in ia.windows(2).enumerate() {
+            let range = range[0] as usize..range[1] as usize;
+            for (&j, &v) in ja[range.clone()].iter().zip(&a[range]) {
+                if !(0..n).contains(&j) {
+                    return Err(Kind::OutOfRange.error(format!(
+                        "row {row} of the subdomain has an entry in column {j}, expected columns from 0 to below {n}"
+                    )));
+                }
+                if !v.is_finite() {
+                    return Err(Kind::Wrong.error(format!(
+                        "row {row} of the subdomain has the entry {v}, expected a finite number"
+                    )));
+                }
+                triplets.push((row as u32, j as u32, v));
+            }
+        }
+        let k = Csr::from_triplets(n as usize, &triplets);
+        if n > 0 {
+            o.subdomains.push(Given { k, dofs, body });
+        }
+        o.stale = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetMatIS(ff: Handle, a: raw::Mat, body: c_int) -> c_int {
+    together(ff, c"FetiFetiSetMatIS", |o| {
+        o.set_matis(&Mat::share(not_null(a, "Mat")?, &o.session)?, body)
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiAddMatIS(
+    ff: Handle,
+    a: raw::Mat,
+    numbers: raw::IS,
+    body: c_int,
+) -> c_int {
+    together(ff, c"FetiFetiAddMatIS", |o| {
+        let a = Mat::share(not_null(a, "Mat")?, &o.session)?;
+        match numbers.is_null() {
+            true => o.stack_matis(&a, body),
+            false => o.add_matis(&a, &list(o, numbers)?, body),
+        }
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetNearNullSpace(ff: Handle, space: raw::MatNullSpace) -> c_int {
+    together(ff, c"FetiFetiSetNearNullSpace", |o| {
+        o.near = Attached::of(space, &o.session)?;
+        o.stale = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetCoordinates(
+    ff: Handle,
+    dim: c_int,
+    n: c_int,
+    coords: *const f64,
+) -> c_int {
+    alone(ff, c"FetiFetiSetCoordinates", |o| {
+        if !(1..=3).contains(&dim) {
+            return Err(
+                Kind::OutOfRange.error(format!("the dimension is {dim}, expected 1, 2 or 3"))
+            );
+        }
+        let of_node = array(coords, n.saturating_mul(dim), "coords")?.to_vec();
+        o.coordinates = Some(Coordinates {
+            dim: dim as usize,
+            of_node,
+        });
+        o.stale = true;
+        Ok(())
+    })
+}

@@ -1,0 +1,127 @@
+//! What C calls a `FetiFeti`, and the way into it and out again: checks of what C hands over, and one fence for all functions.
+
+use super::error::{classified, raise, Kind};
+use super::object::Object;
+use crate::petsc::{raw, Is, Session};
+use crate::Result;
+use std::ffi::{c_int, CStr};
+
+/// What a `FetiFeti` points to.
+pub struct Held {
+    magic: u64,
+    comm: raw::MPI_Comm,
+    object: Object,
+}
+
+impl Held {
+    /// An object on the ranks of `comm`.
+    pub(super) fn new(comm: raw::MPI_Comm, session: Session) -> Held {
+        Held {
+            magic: MAGIC,
+            comm,
+            object: Object::new(session),
+        }
+    }
+}
+
+/// Tells objects from other memory.
+const MAGIC: u64 = 0x4645_5449_4645_5449;
+
+/// What C calls a `FetiFeti`.
+pub(super) type Handle = *mut Held;
+
+fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
+    let none = || Kind::Null.error("the FetiFeti is NULL, expected one from FetiFetiCreate");
+    // SAFETY: the header asks for NULL or an object of FetiFetiCreate.
+    let held = unsafe { ff.as_mut() }.ok_or_else(none)?;
+    if held.magic != MAGIC {
+        return Err(Kind::Corrupt.error("the FetiFeti is not one that FetiFetiCreate made"));
+    }
+    Ok(held)
+}
+
+/// Gives up an object.
+pub(super) fn destroy(ff: Handle) -> Result<()> {
+    held(ff)?.magic = 0;
+    // SAFETY: from Box::into_raw in FetiFetiCreate; whoever calls this forgets it.
+    drop(unsafe { Box::from_raw(ff) });
+    Ok(())
+}
+
+/// A call in which all ranks of the object are.
+pub(super) fn together(
+    ff: Handle,
+    name: &'static CStr,
+    work: impl FnOnce(&mut Object) -> Result<()>,
+) -> c_int {
+    let comm = held(ff).ok().map(|h| h.comm);
+    let code = classified("fetifeti.h", Kind::Wrong, |at_work| {
+        let object = &mut held(ff)?.object;
+        *at_work = Some(object.session.clone());
+        work(object)
+    });
+    raise(code, name, comm)
+}
+
+/// A call that ranks make for themselves.
+pub(super) fn alone(
+    ff: Handle,
+    name: &'static CStr,
+    work: impl FnOnce(&mut Object) -> Result<()>,
+) -> c_int {
+    let code = classified("fetifeti.h", Kind::Wrong, |_| work(&mut held(ff)?.object));
+    raise(code, name, None)
+}
+
+/// An array of C.
+pub(super) fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [T]> {
+    let n = usize::try_from(n).map_err(|_| {
+        Kind::OutOfRange.error(format!("the length of {what} is {n}, expected at least 0"))
+    })?;
+    if n == 0 {
+        return Ok(&[]);
+    }
+    if data.is_null() {
+        return Err(Kind::Null.error(format!("{what} is NULL, expected an array of {n} entries")));
+    }
+    // SAFETY: the header asks for this length.
+    Ok(unsafe { std::slice::from_raw_parts(data, n) })
+}
+
+pub(super) fn put<T>(to: *mut T, value: T) {
+    if !to.is_null() {
+        // SAFETY: NULL, or a place for the value.
+        unsafe { to.write(value) }
+    }
+}
+
+pub(super) fn not_null<T>(object: *mut T, what: &str) -> Result<*mut T> {
+    match object.is_null() {
+        true => Err(Kind::Null.error(format!("the {what} is NULL, expected one"))),
+        false => Ok(object),
+    }
+}
+
+/// Row pointers of a CSR array, and how many entries they stand for.
+pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
+    let bad = ia.windows(2).position(|w| w[1] < w[0]);
+    match (ia.first(), bad) {
+        (Some(&first), _) if first != 0 => {
+            Err(Kind::Wrong.error(format!("the row pointers begin with {first}, expected 0")))
+        }
+        (_, Some(row)) => Err(Kind::Wrong.error(format!(
+            "the row pointers fall from {} to {} at row {row}, expected increasing ones",
+            ia[row],
+            ia[row + 1]
+        ))),
+        _ => Ok(ia.last().map_or(0, |&n| n as usize)),
+    }
+}
+
+/// The numbers of an index set; none for NULL.
+pub(super) fn list(o: &Object, is: raw::IS) -> Result<Vec<i32>> {
+    match is.is_null() {
+        true => Ok(Vec::new()),
+        false => Is::share(is, &o.session)?.indices(),
+    }
+}

@@ -1,0 +1,112 @@
+//! The functions of `wrappers/fetifeti.h` for the life of a solver: made, set up, used, destroyed; their manual pages are there.
+#![allow(clippy::missing_safety_doc)] // the header says what each function needs
+
+use super::error::{classified, raise, Kind};
+use super::handle::{alone, destroy, not_null, put, together, Handle, Held};
+use super::object::Object;
+use crate::petsc::{raw, Session, Vec as PetscVec};
+use crate::Result;
+use std::ffi::{c_char, c_int, CStr};
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
+    let code = classified("FetiFetiCreate", Kind::Wrong, |at_work| {
+        let session = Session::borrowed(comm)?;
+        *at_work = Some(session.clone());
+        if ff.is_null() {
+            return Err(
+                Kind::Null.error("there is no place for the FetiFeti, expected a pointer to one")
+            );
+        }
+        put(ff, Box::into_raw(Box::new(Held::new(comm, session))));
+        Ok(())
+    });
+    raise(code, c"FetiFetiCreate", Some(comm))
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiCreateFortran(comm: c_int, ff: *mut Handle) -> c_int {
+    // SAFETY: the number of a communicator in Fortran.
+    unsafe { FetiFetiCreate(raw::ff_comm_f2c(comm), ff) }
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut Handle) -> c_int {
+    // SAFETY: NULL, or a pointer to an object or NULL.
+    if ff.is_null() || unsafe { *ff }.is_null() {
+        return 0;
+    }
+    // SAFETY: not NULL.
+    let handle = unsafe { *ff };
+    let code = classified("FetiFetiDestroy", Kind::Wrong, |_| {
+        destroy(handle)?;
+        put(ff, std::ptr::null_mut());
+        Ok(())
+    });
+    raise(code, c"FetiFetiDestroy", None)
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiReset(ff: Handle) -> c_int {
+    together(ff, c"FetiFetiReset", |o| {
+        let mut fresh = Object::new(o.session.clone());
+        fresh.prefix = std::mem::take(&mut o.prefix);
+        (fresh.bodies, fresh.view) = (o.bodies, o.view);
+        *o = fresh;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(ff: Handle, prefix: *const c_char) -> c_int {
+    alone(ff, c"FetiFetiSetOptionsPrefix", |o| {
+        o.prefix = match prefix.is_null() {
+            true => String::new(),
+            // SAFETY: a string.
+            false => unsafe { CStr::from_ptr(prefix) }.to_string_lossy().into(),
+        };
+        o.stale = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetFromOptions(ff: Handle) -> c_int {
+    together(ff, c"FetiFetiSetFromOptions", Object::set_from_options)
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiView(ff: Handle, viewer: raw::PetscViewer) -> c_int {
+    together(ff, c"FetiFetiView", |o| show(o, viewer))
+}
+
+fn show(o: &Object, viewer: raw::PetscViewer) -> Result<()> {
+    if viewer.is_null() {
+        o.print();
+        return Ok(());
+    }
+    raw::show(viewer, &o.text())
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSetUp(ff: Handle) -> c_int {
+    together(ff, c"FetiFetiSetUp", Object::set_up)
+}
+
+#[no_mangle]
+#[allow(missing_docs)]
+pub unsafe extern "C" fn FetiFetiSolve(ff: Handle, b: raw::Vec, x: raw::Vec) -> c_int {
+    together(ff, c"FetiFetiSolve", |o| {
+        let b = PetscVec::share(not_null(b, "right-hand side")?, &o.session)?;
+        let x = PetscVec::share(not_null(x, "solution")?, &o.session)?;
+        o.solve(&b, &x)
+    })
+}

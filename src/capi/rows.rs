@@ -1,0 +1,168 @@
+//! The rows that a rank gives, as it says them: terms by unknowns of all bodies, or by unknowns of one matrix.
+
+use super::error::Kind;
+use super::object::Object;
+use crate::embed::GivenRow;
+use crate::substructures::RowKind;
+use crate::Result;
+
+/// Which function gave a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// FetiFetiSetContactRows.
+    Rows,
+    /// FetiFetiSetContactPairs.
+    Pairs,
+}
+
+/// Whose numbering a number belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Numbering {
+    /// That of all unknowns.
+    All,
+    /// That of a matrix, in the order in which they were added.
+    Matrix(usize),
+}
+
+/// A row as it was said.
+pub struct Row {
+    pub origin: Origin,
+    /// Unknowns and coefficients.
+    pub terms: Vec<(Numbering, u32, f64)>,
+    pub gap: f64,
+    pub kind: RowKind,
+}
+
+/// What C calls a FetiFetiRowKind.
+pub fn row_kind(number: i32, whose: impl FnOnce() -> String) -> Result<RowKind> {
+    match number {
+        0 => Ok(RowKind::Equality),
+        1 => Ok(RowKind::Inequality),
+        _ => Err(Kind::OutOfRange.error(format!(
+            "{} of kind {number}, expected FETIFETI_EQUALITY (0) or FETIFETI_INEQUALITY (1)",
+            whose()
+        ))),
+    }
+}
+
+/// The numbers on one side of pairs, and whose they are.
+pub struct Side {
+    pub numbering: Numbering,
+    pub dofs: Vec<i32>,
+}
+
+impl Side {
+    /// `matrix` as C says it: negative for the numbering of all unknowns.
+    ///
+    /// # Errors
+    /// A matrix that there is not, a number that it does not have.
+    pub fn new(o: &Object, matrix: i32, dofs: Vec<i32>) -> Result<Side> {
+        let (numbering, n) = match usize::try_from(matrix) {
+            Err(_) => (Numbering::All, None),
+            Ok(k) => (Numbering::Matrix(k), Some(o.size_of(k)?)),
+        };
+        let wrong = |d: &&i32| **d < 0 || n.is_some_and(|n| **d as usize >= n);
+        if let Some((r, dof)) = dofs.iter().enumerate().find(|(_, d)| wrong(d)) {
+            let expected = match n {
+                Some(n) => format!("numbers from 0 to below {n}, those of matrix {matrix}"),
+                None => "at least 0".into(),
+            };
+            return Err(Kind::OutOfRange.error(format!(
+                "contact pair {r} of rank {} has unknown {dof}, expected {expected}",
+                o.session.rank()
+            )));
+        }
+        Ok(Side { numbering, dofs })
+    }
+}
+
+/// The rows u(first) − u(second) = or ≤ gap.
+///
+/// # Errors
+/// Sides of different lengths, a gap that is not finite, the same unknown on both sides.
+pub fn pairs(
+    rank: usize,
+    first: &Side,
+    second: &Side,
+    gap: &[f64],
+    kind: RowKind,
+) -> Result<Vec<Row>> {
+    let n = first.dofs.len();
+    if second.dofs.len() != n {
+        return Err(Kind::Sizes.error(format!(
+            "rank {rank} gave {n} unknowns on the first side of contact pairs and {} on the second, expected as many",
+            second.dofs.len()
+        )));
+    }
+    let mut rows = Vec::with_capacity(n);
+    for (r, (&a, &b)) in first.dofs.iter().zip(&second.dofs).enumerate() {
+        let gap = gap.get(r).copied().unwrap_or(0.0);
+        if !gap.is_finite() {
+            return Err(Kind::Wrong.error(format!(
+                "contact pair {r} of rank {rank} has a gap of {gap}, expected a finite one"
+            )));
+        }
+        if a == b && first.numbering == second.numbering {
+            return Err(Kind::Wrong.error(format!(
+                "contact pair {r} of rank {rank} has unknown {a} on both sides, expected different ones"
+            )));
+        }
+        rows.push(Row {
+            origin: Origin::Pairs,
+            terms: vec![
+                (first.numbering, a as u32, 1.0),
+                (second.numbering, b as u32, -1.0),
+            ],
+            gap,
+            kind,
+        });
+    }
+    Ok(rows)
+}
+
+impl Object {
+    /// This rank's rows, by unknowns of all bodies.
+    ///
+    /// # Errors
+    /// Rows of matrices that are not there any more.
+    pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
+        let number = |&(whose, dof, c): &(Numbering, u32, f64)| {
+            let Numbering::Matrix(k) = whose else {
+                return Ok((dof, c));
+            };
+            let n = self.size_of(k)?;
+            if dof as usize >= n {
+                return Err(Kind::OutOfRange.error(format!(
+                    "a contact pair of rank {} has unknown {dof} of matrix {k}, which has {n} by now, expected pairs of the present matrices",
+                    self.session.rank()
+                )));
+            }
+            match self.stack.is_empty() {
+                true => Ok((dof, c)),
+                false => Ok((self.stack.number(k, dof), c)),
+            }
+        };
+        let row = |row: &Row| {
+            let terms: Result<Vec<(u32, f64)>> = row.terms.iter().map(number).collect();
+            Ok(GivenRow {
+                terms: terms?,
+                gap: row.gap,
+                kind: row.kind,
+            })
+        };
+        self.rows.iter().map(row).collect()
+    }
+
+    /// Unknowns of a matrix: of those that were stacked, or of the one of FetiFetiSetMatIS.
+    fn size_of(&self, k: usize) -> Result<usize> {
+        let there = match (&self.matis, self.stack.len()) {
+            (Some(matis), 0) if k == 0 => return Ok(matis.layout.global_len()),
+            (matis, 0) => usize::from(matis.is_some()),
+            (_, n) if k < n => return Ok(self.stack.size_of(k)),
+            (_, n) => n,
+        };
+        Err(Kind::OutOfRange.error(format!(
+            "contact pairs name matrix {k} but {there} have been added without numbers so far, expected one of these (from 0)"
+        )))
+    }
+}

@@ -1,0 +1,98 @@
+//! Solving with the object behind `FetiFeti`, and what it tells afterwards.
+
+use super::error::Kind;
+use super::nested::Given;
+use super::object::Object;
+use crate::embed::{Embedded, Outcome};
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+impl Object {
+    /// x ← the solution for b. Collective.
+    pub fn solve(&mut self, b: &PetscVec, x: &PetscVec) -> Result<()> {
+        self.set_up()?;
+        let layout = self.vector()?;
+        let checked = self.session.agree(self.vectors(b, x, &layout))?;
+        let mut plain = Vec::new();
+        for (given, work) in checked.iter().zip(&mut self.work) {
+            let make = || match work {
+                Some(work) => Ok(work.clone()),
+                None => Ok(work.insert(layout.duplicate()?).clone()),
+            };
+            plain.push(given.plain(make)?);
+        }
+        self.outcome = None;
+        let solver = self.solver.as_ref().expect("set-up has made it");
+        let outcome = solver.solve_with_rows(&plain[0], plain.get(2), &plain[1])?;
+        checked[1].take(&plain[1])?;
+        self.outcome = Some(outcome);
+        Ok(())
+    }
+
+    /// Right-hand side, solution and, where there are some, held values.
+    fn vectors(&self, b: &PetscVec, x: &PetscVec, layout: &PetscVec) -> Result<Vec<Given>> {
+        let named = [("the right-hand side", b), ("the solution", x)];
+        let held = self
+            .held_values
+            .iter()
+            .map(|v| ("the vector of held values", v));
+        let all = named.into_iter().chain(held);
+        all.map(|(name, v)| self.checked(v, name, layout)).collect()
+    }
+
+    /// What the last solve did.
+    ///
+    /// # Errors
+    /// There was none.
+    pub fn outcome(&self) -> Result<&Outcome> {
+        let none =
+            || Kind::WrongState.error("nothing has been solved yet, expected FetiFetiSolve before");
+        self.outcome.as_ref().ok_or_else(none)
+    }
+
+    /// The solver.
+    ///
+    /// # Errors
+    /// There is none yet.
+    pub fn solver(&self) -> Result<&Embedded> {
+        let none =
+            || Kind::WrongState.error("there is no solver yet, expected FetiFetiSetUp before");
+        self.solver.as_ref().ok_or_else(none)
+    }
+
+    /// What FetiFetiView shows.
+    pub fn text(&self) -> String {
+        let Some(solver) = &self.solver else {
+            return "FetiFeti Object: not set up\n".into();
+        };
+        let (solver, n) = (solver.solver(), solver.n_given_rows());
+        let (known, problem) = (solver.facts(), solver.problem());
+        let mut text = format!(
+            "FetiFeti Object: {} MPI processes\n  bodies: {} ({} floating, kernels of dimension {}), subdomains: {}\n  \
+             multipliers: {} inside bodies, {} between bodies, {n} of these for rows given ({} inequalities)\n  primal dofs: {}\n",
+            self.session.size(),
+            problem.n_bodies,
+            known.floating_bodies,
+            known.kernel_dimension,
+            problem.n_subdomains,
+            known.multipliers_local,
+            known.multipliers_global,
+            known.inequalities,
+            known.primal
+        );
+        if let Some(o) = &self.outcome {
+            text += &format!(
+                "  last solve: {} after {} iterations, {} steps of the contact loop\n",
+                o.reason, o.iterations, o.steps
+            );
+        }
+        text
+    }
+
+    /// Shows the solver on the standard output of the first rank.
+    pub fn print(&self) {
+        if self.session.rank() == 0 {
+            print!("{}", self.text());
+        }
+    }
+}

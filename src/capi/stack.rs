@@ -1,0 +1,191 @@
+//! Matrices of bodies that were discretised by themselves, and one numbering of all their unknowns.
+//!
+//! On each rank come its rows of the first matrix, then those of the second, and so on: as DMComposite numbers, and as nested vectors lie.
+
+use super::error::Kind;
+use crate::embed::torn::{modes, unassembled};
+use crate::feti::exchange::gather_all;
+use crate::petsc::{Mat, Session, Vec as PetscVec};
+use crate::sparse::Csr;
+use crate::Result;
+
+/// A matrix with its own numbering.
+pub struct Member {
+    /// This rank's local matrix.
+    k: Csr,
+    /// Number of each of its rows in the matrix; negative: none.
+    map: Vec<i32>,
+    body: i32,
+    block_size: usize,
+    /// A vector that fits the matrix.
+    layout: PetscVec,
+    /// The first row of each rank.
+    starts: Vec<u32>,
+    modes: Option<Vec<PetscVec>>,
+}
+
+/// The matrices in the order in which they were given.
+#[derive(Default)]
+pub struct Stack(Vec<Member>);
+
+/// The local matrix of a MATIS, the number of each of its rows, and what the matrix tells besides.
+pub struct Local {
+    pub k: Csr,
+    pub map: Vec<i32>,
+    pub layout: PetscVec,
+    pub block_size: usize,
+    /// Motions that cost no energy, where the near-null space or the null space has them.
+    pub modes: Option<Vec<PetscVec>>,
+}
+
+impl Local {
+    /// Takes the matrix apart. Collective.
+    pub fn of(session: &Session, a: &Mat) -> Result<Local> {
+        unassembled(a).map_err(|e| Kind::Unsupported.error(e.to_string()))?;
+        let (rows, cols) = a.size()?;
+        if rows != cols {
+            return Err(Kind::Sizes.error(format!(
+                "the matrix has {rows} rows and {cols} columns, expected a square one"
+            )));
+        }
+        let (k, map) = session.agree(a.local_part())?;
+        let (layout, block_size) = (a.right_vec()?, a.block_size()?);
+        let modes = modes(&layout, block_size, a)?;
+        for mode in modes.iter().flatten() {
+            session.agree(fits(
+                session,
+                mode,
+                &layout,
+                "the near-null space of the matrix",
+            ))?;
+        }
+        Ok(Local {
+            k,
+            map,
+            layout,
+            block_size,
+            modes,
+        })
+    }
+}
+
+/// An error where a vector has not the layout of another one.
+pub fn fits(session: &Session, v: &PetscVec, layout: &PetscVec, what: &str) -> Result<()> {
+    let (found, wanted) = (v.ownership_range(), layout.ownership_range());
+    if found == wanted {
+        return Ok(());
+    }
+    Err(Kind::Sizes.error(format!(
+        "{what} has entries {found:?} on rank {}, expected {wanted:?}",
+        session.rank()
+    )))
+}
+
+impl Stack {
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Puts a matrix after the others. Collective.
+    pub fn push(&mut self, session: &Session, local: Local, body: i32) {
+        let first = local.layout.ownership_range().start as u64;
+        let starts = gather_all(session.comm(), &[first]);
+        self.0.push(Member {
+            k: local.k,
+            map: local.map,
+            body,
+            block_size: local.block_size,
+            layout: local.layout,
+            starts: starts.iter().map(|w| w[0] as u32).collect(),
+            modes: local.modes,
+        });
+    }
+
+    /// Unknowns of a matrix.
+    pub fn size_of(&self, matrix: usize) -> usize {
+        self.0[matrix].layout.global_len()
+    }
+
+    /// The largest block size that fits all matrices.
+    pub fn block_size(&self) -> usize {
+        let common = |mut a: usize, mut b: usize| {
+            while b != 0 {
+                (a, b) = (b, a % b);
+            }
+            a
+        };
+        self.0.iter().fold(0, |bs, m| common(bs, m.block_size))
+    }
+
+    /// The number among all unknowns of an unknown of a matrix.
+    pub fn number(&self, matrix: usize, dof: u32) -> u32 {
+        let own = &self.0[matrix];
+        // Of ranks that begin at the same row all but the last one have none.
+        let rank = own.starts.partition_point(|&s| s <= dof) - 1;
+        let end = |m: &Member| match m.starts.get(rank + 1) {
+            Some(&next) => next,
+            None => m.layout.global_len() as u32,
+        };
+        let before: u32 = self.0.iter().map(|m| m.starts[rank]).sum();
+        let above: u32 = self.0[..matrix]
+            .iter()
+            .map(|m| end(m) - m.starts[rank])
+            .sum();
+        before + above + dof - own.starts[rank]
+    }
+
+    /// A vector with one entry for each unknown. Collective.
+    pub fn vector(&self, session: &Session) -> Result<PetscVec> {
+        let n = self.layouts().map(PetscVec::local_len).sum();
+        PetscVec::over_ranks(session, Some(n), None)
+    }
+
+    /// Vectors that fit the matrices.
+    pub fn layouts(&self) -> impl Iterator<Item = &PetscVec> {
+        self.0.iter().map(|m| &m.layout)
+    }
+
+    /// Local matrices, the numbers of their rows among all unknowns, and their bodies.
+    pub fn subdomains(&self) -> impl Iterator<Item = (&Csr, Vec<i32>, i32)> {
+        let number = |k: usize, d: i32| match u32::try_from(d) {
+            Ok(dof) => self.number(k, dof) as i32,
+            Err(_) => d,
+        };
+        let one = move |(k, m): (usize, &'_ Member)| m.map.iter().map(|&d| number(k, d)).collect();
+        let members = self.0.iter().enumerate();
+        members.map(move |(k, m)| (&m.k, one((k, m)), m.body))
+    }
+
+    /// Vectors over all unknowns whose parts are the motions of the matrices; `None` where a matrix has none. Collective.
+    pub fn modes(&self, whole: &PetscVec) -> Result<Option<Vec<PetscVec>>> {
+        let each: Option<Vec<&Vec<PetscVec>>> = self.0.iter().map(|m| m.modes.as_ref()).collect();
+        let Some(each) = each else {
+            return Ok(None);
+        };
+        let mut out = Vec::new();
+        for j in 0..each.iter().map(|list| list.len()).max().unwrap_or(0) {
+            let mode = whole.duplicate()?;
+            {
+                let mut entries = mode.array_mut()?;
+                let mut rest = &mut entries[..];
+                for (layout, list) in self.layouts().zip(&each) {
+                    let (mine, tail) = rest.split_at_mut(layout.local_len());
+                    if let Some(part) = list.get(j) {
+                        mine.copy_from_slice(&part.array()?);
+                    }
+                    rest = tail;
+                }
+            }
+            out.push(mode);
+        }
+        Ok(Some(out))
+    }
+}
