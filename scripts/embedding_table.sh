@@ -11,7 +11,7 @@ sources=/usr/share/petsc/3.18/share/petsc/examples/src/ksp/ksp/tutorials
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 read -ra flags <<<"$(pkg-config --cflags --libs PETSc)"
-for example in ex71 ex49; do
+for example in ex71 ex49 ex59; do
     mpicc -O1 -o "$work/$example" "$sources/$example.c" "${flags[@]}" -lm
 done
 
@@ -54,3 +54,5 @@ row '`ex71 -dim 3 -cells 8,8,8 -pde_type Elasticity -dirichlet 0`' 8 "" ex71 -di
 row '`ex49 -mx 48 -my 48 -dm_mat_type is`' 16 elas_ ex49 -mx 48 -my 48 -dm_mat_type is -no_view
 bricks=(-mx 40 -my 40 -dm_mat_type is -no_view -c_str 2 -brick_E 1,1000 -brick_nu 0.4,0.2 -brick_span 20)
 row '`ex49`, bricks with E of 1 and 1000' 9 elas_ ex49 "${bricks[@]}"
+row '`ex59 -npx 4 -npy 2 -nex 24 -ney 24`' 8 physical_ ex59 -testfetidp 0 -npx 4 -npy 2 -nex 24 -ney 24
+row '`ex59 -npx 2 -npy 2 -npz 2 -nex 8 -ney 8 -nez 8`' 8 physical_ ex59 -testfetidp 0 -npx 2 -npy 2 -npz 2 -nex 8 -ney 8 -nez 8

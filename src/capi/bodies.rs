@@ -79,7 +79,12 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
         }
         let k = Csr::from_triplets(n as usize, &triplets);
         if n > 0 {
-            o.subdomains.push(Given { k, dofs, body });
+            o.subdomains.push(Given {
+                k,
+                dofs,
+                copies: None,
+                body,
+            });
         }
         o.stale = true;
         Ok(())

@@ -5,7 +5,7 @@ use super::error::Kind;
 use super::nested::Given as GivenVector;
 use super::rows::Row;
 use super::stack::{fits, Local, Stack};
-use crate::embed::pieces::piece;
+use crate::embed::pieces::torn_from;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Grouping, Outcome, Torn};
 use crate::feti::exchange::{gather_all, max_all};
@@ -21,6 +21,8 @@ pub struct Given {
     pub k: Csr,
     /// Global number of each row; negative: none.
     pub dofs: Vec<i32>,
+    /// The block size where a dof may be listed several times, once for each subdomain that has it.
+    pub copies: Option<usize>,
     /// The body; negative: not said.
     pub body: i32,
 }
@@ -111,7 +113,7 @@ impl Object {
         let local = Local::of(&self.session, a)?;
         self.stack.clear();
         self.subdomains.clear();
-        self.push(local.k, local.map, body);
+        self.push(local.k, local.map, local.copies, body);
         self.matis = Some(Told {
             layout: local.layout,
             block_size: local.block_size,
@@ -141,13 +143,18 @@ impl Object {
         if self.block_size_of_added == 1 {
             self.block_size_of_added = local.block_size;
         }
-        self.push(local.k, dofs, body);
+        self.push(local.k, dofs, local.copies, body);
         Ok(())
     }
 
-    fn push(&mut self, k: Csr, dofs: Vec<i32>, body: i32) {
+    fn push(&mut self, k: Csr, dofs: Vec<i32>, copies: Option<usize>, body: i32) {
         if k.n() > 0 {
-            self.subdomains.push(Given { k, dofs, body });
+            self.subdomains.push(Given {
+                k,
+                dofs,
+                copies,
+                body,
+            });
         }
         self.stale = true;
     }
@@ -223,15 +230,13 @@ impl Object {
             )));
         }
         session.agree(self.in_range(n_global))?;
-        let body = |b: i32| u64::try_from(b).ok();
         let numbered = self.subdomains.iter();
-        let numbered = numbered.filter_map(|s| piece(&s.k, &s.dofs, body(s.body)));
-        let stacked = self.stack.subdomains();
-        let stacked = stacked.filter_map(|(k, dofs, b)| piece(k, &dofs, body(b)));
+        let numbered =
+            numbered.flat_map(|s| torn_from(&s.k, &s.dofs, s.copies, u64::try_from(s.body).ok()));
         let mut torn = Torn {
             n_global,
             block_size: bs,
-            pieces: numbered.chain(stacked).collect(),
+            pieces: numbered.chain(self.stack.pieces()).collect(),
             modes: self.modes(&layout)?,
             layout,
             held: HashSet::new(),

@@ -3,7 +3,9 @@
 //! On each rank come its rows of the first matrix, then those of the second, and so on: as DMComposite numbers, and as nested vectors lie.
 
 use super::error::Kind;
+use crate::embed::pieces::torn_from;
 use crate::embed::torn::{modes, unassembled};
+use crate::embed::Piece;
 use crate::feti::exchange::gather_all;
 use crate::petsc::{Mat, Session, Vec as PetscVec};
 use crate::sparse::Csr;
@@ -15,6 +17,7 @@ pub struct Member {
     k: Csr,
     /// Number of each of its rows in the matrix; negative: none.
     map: Vec<i32>,
+    copies: Option<usize>,
     body: i32,
     block_size: usize,
     /// A vector that fits the matrix.
@@ -32,6 +35,8 @@ pub struct Stack(Vec<Member>);
 pub struct Local {
     pub k: Csr,
     pub map: Vec<i32>,
+    /// The block size where the map may name a dof several times, once for each subdomain that has it.
+    pub copies: Option<usize>,
     pub layout: PetscVec,
     pub block_size: usize,
     /// Motions that cost no energy, where the near-null space or the null space has them.
@@ -62,6 +67,7 @@ impl Local {
         Ok(Local {
             k,
             map,
+            copies: a.is_repeated()?.then_some(block_size),
             layout,
             block_size,
             modes,
@@ -101,6 +107,7 @@ impl Stack {
         self.0.push(Member {
             k: local.k,
             map: local.map,
+            copies: local.copies,
             body,
             block_size: local.block_size,
             layout: local.layout,
@@ -153,15 +160,17 @@ impl Stack {
         self.0.iter().map(|m| &m.layout)
     }
 
-    /// Local matrices, the numbers of their rows among all unknowns, and their bodies.
-    pub fn subdomains(&self) -> impl Iterator<Item = (&Csr, Vec<i32>, i32)> {
+    /// Local matrices cut into pieces, by numbers among all unknowns.
+    pub fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
         let number = |k: usize, d: i32| match u32::try_from(d) {
             Ok(dof) => self.number(k, dof) as i32,
             Err(_) => d,
         };
-        let one = move |(k, m): (usize, &'_ Member)| m.map.iter().map(|&d| number(k, d)).collect();
-        let members = self.0.iter().enumerate();
-        members.map(move |(k, m)| (&m.k, one((k, m)), m.body))
+        let one = move |(k, m): (usize, &Member)| {
+            let map: Vec<i32> = m.map.iter().map(|&d| number(k, d)).collect();
+            torn_from(&m.k, &map, m.copies, u64::try_from(m.body).ok())
+        };
+        self.0.iter().enumerate().flat_map(one)
     }
 
     /// Vectors over all unknowns whose parts are the motions of the matrices; `None` where a matrix has none. Collective.

@@ -16,9 +16,17 @@ pub struct Piece {
     pub cut: bool,
 }
 
+/// The pieces of a local matrix; `copies` is the block size where its map may name a dof several times, once for each subdomain that has it.
+pub fn torn_from(k: &Csr, map: &[i32], copies: Option<usize>, body: Option<u64>) -> Vec<Piece> {
+    match copies {
+        Some(block_size) => pieces(k, map, block_size, body),
+        None => piece(k, map, body).into_iter().collect(),
+    }
+}
+
 /// A local matrix by increasing global dofs: rows that stand for the same dof are added up (a periodic mesh on one rank has such),
 /// rows without a dof are left out; `None` for a rank without any.
-pub fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
+fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
     let mut dofs: Vec<u32> = map.iter().filter(|&&g| g >= 0).map(|&g| g as u32).collect();
     dofs.sort_unstable();
     dofs.dedup();
@@ -48,7 +56,7 @@ pub fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
 
 /// The pieces of a local matrix whose map may name a dof several times, once for each subdomain that has it: the connected parts of the matrix, whose
 /// `block_size` consecutive rows belong together. Rows that are coupled with nothing (boundary conditions) can be of any of them and make a piece of their own.
-pub fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Piece> {
+fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Piece> {
     let n = k.n();
     let node = |i: usize| i / block_size;
     let alone = |i: usize| {

@@ -1,6 +1,6 @@
 //! What a host program hands over: matrices of subdomains, as yet without a shape.
 
-use super::pieces::{piece, pieces, Piece};
+use super::pieces::{torn_from, Piece};
 use crate::feti::halo::Halo;
 use crate::petsc::{Attached, Mat, Session, Vec as PetscVec};
 use crate::substructures::RowKind;
@@ -55,11 +55,8 @@ impl Torn {
         }
         let (k, map) = session.agree(a.local_part())?;
         let (layout, block_size) = (a.right_vec()?, a.block_size()?);
-        let pieces = if a.is_repeated()? {
-            pieces(&k, &map, block_size, body)
-        } else {
-            piece(&k, &map, body).into_iter().collect()
-        };
+        let copies = a.is_repeated()?.then_some(block_size);
+        let pieces = torn_from(&k, &map, copies, body);
         Ok(Torn {
             n_global: rows,
             block_size,

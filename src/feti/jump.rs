@@ -283,6 +283,15 @@ impl Jump {
         self.places.sort_unstable();
     }
 
+    /// Which local subdomain has this global index.
+    ///
+    /// # Panics
+    /// If none has.
+    pub fn local_index(&self, subdomain: u32) -> usize {
+        let found = self.subdomains.binary_search(&subdomain);
+        found.expect("the subdomain is on this rank")
+    }
+
     /// Turns the entries' local dofs into positions in `interface` (the order of Γ) of subdomain `j`.
     pub fn place(&mut self, j: usize, interface: &[u32]) {
         let mut position: Vec<(u32, u32)> = interface.iter().copied().zip(0..).collect();

@@ -11,13 +11,14 @@
 //! every active set, so nothing here changes in a contact step.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use mpi::traits::Communicator;
 
 use super::exchange::{exchange, exchange_words};
 use super::halo::Halo;
 use super::local::dense::{multiply, Dense};
+use super::local::problem::LocalProblem;
 use super::local::semidefinite::Semidefinite;
 use super::primal::PrimalEntry;
 use super::sharing::Sharing;
@@ -223,8 +224,18 @@ struct Averaged {
     columns: Vec<u32>,
 }
 
-/// Column → value, for one interface dof.
-type SparseRow = BTreeMap<u32, f64>;
+/// (column, value) pairs of one interface dof, a handful in no order.
+type SparseRow = Vec<(u32, f64)>;
+
+/// The value in a column, zero at first.
+fn value_at(row: &mut SparseRow, column: u32) -> &mut f64 {
+    let at = row.iter().position(|(c, _)| *c == column);
+    let at = at.unwrap_or_else(|| {
+        row.push((column, 0.0));
+        row.len() - 1
+    });
+    &mut row[at].1
+}
 
 /// Exchanges rows of Ψ between the copies of every shared dof and averages them.
 fn average_copies(
@@ -261,35 +272,38 @@ fn average_copies(
             }
         }
     }
-    let index: BTreeMap<usize, usize> = problem
-        .local
+    let locals = &stiffness.locals;
+    let places: Vec<Vec<(u32, u32)>> = locals
         .iter()
-        .enumerate()
-        .map(|(j, s)| (s.index, j))
+        .map(|local| {
+            let mut place: Vec<(u32, u32)> = local.interface.iter().copied().zip(0..).collect();
+            place.sort_unstable();
+            place
+        })
         .collect();
-    let mut rows: Vec<BTreeMap<u32, SparseRow>> = vec![BTreeMap::new(); problem.local.len()];
+    let empty = |local: &Arc<LocalProblem>| vec![SparseRow::new(); local.n_gamma()];
+    let mut rows: Vec<Vec<SparseRow>> = locals.iter().map(empty).collect();
     for words in exchange_words(comm, outgoing) {
         let mut rest = &words[..];
         while let [subdomain, dof, n, tail @ ..] = rest {
             let (pairs, tail) = tail.split_at(2 * *n as usize);
-            let row = rows[index[&(*subdomain as usize)]]
-                .entry(*dof as u32)
-                .or_default();
+            let j = stiffness.jump.local_index(*subdomain as u32);
+            let at = places[j].binary_search_by_key(&(*dof as u32), |p| p.0);
+            let at = places[j][at.expect("a shared dof is an interface dof")].1;
+            let row = &mut rows[j][at as usize];
             for pair in pairs.chunks_exact(2) {
-                *row.entry(pair[0] as u32).or_insert(0.0) += f64::from_bits(pair[1]);
+                *value_at(row, pair[0] as u32) += f64::from_bits(pair[1]);
             }
             rest = tail;
         }
     }
     (0..rows.len())
         .map(|j| {
-            let local = &stiffness.locals[j];
+            let local = &locals[j];
             for p in 0..stiffness.jump.n_shared[j] {
-                let dof = local.interface[local.n_delta + p];
-                rows[j].entry(dof).or_default().insert(global(j, p), 1.0);
+                *value_at(&mut rows[j][local.n_delta + p], global(j, p)) = 1.0;
             }
-            let candidate = candidates(stiffness, j);
-            gather(local.interface.as_slice(), &rows[j], &candidate)
+            gather(&rows[j], &candidates(stiffness, j))
         })
         .collect()
 }
@@ -313,19 +327,23 @@ fn candidates(stiffness: &Stiffness, j: usize) -> Vec<bool> {
     out
 }
 
-fn gather(interface: &[u32], rows: &BTreeMap<u32, SparseRow>, candidate: &[bool]) -> Averaged {
-    let live = |i: usize| rows.get(&interface[i]).filter(|_| !candidate[i]);
-    let mut columns: Vec<u32> = (0..interface.len())
-        .filter_map(live)
-        .flat_map(|row| row.keys().copied())
+fn gather(rows: &[SparseRow], candidate: &[bool]) -> Averaged {
+    let live = || {
+        rows.iter()
+            .zip(candidate)
+            .zip(0..)
+            .filter(|((_, c), _)| !**c)
+    };
+    let mut columns: Vec<u32> = live()
+        .flat_map(|((row, _), _)| row.iter().map(|(column, _)| *column))
         .collect();
     columns.sort_unstable();
     columns.dedup();
-    let mut z = Dense::zeros(interface.len(), columns.len());
-    for i in 0..interface.len() {
-        for (column, &value) in live(i).into_iter().flatten() {
+    let mut z = Dense::zeros(rows.len(), columns.len());
+    for ((row, _), i) in live() {
+        for (column, value) in row {
             let at = columns.binary_search(column);
-            z.set(i, at.expect("every column was collected"), value);
+            z.set(i, at.expect("every column was collected"), *value);
         }
     }
     Averaged { z, columns }

@@ -26,6 +26,7 @@ pub mod natural;
 pub mod persist;
 pub mod preconditioner;
 pub mod primal;
+pub mod products;
 pub mod recover;
 pub mod refine;
 pub mod rows;

@@ -14,6 +14,7 @@ use super::lifting::Lifting;
 use super::local::dense::Dense;
 use super::local::problem::LocalProblem;
 use super::local::single::Single;
+use super::products::Products;
 use super::settings::{PcType, Precision};
 use super::stiffness::{Columns, Stiffness, Work};
 use crate::petsc::Vec as PetscVec;
@@ -29,6 +30,8 @@ pub struct Preconditioner {
     k_gamma: Vec<Csr>,
     /// S of each local subdomain in single precision, where that is asked for; equal subdomains share it.
     single: Vec<Arc<Single>>,
+    /// S for subdomains that share it.
+    products: Products,
     buffers: RefCell<(Vec<Work>, Vec<f64>)>,
 }
 
@@ -60,6 +63,7 @@ impl Preconditioner {
             lifting,
             k_gamma,
             single,
+            products: Products::new(&stiffness.locals, |most| stiffness.batches(most)),
             buffers: RefCell::new((stiffness.work(), vec![0.0; stiffness.jump.ghosts.len()])),
         }
     }
@@ -83,18 +87,26 @@ impl Preconditioner {
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
         stiffness.dual_halo.fetch(lambda, ghost)?;
         let (received, kind, k_gamma) = (&*ghost, self.kind, &self.k_gamma);
-        let single = &self.single;
-        stiffness.team.for_each(work, |j, w| {
+        let (single, team) = (&self.single, &stiffness.team);
+        team.for_each(work, |j, w| {
             columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
-            match kind {
-                PcType::Lumped => k_gamma[j].mul(&w.v, &mut w.y), /* y ← K_ΓΓ v */
-                _ if !single.is_empty() => single[j].mul(&w.v, &mut w.y), /* y ← S v */
-                _ => {
-                    w.y.fill(0.0);
-                    locals[j].s.add_mul(&w.v, &mut w.y); /*   y ← S v            */
-                }
-            }
         });
+        match kind {
+            PcType::Lumped => team.for_each(work, |j, w| {
+                k_gamma[j].mul(&w.v, &mut w.y); /*            y ← K_ΓΓ v         */
+            }),
+            _ if !single.is_empty() => team.for_each(work, |j, w| {
+                single[j].mul(&w.v, &mut w.y); /*             y ← S v            */
+            }),
+            _ => {
+                let products = &self.products;
+                let panels = products.multiply(team, locals, work, |l| &*l.s);
+                let products = products.results(&panels);
+                team.for_each(work, |j, w| {
+                    products.take(j, &locals[j].s, &w.v, &mut w.y); /* y ← S v */
+                });
+            }
+        }
         if let Some(lifting) = &self.lifting {
             lifting.remove(stiffness, work)?; /*              y ← y − Y A⁺ Yᵀ v  */
         }

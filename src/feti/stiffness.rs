@@ -14,6 +14,7 @@ use super::jump::Jump;
 use super::local::dense::Dense;
 use super::local::problem::LocalProblem;
 use super::primal::PrimalSpace;
+use super::products::Products;
 use super::refine::{self, Refinement};
 use super::team::Team;
 use crate::petsc::Vec as PetscVec;
@@ -53,6 +54,8 @@ pub struct Stiffness {
     pub dual_halo: Halo,
     /// The threads of this rank.
     pub team: Team,
+    /// T for subdomains that share it.
+    products: Products,
     /// Corrections of S_Π⁺, where coefficients jump inside bodies.
     refinement: Option<Refinement>,
     buffers: RefCell<Buffers>,
@@ -78,7 +81,9 @@ impl Stiffness {
             work: locals.iter().map(|l| Work::for_subdomain(l)).collect(),
             ghost: vec![0.0; jump.ghosts.len()],
         };
+        let products = Products::new(&locals, |most| batches(&locals, most));
         Stiffness {
+            products,
             jump,
             locals,
             space,
@@ -138,9 +143,12 @@ impl Stiffness {
     pub fn s_plus(&self, work: &mut [Work]) -> Result<()> {
         let (locals, space) = (&self.locals, &self.space);
         let coarse = self.coarse_values(work)?;
+        let (team, products) = (&self.team, &self.products);
+        let panels = products.multiply(team, locals, work, |l| &l.t);
+        let products = products.results(&panels);
         self.team.for_each(work, |j, w| {
             Self::local_values(space, j, &coarse, &mut w.p);
-            locals[j].t_apply(&w.v, &mut w.y); /*         y ← T v        */
+            products.take(j, &locals[j].t, &w.v, &mut w.y); /* y ← T v        */
             locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
         });
         Ok(())
@@ -295,15 +303,7 @@ impl Stiffness {
 
     /// The subdomains of this rank in groups of at most `most` that share their operators.
     pub fn batches(&self, most: usize) -> Vec<Vec<usize>> {
-        let mut kinds: BTreeMap<*const LocalProblem, Vec<usize>> = BTreeMap::new();
-        for (j, local) in self.locals.iter().enumerate() {
-            kinds.entry(Arc::as_ptr(local)).or_default().push(j);
-        }
-        let mut kinds: Vec<Vec<usize>> = kinds.into_values().collect();
-        // Addresses are not the same from run to run.
-        kinds.sort_unstable();
-        let chunks = kinds.iter().flat_map(|kind| kind.chunks(most));
-        chunks.map(<[usize]>::to_vec).collect()
+        batches(&self.locals, most)
     }
 
     /// `work` of every batch at once, the results by local subdomain.
@@ -324,6 +324,18 @@ impl Stiffness {
     pub fn work(&self) -> Vec<Work> {
         self.locals.iter().map(|l| Work::for_subdomain(l)).collect()
     }
+}
+
+fn batches(locals: &[Arc<LocalProblem>], most: usize) -> Vec<Vec<usize>> {
+    let mut kinds: BTreeMap<*const LocalProblem, Vec<usize>> = BTreeMap::new();
+    for (j, local) in locals.iter().enumerate() {
+        kinds.entry(Arc::as_ptr(local)).or_default().push(j);
+    }
+    let mut kinds: Vec<Vec<usize>> = kinds.into_values().collect();
+    // Addresses are not the same from run to run.
+    kinds.sort_unstable();
+    let chunks = kinds.iter().flat_map(|kind| kind.chunks(most));
+    chunks.map(<[usize]>::to_vec).collect()
 }
 
 impl Work {
