@@ -25,6 +25,16 @@ pub struct Run {
 }
 
 impl Run {
+    /// The method.
+    pub fn name(&self) -> &'static str {
+        self.baseline.map_or("fetifeti", |b| b.name)
+    }
+
+    /// Method and ranks, for progress.
+    pub fn title(&self) -> String {
+        format!("{} on {} ranks", self.name(), self.ranks)
+    }
+
     /// The job; `active`: rows of the last active set that is known.
     pub fn task(&self, solution: &Path, rescue: bool, active: &[usize]) -> Task {
         let solution = solution.to_path_buf();
