@@ -22,7 +22,8 @@ pub struct Methods<'a> {
     stem: String,
     /// Where the unknowns are.
     pub layout: Layout<'a>,
-
+    /// Whether every method solves once more for another load.
+    pub again: bool,
     /// The active set of the last contact loop of ours: methods that solve equations only take it.
     active: Vec<usize>,
 }
@@ -54,6 +55,7 @@ impl<'a> Methods<'a> {
             file,
             stem: stem.to_string(),
             layout: Layout::new(scene),
+            again: false,
             active: Vec::new(),
         }
     }
@@ -122,6 +124,7 @@ impl<'a> Methods<'a> {
             result,
             rtol: self.plan.rtol,
             inner: self.plan.inner,
+            again: self.again,
             task: run.task(&self.solution(k), rescue, &self.active),
         };
         let finished = self.launcher.run(&name, &job, run.ranks)?;
@@ -149,6 +152,7 @@ impl<'a> Methods<'a> {
             result: self.launcher.workspace.file(&format!("{name}.json")),
             rtol: self.plan.rtol,
             inner: self.plan.inner,
+            again: false,
             task: Task::Judge { solutions },
         };
         match self.launcher.run(&name, &job, self.plan.cores)?.record {

@@ -31,6 +31,7 @@ mod outer;
 mod plan;
 mod reduced;
 mod rows;
+mod second;
 pub(crate) mod single;
 mod system;
 mod table;
