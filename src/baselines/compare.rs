@@ -1,5 +1,6 @@
 //! `fetifeti compare`: every method once.
 
+use std::path::Path;
 use std::time::Duration;
 
 use mpi::point_to_point::{Destination, Source};
@@ -7,7 +8,7 @@ use mpi::traits::Communicator;
 
 use super::launch::{Failure, Launcher, Workspace};
 use super::methods::{forwarded, inequalities, row, sentence, Methods, Ran};
-use super::plan::Plan;
+use super::plan::{Layouts, Plan};
 use super::table::{self, Case};
 use crate::cli::args::Compare;
 use crate::cli::problem;
@@ -28,7 +29,7 @@ use crate::{Error, Result};
 pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()> {
     let scene = problem::load(session, &args.scene)?;
     let baselines = session.agree(table::select(&args.with))?;
-    let plan = Plan::new(session, &scene, &baselines)?;
+    let plan = Plan::new(session, &scene, &baselines, Layouts::Two)?;
     let all = Options::new(session, "");
     if all.has("help")? || all.has("h")? {
         for baseline in &baselines {
@@ -36,7 +37,7 @@ pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()
         }
     }
     let ready = if session.rank() == 0 {
-        prepare(args)
+        prepare(args.out.as_deref(), args.json.as_deref())
     } else {
         Ok(())
     };
@@ -45,11 +46,14 @@ pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()
 }
 
 /// Finds out before the work whether results can be written.
-fn prepare(args: &Compare) -> Result<()> {
-    if let Some(dir) = &args.out {
+///
+/// # Errors
+/// [`Error::Environment`] with the path.
+pub fn prepare(out: Option<&Path>, json: Option<&Path>) -> Result<()> {
+    if let Some(dir) = out {
         output::prepare_directory(dir)?;
     }
-    args.json.as_deref().map_or(Ok(()), output::prepare_file)
+    json.map_or(Ok(()), output::prepare_file)
 }
 
 /// Does `work` on rank 0; the others sleep until it is done, for the cores belong to the jobs. Collective.
@@ -83,7 +87,7 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
     let file = std::fs::canonicalize(&args.scene).unwrap_or_else(|_| args.scene.clone());
     let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
     let quiet = args.quiet || to_stdout;
-    let mut methods = Methods::new(&launcher, plan, scene, file, "");
+    let mut methods = Methods::new(&launcher, plan, scene, file);
     let mut rows = Vec::new();
     // Numbers of the rows that have a solution; the solutions.
     let (mut solved, mut solutions) = (Vec::new(), Vec::new());

@@ -8,6 +8,7 @@ use super::launch::{Failure, Launcher};
 use super::layout::Layout;
 use super::plan::{Plan, Run};
 use super::read;
+use super::table::Format;
 use crate::report::json::{CompareContact, CompareInequalities, CompareRow, CompareSeconds};
 use crate::scene::Scene;
 use crate::Result;
@@ -18,15 +19,18 @@ pub struct Methods<'a> {
     plan: &'a Plan,
     /// The scene file.
     file: PathBuf,
-    /// Before the names of all files of this scene.
-    stem: String,
     /// Where the unknowns are.
     pub layout: Layout<'a>,
+    /// Whether there are inequalities.
+    contact: bool,
     /// Whether every method solves once more for another load.
     pub again: bool,
-    /// The active set of the last contact loop of ours: methods that solve equations only take it.
-    active: Vec<usize>,
+    /// The active set of the last contact loop of ours: methods that solve equations only take it. `None`: there is none so far.
+    active: Option<Vec<usize>>,
 }
+
+/// A solution that a method has left: the file, and the rows that are active in it.
+pub type Left = (PathBuf, Vec<usize>);
 
 /// What one method has done.
 pub struct Ran {
@@ -36,27 +40,39 @@ pub struct Ran {
     pub rescue: Option<String>,
     /// What the ranks have printed.
     pub printed: String,
-    /// Where the solution is, if there is one, with the rows that are active in it.
-    pub solution: Option<(PathBuf, Vec<usize>)>,
+    /// The solution, if there is one.
+    pub solution: Option<Left>,
+}
+
+impl Ran {
+    /// Nothing, for this reason.
+    fn not(message: String) -> Ran {
+        let code = None;
+        Ran {
+            outcome: Err(Failure { code, message }),
+            rescue: None,
+            printed: String::new(),
+            solution: None,
+        }
+    }
 }
 
 impl<'a> Methods<'a> {
-    /// The methods of `plan` on `scene`, which is in `file`. `stem` is a name that no other scene of the launcher has.
+    /// The methods of `plan` on `scene`, which is in `file`.
     pub fn new(
         launcher: &'a Launcher,
         plan: &'a Plan,
         scene: &'a Scene,
         file: PathBuf,
-        stem: &str,
     ) -> Methods<'a> {
         Methods {
             launcher,
             plan,
             file,
-            stem: stem.to_string(),
             layout: Layout::new(scene),
+            contact: scene.has_contact(),
             again: false,
-            active: Vec::new(),
+            active: None,
         }
     }
 
@@ -68,16 +84,14 @@ impl<'a> Methods<'a> {
     pub fn run(&mut self, k: usize, rescued: bool) -> Result<Ran> {
         let run = &self.plan.runs[k];
         if let (Some(_), Some(trouble)) = (run.baseline, &self.layout.trouble) {
-            let message = format!("not for this scene: {trouble}");
-            return Ok(Ran {
-                outcome: Err(Failure {
-                    code: None,
-                    message,
-                }),
-                rescue: None,
-                printed: String::new(),
-                solution: None,
-            });
+            return Ok(Ran::not(format!("not for this scene: {trouble}")));
+        }
+        let equations = run
+            .baseline
+            .is_some_and(|b| b.format == Format::Unassembled);
+        if equations && self.contact && self.active.is_none() {
+            let message = "solves the equations of our active set, and there is none";
+            return Ok(Ran::not(message.to_string()));
         }
         let rescuer = run.baseline.filter(|b| !b.rescue.is_empty());
         let (mut outcome, mut printed) = self.job(k, rescued)?;
@@ -92,7 +106,7 @@ impl<'a> Methods<'a> {
             let contact = outcome.contact.as_ref();
             let rows = contact.map(|c| c.active.clone()).unwrap_or_default();
             if contact.is_some_and(|c| c.steps.is_some()) && run.baseline.is_none() {
-                self.active.clone_from(&rows);
+                self.active = Some(rows.clone());
             }
             solution = Some((self.solution(k), rows));
         }
@@ -105,8 +119,7 @@ impl<'a> Methods<'a> {
     }
 
     fn solution(&self, k: usize) -> PathBuf {
-        let name = format!("{}{k}.u", self.stem);
-        self.launcher.workspace.file(&name)
+        self.launcher.workspace.file(&format!("{k}.u"))
     }
 
     fn job(
@@ -115,17 +128,18 @@ impl<'a> Methods<'a> {
         rescue: bool,
     ) -> Result<(std::result::Result<Outcome, Failure>, String)> {
         let run = &self.plan.runs[k];
-        let name = format!("{}{k}-{rescue}", self.stem);
+        let name = format!("{k}-{rescue}");
         let result = self.launcher.workspace.file(&format!("{name}.json"));
         // What the same method has left in a round before must not be taken for the result of this one.
         let _ = std::fs::remove_file(&result);
+        let active = self.active.as_deref().unwrap_or_default();
         let job = Job {
             scene: self.file.clone(),
             result,
             rtol: self.plan.rtol,
             inner: self.plan.inner,
             again: self.again,
-            task: run.task(&self.solution(k), rescue, &self.active),
+            task: run.task(&self.solution(k), rescue, active),
         };
         let finished = self.launcher.run(&name, &job, run.ranks)?;
         let outcome = match finished.record {
@@ -139,23 +153,22 @@ impl<'a> Methods<'a> {
     ///
     /// # Errors
     /// As [`Methods::run`].
-    pub fn judge(&self, solutions: Vec<(PathBuf, Vec<usize>)>) -> Result<Verdict> {
+    pub fn judge(&self, solutions: Vec<Left>) -> Result<Verdict> {
         if self.layout.trouble.is_some() {
             return Ok(Verdict {
                 rows: self.layout.forms.len(),
                 ..Verdict::default()
             });
         }
-        let name = format!("{}judge", self.stem);
         let job = Job {
             scene: self.file.clone(),
-            result: self.launcher.workspace.file(&format!("{name}.json")),
+            result: self.launcher.workspace.file("verdict.json"),
             rtol: self.plan.rtol,
             inner: self.plan.inner,
             again: false,
             task: Task::Judge { solutions },
         };
-        match self.launcher.run(&name, &job, self.plan.cores)?.record {
+        match self.launcher.run("judge", &job, self.plan.cores)?.record {
             Ok(text) => read(&text),
             Err(failure) => {
                 eprintln!(

@@ -11,9 +11,10 @@
 //! solve the equations of the last active set.
 //!
 //! Every method runs in a process group of its own, started by mpirun, so that neither its memory nor its time is another's. All are
-//! driven to the same relative residual of the assembled problem. `methods` runs them; `compare` does so once.
+//! driven to the same relative residual of the assembled problem. `methods` runs them; `compare` does so once, `bench` in rounds.
 
 mod attempt;
+mod bench;
 mod compare;
 mod contact;
 mod frame;
@@ -37,6 +38,7 @@ mod system;
 mod table;
 mod unknowns;
 
+pub use bench::bench;
 pub use compare::compare;
 pub use job::run as run_job;
 pub use table::BASELINES;

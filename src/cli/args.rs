@@ -2,36 +2,8 @@
 
 use std::path::PathBuf;
 
+pub use super::usage::USAGE;
 use crate::{Error, Result};
-
-/// What `fetifeti --help` prints.
-pub const USAGE: &str = "\
-fetifeti: the FETI-FETI method for bodies in contact, on PETSc
-
-  fetifeti solve SCENE [--out DIR] [--json FILE] [--quiet] [PETSc options]
-      solve a scene; write solution.vtu, solution.png and report.json to DIR
-  fetifeti solve SCENE [--checkpoint FILE] [--resume FILE] ...
-      write the state of the contact loop to FILE after every step; go on from such a file, on any number of ranks
-  fetifeti plan SCENE
-      validate a scene; say what the solver will build and why, with sizes and memory
-  fetifeti compare SCENE [--with bddc,fetidp,gamg,hypre,mumps] [--json FILE] [--out DIR] [--quiet] [PETSc options]
-      the same problem through PETSc's solvers, to the same relative residual; their options have the prefixes
-      -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N, -compare_time_limit SECONDS for each method
-  fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
-      Table 1 and Figure 3 of Lee (2010) beside ours
-  fetifeti study hertz|hard-cases|kappa|speed-error [CASE] [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
-      hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
-      hard for the method against direct solutions, exit code 1 where an answer is wrong; kappa: condition
-      numbers with M_D and M_C over H_b/H_s and H_s/h (-fetifeti_spectrum: exact ones too); speed-error:
-      error against seconds, ours and the baselines of compare, over meshes and tolerances;
-      --quick: coarser meshes, smaller cases, a few seconds
-  mpirun -n N fetifeti solve SCENE ...
-      the same answer on N ranks
-
-A FILE of - is standard output. PETSc options have one dash (-fetifeti_ksp_rtol 1e-10 -fetifeti_ksp_monitor);
-fetifeti -help lists ours with PETSc's. They are also read from PETSC_OPTIONS and -options_file.
-Exit codes: 0 solved, 1 not converged (partial results written), 2 bad input, 3 the environment.
-";
 
 /// A command with its arguments.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +23,8 @@ pub enum Command {
     Table1(Table1),
     /// Run the baselines.
     Compare(Compare),
+    /// Run the baselines in rounds.
+    Bench(Bench),
     /// Run a study.
     Study(Study),
     /// One method of a comparison, in a process of its own (not for users).
@@ -103,6 +77,27 @@ pub struct Compare {
     pub out: Option<PathBuf>,
     /// No table.
     pub quiet: bool,
+}
+
+/// Arguments of `bench`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bench {
+    /// Names of cases, or scene files; empty for all cases.
+    pub cases: Vec<String>,
+    /// How often every method is run.
+    pub rounds: usize,
+    /// Baselines to run beside ours; empty for all.
+    pub with: Vec<String>,
+    /// File for the JSON.
+    pub json: Option<PathBuf>,
+    /// Directory for tables, picture and scenes.
+    pub out: Option<PathBuf>,
+    /// Smaller cases.
+    pub quick: bool,
+    /// No table and no progress.
+    pub quiet: bool,
+    /// Only say which cases there are.
+    pub list: bool,
 }
 
 /// The studies.
@@ -194,23 +189,29 @@ pub fn parse(args: &[String]) -> Result<Invocation> {
     Ok(Invocation { command, petsc })
 }
 
-const COMMANDS: [&str; 6] = ["solve", "plan", "compare", "table1", "study", "baseline"];
+const COMMANDS: [&str; 7] = [
+    "solve", "plan", "compare", "bench", "table1", "study", "baseline",
+];
+
+/// Rounds of `bench` where `--rounds` does not say.
+const ROUNDS: usize = 5;
 
 fn known(name: &str) -> Result<()> {
     if COMMANDS.contains(&name) {
         return Ok(());
     }
     Err(Error::input(format!(
-        "\"{name}\" is no command, expected solve, plan, compare, table1 or study (fetifeti --help tells more)"
+        "\"{name}\" is no command, expected solve, plan, compare, bench, table1 or study (fetifeti --help tells more)"
     )))
 }
 
 /// Flags of ours that take a value.
-const WITH_VALUE: [&str; 6] = [
+const WITH_VALUE: [&str; 7] = [
     "--out",
     "--json",
     "--rows",
     "--with",
+    "--rounds",
     "--checkpoint",
     "--resume",
 ];
@@ -282,6 +283,24 @@ impl Words {
         })
     }
 
+    fn with(&mut self) -> Vec<String> {
+        let list = self.value("--with");
+        list.map(|list| list.split(',').map(|s| s.trim().to_string()).collect())
+            .unwrap_or_default()
+    }
+
+    fn rounds(&mut self) -> Result<usize> {
+        let Some(text) = self.value("--rounds") else {
+            return Ok(ROUNDS);
+        };
+        let number = text.parse().ok().filter(|&n: &usize| n > 0);
+        number.ok_or_else(|| {
+            Error::input(format!(
+                "--rounds is \"{text}\", expected a whole number from 1"
+            ))
+        })
+    }
+
     fn study(&mut self) -> Result<StudyName> {
         let names = StudyName::ALL.map(StudyName::name).join(", ");
         let Some(word) = self.next_plain() else {
@@ -318,13 +337,20 @@ impl Words {
             }),
             "compare" => Command::Compare(Compare {
                 scene: self.scene(name)?,
-                with: self
-                    .value("--with")
-                    .map(|list| list.split(',').map(|s| s.trim().to_string()).collect())
-                    .unwrap_or_default(),
+                with: self.with(),
                 json: self.path("--json"),
                 out: self.path("--out"),
                 quiet: self.flag("--quiet"),
+            }),
+            "bench" => Command::Bench(Bench {
+                rounds: self.rounds()?,
+                with: self.with(),
+                json: self.path("--json"),
+                out: self.path("--out"),
+                quick: self.flag("--quick"),
+                quiet: self.flag("--quiet"),
+                list: self.flag("--list"),
+                cases: std::iter::from_fn(|| self.next_plain()).collect(),
             }),
             "study" => Command::Study(Study {
                 name: self.study()?,
@@ -433,6 +459,26 @@ mod tests {
     }
 
     #[test]
+    fn bench_takes_any_number_of_cases() {
+        let out = read("bench cube-24 --rounds 7 a.toml --with gamg,mumps --quick").expect("fine");
+        let bench = Bench {
+            cases: vec!["cube-24".into(), "a.toml".into()],
+            rounds: 7,
+            with: vec!["gamg".into(), "mumps".into()],
+            json: None,
+            out: None,
+            quick: true,
+            quiet: false,
+            list: false,
+        };
+        assert_eq!(out.command, Command::Bench(bench));
+        let Command::Bench(all) = read("bench").expect("fine").command else {
+            panic!("bench")
+        };
+        assert_eq!((all.cases.len(), all.rounds), (0, 5));
+    }
+
+    #[test]
     fn mistakes_are_named() {
         for (line, part) in [
             ("solv a.toml", "solv"),
@@ -442,6 +488,9 @@ mod tests {
             ("solve a.toml --json", "--json"),
             ("solve a.toml --resume", "--resume"),
             ("plan a.toml --checkpoint c", "--checkpoint"),
+            ("bench --rounds 0", "--rounds is \"0\""),
+            ("bench --rounds many", "many"),
+            ("bench --rounds", "--rounds"),
             ("study", "no name"),
             ("study hurtz", "hurtz"),
             ("study hertz sphere a.toml", "a.toml"),
