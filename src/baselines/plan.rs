@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::job::Task;
 use super::table::{Baseline, Format};
 use crate::petsc::{Options, Session};
+use crate::report::summary::ranks;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
@@ -34,7 +35,7 @@ impl Run {
 
     /// Method and ranks, for progress.
     pub fn title(&self) -> String {
-        format!("{} on {} ranks", self.name(), self.ranks)
+        format!("{} on {}", self.name(), ranks(self.ranks))
     }
 
     /// The job; `active`: rows of the last active set that is known.

@@ -9,6 +9,7 @@ mod contact;
 mod course;
 mod fields;
 mod maps;
+mod parse;
 mod physics;
 mod picture;
 mod plan;

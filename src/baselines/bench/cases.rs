@@ -57,14 +57,15 @@ pub const CASES: [Named; 6] = [
     },
 ];
 
-/// 4 × 4 bodies of 4 × 4 subdomains of 64 × 64 elements; small: 2 × 2 of 2 × 2 of 32 × 32.
+/// 4 × 4 bodies of 4 × 4 subdomains of 64 × 64 elements; small: 2 × 2 of 2 × 2 of 32 × 32. The load has no symmetry: with one, decompositions into
+/// two or four parts need no iteration.
 fn poisson(quick: bool, random: bool) -> String {
     let (bodies, elements) = if quick { (2, 32) } else { (4, 64) };
     let n = bodies * bodies * elements;
     let title = if random { ", nothing equal" } else { "" };
     let mut text = format!(
         "title = \"Poisson, {n} x {n} elements{title}\"\n\n[grid]\nbodies = {bodies}\nsubdomains = {bodies}\n\
-         elements_per_subdomain = {elements}\nload = 1\ndirichlet = \"all\"\n"
+         elements_per_subdomain = {elements}\nload = \"1 + x + y^2\"\ndirichlet = \"all\"\n"
     );
     if random {
         // Numbers without a pattern: the fraction of a large multiple of a sine. Coordinates are binary fractions, so that bodies compute
@@ -176,6 +177,16 @@ mod tests {
                 .iter()
                 .all(|s| s.n_bodies() > 1 && s.n_subdomains() > s.n_bodies()));
         }
+    }
+
+    #[test]
+    fn the_large_square_is_that_of_the_examples() {
+        let example = Scene::load("examples/scenes/speed_1024.toml").expect("a scene");
+        let scene = load("poisson-1024", false);
+        let sizes = |s: &Scene| (s.n_bodies(), s.n_subdomains(), Numbering::new(s).len());
+        assert_eq!(sizes(&scene), sizes(&example));
+        let [a, b] = [&scene, &example].map(|s| s.subdomain(17).expect("a subdomain"));
+        assert_eq!(a.k, b.k);
     }
 
     #[test]
