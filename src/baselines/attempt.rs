@@ -16,6 +16,8 @@ pub struct Attempt {
     pub iterations: Option<usize>,
     /// Wall-clock time.
     pub seconds: f64,
+    /// The part of `seconds` for the way from multipliers to displacements, where there is one.
+    pub recover: Option<f64>,
     /// Of set-ups in between, which `seconds` does not count.
     pub setup: f64,
     /// What a contact loop has found.
@@ -99,6 +101,7 @@ mod tests {
                     kappa: None,
                     iterations: Some(steps as usize),
                     seconds: 0.0,
+                    recover: None,
                     setup: 0.0,
                     contact: None,
                     converged: rtol > breaks_at,

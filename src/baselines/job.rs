@@ -30,6 +30,9 @@ pub struct Job {
     pub rtol: f64,
     /// Reduction of the residual in a contact step while the active set changes, for solvers that iterate on the assembled problem.
     pub inner: f64,
+    /// Whether a method, when it is done, solves once more for another load, with what it has set up.
+    #[serde(default)]
+    pub again: bool,
     /// What to do.
     pub task: Task,
 }
@@ -75,6 +78,10 @@ pub struct Outcome {
     pub setup: f64,
     /// Seconds of the solve.
     pub solve: f64,
+    /// The part of `solve` for the way from multipliers to displacements, where there is one.
+    pub recover: Option<f64>,
+    /// Seconds of the solve for a second load, where one was asked for: with all that was set up for the first.
+    pub again: Option<f64>,
     /// Largest resident memory, summed over the ranks, in bytes.
     pub memory: f64,
     /// The same when PETSc had started and the problem was not read yet.
@@ -106,6 +113,8 @@ impl Outcome {
             assemble,
             setup: setup + attempt.setup,
             solve: attempt.seconds,
+            recover: attempt.recover,
+            again: None,
             memory,
             memory_at_start: 0.0,
             rtol: attempt.iterations.is_some().then_some(rtol),

@@ -9,6 +9,7 @@ use super::job::{memory, timed, ContactOutcome, Job, Outcome};
 use super::layout::Layout;
 use super::near::NearKernel;
 use super::rows::Rows;
+use super::second::SecondLoad;
 use super::system::System;
 use super::table::{Baseline, Format};
 use super::unknowns::Unknowns;
@@ -142,6 +143,7 @@ pub fn baseline(
             kappa: kappa(&krylov)?,
             iterations: (!direct).then_some(iterations),
             seconds,
+            recover: None,
             setup: 0.0,
             contact: scene.has_contact().then(|| ContactOutcome {
                 steps: None,
@@ -156,10 +158,15 @@ pub fn baseline(
         true => attempt.u.save(file)?,
         false => unknowns.spread(session, &attempt.u)?.save(file)?,
     }
-    Ok(Outcome::new(
-        attempt,
-        rtol,
-        message,
-        [assemble, setup, memory],
-    ))
+    let again = match job.again && message.is_none() {
+        true => {
+            krylov.set_tolerances(Some(rtol), None, None, None)?;
+            let b = SecondLoad::new(scene).of(&unknowns, &system.b)?;
+            let u = b.duplicate()?;
+            Some(timed(session, || ksp.solve(&b, &u))?.1)
+        }
+        false => None,
+    };
+    let outcome = Outcome::new(attempt, rtol, message, [assemble, setup, memory]);
+    Ok(Outcome { again, ..outcome })
 }

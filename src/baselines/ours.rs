@@ -8,6 +8,7 @@ use super::job::{memory, timed, ContactOutcome, Job, Outcome};
 use super::judge::stationarity;
 use super::layout::Layout;
 use super::rows::Rows;
+use super::second::SecondLoad;
 use super::system::System;
 use super::table::Format;
 use super::unknowns::{Trace, Unknowns};
@@ -16,6 +17,7 @@ use crate::feti::exchange::{gather_all, max_all};
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::petsc::{Options, Session, Vec as PetscVec};
 use crate::scene::Scene;
+use crate::substructures::Subdomain;
 use crate::Result;
 
 /// Solves a scene by the FETI-FETI method.
@@ -35,7 +37,7 @@ pub fn solve(
         rtol: job.rtol,
         ..Settings::default()
     };
-    let (solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
+    let (mut solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
     // The assembled matrix is for the residual only: what it needs does not count.
     let layout = Layout::new(scene);
     let unknowns = Unknowns::all(&layout);
@@ -67,7 +69,8 @@ pub fn solve(
             }
             false => (system.system.relative_residual(&u)?, None),
         };
-        let mut seconds = [solution.solve_seconds + solution.recover_seconds];
+        let recover = solution.recover_seconds;
+        let mut seconds = [solution.solve_seconds + recover, recover];
         max_all(session.comm(), &mut seconds);
         Ok(Attempt {
             residual,
@@ -75,6 +78,7 @@ pub fn solve(
             kappa: solution.estimate.map(|s| s.kappa()),
             iterations: Some(solution.iterations),
             seconds: seconds[0],
+            recover: Some(seconds[1]),
             setup: 0.0,
             contact,
             converged: solution.converged,
@@ -82,11 +86,39 @@ pub fn solve(
         })
     })?;
     attempt.u.save(file)?;
+    let again = match job.again && message.is_none() {
+        true => Some(again(session, scene, &mut solver, &layout, rtol)?),
+        false => None,
+    };
     let mut outcome = Outcome::new(attempt, rtol, message, [assemble, setup, bytes]);
+    outcome.again = again;
     if layout.trouble.is_some() {
         outcome.residual = None;
     }
     Ok(outcome)
+}
+
+/// Seconds of a solve for another load with all that is set up; the contact loop begins from the beginning. Collective.
+fn again(
+    session: &Session,
+    scene: &Scene,
+    solver: &mut FetiFeti,
+    layout: &Layout,
+    rtol: f64,
+) -> Result<f64> {
+    let second = SecondLoad::new(scene);
+    let problem = solver.problem();
+    let load = |s: &Subdomain| -> Vec<f64> {
+        let terms = s.f.iter().zip(&s.dofs);
+        terms
+            .map(|(f, &dof)| f * second.at(layout, layout.index(dof)))
+            .collect()
+    };
+    let loads = problem.local.iter().map(load).collect();
+    let gaps: Vec<f64> = problem.rows.iter().map(|r| r.gap).collect();
+    solver.set_loads(loads, &gaps);
+    solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
+    Ok(timed(session, || solver.solve())?.1)
 }
 
 /// K, f and the inequalities.

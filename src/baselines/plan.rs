@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::job::Task;
 use super::table::{Baseline, Format};
 use crate::petsc::{Options, Session};
+use crate::report::summary::ranks;
 use crate::scene::Scene;
 use crate::{Error, Result};
 
@@ -16,6 +17,8 @@ const INNER: f64 = 0.1;
 pub struct Run {
     /// `None`: ours.
     pub baseline: Option<&'static Baseline>,
+    /// How it uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or `subdomain`.
+    pub layout: &'static str,
     /// MPI ranks.
     pub ranks: usize,
     /// Threads per rank.
@@ -25,6 +28,16 @@ pub struct Run {
 }
 
 impl Run {
+    /// The method.
+    pub fn name(&self) -> &'static str {
+        self.baseline.map_or("fetifeti", |b| b.name)
+    }
+
+    /// Method and ranks, for progress.
+    pub fn title(&self) -> String {
+        format!("{} on {}", self.name(), ranks(self.ranks))
+    }
+
     /// The job; `active`: rows of the last active set that is known.
     pub fn task(&self, solution: &Path, rescue: bool, active: &[usize]) -> Task {
         let solution = solution.to_path_buf();
@@ -41,6 +54,15 @@ impl Run {
             },
         }
     }
+}
+
+/// In which layouts domain decompositions of PETSc run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layouts {
+    /// On the subdomains and on a part per core.
+    Two,
+    /// Also on a part per body.
+    Three,
 }
 
 /// What is run, and to which residual.
@@ -62,7 +84,12 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::Input`] for a value out of range.
-    pub fn new(session: &Session, scene: &Scene, baselines: &[&'static Baseline]) -> Result<Plan> {
+    pub fn new(
+        session: &Session,
+        scene: &Scene,
+        baselines: &[&'static Baseline],
+        layouts: Layouts,
+    ) -> Result<Plan> {
         let ours = Options::new(session, "fetifeti_");
         let rtol = ours.get_f64("ksp_rtol")?.unwrap_or(1e-6);
         if !(rtol > 0.0 && rtol < 1.0) {
@@ -91,38 +118,49 @@ impl Plan {
             inner,
             cores,
             limit: Duration::from_secs(limit as u64),
-            runs: runs(scene.n_subdomains(), cores, baselines),
+            runs: runs(scene, cores, baselines, layouts),
         })
     }
 }
 
-/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on one per core; the others on all
+/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on fewer parts; the others on all
 /// cores.
-fn runs(subdomains: usize, cores: usize, baselines: &[&'static Baseline]) -> Vec<Run> {
-    let ours = |ranks, threads| Run {
+fn runs(
+    scene: &Scene,
+    cores: usize,
+    baselines: &[&'static Baseline],
+    layouts: Layouts,
+) -> Vec<Run> {
+    let (subdomains, bodies) = (scene.n_subdomains(), scene.n_bodies());
+    let ours = |layout, ranks, threads| Run {
         baseline: None,
+        layout,
         ranks,
         threads,
         parts: Some(subdomains),
     };
-    let mut runs = vec![ours(1, cores)];
+    let mut runs = vec![ours("threads", 1, cores)];
     if cores > 1 && subdomains > 1 {
-        runs.push(ours(cores.min(subdomains), 1));
+        runs.push(ours("ranks", cores.min(subdomains), 1));
     }
     for &baseline in baselines {
-        let on = |ranks, parts| Run {
+        let on = |layout, ranks, parts| Run {
             baseline: Some(baseline),
+            layout,
             ranks,
             threads: 1,
             parts,
         };
         match baseline.format {
-            Format::Assembled => runs.push(on(cores, None)),
+            Format::Assembled => runs.push(on("core", cores, None)),
             Format::Unassembled => {
-                runs.push(on(subdomains, Some(subdomains)));
+                runs.push(on("subdomain", subdomains, Some(subdomains)));
                 let few = cores.min(subdomains);
+                if layouts == Layouts::Three && few < bodies && bodies < subdomains {
+                    runs.push(on("body", bodies, Some(bodies)));
+                }
                 if few < subdomains {
-                    runs.push(on(few, Some(few)));
+                    runs.push(on("core", few, Some(few)));
                 }
             }
         }

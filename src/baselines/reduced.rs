@@ -147,6 +147,18 @@ impl Reduced {
         self.f.duplicate()
     }
 
+    /// Replaces the load. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn set_load(&mut self, f: PetscVec) -> Result<()> {
+        if self.reference > 0.0 {
+            self.reference = f.norm2()?;
+        }
+        self.f = f;
+        Ok(())
+    }
+
     fn comm(&self) -> &SimpleCommunicator {
         self.session.comm()
     }

@@ -93,6 +93,7 @@ pub fn baseline(
         result: launcher.workspace.file("result.json"),
         rtol,
         inner: rtol,
+        again: false,
         task: Task::Baseline {
             name: name.into(),
             rescue: false,

@@ -9,6 +9,7 @@ mod contact;
 mod course;
 mod fields;
 mod maps;
+mod parse;
 mod physics;
 mod picture;
 mod plan;
@@ -16,6 +17,7 @@ pub(crate) mod problem;
 mod solve;
 mod study;
 mod table1;
+mod usage;
 
 use args::{Command, Invocation};
 
@@ -53,6 +55,7 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
         Command::Table1(args) => table1::run(session, &args),
         Command::Study(args) => study::run(session, &args),
         Command::Compare(args) => crate::baselines::compare(session, &args, &petsc),
+        Command::Bench(args) => crate::baselines::bench(session, &args, &petsc),
         Command::Baseline { job } => crate::baselines::run_job(session, &job),
     }
 }

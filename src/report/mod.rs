@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`json`] | the records of `solve`, `table1` and `compare` ([`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`]) |
 //! | [`table`], [`summary`], [`compare`] | aligned text for terminals, CSV, and the tables of the three commands |
+//! | [`bench`] | medians over rounds: table, CSV, error over seconds ([`json::BenchReport`]) |
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
 //! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
@@ -17,6 +18,7 @@
 //! | [`vtu`], [`contact_fields`], [`pvd`] | ParaView files, contact as point data, time series |
 
 pub mod adaptive;
+pub mod bench;
 pub mod canvas;
 pub mod checkpoint;
 pub mod colormap;

@@ -130,7 +130,7 @@ pub fn solve(r: &SolveReport) -> String {
     text
 }
 
-pub(super) fn ranks(n: usize) -> String {
+pub(crate) fn ranks(n: usize) -> String {
     if n == 1 {
         "1 rank".to_string()
     } else {

@@ -2,9 +2,11 @@
 //!
 //! A number that is not known or not finite is written as `null`, never as NaN, and read back as `None` or NaN.
 
+mod bench;
 mod compare;
 mod table1;
 
+pub use bench::{BenchCase, BenchReport, BenchRow, BenchSample, BenchSeconds, Spread};
 pub use compare::{CompareContact, CompareInequalities, CompareReport, CompareRow, CompareSeconds};
 pub use table1::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
 

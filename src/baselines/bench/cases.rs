@@ -1,0 +1,215 @@
+//! The scenes of the benchmark, as text that a user might write.
+
+/// A scene with a name.
+#[derive(Debug)]
+pub struct Named {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub description: &'static str,
+    /// The scene, and a smaller one for `--quick`.
+    scene: fn(quick: bool) -> String,
+}
+
+impl Named {
+    /// The case of this name.
+    pub fn find(name: &str) -> Option<&'static Named> {
+        CASES.iter().find(|c| c.name == name)
+    }
+
+    /// The scene file.
+    pub fn scene(&self, quick: bool) -> String {
+        (self.scene)(quick)
+    }
+}
+
+/// All cases, in the order in which they are run.
+pub const CASES: [Named; 6] = [
+    Named {
+        name: "poisson-1024",
+        description: "tied Poisson problem in the plane, 1024 x 1024 elements, equal subdomains (quick: 128 x 128)",
+        scene: |quick| poisson(quick, false),
+    },
+    Named {
+        name: "poisson-1024-random",
+        description: "the same with every node moved and rho random by element: no two subdomains are equal (quick: 128 x 128)",
+        scene: |quick| poisson(quick, true),
+    },
+    Named {
+        name: "contact-512",
+        description: "model contact problem, 2 bodies of 512 x 512 elements, one of them floating (quick: 64 x 64)",
+        scene: contact,
+    },
+    Named {
+        name: "cube-24",
+        description: "tied elastic cube, 24 x 24 x 24 elements (quick: 12 x 12 x 12)",
+        scene: |quick| cube(if quick { 12 } else { 24 }),
+    },
+    Named {
+        name: "cube-40",
+        description: "tied elastic cube, 40 x 40 x 40 elements (quick: 20 x 20 x 20)",
+        scene: |quick| cube(if quick { 20 } else { 40 }),
+    },
+    Named {
+        name: "cube-contact-24",
+        description: "two elastic blocks in contact, 24 x 24 x 24 elements together (quick: 12 x 12 x 12)",
+        scene: cube_contact,
+    },
+];
+
+/// 4 × 4 bodies of 4 × 4 subdomains of 64 × 64 elements; small: 2 × 2 of 2 × 2 of 32 × 32. The load has no symmetry: with one, decompositions into
+/// two or four parts need no iteration.
+fn poisson(quick: bool, random: bool) -> String {
+    let (bodies, elements) = if quick { (2, 32) } else { (4, 64) };
+    let n = bodies * bodies * elements;
+    let title = if random { ", nothing equal" } else { "" };
+    let mut text = format!(
+        "title = \"Poisson, {n} x {n} elements{title}\"\n\n[grid]\nbodies = {bodies}\nsubdomains = {bodies}\n\
+         elements_per_subdomain = {elements}\nload = \"1 + x + y^2\"\ndirichlet = \"all\"\n"
+    );
+    if random {
+        // Numbers without a pattern: the fraction of a large multiple of a sine. Coordinates are binary fractions, so that bodies compute
+        // the same ones on common faces. Inner nodes move by up to a fifth of an element in x and in y; ρ is from 0.1 to 10, its
+        // logarithm spread evenly.
+        let draw = |a: &str, b: &str, c: &str| {
+            format!("mod(43758.5453*sin({a}*{n}*x + {b}*{n}*y + {c}), 1)")
+        };
+        let inside = "(x > 0)*(x < 1)*(y > 0)*(y < 1)";
+        let step = 0.4 / n as f64;
+        let moved = |v: &str, draw: &str| format!("{v} + {step:e}*{inside}*({draw} - 0.5)");
+        text += &format!(
+            "rho = \"10^(2*{} - 1)\"\nshape = {{ x = \"{}\", y = \"{}\" }}\n",
+            draw("12.9898", "78.233", "0.5"),
+            moved("x", &draw("39.3461", "11.1351", "1.5")),
+            moved("y", &draw("73.1568", "52.2353", "2.5")),
+        );
+    }
+    text
+}
+
+/// The model problem of examples/scenes/model_contact.toml, each body of 8 × 8 subdomains of 64 × 64 elements; small: 2 × 2 of 32 × 32.
+fn contact(quick: bool) -> String {
+    let (subdomains, elements) = if quick { (2, 32) } else { (8, 64) };
+    let n = subdomains * elements;
+    let body = |name: &str, x: usize, rest: &str| {
+        format!(
+            "\n[[body]]\nname = \"{name}\"\norigin = [{x}, 0]\nsize = [1, 1]\nsubdomains = {subdomains}\n\
+             elements_per_subdomain = {elements}\n{rest}"
+        )
+    };
+    format!(
+        "title = \"Model contact problem, 2 x {n} x {n} elements\"\n{}{}\n[[contact]]\nbodies = [\"left\", \"right\"]\ngap = 0\n",
+        body(
+            "left",
+            0,
+            "dirichlet = [\"left\"]\nload = [{ y = [0.75, 1], value = -3 }]\n"
+        ),
+        body("right", 1, "load = [{ y = [0, 0.25], value = -1 }]\n")
+    )
+}
+
+/// A cube of `n`³ elements on the ground: bodies and subdomains of equal size, 2 × 2 × 2 of 2 × 2 × 2; small: 2 × 1 × 1 of 1 × 2 × 2.
+fn cube(n: usize) -> String {
+    let (bodies, subdomains) = if n >= 24 {
+        ("[2, 2, 2]", "[2, 2, 2]")
+    } else {
+        ("[2, 1, 1]", "[1, 2, 2]")
+    };
+    let elements = if n >= 24 { n / 4 } else { n / 2 };
+    format!(
+        "title = \"Elastic cube, {n} x {n} x {n} elements\"\ndimension = 3\nphysics = \"elasticity\"\n\n[grid]\nbodies = {bodies}\n\
+         subdomains = {subdomains}\nelements_per_subdomain = {elements}\nyoung = 1\npoisson = 0.3\n\
+         load = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n"
+    )
+}
+
+/// A block that is pressed on another one, with a gap that opens towards the far corner.
+fn cube_contact(quick: bool) -> String {
+    let (n, subdomains) = if quick {
+        (12, "[2, 1, 2]")
+    } else {
+        (24, "[4, 2, 4]")
+    };
+    let body = |name: &str, y: &str, young: usize, rest: &str| {
+        format!(
+            "\n[[body]]\nname = \"{name}\"\norigin = [0, {y}, 0]\nsize = [1, 0.5, 1]\nsubdomains = {subdomains}\n\
+             elements_per_subdomain = 6\nyoung = {young}\npoisson = 0.3\n{rest}"
+        )
+    };
+    format!(
+        "title = \"Elastic blocks, {n} x {n} x {n} elements\"\ndimension = 3\nphysics = \"elasticity\"\n{}{}\n\
+         [[contact]]\nbodies = [\"low\", \"high\"]\ngap = \"0.02*(x^2 + z^2)\"\n",
+        body("low", "0", 100, "dirichlet = [\"bottom\"]\n"),
+        body(
+            "high",
+            "0.5",
+            200,
+            "dirichlet = { left = { x = 0 }, back = { z = 0 } }\ntraction = { top = [0, -2, 0] }\n"
+        )
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Numbering, Scene};
+
+    fn load(name: &str, quick: bool) -> Scene {
+        let text = Named::find(name).expect("a name").scene(quick);
+        Scene::parse(&format!("{name}.toml"), &text).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    #[test]
+    fn cases_have_the_size_that_they_are_named_after() {
+        let dofs = |name, quick| Numbering::new(&load(name, quick)).len();
+        assert_eq!(dofs("poisson-1024", false), 1023 * 1023);
+        assert_eq!(dofs("poisson-1024-random", false), 1023 * 1023);
+        assert_eq!(dofs("poisson-1024", true), 127 * 127);
+        assert_eq!(dofs("contact-512", false), 512 * 513 + 513 * 513);
+        assert_eq!(dofs("cube-24", false), 3 * 25 * 24 * 25);
+        assert_eq!(dofs("cube-40", false), 3 * 41 * 40 * 41);
+        assert_eq!(dofs("cube-24", true), 3 * 13 * 12 * 13);
+        for quick in [false, true] {
+            let all = CASES.map(|c| load(c.name, quick));
+            let contact = all.each_ref().map(Scene::has_contact);
+            assert_eq!(contact, [false, false, true, false, false, true]);
+            assert!(all
+                .iter()
+                .all(|s| s.n_bodies() > 1 && s.n_subdomains() > s.n_bodies()));
+        }
+    }
+
+    #[test]
+    fn the_large_square_is_that_of_the_examples() {
+        let example = Scene::load("examples/scenes/speed_1024.toml").expect("a scene");
+        let scene = load("poisson-1024", false);
+        let sizes = |s: &Scene| (s.n_bodies(), s.n_subdomains(), Numbering::new(s).len());
+        assert_eq!(sizes(&scene), sizes(&example));
+        let [a, b] = [&scene, &example].map(|s| s.subdomain(17).expect("a subdomain"));
+        assert_eq!(a.k, b.k);
+    }
+
+    #[test]
+    fn in_the_random_case_no_two_subdomains_are_equal() {
+        let scene = load("poisson-1024-random", true);
+        scene
+            .check_values()
+            .expect("elements that are not turned over");
+        let all: Vec<_> = (0..scene.n_subdomains())
+            .map(|s| scene.subdomain(s).expect("a subdomain"))
+            .collect();
+        for (a, one) in all.iter().enumerate() {
+            for other in &all[..a] {
+                assert_ne!(one.k.val, other.k.val);
+            }
+            let (low, high) = one
+                .rho
+                .iter()
+                .fold((f64::MAX, 0.0_f64), |r, &x| (r.0.min(x), r.1.max(x)));
+            assert!(
+                low > 0.09 && high < 10.1 && high / low > 3.0,
+                "{low} {high}"
+            );
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! Running the methods of a plan on one scene, one job each, and the rows of tables that come of it.
+
+use std::path::PathBuf;
+
+use super::job::{Job, Outcome, Task};
+use super::judge::{Judgement, Verdict};
+use super::launch::{Failure, Launcher};
+use super::layout::Layout;
+use super::plan::{Plan, Run};
+use super::read;
+use super::table::Format;
+use crate::report::json::{CompareContact, CompareInequalities, CompareRow, CompareSeconds};
+use crate::scene::Scene;
+use crate::Result;
+
+/// The methods on one scene.
+pub struct Methods<'a> {
+    launcher: &'a Launcher,
+    plan: &'a Plan,
+    /// The scene file.
+    file: PathBuf,
+    /// Where the unknowns are.
+    pub layout: Layout<'a>,
+    /// Whether there are inequalities.
+    contact: bool,
+    /// Whether every method solves once more for another load.
+    pub again: bool,
+    /// The active set of the last contact loop of ours: methods that solve equations only take it. `None`: there is none so far.
+    active: Option<Vec<usize>>,
+}
+
+/// A solution that a method has left: the file, and the rows that are active in it.
+pub type Left = (PathBuf, Vec<usize>);
+
+/// What one method has done.
+pub struct Ran {
+    /// What it reports, or why it does not.
+    pub outcome: std::result::Result<Outcome, Failure>,
+    /// Options of the second try, if there was one.
+    pub rescue: Option<String>,
+    /// What the ranks have printed.
+    pub printed: String,
+    /// The solution, if there is one.
+    pub solution: Option<Left>,
+}
+
+impl Ran {
+    /// Nothing, for this reason.
+    fn not(message: String) -> Ran {
+        let code = None;
+        Ran {
+            outcome: Err(Failure { code, message }),
+            rescue: None,
+            printed: String::new(),
+            solution: None,
+        }
+    }
+}
+
+impl<'a> Methods<'a> {
+    /// The methods of `plan` on `scene`, which is in `file`.
+    pub fn new(
+        launcher: &'a Launcher,
+        plan: &'a Plan,
+        scene: &'a Scene,
+        file: PathBuf,
+    ) -> Methods<'a> {
+        Methods {
+            launcher,
+            plan,
+            file,
+            layout: Layout::new(scene),
+            contact: scene.has_contact(),
+            again: false,
+            active: None,
+        }
+    }
+
+    /// Runs number `k` of the plan; with a second try where the first one breaks down, or with the options of the second try at once where
+    /// `rescued` says that it has needed them before.
+    ///
+    /// # Errors
+    /// [`crate::Error::Environment`] where the machine refuses to start a job at all.
+    pub fn run(&mut self, k: usize, rescued: bool) -> Result<Ran> {
+        let run = &self.plan.runs[k];
+        if let (Some(_), Some(trouble)) = (run.baseline, &self.layout.trouble) {
+            return Ok(Ran::not(format!("not for this scene: {trouble}")));
+        }
+        let equations = run
+            .baseline
+            .is_some_and(|b| b.format == Format::Unassembled);
+        if equations && self.contact && self.active.is_none() {
+            let message = "solves the equations of our active set, and there is none";
+            return Ok(Ran::not(message.to_string()));
+        }
+        let rescuer = run.baseline.filter(|b| !b.rescue.is_empty());
+        let (mut outcome, mut printed) = self.job(k, rescued)?;
+        let mut rescue = rescued.then_some(()).and(rescuer);
+        if !rescued && rescuer.is_some() && worth_a_second_try(&outcome) {
+            let (second, more) = self.job(k, true)?;
+            (outcome, rescue) = (second, rescuer);
+            printed += &more;
+        }
+        let mut solution = None;
+        if let Ok(outcome) = &outcome {
+            let contact = outcome.contact.as_ref();
+            let rows = contact.map(|c| c.active.clone()).unwrap_or_default();
+            if contact.is_some_and(|c| c.steps.is_some()) && run.baseline.is_none() {
+                self.active = Some(rows.clone());
+            }
+            solution = Some((self.solution(k), rows));
+        }
+        Ok(Ran {
+            outcome,
+            rescue: rescue.map(|b| b.rescue_options()),
+            printed,
+            solution,
+        })
+    }
+
+    fn solution(&self, k: usize) -> PathBuf {
+        self.launcher.workspace.file(&format!("{k}.u"))
+    }
+
+    fn job(
+        &self,
+        k: usize,
+        rescue: bool,
+    ) -> Result<(std::result::Result<Outcome, Failure>, String)> {
+        let run = &self.plan.runs[k];
+        let name = format!("{k}-{rescue}");
+        let result = self.launcher.workspace.file(&format!("{name}.json"));
+        // What the same method has left in a round before must not be taken for the result of this one.
+        let _ = std::fs::remove_file(&result);
+        let active = self.active.as_deref().unwrap_or_default();
+        let job = Job {
+            scene: self.file.clone(),
+            result,
+            rtol: self.plan.rtol,
+            inner: self.plan.inner,
+            again: self.again,
+            task: run.task(&self.solution(k), rescue, active),
+        };
+        let finished = self.launcher.run(&name, &job, run.ranks)?;
+        let outcome = match finished.record {
+            Ok(text) => Ok(read(&text)?),
+            Err(failure) => Err(failure),
+        };
+        Ok((outcome, finished.printed))
+    }
+
+    /// The direct solution's verdict on solutions; an empty one when it cannot be had.
+    ///
+    /// # Errors
+    /// As [`Methods::run`].
+    pub fn judge(&self, solutions: Vec<Left>) -> Result<Verdict> {
+        if self.layout.trouble.is_some() {
+            return Ok(Verdict {
+                rows: self.layout.forms.len(),
+                ..Verdict::default()
+            });
+        }
+        let job = Job {
+            scene: self.file.clone(),
+            result: self.launcher.workspace.file("verdict.json"),
+            rtol: self.plan.rtol,
+            inner: self.plan.inner,
+            again: false,
+            task: Task::Judge { solutions },
+        };
+        match self.launcher.run("judge", &job, self.plan.cores)?.record {
+            Ok(text) => read(&text),
+            Err(failure) => {
+                eprintln!(
+                    "Warning: no direct solution, so no errors: {}",
+                    failure.message
+                );
+                Ok(Verdict::default())
+            }
+        }
+    }
+}
+
+/// Whether a method broke down, rather than took too long or met the limits of rounding.
+fn worth_a_second_try(outcome: &std::result::Result<Outcome, Failure>) -> bool {
+    match outcome {
+        Ok(outcome) => !outcome.reason.starts_with("CONVERGED"),
+        Err(failure) => failure.code.is_some(),
+    }
+}
+
+/// PETSc's arguments for the jobs: what asks for a text about the whole program is for the parent.
+pub fn forwarded(petsc: &[String]) -> Vec<String> {
+    const PARENTS: [&str; 4] = ["-help", "-h", "-options_left", "-version"];
+    let mut forwarded = Vec::new();
+    let mut drop_value = false;
+    for arg in petsc {
+        let is_option = arg.starts_with('-') && arg.parse::<f64>().is_err();
+        if is_option {
+            drop_value = PARENTS.contains(&arg.as_str());
+        }
+        if !drop_value {
+            forwarded.push(arg.clone());
+        }
+    }
+    forwarded
+}
+
+/// The row of a table for a run and what came of it.
+pub fn row(run: &Run, ran: Ran) -> CompareRow {
+    let blank = CompareRow {
+        method: run.name().to_string(),
+        subdomains: run.parts,
+        ranks: run.ranks,
+        threads: run.threads,
+        rescue: ran.rescue,
+        ..CompareRow::default()
+    };
+    match ran.outcome {
+        Err(failure) => CompareRow {
+            message: Some(failure.message),
+            ..blank
+        },
+        Ok(o) => CompareRow {
+            kappa: o.kappa,
+            iterations: o.iterations,
+            seconds: CompareSeconds {
+                assemble: Some(o.assemble),
+                setup: Some(o.setup),
+                solve: Some(o.solve),
+                total: Some(o.setup + o.solve),
+            },
+            memory_mb: Some(o.memory / 1e6),
+            memory_at_start_mb: Some(o.memory_at_start / 1e6),
+            residual: o.residual,
+            contact: o.contact.map(|c| CompareContact {
+                outer: c.steps,
+                active: c.active.len(),
+                ..CompareContact::default()
+            }),
+            rtol: o.rtol,
+            converged: o.message.is_none(),
+            converged_reason: o.reason,
+            message: o.message,
+            ..blank
+        },
+    }
+}
+
+/// Writes into a row what the judge says.
+pub fn sentence(row: &mut CompareRow, judgement: &Judgement) {
+    row.error = judgement.error;
+    row.residual = judgement.residual;
+    if let Some(contact) = &mut row.contact {
+        contact.differ = judgement.differ;
+        contact.feasibility = judgement.feasibility;
+        contact.min_multiplier = judgement.min_multiplier;
+    }
+}
+
+/// What the direct solution says of the inequalities; `None` without any.
+pub fn inequalities(scene: &Scene, verdict: &Verdict) -> Option<CompareInequalities> {
+    let reference = verdict.reference;
+    scene.has_contact().then(|| CompareInequalities {
+        rows: verdict.rows,
+        active: reference.map(|_| verdict.active),
+        outer: verdict.steps,
+        feasibility: reference.and_then(|r| r.feasibility),
+        min_multiplier: reference.and_then(|r| r.min_multiplier),
+        load_steps: scene.n_steps(),
+    })
+}

@@ -1,0 +1,77 @@
+//! A second load for the same matrix, to see what a solve costs when everything is set up: the first one times a factor that
+//! is linear in the coordinates, so that contact zones move.
+
+use super::layout::Layout;
+use super::unknowns::Unknowns;
+use crate::petsc::Vec as PetscVec;
+use crate::scene::Scene;
+use crate::vec3::ball;
+use crate::Result;
+
+/// How much the factor changes along x and y over half the size of the scene.
+const SLOPE: [f64; 2] = [0.3, -0.2];
+
+/// The factor 1 + a·(x − centre) / radius.
+pub struct SecondLoad {
+    centre: [f64; 3],
+    radius: f64,
+}
+
+impl SecondLoad {
+    /// The factor on `scene`.
+    pub fn new(scene: &Scene) -> SecondLoad {
+        let bounds = scene.bodies.iter().map(|b| b.bounds);
+        let bounds = bounds.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |a, b| {
+            let low = [0, 1, 2].map(|d| a[0][d].min(b[0][d]));
+            [low, [0, 1, 2].map(|d| a[1][d].max(b[1][d]))]
+        });
+        let (centre, radius) = ball(bounds);
+        SecondLoad { centre, radius }
+    }
+
+    /// At a place of w.
+    pub fn at(&self, layout: &Layout, place: u64) -> f64 {
+        self.value(layout.position(place / layout.components() as u64))
+    }
+
+    /// The load `b` on `unknowns` times the factor. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn of(&self, unknowns: &Unknowns, b: &PetscVec) -> Result<PetscVec> {
+        let second = b.duplicate()?;
+        second.copy_from(b)?;
+        let places = unknowns.places(b.ownership_range());
+        for (b, place) in second.array_mut()?.iter_mut().zip(places) {
+            *b *= self.at(unknowns.layout, place);
+        }
+        Ok(second)
+    }
+
+    fn value(&self, x: [f64; 3]) -> f64 {
+        let part = |d: usize| SLOPE[d] * (x[d] - self.centre[d]) / self.radius;
+        1.0 + part(0) + part(1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_factor_stays_positive_and_changes_across_the_scene() {
+        let scene = Scene::parse(
+            "s.toml",
+            "[grid]\nbodies = 2\nelements = 2\nsize = [4, 2]\norigin = [1, 1]\n",
+        )
+        .expect("a scene");
+        let load = SecondLoad::new(&scene);
+        let [low, mid, high] =
+            [[1.0, 3.0, 0.0], [3.0, 2.0, 0.0], [5.0, 1.0, 0.0]].map(|x| load.value(x));
+        assert_eq!(mid, 1.0);
+        assert!(
+            low > 0.5 && low < 0.9 && high > 1.1 && high < 1.5,
+            "{low} {high}"
+        );
+    }
+}

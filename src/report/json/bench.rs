@@ -1,0 +1,302 @@
+//! The record of `bench`.
+
+use super::{number, CompareContact, CompareInequalities};
+use serde::{Deserialize, Serialize};
+
+/// What `bench` reports: one document for all cases.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BenchReport {
+    /// Name and version of this record: [`BenchReport::SCHEMA`].
+    pub schema: String,
+    /// Version of fetifeti.
+    pub version: String,
+    /// The file from which every method has its BLAS; `null` where the system does not tell.
+    pub blas: Option<String>,
+    /// Cores that methods without a layout of their own were given.
+    pub cores: usize,
+    /// Rounds that were asked for.
+    pub rounds: usize,
+    /// Whether the named cases are the small ones.
+    pub quick: bool,
+    /// The cases that are finished; the last one may be in the middle of its rounds when the run was ended from outside.
+    pub cases: Vec<BenchCase>,
+}
+
+impl BenchReport {
+    /// The value of `schema`.
+    pub const SCHEMA: &'static str = "fetifeti.bench/1";
+}
+
+/// One scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BenchCase {
+    /// Its name; the stem of the file for a scene of the user.
+    pub case: String,
+    /// The scene's title.
+    pub scene: String,
+    /// Bodies.
+    pub bodies: usize,
+    /// Subdomains over all bodies.
+    pub subdomains: usize,
+    /// Unknowns of the assembled problem.
+    pub dofs: usize,
+    /// Relative residual of the assembled problem that every method was driven to.
+    #[serde(with = "number")]
+    pub rtol: f64,
+    /// Rounds that are finished.
+    pub rounds: usize,
+    /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
+    pub reference_residual: Option<f64>,
+    /// In scenes with inequalities: what they are in the direct solution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<CompareInequalities>,
+    /// The methods, in the order in which every round runs them.
+    pub methods: Vec<BenchRow>,
+}
+
+/// One method in one layout.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct BenchRow {
+    /// The method, such as `fetifeti`, `bddc`, `gamg`.
+    pub method: String,
+    /// How it uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or `subdomain`.
+    pub layout: String,
+    /// Parts of the domain that the method sees; `null` for methods that see none.
+    pub subdomains: Option<usize>,
+    /// MPI ranks.
+    pub ranks: usize,
+    /// Threads per rank.
+    pub threads: usize,
+    /// κ as CG estimates it, in the first round.
+    pub kappa: Option<f64>,
+    /// Iterations, of all contact steps, in the first round; `null` for a direct solver.
+    pub iterations: Option<usize>,
+    /// Wall-clock time over the rounds that converged.
+    pub seconds: BenchSeconds,
+    /// Median total over that of the fastest of ours.
+    pub ratio: Option<f64>,
+    /// Largest resident memory over the ranks, summed, in MB of 10⁶ bytes.
+    pub memory_mb: Option<Spread>,
+    /// The part of `memory_mb` that was there before the problem: program and libraries, once per rank.
+    pub memory_at_start_mb: Option<Spread>,
+    /// Error in the energy norm against the direct solution, relative, of the first round.
+    pub error: Option<f64>,
+    /// Relative residual of the assembled problem, of the first round.
+    pub residual: Option<f64>,
+    /// In scenes with inequalities: how they came out in the first round.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<CompareContact>,
+    /// Relative tolerance of the method's own residual in the first round.
+    pub rtol: Option<f64>,
+    /// Whether every run reached the residual; what did not is not run again.
+    pub converged: bool,
+    /// PETSc's name for why the last iteration ended.
+    pub converged_reason: String,
+    /// Options of a second try that the method needs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rescue: Option<String>,
+    /// One sentence when a run failed or did not converge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub message: Option<String>,
+    /// All runs.
+    pub samples: Vec<BenchSample>,
+}
+
+/// Wall-clock seconds of one method over the rounds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct BenchSeconds {
+    /// Mesh and matrices; not in the total.
+    pub assemble: Option<Spread>,
+    /// Factorisations, hierarchies, coarse problems.
+    pub setup: Option<Spread>,
+    /// Iterations and recovery.
+    pub solve: Option<Spread>,
+    /// The part of `solve` for the way from multipliers to displacements.
+    pub recover: Option<Spread>,
+    /// Set-up and solve.
+    pub total: Option<Spread>,
+    /// A solve for another load with all that was set up for the first; in contact scenes the whole loop, with what has to be set up for its
+    /// sets.
+    pub again: Option<Spread>,
+    /// In contact loops: the total over the number of active sets.
+    pub step: Option<Spread>,
+}
+
+/// One run of one method.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct BenchSample {
+    /// From 1.
+    pub round: usize,
+    /// The place of this run among all runs of the case, from 1.
+    pub sequence: usize,
+    /// Seconds of assembly.
+    pub assemble: Option<f64>,
+    /// Seconds of set-up.
+    pub setup: Option<f64>,
+    /// Seconds of the solve, with the recovery.
+    pub solve: Option<f64>,
+    /// Seconds of the recovery.
+    pub recover: Option<f64>,
+    /// Set-up and solve.
+    pub total: Option<f64>,
+    /// Seconds of the second solve.
+    pub again: Option<f64>,
+    /// Active sets that were solved for.
+    pub outer: Option<usize>,
+    /// Iterations.
+    pub iterations: Option<usize>,
+    /// Resident memory, MB.
+    pub memory_mb: Option<f64>,
+    /// Resident memory before the problem, MB.
+    pub memory_at_start_mb: Option<f64>,
+    /// Whether the residual was reached.
+    pub converged: bool,
+}
+
+/// Median and range of some samples.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// The one in the middle, or the mean of the two in the middle.
+    pub median: f64,
+    /// The smallest.
+    pub min: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Of these samples; `None` where there are none.
+    pub fn of(samples: impl IntoIterator<Item = f64>) -> Option<Spread> {
+        let mut all: Vec<f64> = samples.into_iter().collect();
+        all.sort_by(f64::total_cmp);
+        let (&min, &max) = (all.first()?, all.last()?);
+        let (low, high) = (all[(all.len() - 1) / 2], all[all.len() / 2]);
+        Some(Spread {
+            median: 0.5 * (low + high),
+            min,
+            max,
+        })
+    }
+}
+
+impl BenchRow {
+    /// Sums the samples up.
+    pub fn sum_up(&mut self) {
+        let converged = || self.samples.iter().filter(|s| s.converged);
+        let spread = |of: fn(&BenchSample) -> Option<f64>| Spread::of(converged().filter_map(of));
+        let seconds = BenchSeconds {
+            assemble: spread(|s| s.assemble),
+            setup: spread(|s| s.setup),
+            solve: spread(|s| s.solve),
+            recover: spread(|s| s.recover),
+            total: spread(|s| s.total),
+            again: spread(|s| s.again),
+            step: spread(|s| Some(s.total? / s.outer.filter(|n| *n > 0)? as f64)),
+        };
+        let memory = [spread(|s| s.memory_mb), spread(|s| s.memory_at_start_mb)];
+        self.seconds = seconds;
+        [self.memory_mb, self.memory_at_start_mb] = memory;
+    }
+
+    /// Whether this is ours.
+    pub fn is_ours(&self) -> bool {
+        self.method == "fetifeti"
+    }
+
+    /// Whether it solves only the equations of an active set that another method has found.
+    pub fn set_given(&self) -> bool {
+        self.contact.is_some_and(|c| c.outer.is_none())
+    }
+}
+
+impl BenchCase {
+    /// Sums every method up and relates it to the fastest of ours.
+    pub fn sum_up(&mut self) {
+        self.methods.iter_mut().for_each(BenchRow::sum_up);
+        let ours = self.fastest(true).and_then(|r| r.seconds.total);
+        for row in &mut self.methods {
+            row.ratio = row
+                .seconds
+                .total
+                .zip(ours)
+                .map(|(t, ours)| t.median / ours.median);
+        }
+    }
+
+    /// The fastest of ours, or of the others: those that solve the whole problem and always converged, by the median total.
+    pub fn fastest(&self, ours: bool) -> Option<&BenchRow> {
+        let total = |r: &BenchRow| r.seconds.total.map_or(f64::INFINITY, |t| t.median);
+        let fit = |r: &&BenchRow| {
+            r.is_ours() == ours && r.converged && !r.set_given() && r.seconds.total.is_some()
+        };
+        let rows = self.methods.iter().filter(fit);
+        rows.min_by(|a, b| total(a).total_cmp(&total(b)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(total: f64, converged: bool) -> BenchSample {
+        BenchSample {
+            total: Some(total),
+            outer: Some(4),
+            converged,
+            ..BenchSample::default()
+        }
+    }
+
+    #[test]
+    fn medians_are_those_of_what_converged() {
+        assert_eq!(Spread::of([]), None);
+        let even = Spread::of([4.0, 1.0, 3.0, 10.0]).expect("four");
+        assert_eq!((even.median, even.min, even.max), (3.5, 1.0, 10.0));
+        let mut row = BenchRow {
+            samples: vec![sample(3.0, true), sample(1.0, true), sample(9.0, true)],
+            ..BenchRow::default()
+        };
+        row.samples.push(sample(100.0, false));
+        row.sum_up();
+        let total = row.seconds.total.expect("three");
+        assert_eq!((total.median, total.min, total.max), (3.0, 1.0, 9.0));
+        assert_eq!(row.seconds.step.expect("steps").median, 0.75);
+        assert!(row.seconds.again.is_none() && row.memory_mb.is_none());
+    }
+
+    #[test]
+    fn who_was_given_the_set_or_failed_is_not_the_fastest() {
+        let row = |method: &str, total: f64, outer: Option<usize>, converged: bool| BenchRow {
+            method: method.into(),
+            contact: Some(CompareContact {
+                outer,
+                ..CompareContact::default()
+            }),
+            converged,
+            samples: vec![sample(total, true)],
+            ..BenchRow::default()
+        };
+        let mut case = BenchCase {
+            case: "c".into(),
+            scene: "s".into(),
+            bodies: 2,
+            subdomains: 4,
+            dofs: 9,
+            rtol: 1e-6,
+            rounds: 1,
+            reference_residual: None,
+            contact: None,
+            methods: vec![
+                row("fetifeti", 2.0, Some(3), true),
+                row("fetifeti", 1.0, Some(3), true),
+                row("bddc", 0.1, None, true),
+                row("gamg", 0.2, Some(3), false),
+                row("mumps", 5.0, Some(3), true),
+            ],
+        };
+        case.sum_up();
+        assert_eq!(case.fastest(false).expect("one").method, "mumps");
+        let ratios: Vec<f64> = case.methods.iter().filter_map(|r| r.ratio).collect();
+        assert_eq!(ratios, [2.0, 1.0, 0.1, 0.2, 5.0]);
+    }
+}
