@@ -7,7 +7,7 @@
 //! |---|---|
 //! | [`json`] | the records of `solve`, `table1` and `compare` ([`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`]) |
 //! | [`table`], [`summary`], [`compare`] | aligned text for terminals, CSV, and the tables of the three commands |
-//! | [`bench`] | medians over rounds: table, CSV, error over seconds ([`json::BenchReport`]) |
+//! | [`mod@bench`] | medians over rounds: table, CSV, error over seconds ([`json::BenchReport`]) |
 //! | [`paper`] | Table 1 of Lee (2010) as printed |
 //! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
 //! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
