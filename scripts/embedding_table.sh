@@ -12,7 +12,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 read -ra flags <<<"$(pkg-config --cflags --libs PETSc)"
 for example in ex71 ex49 ex59; do
-    mpicc -O1 -o "$work/$example" "$sources/$example.c" "${flags[@]}" -lm
+    mpicc -O1 -o "$work/$example" "$sources/$example.c" "${flags[@]}" -llapack -lblas -lm
 done
 
 # iterations / condition number of a run: run RANKS PREFIX PROGRAM ARGUMENTS...
