@@ -8,6 +8,8 @@ use std::fmt;
 pub enum Error {
     /// What the user wrote cannot be solved as written (exit code 2).
     Input(String),
+    /// A matrix that is no stiffness matrix: not positive semidefinite (exit code 2).
+    Unfit(String),
     /// The Krylov or the outer iteration did not reach its tolerance (exit code 1).
     NotConverged(String),
     /// The machine, MPI, the disk or the installation refused (exit code 3).
@@ -41,7 +43,7 @@ impl Error {
     pub fn exit_code(&self) -> i32 {
         match self {
             Error::NotConverged(_) => 1,
-            Error::Input(_) => 2,
+            Error::Input(_) | Error::Unfit(_) => 2,
             Error::Environment(_) | Error::Petsc { .. } => 3,
         }
     }
@@ -50,7 +52,9 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Input(m) | Error::NotConverged(m) | Error::Environment(m) => out.write_str(m),
+            Error::Input(m) | Error::Unfit(m) | Error::NotConverged(m) | Error::Environment(m) => {
+                out.write_str(m)
+            }
             Error::Petsc { code, call, trace } => {
                 write!(out, "{call} failed with PETSc error {code}")?;
                 for line in trace {

@@ -88,6 +88,7 @@ pub fn classified(
                 kind_of(sentence, all).unwrap_or(else_kind as c_int),
             )
         }
+        Error::Unfit(_) => (SENTENCE, Kind::Wrong as c_int),
         Error::NotConverged(_) => (SENTENCE, ERR_NOT_CONVERGED),
         Error::Environment(_) => (SENTENCE, ERR_LIB),
     };

@@ -62,7 +62,7 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
         let (wishes, prefix) = unsafe { (&*wishes, text(prefix)) };
         let made = setup(&session, &a, &prefix, wishes);
         // What the host says wrongly stops it; a matrix that turns out not to be one of stiffness is for KSPGetConvergedReason.
-        unfit = matches!(&made, Err(Error::Input(m)) if m.contains("positive"));
+        unfit = matches!(&made, Err(Error::Unfit(_)));
         // SAFETY: by the caller.
         unsafe { *solver = Box::into_raw(Box::new(made?)).cast() };
         Ok(())

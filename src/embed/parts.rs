@@ -118,7 +118,7 @@ fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
         let d = piece.k.get(i, i);
         let usable = d > 0.0 && d.is_finite();
         if !col.is_empty() && !usable {
-            return Err(Error::input(format!(
+            return Err(Error::Unfit(format!(
                 "the local matrix of a subdomain has {d} on the diagonal at global dof {}, expected a positive number (a stiffness matrix)",
                 piece.dofs[i]
             )));

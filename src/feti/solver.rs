@@ -358,7 +358,7 @@ fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<L
 }
 
 fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
-    Error::input(format!(
+    Error::Unfit(format!(
         "the matrix of subdomain {} in body \"{}\" is not positive semidefinite (at local dof {dof}), expected a stiffness matrix",
         sub.index, problem.body_names[sub.body]
     ))

@@ -418,6 +418,7 @@ fn check_version() -> Result<()> {
 fn pack(error: &Error) -> Vec<u8> {
     let kind = match error {
         Error::Input(_) => 'i',
+        Error::Unfit(_) => 'u',
         Error::NotConverged(_) => 'n',
         Error::Environment(_) | Error::Petsc { .. } => 'e',
     };
@@ -428,6 +429,7 @@ fn unpack(bytes: &[u8]) -> Error {
     let text = String::from_utf8_lossy(bytes.get(1..).unwrap_or_default()).into_owned();
     match bytes.first() {
         Some(b'i') => Error::Input(text),
+        Some(b'u') => Error::Unfit(text),
         Some(b'n') => Error::NotConverged(text),
         _ => Error::Environment(text),
     }

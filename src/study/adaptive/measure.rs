@@ -104,7 +104,12 @@ fn ours(
             let solved = match solve(session, problem, way) {
                 Ok(solved) => solved,
                 // What one way cannot do is said in its row.
-                Err(e @ (Error::Input(_) | Error::NotConverged(_) | Error::Petsc { .. })) => {
+                Err(
+                    e @ (Error::Input(_)
+                    | Error::Unfit(_)
+                    | Error::NotConverged(_)
+                    | Error::Petsc { .. }),
+                ) => {
                     if round == 0 {
                         refused(way, e.to_string(), record);
                     }
@@ -245,7 +250,12 @@ pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Resul
                 seconds,
             } = match solve(session, &problem, way) {
                 Ok(solved) => solved,
-                Err(e @ (Error::Input(_) | Error::NotConverged(_) | Error::Petsc { .. })) => {
+                Err(
+                    e @ (Error::Input(_)
+                    | Error::Unfit(_)
+                    | Error::NotConverged(_)
+                    | Error::Petsc { .. }),
+                ) => {
                     out.message = Some(e.to_string());
                     return Ok(out);
                 }

@@ -168,11 +168,11 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
     let solved = match Solved::new(session, &file, &case.text, &settings) {
         Ok(solved) => solved,
         // The scene has been read: what is refused now is said not to have a solution.
-        Err(e @ (Error::Input(_) | Error::NotConverged(_))) => {
+        Err(e @ (Error::Input(_) | Error::Unfit(_) | Error::NotConverged(_))) => {
             record.message = Some(e.to_string());
             let exists = on_first(session, || Ok(vec![f64::from(Direct::new(&scene).is_ok())]))?;
             record.verdict = match (exists[0] > 0.0, &e) {
-                (true, Error::Input(_)) => Verdict::Wrong,
+                (true, Error::Input(_) | Error::Unfit(_)) => Verdict::Wrong,
                 (true, _) => Verdict::NotConverged,
                 (false, _) => Verdict::Refused,
             };
