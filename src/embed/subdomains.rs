@@ -43,7 +43,7 @@ pub fn subdomain(n_global: usize, part: &Part, shape: &Shape, known: Known) -> S
         body,
         f: vec![0.0; part.dofs.len()],
         dofs: part.dofs.iter().map(number).collect(),
-        rho: (0..part.k.n()).map(|i| part.k.get(i, i)).collect(),
+        rho: part.k.diagonal(),
         k: part.k.clone(),
         primal: primal.into_iter().collect(),
         entities: others.iter().map(entity).collect(),

@@ -31,8 +31,8 @@ pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec
             out.push(candidates[0]);
             continue;
         }
-        let others = candidates[1..].iter().copied();
-        match others.into_iter().find(|&i| same(problem, jump, i, j)) {
+        let mut others = candidates[1..].iter().copied();
+        match others.find(|&i| same(problem, jump, i, j)) {
             Some(i) => out.push(i),
             None => {
                 candidates.push(j);

@@ -324,9 +324,7 @@ fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
             Scaling::Multiplicity => vec![1.0; sub.k.n()],
             Scaling::Rho if settings.gamma == 1.0 => sub.rho.clone(),
             Scaling::Rho => sub.rho.iter().map(|r| r.powf(settings.gamma)).collect(),
-            Scaling::Stiffness | Scaling::Deluxe => {
-                (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect()
-            }
+            Scaling::Stiffness | Scaling::Deluxe => sub.k.diagonal(),
         }
     };
     problem.local.iter().map(of).collect()

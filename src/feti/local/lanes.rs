@@ -37,8 +37,7 @@ impl PartialCholesky {
                     subtract(y, l, &done[j]);
                 }
             }
-            let mut columns = (0..width).step_by(4);
-            for j in &mut columns {
+            for j in (0..width).step_by(4) {
                 let at = |k: usize| &panel[(j + k) * size + width..(j + k + 1) * size];
                 if j + 4 <= width {
                     let (l0, l1, l2, l3) = (at(0), at(1), at(2), at(3));

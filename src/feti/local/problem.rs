@@ -199,11 +199,11 @@ impl LocalProblem {
         }
         let mut work: Vec<Vec<f64>> = loads.iter().map(|f| f.to_vec()).collect();
         self.factor.forward_many(&mut work);
-        let on_gamma = |w: &Vec<f64>| self.interface.iter().map(|&i| w[i as usize]).collect();
-        work.into_iter()
-            .map(|w| (on_gamma(&w), w))
-            .map(|(g, w)| (w, g))
-            .collect()
+        let with_gamma = |w: Vec<f64>| {
+            let g = self.interface.iter().map(|&i| w[i as usize]).collect();
+            (w, g)
+        };
+        work.into_iter().map(with_gamma).collect()
     }
 
     /// [`recover`](Self::recover) of several solutions, at most [`LANES`](super::lanes::LANES): (`work`, `u_gamma`) of each.
@@ -229,12 +229,6 @@ impl LocalProblem {
         vertices.copy_from_slice(&v[self.n_delta..]);
         others.fill(0.0);
         self.psi.add_mul_transpose(&v[..self.n_delta], p);
-    }
-
-    /// y ← T v on Δ, zero at the vertices.
-    pub fn t_apply(&self, v: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        self.t.add_mul(&v[..self.n_delta], &mut y[..self.n_delta]);
     }
 
     /// y ← y + Ψ c.
@@ -297,7 +291,8 @@ mod tests {
             (s(0, 0) * p[1] - s(1, 0) * p[0]) / det,
         ];
         let mut u_gamma = vec![0.0; local.n_gamma()];
-        local.t_apply(&g, &mut u_gamma);
+        let n_delta = local.n_delta;
+        local.t.add_mul(&g[..n_delta], &mut u_gamma[..n_delta]);
         local.add_psi(&c, &mut u_gamma);
         let back = local.recover(work, &u_gamma);
         let error = back

@@ -104,18 +104,13 @@ fn ours(
             let solved = match solve(session, problem, way) {
                 Ok(solved) => solved,
                 // What one way cannot do is said in its row.
-                Err(
-                    e @ (Error::Input(_)
-                    | Error::Unfit(_)
-                    | Error::NotConverged(_)
-                    | Error::Petsc { .. }),
-                ) => {
+                Err(e @ Error::Environment(_)) => return Err(e),
+                Err(e) => {
                     if round == 0 {
                         refused(way, e.to_string(), record);
                     }
                     continue;
                 }
-                Err(e) => return Err(e),
             };
             seconds[k].push(solved.seconds);
             searches[k].extend(solved.solver.deflated().map(|c| c.seconds));
@@ -250,16 +245,11 @@ pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Resul
                 seconds,
             } = match solve(session, &problem, way) {
                 Ok(solved) => solved,
-                Err(
-                    e @ (Error::Input(_)
-                    | Error::Unfit(_)
-                    | Error::NotConverged(_)
-                    | Error::Petsc { .. }),
-                ) => {
+                Err(e @ Error::Environment(_)) => return Err(e),
+                Err(e) => {
                     out.message = Some(e.to_string());
                     return Ok(out);
                 }
-                Err(e) => return Err(e),
             };
             if !solution.converged {
                 out.message = Some(format!("{}: {}", way.name(), solution.reason));
