@@ -48,6 +48,64 @@ impl Csr {
         }
     }
 
+    /// The rows and columns listed in `keep` (increasing), in that order.
+    pub fn restricted(&self, keep: &[u32]) -> Csr {
+        let mut place = vec![u32::MAX; self.n()];
+        for (p, &i) in keep.iter().enumerate() {
+            place[i as usize] = p as u32;
+        }
+        let mut out = Csr {
+            row_ptr: vec![0],
+            ..Csr::default()
+        };
+        for &i in keep {
+            let (col, val) = self.row(i as usize);
+            for (&j, &v) in col.iter().zip(val) {
+                if place[j as usize] != u32::MAX {
+                    out.col.push(place[j as usize]);
+                    out.val.push(v);
+                }
+            }
+            out.row_ptr.push(out.col.len());
+        }
+        out
+    }
+
+    /// As [`from_triplets`](Self::from_triplets), for many entries in rows that are short: sorted row by row.
+    pub fn from_contributions(n: usize, entries: &[(u32, u32, f64)]) -> Csr {
+        let mut start = vec![0usize; n + 1];
+        entries.iter().for_each(|e| start[e.0 as usize + 1] += 1);
+        for i in 0..n {
+            start[i + 1] += start[i];
+        }
+        let mut next = start.clone();
+        let mut order = vec![(0u32, 0u32); entries.len()];
+        for (k, e) in entries.iter().enumerate() {
+            let at = &mut next[e.0 as usize];
+            order[*at] = (e.1, k as u32);
+            *at += 1;
+        }
+        let mut out = Csr {
+            row_ptr: vec![0],
+            ..Csr::default()
+        };
+        for i in 0..n {
+            let row = &mut order[start[i]..start[i + 1]];
+            row.sort_unstable();
+            for (p, &(j, k)) in row.iter().enumerate() {
+                let value = entries[k as usize].2;
+                if p > 0 && row[p - 1].0 == j {
+                    *out.val.last_mut().expect("an entry came before") += value;
+                } else {
+                    out.col.push(j);
+                    out.val.push(value);
+                }
+            }
+            out.row_ptr.push(out.col.len());
+        }
+        out
+    }
+
     /// The matrix with the given (row, column, value) entries, repeated ones added up.
     ///
     /// Entries are summed in the order in which they come, so that the result does not depend on how the

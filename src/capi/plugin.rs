@@ -74,10 +74,14 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
     }
 }
 
+/// Directions that a solve leaves to the next one with the same matrix.
+const DIRECTIONS: usize = 30;
+
 fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Embedded> {
     let prefix = format!("{prefix}fetifeti_");
     let settings = Settings {
         prefix: prefix.clone(),
+        recycle: DIRECTIONS,
         ..Settings::default()
     };
     let options = Options::new(session, &prefix);

@@ -11,7 +11,7 @@ use crate::feti::deflation::{watch, JUMPS};
 use crate::feti::settings::Adaptive;
 use crate::feti::sizes::Sizes;
 use crate::feti::team::Team;
-use crate::feti::{FetiFeti, Settings};
+use crate::feti::{FetiFeti, PcType, Settings};
 use crate::petsc::Session;
 use crate::report::table::{Align, Table};
 use crate::scene::{Plan, Scene};
@@ -239,10 +239,13 @@ fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {
     let lifted = n_bodies > 1 && n_subdomains > n_bodies && sizes.multipliers_global > 0;
     line(
         "preconditioner",
-        if lifted {
-            "coarse_corrected (M_C): jumps between bodies are lifted into whole bodies".into()
-        } else {
-            "dirichlet (M_D): there is nothing to lift".into()
+        match (lifted, sizes.preconditioner) {
+            (false, _) => "dirichlet (M_D): there is nothing to lift".into(),
+            (_, PcType::CoarseCorrected) => {
+                "coarse_corrected (M_C): jumps between bodies are lifted into whole bodies".into()
+            }
+            _ => "dirichlet (M_D): to lift jumps into whole bodies would cost more than it saves"
+                .into(),
         },
     );
     line(
@@ -252,6 +255,15 @@ fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {
             sizes.kinds
         ),
     );
+    if sizes.implicit_kinds > 0 {
+        line(
+            "operators",
+            format!(
+                "{} as sparse solves, the others as dense matrices: what costs less in the memory that there is",
+                sizes.implicit_kinds
+            ),
+        );
+    }
     let [factors, dense] = [sizes.factor_bytes, sizes.dense_bytes].map(|b| b / 1e6);
     line(
         "memory",

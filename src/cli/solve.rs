@@ -13,14 +13,18 @@ use super::fields::Gathered;
 use super::{maps, not_converged, physics, picture, problem};
 use crate::feti::exchange::sum_all;
 use crate::feti::local::problem::factorisations;
+use crate::feti::solver::Facts;
 use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
 use crate::petsc::{max_memory, Session};
 use crate::report::adaptive::{Adaptive, Deflation};
 use crate::report::contact::ContactReport;
-use crate::report::json::{self, SolveReport};
+use crate::report::json::{self, Operators, SolveReport};
 use crate::report::{contact_map, load_steps, output, profile, summary};
 use crate::scene::Scene;
 use crate::Result;
+
+/// Directions that a load step leaves to the next one.
+const DIRECTIONS: usize = 30;
 
 /// Solves a scene and writes what was asked for.
 pub fn run(session: &Session, args: &Solve) -> Result<()> {
@@ -32,7 +36,11 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let substructures = problem::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
-    let mut solver = FetiFeti::new(session, substructures, Settings::default())?;
+    let settings = Settings {
+        recycle: if scene.steps.is_some() { DIRECTIONS } else { 0 },
+        ..Settings::default()
+    };
+    let mut solver = FetiFeti::new(session, substructures, settings)?;
     let course = follow(session, &scene, &mut solver, args, checkpoints)?;
     let solution = &course.solution;
     let exact = match (solver.settings().spectrum, solution.steps.last()) {
@@ -215,6 +223,7 @@ fn report(
             total: 0.0,
         },
         memory_mb: memory[0],
+        operators: Some(operators(session, solver.facts())),
         converged_reason: solution.reason.clone(),
         ksp_type: solver.ksp().type_name()?,
         preconditioner: dual.preconditioner.kind().name().into(),
@@ -290,6 +299,23 @@ fn write_fields(
         Ok(())
     });
     session.agree(written)
+}
+
+/// Key `operators`. Collective.
+fn operators(session: &Session, facts: &Facts) -> Operators {
+    let mut sums = [
+        facts.kinds as f64,
+        facts.implicit_kinds as f64,
+        1e-6 * facts.factor_bytes as f64,
+        1e-6 * facts.dense_bytes as f64,
+    ];
+    sum_all(session.comm(), &mut sums);
+    Operators {
+        kinds: sums[0] as usize,
+        sparse: sums[1] as usize,
+        factor_mb: sums[2],
+        dense_mb: sums[3],
+    }
 }
 
 /// Key `contact`. Collective.

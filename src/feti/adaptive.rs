@@ -14,7 +14,7 @@ use super::exchange::{exchange_words, sum_all};
 use super::jump::Jump;
 use super::local::dense::{multiply, Dense};
 use super::local::pencil::{self, Part};
-use super::local::problem::LocalProblem;
+use super::local::scaled::Local;
 use super::settings::Adaptive;
 use super::sharing::Sharing;
 use super::team::Team;
@@ -28,7 +28,7 @@ pub fn find(
     problem: &Substructures,
     sharing: &Sharing,
     jump: &mut Jump,
-    locals: &[Arc<LocalProblem>],
+    locals: &[Local],
     team: &Team,
     adaptive: Adaptive,
 ) -> Vec<usize> {
@@ -170,32 +170,33 @@ pub fn find(
 pub fn constrain(
     problem: &Substructures,
     jump: &Jump,
-    locals: &[Arc<LocalProblem>],
+    locals: &[Local],
     team: &Team,
     fails: impl Fn(&Subdomain, u32) -> crate::Error + Sync,
-) -> Result<Vec<Arc<LocalProblem>>> {
+) -> Result<Vec<Local>> {
     let added = |j: usize| {
         let list = jump.averages[j].iter();
         list.filter_map(|a| Some((&a.dofs[..], a.weights.as_deref()?)))
     };
     let mut first: Vec<usize> = Vec::new();
     for j in 0..locals.len() {
-        let same = |&i: &usize| Arc::ptr_eq(&locals[i], &locals[j]) && added(i).eq(added(j));
+        let same = |&i: &usize| locals[i].shares_with(&locals[j]) && added(i).eq(added(j));
         first.push((0..j).find(same).unwrap_or(j));
     }
     let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
     let renewed = team.map(kinds.len(), |k| {
         let j = kinds[k];
         if added(j).next().is_none() {
-            return Ok(locals[j].clone());
+            return Ok(locals[j].kind().clone());
         }
         let sub = &problem.local[j];
-        let renewed = locals[j].constrained(&sub.k, added(j));
+        let renewed = locals[j].constrained(&sub.k, added(j), sub.coordinates.as_deref());
         renewed.map(Arc::new).map_err(|e| fails(sub, e.dof))
     });
     let renewed = renewed.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: &usize| kinds.binary_search(j).expect("a first one is a kind");
-    Ok(first.iter().map(|j| renewed[place(j)].clone()).collect())
+    let of = |(j, local): (&usize, &Local)| Local::new(renewed[place(j)].clone(), local.factor());
+    Ok(first.iter().zip(locals).map(of).collect())
 }
 
 /// All that the functionals of a class depend on, as numbers: the subdomains that share it, given with their class, by their matrices (equal ones are one
@@ -203,7 +204,7 @@ pub fn constrain(
 fn signature(
     problem: &Substructures,
     jump: &Jump,
-    locals: &[Arc<LocalProblem>],
+    locals: &[Local],
     sharers: &[(usize, &Class)],
 ) -> Vec<u64> {
     fn number<K: std::hash::Hash + Eq>(seen: &mut HashMap<K, u64>, key: K) -> u64 {
@@ -214,7 +215,11 @@ fn signature(
     let mut rows = HashMap::new();
     let mut out = Vec::new();
     for &(j, class) in sharers {
-        out.extend([Arc::as_ptr(&locals[j]) as u64, class.at.len() as u64]);
+        out.extend([
+            Arc::as_ptr(locals[j].kind()) as u64,
+            locals[j].factor().to_bits(),
+            class.at.len() as u64,
+        ]);
         out.extend(class.at.iter().map(|&i| i as u64));
         let columns = &jump.columns[j];
         out.push(class.entries.len() as u64);
@@ -230,7 +235,7 @@ fn signature(
 }
 
 /// Names of the primal dofs of local subdomain `j`: equal where subdomains share them.
-fn names(sub: &Subdomain, jump: &Jump, local: &LocalProblem, j: usize) -> Vec<[u64; 2]> {
+fn names(sub: &Subdomain, jump: &Jump, local: &Local, j: usize) -> Vec<[u64; 2]> {
     let vertices = local.interface[local.n_delta..].iter();
     let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
     let averages = jump.averages[j].iter().map(|a| [1, a.key]);
@@ -240,26 +245,11 @@ fn names(sub: &Subdomain, jump: &Jump, local: &LocalProblem, j: usize) -> Vec<[u
 }
 
 /// What local subdomain `j` has to say about a class.
-fn part(
-    problem: &Substructures,
-    jump: &Jump,
-    local: &LocalProblem,
-    j: usize,
-    class: &Class,
-) -> Part {
+fn part(problem: &Substructures, jump: &Jump, local: &Local, j: usize, class: &Class) -> Part {
     let sub = &problem.local[j];
     let (n, at) = (class.at.len(), &class.at);
-    let block = |m: &Dense| {
-        let mut out = Dense::zeros(n, n);
-        for (q, &j) in at.iter().enumerate() {
-            for (p, &i) in at.iter().enumerate() {
-                out.set(p, q, m.get(i, j));
-            }
-        }
-        out
-    };
     let q = lifted(jump, j, class);
-    let s = block(&local.s);
+    let s = local.s_on(at);
     let mut sq = Dense::zeros(n, q.cols);
     multiply(sq.view_mut(), false, 1.0, s.view(), q.view());
     let mut a = Dense::zeros(q.cols, q.cols);
@@ -272,9 +262,9 @@ fn part(
     }
     Part {
         a,
-        t: block(&local.t),
+        t: local.t_on(at),
         psi,
-        sigma: local.sigma.clone(),
+        sigma: local.sigma(),
         stiff: local.primal_stiffness(),
         names: names(sub, jump, local, j),
     }

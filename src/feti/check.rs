@@ -2,6 +2,7 @@
 
 use super::dual::Dual;
 use super::exchange::{max_all, sum_all};
+use super::local::problem::Operator;
 use super::stiffness::Work;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
@@ -135,19 +136,18 @@ impl Check<'_> {
         let stiffness = &self.dual.stiffness;
         let mut work = self.torn();
         for (w, local) in work.iter_mut().zip(&stiffness.locals) {
-            w.v.fill(0.0);
-            local.s.add_mul(&w.y, &mut w.v);
+            local.apply_one(Operator::S, &w.y, &mut w.v);
         }
         stiffness.s_plus(&mut work)?;
         let mut worst = 0.0f64;
         for (w, local) in work.iter().zip(&stiffness.locals) {
             let mut back = vec![0.0; w.v.len()];
-            local.s.add_mul(&w.y, &mut back);
+            local.apply_one(Operator::S, &w.y, &mut back);
             let defect = back
                 .iter()
                 .zip(&w.v)
                 .fold(0.0f64, |a, (b, v)| a.max((b - v).abs()));
-            let stiff = (0..local.n_gamma()).fold(0.0f64, |a, i| a.max(local.s.get(i, i)));
+            let stiff = local.stiffness();
             let size = w.y.iter().fold(1.0f64, |a, y| a.max(y.abs()));
             if stiff > 0.0 {
                 worst = worst.max(defect / (stiff * size));
@@ -167,8 +167,8 @@ impl Check<'_> {
         {
             for c in 0..kernel.cols {
                 let mut image = vec![0.0; kernel.rows];
-                local.s.add_mul(kernel.col(c), &mut image);
-                let stiff = (0..kernel.rows).fold(0.0f64, |a, i| a.max(local.s.get(i, i)));
+                local.apply_one(Operator::S, kernel.col(c), &mut image);
+                let stiff = local.stiffness();
                 let size = kernel.col(c).iter().fold(0.0f64, |a, v| a.max(v.abs()));
                 let defect = image.iter().fold(0.0f64, |a, v| a.max(v.abs()));
                 if stiff * size > 0.0 {

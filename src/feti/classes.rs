@@ -11,7 +11,7 @@ use mpi::traits::Communicator;
 
 use super::exchange::{exchange_words, sum_all};
 use super::jump::Jump;
-use super::local::problem::LocalProblem;
+use super::local::scaled::Local;
 use super::sharing::Sharing;
 use crate::substructures::{Subdomain, Substructures};
 
@@ -38,7 +38,7 @@ impl Class {
 }
 
 /// The classes of a subdomain.
-pub fn of(sub: &Subdomain, sharing: &Sharing, local: &LocalProblem) -> Vec<Class> {
+pub fn of(sub: &Subdomain, sharing: &Sharing, local: &Local) -> Vec<Class> {
     let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
     for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
         let dof = sub.dofs[dof as usize];
@@ -66,7 +66,7 @@ pub fn rough(
     comm: &SimpleCommunicator,
     problem: &Substructures,
     sharing: &Sharing,
-    locals: &[Arc<LocalProblem>],
+    locals: &[Local],
     classes: &[Vec<Class>],
 ) -> Vec<Vec<bool>> {
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
@@ -91,16 +91,12 @@ pub fn rough(
 }
 
 /// Whether stiffness varies along the interface of any subdomain at all; equal subdomains are looked at once. Collective.
-pub fn anywhere(
-    comm: &SimpleCommunicator,
-    problem: &Substructures,
-    locals: &[Arc<LocalProblem>],
-) -> bool {
+pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Local]) -> bool {
     let mut seen = HashSet::new();
     let mut locals = locals.iter().zip(&problem.local);
     let found = locals.any(|(local, sub)| {
         let shared = local.interface[..local.n_delta].iter().copied();
-        seen.insert(Arc::as_ptr(local)) && varies(sub, &diagonal(sub), shared)
+        seen.insert(Arc::as_ptr(local.kind())) && varies(sub, &diagonal(sub), shared)
     });
     let mut found = [f64::from(u8::from(found))];
     sum_all(comm, &mut found);
@@ -125,7 +121,7 @@ fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bo
 }
 
 /// Places in the class of the dofs of the averages that are primal already.
-pub fn means(local: &LocalProblem, class: &Class) -> Vec<Vec<usize>> {
+pub fn means(local: &Local, class: &Class) -> Vec<Vec<usize>> {
     let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
     let inside = local
         .basis

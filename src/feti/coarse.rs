@@ -1,11 +1,14 @@
-//! The bodies' primal problem S_Π behind a PETSc KSP (prefix `fetifeti_coarse_`).
+//! The bodies' primal problem S_Π.
 //!
-//! S_Π is block diagonal by body, and a body's rows live on one rank, so block Jacobi with a Cholesky factorisation per rank
-//! solves it exactly without a message. Any other KSP and PC may be chosen by options.
+//! S_Π is block diagonal by body, and a body's rows live on one rank: a Cholesky factorisation per body, ours, solves it exactly without a
+//! message. With any option `-fetifeti_coarse_…` a PETSc KSP takes its place.
 
 use super::halo::Halo;
-use super::primal::PrimalSpace;
+use super::local::multifrontal::{PartialCholesky, Symbolic};
+use super::primal::{PrimalEntry, PrimalSpace};
+use super::team::Team;
 use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
+use crate::sparse::Csr;
 use crate::{Error, Result};
 
 /// S_Π, regularised, with its solver. Nothing at all where no body has primal dofs.
@@ -14,60 +17,44 @@ pub struct PrimalProblem {
 }
 
 struct Parts {
-    ksp: Ksp,
+    solver: Solver,
     rhs: PetscVec,
     solution: PetscVec,
     halo: Halo,
 }
 
+enum Solver {
+    /// For each body of this rank: its first row here, and the factor.
+    Own(Vec<(usize, PartialCholesky)>),
+    Petsc(Ksp),
+}
+
 impl PrimalProblem {
-    /// Assembles the matrix and sets its solver up. Collective.
-    pub fn new(session: &Session, space: &PrimalSpace, prefix: &str) -> Result<PrimalProblem> {
+    /// Assembles the matrix and sets its solver up; takes the entries. Collective.
+    pub fn new(
+        session: &Session,
+        space: &mut PrimalSpace,
+        team: &Team,
+        prefix: &str,
+    ) -> Result<PrimalProblem> {
         if space.n_global == 0 {
             return Ok(PrimalProblem { parts: None });
         }
-        let entries = space.entries.iter();
-        let triplets: Vec<(i32, i32, f64)> = entries
-            .map(|e| (e.row as i32, e.col as i32, e.value))
-            .collect();
-        let matrix = Mat::from_triplets(
-            session,
-            Comm::World,
-            space.n_owned,
-            space.n_owned,
-            &triplets,
-        )?;
-        matrix.set_flag(MatFlag::Spd)?;
+        let entries = std::mem::take(&mut space.entries);
         let rhs = PetscVec::mpi(session, space.n_owned)?;
+        let own = match Options::new(session, prefix).any()? {
+            true => None,
+            false => own(session, space, team, &entries),
+        };
+        let solver = match own {
+            Some(factors) => Solver::Own(factors),
+            None => Solver::Petsc(petsc(session, space, &entries, prefix)?),
+        };
         let solution = rhs.duplicate()?;
-        let ksp = Ksp::new(session, Comm::World)?;
-        ksp.set_operators(&matrix, &matrix)?;
-        ksp.set_options_prefix(prefix)?;
-        ksp.set_type("preonly")?;
-        let pc = ksp.pc()?;
-        let options = Options::new(session, prefix);
-        let mut lent = Vec::new();
-        if session.size() == 1 {
-            pc.set_type("cholesky")?;
-        } else {
-            // Every body's primal dofs are on one rank.
-            pc.set_type("bjacobi")?;
-            for (name, value) in [("sub_ksp_type", "preonly"), ("sub_pc_type", "cholesky")] {
-                if options.set_default(name, value)? {
-                    lent.push(name);
-                }
-            }
-        }
-        ksp.set_from_options()?;
-        ksp.setup()?;
-        // The blocks have read theirs; a host's database is not ours to keep things in.
-        for name in lent {
-            options.clear_value(name)?;
-        }
         let halo = Halo::new(session, &rhs, &space.ghosts)?;
         Ok(PrimalProblem {
             parts: Some(Parts {
-                ksp,
+                solver,
                 rhs,
                 solution,
                 halo,
@@ -76,16 +63,35 @@ impl PrimalProblem {
     }
 
     /// `values` (at this rank's ghosts): in, every rank's contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
-    pub fn solve(&self, values: &mut [f64]) -> Result<()> {
+    pub fn solve(&self, team: &Team, values: &mut [f64]) -> Result<()> {
         let Some(p) = &self.parts else { return Ok(()) };
         p.halo.sum(values, &p.rhs)?;
-        p.ksp.solve(&p.rhs, &p.solution)?;
-        let reason = p.ksp.converged_reason()?;
-        if reason.code < 0 {
-            return Err(Error::NotConverged(format!(
-                "the primal problem of the bodies was not solved ({}): change the -fetifeti_coarse_ options, or take more constraints with -fetifeti_primal",
-                reason.name
-            )));
+        match &p.solver {
+            Solver::Petsc(ksp) => {
+                ksp.solve(&p.rhs, &p.solution)?;
+                let reason = ksp.converged_reason()?;
+                if reason.code < 0 {
+                    return Err(Error::NotConverged(format!(
+                        "the primal problem of the bodies was not solved ({}): change the -fetifeti_coarse_ options, or take more constraints with -fetifeti_primal",
+                        reason.name
+                    )));
+                }
+            }
+            Solver::Own(factors) => {
+                let rhs = p.rhs.array()?;
+                let mut parts: Vec<Vec<f64>> = factors
+                    .iter()
+                    .map(|(first, factor)| rhs[*first..first + factor.n()].to_vec())
+                    .collect();
+                team.for_each(&mut parts, |b, x| {
+                    factors[b].1.forward(x);
+                    factors[b].1.backward(x);
+                });
+                let mut solution = p.solution.array_mut()?;
+                for ((first, _), x) in factors.iter().zip(&parts) {
+                    solution[*first..first + x.len()].copy_from_slice(x);
+                }
+            }
         }
         p.halo.fetch(&p.solution, values)
     }
@@ -99,4 +105,77 @@ impl PrimalProblem {
         quotient.pointwise_divide(&p.rhs, &p.solution)?;
         quotient.dot(&p.rhs)
     }
+}
+
+/// A factor for each body of this rank; `None` where one of the matrices is too close to a singular one for it, the same on all ranks. Collective.
+fn own(
+    session: &Session,
+    space: &PrimalSpace,
+    team: &Team,
+    entries: &[PrimalEntry],
+) -> Option<Vec<(usize, PartialCholesky)>> {
+    let mut of_body: Vec<Vec<(u32, u32, f64)>> = vec![Vec::new(); space.owned.len()];
+    let mut body_of = vec![u32::MAX; space.n_owned];
+    for (b, body) in space.owned.iter().enumerate() {
+        body_of[body.range.clone()].fill(b as u32);
+    }
+    for e in entries {
+        let (i, j) = (e.row as usize - space.first, e.col as usize - space.first);
+        let b = body_of[i] as usize;
+        let start = space.owned[b].range.start;
+        of_body[b].push(((i - start) as u32, (j - start) as u32, e.value));
+    }
+    let factors = team.map(of_body.len(), |b| {
+        let range = &space.owned[b].range;
+        let k = Csr::from_contributions(range.len(), &of_body[b]);
+        let symbolic = Symbolic::new(&k, &[], None);
+        let factor = PartialCholesky::new(&k, symbolic.into()).ok()?.0;
+        Some((range.start, factor))
+    });
+    let factors: Option<Vec<_>> = factors.into_iter().collect();
+    // All ranks take the same way.
+    let mut failed = [f64::from(u8::from(factors.is_none()))];
+    super::exchange::sum_all(session.comm(), &mut failed);
+    factors.filter(|_| failed[0] == 0.0)
+}
+
+/// The KSP with the prefix `fetifeti_coarse_`.
+fn petsc(
+    session: &Session,
+    space: &PrimalSpace,
+    entries: &[PrimalEntry],
+    prefix: &str,
+) -> Result<Ksp> {
+    let entries = entries.iter();
+    let triplets: Vec<(i32, i32, f64)> = entries
+        .map(|e| (e.row as i32, e.col as i32, e.value))
+        .collect();
+    let n = space.n_owned;
+    let matrix = Mat::from_triplets(session, Comm::World, n, n, &triplets)?;
+    matrix.set_flag(MatFlag::Spd)?;
+    let ksp = Ksp::new(session, Comm::World)?;
+    ksp.set_operators(&matrix, &matrix)?;
+    ksp.set_options_prefix(prefix)?;
+    ksp.set_type("preonly")?;
+    let pc = ksp.pc()?;
+    let options = Options::new(session, prefix);
+    let mut lent = Vec::new();
+    if session.size() == 1 {
+        pc.set_type("cholesky")?;
+    } else {
+        // Every body's primal dofs are on one rank.
+        pc.set_type("bjacobi")?;
+        for (name, value) in [("sub_ksp_type", "preonly"), ("sub_pc_type", "cholesky")] {
+            if options.set_default(name, value)? {
+                lent.push(name);
+            }
+        }
+    }
+    ksp.set_from_options()?;
+    ksp.setup()?;
+    // The blocks have read theirs; a host's database is not ours to keep things in.
+    for name in lent {
+        options.clear_value(name)?;
+    }
+    Ok(ksp)
 }

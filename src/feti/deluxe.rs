@@ -10,7 +10,6 @@
 //! which B_D,locᵀ must not change.
 
 use std::collections::{BTreeMap, HashMap};
-use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -18,7 +17,7 @@ use mpi::traits::Communicator;
 use super::exchange::exchange_words;
 use super::jump::Jump;
 use super::local::dense::{self, Dense, Scratch};
-use super::local::problem::LocalProblem;
+use super::local::scaled::Local;
 use super::sharing::Sharing;
 use crate::substructures::Substructures;
 
@@ -38,7 +37,7 @@ pub fn apply(
     problem: &Substructures,
     sharing: &Sharing,
     jump: &mut Jump,
-    locals: &[Arc<LocalProblem>],
+    locals: &[Local],
 ) {
     let groups: Vec<Vec<Group>> = (0..locals.len())
         .map(|j| groups(problem, sharing, jump, &locals[j], j))
@@ -47,7 +46,7 @@ pub fn apply(
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
-            let s = group.restrict(&locals[j].s);
+            let s = locals[j].s_on(&group.at);
             for &to in &group.sharers {
                 let list = &mut outgoing[sharing.rank_of[to as usize] as usize];
                 list.extend([
@@ -90,7 +89,7 @@ fn groups(
     problem: &Substructures,
     sharing: &Sharing,
     jump: &Jump,
-    local: &LocalProblem,
+    local: &Local,
     j: usize,
 ) -> Vec<Group> {
     let dofs = &problem.local[j].dofs;
@@ -120,18 +119,6 @@ fn groups(
 }
 
 impl Group {
-    /// S on the group.
-    fn restrict(&self, s: &Dense) -> Dense {
-        let n = self.at.len();
-        let mut block = Dense::zeros(n, n);
-        for (q, &j) in self.at.iter().enumerate() {
-            for (p, &i) in self.at.iter().enumerate() {
-                block.set(p, q, s.get(i, j));
-            }
-        }
-        block
-    }
-
     /// (Σ S)⁻¹ S_k for every sharer; nothing where nothing holds the group.
     fn weights<'a>(&self, schur: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Option<Vec<Dense>> {
         let m = self.at.len();

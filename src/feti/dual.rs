@@ -11,6 +11,7 @@ use super::deflation::Deflation;
 use super::exchange::sum_all;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
+use super::recycle::Recycle;
 use super::stiffness::Stiffness;
 use crate::petsc::{Event, Mat, Session, ShellMat, ShellPc, Vec as PetscVec};
 use crate::substructures::Substructures;
@@ -29,6 +30,8 @@ pub struct Dual {
     watch: Cell<Option<f64>>,
     /// Iterations before the first look at the spectrum.
     pub watched_from: usize,
+    /// Directions of earlier iterations.
+    recycled: RefCell<Recycle>,
     /// What the running iteration adds its correction to.
     start: RefCell<Option<PetscVec>>,
     session: Session,
@@ -59,6 +62,7 @@ impl Dual {
             deflation: RefCell::new(None),
             watch: Cell::new(None),
             watched_from: 0,
+            recycled: RefCell::new(Recycle::default()),
             start: RefCell::new(None),
             session: session.clone(),
             stale: false,
@@ -132,6 +136,8 @@ impl Dual {
 
     /// Uses P_2, or none.
     pub fn deflate(&self, deflation: Option<Deflation>) {
+        // A directions were taken with is another operator now.
+        self.recycled.borrow_mut().forget();
         self.deflation.replace(deflation);
     }
 
@@ -140,6 +146,7 @@ impl Dual {
         match &mut *self.deflation.borrow_mut() {
             Some(deflation) if deflation.matrices().is_some() => {
                 deflation.give_up();
+                self.recycled.borrow_mut().forget();
                 self.watch.set(None);
                 true
             }
@@ -149,6 +156,7 @@ impl Dual {
 
     /// P_2, which is not in use any more.
     pub fn take_deflation(&self) -> Option<Deflation> {
+        self.recycled.borrow_mut().forget();
         self.deflation.take()
     }
 
@@ -196,6 +204,28 @@ impl Dual {
         Ok(())
     }
 
+    /// Keeps at most so many directions from load to load.
+    pub fn recycle(&self, most: usize) {
+        self.recycled.replace(Recycle::new(most));
+    }
+
+    /// λ ← λ + x₀ and r ← r − A x₀ with what earlier iterations have left for the rows that hold. Collective.
+    pub fn recycled_part(&self, residual: &PetscVec, lambda: &PetscVec) -> Result<()> {
+        let mut recycled = self.recycled.borrow_mut();
+        let comm = self.session.comm();
+        recycled.fit(comm, &self.stiffness.jump.active);
+        if recycled.is_empty() {
+            return Ok(());
+        }
+        recycled.begin(comm, residual, lambda)?;
+        self.p_transpose(residual)
+    }
+
+    /// Directions that the iteration takes are kept from now on, or are not.
+    pub fn record_directions(&self, on: bool) {
+        self.recycled.borrow_mut().record(on);
+    }
+
     /// x ← P_2 x for x in V. Collective.
     pub fn p2(&self, x: &PetscVec) -> Result<()> {
         match self
@@ -226,13 +256,15 @@ impl Dual {
     fn projected_f(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         if self.natural.r == 0 {
             self.f(x, y)?;
-            return self.p2_transpose(y);
+            self.p2_transpose(y)?;
+            return self.recycled.borrow_mut().keep(x, y);
         }
         self.x.copy_from(x)?;
         self.p(&self.x)?; /*            x ← P x          */
         self.f(&self.x, y)?; /*         y ← F x          */
         self.p2_transpose(y)?; /*       y ← P_2ᵀ y       */
-        self.p_transpose(y) /*          y ← Pᵀ y         */
+        self.p_transpose(y)?; /*        y ← Pᵀ y         */
+        self.recycled.borrow_mut().keep(&self.x, y)
     }
 
     /// y ← P_2 P M⁻¹ Pᵀ x for residuals x, which P_2ᵀ leaves as they are.

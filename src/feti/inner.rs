@@ -42,9 +42,9 @@ impl Loads {
     pub fn of(session: &Session, dual: &Dual, f: &[&[f64]]) -> Loads {
         let stiffness = &dual.stiffness;
         let batches = stiffness.batches(LANES);
-        let condensed = stiffness.by_batch(&batches, |local, members| {
+        let condensed = stiffness.by_batch(&batches, |locals, members| {
             let loads: Vec<&[f64]> = members.iter().map(|&j| f[j]).collect();
-            local.condense_many(&loads)
+            locals[0].condense_many(&loads)
         });
         let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
         let kernel = dual.natural.kernel_load(session.comm(), f, &g);
@@ -232,17 +232,24 @@ pub fn iterate(
     if start <= nothing {
         return Ok(Inner::nothing_to_do(start));
     }
+    dual.recycled_part(residual, lambda)?;
+    let start = residual.norm2()?;
+    if start <= nothing {
+        return Ok(Inner::nothing_to_do(start));
+    }
     let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
     let x = dual.multipliers()?;
     ksp.record_residuals(max_it.min(100_000) + 1)?;
     rtol_of(target / start)?;
+    dual.record_directions(true);
     let solved = match dual.watch() {
         Some(limit) if ksp.type_name()? == "cg" => {
             ksp.solve_watched(residual, &x, dual.watched_from, limit, NEARLY * target)
         }
         _ => ksp.solve(residual, &x).map(|()| false),
     };
+    dual.record_directions(false);
     rtol_of(rtol)?;
     let broken_off = solved?;
     dual.p(&x)?;

@@ -3,7 +3,7 @@
 use super::dual::Dual;
 use super::exchange::{max_all, min_all, sum_all};
 use super::jump::JumpColumns;
-use super::local::problem::LocalProblem;
+use super::local::scaled::Local;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
@@ -121,7 +121,7 @@ struct Examined {
 
 fn examine(
     (sub, u): (&Subdomain, &[f64]),
-    local: &LocalProblem,
+    local: &Local,
     (columns, ghost): (&JumpColumns, &[f64]),
     places: &[u32],
 ) -> Examined {

@@ -11,21 +11,25 @@
 //! every active set, so nothing here changes in a contact step.
 
 use std::cell::RefCell;
-use std::sync::Arc;
+use std::collections::BTreeMap;
 
 use mpi::traits::Communicator;
 
-use super::exchange::{exchange, exchange_words};
+use super::exchange::exchange_words;
 use super::halo::Halo;
+use super::jump::Jump;
 use super::local::dense::{multiply, Dense};
-use super::local::problem::LocalProblem;
+use super::local::problem::Operator;
+use super::local::scaled::Local;
 use super::local::semidefinite::Semidefinite;
-use super::primal::PrimalEntry;
 use super::sharing::Sharing;
 use super::stiffness::{Columns, Stiffness, Work};
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
+
+/// So many subdomains of a body are added up before their sum is sent to the one who factors A.
+const GROUP: usize = 32;
 
 /// Z_c of all bodies, with A factored. Columns carry the numbers of the primal dofs they come from.
 pub struct Lifting {
@@ -71,48 +75,45 @@ impl Lifting {
             .collect();
         let z: Vec<Dense> = averaged.into_iter().map(|a| a.z).collect();
 
-        let (locals, zs) = (&stiffness.locals, &z);
-        let products = stiffness.team.map(z.len(), |j| {
-            let (s, z) = (&locals[j].s, zs);
-            let mut y = Dense::zeros(z[j].rows, z[j].cols);
-            multiply(y.view_mut(), false, 1.0, s.view(), z[j].view());
-            let mut a = Dense::zeros(z[j].cols, z[j].cols);
-            multiply(a.view_mut(), false, 1.0, z[j].view().transpose(), y.view());
-            (y, a)
-        });
-        let mut entries: Vec<Vec<PrimalEntry>> = vec![Vec::new(); comm.size() as usize];
-        let mut y = Vec::new();
-        for (j, (yj, a)) in products.into_iter().enumerate() {
-            let to = space.owner[problem.local[j].body] as usize;
-            for (q, &gq) in columns[j].iter().enumerate() {
-                for (p, &gp) in columns[j].iter().enumerate() {
-                    entries[to].push(PrimalEntry {
-                        row: ghosts[gp as usize],
-                        col: ghosts[gq as usize],
-                        value: a.get(p, q),
-                    });
-                }
+        // Groups of subdomains of one body, each with its own sum of Z_cᵀ S Z_c.
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for (j, sub) in problem.local.iter().enumerate() {
+            let group = groups
+                .iter_mut()
+                .rev()
+                .find(|g| problem.local[g[0]].body == sub.body);
+            match group.filter(|g| g.len() < GROUP) {
+                Some(group) => group.push(j),
+                None => groups.push(vec![j]),
             }
-            y.push(yj);
         }
-        let entries = exchange(comm, &entries).concat();
-        let mut bodies = Vec::new();
-        let (mut rank, mut order) = (0, 0);
-        for body in &space.owned {
-            let n = body.range.len();
-            let first = space.first + body.range.start;
+        let (locals, zs, places) = (&stiffness.locals, &z, &columns);
+        let sums = stiffness
+            .team
+            .map(groups.len(), |g| Sum::new(locals, zs, places, &groups[g]));
+        let mut y = vec![Dense::default(); z.len()];
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+        for (members, mut sum) in groups.iter().zip(sums) {
+            for (&j, yj) in members.iter().zip(&mut sum.y) {
+                y[j] = std::mem::take(yj);
+            }
+            let to = space.owner[problem.local[members[0]].body] as usize;
+            sum.pack(&ghosts, &mut outgoing[to]);
+        }
+        let received = exchange_words(comm, outgoing);
+        let bodies: Vec<(usize, Semidefinite)> = stiffness.team.map(space.owned.len(), |b| {
+            let range = &space.owned[b].range;
+            let n = range.len();
             let mut a = Dense::zeros(n, n);
-            for e in &entries {
-                let i = (e.row as usize).wrapping_sub(first);
-                if i < n {
-                    a.data[i + (e.col as usize - first) * n] += e.value;
-                }
-            }
-            order += (0..n).filter(|&i| a.get(i, i) > 0.0).count();
-            let factor = Semidefinite::new(&a);
-            rank += factor.rank();
-            bodies.push((body.range.start, factor));
-        }
+            let first = space.first + range.start;
+            received
+                .iter()
+                .for_each(|words| unpack(words, first, &mut a));
+            a.mirror_lower();
+            (range.start, Semidefinite::new(&a))
+        });
+        let rank = bodies.iter().map(|b| b.1.rank()).sum();
+        let order = bodies.iter().map(|b| b.1.nonzero()).sum::<usize>();
         let mut total = [order as f64];
         super::exchange::sum_all(comm, &mut total);
         if total[0] == 0.0 {
@@ -218,23 +219,93 @@ impl Lifting {
     }
 }
 
+/// Z_cᵀ S Z_c of some subdomains of a body.
+struct Sum {
+    /// Ghost columns, increasing.
+    columns: Vec<u32>,
+    /// Its lower triangle counts.
+    a: Dense,
+    /// S Z_c of each subdomain.
+    y: Vec<Dense>,
+}
+
+impl Sum {
+    fn new(locals: &[Local], z: &[Dense], columns: &[Vec<u32>], members: &[usize]) -> Sum {
+        let mut all: Vec<u32> = members.iter().flat_map(|&j| columns[j].clone()).collect();
+        all.sort_unstable();
+        all.dedup();
+        let mut sum = Sum {
+            a: Dense::zeros(all.len(), all.len()),
+            columns: all,
+            y: Vec::new(),
+        };
+        for &j in members {
+            let mut y = Dense::zeros(z[j].rows, z[j].cols);
+            locals[j].apply(Operator::S, &z[j], &mut y);
+            let mut a = Dense::zeros(z[j].cols, z[j].cols);
+            multiply(a.view_mut(), false, 1.0, z[j].view().transpose(), y.view());
+            let place = |g: &u32| sum.columns.binary_search(g).expect("it was collected");
+            let at: Vec<usize> = columns[j].iter().map(place).collect();
+            // Columns are in the same order here and there: lower triangles go into lower triangles.
+            for (q, &to) in at.iter().enumerate() {
+                let target = sum.a.col_mut(to);
+                for (&i, v) in at[q..].iter().zip(&a.col(q)[q..]) {
+                    target[i] += v;
+                }
+            }
+            sum.y.push(y);
+        }
+        sum
+    }
+
+    /// [n, global columns, lower triangle by columns].
+    fn pack(&self, ghosts: &[u32], words: &mut Vec<u64>) {
+        let n = self.columns.len();
+        words.push(n as u64);
+        words.extend(self.columns.iter().map(|&g| u64::from(ghosts[g as usize])));
+        for q in 0..n {
+            words.extend(self.a.col(q)[q..].iter().map(|v| v.to_bits()));
+        }
+    }
+}
+
+/// Adds what [`Sum::pack`] has written for the body whose columns begin at global number `first`; that of other bodies is passed over.
+fn unpack(mut words: &[u64], first: usize, a: &mut Dense) {
+    while let [n, tail @ ..] = words {
+        let n = *n as usize;
+        let (columns, tail) = tail.split_at(n);
+        let (mut values, tail) = tail.split_at(n * (n + 1) / 2);
+        words = tail;
+        // All columns are of one body.
+        if n == 0 || !(first..first + a.rows).contains(&(columns[0] as usize)) {
+            continue;
+        }
+        let at: Vec<usize> = columns.iter().map(|&c| c as usize - first).collect();
+        for (q, &to) in at.iter().enumerate() {
+            let (column, rest) = values.split_at(n - q);
+            values = rest;
+            let target = a.col_mut(to);
+            for (&i, &v) in at[q..].iter().zip(column) {
+                target[i] += f64::from_bits(v);
+            }
+        }
+    }
+}
+
 /// Z_c on one subdomain with the global numbers of its columns.
 struct Averaged {
     z: Dense,
     columns: Vec<u32>,
 }
 
-/// (column, value) pairs of one interface dof, a handful in no order.
-type SparseRow = Vec<(u32, f64)>;
-
-/// The value in a column, zero at first.
-fn value_at(row: &mut SparseRow, column: u32) -> &mut f64 {
-    let at = row.iter().position(|(c, _)| *c == column);
-    let at = at.unwrap_or_else(|| {
-        row.push((column, 0.0));
-        row.len() - 1
-    });
-    &mut row[at].1
+/// What one subdomain contributes to the columns of another one: rows of D Ψ, D scaled to a sum of one over the copies.
+struct Contribution {
+    /// The subdomain that it comes from.
+    from: u64,
+    /// Global numbers of its columns.
+    columns: Vec<u32>,
+    /// (position in Γ of the one that it goes to, a value for each column).
+    rows: Vec<(u32, Vec<f64>)>,
 }
 
 /// Exchanges rows of Ψ between the copies of every shared dof and averages them.
@@ -244,14 +315,14 @@ fn average_copies(
     sharing: &Sharing,
     stiffness: &Stiffness,
 ) -> Vec<Averaged> {
-    let comm = session.comm();
-    let space = &stiffness.space;
-    // [subdomain, local dof, n, (column, share of the value) × n] to every holder of a copy
-    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    let (comm, team) = (session.comm(), &stiffness.team);
+    let (space, locals, jump) = (&stiffness.space, &stiffness.locals, &stiffness.jump);
     let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
-    for (j, sub) in problem.local.iter().enumerate() {
-        let local = &stiffness.locals[j];
-        let shared = shared_columns(stiffness, j);
+    // For each subdomain that shares something: [to, from, columns, rows, column numbers, (local dof, values) of each row].
+    let packed = team.map(locals.len(), |j| {
+        let (sub, local) = (&problem.local[j], &locals[j]);
+        let shared = shared_columns(jump, local, j);
+        let mut lists: BTreeMap<u32, Vec<u64>> = BTreeMap::new();
         for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
             let copies = sharing.shared(sub.dofs[dof as usize]);
             let total: f64 = copies.iter().map(|c| c.weight).sum();
@@ -259,20 +330,28 @@ fn average_copies(
                 continue;
             };
             for to in copies {
-                let list = &mut outgoing[sharing.rank_of[to.subdomain as usize] as usize];
-                list.extend([
-                    u64::from(to.subdomain),
-                    u64::from(to.local),
-                    shared.len() as u64,
-                ]);
-                for &p in &shared {
-                    let value = own.weight / total * local.psi.get(i, p);
-                    list.extend([u64::from(global(j, p)), value.to_bits()]);
-                }
+                let list = lists.entry(to.subdomain).or_insert_with(|| {
+                    let head = [
+                        to.subdomain as u64,
+                        sub.index as u64,
+                        shared.len() as u64,
+                        0,
+                    ];
+                    let columns = shared.iter().map(|&p| u64::from(global(j, p)));
+                    head.into_iter().chain(columns).collect()
+                });
+                list[3] += 1;
+                list.push(u64::from(to.local));
+                let value = |&p: &usize| (own.weight / total * local.psi.get(i, p)).to_bits();
+                list.extend(shared.iter().map(value));
             }
         }
+        lists
+    });
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    for (to, list) in packed.into_iter().flatten() {
+        outgoing[sharing.rank_of[to as usize] as usize].extend(list);
     }
-    let locals = &stiffness.locals;
     let places: Vec<Vec<(u32, u32)>> = locals
         .iter()
         .map(|local| {
@@ -281,70 +360,97 @@ fn average_copies(
             place
         })
         .collect();
-    let empty = |local: &Arc<LocalProblem>| vec![SparseRow::new(); local.n_gamma()];
-    let mut rows: Vec<Vec<SparseRow>> = locals.iter().map(empty).collect();
+    let mut received: Vec<Vec<Contribution>> = locals.iter().map(|_| Vec::new()).collect();
     for words in exchange_words(comm, outgoing) {
         let mut rest = &words[..];
-        while let [subdomain, dof, n, tail @ ..] = rest {
-            let (pairs, tail) = tail.split_at(2 * *n as usize);
-            let j = stiffness.jump.local_index(*subdomain as u32);
-            let at = places[j].binary_search_by_key(&(*dof as u32), |p| p.0);
-            let at = places[j][at.expect("a shared dof is an interface dof")].1;
-            let row = &mut rows[j][at as usize];
-            for pair in pairs.chunks_exact(2) {
-                *value_at(row, pair[0] as u32) += f64::from_bits(pair[1]);
-            }
+        while let [to, from, n, m, tail @ ..] = rest {
+            let j = jump.local_index(*to as u32);
+            let n = *n as usize;
+            let (columns, tail) = tail.split_at(n);
+            let (rows, tail) = tail.split_at(*m as usize * (n + 1));
+            let row = |w: &[u64]| {
+                let at = places[j].binary_search_by_key(&(w[0] as u32), |p| p.0);
+                let at = places[j][at.expect("a shared dof is an interface dof")].1;
+                (at, w[1..].iter().map(|&v| f64::from_bits(v)).collect())
+            };
+            received[j].push(Contribution {
+                from: *from,
+                columns: columns.iter().map(|&c| c as u32).collect(),
+                rows: rows.chunks_exact(n + 1).map(row).collect(),
+            });
             rest = tail;
         }
     }
-    (0..rows.len())
-        .map(|j| {
-            let local = &locals[j];
-            for p in 0..stiffness.jump.n_shared[j] {
-                *value_at(&mut rows[j][local.n_delta + p], global(j, p)) = 1.0;
-            }
-            gather(&rows[j], &candidates(stiffness, j))
-        })
-        .collect()
+    // Added up in the same order whatever the ranks.
+    received
+        .iter_mut()
+        .for_each(|list| list.sort_unstable_by_key(|c| c.from));
+    team.map(locals.len(), |j| {
+        let n_shared = jump.n_shared[j];
+        let vertices: Vec<u32> = (0..n_shared).map(|p| global(j, p)).collect();
+        gather(
+            &locals[j],
+            &received[j],
+            &vertices,
+            &candidates(jump, &locals[j], j),
+        )
+    })
 }
 
 /// The primal dofs of local subdomain `j` that it shares: vertices and averages.
-fn shared_columns(stiffness: &Stiffness, j: usize) -> Vec<usize> {
-    let jump = &stiffness.jump;
-    let first = stiffness.locals[j].n_vertices();
+fn shared_columns(jump: &Jump, local: &Local, j: usize) -> Vec<usize> {
+    let first = local.n_vertices();
     (0..jump.n_shared[j])
         .chain(first..first + jump.averages[j].len())
         .collect()
 }
 
 /// Which interface positions of local subdomain `j` may be in contact: those with an entry of B_gl.
-fn candidates(stiffness: &Stiffness, j: usize) -> Vec<bool> {
-    let columns = &stiffness.jump.columns[j];
-    let mut out = vec![false; stiffness.locals[j].n_gamma()];
+fn candidates(jump: &Jump, local: &Local, j: usize) -> Vec<bool> {
+    let columns = &jump.columns[j];
+    let mut out = vec![false; local.n_gamma()];
     for (&row, &at) in columns.row.iter().zip(&columns.at) {
-        out[at as usize] |= stiffness.jump.ghost_is_contact[row as usize];
+        out[at as usize] |= jump.ghost_is_contact[row as usize];
     }
     out
 }
 
-fn gather(rows: &[SparseRow], candidate: &[bool]) -> Averaged {
-    let live = || {
-        rows.iter()
-            .zip(candidate)
-            .zip(0..)
-            .filter(|((_, c), _)| !**c)
-    };
-    let mut columns: Vec<u32> = live()
-        .flat_map(|((row, _), _)| row.iter().map(|(column, _)| *column))
+/// Z_c on one subdomain: the sum of the contributions, one at each shared vertex, zero where bodies may touch.
+fn gather(
+    local: &Local,
+    received: &[Contribution],
+    vertices: &[u32],
+    candidate: &[bool],
+) -> Averaged {
+    let live = |row: &(u32, Vec<f64>)| !candidate[row.0 as usize];
+    let mut columns: Vec<u32> = received
+        .iter()
+        .filter(|c| c.rows.iter().any(live))
+        .flat_map(|c| c.columns.iter().copied())
         .collect();
+    let held = vertices.iter().enumerate();
+    let held = held.filter(|(p, _)| !candidate[local.n_delta + p]);
+    columns.extend(held.clone().map(|(_, g)| g));
     columns.sort_unstable();
     columns.dedup();
-    let mut z = Dense::zeros(rows.len(), columns.len());
-    for ((row, _), i) in live() {
-        for (column, value) in row {
-            let at = columns.binary_search(column);
-            z.set(i, at.expect("every column was collected"), *value);
+    let place = |c: &u32| {
+        columns
+            .binary_search(c)
+            .expect("every column was collected")
+    };
+    let mut z = Dense::zeros(local.n_gamma(), columns.len());
+    for contribution in received {
+        let rows = || contribution.rows.iter().filter(|r| live(r));
+        if rows().next().is_none() {
+            continue;
         }
+        for (k, column) in contribution.columns.iter().map(place).enumerate() {
+            let z = z.col_mut(column);
+            rows().for_each(|(i, values)| z[*i as usize] += values[k]);
+        }
+    }
+    for (p, g) in held {
+        z.set(local.n_delta + p, place(g), 1.0);
     }
     Averaged { z, columns }
 }

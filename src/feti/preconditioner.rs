@@ -12,7 +12,8 @@ use std::sync::Arc;
 
 use super::lifting::Lifting;
 use super::local::dense::Dense;
-use super::local::problem::LocalProblem;
+use super::local::problem::{LocalProblem, Operator};
+use super::local::scaled::Local;
 use super::local::single::Single;
 use super::products::Products;
 use super::settings::{PcType, Precision};
@@ -28,8 +29,8 @@ pub struct Preconditioner {
     lifting: Option<Lifting>,
     /// K_ΓΓ of each local subdomain in the order of Γ, for the lumped preconditioner.
     k_gamma: Vec<Csr>,
-    /// S of each local subdomain in single precision, where that is asked for; equal subdomains share it.
-    single: Vec<Arc<Single>>,
+    /// S of each local subdomain in single precision, where that is asked for and S is a dense matrix; equal subdomains share it.
+    single: Vec<Option<Arc<Single>>>,
     /// S for subdomains that share it.
     products: Products,
     buffers: RefCell<(Vec<Work>, Vec<f64>)>,
@@ -95,15 +96,21 @@ impl Preconditioner {
             PcType::Lumped => team.for_each(work, |j, w| {
                 k_gamma[j].mul(&w.v, &mut w.y); /*            y ← K_ΓΓ v         */
             }),
-            _ if !single.is_empty() => team.for_each(work, |j, w| {
-                single[j].mul(&w.v, &mut w.y); /*             y ← S v            */
-            }),
             _ => {
                 let products = &self.products;
-                let panels = products.multiply(team, locals, work, |l| &*l.s);
-                let products = products.results(&panels);
+                let rounded = |j: usize| single.get(j).and_then(|s| s.as_ref());
+                let many = |j: usize, v: &Dense, y: &mut Dense, n: usize| match rounded(j) {
+                    Some(s) => s.mul_columns(v, y, n),
+                    None => locals[j].kind().apply(Operator::S, v, y, n),
+                };
+                let panels = products.multiply(team, locals, work, Operator::S, many);
+                let products = products.results(&panels, Operator::S);
                 team.for_each(work, |j, w| {
-                    products.take(j, &locals[j].s, &w.v, &mut w.y); /* y ← S v */
+                    let v = &w.v;
+                    products.take(j, &locals[j], &mut w.y, |y| match rounded(j) {
+                        Some(s) => s.mul(locals[j].factor(), v, y),
+                        None => locals[j].apply_one(Operator::S, v, y),
+                    }); /*                                        y ← S v            */
                 });
             }
         }
@@ -133,7 +140,7 @@ impl Preconditioner {
         }
         let (_, ghost) = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
-        let room = |local: &Arc<LocalProblem>| Columns {
+        let room = |local: &Local| Columns {
             v: Dense::zeros(local.n_gamma(), lambdas.len()),
             y: Dense::zeros(local.n_gamma(), lambdas.len()),
         };
@@ -146,7 +153,7 @@ impl Preconditioner {
             });
         }
         stiffness.team.for_each(&mut blocks, |j, b| {
-            locals[j].s.add_mul_columns(&b.v, &mut b.y); /*       y ← S v          */
+            locals[j].apply(Operator::S, &b.v, &mut b.y); /*      y ← S v          */
         });
         if let Some(lifting) = &self.lifting {
             lifting.remove_many(stiffness, &mut blocks)?; /*      y ← y − Y A⁺ Yᵀ v */
@@ -163,13 +170,15 @@ impl Preconditioner {
 }
 
 /// S of every local subdomain in single precision.
-fn in_single(stiffness: &Stiffness) -> Vec<Arc<Single>> {
-    let mut known: HashMap<*const Dense, Arc<Single>> = HashMap::new();
-    let of = |local: &Arc<LocalProblem>| {
-        let entry = known.entry(Arc::as_ptr(&local.s));
-        entry
-            .or_insert_with(|| Arc::new(Single::new(&local.s)))
-            .clone()
+fn in_single(stiffness: &Stiffness) -> Vec<Option<Arc<Single>>> {
+    let mut known: HashMap<*const LocalProblem, Arc<Single>> = HashMap::new();
+    let of = |local: &Local| {
+        if local.is_implicit() {
+            return None;
+        }
+        let entry = known.entry(Arc::as_ptr(local.kind()));
+        let single = entry.or_insert_with(|| Arc::new(Single::new(local.s())));
+        Some(single.clone())
     };
     stiffness.locals.iter().map(of).collect()
 }

@@ -12,7 +12,7 @@ use super::entities::Average;
 use super::exchange::{exchange, exchange_words, offsets, sum_all, Record};
 use super::kernel;
 use super::local::dense::Dense;
-use super::local::problem::LocalProblem;
+use super::local::scaled::Local;
 use super::sharing::Sharing;
 use crate::sparse::Csr;
 use crate::substructures::Substructures;
@@ -92,7 +92,7 @@ impl PrimalSpace {
         problem: &Substructures,
         sharing: &Sharing,
         averages: &[Vec<Average>],
-        locals: &[impl AsRef<LocalProblem>],
+        locals: &[Local],
     ) -> PrimalSpace {
         let mut space = PrimalSpace {
             owner: owners(problem, sharing),
@@ -103,7 +103,7 @@ impl PrimalSpace {
         for (j, local) in locals.iter().enumerate() {
             let to = space.owner[problem.local[j].body] as usize;
             let places = &space.of_subdomain[j];
-            let sigma = &local.as_ref().sigma;
+            let sigma = local.sigma();
             for (a, &ga) in places.iter().enumerate() {
                 for (b, &gb) in places.iter().enumerate() {
                     entries[to].push(PrimalEntry {
@@ -125,11 +125,11 @@ impl PrimalSpace {
         comm: &SimpleCommunicator,
         problem: &Substructures,
         averages: &[Vec<Average>],
-        locals: &[impl AsRef<LocalProblem>],
+        locals: &[Local],
     ) -> Vec<Vec<u32>> {
         let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
-            let local = local.as_ref();
+            let local = local;
             // A vertex is known by its body dof, an average by its entity, another functional by a body dof; a fixing dof belongs to its
             // subdomain alone.
             let vertices = local.interface[local.n_delta..].iter();
@@ -188,7 +188,7 @@ impl PrimalSpace {
             .zip(locals)
             .map(|(sub, local)| {
                 let r = self.owner[sub.body] as usize;
-                let n = local.as_ref().n_pi();
+                let n = local.n_pi();
                 next[r] += n;
                 answers[r][next[r] - n..next[r]]
                     .iter()
@@ -214,7 +214,7 @@ impl PrimalSpace {
         &mut self,
         comm: &SimpleCommunicator,
         problem: &Substructures,
-        locals: &[impl AsRef<LocalProblem>],
+        locals: &[Local],
         asked: &[Vec<u32>],
     ) {
         // What the subdomains say: [body, k, factor (k²)], and N at the primal dofs: [number, k values].
@@ -223,7 +223,7 @@ impl PrimalSpace {
         let mut values: Vec<Vec<u64>> = vec![Vec::new(); size];
         for (j, sub) in problem.local.iter().enumerate() {
             let to = self.owner[sub.body] as usize;
-            let local = locals[j].as_ref();
+            let local = &locals[j];
             let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
             let factor = kernel::residual_factor(&sub.k, columns);
             factors[to].extend([sub.body as u64, columns.len() as u64]);
@@ -286,12 +286,7 @@ impl PrimalSpace {
     }
 
     /// Largest diagonal entry of K on the interface among this rank's subdomains of a body.
-    fn local_stiffness(
-        &self,
-        problem: &Substructures,
-        locals: &[impl AsRef<LocalProblem>],
-        body: usize,
-    ) -> f64 {
+    fn local_stiffness(&self, problem: &Substructures, locals: &[Local], body: usize) -> f64 {
         let of = |k: &Csr, interface: &[u32]| {
             let diagonal = interface.iter().map(|&i| k.get(i as usize, i as usize));
             diagonal.fold(0.0, f64::max)
@@ -301,7 +296,7 @@ impl PrimalSpace {
             .iter()
             .zip(locals)
             .filter(|(sub, _)| sub.body == body)
-            .map(|(sub, local)| of(&sub.k, &local.as_ref().interface))
+            .map(|(sub, local)| of(&sub.k, &local.interface))
             .fold(0.0, f64::max)
     }
 
@@ -385,7 +380,7 @@ impl PrimalSpace {
     }
 
     /// R of local subdomain `j` on its interface, n_Γ × defect of its body: Ψ times the kernel at the primal dofs.
-    pub fn kernel_on_interface(&self, j: usize, body: usize, local: &LocalProblem) -> Dense {
+    pub fn kernel_on_interface(&self, j: usize, body: usize, local: &Local) -> Dense {
         let mut r = Dense::zeros(local.n_gamma(), self.defect[body]);
         for c in 0..r.cols {
             let z: Vec<f64> = self.of_subdomain[j]

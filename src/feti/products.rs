@@ -1,13 +1,13 @@
-//! Products with dense operators that equal subdomains share: one matrix-matrix product for all of them.
+//! Products with operators that equal subdomains share: one matrix-matrix product, or one sweep through a sparse factor, for many of them.
 //!
 //! A matrix-vector product reads an n × n operator to do 2 n² operations and waits for the cache; with thirty vectors side by side the same reading does thirty times
 //! the work.
 
 use std::cell::{Ref, RefCell};
-use std::sync::Arc;
 
-use super::local::dense::{multiply, Dense};
-use super::local::problem::LocalProblem;
+use super::local::dense::Dense;
+use super::local::problem::Operator;
+use super::local::scaled::Local;
 use super::stiffness::Work;
 use super::team::Team;
 
@@ -36,11 +36,9 @@ pub struct Panel {
 
 impl Products {
     /// `batches(n)` are the local subdomains in groups of at most n that share their operators.
-    pub fn new(
-        locals: &[Arc<LocalProblem>],
-        batches: impl Fn(usize) -> Vec<Vec<usize>>,
-    ) -> Products {
-        let together = |b: &Vec<usize>| b.len() > 1 && locals[b[0]].n_delta >= WORTH_PACKING;
+    pub fn new(locals: &[Local], batches: impl Fn(usize) -> Vec<Vec<usize>>) -> Products {
+        let worth = |l: &Local| l.is_implicit() || l.n_delta >= WORTH_PACKING;
+        let together = |b: &Vec<usize>| b.len() > 1 && worth(&locals[b[0]]);
         let batches: Vec<Vec<usize>> = batches(WIDTH).into_iter().filter(together).collect();
         let mut place = vec![None; locals.len()];
         for (b, members) in batches.iter().enumerate() {
@@ -56,41 +54,42 @@ impl Products {
         }
     }
 
-    /// Computes A v for all that go together, `operator` being A and v the leading entries of the subdomain's `v`; [`results`](Self::results) has them.
+    /// Computes A v for all that go together, v being the leading entries of the subdomain's `v`; [`results`](Self::results) has them. `apply` makes
+    /// y ← A v of the first columns, as many as it is told, for what local subdomain j shares with others.
     pub fn multiply(
         &self,
         team: &Team,
-        locals: &[Arc<LocalProblem>],
+        locals: &[Local],
         work: &[Work],
-        operator: impl Fn(&LocalProblem) -> &Dense + Sync + Send,
+        which: Operator,
+        apply: impl Fn(usize, &Dense, &mut Dense, usize) + Sync + Send,
     ) -> Ref<'_, Vec<Panel>> {
         let batches = &self.batches;
         team.for_each(&mut self.panels.borrow_mut(), |b, panel| {
-            let (a, members) = (operator(&locals[batches[b][0]]), &batches[b]);
-            panel.shape(a.rows, members.len());
+            let members = &batches[b];
+            let kind = locals[members[0]].kind();
+            let order = kind.order(which);
+            panel.shape(order, members.len());
             let mut n = 0;
             for (c, &j) in members.iter().enumerate() {
-                let v = &work[j].v[..a.rows];
+                let v = &work[j].v[..order];
                 panel.live[c] = v.iter().any(|v| *v != 0.0);
                 if panel.live[c] {
                     panel.v.col_mut(n).copy_from_slice(v);
                     n += 1;
                 }
             }
-            let (v, y) = (panel.v.view(), panel.y.view_mut());
-            let (v, y) = (v.subcols(0, n), y.subcols_mut(0, n));
-            if n > 0 {
-                multiply(y, false, 1.0, a.view(), v);
-            }
+            apply(members[0], &panel.v, &mut panel.y, n);
         });
         self.panels.borrow()
     }
 
     /// What [`multiply`](Self::multiply) has computed, by local subdomain.
-    pub fn results<'a>(&'a self, panels: &'a [Panel]) -> Results<'a> {
+    pub fn results<'a>(&'a self, panels: &'a [Panel], which: Operator) -> Results<'a> {
         Results {
             place: &self.place,
             panels,
+            which,
         }
     }
 }
@@ -99,20 +98,25 @@ impl Products {
 pub struct Results<'a> {
     place: &'a [Option<(usize, usize)>],
     panels: &'a [Panel],
+    which: Operator,
 }
 
 impl Results<'_> {
-    /// y ← A v of local subdomain `j`, computed here if it goes with no other; entries beyond the operator's order are set to zero.
-    pub fn take(&self, j: usize, a: &Dense, v: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
+    /// y ← A v of local subdomain `j`, made by `alone` if it goes with no other; entries beyond the operator's order are set to zero.
+    pub fn take(&self, j: usize, local: &Local, y: &mut [f64], alone: impl Fn(&mut [f64])) {
         match self.place[j] {
-            None => a.add_mul(&v[..a.rows], &mut y[..a.rows]),
+            None => alone(y),
             Some((b, c)) if self.panels[b].live[c] => {
                 let panel = &self.panels[b];
                 let before = panel.live[..c].iter().filter(|l| **l).count();
-                y[..a.rows].copy_from_slice(panel.y.col(before));
+                let multiple = local.multiple(self.which);
+                let (head, tail) = y.split_at_mut(panel.y.rows);
+                for (y, p) in head.iter_mut().zip(panel.y.col(before)) {
+                    *y = multiple * p;
+                }
+                tail.fill(0.0);
             }
-            Some(_) => {}
+            Some(_) => y.fill(0.0),
         }
     }
 }

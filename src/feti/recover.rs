@@ -11,6 +11,7 @@ use super::dual::Dual;
 use super::inner::{iterate, target, to_the_end, Loads, Residual, ROUNDING};
 use super::kkt::{certify, Kkt};
 use super::local::lanes::LANES;
+use super::local::scaled::Local;
 use super::solver::FetiFeti;
 use super::spectrum::Spectrum;
 use crate::contact::Step;
@@ -252,9 +253,9 @@ pub(super) fn back(
     });
     let work = &*work;
     let batches = stiffness.batches(LANES);
-    Ok(stiffness.by_batch(&batches, |local, members| {
+    Ok(stiffness.by_batch(&batches, |locals, members| {
         let part = |&j: &usize| (&loads.interiors[j][..], &work[j].y[..]);
         let parts: Vec<_> = members.iter().map(part).collect();
-        local.recover_many(&parts)
+        Local::recover_many(locals, &parts)
     }))
 }

@@ -9,7 +9,7 @@
 //! ```
 
 use super::local::dense::Dense;
-use super::local::problem::LocalProblem;
+use super::local::scaled::Local;
 use super::primal::PrimalSpace;
 use crate::substructures::{Subdomain, Substructures};
 
@@ -29,28 +29,22 @@ pub struct Refinement {
 
 impl Refinement {
     /// The rigid motions at the primal dofs.
-    pub fn new(problem: &Substructures, locals: &[impl AsRef<LocalProblem>]) -> Refinement {
+    pub fn new(problem: &Substructures, locals: &[Local]) -> Refinement {
         let pairs = problem.local.iter().zip(locals);
         Refinement {
-            motions: pairs.map(|(sub, l)| motions(sub, l.as_ref())).collect(),
+            motions: pairs.map(|(sub, l)| motions(sub, l)).collect(),
         }
     }
 
     /// r ← r − Σ_j R_jᵀ Π_j Σ_j Π_j R_j c, all at this rank's ghosts.
-    pub fn subtract(
-        &self,
-        space: &PrimalSpace,
-        locals: &[impl AsRef<LocalProblem>],
-        c: &[f64],
-        r: &mut [f64],
-    ) {
+    pub fn subtract(&self, space: &PrimalSpace, locals: &[Local], c: &[f64], r: &mut [f64]) {
         let mut force = Vec::new();
         for ((places, local), n) in space.of_subdomain.iter().zip(locals).zip(&self.motions) {
             let mut x: Vec<f64> = places.iter().map(|&g| c[g as usize]).collect();
             remove(n, &mut x); /*                               x ← Π R c       */
             force.clear();
             force.resize(x.len(), 0.0);
-            local.as_ref().sigma.add_mul(&x, &mut force); /*    f ← Σ x         */
+            local.sigma().add_mul(&x, &mut force); /*    f ← Σ x         */
             remove(n, &mut force); /*                           f ← Π f         */
             for (&g, f) in places.iter().zip(&force) {
                 r[g as usize] -= f;
@@ -71,7 +65,7 @@ fn remove(n: &Dense, x: &mut [f64]) {
     }
 }
 
-fn motions(sub: &Subdomain, local: &LocalProblem) -> Dense {
+fn motions(sub: &Subdomain, local: &Local) -> Dense {
     let n_pi = local.n_pi();
     let mut out = Dense::zeros(n_pi, 0);
     for column in sub.near_kernel.iter().flatten() {
@@ -85,7 +79,7 @@ fn motions(sub: &Subdomain, local: &LocalProblem) -> Dense {
             continue;
         }
         x.iter_mut().for_each(|v| *v /= after.sqrt());
-        if is_free(&local.sigma, &x) {
+        if is_free(&local.sigma(), &x) {
             out.data.extend(&x);
             out.cols += 1;
         }

@@ -39,6 +39,17 @@ pub enum Precision {
     Mixed,
 }
 
+/// How S and T are held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operators {
+    /// As it costs less time, in the memory that there is.
+    Auto,
+    /// Dense matrices.
+    Explicit,
+    /// Sparse solves, wherever the vertices alone hold a subdomain.
+    Implicit,
+}
+
 /// How far the spectrum is cut down where coefficients jump inside bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Adaptive {
@@ -165,6 +176,7 @@ macro_rules! names {
 names!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
 names!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness", Deluxe = "deluxe" });
 names!(Precision { Double = "double", Mixed = "mixed" });
+names!(Operators { Auto = "auto", Explicit = "explicit", Implicit = "implicit" });
 names!(ProjectorKind {
     Identity = "identity",
     Diagonal = "diagonal",
@@ -184,6 +196,10 @@ pub struct Settings {
     pub gamma: f64,
     /// `fetifeti_precision`.
     pub precision: Precision,
+    /// `fetifeti_operators`.
+    pub operators: Operators,
+    /// `fetifeti_memory`: megabytes that dense operators may take on this rank; `None`: half of what the machine has, divided by the ranks.
+    pub memory: Option<usize>,
     /// `fetifeti_primal`.
     pub primal: Primal,
     /// `fetifeti_projector`.
@@ -192,6 +208,8 @@ pub struct Settings {
     pub adaptive: Adaptive,
     /// `fetifeti_adaptive_max`: vectors per body at most.
     pub adaptive_max: usize,
+    /// `fetifeti_recycle`: directions that are kept for the next load.
+    pub recycle: usize,
     /// `fetifeti_threads`: threads of this rank; `None`: all cores where one rank runs, else one.
     pub threads: Option<usize>,
     /// `fetifeti_check`: print the identities that the theory promises.
@@ -214,9 +232,12 @@ impl Default for Settings {
             gamma: 1.0,
             primal: Primal::default(),
             precision: Precision::Double,
+            operators: Operators::Auto,
+            memory: None,
             projector: ProjectorKind::Auto,
             adaptive: Adaptive::Auto,
             adaptive_max: 100,
+            recycle: 0,
             threads: None,
             check: false,
             spectrum: false,
@@ -254,6 +275,14 @@ impl Settings {
         let help = "digits of the preconditioner";
         let i = o.choice("precision", Precision::NAMES, self.precision as usize, help)?;
         self.precision = Precision::from_index(i);
+        let help = "S and T as dense matrices or as sparse solves";
+        let i = o.choice("operators", Operators::NAMES, self.operators as usize, help)?;
+        self.operators = Operators::from_index(i);
+        let help = "megabytes for dense operators on this rank; 0: half of what the machine has, divided by the ranks";
+        self.memory = match o.usize("memory", self.memory.unwrap_or(0), help)? {
+            0 => None,
+            n => Some(n),
+        };
         let help = "weight Q of the projector";
         let i = o.choice(
             "projector",
@@ -281,6 +310,9 @@ impl Settings {
         })?;
         let help = "deflation vectors per body at most";
         self.adaptive_max = o.usize("adaptive_max", self.adaptive_max, help)?;
+        let help =
+            "search directions kept for the next load with the same matrices and active rows";
+        self.recycle = o.usize("recycle", self.recycle, help)?;
         let help = "threads per rank; 0: all cores where one rank runs, else 1";
         self.threads = match o.usize("threads", self.threads.unwrap_or(0), help)? {
             0 => None,

@@ -7,16 +7,16 @@ use super::exchange::{exchange_words, max_all, sum_all};
 use super::jump::Jump;
 use super::kernel;
 use super::local::dense::Dense;
-use super::local::multifrontal::Symbolic;
-use super::settings::Primal;
+use super::local::problem::Form;
+use super::settings::{Operators, PcType, Primal};
 use super::sharing::Sharing;
 use super::team::Team;
-use super::{entities, equal};
+use super::{choice, entities, equal, forms};
 use crate::substructures::Substructures;
 use crate::Result;
 
 /// Sizes over all ranks.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Sizes {
     /// Rows of B_loc.
     pub multipliers_local: usize,
@@ -36,6 +36,10 @@ pub struct Sizes {
     pub defect: Vec<usize>,
     /// Different subdomains, each counted once per rank.
     pub kinds: usize,
+    /// How many of them have S and T as sparse solves.
+    pub implicit_kinds: usize,
+    /// M⁻¹ unless it is chosen.
+    pub preconditioner: PcType,
     /// Bytes of the sparse factors.
     pub factor_bytes: f64,
     /// Bytes of the dense operators S, T, Ψ.
@@ -60,25 +64,34 @@ impl Sizes {
         let sharing = Sharing::new(comm, problem, &weights, constraints)?;
         let jump = Jump::new(comm, problem, &sharing);
         let first = equal::representatives(problem, &jump, team);
-        let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
-        let entries = team.map(kinds.len(), |k| {
-            let j = kinds[k];
-            let sub = &problem.local[j];
-            let interface = [&jump.delta[j][..], &jump.primal[j]].concat();
-            let symbolic = Symbolic::new(&sub.k, &interface, sub.coordinates.as_deref());
-            symbolic.factor_entries()
-        });
+        let kinds = forms::kinds(problem, &jump, &first);
+        let preconditioner = choice::preconditioner(comm, problem, &sharing, &jump);
+        let contact = jump.inequality.iter().any(|i| *i);
+        let forms = forms::choose(
+            &kinds,
+            team,
+            Operators::Auto,
+            forms::APPLICATIONS[usize::from(contact)],
+            forms::usual_memory(comm.size() as usize),
+            preconditioner == PcType::CoarseCorrected,
+        );
+        let entries = team.map(kinds.len(), |k| kinds[k].factor_entries(forms[k]));
 
         let mut primal = vec![0.0; problem.n_bodies];
-        let mut sums = [0.0; 5];
+        let mut sums = [0.0; 6];
         sums[4] = kinds.len() as f64;
-        for (&j, &entries) in kinds.iter().zip(&entries) {
+        for ((kind, form), &entries) in kinds.iter().zip(&forms).zip(&entries) {
+            let j = kind.j;
             let n_delta = jump.delta[j].len() as f64;
             let n_gamma = n_delta + jump.primal[j].len() as f64;
             let n_pi = (jump.primal[j].len() + jump.averages[j].len()) as f64;
             sums[0] += 8.0 * entries as f64;
-            // S, T, Ψ and Σ.
-            sums[1] += 8.0 * (n_gamma.powi(2) + n_delta * (n_delta + n_pi) + n_pi.powi(2));
+            // Ψ and Σ; S and T.
+            sums[1] += 8.0 * (n_delta * n_pi + n_pi.powi(2));
+            match form {
+                Form::Explicit => sums[1] += 8.0 * (n_gamma.powi(2) + n_delta.powi(2)),
+                Form::Implicit => sums[5] += 1.0,
+            }
         }
         let mut largest = [0.0f64];
         for (j, sub) in problem.local.iter().enumerate() {
@@ -110,6 +123,8 @@ impl Sizes {
             largest_interface: largest[0] as usize,
             defect: defects(comm, problem),
             kinds: sums[4] as usize,
+            implicit_kinds: sums[5] as usize,
+            preconditioner,
             factor_bytes: sums[0],
             dense_bytes: sums[1],
         })

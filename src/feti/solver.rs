@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::adaptive;
+use super::choice;
 use super::coarse::PrimalProblem;
 use super::correction;
 use super::deflation;
@@ -13,19 +14,22 @@ use super::deluxe;
 use super::dual::{self, Dual, Shared};
 use super::entities;
 use super::equal;
+use super::forms;
 use super::halo::Halo;
 use super::jump::Jump;
 use super::lifting::Lifting;
 use super::local::problem::LocalProblem;
+use super::local::scaled::Local;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::primal::PrimalSpace;
 use super::recover::{self, Judge, Solution};
 use super::refine::{self, Refinement};
-use super::settings::{PcType, Scaling, Settings};
+use super::settings::{Adaptive, PcType, Scaling, Settings};
 use super::sharing::Sharing;
 use super::stiffness::Stiffness;
 use super::team::Team;
+use super::weights::weights;
 use crate::contact;
 use crate::petsc::{cite, Comm, Ksp, NormType, Session, Stage, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
@@ -73,6 +77,8 @@ pub struct Facts {
     pub adaptive_seconds: f64,
     /// Different subdomains on this rank: each is factored once.
     pub kinds: usize,
+    /// How many of them have S and T as sparse solves.
+    pub implicit_kinds: usize,
     /// Bytes of the subdomains' sparse factors on this rank.
     pub factor_bytes: usize,
     /// Bytes of the subdomains' dense operators on this rank.
@@ -112,7 +118,10 @@ impl FetiFeti {
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
-        let mut locals = session.agree(factor(&problem, &jump, &team))?;
+        let kind = settings
+            .pc_type
+            .unwrap_or_else(|| choice::preconditioner(comm, &problem, &sharing, &jump));
+        let mut locals = session.agree(factor(session, &problem, &jump, &team, &settings, kind))?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
         }
@@ -130,20 +139,17 @@ impl FetiFeti {
             locals = session.agree(renewed)?;
         }
         let adapting = adapting.elapsed().as_secs_f64();
-        let space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
-        let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
+        let mut space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
+        let primal = PrimalProblem::new(session, &mut space, &team, &format!("{prefix}coarse_"))?;
         let layout = PetscVec::mpi(session, jump.n_owned)?;
         let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
-        team.set_load(locals.iter().map(|l| l.t.data.len()).sum());
+        team.set_load(locals.iter().map(|l| l.n_delta.pow(2)).sum());
         let mut stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
         let varies = deflation::varies(comm, &problem);
         if varies > refine::PLAIN {
             stiffness.refine(Refinement::new(&problem, &stiffness.locals));
         }
 
-        let kind = settings
-            .pc_type
-            .unwrap_or_else(|| default_pc(&problem, &stiffness));
         let lifting = match kind {
             PcType::CoarseCorrected => Lifting::new(session, &problem, &sharing, &stiffness)?,
             _ => None,
@@ -164,6 +170,7 @@ impl FetiFeti {
             0 => WATCHED_FROM,
             _ => WATCHED_FROM_IN_STEPS,
         };
+        dual.recycle(settings.recycle);
         let dual = Rc::new(RefCell::new(dual));
         let ksp = krylov(session, &dual, &settings)?;
         dual.borrow()
@@ -317,19 +324,6 @@ impl FetiFeti {
     }
 }
 
-/// The diagonal of D for every local subdomain.
-fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
-    let of = |sub: &crate::substructures::Subdomain| -> Vec<f64> {
-        match settings.scaling {
-            Scaling::Multiplicity => vec![1.0; sub.k.n()],
-            Scaling::Rho if settings.gamma == 1.0 => sub.rho.clone(),
-            Scaling::Rho => sub.rho.iter().map(|r| r.powf(settings.gamma)).collect(),
-            Scaling::Stiffness | Scaling::Deluxe => sub.k.diagonal(),
-        }
-    };
-    problem.local.iter().map(of).collect()
-}
-
 fn threads(session: &Session, settings: &Settings) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     settings
@@ -338,21 +332,43 @@ fn threads(session: &Session, settings: &Settings) -> usize {
 }
 
 /// Factors one of each kind of subdomain.
-fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<LocalProblem>>> {
+fn factor(
+    session: &Session,
+    problem: &Substructures,
+    jump: &Jump,
+    team: &Team,
+    settings: &Settings,
+    kind: PcType,
+) -> Result<Vec<Local>> {
+    // What multiplies with S or looks into it before the iteration begins wants a matrix.
+    let wants_s = kind == PcType::CoarseCorrected
+        || settings.scaling == Scaling::Deluxe
+        || matches!(settings.adaptive, Adaptive::Below(_));
     let first = equal::representatives(problem, jump, team);
-    let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
+    let kinds = forms::kinds(problem, jump, &first);
+    let forms = forms::choose(
+        &kinds,
+        team,
+        settings.operators,
+        forms::APPLICATIONS[usize::from(jump.inequality.iter().any(|i| *i))],
+        settings
+            .memory
+            .map_or(forms::usual_memory(session.size()), |mb| 1e6 * mb as f64),
+        wants_s,
+    );
     let factored = team.map(kinds.len(), |k| {
-        let sub = &problem.local[kinds[k]];
-        let (delta, primal) = (&jump.delta[kinds[k]], &jump.primal[kinds[k]]);
-        let averages = jump.averages[kinds[k]].iter();
+        let (kind, sub) = (&kinds[k], kinds[k].sub);
+        let averages = jump.averages[kind.j].iter();
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
-        LocalProblem::new(&sub.k, delta, primal, &averages, sub.coordinates.as_deref())
+        let places = sub.coordinates.as_deref();
+        LocalProblem::new(&sub.k, kind.delta, kind.primal, &averages, places, forms[k])
             .map(Arc::new)
             .map_err(|e| unfit_matrix(problem, sub, e.dof))
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
-    let place = |j: &usize| kinds.binary_search(j).expect("a representative is a kind");
-    Ok(first.iter().map(|j| factored[place(j)].clone()).collect())
+    let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
+    let of = |&(j, factor): &(usize, f64)| Local::new(factored[place(j)].clone(), factor);
+    Ok(first.iter().map(of).collect())
 }
 
 fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
@@ -360,17 +376,6 @@ fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
         "the matrix of subdomain {} in body \"{}\" is not positive semidefinite (at local dof {dof}), expected a stiffness matrix",
         sub.index, problem.body_names[sub.body]
     ))
-}
-
-/// M_C where there is something to lift: a body cut into subdomains that other bodies pull at; else M_D.
-fn default_pc(problem: &Substructures, stiffness: &Stiffness) -> PcType {
-    let jump = &stiffness.jump;
-    let cut = problem.n_subdomains > problem.n_bodies;
-    if cut && problem.n_bodies > 1 && jump.n_global > jump.n_local {
-        PcType::CoarseCorrected
-    } else {
-        PcType::Dirichlet
-    }
 }
 
 fn facts(
@@ -384,7 +389,7 @@ fn facts(
     let inequalities = jump.inequality.iter().filter(|i| **i).count();
     let mut counts = [active as f64, inequalities as f64];
     super::exchange::sum_all(comm, &mut counts);
-    let mut kinds: Vec<&Arc<LocalProblem>> = stiffness.locals.iter().collect();
+    let mut kinds: Vec<&Arc<LocalProblem>> = stiffness.locals.iter().map(Local::kind).collect();
     kinds.sort_by_key(|l| Arc::as_ptr(l));
     kinds.dedup_by(|a, b| Arc::ptr_eq(a, b));
     let bytes = kinds.iter().map(|l| l.bytes());
@@ -400,6 +405,7 @@ fn facts(
         factor_bytes,
         dense_bytes,
         kinds: kinds.len(),
+        implicit_kinds: kinds.iter().filter(|k| k.is_implicit()).count(),
         adaptive_constraints: Vec::new(),
         adaptive_seconds: 0.0,
         setup_seconds: 0.0,

@@ -12,7 +12,8 @@ use super::coarse::PrimalProblem;
 use super::halo::Halo;
 use super::jump::Jump;
 use super::local::dense::Dense;
-use super::local::problem::LocalProblem;
+use super::local::problem::{LocalProblem, Operator};
+use super::local::scaled::Local;
 use super::primal::PrimalSpace;
 use super::products::Products;
 use super::refine::{self, Refinement};
@@ -45,7 +46,7 @@ pub struct Stiffness {
     /// B and B_D.
     pub jump: Jump,
     /// The factored subdomains of this rank.
-    pub locals: Vec<Arc<LocalProblem>>,
+    pub locals: Vec<Local>,
     /// Numbering and kernels of the bodies.
     pub space: PrimalSpace,
     /// The bodies' primal problem S_Π behind a KSP.
@@ -71,7 +72,7 @@ impl Stiffness {
     /// Puts the parts together.
     pub fn new(
         jump: Jump,
-        locals: Vec<Arc<LocalProblem>>,
+        locals: Vec<Local>,
         space: PrimalSpace,
         primal: PrimalProblem,
         dual_halo: Halo,
@@ -103,14 +104,14 @@ impl Stiffness {
     /// `c` (at this rank's ghosts): in, contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
     fn primal_solve(&self, c: &mut [f64]) -> Result<()> {
         let Some(refinement) = &self.refinement else {
-            return self.primal.solve(c);
+            return self.primal.solve(&self.team, c);
         };
         let b = c.to_vec();
-        self.primal.solve(c)?;
+        self.primal.solve(&self.team, c)?;
         for _ in 0..refine::STEPS {
             let mut r = b.clone();
             refinement.subtract(&self.space, &self.locals, c, &mut r);
-            self.primal.solve(&mut r)?;
+            self.primal.solve(&self.team, &mut r)?;
             c.iter_mut().zip(&r).for_each(|(c, r)| *c += r);
         }
         Ok(())
@@ -144,11 +145,15 @@ impl Stiffness {
         let (locals, space) = (&self.locals, &self.space);
         let coarse = self.coarse_values(work)?;
         let (team, products) = (&self.team, &self.products);
-        let panels = products.multiply(team, locals, work, |l| &l.t);
-        let products = products.results(&panels);
+        let panels = products.multiply(team, locals, work, Operator::T, |j, v, y, n| {
+            locals[j].kind().apply(Operator::T, v, y, n)
+        });
+        let products = products.results(&panels, Operator::T);
         self.team.for_each(work, |j, w| {
             Self::local_values(space, j, &coarse, &mut w.p);
-            products.take(j, &locals[j].t, &w.v, &mut w.y); /* y ← T v        */
+            products.take(j, &locals[j], &mut w.y, |y| {
+                locals[j].apply_one(Operator::T, &w.v, y)
+            }); /* y ← T v        */
             locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
         });
         Ok(())
@@ -206,7 +211,7 @@ impl Stiffness {
     ) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&self.jump.columns, &self.locals);
-        let room = |local: &Arc<LocalProblem>| {
+        let room = |local: &Local| {
             let zeros = || Dense::zeros(local.n_delta, lambdas.len());
             (zeros(), zeros())
         };
@@ -226,7 +231,7 @@ impl Stiffness {
             }
         }
         self.team.for_each(&mut blocks, |j, (v, y)| {
-            locals[j].t.add_mul_columns(v, y); /*             y ← T v        */
+            locals[j].apply(Operator::T, v, y); /*            y ← T v        */
         });
         for (c, out) in outs.iter().enumerate() {
             let (blocks, sum, space) = (&blocks, &coarse[c], &self.space);
@@ -310,10 +315,13 @@ impl Stiffness {
     pub fn by_batch<T: Send>(
         &self,
         batches: &[Vec<usize>],
-        work: impl Fn(&LocalProblem, &[usize]) -> Vec<T> + Sync + Send,
+        work: impl Fn(&[&Local], &[usize]) -> Vec<T> + Sync + Send,
     ) -> Vec<T> {
         let locals = &self.locals;
-        let of = |b: usize| work(&locals[batches[b][0]], &batches[b]);
+        let of = |b: usize| {
+            let members: Vec<&Local> = batches[b].iter().map(|&j| &locals[j]).collect();
+            work(&members, &batches[b])
+        };
         let done = self.team.map(batches.len(), of).into_iter().flatten();
         let mut placed: Vec<(usize, T)> = batches.iter().flatten().copied().zip(done).collect();
         placed.sort_unstable_by_key(|(j, _)| *j);
@@ -326,10 +334,10 @@ impl Stiffness {
     }
 }
 
-fn batches(locals: &[Arc<LocalProblem>], most: usize) -> Vec<Vec<usize>> {
+fn batches(locals: &[Local], most: usize) -> Vec<Vec<usize>> {
     let mut kinds: BTreeMap<*const LocalProblem, Vec<usize>> = BTreeMap::new();
     for (j, local) in locals.iter().enumerate() {
-        kinds.entry(Arc::as_ptr(local)).or_default().push(j);
+        kinds.entry(Arc::as_ptr(local.kind())).or_default().push(j);
     }
     let mut kinds: Vec<Vec<usize>> = kinds.into_values().collect();
     // Addresses are not the same from run to run.
@@ -340,7 +348,7 @@ fn batches(locals: &[Arc<LocalProblem>], most: usize) -> Vec<Vec<usize>> {
 
 impl Work {
     /// Zeros of the sizes of a subdomain.
-    pub fn for_subdomain(local: &LocalProblem) -> Work {
+    pub fn for_subdomain(local: &Local) -> Work {
         Work {
             v: vec![0.0; local.n_gamma()],
             y: vec![0.0; local.n_gamma()],

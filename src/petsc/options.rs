@@ -229,6 +229,14 @@ impl Options {
         Ok(left)
     }
 
+    /// Whether the user has set any option with this prefix.
+    pub fn any(&self) -> Result<bool> {
+        let start = c_string(&format!("-{}", self.prefix));
+        let mut found = Flag::of(false);
+        petsc!(ff_options_any(start.as_ptr(), &mut found))?;
+        Ok(found.get())
+    }
+
     fn parse<T: FromStr>(&self, name: &str, expected: &str) -> Result<Option<T>> {
         let Some(text) = self.get_string(name)? else {
             return Ok(None);

@@ -108,6 +108,13 @@ pub fn solve(r: &SolveReport) -> String {
             s.total, s.assemble, s.setup, s.solve, s.recover
         ),
     ));
+    if let Some(o) = r.operators.filter(|o| o.sparse > 0) {
+        let text = format!(
+            "{} of {} kinds of subdomains as sparse solves ({:.0} MB), the others as dense matrices ({:.0} MB)",
+            o.sparse, o.kinds, o.factor_mb, o.dense_mb
+        );
+        lines.push(("operators", text));
+    }
     lines.push(("memory", format!("{:.0} MB", r.memory_mb)));
     let width = lines
         .iter()

@@ -1,4 +1,5 @@
 #include "shim.h"
+#include <string.h>
 #include <sys/resource.h>
 
 MPI_Comm ff_comm_world(void)
@@ -271,6 +272,19 @@ int ff_viewer_is_ascii(PetscViewer viewer, int *ascii)
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &flag));
   *ascii = flag ? 1 : 0;
   return 0;
+}
+
+int ff_options_any(const char *start, PetscBool *found)
+{
+  char  *text   = NULL;
+  size_t length = strlen(start);
+
+  *found = PETSC_FALSE;
+  PetscCall(PetscOptionsGetAll(NULL, &text));
+  for (const char *at = text; at && *at; ++at) {
+    if ((at == text || at[-1] == ' ') && !strncmp(at, start, length)) *found = PETSC_TRUE;
+  }
+  return (int)PetscFree(text);
 }
 
 int ff_free(void *memory)

@@ -108,14 +108,15 @@ fn contact(quick: bool) -> String {
     )
 }
 
-/// A cube of `n`³ elements on the ground: bodies and subdomains of equal size, 2 × 2 × 2 of 2 × 2 × 2; small: 2 × 1 × 1 of 1 × 2 × 2.
+/// A cube of `n`³ elements on the ground: two bodies, one on the other, in subdomains of 4³ or 5³ elements; small: of 3³ or 5³.
 fn cube(n: usize) -> String {
-    let (bodies, subdomains) = if n >= 24 {
-        ("[2, 2, 2]", "[2, 2, 2]")
-    } else {
-        ("[2, 1, 1]", "[1, 2, 2]")
+    let across = match n {
+        ..24 => 4,
+        24 => 6,
+        _ => 8,
     };
-    let elements = if n >= 24 { n / 4 } else { n / 2 };
+    let (bodies, elements) = ("[1, 2, 1]", n / across);
+    let subdomains = format!("[{across}, {}, {across}]", across / 2);
     format!(
         "title = \"Elastic cube, {n} x {n} x {n} elements\"\ndimension = 3\nphysics = \"elasticity\"\n\n[grid]\nbodies = {bodies}\n\
          subdomains = {subdomains}\nelements_per_subdomain = {elements}\nyoung = 1\npoisson = 0.3\n\

@@ -11,18 +11,19 @@ const WEAKLY_HELD: f64 = 1e-6;
 impl LocalProblem {
     /// T, Ψ and Σ from S: in the basis in which averages are coordinates, in the order [Δ, vertices, functionals, fixing dofs], and
     /// back to the nodal dofs.
-    pub(super) fn condense_dual(&mut self, stiff: &[f64]) -> Result<(), SingularInterior> {
+    pub(super) fn condense_dual(&mut self) -> Result<(), SingularInterior> {
         let (n_delta, n_gamma) = (self.n_delta, self.n_gamma());
+        let schur = self.s().clone();
         let pivots = self.basis.pivots();
         let mut order = moved_to_the_end(n_gamma, n_delta, &pivots);
         let mut n = n_delta - pivots.len();
         let changed = (!pivots.is_empty()).then(|| {
-            let mut s = Dense::clone(&self.s);
+            let mut s = Dense::clone(&schur);
             self.basis.congruence_to_coordinates(&mut s);
             permuted(&s, &order)
         });
-        let mut s = changed.as_ref().unwrap_or(&self.s);
-        let stiff: Vec<f64> = order.iter().map(|&i| stiff[i]).collect();
+        let mut s = changed.as_ref().unwrap_or(&schur);
+        let stiff: Vec<f64> = order.iter().map(|&i| self.stiff()[i]).collect();
         let mut scratch = Scratch::default();
         let held;
         let mut l = match try_cholesky(s, &stiff, n, &mut scratch) {
@@ -63,17 +64,16 @@ impl LocalProblem {
             psi.view(),
         );
         symmetrise(&mut sigma);
-        self.sigma = sigma;
         if n == n_delta {
-            (self.t, self.psi) = (t, psi);
+            self.set_condensed(t, psi, sigma);
         } else {
-            self.back_to_nodes(&t, &psi, &order);
+            self.back_to_nodes(&t, &psi, sigma, &order);
         }
         Ok(())
     }
 
     /// T and Ψ on the nodal dofs of Δ, primal values in units of the functionals.
-    fn back_to_nodes(&mut self, t: &Dense, psi: &Dense, order: &[usize]) {
+    fn back_to_nodes(&mut self, t: &Dense, psi: &Dense, mut sigma: Dense, order: &[usize]) {
         let (n_delta, n) = (self.n_delta, t.rows);
         let mut nodal = Dense::zeros(n_delta, n_delta);
         for (j, &oj) in order[..n].iter().enumerate() {
@@ -82,7 +82,7 @@ impl LocalProblem {
             }
         }
         self.basis.congruence_to_nodes(&mut nodal);
-        self.t = nodal;
+        let t = nodal;
         let mut nodal = Dense::zeros(n_delta, psi.cols);
         for p in 0..psi.cols {
             for (i, &oi) in order[..n].iter().enumerate() {
@@ -96,14 +96,14 @@ impl LocalProblem {
         for k in 0..self.basis.len() {
             let (p, factor) = (first + k, self.basis.factor(k));
             nodal.col_mut(p).iter_mut().for_each(|v| *v *= factor);
-            self.sigma.col_mut(p).iter_mut().for_each(|v| *v *= factor);
-            for q in 0..self.sigma.cols {
-                let value = factor * self.sigma.get(p, q);
-                self.sigma.set(p, q, value);
+            sigma.col_mut(p).iter_mut().for_each(|v| *v *= factor);
+            for q in 0..sigma.cols {
+                let value = factor * sigma.get(p, q);
+                sigma.set(p, q, value);
             }
         }
         self.basis.columns_to_nodes(&mut nodal);
-        self.psi = nodal;
+        self.set_condensed(t, nodal, sigma);
     }
 }
 

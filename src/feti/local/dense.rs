@@ -266,6 +266,14 @@ pub fn multiply(c: MatMut<'_, f64>, add: bool, alpha: f64, a: MatRef<'_, f64>, b
     faer::linalg::matmul::matmul(c, beta, a, b, alpha, Par::Seq);
 }
 
+/// C ← A B in single precision; A is square of the first order, B and C have the second one's number of columns; all by columns.
+pub fn multiply_single(a: &[f32], b: &[f32], c: &mut [f32], (n, cols): (usize, usize)) {
+    let a = MatRef::from_column_major_slice(a, n, n);
+    let b = MatRef::from_column_major_slice(b, n, cols);
+    let c = MatMut::from_column_major_slice_mut(c, n, cols);
+    faer::linalg::matmul::matmul(c, Accum::Replace, a, b, 1.0, Par::Seq);
+}
+
 /// (L Lᵀ)⁻¹, both triangles.
 pub fn inverse_from_cholesky(l: MatRef<'_, f64>, scratch: &mut Scratch) -> Dense {
     let n = l.nrows();

@@ -4,10 +4,13 @@ pub mod basis;
 mod condense;
 pub mod dense;
 pub mod dissection;
+pub mod implicit;
 pub mod lanes;
 pub mod multifrontal;
 pub mod pencil;
 pub mod problem;
+mod rectangular;
+pub mod scaled;
 pub mod semidefinite;
 pub mod single;
 

@@ -164,6 +164,15 @@ impl Symbolic {
         self.interior.len()
     }
 
+    /// Multiplications and additions of the factorisation, S included.
+    pub fn flops(&self) -> f64 {
+        let of = |front: &Front| {
+            let (w, m) = (front.width() as f64, front.below.len() as f64);
+            w.powi(3) / 3.0 + w * w * m + w * m * m
+        };
+        self.fronts.iter().map(of).sum()
+    }
+
     /// Entries of the factor, for memory estimates.
     pub fn factor_entries(&self) -> usize {
         self.storage
@@ -296,6 +305,25 @@ impl PartialCholesky {
                 b[i as usize] = v;
             }
         }
+    }
+
+    /// Number of dofs.
+    pub fn n(&self) -> usize {
+        self.symbolic.n()
+    }
+
+    /// The smallest pivot relative to the diagonal entry of `k` that it came from; one where nothing was eliminated.
+    pub fn weakest_pivot(&self, k: &Csr) -> f64 {
+        let of = |front: &Front| {
+            let panel = self.panel(front);
+            let dofs = self.pivot_dofs(front).iter().enumerate();
+            let relative = dofs.map(|(j, &dof)| {
+                let d = k.get(dof as usize, dof as usize);
+                panel[(j, j)].powi(2) / d
+            });
+            relative.fold(1.0, f64::min)
+        };
+        self.symbolic.fronts.iter().map(of).fold(1.0, f64::min)
     }
 
     /// Bytes held by the factor.

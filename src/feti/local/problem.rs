@@ -11,12 +11,17 @@
 //!
 //! An average over dual dofs, or any other functional of them, is made a coordinate first ([`Basis`]), and so are the dofs that have to be held to make S_ΔΔ regular: the
 //! formulas hold in that basis, and only T and Ψ know of it. Everything outside sees nodal dofs.
+//!
+//! S and T are dense matrices or sparse solves, as the caller chooses ([`Form`]). What is here belongs to one matrix; subdomains with multiples of it
+//! share it as [`Local`](super::scaled::Local).
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::basis::Basis;
-use super::dense::Dense;
+use super::dense::{multiply, Dense};
+use super::implicit::Implicit;
+use super::lanes::LANES;
 use super::multifrontal::{PartialCholesky, SingularInterior, Symbolic};
 use crate::sparse::Csr;
 
@@ -32,6 +37,24 @@ pub fn factorisations() -> usize {
     FACTORISATIONS.load(Ordering::Relaxed)
 }
 
+/// How S and T are held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// As dense matrices.
+    Explicit,
+    /// As sparse solves; where the vertices alone do not hold the subdomain, dense matrices after all.
+    Implicit,
+}
+
+/// One of the operators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operator {
+    /// S, of order n_Γ.
+    S,
+    /// T, of order n_Δ.
+    T,
+}
+
 /// One subdomain, factored.
 #[derive(Debug)]
 pub struct LocalProblem {
@@ -43,15 +66,25 @@ pub struct LocalProblem {
     pub basis: Basis,
     /// Positions in Γ of the coordinates that were added here to the primal dofs to make S_ΔΔ regular.
     pub fixing: Vec<usize>,
-    /// S on Γ, n_Γ × n_Γ, both triangles.
-    pub s: Arc<Dense>,
-    /// T, n_Δ × n_Δ, both triangles.
-    pub t: Dense,
     /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
     pub psi: Dense,
     /// Σ, n_Π × n_Π.
-    pub sigma: Dense,
-    factor: Arc<PartialCholesky>,
+    pub(super) sigma: Dense,
+    /// S on Γ, n_Γ × n_Γ, both triangles; with sparse solves once it has been asked for.
+    s: OnceLock<Arc<Dense>>,
+    /// T, n_Δ × n_Δ, both triangles, as S.
+    t: OnceLock<Dense>,
+    /// The diagonal of K on Γ.
+    stiff: Vec<f64>,
+    inside: Inside,
+}
+
+/// What eliminates the interior.
+#[derive(Debug)]
+enum Inside {
+    /// The factor that S came from.
+    Partial(Arc<PartialCholesky>),
+    Implicit(Box<Implicit>),
 }
 
 impl LocalProblem {
@@ -63,75 +96,184 @@ impl LocalProblem {
         primal: &[u32],
         averages: &[&[u32]],
         coordinates: Option<&[[f64; 3]]>,
+        form: Form,
     ) -> Result<LocalProblem, SingularInterior> {
+        let mut basis = Basis::default();
+        let at = positions(delta);
+        let at = averages.iter().map(|a| at.of(a));
+        at.for_each(|at| basis.push_mean(at));
+        FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
+        if form == Form::Implicit {
+            let interface = [delta, primal].concat();
+            // An interior that nothing holds is for the dense form to deal with.
+            let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);
+            if let Ok(Some((implicit, coarse))) = made {
+                return Ok(LocalProblem {
+                    stiff: diagonal(k, &interface),
+                    interface,
+                    n_delta: delta.len(),
+                    basis,
+                    fixing: Vec::new(),
+                    psi: coarse.psi,
+                    sigma: coarse.sigma,
+                    s: OnceLock::new(),
+                    t: OnceLock::new(),
+                    inside: Inside::Implicit(Box::new(implicit)),
+                });
+            }
+        }
         let given = delta.len();
         let mut delta = delta.to_vec();
         let (interface, factor, s) = loop {
             let interface = [&delta[..], primal].concat();
             let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
             match PartialCholesky::new(k, symbolic) {
-                Ok((factor, s)) => {
-                    FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
-                    break (interface, factor, s);
-                }
+                Ok((factor, s)) => break (interface, factor, s),
                 // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
                 Err(e) if delta.len() < given + MOST_FREE => delta.push(e.dof),
                 Err(e) => return Err(e),
             }
         };
-        let n_delta = delta.len();
-        let stiff: Vec<f64> = interface
-            .iter()
-            .map(|&i| k.get(i as usize, i as usize))
-            .collect();
-        let mut basis = Basis::default();
-        let delta = positions(&interface[..given]);
-        let at = averages.iter().map(|a| delta.of(a));
-        at.for_each(|at| basis.push_mean(at));
         let mut out = LocalProblem {
+            stiff: diagonal(k, &interface),
             interface,
-            n_delta,
+            n_delta: delta.len(),
             basis,
             fixing: Vec::new(),
-            s: Arc::new(s),
-            t: Dense::default(),
             psi: Dense::default(),
             sigma: Dense::default(),
-            factor: Arc::new(factor),
+            s: OnceLock::from(Arc::new(s)),
+            t: OnceLock::new(),
+            inside: Inside::Partial(Arc::new(factor)),
         };
-        out.condense_dual(&stiff)?;
+        out.condense_dual()?;
         Ok(out)
     }
 
     /// The same subdomain with more functionals primal, Σ weights · u over dual dofs each. S and the factor are shared with what is
-    /// there; only T, Ψ and Σ are computed again.
+    /// there; only T, Ψ and Σ are computed again. Sparse solves become dense matrices.
     pub fn constrained<'a>(
         &self,
         k: &Csr,
         functionals: impl Iterator<Item = (&'a [u32], &'a [f64])>,
+        coordinates: Option<&[[f64; 3]]>,
     ) -> Result<LocalProblem, SingularInterior> {
+        let (s, factor) = match &self.inside {
+            Inside::Partial(factor) => (self.s().clone(), factor.clone()),
+            Inside::Implicit(_) => {
+                let symbolic = Symbolic::new(k, &self.interface, coordinates);
+                let (factor, s) = PartialCholesky::new(k, Arc::new(symbolic))?;
+                (Arc::new(s), Arc::new(factor))
+            }
+        };
         let mut out = LocalProblem {
             interface: self.interface.clone(),
             n_delta: self.n_delta,
             basis: self.basis.clone(),
             fixing: Vec::new(),
-            s: self.s.clone(),
-            t: Dense::default(),
             psi: Dense::default(),
             sigma: Dense::default(),
-            factor: self.factor.clone(),
+            s: OnceLock::from(s),
+            t: OnceLock::new(),
+            stiff: self.stiff.clone(),
+            inside: Inside::Partial(factor),
         };
         let delta = positions(&self.interface[..self.n_delta]);
         for (dofs, weights) in functionals {
             let new = out.basis.push(delta.of(dofs), weights);
             debug_assert!(new, "functionals are independent");
         }
-        let diagonal = self
-            .interface
-            .iter()
-            .map(|&i| k.get(i as usize, i as usize));
-        out.condense_dual(&diagonal.collect::<Vec<f64>>())?;
+        out.condense_dual()?;
         Ok(out)
+    }
+
+    /// S and T are sparse solves.
+    pub fn is_implicit(&self) -> bool {
+        matches!(self.inside, Inside::Implicit(_))
+    }
+
+    /// S as a dense matrix. From sparse solves it is made column by column, once: for checks and other rare uses.
+    pub fn s(&self) -> &Arc<Dense> {
+        self.s.get_or_init(|| Arc::new(self.assembled(Operator::S)))
+    }
+
+    /// T as a dense matrix, as [`s`](Self::s).
+    pub fn t(&self) -> &Dense {
+        self.t.get_or_init(|| self.assembled(Operator::T))
+    }
+
+    pub(super) fn set_condensed(&mut self, t: Dense, psi: Dense, sigma: Dense) {
+        (self.t, self.psi, self.sigma) = (OnceLock::from(t), psi, sigma);
+    }
+
+    /// The diagonal of K on Γ.
+    pub(super) fn stiff(&self) -> &[f64] {
+        &self.stiff
+    }
+
+    /// The order of an operator.
+    pub fn order(&self, which: Operator) -> usize {
+        match which {
+            Operator::S => self.n_gamma(),
+            Operator::T => self.n_delta,
+        }
+    }
+
+    fn assembled(&self, which: Operator) -> Dense {
+        let n = self.order(which);
+        let mut unit = Dense::zeros(n, n);
+        (0..n).for_each(|i| unit.set(i, i, 1.0));
+        let mut out = Dense::zeros(n, n);
+        self.apply(which, &unit, &mut out, n);
+        // Both triangles alike, as those who read one of them expect.
+        out.mirror_lower();
+        out
+    }
+
+    /// The first `n` columns of y ← A v, A one of the operators, v and y of its order. One matrix-matrix product with a dense matrix, sweeps with
+    /// several right-hand sides at once with sparse factors.
+    pub fn apply(&self, which: Operator, v: &Dense, y: &mut Dense, n: usize) {
+        if n == 0 {
+            return;
+        }
+        match &self.inside {
+            Inside::Partial(_) => {
+                let a = self.dense(which);
+                let y = y.view_mut().subcols_mut(0, n);
+                multiply(y, false, 1.0, a.view(), v.view().subcols(0, n));
+            }
+            Inside::Implicit(implicit) => {
+                for first in (0..n).step_by(LANES) {
+                    let last = n.min(first + LANES);
+                    let lanes: Vec<&[f64]> = (first..last).map(|c| v.col(c)).collect();
+                    let done = implicit.apply(which, &lanes);
+                    for (c, done) in (first..last).zip(&done) {
+                        y.col_mut(c).copy_from_slice(done);
+                    }
+                }
+            }
+        }
+    }
+
+    /// y ← A v, A one of the operators; only the leading entries of v count, later ones of y are set to zero.
+    pub fn apply_one(&self, which: Operator, v: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        let n = self.order(which);
+        match &self.inside {
+            Inside::Partial(_) => self.dense(which).add_mul(&v[..n], &mut y[..n]),
+            Inside::Implicit(implicit) => {
+                if v[..n].iter().any(|v| *v != 0.0) {
+                    y[..n].copy_from_slice(&implicit.apply(which, &[&v[..n]])[0]);
+                }
+            }
+        }
+    }
+
+    fn dense(&self, which: Operator) -> &Dense {
+        match which {
+            Operator::S => self.s(),
+            Operator::T => self.t(),
+        }
     }
 
     /// Number of interface dofs n_Γ.
@@ -161,9 +303,10 @@ impl LocalProblem {
     }
 
     /// A stiffness of each primal dof that does not vanish with Σ: what it takes to move its dofs alone.
-    pub fn primal_stiffness(&self) -> Vec<f64> {
+    pub(super) fn primal_stiffness(&self) -> Vec<f64> {
         let n = self.n_gamma();
-        let own = |i: usize| self.s.get(i, i);
+        // The diagonal of K bounds that of S, where that one is not at hand.
+        let own = |i: usize| self.s.get().map_or(self.stiff[i], |s| s.get(i, i));
         let along = |(k, q): (usize, Vec<f64>)| {
             let terms = q.iter().enumerate().map(|(i, q)| q * q * own(i));
             self.basis.factor(k).powi(2) * terms.sum::<f64>()
@@ -174,31 +317,31 @@ impl LocalProblem {
         vertices.chain(vectors.map(along)).chain(fixing).collect()
     }
 
+    /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
+    pub(super) fn stiffness(&self) -> f64 {
+        let n = self.n_gamma();
+        let of = |i: usize| self.s.get().map_or(self.stiff[i], |s| s.get(i, i));
+        (0..n).map(of).fold(0.0, f64::max)
+    }
+
     /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
     /// handed to [`recover`](Self::recover).
     pub fn condense(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut work = f.to_vec();
-        self.factor.forward(&mut work);
-        let g = self.interface.iter().map(|&i| work[i as usize]).collect();
-        (work, g)
+        let mut both = self.condense_many(&[f]);
+        both.pop().expect("one load")
     }
 
-    /// The solution on all dofs from its interface values `u_gamma` and the `work` of [`condense`](Self::condense).
-    pub fn recover(&self, mut work: Vec<f64>, u_gamma: &[f64]) -> Vec<f64> {
-        for (&i, &u) in self.interface.iter().zip(u_gamma) {
-            work[i as usize] = u;
-        }
-        self.factor.backward(&mut work);
-        work
-    }
-
-    /// [`condense`](Self::condense) of several loads, at most [`LANES`](super::lanes::LANES).
+    /// [`condense`](Self::condense) of several loads, at most [`LANES`].
     pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
-        if let [f] = loads {
-            return vec![self.condense(f)];
-        }
+        let factor = match &self.inside {
+            Inside::Partial(factor) => factor,
+            Inside::Implicit(implicit) => return implicit.condense(loads),
+        };
         let mut work: Vec<Vec<f64>> = loads.iter().map(|f| f.to_vec()).collect();
-        self.factor.forward_many(&mut work);
+        match &mut work[..] {
+            [one] => factor.forward(one),
+            several => factor.forward_many(several),
+        }
         let with_gamma = |w: Vec<f64>| {
             let g = self.interface.iter().map(|&i| w[i as usize]).collect();
             (w, g)
@@ -206,20 +349,25 @@ impl LocalProblem {
         work.into_iter().map(with_gamma).collect()
     }
 
-    /// [`recover`](Self::recover) of several solutions, at most [`LANES`](super::lanes::LANES): (`work`, `u_gamma`) of each.
-    pub fn recover_many(&self, parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
-        if let [(work, u_gamma)] = parts {
-            return vec![self.recover(work.to_vec(), u_gamma)];
-        }
-        let placed = |(work, u_gamma): &(&[f64], &[f64])| {
-            let mut x = work.to_vec();
+    /// Solutions on all dofs, at most [`LANES`]: `work` of [`condense`](Self::condense) and the interface values `u_gamma` of each. The matrix is so many
+    /// times as stiff as the one that is factored (`scales`).
+    pub(super) fn recover_many(&self, parts: &[(&[f64], &[f64])], scales: &[f64]) -> Vec<Vec<f64>> {
+        let placed = |((work, u_gamma), scale): (&(&[f64], &[f64]), &f64)| {
+            let mut x: Vec<f64> = match *scale {
+                1.0 => work.to_vec(),
+                scale => work.iter().map(|w| w / scale).collect(),
+            };
             for (&i, &u) in self.interface.iter().zip(*u_gamma) {
                 x[i as usize] = u;
             }
             x
         };
-        let mut x: Vec<Vec<f64>> = parts.iter().map(placed).collect();
-        self.factor.backward_many(&mut x);
+        let mut x: Vec<Vec<f64>> = parts.iter().zip(scales).map(placed).collect();
+        match (&self.inside, &mut x[..]) {
+            (Inside::Partial(factor), [one]) => factor.backward(one),
+            (Inside::Partial(factor), several) => factor.backward_many(several),
+            (Inside::Implicit(implicit), several) => implicit.recover(several),
+        }
         x
     }
 
@@ -241,10 +389,22 @@ impl LocalProblem {
 
     /// Bytes held by the factor and by the dense operators: (sparse, dense).
     pub fn bytes(&self) -> (usize, usize) {
-        let dense = [&*self.s, &self.t, &self.psi, &self.sigma];
-        let dense: usize = dense.iter().map(|d| d.data.len()).sum();
-        (self.factor.bytes(), dense * std::mem::size_of::<f64>())
+        let (sparse, more) = match &self.inside {
+            Inside::Partial(factor) => (factor.bytes(), 0),
+            Inside::Implicit(implicit) => implicit.bytes(),
+        };
+        let s = self.s.get().map_or(0, |s| s.data.len());
+        let t = self.t.get().map_or(0, |t| t.data.len());
+        let dense = s + t + self.psi.data.len() + self.sigma.data.len();
+        (sparse, more + dense * std::mem::size_of::<f64>())
     }
+}
+
+/// The diagonal of `k` at these dofs.
+fn diagonal(k: &Csr, dofs: &[u32]) -> Vec<f64> {
+    dofs.iter()
+        .map(|&i| k.get(i as usize, i as usize))
+        .collect()
 }
 
 /// Where the first dofs of Γ stand.
@@ -276,7 +436,14 @@ mod tests {
         // With one subdomain, S̃⁺ = T + Ψ Σ⁻¹ Ψᵀ is S⁻¹; interiors come back through condense and recover.
         let (k, x) = grid_laplacian(9, 9, 0.1);
         let delta: Vec<u32> = (1..8).collect();
-        let local = LocalProblem::new(&k, &delta, &[0, 8], &[], Some(&x)).expect("definite");
+        for form in [Form::Explicit, Form::Implicit] {
+            s_plus_inverts(&k, &x, &delta, form);
+        }
+    }
+
+    fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: Form) {
+        let local = LocalProblem::new(k, delta, &[0, 8], &[], Some(x), form).expect("definite");
+        assert_eq!(local.is_implicit(), form == Form::Implicit);
         assert!(local.fixing.is_empty());
         let u = random(k.n(), 5);
         let mut f = vec![0.0; k.n()];
@@ -292,9 +459,10 @@ mod tests {
         ];
         let mut u_gamma = vec![0.0; local.n_gamma()];
         let n_delta = local.n_delta;
-        local.t.add_mul(&g[..n_delta], &mut u_gamma[..n_delta]);
+        local.apply_one(Operator::T, &g, &mut u_gamma);
+        assert_eq!(local.n_delta, n_delta);
         local.add_psi(&c, &mut u_gamma);
-        let back = local.recover(work, &u_gamma);
+        let back = &local.recover_many(&[(&work, &u_gamma)], &[1.0])[0];
         let error = back
             .iter()
             .zip(&u)
@@ -318,9 +486,11 @@ mod tests {
             }
             let delta: Vec<u32> = (0..12).collect();
             assert!(
-                LocalProblem::new(&k, &delta, &[], &[], Some(&x)).is_err(),
+                LocalProblem::new(&k, &delta, &[], &[], Some(&x), Form::Explicit).is_err(),
                 "{value}"
             );
+            let sparse = LocalProblem::new(&k, &delta, &[], &[], Some(&x), Form::Implicit);
+            assert!(sparse.is_err(), "{value}");
         }
     }
 
@@ -328,9 +498,62 @@ mod tests {
     fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
         let (k, x) = grid_laplacian(8, 6, 0.0);
         let delta: Vec<u32> = (0..8).collect();
-        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x)).expect("one dof is held");
+        let form = Form::Implicit; // becomes dense: no vertex holds anything
+        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x), form).expect("one is held");
+        assert!(!local.is_implicit());
         assert_eq!((local.fixing.len(), local.n_pi()), (1, 1));
         assert!(local.sigma.get(0, 0).abs() < 1e-13);
         assert!(local.psi.data.iter().all(|v| (v - 1.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn sparse_solves_and_dense_matrices_are_the_same_operators() {
+        let (k, x) = grid_laplacian(11, 7, 0.0);
+        let node = |x: u32, y: u32| x + 11 * y;
+        let delta: Vec<u32> = (1..10).chain((1..6).map(|y| node(10, y))).collect();
+        let vertices = [node(0, 0), node(10, 0), node(10, 6)];
+        let averages: [&[u32]; 2] = [&delta[..9], &delta[9..]];
+        let make = |form| LocalProblem::new(&k, &delta, &vertices, &averages, Some(&x), form);
+        let dense = make(Form::Explicit).expect("held by vertices");
+        let sparse = make(Form::Implicit).expect("held by vertices");
+        assert!(sparse.is_implicit() && !dense.is_implicit());
+        let close = |a: &[f64], b: &[f64]| {
+            let far = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            let far = far.fold(0.0, f64::max);
+            assert!(a.len() == b.len() && far < 1e-12, "{far:.1e}");
+        };
+        close(&dense.psi.data, &sparse.psi.data);
+        close(&dense.sigma.data, &sparse.sigma.data);
+        close(&dense.s().data, &sparse.s().data);
+        close(&dense.t().data, &sparse.t().data);
+        // More columns than go side by side, and a load.
+        let v = Dense {
+            rows: dense.n_gamma(),
+            cols: 11,
+            data: random(11 * dense.n_gamma(), 3),
+        };
+        for which in [Operator::S, Operator::T] {
+            let n = dense.order(which);
+            let head = |c: usize| v.col(c)[..n].to_vec();
+            let v = Dense {
+                rows: n,
+                cols: 11,
+                data: (0..11).flat_map(head).collect(),
+            };
+            let (mut a, mut b) = (Dense::zeros(n, 11), Dense::zeros(n, 11));
+            dense.apply(which, &v, &mut a, 11);
+            sparse.apply(which, &v, &mut b, 11);
+            close(&a.data, &b.data);
+        }
+        let loads = [random(k.n(), 7), random(k.n(), 8)];
+        let loads: Vec<&[f64]> = loads.iter().map(|f| &f[..]).collect();
+        let (a, b) = (dense.condense_many(&loads), sparse.condense_many(&loads));
+        let u = random(dense.n_gamma(), 9);
+        for (a, b) in a.iter().zip(&b) {
+            close(&a.1, &b.1);
+            let a = dense.recover_many(&[(&a.0, &u)], &[3.0]);
+            let b = sparse.recover_many(&[(&b.0, &u)], &[3.0]);
+            close(&a[0], &b[0]);
+        }
     }
 }

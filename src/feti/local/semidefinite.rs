@@ -13,6 +13,8 @@ const DEPENDENT: f64 = 1e-10;
 #[derive(Debug)]
 pub struct Semidefinite {
     n: usize,
+    /// Columns that are not zero.
+    nonzero: usize,
     /// Indices of the independent columns, increasing.
     pub kept: Vec<usize>,
     /// 1/√A_ii of the kept columns.
@@ -22,6 +24,11 @@ pub struct Semidefinite {
 }
 
 impl Semidefinite {
+    /// Number of columns that are not zero.
+    pub fn nonzero(&self) -> usize {
+        self.nonzero
+    }
+
     /// Factors `a`; reads the lower triangle.
     pub fn new(a: &Dense) -> Semidefinite {
         Semidefinite::above(a, DEPENDENT)
@@ -33,15 +40,19 @@ impl Semidefinite {
         let largest = (0..n).map(|i| a.get(i, i)).fold(0.0, f64::max);
         // Columns of size zero are no columns. 1e-30 of the largest is far below any scaling by coefficients.
         let nonzero: Vec<usize> = (0..n).filter(|&i| a.get(i, i) > 1e-30 * largest).collect();
+        let known = |out: Semidefinite| Semidefinite {
+            nonzero: nonzero.len(),
+            ..out
+        };
         if let Some(out) = Self::factor(a, &nonzero, dependent) {
-            return out;
+            return known(out);
         }
         let mut kept = independent(a, &nonzero, dependent);
         kept.sort_unstable();
         // The order differs from the pivoted one, so a pivot may come out slightly smaller: only its sign matters now.
         loop {
             if let Some(out) = Self::factor(a, &kept, 0.0) {
-                return out;
+                return known(out);
             }
             kept.pop();
         }
@@ -59,6 +70,7 @@ impl Semidefinite {
         let regular = (0..kept.len()).all(|j| l.get(j, j).powi(2) > tolerance);
         regular.then(|| Semidefinite {
             n: a.rows,
+            nonzero: kept.len(),
             kept: kept.to_vec(),
             scale,
             l,

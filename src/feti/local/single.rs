@@ -3,7 +3,7 @@
 //! M⁻¹ only steers the iteration: an operator with seven digits costs it nothing that is seen above a κ of 10⁵, and half the memory
 //! traffic of the largest product. Residuals, F and everything that decides stay in double precision.
 
-use super::dense::{gemv, Dense};
+use super::dense::{gemv, multiply_single, Dense};
 
 /// A square matrix by columns.
 #[derive(Debug)]
@@ -34,8 +34,8 @@ impl Single {
         self.data.len() * std::mem::size_of::<f32>()
     }
 
-    /// y ← A x; x is scaled to a largest entry of one before it is rounded, so that no size leaves the range of single precision.
-    pub fn mul(&self, x: &[f64], y: &mut [f64]) {
+    /// y ← factor A x; x is scaled to a largest entry of one before it is rounded, so that no size leaves the range of single precision.
+    pub fn mul(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         let largest = x.iter().fold(0.0f64, |a, v| a.max(v.abs()));
         if self.n == 0 || largest == 0.0 {
@@ -45,7 +45,30 @@ impl Single {
         let mut sum = vec![0.0; self.n];
         gemv(&self.data, self.n, &scaled, &mut sum);
         for (y, s) in y.iter_mut().zip(&sum) {
-            *y = f64::from(*s) * self.scale * largest;
+            *y = f64::from(*s) * (factor * self.scale * largest);
+        }
+    }
+
+    /// The first `n` columns of y ← A x, one product for all of them.
+    pub fn mul_columns(&self, x: &Dense, y: &mut Dense, n: usize) {
+        let mut largest = vec![0.0f64; n];
+        let mut scaled = vec![0.0f32; self.n * n];
+        for (c, to) in scaled.chunks_exact_mut(self.n.max(1)).enumerate() {
+            let from = x.col(c);
+            largest[c] = from.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+            if largest[c] > 0.0 {
+                for (to, v) in to.iter_mut().zip(from) {
+                    *to = (v / largest[c]) as f32;
+                }
+            }
+        }
+        let mut sum = vec![0.0f32; self.n * n];
+        multiply_single(&self.data, &scaled, &mut sum, (self.n, n));
+        for (c, from) in sum.chunks_exact(self.n.max(1)).enumerate() {
+            let size = self.scale * largest[c];
+            for (y, s) in y.col_mut(c).iter_mut().zip(from) {
+                *y = f64::from(*s) * size;
+            }
         }
     }
 }
@@ -67,7 +90,7 @@ mod tests {
         for size in [1.0, 1e-60, 1e60] {
             let x: Vec<f64> = (0..n).map(|i| size * ((i * 7 % 5) as f64 - 2.0)).collect();
             let (mut y, mut exact) = (vec![0.0; n], vec![0.0; n]);
-            single.mul(&x, &mut y);
+            single.mul(1.0, &x, &mut y);
             a.add_mul(&x, &mut exact);
             let far = y.iter().zip(&exact).map(|(a, b)| (a - b).abs());
             assert!(far.fold(0.0, f64::max) < 2e-6 * size);

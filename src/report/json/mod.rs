@@ -104,6 +104,9 @@ pub struct SolveReport {
     /// Largest resident memory, summed over the ranks, in MB of 10⁶ bytes.
     #[serde(with = "number")]
     pub memory_mb: f64,
+    /// How the subdomains' operators are held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operators: Option<Operators>,
     /// PETSc's name for why the iteration ended, such as `CONVERGED_RTOL`.
     pub converged_reason: String,
     /// Krylov method, such as `cg`.
@@ -118,6 +121,21 @@ pub struct SolveReport {
     /// Relative tolerance of the inner iteration.
     #[serde(with = "number")]
     pub rtol: f64,
+}
+
+/// The subdomains' operators, over all ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Operators {
+    /// Different subdomains: those whose matrices are multiples of each other count once on each rank.
+    pub kinds: usize,
+    /// Kinds with S and T as sparse solves; the others have dense matrices.
+    pub sparse: usize,
+    /// MB of sparse factors.
+    #[serde(with = "number")]
+    pub factor_mb: f64,
+    /// MB of S, T, Ψ and Σ.
+    #[serde(with = "number")]
+    pub dense_mb: f64,
 }
 
 /// Rows of B.
@@ -257,6 +275,7 @@ mod tests {
                 estimate: Some(Spectrum::new(2.0, 5.0)),
             },
             adaptive: None,
+            operators: None,
             kkt: Kkt {
                 stationarity: 1e-9,
                 feasibility: f64::NAN,
