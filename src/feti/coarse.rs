@@ -3,6 +3,7 @@
 //! S_Π is block diagonal by body, and a body's rows live on one rank, so block Jacobi with a Cholesky factorisation per rank
 //! solves it exactly without a message. Any other KSP and PC may be chosen by options.
 
+use super::clock::{self, Phase};
 use super::halo::Halo;
 use super::primal::PrimalSpace;
 use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
@@ -79,7 +80,7 @@ impl PrimalProblem {
     pub fn solve(&self, values: &mut [f64]) -> Result<()> {
         let Some(p) = &self.parts else { return Ok(()) };
         p.halo.sum(values, &p.rhs)?;
-        p.ksp.solve(&p.rhs, &p.solution)?;
+        clock::timed(Phase::Primal, || p.ksp.solve(&p.rhs, &p.solution))?;
         let reason = p.ksp.converged_reason()?;
         if reason.code < 0 {
             return Err(Error::NotConverged(format!(

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::adaptive;
+use super::clock::{self, Phase};
 use super::coarse::PrimalProblem;
 use super::correction;
 use super::deflation;
@@ -112,7 +113,8 @@ impl FetiFeti {
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
-        let mut locals = session.agree(factor(&problem, &jump, &team))?;
+        let factored = clock::timed(Phase::LocalSetup, || factor(&problem, &jump, &team));
+        let mut locals = session.agree(factored)?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
         }
@@ -131,7 +133,9 @@ impl FetiFeti {
         }
         let adapting = adapting.elapsed().as_secs_f64();
         let space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
-        let primal = PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))?;
+        let primal = clock::timed(Phase::PrimalSetup, || {
+            PrimalProblem::new(session, &space, &format!("{prefix}coarse_"))
+        })?;
         let layout = PetscVec::mpi(session, jump.n_owned)?;
         let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
         team.set_load(locals.iter().map(|l| l.t.data.len()).sum());
@@ -145,19 +149,23 @@ impl FetiFeti {
             .pc_type
             .unwrap_or_else(|| default_pc(&problem, &stiffness));
         let lifting = match kind {
-            PcType::CoarseCorrected => Lifting::new(session, &problem, &sharing, &stiffness)?,
+            PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
+                Lifting::new(session, &problem, &sharing, &stiffness)
+            })?,
             _ => None,
         };
         let preconditioner =
             Preconditioner::new(kind, &problem, &stiffness, lifting, settings.precision);
-        let natural = NaturalCoarse::new(
-            session,
-            &problem,
-            &stiffness,
-            &preconditioner,
-            (settings.projector, varies),
-            &format!("{prefix}gtg_"),
-        )?;
+        let natural = clock::timed(Phase::NaturalSetup, || {
+            NaturalCoarse::new(
+                session,
+                &problem,
+                &stiffness,
+                &preconditioner,
+                (settings.projector, varies),
+                &format!("{prefix}gtg_"),
+            )
+        })?;
         let mut facts = facts(&stiffness, &natural, comm);
         let mut dual = Dual::new(session, stiffness, preconditioner, natural)?;
         dual.watched_from = match facts.inequalities {

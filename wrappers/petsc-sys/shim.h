@@ -45,6 +45,9 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
 /* Whether the local-to-global map of a MATIS may name a dof several times, once for each of several subdomains (PETSc 3.21 and later). */
 int ff_is_repeated(Mat mat, int *repeated);
 
+/* Messages, their bytes and all-reduces that PETSc has counted on this rank; 0 where it was built without its log. */
+int ff_counters(double counts[3]);
+
 int ff_event_begin(int event);
 int ff_event_end(int event);
 int ff_citation(const char *text, int *set);
