@@ -201,7 +201,7 @@ fn write<T: Serialize>(session: &Session, path: &Path, record: &T) -> Result<()>
 }
 
 /// Wall-clock seconds of some work, from when the first rank begins to when the last one ends. Collective.
-pub(super) fn timed<T>(session: &Session, work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
+pub(crate) fn timed<T>(session: &Session, work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
     session.agree(Ok(()))?;
     let clock = Instant::now();
     let result = work()?;
@@ -212,7 +212,7 @@ pub(super) fn timed<T>(session: &Session, work: impl FnOnce() -> Result<T>) -> R
 
 /// Largest resident memory of all ranks, in bytes, without the segments through which ranks of one machine pass messages: they show up in
 /// every rank that has them mapped, and are MPI's.
-pub(super) fn memory(session: &Session) -> f64 {
+pub(crate) fn memory(session: &Session) -> f64 {
     let mut bytes = [max_memory() - shared_memory()];
     sum_all(session.comm(), &mut bytes);
     bytes[0]

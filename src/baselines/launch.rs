@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
+
 use super::job::Job;
 use crate::report::json;
 use crate::{Error, Result};
@@ -92,9 +94,23 @@ impl Launcher {
     /// # Errors
     /// [`Error::Environment`] where the machine refuses to start it at all: no disk, no mpirun.
     pub fn run(&self, name: &str, job: &Job, ranks: usize) -> Result<Finished> {
+        self.run_task(name, ("baseline", job), &job.result, ranks)
+    }
+
+    /// The same for a command of the program and any task that it reads; `result` is the file in which it leaves its record.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_task<T: Serialize>(
+        &self,
+        name: &str,
+        (verb, task_record): (&str, &T),
+        result: &Path,
+        ranks: usize,
+    ) -> Result<Finished> {
         let files = ["job", "out", "err"].map(|end| self.workspace.file(&format!("{name}.{end}")));
         let [task, out, err] = &files;
-        json::write(task, job)?;
+        json::write(task, task_record)?;
         let create = |path: &Path| {
             File::create(path)
                 .map_err(|e| Error::environment(format!("cannot write {}: {e}", path.display())))
@@ -106,7 +122,7 @@ impl Launcher {
             .arg("-n")
             .arg(ranks.to_string())
             .arg(own)
-            .arg("baseline")
+            .arg(verb)
             .arg(task);
         command.args(&self.petsc);
         environment(&mut command, self.limit);
@@ -115,7 +131,9 @@ impl Launcher {
             .stdout(create(out)?)
             .stderr(create(err)?);
         let mut child = command.spawn().map_err(|e| {
-            Error::environment(format!("cannot start mpirun, which compare needs: {e}"))
+            Error::environment(format!(
+                "cannot start mpirun, which runs on several ranks need: {e}"
+            ))
         })?;
         let clock = Instant::now();
         // mpirun ends itself after the limit; if it hangs in that, it is ended from here.
@@ -140,7 +158,7 @@ impl Launcher {
             String::from_utf8_lossy(&bytes).into_owned()
         };
         // The record is a job's last act: trouble in the farewell of hundreds of ranks does not take it back.
-        let record = match std::fs::read_to_string(&job.result) {
+        let record = match std::fs::read_to_string(result) {
             Ok(text) => Ok(text),
             Err(e) if status.success() => Err(Failure {
                 code: None,

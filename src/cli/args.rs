@@ -32,6 +32,11 @@ pub enum Command {
         /// What to run, as the parent process wrote it.
         job: PathBuf,
     },
+    /// One measurement of a study, in a process of its own (not for users).
+    Measure {
+        /// What to measure, as the parent process wrote it.
+        task: PathBuf,
+    },
 }
 
 /// Arguments of `solve`.
@@ -111,17 +116,20 @@ pub enum StudyName {
     HardCases,
     /// Condition numbers with M_D and M_C.
     Kappa,
+    /// Seconds over ranks and bodies, with a model.
+    Scaling,
     /// Error against seconds, ours and every baseline.
     SpeedError,
 }
 
 impl StudyName {
     /// All of them.
-    pub const ALL: [StudyName; 5] = [
+    pub const ALL: [StudyName; 6] = [
         StudyName::Adaptive,
         StudyName::Hertz,
         StudyName::HardCases,
         StudyName::Kappa,
+        StudyName::Scaling,
         StudyName::SpeedError,
     ];
 
@@ -132,6 +140,7 @@ impl StudyName {
             StudyName::Hertz => "hertz",
             StudyName::HardCases => "hard-cases",
             StudyName::Kappa => "kappa",
+            StudyName::Scaling => "scaling",
             StudyName::SpeedError => "speed-error",
         }
     }

@@ -53,10 +53,11 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
         Command::Solve(args) => solve::run(session, &args),
         Command::Plan { scene } => plan::run(session, &scene),
         Command::Table1(args) => table1::run(session, &args),
-        Command::Study(args) => study::run(session, &args),
+        Command::Study(args) => study::run(session, &args, &petsc),
         Command::Compare(args) => crate::baselines::compare(session, &args, &petsc),
         Command::Bench(args) => crate::baselines::bench(session, &args, &petsc),
         Command::Baseline { job } => crate::baselines::run_job(session, &job),
+        Command::Measure { task } => crate::study::scaling::run_task(session, &task),
     }
 }
 

@@ -31,8 +31,8 @@ pub fn parse(args: &[String]) -> Result<Invocation> {
     Ok(Invocation { command, petsc })
 }
 
-const COMMANDS: [&str; 7] = [
-    "solve", "plan", "compare", "bench", "table1", "study", "baseline",
+const COMMANDS: [&str; 8] = [
+    "solve", "plan", "compare", "bench", "table1", "study", "baseline", "measure",
 ];
 
 /// Rounds of `bench` where `--rounds` does not say.
@@ -202,6 +202,9 @@ impl Words {
                 quick: self.flag("--quick"),
                 quiet: self.flag("--quiet"),
             }),
+            "measure" => Command::Measure {
+                task: self.scene(name)?,
+            },
             _ => Command::Baseline {
                 job: self.scene(name)?,
             },

@@ -215,6 +215,7 @@ fn report(
             .exact
             .is_some()
             .then_some(json::ErrorNorms { l2, h1, energy }),
+        communication: solver.communication()?.map(Into::into),
         seconds: json::Seconds {
             assemble: 0.0,
             setup: facts.setup_seconds,

@@ -7,17 +7,18 @@ use super::solve::prepare;
 use crate::feti::Settings;
 use crate::petsc::Session;
 use crate::report::{json, output};
-use crate::study::{adaptive, hard_cases, hertz, kappa, speed_error};
+use crate::study::{adaptive, hard_cases, hertz, kappa, scaling, speed_error};
 use crate::{Error, Result};
 
 /// Runs a study and writes what was asked for.
-pub fn run(session: &Session, args: &Study) -> Result<()> {
+pub fn run(session: &Session, args: &Study, petsc: &[String]) -> Result<()> {
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
     match args.name {
         StudyName::Adaptive => run_adaptive(session, args),
         StudyName::Hertz => run_hertz(session, args),
         StudyName::HardCases => run_hard_cases(session, args),
         StudyName::Kappa => run_kappa(session, args),
+        StudyName::Scaling => run_scaling(session, args, petsc),
         StudyName::SpeedError => run_speed_error(session, args),
     }
 }
@@ -130,6 +131,25 @@ fn run_kappa(session: &Session, args: &Study) -> Result<()> {
         Ok(vec!["kappa.csv".to_string()])
     };
     finish(session, args, &report, &table.to_string(), write)
+}
+
+fn run_scaling(session: &Session, args: &Study, petsc: &[String]) -> Result<()> {
+    let settings = scaling::Settings::from_options(session, args.quick, petsc)?;
+    let report = scaling::run(session, &settings, args.case.as_deref(), &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        scaling::points_csv(&report).write_csv(&dir.join("scaling.csv"))?;
+        scaling::prediction_csv(&report).write_csv(&dir.join("scaling-model.csv"))?;
+        scaling::figure(&report).save(&dir.join("scaling"))?;
+        scaling::model_figure(&report).save(&dir.join("scaling-model"))?;
+        let files = ["scaling", "scaling-model"]
+            .iter()
+            .flat_map(|stem| ["csv", "png", "svg"].map(|end| format!("{stem}.{end}")));
+        Ok(files.collect())
+    };
+    finish(session, args, &report, &scaling::text(&report), write)
 }
 
 fn run_speed_error(session: &Session, args: &Study) -> Result<()> {

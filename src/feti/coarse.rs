@@ -3,6 +3,7 @@
 //! S_Π is block diagonal by body, and a body's rows live on one rank: a Cholesky factorisation per body, ours, solves it exactly without a
 //! message. With any option `-fetifeti_coarse_…` a PETSc KSP takes its place.
 
+use super::clock::{self, Phase};
 use super::halo::Halo;
 use super::local::multifrontal::{PartialCholesky, Symbolic};
 use super::primal::{PrimalEntry, PrimalSpace};
@@ -68,7 +69,7 @@ impl PrimalProblem {
         p.halo.sum(values, &p.rhs)?;
         match &p.solver {
             Solver::Petsc(ksp) => {
-                ksp.solve(&p.rhs, &p.solution)?;
+                clock::timed(Phase::Primal, || ksp.solve(&p.rhs, &p.solution))?;
                 let reason = ksp.converged_reason()?;
                 if reason.code < 0 {
                     return Err(Error::NotConverged(format!(
@@ -83,9 +84,11 @@ impl PrimalProblem {
                     .iter()
                     .map(|(first, factor)| rhs[*first..first + factor.n()].to_vec())
                     .collect();
-                team.for_each(&mut parts, |b, x| {
-                    factors[b].1.forward(x);
-                    factors[b].1.backward(x);
+                clock::timed(Phase::Primal, || {
+                    team.for_each(&mut parts, |b, x| {
+                        factors[b].1.forward(x);
+                        factors[b].1.backward(x);
+                    });
                 });
                 let mut solution = p.solution.array_mut()?;
                 for ((first, _), x) in factors.iter().zip(&parts) {

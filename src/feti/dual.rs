@@ -13,6 +13,7 @@ use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
 use super::recycle::Recycle;
 use super::stiffness::Stiffness;
+use super::tally::Tally;
 use crate::petsc::{Event, Mat, Session, ShellMat, ShellPc, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
@@ -38,6 +39,8 @@ pub struct Dual {
     /// Whether G belongs to other rows than those that hold.
     stale: bool,
     events: [Event; 3],
+    /// What the iterations have sent and how long they took.
+    tally: Cell<Tally>,
     /// Buffers for projected copies.
     x: PetscVec,
     y: PetscVec,
@@ -66,6 +69,7 @@ impl Dual {
             start: RefCell::new(None),
             session: session.clone(),
             stale: false,
+            tally: Cell::default(),
             y: x.duplicate()?,
             x,
             stiffness,
@@ -97,6 +101,18 @@ impl Dual {
     pub fn set_face(&mut self, free: &[bool]) {
         self.stiffness.jump.set_active(self.session.comm(), free);
         self.stale = true;
+    }
+
+    /// What the iterations of this rank have sent and how long they took.
+    pub fn tally(&self) -> Tally {
+        self.tally.get()
+    }
+
+    /// Adds iterations to the [`tally`](Self::tally).
+    pub fn count(&self, more: &Tally) {
+        let mut tally = self.tally.get();
+        tally.add(more);
+        self.tally.set(tally);
     }
 
     /// A vector of multipliers.

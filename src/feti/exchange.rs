@@ -7,6 +7,8 @@ use mpi::datatype::{Partition, PartitionMut};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 
+use super::traffic::{self, Traffic};
+
 /// Something that travels as a fixed number of words.
 pub trait Record: Sized {
     /// Words of one record.
@@ -92,6 +94,7 @@ pub fn min_all(comm: &SimpleCommunicator, values: &mut [f64]) {
 
 fn reduce(comm: &SimpleCommunicator, values: &mut [f64], operation: SystemOperation) {
     if comm.size() > 1 && !values.is_empty() {
+        traffic::count(Traffic::reduction(values.len()));
         let mine = values.to_vec();
         comm.all_reduce_into(&mine[..], values, operation);
     }

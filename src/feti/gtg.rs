@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use mpi::topology::SimpleCommunicator;
 
+use super::clock::{self, Phase};
 use super::exchange::sum_all;
 use super::local::dense::Dense;
 use super::local::semidefinite::Semidefinite;
@@ -136,8 +137,8 @@ impl Gtg {
         let mut c = self.scratch.borrow_mut();
         c.fill(0.0);
         from.add_transpose(&x.array()?, &mut c);
-        sum_all(comm, &mut c);
-        self.solve(&mut c, side)?;
+        clock::timed(Phase::Reduction, || sum_all(comm, &mut c));
+        clock::timed(Phase::Natural, || self.solve(&mut c, side))?;
         along.add(-1.0, &c, &mut x.array_mut()?);
         Ok(())
     }

@@ -2,6 +2,8 @@
 
 use std::cell::RefCell;
 
+use super::clock::{self, Phase};
+use super::traffic::{self, Traffic};
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
 use crate::Result;
 
@@ -11,6 +13,8 @@ pub struct Halo {
     /// Sequential vector that holds the ghost entries on their way.
     buffer: RefCell<PetscVec>,
     n_ghosts: usize,
+    /// What this rank sends in [`fetch`](Self::fetch) and in [`sum`](Self::sum).
+    sent: (Traffic, Traffic),
 }
 
 impl Halo {
@@ -22,7 +26,13 @@ impl Halo {
             scatter: Scatter::new(layout, &indices, &buffer)?,
             buffer: RefCell::new(buffer),
             n_ghosts: ghosts.len(),
+            sent: traffic::of_ghosts(session.comm(), layout.ownership_range().start, ghosts),
         })
+    }
+
+    /// What this rank sends in one [`fetch`](Self::fetch) and in one [`sum`](Self::sum).
+    pub fn sent(&self) -> (Traffic, Traffic) {
+        self.sent
     }
 
     /// Number of ghost entries.
@@ -32,17 +42,23 @@ impl Halo {
 
     /// `ghost` ← the entries of `x`. Collective.
     pub fn fetch(&self, x: &PetscVec, ghost: &mut [f64]) -> Result<()> {
-        let buffer = self.buffer.borrow_mut();
-        self.scatter.forward(x, &buffer)?;
-        ghost.copy_from_slice(&buffer.array()?);
-        Ok(())
+        traffic::count(self.sent.0);
+        clock::timed(Phase::Exchange, || {
+            let buffer = self.buffer.borrow_mut();
+            self.scatter.forward(x, &buffer)?;
+            ghost.copy_from_slice(&buffer.array()?);
+            Ok(())
+        })
     }
 
     /// `y` ← the sum of every rank's `ghost` entries. Collective.
     pub fn sum(&self, ghost: &[f64], y: &PetscVec) -> Result<()> {
-        let buffer = self.buffer.borrow_mut();
-        buffer.array_mut()?.copy_from_slice(ghost);
-        y.set(0.0)?;
-        self.scatter.reverse_add(&buffer, y)
+        traffic::count(self.sent.1);
+        clock::timed(Phase::Exchange, || {
+            let buffer = self.buffer.borrow_mut();
+            buffer.array_mut()?.copy_from_slice(ghost);
+            y.set(0.0)?;
+            self.scatter.reverse_add(&buffer, y)
+        })
     }
 }

@@ -11,6 +11,7 @@ use super::local::lanes::LANES;
 use super::natural::KernelLoad;
 use super::spectrum::Spectrum;
 use super::stiffness::Work;
+use super::tally::Start;
 use crate::petsc::{ConvergedReason, Ksp, Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
@@ -243,6 +244,7 @@ pub fn iterate(
     ksp.record_residuals(max_it.min(100_000) + 1)?;
     rtol_of(target / start)?;
     dual.record_directions(true);
+    let counted = Start::now();
     let solved = match dual.watch() {
         Some(limit) if ksp.type_name()? == "cg" => {
             ksp.solve_watched(residual, &x, dual.watched_from, limit, NEARLY * target)
@@ -252,10 +254,11 @@ pub fn iterate(
     dual.record_directions(false);
     rtol_of(rtol)?;
     let broken_off = solved?;
+    let iterations = ksp.iterations()?;
+    dual.count(&counted.since(iterations));
     dual.p(&x)?;
     dual.p2(&x)?;
     lambda.axpy(1.0, &x)?;
-    let iterations = ksp.iterations()?;
     let estimate = estimate(ksp, iterations)?;
     Ok(Inner {
         iterations,

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 
 use mpi::traits::Communicator;
 
+use super::clock::{self, Phase};
 use super::exchange::exchange_words;
 use super::halo::Halo;
 use super::jump::Jump;
@@ -159,10 +160,12 @@ impl Lifting {
         self.halo.sum(&ghost, &self.vector)?;
         {
             let mut owned = self.vector.array_mut()?;
-            for (start, factor) in &self.bodies {
-                let n = factor.order();
-                factor.solve(&mut owned[*start..start + n]); /*  c ← A⁺ t        */
-            }
+            clock::timed(Phase::Lifting, || {
+                for (start, factor) in &self.bodies {
+                    let n = factor.order();
+                    factor.solve(&mut owned[*start..start + n]); /*  c ← A⁺ t        */
+                }
+            });
         }
         self.halo.fetch(&self.vector, &mut ghost)?;
         let ghost = &*ghost;

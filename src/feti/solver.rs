@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use super::adaptive;
 use super::choice;
+use super::clock::{self, Phase};
 use super::coarse::PrimalProblem;
 use super::correction;
 use super::deflation;
@@ -121,7 +122,10 @@ impl FetiFeti {
         let kind = settings
             .pc_type
             .unwrap_or_else(|| choice::preconditioner(comm, &problem, &sharing, &jump));
-        let mut locals = session.agree(factor(session, &problem, &jump, &team, &settings, kind))?;
+        let factored = clock::timed(Phase::LocalSetup, || {
+            factor(session, &problem, &jump, &team, &settings, kind)
+        });
+        let mut locals = session.agree(factored)?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
         }
@@ -140,7 +144,9 @@ impl FetiFeti {
         }
         let adapting = adapting.elapsed().as_secs_f64();
         let mut space = PrimalSpace::new(comm, &problem, &sharing, &jump.averages, &locals);
-        let primal = PrimalProblem::new(session, &mut space, &team, &format!("{prefix}coarse_"))?;
+        let primal = clock::timed(Phase::PrimalSetup, || {
+            PrimalProblem::new(session, &mut space, &team, &format!("{prefix}coarse_"))
+        })?;
         let layout = PetscVec::mpi(session, jump.n_owned)?;
         let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
         team.set_load(locals.iter().map(|l| l.n_delta.pow(2)).sum());
@@ -151,19 +157,23 @@ impl FetiFeti {
         }
 
         let lifting = match kind {
-            PcType::CoarseCorrected => Lifting::new(session, &problem, &sharing, &stiffness)?,
+            PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
+                Lifting::new(session, &problem, &sharing, &stiffness)
+            })?,
             _ => None,
         };
         let preconditioner =
             Preconditioner::new(kind, &problem, &stiffness, lifting, settings.precision);
-        let natural = NaturalCoarse::new(
-            session,
-            &problem,
-            &stiffness,
-            &preconditioner,
-            (settings.projector, varies),
-            &format!("{prefix}gtg_"),
-        )?;
+        let natural = clock::timed(Phase::NaturalSetup, || {
+            NaturalCoarse::new(
+                session,
+                &problem,
+                &stiffness,
+                &preconditioner,
+                (settings.projector, varies),
+                &format!("{prefix}gtg_"),
+            )
+        })?;
         let mut facts = facts(&stiffness, &natural, comm);
         let mut dual = Dual::new(session, stiffness, preconditioner, natural)?;
         dual.watched_from = match facts.inequalities {

@@ -94,6 +94,30 @@ impl Stage {
     }
 }
 
+/// What PETSc has sent on this rank since it started, as `-log_view` counts it; MPI calls of other libraries are not in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Counters {
+    /// Messages to single ranks.
+    pub messages: f64,
+    /// Their bytes.
+    pub bytes: f64,
+    /// All-reduces among several ranks.
+    pub reductions: f64,
+}
+
+/// The counters; `None` where PETSc was built without its log.
+pub fn counters() -> Option<Counters> {
+    let mut counts = [0.0; 3];
+    // SAFETY: the shim writes three numbers.
+    let there = unsafe { petsc_sys::ff_counters(counts.as_mut_ptr()) };
+    let [messages, bytes, reductions] = counts;
+    (there != 0).then_some(Counters {
+        messages,
+        bytes,
+        reductions,
+    })
+}
+
 /// Ends an event or a stage when dropped.
 #[must_use = "the clock stops when the scope is dropped"]
 pub enum Scope {

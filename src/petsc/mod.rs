@@ -32,7 +32,7 @@ pub use citations::cite;
 pub use eps::{Eps, ProblemType, Which};
 pub use is::Is;
 pub use ksp::{ConvergedReason, Ksp, NormType};
-pub use log::{Event, Scope, Stage};
+pub use log::{counters, Counters, Event, Scope, Stage};
 pub use mat::{Mat, MatFlag};
 pub use matis::Attached;
 pub use options::Options;

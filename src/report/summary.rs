@@ -1,7 +1,7 @@
 //! The tables that the commands print, and their CSV forms.
 
 use super::contact_summary;
-use super::json::{SolveReport, Spectrum, Table1Row, Table1Side};
+use super::json::{Communication, SolveReport, Spectrum, Table1Row, Table1Side};
 use super::table::{count, fixed, Table};
 
 /// The result of `solve` as lines "name  value".
@@ -100,6 +100,9 @@ pub fn solve(r: &SolveReport) -> String {
             format!("L² {:.3e}, H¹ {:.3e}, energy {:.3e}", e.l2, e.h1, e.energy),
         ));
     }
+    if let Some(c) = r.communication.filter(|_| r.ranks > 1) {
+        lines.push(("an iteration sends", communication(&c)));
+    }
     let s = &r.seconds;
     lines.push((
         "seconds",
@@ -143,6 +146,20 @@ pub(crate) fn ranks(n: usize) -> String {
     } else {
         format!("{n} ranks")
     }
+}
+
+/// What an iteration sends, in a line.
+fn communication(c: &Communication) -> String {
+    let (messages, bytes) = (c.messages_per_iteration, c.bytes_per_iteration);
+    format!(
+        "{:.0} messages, {:.1} kB (most of a rank {:.0}, {:.1} kB), {:.1} all-reduces of {:.0} B",
+        messages.sum,
+        1e-3 * bytes.sum,
+        messages.max,
+        1e-3 * bytes.max,
+        c.reductions_per_iteration,
+        c.reduced_bytes_per_iteration / c.reductions_per_iteration.max(1.0)
+    )
 }
 
 /// Table 1 for terminals: the paper's numbers, then ours with M_D and M_C, columns (I) and (II) side by side.

@@ -234,6 +234,19 @@ int ff_is_repeated(Mat mat, int *repeated)
 
 /* ---- log, citations, printing ---- */
 
+int ff_counters(double counts[3])
+{
+#if defined(PETSC_USE_LOG)
+  counts[0] = petsc_isend_ct + petsc_send_ct;
+  counts[1] = petsc_isend_len + petsc_send_len;
+  counts[2] = petsc_allreduce_ct;
+  return 1;
+#else
+  counts[0] = counts[1] = counts[2] = 0.0;
+  return 0;
+#endif
+}
+
 int ff_event_begin(int event)
 {
   PetscCall(PetscLogEventBegin(event, 0, 0, 0, 0));

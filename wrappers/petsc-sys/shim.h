@@ -47,6 +47,8 @@ int ff_is_repeated(Mat mat, int *repeated);
 
 /* Whether any option begins with `start` (dash included). */
 int ff_options_any(const char *start, PetscBool *found);
+/* Messages, their bytes and all-reduces that PETSc has counted on this rank; 0 where it was built without its log. */
+int ff_counters(double counts[3]);
 
 int ff_event_begin(int event);
 int ff_event_end(int event);

@@ -99,6 +99,9 @@ pub struct SolveReport {
     /// Error against the exact solution, where the scene has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorNorms>,
+    /// What a Krylov iteration sends; `null` where there was none.
+    #[serde(default)]
+    pub communication: Option<Communication>,
     /// Wall-clock time by phase.
     pub seconds: Seconds,
     /// Largest resident memory, summed over the ranks, in MB of 10⁶ bytes.
@@ -216,6 +219,43 @@ pub struct Kkt {
     pub min_multiplier: Option<f64>,
 }
 
+/// What one Krylov iteration sends: means over all iterations.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Communication {
+    /// Messages from rank to rank.
+    pub messages_per_iteration: PerIteration,
+    /// Their bytes.
+    pub bytes_per_iteration: PerIteration,
+    /// All-reduces; every rank takes part in each.
+    pub reductions_per_iteration: f64,
+    /// Bytes that a rank puts into them.
+    pub reduced_bytes_per_iteration: f64,
+}
+
+/// A quantity over the ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct PerIteration {
+    /// Of all ranks.
+    pub sum: f64,
+    /// Of the rank that has most.
+    pub max: f64,
+}
+
+impl From<crate::feti::Communication> for Communication {
+    fn from(c: crate::feti::Communication) -> Communication {
+        let both = |q: crate::feti::tally::PerIteration| PerIteration {
+            sum: q.sum,
+            max: q.max,
+        };
+        Communication {
+            messages_per_iteration: both(c.messages),
+            bytes_per_iteration: both(c.bytes),
+            reductions_per_iteration: c.reductions,
+            reduced_bytes_per_iteration: c.reduced_bytes,
+        }
+    }
+}
+
 /// Error against an exact solution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ErrorNorms {
@@ -285,6 +325,7 @@ mod tests {
             energy: f64::INFINITY,
             contact: None,
             error: None,
+            communication: None,
             seconds: Seconds::default(),
             memory_mb: 12.5,
             converged_reason: "CONVERGED_RTOL".into(),

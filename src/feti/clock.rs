@@ -1,0 +1,95 @@
+//! Seconds of this rank by phase, summed up where they are spent.
+//!
+//! PETSc's events (`-log_view`) time F, M and P as a whole; these clocks run around what grows differently with bodies and ranks: local
+//! factorisations, the three coarse problems, messages. Waiting for a slower rank counts as message.
+
+use std::cell::Cell;
+use std::time::Instant;
+
+/// What takes time apart from the work inside the subdomains. Phases of one half never run inside each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Set-up: factors, S, T and Ψ of the subdomains.
+    LocalSetup,
+    /// Set-up: S_Π.
+    PrimalSetup,
+    /// Set-up: Z_c and A.
+    LiftingSetup,
+    /// Set-up: G and Gᵀ Q G.
+    NaturalSetup,
+    /// Iteration: messages between neighbours, with the copies into and out of them.
+    Exchange,
+    /// Iteration: all-reduces of the projector.
+    Reduction,
+    /// Iteration: S_Π⁺.
+    Primal,
+    /// Iteration: A⁺.
+    Lifting,
+    /// Iteration: (Gᵀ Q G)⁻¹.
+    Natural,
+}
+
+const PHASES: usize = Phase::Natural as usize + 1;
+
+/// Seconds by phase.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Times([f64; PHASES]);
+
+impl Times {
+    /// Seconds of one phase.
+    pub fn of(&self, phase: Phase) -> f64 {
+        self.0[phase as usize]
+    }
+
+    /// What has been spent since an earlier reading.
+    pub fn since(&self, before: &Times) -> Times {
+        let mut out = *self;
+        out.0.iter_mut().zip(before.0).for_each(|(t, b)| *t -= b);
+        out
+    }
+
+    /// Adds other seconds.
+    pub fn add(&mut self, more: &Times) {
+        self.0.iter_mut().zip(more.0).for_each(|(t, m)| *t += m);
+    }
+}
+
+thread_local! {
+    static SPENT: Cell<Times> = const { Cell::new(Times([0.0; PHASES])) };
+}
+
+/// The readings of all clocks; take differences.
+pub fn spent() -> Times {
+    SPENT.get()
+}
+
+/// Does `work` with the clock of `phase` running.
+pub fn timed<T>(phase: Phase, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    let mut times = SPENT.get();
+    times.0[phase as usize] += start.elapsed().as_secs_f64();
+    SPENT.set(times);
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_clock_runs_at_a_time() {
+        let before = spent();
+        let answer = timed(Phase::Lifting, || {
+            std::thread::sleep(std::time::Duration::from_millis(2));
+            42
+        });
+        let now = spent().since(&before);
+        assert_eq!(answer, 42);
+        assert!(now.of(Phase::Lifting) >= 2e-3);
+        assert_eq!(now.of(Phase::Natural), 0.0);
+        let mut twice = now;
+        twice.add(&now);
+        assert_eq!(twice.of(Phase::Lifting), 2.0 * now.of(Phase::Lifting));
+    }
+}

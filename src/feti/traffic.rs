@@ -1,0 +1,127 @@
+//! What this rank sends, counted where it is sent: messages of the halos and all-reduces.
+//!
+//! A halo knows from its ghost list and from who owns what how many ranks hear from this one in each direction; the counts
+//! are those that PETSc's own counters show (`-log_view`), without a build of PETSc that has them.
+
+use std::cell::Cell;
+use std::ops::{AddAssign, Sub};
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::exchange::{exchange_words, gather_all};
+
+/// Bytes of a number.
+const NUMBER: u64 = 8;
+
+/// What one rank has sent.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Messages to single ranks.
+    pub messages: u64,
+    /// Their bytes.
+    pub bytes: u64,
+    /// All-reduces that this rank took part in.
+    pub reductions: u64,
+    /// Bytes that it put into them.
+    pub reduced_bytes: u64,
+}
+
+impl Traffic {
+    /// An all-reduce of `n` numbers.
+    pub fn reduction(n: usize) -> Traffic {
+        Traffic {
+            reductions: 1,
+            reduced_bytes: NUMBER * n as u64,
+            ..Traffic::default()
+        }
+    }
+
+    /// One message for every count above zero.
+    fn of_counts(counts: impl Iterator<Item = u64>) -> Traffic {
+        counts
+            .filter(|&n| n > 0)
+            .fold(Traffic::default(), |t, n| Traffic {
+                messages: t.messages + 1,
+                bytes: t.bytes + NUMBER * n,
+                ..t
+            })
+    }
+}
+
+impl AddAssign for Traffic {
+    fn add_assign(&mut self, more: Traffic) {
+        self.messages += more.messages;
+        self.bytes += more.bytes;
+        self.reductions += more.reductions;
+        self.reduced_bytes += more.reduced_bytes;
+    }
+}
+
+impl Sub for Traffic {
+    type Output = Traffic;
+    fn sub(self, before: Traffic) -> Traffic {
+        Traffic {
+            messages: self.messages - before.messages,
+            bytes: self.bytes - before.bytes,
+            reductions: self.reductions - before.reductions,
+            reduced_bytes: self.reduced_bytes - before.reduced_bytes,
+        }
+    }
+}
+
+thread_local! {
+    /// One thread of a rank sends, that which runs PETSc.
+    static SENT: Cell<Traffic> = const { Cell::new(Traffic { messages: 0, bytes: 0, reductions: 0, reduced_bytes: 0 }) };
+}
+
+/// What this rank has sent since it started; take differences.
+pub fn sent() -> Traffic {
+    SENT.get()
+}
+
+/// Counts something as sent.
+pub fn count(more: Traffic) {
+    let mut all = SENT.get();
+    all += more;
+    SENT.set(all);
+}
+
+/// What this rank sends to move the ghosts once: (owners to ghosts, ghosts to owners). `first` is the first entry that this rank owns.
+/// Collective.
+pub fn of_ghosts(comm: &SimpleCommunicator, first: usize, ghosts: &[u32]) -> (Traffic, Traffic) {
+    let (size, rank) = (comm.size() as usize, comm.rank() as usize);
+    if size == 1 {
+        return Default::default();
+    }
+    let starts: Vec<u64> = gather_all(comm, &[first as u64]).concat();
+    let mut wanted = vec![0u64; size];
+    for &g in ghosts {
+        // The last rank that starts at or before the entry: ranks without entries start where the next one does.
+        wanted[starts.partition_point(|&s| s <= u64::from(g)) - 1] += 1;
+    }
+    wanted[rank] = 0;
+    let asked = wanted.iter().map(|&n| vec![n]).collect();
+    let asking = exchange_words(comm, asked).concat();
+    (
+        Traffic::of_counts(asking.into_iter()),
+        Traffic::of_counts(wanted.into_iter()),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_messages_and_bytes() {
+        let traffic = Traffic::of_counts([3, 0, 5].into_iter());
+        assert_eq!((traffic.messages, traffic.bytes), (2, 64));
+        let before = sent();
+        count(traffic);
+        count(Traffic::reduction(4));
+        let now = sent() - before;
+        assert_eq!((now.messages, now.bytes), (2, 64));
+        assert_eq!((now.reductions, now.reduced_bytes), (1, 32));
+    }
+}

@@ -1,0 +1,141 @@
+//! Costs as sums of terms with coefficients ≥ 0, by least squares.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::nnls::nnls;
+use crate::feti::local::dense::Dense;
+
+/// A measurement of this part of the largest one counts relative to itself and this part of the largest: clocks and caches make small ones uncertain.
+const SMALL: f64 = 0.01;
+
+/// Seconds of a phase as Σ coefficient · term.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Law {
+    /// The phase.
+    pub phase: String,
+    /// Names of its terms.
+    pub terms: Vec<String>,
+    /// Seconds per unit of each term, none of them negative.
+    pub seconds: Vec<f64>,
+    /// Measurements that it is fitted to.
+    pub points: usize,
+    /// Median of |fitted − measured| / measured.
+    pub median_deviation: f64,
+    /// Largest of these.
+    pub largest_deviation: f64,
+    /// Sum of the squares that the fit makes least.
+    pub misfit: f64,
+    /// (measured, fitted) of every measurement.
+    pub residuals: Vec<(f64, f64)>,
+}
+
+impl Law {
+    /// Fits a phase; `samples` are (terms, seconds). Samples without any of the terms are left out: there is no such phase in them.
+    pub fn fit(phase: &str, terms: &[&str], samples: &[(Vec<f64>, f64)]) -> Law {
+        let there = |s: &&(Vec<f64>, f64)| s.1 > 0.0 && s.0.iter().any(|x| *x > 0.0);
+        let samples: Vec<&(Vec<f64>, f64)> = samples.iter().filter(there).collect();
+        let largest = samples.iter().fold(0.0, |a: f64, s| a.max(s.1));
+        let (m, n) = (samples.len(), terms.len());
+        let mut a = Dense::zeros(m, n);
+        let mut b = vec![0.0; m];
+        for (i, (x, y)) in samples.iter().map(|s| (&s.0, s.1)).enumerate() {
+            let weight = 1.0 / (y + SMALL * largest);
+            b[i] = weight * y;
+            for (j, x) in x.iter().enumerate() {
+                a.set(i, j, weight * x);
+            }
+        }
+        // Columns of equal length: r³ and 1 are eleven decades apart.
+        let length = |j: usize| a.col(j).iter().map(|x| x * x).sum::<f64>().sqrt();
+        let sizes: Vec<f64> = (0..n).map(length).collect();
+        for (j, size) in sizes.iter().enumerate().filter(|s| *s.1 > 0.0) {
+            a.col_mut(j).iter_mut().for_each(|x| *x /= size);
+        }
+        let mut law = Law {
+            phase: phase.into(),
+            terms: terms.iter().map(|t| t.to_string()).collect(),
+            seconds: vec![0.0; n],
+            points: m,
+            ..Law::default()
+        };
+        if m == 0 {
+            return law;
+        }
+        let (x, rest) = nnls(&a, &b, &vec![false; n]);
+        law.misfit = rest.iter().map(|r| r * r).sum();
+        let unscaled = x.iter().zip(&sizes);
+        law.seconds = unscaled
+            .map(|(x, s)| if *s > 0.0 { x / s } else { 0.0 })
+            .collect();
+        law.residuals = samples.iter().map(|s| (s.1, law.at(&s.0))).collect();
+        let of = |(y, fitted): &(f64, f64)| (fitted - y).abs() / y;
+        let mut off: Vec<f64> = law.residuals.iter().map(of).collect();
+        off.sort_by(f64::total_cmp);
+        law.median_deviation = off[off.len() / 2];
+        law.largest_deviation = off[off.len() - 1];
+        law
+    }
+
+    /// The seconds that it gives for these terms.
+    pub fn at(&self, terms: &[f64]) -> f64 {
+        self.seconds.iter().zip(terms).map(|(c, x)| c * x).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KNOWN: [f64; 3] = [2e-5, 3e-9, 7e-12];
+
+    /// 1, n² and n³ for n from 1 to 4096, and what they cost times `noise` of the sample.
+    fn samples(noise: impl Fn(usize) -> f64) -> Vec<(Vec<f64>, f64)> {
+        let one = |k: usize| {
+            let n = 2.0_f64.powi(k as i32);
+            let x = vec![1.0, n * n, n * n * n];
+            let y: f64 = x.iter().zip(KNOWN).map(|(x, c)| x * c).sum();
+            (x, y * noise(k))
+        };
+        (0..13).map(one).collect()
+    }
+
+    #[test]
+    fn known_coefficients_are_recovered() {
+        let law = Law::fit("test", &["1", "n^2", "n^3"], &samples(|_| 1.0));
+        for (found, known) in law.seconds.iter().zip(KNOWN) {
+            assert!((found / known - 1.0).abs() < 1e-8, "{found} for {known}");
+        }
+        assert_eq!(law.points, 13);
+        assert!(law.largest_deviation < 1e-8);
+    }
+
+    #[test]
+    fn noise_shows_in_the_deviations_and_coefficients_stay_positive() {
+        let law = Law::fit(
+            "test",
+            &["1", "n^2", "n^3"],
+            &samples(|k| [0.9, 1.1][k % 2]),
+        );
+        assert!((law.seconds[2] / KNOWN[2] - 1.0).abs() < 0.2, "{law:?}");
+        assert!(
+            law.largest_deviation > 0.05 && law.median_deviation < 0.3,
+            "{law:?}"
+        );
+        // A term that falls does not get a negative coefficient.
+        let falling: Vec<_> = (1..9)
+            .map(|n| (vec![1.0, n as f64], 10.0 - n as f64))
+            .collect();
+        let law = Law::fit("falling", &["1", "n"], &falling);
+        assert!(law.seconds[0] > 0.0 && law.seconds[1] == 0.0, "{law:?}");
+    }
+
+    #[test]
+    fn what_is_not_there_costs_nothing() {
+        let mut all = samples(|_| 1.0);
+        all.push((vec![0.0; 3], 1.0));
+        let law = Law::fit("test", &["1", "n^2", "n^3"], &all);
+        assert_eq!(law.points, 13);
+        assert_eq!(law.at(&[0.0; 3]), 0.0);
+        assert_eq!(Law::fit("none", &["1"], &[]).at(&[1.0]), 0.0);
+    }
+}

@@ -1,0 +1,255 @@
+//! One measurement, in a process group of its own: a scene solved a few times, or the network.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::network::{self, Timing};
+use super::{IterationSeconds, SetupSeconds, Work};
+use crate::baselines::job::{memory, timed};
+use crate::feti::clock::{self, Phase};
+use crate::feti::exchange::{max_all, min_all};
+use crate::feti::tally::Communication;
+use crate::feti::{FetiFeti, Settings};
+use crate::petsc::Session;
+use crate::report::json;
+use crate::scene::Scene;
+use crate::{Error, Result};
+
+/// A task for a process group.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Task {
+    /// Where the record goes, as JSON.
+    pub result: PathBuf,
+    /// What to measure.
+    pub what: What,
+}
+
+/// What to measure.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum What {
+    /// Messages and all-reduces.
+    Network,
+    /// Set-up and solve of a scene.
+    Solve {
+        /// The scene file.
+        scene: String,
+        /// How often; the smallest seconds of every phase count.
+        repeats: usize,
+    },
+}
+
+/// Messages and all-reduces.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct NetworkRecord {
+    /// One way between two ranks.
+    pub messages: Vec<Timing>,
+    /// All-reduces.
+    pub reductions: Vec<Timing>,
+}
+
+/// A scene that was solved.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct SolveRecord {
+    /// Subdomains over all ranks.
+    pub subdomains: usize,
+    /// Bodies with a kernel.
+    pub floating_bodies: usize,
+    /// Rows of B.
+    pub multipliers: usize,
+    /// Krylov iterations, in all contact steps.
+    pub iterations: usize,
+    /// Contact steps.
+    pub steps: usize,
+    /// κ by CG, of the last step.
+    pub kappa: Option<f64>,
+    /// Seconds of set-up.
+    pub setup: SetupSeconds,
+    /// Seconds of an iteration.
+    pub iteration: IterationSeconds,
+    /// Seconds of a solve besides its iterations: loads, residuals, displacements.
+    pub outside: f64,
+    /// Seconds of all set-up, and of all of a solve.
+    pub total: [f64; 2],
+    /// Resident memory at the end, and before the scene was read, over all ranks, in MB.
+    pub memory_mb: [f64; 2],
+    /// Largest work of a rank.
+    pub work: Work,
+    /// What an iteration sends.
+    pub communication: json::Communication,
+}
+
+/// Runs the task that `file` describes. Collective.
+///
+/// # Errors
+/// [`Error::Input`] for a file that the study has not written; those of the method; [`Error::NotConverged`].
+pub fn run_task(session: &Session, file: &Path) -> Result<()> {
+    let read = || -> std::result::Result<Task, String> {
+        let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
+        serde_json::from_str(&text).map_err(|e| e.to_string())
+    };
+    let task = session.agree(read().map_err(|e| {
+        let file = file.display();
+        Error::input(format!(
+            "{file}: {e}, expected a task that study scaling has written"
+        ))
+    }))?;
+    match &task.what {
+        What::Network => {
+            let (messages, reductions) = network::measure(session.comm());
+            let record = NetworkRecord {
+                messages,
+                reductions,
+            };
+            leave(session, &task.result, &record)
+        }
+        What::Solve { scene, repeats } => {
+            let record = solve(session, scene, *repeats)?;
+            leave(session, &task.result, &record)
+        }
+    }
+}
+
+fn leave<T: Serialize>(session: &Session, file: &Path, record: &T) -> Result<()> {
+    session.agree(match session.rank() {
+        0 => json::write(file, record),
+        _ => Ok(()),
+    })
+}
+
+fn solve(session: &Session, text: &str, repeats: usize) -> Result<SolveRecord> {
+    let before = memory(session) / 1e6;
+    let scene = session.agree(Scene::parse("scaling.toml", text))?;
+    let mine = crate::share(session, scene.n_subdomains());
+    let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
+    let mut best: Option<SolveRecord> = None;
+    for _ in 0..repeats.max(1) {
+        let record = once(session, problem.clone())?;
+        best = Some(match best {
+            None => record,
+            Some(old) => old.faster(&record),
+        });
+    }
+    let mut record = best.expect("it ran at least once");
+    record.memory_mb = [memory(session) / 1e6, before];
+    Ok(record)
+}
+
+impl SolveRecord {
+    /// The smaller seconds of both, phase by phase.
+    fn faster(self, other: &SolveRecord) -> SolveRecord {
+        SolveRecord {
+            setup: SetupSeconds::from_fn(|k| self.setup.all()[k].min(other.setup.all()[k])),
+            iteration: IterationSeconds::from_fn(|k| {
+                self.iteration.all()[k].min(other.iteration.all()[k])
+            }),
+            outside: self.outside.min(other.outside),
+            total: [0, 1].map(|k| self.total[k].min(other.total[k])),
+            ..self
+        }
+    }
+}
+
+/// Set-up and solve. Every phase is that of the slowest rank, but messages are those of the rank that waits least. Collective.
+fn once(session: &Session, problem: crate::Substructures) -> Result<SolveRecord> {
+    let comm = session.comm();
+    let (subdomains, start) = (problem.n_subdomains, clock::spent());
+    let (solver, setup_total) = timed(session, || {
+        FetiFeti::new(session, problem, Settings::default())
+    })?;
+    let spent = clock::spent().since(&start);
+    let phases = [
+        Phase::LocalSetup,
+        Phase::PrimalSetup,
+        Phase::LiftingSetup,
+        Phase::NaturalSetup,
+    ];
+    let named = phases.map(|p| spent.of(p));
+    let rest = solver.facts().setup_seconds - named.iter().sum::<f64>();
+    let [a, b, c, d] = named;
+    let mut setup = [a, b, c, d, rest.max(0.0)];
+    max_all(comm, &mut setup);
+
+    let (solution, solve_total) = timed(session, || solver.solve())?;
+    if !solution.converged {
+        return Err(Error::NotConverged(format!(
+            "a measurement did not converge: {}",
+            solution.reason
+        )));
+    }
+    let tally = solver.dual().tally();
+    let n = tally.iterations.max(1) as f64;
+    let phases = [Phase::Primal, Phase::Lifting, Phase::Natural];
+    let coarse = phases.map(|p| tally.times.of(p) / n);
+    let sent = [Phase::Exchange, Phase::Reduction].map(|p| tally.times.of(p) / n);
+    let local = tally.seconds / n - coarse.iter().chain(&sent).sum::<f64>();
+    let [primal, lifting, natural] = coarse;
+    let mut slowest = [local.max(0.0), primal, lifting, natural, tally.seconds];
+    max_all(comm, &mut slowest);
+    let mut least = sent;
+    min_all(comm, &mut least);
+    let [local, primal, lifting, natural, iterating] = slowest;
+    let sent = solver.communication()?.unwrap_or(Communication::default());
+    let facts = solver.facts();
+    Ok(SolveRecord {
+        subdomains,
+        floating_bodies: facts.floating_bodies,
+        multipliers: facts.multipliers_local + facts.multipliers_global,
+        iterations: solution.iterations,
+        steps: solution.steps.len().max(1),
+        kappa: solution.estimate.map(|s| s.kappa()),
+        setup: SetupSeconds::from_fn(|k| setup[k]),
+        iteration: IterationSeconds {
+            local,
+            primal,
+            lifting,
+            natural,
+            exchange: least[0],
+            reduction: least[1],
+        },
+        outside: (solve_total - iterating).max(0.0),
+        total: [setup_total, solve_total],
+        memory_mb: [0.0; 2],
+        work: work(session, &solver),
+        communication: sent.into(),
+    })
+}
+
+/// What the costs depend on, of the rank that has most of it. Collective.
+fn work(session: &Session, solver: &FetiFeti) -> Work {
+    let dual = solver.dual();
+    let stiffness = &dual.stiffness;
+    let mut own = Work {
+        kernels: dual.natural.r as f64,
+        ..Work::default()
+    };
+    for (sub, local) in solver.problem().local.iter().zip(&stiffness.locals) {
+        let (gamma, delta) = (local.n_gamma() as f64, local.n_delta as f64);
+        own.subdomains += 1.0;
+        own.unknowns += sub.k.n() as f64;
+        own.interface_squares += gamma * gamma + delta * delta;
+        own.interface_cubes += gamma.powi(3);
+    }
+    let space = &stiffness.space;
+    own.multipliers = stiffness.jump.n_owned as f64;
+    own.ghosts = (4 * stiffness.jump.ghosts.len() + 2 * space.ghosts.len()) as f64;
+    for body in &space.owned {
+        let n = body.range.len() as f64;
+        own.primal += n;
+        own.primal_factor += n * (n + 1.0).log2();
+    }
+    if let Some(lifting) = dual.preconditioner.lifting() {
+        own.ghosts += 2.0 * space.ghosts.len() as f64;
+        for (z, local) in lifting.z.iter().zip(&stiffness.locals) {
+            own.lifting_products += (local.n_gamma() as f64).powi(2) * z.cols as f64;
+        }
+        let bodies = space.owned.len().max(1) as f64;
+        let order = lifting.rank_and_order.1 as f64 / bodies;
+        own.lifting = bodies * order;
+        own.lifting_squares = bodies * order.powi(2);
+        own.lifting_cubes = bodies * order.powi(3);
+    }
+    let mut all = own.all();
+    max_all(session.comm(), &mut all);
+    Work::from_fn(|k| all[k])
+}

@@ -1,0 +1,387 @@
+//! `study scaling`: seconds over ranks and bodies by phase, messages, and a model that goes where this machine cannot.
+//!
+//! Every run is a process group of its own, with one thread per rank, on scenes in which no two subdomains are equal. On one rank the costs
+//! of the phases are fitted to what a rank's work consists of; messages are counted, α and β are measured by ping-pong; runs on several ranks show
+//! how far the model is from the truth. What it then predicts is a body on each of up to 100 000 ranks.
+
+mod fit;
+mod measure;
+mod model;
+mod network;
+mod picture;
+mod predict;
+mod quantities;
+mod scenes;
+mod tables;
+
+pub use fit::Law;
+pub use measure::run_task;
+pub use model::{Model, Modelled};
+pub use network::{Measured, Network, Timing};
+pub use picture::{figure, model_figure};
+pub use predict::{Limit, Prediction, Row, RANKS};
+pub use quantities::{IterationSeconds, SetupSeconds, Work};
+pub use tables::{points_csv, prediction_csv, text};
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::baselines::launch::{Launcher, Workspace};
+use crate::petsc::{Options, Session};
+use crate::report::json::Communication;
+use crate::{Error, Result};
+use measure::{NetworkRecord, SolveRecord, Task, What};
+use model::Sent;
+use predict::Basis;
+use scenes::Setup;
+
+/// α and β of a usual network between the nodes of a cluster: 1.5 µs, and 100 Gbit/s.
+const USUAL: [f64; 2] = [1.5e-6, 8e-11];
+
+/// What a run belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Series {
+    /// Ever more bodies of one size, on one rank.
+    Bodies,
+    /// Subdomains of other sizes, on one rank.
+    Elements,
+    /// One scene on ever more ranks.
+    Strong,
+    /// As many bodies as ever per rank.
+    Weak,
+    /// A body per rank, for the messages of one with eight neighbours.
+    Neighbours,
+}
+
+impl Series {
+    /// As tables say it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Series::Bodies => "bodies",
+            Series::Elements => "elements",
+            Series::Strong => "strong",
+            Series::Weak => "weak",
+            Series::Neighbours => "neighbours",
+        }
+    }
+}
+
+/// What is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Problem {
+    /// Poisson's equation on tied bodies.
+    Tied,
+    /// The model contact problem.
+    Contact,
+}
+
+impl Problem {
+    /// As tables say it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Problem::Tied => "tied",
+            Problem::Contact => "contact",
+        }
+    }
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// What it belongs to.
+    pub series: Series,
+    /// What is solved.
+    pub problem: Problem,
+    /// MPI ranks.
+    pub ranks: usize,
+    /// More ranks than cores: messages are right, seconds are not.
+    pub oversubscribed: bool,
+    /// Whether the costs are fitted to it.
+    pub fitted: bool,
+    /// Bodies.
+    pub bodies: usize,
+    /// Those with a kernel.
+    pub floating_bodies: usize,
+    /// Subdomains over all bodies.
+    pub subdomains: usize,
+    /// Elements of a subdomain in each direction.
+    pub elements: usize,
+    /// Rows of B.
+    pub multipliers: usize,
+    /// Krylov iterations, in all contact steps.
+    pub iterations: usize,
+    /// Contact steps.
+    pub steps: usize,
+    /// κ by CG, of the last step.
+    pub kappa: Option<f64>,
+    /// Seconds of set-up, the slowest rank in each phase.
+    pub setup: SetupSeconds,
+    /// Seconds of an iteration, likewise; messages: of the rank that waits least.
+    pub iteration: IterationSeconds,
+    /// Seconds of a solve besides its iterations.
+    pub outside: f64,
+    /// Wall-clock seconds of set-up and of a solve.
+    pub total: [f64; 2],
+    /// Resident memory at the end, and before the scene was read, over all ranks, in MB.
+    pub memory_mb: [f64; 2],
+    /// Largest work of a rank.
+    pub work: Work,
+    /// What an iteration sends.
+    pub communication: Communication,
+    /// What the model says.
+    pub model: Modelled,
+    /// Modelled over measured seconds of set-up, minus one.
+    pub setup_deviation: f64,
+    /// The same for an iteration.
+    pub iteration_deviation: f64,
+}
+
+/// The study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// "scaling".
+    pub study: String,
+    /// Whether small scenes were run.
+    pub quick: bool,
+    /// Cores of this machine.
+    pub cores: usize,
+    /// Messages on this machine.
+    pub network: Measured,
+    /// All runs.
+    pub points: Vec<Point>,
+    /// The fitted costs.
+    pub model: Model,
+    /// Subdomains of the predicted body, and elements of a subdomain, in each direction.
+    pub body: [usize; 2],
+    /// Iterations that are predicted with: those of the largest number of such bodies that was run.
+    pub iterations: usize,
+    /// Bodies of that run.
+    pub iterations_of: usize,
+    /// A body per rank: on the network that is stated, and on one with the messages of this machine.
+    pub predictions: Vec<Prediction>,
+}
+
+/// What the user may say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Small scenes.
+    pub quick: bool,
+    /// α and β of the network that is predicted for.
+    pub network: [f64; 2],
+    /// A run that takes longer is ended.
+    pub limit: Duration,
+    /// PETSc's arguments that every run gets.
+    pub petsc: Vec<String>,
+}
+
+impl Settings {
+    /// Reads `-scaling_alpha`, `-scaling_beta` and `-compare_time_limit`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for numbers that no network has.
+    pub fn from_options(session: &Session, quick: bool, petsc: &[String]) -> Result<Settings> {
+        let options = Options::new(session, "scaling_");
+        let mut network = USUAL;
+        let help = [
+            "seconds per message of the network that study scaling predicts for",
+            "seconds per byte of that network",
+        ];
+        for (k, name) in ["alpha", "beta"].into_iter().enumerate() {
+            network[k] = options.f64(name, USUAL[k], help[k])?;
+            if network[k] <= 0.0 {
+                return Err(Error::input(format!(
+                    "option -scaling_{name} is {}, expected seconds above 0",
+                    network[k]
+                )));
+            }
+        }
+        let limit = Options::new(session, "compare_").f64(
+            "time_limit",
+            120.0,
+            "seconds that a run of study scaling may take",
+        )?;
+        if limit < 1.0 {
+            return Err(Error::input(format!(
+                "option -compare_time_limit is {limit}, expected at least 1 second"
+            )));
+        }
+        Ok(Settings {
+            quick,
+            network,
+            limit: Duration::from_secs_f64(limit),
+            petsc: petsc.to_vec(),
+        })
+    }
+}
+
+/// Runs the study, telling `progress` before every run. On one rank: the runs have ranks of their own.
+///
+/// # Errors
+/// [`Error::Input`] on several ranks or for a case; those of the runs.
+pub fn run(
+    session: &Session,
+    settings: &Settings,
+    case: Option<&str>,
+    progress: &mut dyn FnMut(&str),
+) -> Result<Report> {
+    if session.size() > 1 {
+        return Err(Error::input(format!(
+            "study scaling was started on {} ranks, expected one: it starts its runs on ranks of their own",
+            session.size()
+        )));
+    }
+    if let Some(case) = case {
+        return Err(Error::input(format!(
+            "\"{case}\" was not expected: study scaling has no cases"
+        )));
+    }
+    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let mut petsc = settings.petsc.clone();
+    petsc.extend(["-fetifeti_threads".into(), "1".into()]);
+    let launcher = Launcher {
+        workspace: Workspace::new()?,
+        limit: settings.limit,
+        petsc,
+    };
+    progress("messages");
+    let network = messages(&launcher)?;
+    let mut points = Vec::new();
+    let setups = scenes::setups(settings.quick);
+    for (k, setup) in setups.iter().enumerate() {
+        progress(&format!("{} of {}, {}", k + 1, setups.len(), setup.name()));
+        points.push(point(&launcher, setup, cores, settings.quick)?);
+    }
+    let model = Model::fit(&points);
+    for p in &mut points {
+        p.compare(&model, &network.network);
+    }
+    let body = scenes::predicted_body(settings.quick);
+    let largest = largest_like(&points, body);
+    let basis = Basis {
+        model: &model,
+        middle: middle(&points),
+        iterations: largest.iterations,
+    };
+    let [alpha, beta] = settings.network;
+    let stated = Network {
+        alpha,
+        beta,
+        ..network.network
+    };
+    let predictions = vec![
+        basis.predict("stated", stated),
+        basis.predict("this machine", network.network),
+    ];
+    Ok(Report {
+        study: "scaling".into(),
+        quick: settings.quick,
+        cores,
+        body,
+        iterations: largest.iterations,
+        iterations_of: largest.bodies,
+        network,
+        model,
+        points,
+        predictions,
+    })
+}
+
+/// The run with a body per rank.
+fn middle(points: &[Point]) -> &Point {
+    let found = points.iter().find(|p| p.series == Series::Neighbours);
+    found.expect("it is one of the runs")
+}
+
+/// The run with most bodies of a size.
+fn largest_like(points: &[Point], [s, e]: [usize; 2]) -> &Point {
+    let like = |p: &&Point| {
+        let tied = p.problem == Problem::Tied;
+        tied && p.elements == e && p.subdomains == p.bodies * s * s
+    };
+    let found = points.iter().filter(like).max_by_key(|p| p.bodies);
+    found.expect("such bodies are run")
+}
+
+fn started<T: serde::de::DeserializeOwned>(
+    launcher: &Launcher,
+    name: &str,
+    what: What,
+    ranks: usize,
+) -> Result<T> {
+    let result = launcher.workspace.file("record.json");
+    // A record of the run before must not be taken for that of one that fails.
+    let _ = std::fs::remove_file(&result);
+    let task = Task {
+        result: result.clone(),
+        what,
+    };
+    let finished = launcher.run_task("run", ("measure", &task), &result, ranks)?;
+    let text = finished.record.map_err(|mut failure| {
+        failure.message = format!("{name}: {}", failure.message);
+        failure.into_error()
+    })?;
+    serde_json::from_str(&text)
+        .map_err(|e| Error::environment(format!("{name}: a run left an unreadable record: {e}")))
+}
+
+fn messages(launcher: &Launcher) -> Result<Measured> {
+    let [two, four]: [NetworkRecord; 2] = [
+        started(launcher, "messages", What::Network, 2)?,
+        started(launcher, "messages", What::Network, 4)?,
+    ];
+    let reductions = [two.reductions, four.reductions].concat();
+    Ok(Measured::new(two.messages, reductions))
+}
+
+fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Result<Point> {
+    // For the messages once is enough.
+    let repeats = match setup.series {
+        Series::Neighbours => 1,
+        _ if quick => 2,
+        _ => 3,
+    };
+    let what = What::Solve {
+        scene: setup.scene(),
+        repeats,
+    };
+    let r: SolveRecord = started(launcher, &setup.name(), what, setup.ranks)?;
+    Ok(Point {
+        series: setup.series,
+        problem: setup.problem,
+        ranks: setup.ranks,
+        oversubscribed: setup.ranks > cores,
+        // Contact adds work of its own in every step.
+        fitted: setup.ranks == 1 && setup.problem == Problem::Tied,
+        bodies: setup.n_bodies(),
+        floating_bodies: r.floating_bodies,
+        subdomains: r.subdomains,
+        elements: setup.elements,
+        multipliers: r.multipliers,
+        iterations: r.iterations,
+        steps: r.steps,
+        kappa: r.kappa,
+        setup: r.setup,
+        iteration: r.iteration,
+        outside: r.outside,
+        total: r.total,
+        memory_mb: r.memory_mb,
+        work: r.work,
+        communication: r.communication,
+        model: Modelled::default(),
+        setup_deviation: 0.0,
+        iteration_deviation: 0.0,
+    })
+}
+
+impl Point {
+    /// Sets what the model says and how far it is off.
+    fn compare(&mut self, model: &Model, network: &Network) {
+        let ranks = self.ranks as f64;
+        self.model = model.seconds(&self.work, ranks, &Sent::of(self), network);
+        self.setup_deviation = self.model.setup.sum() / self.setup.sum() - 1.0;
+        self.iteration_deviation = self.model.iteration.sum() / self.iteration.sum() - 1.0;
+    }
+}

@@ -1,0 +1,353 @@
+//! What a rank's work costs by phase, and what messages cost.
+//!
+//! Every phase is a sum of a few terms, fitted to the runs on one rank, where nothing is sent and nobody waits. Messages are α–β on top: their
+//! number and bytes are counted, α and β measured apart. Runs on several ranks test the model, they do not feed it.
+//!
+//! What an iteration reads comes from the cache as long as all of it fits, and from memory, many times slower, where it does not. Every term of an
+//! iteration is there twice: as it is, and times the part of what is read that is beyond the cache. The cache's size is the one that fits best.
+
+use serde::{Deserialize, Serialize};
+
+use super::fit::Law;
+use super::network::Network;
+use super::{IterationSeconds, Point, SetupSeconds, Work};
+
+/// Projections in an iteration, each with an all-reduce of r numbers: P and Pᵀ around F and around M⁻¹.
+const PROJECTIONS: f64 = 4.0;
+
+/// All-reduces of r² numbers in the set-up: Gᵀ Q G, and Gᵀ G to see which bodies are held.
+const SQUARES: f64 = 2.0;
+
+/// A phase: its terms, what they are for a rank's work, and what was measured.
+struct Phase {
+    /// Its name; those of an iteration are [`ITERATED`].
+    name: &'static str,
+    terms: &'static [&'static str],
+    values: fn(&Work) -> Vec<f64>,
+    seconds: fn(&Point) -> f64,
+}
+
+/// One where there is any of it.
+fn any(x: f64) -> f64 {
+    f64::from(u8::from(x > 0.0))
+}
+
+/// The phases that read the same operators again and again.
+const ITERATED: std::ops::Range<usize> = 5..10;
+
+/// Sizes of the cache that are tried, in bytes: powers of √2 from 128 kB on.
+const CACHES: usize = 20;
+
+const PHASES: [Phase; 11] = [
+    Phase {
+        name: "set-up, subdomains",
+        terms: &["subdomains", "unknowns", "interface^3"],
+        values: |w| vec![w.subdomains, w.unknowns, w.interface_cubes],
+        seconds: |p| p.setup.local,
+    },
+    Phase {
+        name: "set-up, S_Π",
+        terms: &["1", "primal", "primal log primal"],
+        values: |w| vec![any(w.primal), w.primal, w.primal_factor],
+        seconds: |p| p.setup.primal,
+    },
+    Phase {
+        name: "set-up, Z_c",
+        terms: &["interface^2 columns", "columns^2", "columns^3"],
+        values: |w| vec![w.lifting_products, w.lifting_squares, w.lifting_cubes],
+        seconds: |p| p.setup.lifting,
+    },
+    Phase {
+        name: "set-up, GᵀQG",
+        terms: &["multipliers", "r^2", "r^3"],
+        values: |w| {
+            let r = w.kernels;
+            vec![any(r) * w.multipliers, r.powi(2), r.powi(3)]
+        },
+        seconds: |p| p.setup.natural,
+    },
+    Phase {
+        name: "set-up, rest",
+        terms: &["subdomains", "unknowns", "multipliers"],
+        values: |w| vec![w.subdomains, w.unknowns, w.multipliers],
+        seconds: |p| p.setup.rest,
+    },
+    Phase {
+        name: "iteration, subdomains",
+        terms: &["subdomains", "interface^2", "multipliers"],
+        values: |w| vec![w.subdomains, w.interface_squares, w.multipliers],
+        seconds: |p| p.iteration.local,
+    },
+    Phase {
+        name: "iteration, S_Π",
+        terms: &["1", "primal", "primal log primal"],
+        values: |w| vec![any(w.primal), w.primal, w.primal_factor],
+        seconds: |p| p.iteration.primal,
+    },
+    Phase {
+        name: "iteration, Z_c",
+        terms: &["columns", "columns^2"],
+        values: |w| vec![w.lifting, w.lifting_squares],
+        seconds: |p| p.iteration.lifting,
+    },
+    Phase {
+        name: "iteration, GᵀQG",
+        terms: &["1", "r", "r log r"],
+        values: |w| {
+            let r = w.kernels;
+            vec![any(r), r, r * (r + 1.0).log2()]
+        },
+        seconds: |p| p.iteration.natural,
+    },
+    Phase {
+        name: "iteration, copies for messages",
+        terms: &["1", "ghosts"],
+        values: |w| vec![1.0, w.ghosts],
+        seconds: |p| p.iteration.exchange,
+    },
+    Phase {
+        name: "solve, outside the iterations",
+        terms: &["subdomains", "unknowns", "interface^2"],
+        values: |w| vec![w.subdomains, w.unknowns, w.interface_squares],
+        seconds: |p| p.outside,
+    },
+];
+
+/// What a rank sends in an iteration.
+pub struct Sent {
+    messages: f64,
+    bytes: f64,
+    /// All-reduces of one number: those of CG.
+    dots: f64,
+}
+
+impl Sent {
+    /// What the rank with most of it sends in a run.
+    pub fn of(point: &Point) -> Sent {
+        let counted = &point.communication;
+        let projections = PROJECTIONS * any(point.work.kernels);
+        Sent {
+            messages: counted.messages_per_iteration.max,
+            bytes: counted.bytes_per_iteration.max,
+            dots: (counted.reductions_per_iteration - projections).max(0.0),
+        }
+    }
+}
+
+/// The fitted costs of all phases.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Model {
+    /// By phase.
+    pub laws: Vec<Law>,
+    /// Bytes of operators that a rank keeps in its cache.
+    pub cache: f64,
+}
+
+/// Bytes of the sparse factors of Gᵀ Q G over r log r: nested dissection of a plane grid of bodies, with 12 bytes an entry.
+const FILL: f64 = 93.0;
+
+/// The part of what a rank reads in an iteration that is beyond a cache.
+fn beyond(cache: f64, work: &Work) -> f64 {
+    let r = work.kernels;
+    let dense = 8.0 * (work.interface_squares + work.lifting_squares);
+    let bytes = dense + FILL * r * (r + 1.0).log2();
+    match bytes > cache {
+        true => 1.0 - cache / bytes,
+        false => 0.0,
+    }
+}
+
+/// The terms of phase `k`.
+fn terms(k: usize, cache: f64, work: &Work) -> Vec<f64> {
+    let mut values = (PHASES[k].values)(work);
+    if ITERATED.contains(&k) {
+        let part = beyond(cache, work);
+        let slow: Vec<f64> = values.iter().map(|x| part * x).collect();
+        values.extend(slow);
+    }
+    values
+}
+
+/// What the model says of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Modelled {
+    /// Seconds of set-up.
+    pub setup: SetupSeconds,
+    /// Seconds of an iteration.
+    pub iteration: IterationSeconds,
+    /// Seconds of a solve besides its iterations.
+    pub outside: f64,
+}
+
+impl Modelled {
+    /// Seconds of set-up and of a solve with this many iterations.
+    pub fn total(&self, iterations: f64) -> f64 {
+        self.setup.sum() + iterations * self.iteration.sum() + self.outside
+    }
+}
+
+impl Model {
+    /// Fits all phases to the points on one rank.
+    pub fn fit(points: &[Point]) -> Model {
+        let fit = |k: usize, cache: f64| {
+            let phase = &PHASES[k];
+            let one = points.iter().filter(|p| p.fitted);
+            let samples: Vec<(Vec<f64>, f64)> = one
+                .map(|p| (terms(k, cache, &p.work), (phase.seconds)(p)))
+                .collect();
+            let mut names: Vec<String> = phase.terms.iter().map(|t| t.to_string()).collect();
+            if ITERATED.contains(&k) {
+                names.extend(phase.terms.iter().map(|t| format!("{t} beyond")));
+            }
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            Law::fit(phase.name, &names, &samples)
+        };
+        let caches = (0..CACHES).map(|k| 131_072.0 * 2.0_f64.powf(0.5 * k as f64));
+        let misfit = |cache: &f64| ITERATED.map(|k| fit(k, *cache).misfit).sum::<f64>();
+        let best = caches.min_by(|a, b| misfit(a).total_cmp(&misfit(b)));
+        let cache = best.expect("there are sizes to try");
+        Model {
+            laws: (0..PHASES.len()).map(|k| fit(k, cache)).collect(),
+            cache,
+        }
+    }
+
+    /// The seconds of `work` on each of `ranks` ranks, with what an iteration sends.
+    pub fn seconds(&self, work: &Work, ranks: f64, sent: &Sent, network: &Network) -> Modelled {
+        let at = |k: usize| self.laws[k].at(&terms(k, self.cache, work));
+        let r = work.kernels;
+        let mut setup = SetupSeconds::from_fn(at);
+        setup.natural += SQUARES * any(r) * network.all_reduce(ranks, 8.0 * r * r);
+        let iteration = IterationSeconds {
+            local: at(5),
+            primal: at(6),
+            lifting: at(7),
+            natural: at(8),
+            exchange: at(9) + network.messages(sent.messages, sent.bytes),
+            reduction: sent.dots * network.all_reduce(ranks, 8.0)
+                + PROJECTIONS * any(r) * network.all_reduce(ranks, 8.0 * r),
+        };
+        Modelled {
+            setup,
+            iteration,
+            outside: at(10),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Problem, Series};
+    use super::*;
+    use crate::report::json::{Communication, PerIteration};
+
+    /// Seconds per term of an iteration on the subdomains, in and beyond a cache of this size.
+    const KNOWN: [f64; 6] = [4e-7, 3e-10, 2e-8, 0.0, 2e-9, 0.0];
+    const CACHE: f64 = 131_072.0 * 16.0;
+
+    /// A run of `n` bodies with seconds as they are known.
+    fn point(n: f64, subdomains: f64) -> Point {
+        let work = Work {
+            subdomains: n * subdomains,
+            unknowns: 81.0 * n * subdomains,
+            interface_squares: (700.0 + 13.0 * subdomains) * n * subdomains,
+            interface_cubes: 4e4 * n * subdomains,
+            multipliers: 15.0 * n * subdomains.sqrt(),
+            ghosts: 90.0 * n * subdomains,
+            kernels: n - 1.0,
+            ..Work::default()
+        };
+        let local = terms(5, CACHE, &work);
+        let local = local.iter().zip(KNOWN).map(|(x, c)| c * x).sum();
+        Point {
+            series: Series::Bodies,
+            problem: Problem::Tied,
+            ranks: 1,
+            oversubscribed: false,
+            fitted: true,
+            bodies: n as usize,
+            floating_bodies: n as usize - 1,
+            subdomains: (n * subdomains) as usize,
+            elements: 8,
+            multipliers: 0,
+            iterations: 10,
+            steps: 1,
+            kappa: None,
+            setup: SetupSeconds {
+                natural: 1e-8 * work.kernels.powi(2) + 5e-11 * work.kernels.powi(3),
+                ..SetupSeconds::default()
+            },
+            iteration: IterationSeconds {
+                local,
+                ..IterationSeconds::default()
+            },
+            outside: 0.0,
+            total: [0.0; 2],
+            memory_mb: [0.0; 2],
+            work,
+            communication: Communication {
+                messages_per_iteration: PerIteration {
+                    sum: 20.0,
+                    max: 10.0,
+                },
+                bytes_per_iteration: PerIteration {
+                    sum: 2000.0,
+                    max: 1000.0,
+                },
+                reductions_per_iteration: 7.0,
+                reduced_bytes_per_iteration: 56.0,
+            },
+            model: Modelled::default(),
+            setup_deviation: 0.0,
+            iteration_deviation: 0.0,
+        }
+    }
+
+    fn points() -> Vec<Point> {
+        let bodies = [2.0, 8.0, 32.0, 128.0, 512.0];
+        let all = bodies
+            .iter()
+            .flat_map(|&n| [1.0, 4.0, 16.0].map(|s| point(n, s)));
+        all.collect()
+    }
+
+    #[test]
+    fn known_costs_and_the_size_of_the_cache_are_recovered() {
+        let model = Model::fit(&points());
+        assert!((model.cache / CACHE - 1.0).abs() < 1e-12, "{}", model.cache);
+        for (found, known) in model.laws[5].seconds.iter().zip(KNOWN) {
+            assert!(
+                (found - known).abs() < 1e-6 * KNOWN[0].min(known + 1e-14),
+                "{found} {known}"
+            );
+        }
+        let natural = &model.laws[3];
+        assert!(
+            (natural.seconds[2] / 5e-11 - 1.0).abs() < 1e-6,
+            "{natural:?}"
+        );
+    }
+
+    #[test]
+    fn messages_come_on_top() {
+        let (model, one) = (Model::fit(&points()), point(8.0, 4.0));
+        let net = Network {
+            alpha: 1e-6,
+            beta: 1e-9,
+            gamma: 0.0,
+        };
+        let at = |ranks: f64| model.seconds(&one.work, ranks, &Sent::of(&one), &net);
+        let (alone, many) = (at(1.0), at(1024.0));
+        assert!((many.iteration.exchange - (10e-6 + 1e-6)).abs() < 1e-12);
+        // Three inner products of CG and four projections with r = 7, ten steps each.
+        let reduction = 3.0 * 10.0 * (1e-6 + 8e-9) + 4.0 * 10.0 * (1e-6 + 56e-9);
+        assert!((many.iteration.reduction - reduction).abs() < 1e-12);
+        assert_eq!(alone.iteration.reduction, 0.0);
+        assert_eq!(many.iteration.local, alone.iteration.local);
+        // Two all-reduces of r² numbers in the set-up.
+        let more = many.setup.natural - alone.setup.natural;
+        assert!((more - 2.0 * net.all_reduce(1024.0, 8.0 * 49.0)).abs() < 1e-15);
+        let total = many.setup.sum() + 5.0 * many.iteration.sum() + many.outside;
+        assert_eq!(many.total(5.0), total);
+    }
+}

@@ -1,0 +1,193 @@
+//! Curves of the study: runs over ranks and bodies, and the model by phase.
+
+use super::{IterationSeconds, Point, Problem, Report, Series as Runs, SetupSeconds};
+use crate::report::canvas::Colour;
+use crate::report::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use crate::report::ticks::Scale;
+
+/// Ranks of the runs.
+const RANKS: [f64; 3] = [1.0, 2.0, 4.0];
+
+fn colour(k: usize) -> Colour {
+    Colour::CYCLE[k % Colour::CYCLE.len()]
+}
+
+fn panel(title: &str, x: Axis, y: Axis, series: Vec<Series>) -> Panel {
+    Panel {
+        title: title.into(),
+        x,
+        y,
+        series,
+        bands: Vec::new(),
+    }
+}
+
+/// Measured and modelled seconds of set-up and solve over ranks; hollow where there are more ranks than cores.
+fn over_ranks(report: &Report, runs: Runs, title: &str) -> Panel {
+    let mut series = Vec::new();
+    for (k, problem) in [Problem::Tied, Problem::Contact].into_iter().enumerate() {
+        let points = report.points.iter();
+        let of = points.filter(|p| p.series == runs && p.problem == problem);
+        let of: Vec<&Point> = of.collect();
+        if of.is_empty() {
+            continue;
+        }
+        let marker = [Marker::Circle, Marker::Square][k];
+        let at = |crowded: bool| {
+            let these = of.iter().filter(|p| p.oversubscribed == crowded);
+            these
+                .map(|p| (p.ranks as f64, p.total[0] + p.total[1]))
+                .collect::<Vec<_>>()
+        };
+        let model = |p: &&Point| (p.ranks as f64, p.model.total(p.iterations as f64));
+        let name = problem.name();
+        // Steps of the contact loop are not in the model.
+        if problem == Problem::Tied {
+            let curve = of.iter().map(model).collect();
+            series.push(
+                Series::new(format!("{name}, model"), curve, colour(k))
+                    .marker(Marker::None, false, 0.0)
+                    .line(Line::Dashed),
+            );
+        }
+        let label = format!("{name}, more ranks than cores");
+        series.push(
+            Series::new(label, at(true), colour(k))
+                .marker(marker, false, 4.5)
+                .line(Line::None),
+        );
+        series.push(
+            Series::new(name, at(false), colour(k))
+                .marker(marker, true, 4.5)
+                .line(Line::Full),
+        );
+    }
+    let x = Axis::new("ranks", Scale::Log).at(RANKS);
+    let y = Axis::new("seconds, set-up and solve", Scale::Log);
+    panel(title, x, y, series)
+}
+
+/// Iterations over the number of subdomains, a curve for each size of body.
+fn iterations(report: &Report) -> Panel {
+    let runs = || report.points.iter().filter(|p| p.series == Runs::Bodies);
+    let mut sizes: Vec<usize> = runs().map(|p| p.subdomains / p.bodies).collect();
+    sizes.dedup();
+    let markers = [Marker::Diamond, Marker::Triangle, Marker::Square];
+    let curve = |(k, &size): (usize, &usize)| {
+        let of = runs().filter(|p| p.subdomains == size * p.bodies);
+        let points = of.map(|p| (p.subdomains as f64, p.iterations as f64));
+        let label = match size {
+            1 => "bodies of 1 subdomain".to_string(),
+            n => format!("bodies of {n} subdomains"),
+        };
+        Series::new(label, points.collect(), colour(k + 2)).marker(
+            markers[k % markers.len()],
+            true,
+            4.5,
+        )
+    };
+    let series = sizes.iter().enumerate().map(curve).collect();
+    let mut y = Axis::new("iterations", Scale::Linear);
+    let most = runs().map(|p| p.iterations).max().unwrap_or(0);
+    y.range = Some((0.0, 1.15 * most as f64));
+    let x = Axis::new("subdomains", Scale::Log);
+    panel("Bodies of one size, tied", x, y, series)
+}
+
+/// What was run.
+pub fn figure(report: &Report) -> Figure {
+    Figure::new(
+        "Seconds over ranks, iterations over subdomains",
+        vec![
+            over_ranks(report, Runs::Strong, "Strong: one scene"),
+            over_ranks(report, Runs::Weak, "Weak: four bodies per rank"),
+            iterations(report),
+        ],
+    )
+}
+
+/// The name and place in the palette of a phase, the same in all panels.
+fn phases() -> Vec<&'static str> {
+    let mut all = SetupSeconds::NAMES.to_vec();
+    let more = IterationSeconds::NAMES.iter();
+    all.extend(more.filter(|n| !SetupSeconds::NAMES.contains(n)));
+    all
+}
+
+/// The name as text with subscripts.
+fn label(name: &str) -> String {
+    name.replace("S_Π", "S_{Π}").replace("Z_c", "Z_{c}")
+}
+
+fn phase_colour(name: &str) -> Colour {
+    colour(phases().iter().position(|p| *p == name).unwrap_or(0))
+}
+
+/// Milliseconds of an iteration by phase over bodies of four subdomains: markers are measured, lines modelled.
+fn measured_phases(report: &Report) -> Panel {
+    let of = report.points.iter();
+    let of = of.filter(|p| p.series == Runs::Bodies && p.subdomains == 4 * p.bodies);
+    let of: Vec<&Point> = of.collect();
+    let mut series = Vec::new();
+    for (k, name) in IterationSeconds::NAMES.iter().enumerate() {
+        let curve = |seconds: &dyn Fn(&Point) -> f64| {
+            let points = of.iter().map(|p| (p.bodies as f64, 1e3 * seconds(p)));
+            points.filter(|p| p.1 > 0.0).collect::<Vec<_>>()
+        };
+        let modelled = curve(&|p| p.model.iteration.all()[k]);
+        if modelled.is_empty() {
+            continue;
+        }
+        let line = Series::new(label(name), modelled, phase_colour(name));
+        series.push(line.marker(Marker::None, false, 0.0));
+        let dots = Series::new("", curve(&|p| p.iteration.all()[k]), phase_colour(name));
+        series.push(dots.marker(Marker::Circle, true, 3.5).line(Line::None));
+    }
+    let x = Axis::new("bodies of 2 x 2 subdomains", Scale::Log);
+    let y = Axis::new("milliseconds per iteration", Scale::Log);
+    panel("One rank: measured, and fitted (lines)", x, y, series)
+}
+
+/// Predicted seconds over ranks by phase.
+fn predicted(report: &Report, iteration: bool) -> Panel {
+    let rows = &report.predictions[0].rows;
+    let mut series = Vec::new();
+    let names: Vec<&str> = match iteration {
+        true => IterationSeconds::NAMES.to_vec(),
+        false => SetupSeconds::NAMES.to_vec(),
+    };
+    for (k, name) in names.iter().enumerate() {
+        let of = |row: &super::Row| match iteration {
+            true => 1e3 * row.seconds.iteration.all()[k],
+            false => row.seconds.setup.all()[k],
+        };
+        let points: Vec<(f64, f64)> = rows.iter().map(|r| (r.ranks as f64, of(r))).collect();
+        if points.iter().any(|p| p.1 > 0.0) {
+            let line = Series::new(label(name), points, phase_colour(name));
+            series.push(line.marker(Marker::None, false, 0.0));
+        }
+    }
+    let (title, y) = match iteration {
+        true => ("Predicted iteration", "milliseconds per iteration"),
+        false => ("Predicted set-up", "seconds"),
+    };
+    let x = Axis::new("ranks, a body on each", Scale::Log);
+    panel(title, x, Axis::new(y, Scale::Log), series)
+}
+
+/// The model beside what it is fitted to, and what it predicts for the stated network.
+pub fn model_figure(report: &Report) -> Figure {
+    let network = report.predictions[0].network;
+    Figure::new(
+        format!(
+            "The model by phase; network: {:.1} µs per message, {:.1} GB/s",
+            1e6 * network.alpha,
+            1e-9 / network.beta
+        ),
+        vec![
+            measured_phases(report),
+            predicted(report, false),
+            predicted(report, true),
+        ],
+    )
+}

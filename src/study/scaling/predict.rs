@@ -1,0 +1,152 @@
+//! Weak scaling far beyond this machine: a body on every rank.
+
+use serde::{Deserialize, Serialize};
+
+use super::model::{Model, Modelled, Sent};
+use super::network::Network;
+use super::{IterationSeconds, Point, SetupSeconds};
+
+/// Ranks that are predicted.
+pub const RANKS: [usize; 9] = [9, 16, 64, 256, 1024, 4096, 16_384, 65_536, 100_000];
+
+/// Dense r × r matrices that a rank holds while Gᵀ Q G is set up: Gᵀ Q G, Gᵀ G, and the factor of the latter.
+const DENSE: f64 = 3.0;
+
+/// Memory of a rank, in bytes, beyond which it is said that they do not fit.
+const ROOM: f64 = 4e9;
+
+/// The problem with a body on each of `ranks` ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Ranks, and bodies.
+    pub ranks: usize,
+    /// Kernel vectors of all bodies.
+    pub kernels: usize,
+    /// Unknowns, copies counted.
+    pub unknowns: f64,
+    /// Bytes of the dense matrices of order r on every rank during set-up.
+    pub replicated_bytes: f64,
+    /// Seconds by phase.
+    pub seconds: Modelled,
+    /// Seconds of set-up and a solve.
+    pub total: f64,
+    /// The same without all that r costs: set-up and solves with Gᵀ Q G, and the all-reduces of r numbers.
+    pub without_kernels: f64,
+}
+
+/// The phase that takes longest from some number of ranks on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// From so many ranks on.
+    pub from: usize,
+    /// Its name.
+    pub phase: String,
+}
+
+/// One network.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Prediction {
+    /// What network it is.
+    pub network_name: String,
+    /// Its α and β.
+    pub network: Network,
+    /// By ranks.
+    pub rows: Vec<Row>,
+    /// Which phase of set-up and solve together takes longest.
+    pub limits: Vec<Limit>,
+    /// Which phase of an iteration takes longest.
+    pub iteration_limits: Vec<Limit>,
+    /// Ranks from which on it takes twice as long as on the first row; `None`: beyond the last.
+    pub doubles_at: Option<usize>,
+    /// Ranks from which on the dense matrices of order r need more than 4 GB on every rank; `None`: beyond the last.
+    pub full_at: Option<usize>,
+}
+
+/// What is predicted from: the rank in the middle of 3 × 3, and how often one iterates.
+pub struct Basis<'a> {
+    /// The fitted costs.
+    pub model: &'a Model,
+    /// A body on every rank, one of them with all its neighbours.
+    pub middle: &'a Point,
+    /// Iterations, of the largest number of such bodies that was measured.
+    pub iterations: usize,
+}
+
+/// Kernel vectors of `ranks` bodies in a square that is held all round: those inside float.
+fn kernels(ranks: f64) -> f64 {
+    (ranks.sqrt() - 2.0).max(0.0).powi(2)
+}
+
+impl Basis<'_> {
+    fn row(&self, ranks: f64, network: &Network) -> Row {
+        let mut work = self.middle.work;
+        work.kernels = kernels(ranks).round();
+        let sent = &Sent::of(self.middle);
+        let seconds = self.model.seconds(&work, ranks, sent, network);
+        let mut free = work;
+        free.kernels = 0.0;
+        let free = self.model.seconds(&free, ranks, sent, network);
+        let n = self.iterations as f64;
+        Row {
+            ranks: ranks as usize,
+            kernels: work.kernels as usize,
+            unknowns: ranks * work.unknowns,
+            replicated_bytes: DENSE * 8.0 * work.kernels.powi(2),
+            seconds,
+            total: seconds.total(n),
+            without_kernels: free.total(n),
+        }
+    }
+
+    /// The phase that takes longest, of an iteration or of set-up and solve together.
+    fn longest(&self, row: &Row, iteration: bool) -> String {
+        let setup = SetupSeconds::NAMES.iter().zip(row.seconds.setup.all());
+        let setup = setup.filter(|_| !iteration);
+        let setup = setup.map(|(name, t)| (format!("set-up, {name}"), t));
+        let n = self.iterations as f64;
+        let rest = IterationSeconds::NAMES.iter();
+        let rest = rest.zip(row.seconds.iteration.all());
+        let rest = rest.map(|(name, t)| (format!("iterations, {name}"), n * t));
+        let all = setup.chain(rest);
+        all.max_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or(String::new(), |(name, _)| name)
+    }
+
+    /// Predicts for a network.
+    pub fn predict(&self, network_name: &str, network: Network) -> Prediction {
+        let rows: Vec<Row> = RANKS
+            .iter()
+            .map(|&ranks| self.row(ranks as f64, &network))
+            .collect();
+        let [first, last] = [RANKS[0] as f64, RANKS[RANKS.len() - 1] as f64];
+        let steps = 400;
+        let fine = (0..=steps).map(|k| {
+            let ranks = first * (last / first).powf(f64::from(k) / f64::from(steps));
+            self.row(ranks.round(), &network)
+        });
+        let fine: Vec<Row> = fine.collect();
+        let limits = |iteration: bool| {
+            let mut limits: Vec<Limit> = Vec::new();
+            for row in &fine {
+                let phase = self.longest(row, iteration);
+                if limits.last().is_none_or(|l| l.phase != phase) {
+                    limits.push(Limit {
+                        from: row.ranks,
+                        phase,
+                    });
+                }
+            }
+            limits
+        };
+        let from = |over: &dyn Fn(&Row) -> bool| fine.iter().find(|r| over(r)).map(|r| r.ranks);
+        Prediction {
+            doubles_at: from(&|r| r.total > 2.0 * fine[0].total),
+            full_at: from(&|r| r.replicated_bytes > ROOM),
+            network_name: network_name.into(),
+            network,
+            rows,
+            limits: limits(false),
+            iteration_limits: limits(true),
+        }
+    }
+}
