@@ -126,15 +126,15 @@ fn cube(n: usize) -> String {
 
 /// A block that is pressed on another one, with a gap that opens towards the far corner.
 fn cube_contact(quick: bool) -> String {
-    let (n, subdomains) = if quick {
-        (12, "[2, 1, 2]")
+    let (n, subdomains, elements) = if quick {
+        (12, "[4, 2, 4]", 3)
     } else {
-        (24, "[4, 2, 4]")
+        (24, "[6, 3, 6]", 4)
     };
     let body = |name: &str, y: &str, young: usize, rest: &str| {
         format!(
             "\n[[body]]\nname = \"{name}\"\norigin = [0, {y}, 0]\nsize = [1, 0.5, 1]\nsubdomains = {subdomains}\n\
-             elements_per_subdomain = 6\nyoung = {young}\npoisson = 0.3\n{rest}"
+             elements_per_subdomain = {elements}\nyoung = {young}\npoisson = 0.3\n{rest}"
         )
     };
     format!(
