@@ -309,6 +309,7 @@ fn operators(session: &Session, facts: &Facts) -> Operators {
         facts.implicit_kinds as f64,
         1e-6 * facts.factor_bytes as f64,
         1e-6 * facts.dense_bytes as f64,
+        facts.in_single as f64,
     ];
     sum_all(session.comm(), &mut sums);
     Operators {
@@ -316,6 +317,7 @@ fn operators(session: &Session, facts: &Facts) -> Operators {
         sparse: sums[1] as usize,
         factor_mb: sums[2],
         dense_mb: sums[3],
+        single: sums[4] as usize,
     }
 }
 

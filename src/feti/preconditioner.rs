@@ -10,6 +10,9 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use mpi::topology::SimpleCommunicator;
+
+use super::exchange::{max_all, min_all};
 use super::lifting::Lifting;
 use super::local::dense::Dense;
 use super::local::problem::{LocalProblem, Operator};
@@ -37,8 +40,9 @@ pub struct Preconditioner {
 }
 
 impl Preconditioner {
-    /// A preconditioner of the given kind; `lifting` is needed by the coarse-corrected one alone.
+    /// A preconditioner of the given kind; `lifting` is needed by the coarse-corrected one alone. Collective.
     pub fn new(
+        comm: &SimpleCommunicator,
         kind: PcType,
         problem: &Substructures,
         stiffness: &Stiffness,
@@ -56,7 +60,7 @@ impl Preconditioner {
         };
         let uses_s = matches!(kind, PcType::Dirichlet | PcType::CoarseCorrected);
         let single = match (precision, uses_s) {
-            (Precision::Mixed, true) => in_single(stiffness),
+            (Precision::Mixed, true) => in_single(comm, stiffness),
             _ => Vec::new(),
         };
         Preconditioner {
@@ -67,6 +71,11 @@ impl Preconditioner {
             products: Products::new(&stiffness.locals, |most| stiffness.batches(most)),
             buffers: RefCell::new((stiffness.work(), vec![0.0; stiffness.jump.ghosts.len()])),
         }
+    }
+
+    /// Local subdomains with S in single precision.
+    pub fn in_single(&self) -> usize {
+        self.single.iter().flatten().count()
     }
 
     /// What it is.
@@ -169,11 +178,26 @@ impl Preconditioner {
     }
 }
 
-/// S of every local subdomain in single precision.
-fn in_single(stiffness: &Stiffness) -> Vec<Option<Arc<Single>>> {
+/// S is rounded to single precision as long as this bounds its condition number on Δ, from below by max T_ii max S_ii: its softest motions then keep
+/// two digits.
+const ROUNDABLE: f64 = 1e5;
+
+/// Nor where the stiffness of subdomains differs by more: what rounding makes of the rigid motions of stiff ones is large beside soft ones.
+const ALIKE: f64 = 1e3;
+
+/// S of every local subdomain in single precision, where that is safe. Collective.
+fn in_single(comm: &SimpleCommunicator, stiffness: &Stiffness) -> Vec<Option<Arc<Single>>> {
+    let each = stiffness.locals.iter().map(Local::stiffness);
+    let (low, high) = each.fold((f64::INFINITY, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
+    let (mut low, mut high) = ([low], [high]);
+    min_all(comm, &mut low);
+    max_all(comm, &mut high);
+    if high[0] > ALIKE * low[0] {
+        return vec![None; stiffness.locals.len()];
+    }
     let mut known: HashMap<*const LocalProblem, Arc<Single>> = HashMap::new();
     let of = |local: &Local| {
-        if local.is_implicit() {
+        if local.is_implicit() || local.condition() > ROUNDABLE {
             return None;
         }
         let entry = known.entry(Arc::as_ptr(local.kind()));

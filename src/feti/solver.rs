@@ -80,6 +80,8 @@ pub struct Facts {
     pub kinds: usize,
     /// How many of them have S and T as sparse solves.
     pub implicit_kinds: usize,
+    /// Subdomains of this rank with S in single precision.
+    pub in_single: usize,
     /// Bytes of the subdomains' sparse factors on this rank.
     pub factor_bytes: usize,
     /// Bytes of the subdomains' dense operators on this rank.
@@ -162,8 +164,14 @@ impl FetiFeti {
             })?,
             _ => None,
         };
-        let preconditioner =
-            Preconditioner::new(kind, &problem, &stiffness, lifting, settings.precision);
+        let preconditioner = Preconditioner::new(
+            comm,
+            kind,
+            &problem,
+            &stiffness,
+            lifting,
+            settings.precision,
+        );
         let natural = clock::timed(Phase::NaturalSetup, || {
             NaturalCoarse::new(
                 session,
@@ -175,6 +183,7 @@ impl FetiFeti {
             )
         })?;
         let mut facts = facts(&stiffness, &natural, comm);
+        facts.in_single = preconditioner.in_single();
         let mut dual = Dual::new(session, stiffness, preconditioner, natural)?;
         dual.watched_from = match facts.inequalities {
             0 => WATCHED_FROM,
@@ -415,6 +424,7 @@ fn facts(
         factor_bytes,
         dense_bytes,
         kinds: kinds.len(),
+        in_single: 0,
         implicit_kinds: kinds.iter().filter(|k| k.is_implicit()).count(),
         adaptive_constraints: Vec::new(),
         adaptive_seconds: 0.0,

@@ -317,6 +317,12 @@ impl LocalProblem {
         vertices.chain(vectors.map(along)).chain(fixing).collect()
     }
 
+    /// A lower bound of the condition number of S on Δ: max T_ii max S_ii.
+    pub fn condition(&self) -> f64 {
+        let largest = |m: &Dense, n: usize| (0..n).map(|i| m.get(i, i)).fold(0.0, f64::max);
+        largest(self.t(), self.n_delta) * largest(self.s(), self.n_delta)
+    }
+
     /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
     pub(super) fn stiffness(&self) -> f64 {
         let n = self.n_gamma();

@@ -133,6 +133,9 @@ pub struct Operators {
     pub kinds: usize,
     /// Kinds with S and T as sparse solves; the others have dense matrices.
     pub sparse: usize,
+    /// Subdomains with S in single precision (`-fetifeti_precision mixed`).
+    #[serde(default)]
+    pub single: usize,
     /// MB of sparse factors.
     #[serde(with = "number")]
     pub factor_mb: f64,
