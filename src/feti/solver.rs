@@ -16,6 +16,8 @@ use super::equal;
 use super::halo::Halo;
 use super::jump::Jump;
 use super::lifting::Lifting;
+use super::local::interior::{LocalSolver, NoFactor};
+use super::local::multifrontal::SingularInterior;
 use super::local::problem::LocalProblem;
 use super::natural::NaturalCoarse;
 use super::preconditioner::Preconditioner;
@@ -112,7 +114,7 @@ impl FetiFeti {
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
-        let mut locals = session.agree(factor(&problem, &jump, &team))?;
+        let mut locals = session.agree(factor(&problem, &jump, &team, settings.local))?;
         for (j, local) in locals.iter().enumerate() {
             jump.place(j, &local.interface);
         }
@@ -332,13 +334,19 @@ fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
 
 fn threads(session: &Session, settings: &Settings) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    settings
+    let wanted = settings
         .threads
-        .unwrap_or(if session.size() == 1 { cores } else { 1 })
+        .unwrap_or(if session.size() == 1 { cores } else { 1 });
+    wanted.min(settings.local.most_threads().unwrap_or(wanted))
 }
 
 /// Factors one of each kind of subdomain.
-fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<LocalProblem>>> {
+fn factor(
+    problem: &Substructures,
+    jump: &Jump,
+    team: &Team,
+    solver: LocalSolver,
+) -> Result<Vec<Arc<LocalProblem>>> {
     let first = equal::representatives(problem, jump, team);
     let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
     let factored = team.map(kinds.len(), |k| {
@@ -346,9 +354,15 @@ fn factor(problem: &Substructures, jump: &Jump, team: &Team) -> Result<Vec<Arc<L
         let (delta, primal) = (&jump.delta[kinds[k]], &jump.primal[kinds[k]]);
         let averages = jump.averages[kinds[k]].iter();
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
-        LocalProblem::new(&sub.k, delta, primal, &averages, sub.coordinates.as_deref())
+        let places = sub.coordinates.as_deref();
+        LocalProblem::new(&sub.k, delta, primal, &averages, places, solver)
             .map(Arc::new)
-            .map_err(|e| unfit_matrix(problem, sub, e.dof))
+            .map_err(|e| match e {
+                NoFactor::Interior(SingularInterior { dof }) | NoFactor::Indefinite(dof) => {
+                    unfit_matrix(problem, sub, dof)
+                }
+                NoFactor::Failed(why) => Error::environment(why),
+            })
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: &usize| kinds.binary_search(j).expect("a representative is a kind");

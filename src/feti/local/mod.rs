@@ -4,6 +4,7 @@ pub mod basis;
 mod condense;
 pub mod dense;
 pub mod dissection;
+pub mod interior;
 pub mod lanes;
 pub mod multifrontal;
 pub mod pencil;

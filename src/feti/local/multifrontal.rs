@@ -19,7 +19,7 @@ use crate::sparse::Csr;
 
 /// A pivot below this fraction of the diagonal entry it came from counts as zero: rounding leaves about 1e-16 times
 /// the number of updates, while a body held by a spring of 1e-8 of its stiffness still shows 1e-8.
-const SINGULAR: f64 = 1e-13;
+pub(super) const SINGULAR: f64 = 1e-13;
 
 /// The interior block is singular: part of the subdomain touches neither a boundary condition nor the interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +74,12 @@ impl Symbolic {
         interface.iter().for_each(|&i| kept[i as usize] = true);
         let inside: Vec<u32> = (0..n as u32).filter(|&i| !kept[i as usize]).collect();
         let supernodes = nested_dissection(k, &inside, coordinates).supernodes;
+        Symbolic::with_supernodes(k, interface, &supernodes)
+    }
 
+    /// The same for a given order of the interior: sets of dofs in the order of elimination, each to be one front.
+    pub fn with_supernodes(k: &Csr, interface: &[u32], supernodes: &[Vec<u32>]) -> Symbolic {
+        let n = k.n();
         let interior: Vec<u32> = supernodes.iter().flatten().copied().collect();
         let mut position = vec![0; n];
         for (p, &i) in interior.iter().chain(interface).enumerate() {
@@ -140,6 +145,41 @@ impl Symbolic {
             };
             fronts[s].into_parent = map;
         }
+        Symbolic {
+            interior,
+            interface: interface.to_vec(),
+            position,
+            fronts,
+            storage,
+        }
+    }
+
+    /// Of a factor that was made elsewhere: fronts as (first column, number of columns, rows below), the columns of all of them together
+    /// being the interior. Good for solves alone.
+    pub(super) fn of_factor(
+        interior: Vec<u32>,
+        interface: &[u32],
+        fronts: impl Iterator<Item = (usize, usize, Vec<u32>)>,
+    ) -> Symbolic {
+        let mut position = vec![0; interior.len() + interface.len()];
+        for (p, &i) in interior.iter().chain(interface).enumerate() {
+            position[i as usize] = p as u32;
+        }
+        let mut storage = 0;
+        let fronts = fronts
+            .map(|(start, width, below)| {
+                let panel = storage;
+                storage += width * (width + below.len());
+                Front {
+                    start,
+                    end: start + width,
+                    below,
+                    parent: None,
+                    into_parent: Vec::new(),
+                    panel,
+                }
+            })
+            .collect();
         Symbolic {
             interior,
             interface: interface.to_vec(),

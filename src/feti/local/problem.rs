@@ -17,7 +17,8 @@ use std::sync::Arc;
 
 use super::basis::Basis;
 use super::dense::Dense;
-use super::multifrontal::{PartialCholesky, SingularInterior, Symbolic};
+use super::interior::{Factor, LocalSolver, NoFactor};
+use super::multifrontal::SingularInterior;
 use crate::sparse::Csr;
 
 /// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
@@ -51,31 +52,34 @@ pub struct LocalProblem {
     pub psi: Dense,
     /// Σ, n_Π × n_Π.
     pub sigma: Dense,
-    factor: Arc<PartialCholesky>,
+    factor: Arc<Factor>,
 }
 
 impl LocalProblem {
     /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists dual dofs whose means
     /// are primal.
+    ///
+    /// # Errors
+    /// A matrix that is no stiffness matrix; what the solver says.
     pub fn new(
         k: &Csr,
         delta: &[u32],
         primal: &[u32],
         averages: &[&[u32]],
         coordinates: Option<&[[f64; 3]]>,
-    ) -> Result<LocalProblem, SingularInterior> {
+        solver: LocalSolver,
+    ) -> Result<LocalProblem, NoFactor> {
         let given = delta.len();
         let mut delta = delta.to_vec();
         let (interface, factor, s) = loop {
             let interface = [&delta[..], primal].concat();
-            let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
-            match PartialCholesky::new(k, symbolic) {
+            match solver.condense(k, &interface, coordinates) {
                 Ok((factor, s)) => {
                     FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
                     break (interface, factor, s);
                 }
                 // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
-                Err(e) if delta.len() < given + MOST_FREE => delta.push(e.dof),
+                Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => delta.push(e.dof),
                 Err(e) => return Err(e),
             }
         };
@@ -276,7 +280,8 @@ mod tests {
         // With one subdomain, S̃⁺ = T + Ψ Σ⁻¹ Ψᵀ is S⁻¹; interiors come back through condense and recover.
         let (k, x) = grid_laplacian(9, 9, 0.1);
         let delta: Vec<u32> = (1..8).collect();
-        let local = LocalProblem::new(&k, &delta, &[0, 8], &[], Some(&x)).expect("definite");
+        let local = LocalProblem::new(&k, &delta, &[0, 8], &[], Some(&x), LocalSolver::default())
+            .expect("definite");
         assert!(local.fixing.is_empty());
         let u = random(k.n(), 5);
         let mut f = vec![0.0; k.n()];
@@ -318,7 +323,7 @@ mod tests {
             }
             let delta: Vec<u32> = (0..12).collect();
             assert!(
-                LocalProblem::new(&k, &delta, &[], &[], Some(&x)).is_err(),
+                LocalProblem::new(&k, &delta, &[], &[], Some(&x), LocalSolver::default()).is_err(),
                 "{value}"
             );
         }
@@ -328,7 +333,8 @@ mod tests {
     fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
         let (k, x) = grid_laplacian(8, 6, 0.0);
         let delta: Vec<u32> = (0..8).collect();
-        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x)).expect("one dof is held");
+        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x), LocalSolver::default())
+            .expect("one dof is held");
         assert_eq!((local.fixing.len(), local.n_pi()), (1, 1));
         assert!(local.sigma.get(0, 0).abs() < 1e-13);
         assert!(local.psi.data.iter().all(|v| (v - 1.0).abs() < 1e-12));
