@@ -111,17 +111,20 @@ pub enum StudyName {
     HardCases,
     /// Condition numbers with M_D and M_C.
     Kappa,
+    /// Local solvers and orderings.
+    Kernels,
     /// Error against seconds, ours and every baseline.
     SpeedError,
 }
 
 impl StudyName {
     /// All of them.
-    pub const ALL: [StudyName; 5] = [
+    pub const ALL: [StudyName; 6] = [
         StudyName::Adaptive,
         StudyName::Hertz,
         StudyName::HardCases,
         StudyName::Kappa,
+        StudyName::Kernels,
         StudyName::SpeedError,
     ];
 
@@ -132,6 +135,7 @@ impl StudyName {
             StudyName::Hertz => "hertz",
             StudyName::HardCases => "hard-cases",
             StudyName::Kappa => "kappa",
+            StudyName::Kernels => "kernels",
             StudyName::SpeedError => "speed-error",
         }
     }

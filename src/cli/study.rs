@@ -7,7 +7,7 @@ use super::solve::prepare;
 use crate::feti::Settings;
 use crate::petsc::Session;
 use crate::report::{json, output};
-use crate::study::{adaptive, hard_cases, hertz, kappa, speed_error};
+use crate::study::{adaptive, hard_cases, hertz, kappa, kernels, speed_error};
 use crate::{Error, Result};
 
 /// Runs a study and writes what was asked for.
@@ -18,6 +18,7 @@ pub fn run(session: &Session, args: &Study) -> Result<()> {
         StudyName::Hertz => run_hertz(session, args),
         StudyName::HardCases => run_hard_cases(session, args),
         StudyName::Kappa => run_kappa(session, args),
+        StudyName::Kernels => run_kernels(session, args),
         StudyName::SpeedError => run_speed_error(session, args),
     }
 }
@@ -130,6 +131,21 @@ fn run_kappa(session: &Session, args: &Study) -> Result<()> {
         Ok(vec!["kappa.csv".to_string()])
     };
     finish(session, args, &report, &table.to_string(), write)
+}
+
+fn run_kernels(session: &Session, args: &Study) -> Result<()> {
+    let report = kernels::run(session, args.quick, args.case.as_deref(), &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        kernels::table(&report).write_csv(&dir.join("kernels.csv"))?;
+        kernels::summary(&report).write_csv(&dir.join("kernels-summary.csv"))?;
+        Ok(["kernels", "kernels-summary"]
+            .map(|t| format!("{t}.csv"))
+            .into())
+    };
+    finish(session, args, &report, &kernels::text(&report), write)
 }
 
 fn run_speed_error(session: &Session, args: &Study) -> Result<()> {
