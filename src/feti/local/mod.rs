@@ -11,6 +11,7 @@ pub mod pencil;
 pub mod problem;
 pub mod semidefinite;
 pub mod single;
+mod substitution;
 
 #[cfg(test)]
 pub(crate) mod testing {

@@ -293,81 +293,10 @@ impl PartialCholesky {
         Ok((PartialCholesky { symbolic, panels }, s))
     }
 
-    /// Forward elimination: `b` (length n, by dof) becomes [L_II⁻¹ b_I; b_Γ − L_ΓI L_II⁻¹ b_I].
-    ///
-    /// The interface part is the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I.
-    pub fn forward(&self, b: &mut [f64]) {
-        let sym = &*self.symbolic;
-        let mut x = Vec::new();
-        for front in &sym.fronts {
-            let width = front.width();
-            let panel = self.panel(front);
-            x.clear();
-            x.extend(self.pivot_dofs(front).iter().map(|&i| b[i as usize]));
-            dense::solve_lower(panel.subrows(0, width), column(&mut x));
-            for (&i, &v) in self.pivot_dofs(front).iter().zip(&x) {
-                b[i as usize] = v;
-            }
-            for (j, &xj) in x.iter().enumerate() {
-                let column = &self.panels[front.panel + j * front.size()..][width..front.size()];
-                for (&p, &l) in front.below.iter().zip(column) {
-                    b[self.dof(p)] -= l * xj;
-                }
-            }
-        }
-    }
-
-    /// Back substitution: given [y_I; u_Γ] with y_I from [`forward`](Self::forward), leaves [u_I; u_Γ].
-    pub fn backward(&self, b: &mut [f64]) {
-        let sym = &*self.symbolic;
-        let (mut x, mut u) = (Vec::new(), Vec::new());
-        for front in sym.fronts.iter().rev() {
-            let width = front.width();
-            let panel = self.panel(front);
-            u.clear();
-            u.extend(front.below.iter().map(|&p| b[self.dof(p)]));
-            x.clear();
-            for (j, &i) in self.pivot_dofs(front).iter().enumerate() {
-                let column = &self.panels[front.panel + j * front.size()..][width..front.size()];
-                x.push(b[i as usize] - dense::dot(column, &u));
-            }
-            dense::solve_lower_transpose(panel.subrows(0, width), column(&mut x));
-            for (&i, &v) in self.pivot_dofs(front).iter().zip(&x) {
-                b[i as usize] = v;
-            }
-        }
-    }
-
     /// Bytes held by the factor.
     pub fn bytes(&self) -> usize {
         self.panels.len() * std::mem::size_of::<f64>()
     }
-
-    fn panel(&self, front: &Front) -> faer::MatRef<'_, f64> {
-        let data = &self.panels[front.panel..][..front.size() * front.width()];
-        faer::MatRef::from_column_major_slice(data, front.size(), front.width())
-    }
-
-    fn pivot_dofs(&self, front: &Front) -> &[u32] {
-        &self.symbolic.interior[front.start..front.end]
-    }
-
-    fn dof(&self, position: u32) -> usize {
-        let sym = &*self.symbolic;
-        let p = position as usize;
-        let n = sym.interior.len();
-        (if p < n {
-            sym.interior[p]
-        } else {
-            sym.interface[p - n]
-        }) as usize
-    }
-}
-
-/// A vector as a one-column matrix.
-fn column(x: &mut [f64]) -> faer::MatMut<'_, f64> {
-    let n = x.len();
-    faer::MatMut::from_column_major_slice_mut(x, n, 1)
 }
 
 /// K_ΓΓ on the lower triangle.

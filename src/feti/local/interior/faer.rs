@@ -184,6 +184,10 @@ impl SparseCholesky for FaerFactor {
     }
 
     fn bytes(&self) -> usize {
-        std::mem::size_of_val(&self.l[..])
+        let indices = match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(s) => s.row_idx().len() + s.col_ptr().len(),
+            SymbolicCholeskyRaw::Supernodal(s) => s.row_idx().len() + 3 * s.n_supernodes(),
+        };
+        std::mem::size_of_val(&self.l[..]) + 4 * indices
     }
 }
