@@ -15,7 +15,7 @@ const SCENES: [(&str, &str); 2] = [
     (
         "elastic solid",
         "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [2, 1, 1]\nsubdomains = [2, 2, 2]\nelements_per_subdomain = 3\n\
-         dirichlet = \"left\"\npoisson = 0.3\nload = [1.0, -2.0, 0.5]\n",
+         dirichlet = [\"left\"]\npoisson = 0.3\nload = [1.0, -2.0, 0.5]\n",
     ),
 ];
 
@@ -84,13 +84,11 @@ fn the_report_names_solver_and_order() {
 #[test]
 fn mumps_runs_on_several_ranks_and_not_on_several_threads() {
     let scene = "examples/scenes/model_tied.toml";
-    let with = |ranks, more: &[&str]| {
-        let first = ["solve", scene, "--quiet", "-fetifeti_local_solver", "mumps"];
-        run_fetifeti(ranks, &[&first, more].concat())
-    };
-    let out = with(2, &[]);
+    let args = ["solve", scene, "--quiet", "-fetifeti_local_solver", "mumps"];
+    let out = run_fetifeti(2, &args);
     assert_eq!(out.code, 0, "{}", out.all());
-    let out = with(1, &["-fetifeti_threads", "2"]);
+    let first = ["solve", scene, "-fetifeti_local_solver", "mumps"];
+    let out = fetifeti(&[&first[..], &["-fetifeti_threads", "2"]].concat());
     assert_eq!(out.code, 2, "{}", out.all());
     assert!(
         out.stderr.contains("-fetifeti_threads is 2") && out.stderr.contains("mumps"),
