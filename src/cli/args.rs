@@ -116,6 +116,8 @@ pub enum StudyName {
     HardCases,
     /// Condition numbers with M_D and M_C.
     Kappa,
+    /// Local solvers and orderings.
+    Kernels,
     /// Seconds over ranks and bodies, with a model.
     Scaling,
     /// Error against seconds, ours and every baseline.
@@ -124,11 +126,12 @@ pub enum StudyName {
 
 impl StudyName {
     /// All of them.
-    pub const ALL: [StudyName; 6] = [
+    pub const ALL: [StudyName; 7] = [
         StudyName::Adaptive,
         StudyName::Hertz,
         StudyName::HardCases,
         StudyName::Kappa,
+        StudyName::Kernels,
         StudyName::Scaling,
         StudyName::SpeedError,
     ];
@@ -140,6 +143,7 @@ impl StudyName {
             StudyName::Hertz => "hertz",
             StudyName::HardCases => "hard-cases",
             StudyName::Kappa => "kappa",
+            StudyName::Kernels => "kernels",
             StudyName::Scaling => "scaling",
             StudyName::SpeedError => "speed-error",
         }

@@ -228,6 +228,8 @@ fn report(
         converged_reason: solution.reason.clone(),
         ksp_type: solver.ksp().type_name()?,
         preconditioner: dual.preconditioner.kind().name().into(),
+        local_solver: solver.settings().local.kind.name().into(),
+        local_ordering: solver.settings().local.ordering.taken().name().into(),
         projector: if floating {
             dual.natural.projector.name()
         } else {

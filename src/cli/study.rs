@@ -7,7 +7,7 @@ use super::solve::prepare;
 use crate::feti::Settings;
 use crate::petsc::Session;
 use crate::report::{json, output};
-use crate::study::{adaptive, hard_cases, hertz, kappa, scaling, speed_error};
+use crate::study::{adaptive, hard_cases, hertz, kappa, kernels, scaling, speed_error};
 use crate::{Error, Result};
 
 /// Runs a study and writes what was asked for.
@@ -19,6 +19,7 @@ pub fn run(session: &Session, args: &Study, petsc: &[String]) -> Result<()> {
         StudyName::HardCases => run_hard_cases(session, args),
         StudyName::Kappa => run_kappa(session, args),
         StudyName::Scaling => run_scaling(session, args, petsc),
+        StudyName::Kernels => run_kernels(session, args),
         StudyName::SpeedError => run_speed_error(session, args),
     }
 }
@@ -150,6 +151,21 @@ fn run_scaling(session: &Session, args: &Study, petsc: &[String]) -> Result<()> 
         Ok(files.collect())
     };
     finish(session, args, &report, &scaling::text(&report), write)
+}
+
+fn run_kernels(session: &Session, args: &Study) -> Result<()> {
+    let report = kernels::run(session, args.quick, args.case.as_deref(), &mut |what| {
+        progress(session, args, what)
+    })?;
+    progress(session, args, "");
+    let write = |dir: &Path| -> Result<Vec<String>> {
+        kernels::table(&report).write_csv(&dir.join("kernels.csv"))?;
+        kernels::summary(&report).write_csv(&dir.join("kernels-summary.csv"))?;
+        Ok(["kernels", "kernels-summary"]
+            .map(|t| format!("{t}.csv"))
+            .into())
+    };
+    finish(session, args, &report, &kernels::text(&report), write)
 }
 
 fn run_speed_error(session: &Session, args: &Study) -> Result<()> {

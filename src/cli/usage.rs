@@ -18,13 +18,14 @@ fetifeti: the FETI-FETI method for bodies in contact, on PETSc
       table, JSON, CSV and picture; without a case all of them, fetifeti bench --list says which; --quick: small ones
   fetifeti table1 [--rows N,N,N ...] [--json FILE] [--out DIR] [--quiet] [PETSc options]
       Table 1 and Figure 3 of Lee (2010) beside ours
-  fetifeti study adaptive|hertz|hard-cases|kappa|scaling|speed-error [CASE] [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
+  fetifeti study adaptive|hertz|hard-cases|kappa|kernels|scaling|speed-error [CASE] [--json FILE] [--out DIR] [--quick] [--quiet] [PETSc options]
       hertz: contact half-width and peak pressure against Hertz's theory; hard-cases: problems that are
       hard for the method against direct solutions, exit code 1 where an answer is wrong; kappa: condition
-      numbers with M_D and M_C over H_b/H_s and H_s/h (-fetifeti_spectrum: exact ones too); scaling:
-      seconds over ranks and bodies by phase, messages, and a model for up to 100 000 ranks of a network with
-      -scaling_alpha SECONDS -scaling_beta SECONDS_PER_BYTE; speed-error:
-      error against seconds, ours and the baselines of compare, over meshes and tolerances;
+      numbers with M_D and M_C over H_b/H_s and H_s/h (-fetifeti_spectrum: exact ones too); kernels: local
+      solvers and orderings against each other; scaling: seconds over ranks and bodies by phase, messages,
+      and a model for up to 100 000 ranks of a network with -scaling_alpha SECONDS -scaling_beta
+      SECONDS_PER_BYTE; speed-error: error against seconds, ours and the baselines of compare, over meshes
+      and tolerances;
       --quick: coarser meshes, smaller cases, a few seconds
   mpirun -n N fetifeti solve SCENE ...
       the same answer on N ranks

@@ -13,6 +13,7 @@ use super::entities::Average;
 use super::exchange::{exchange_words, sum_all};
 use super::jump::Jump;
 use super::local::dense::{multiply, Dense};
+use super::local::interior::NoFactor;
 use super::local::pencil::{self, Part};
 use super::local::scaled::Local;
 use super::settings::Adaptive;
@@ -172,7 +173,7 @@ pub fn constrain(
     jump: &Jump,
     locals: &[Local],
     team: &Team,
-    fails: impl Fn(&Subdomain, u32) -> crate::Error + Sync,
+    fails: impl Fn(&Subdomain, NoFactor) -> crate::Error + Sync,
 ) -> Result<Vec<Local>> {
     let added = |j: usize| {
         let list = jump.averages[j].iter();
@@ -191,7 +192,7 @@ pub fn constrain(
         }
         let sub = &problem.local[j];
         let renewed = locals[j].constrained(&sub.k, added(j), sub.coordinates.as_deref());
-        renewed.map(Arc::new).map_err(|e| fails(sub, e.dof))
+        renewed.map(Arc::new).map_err(|e| fails(sub, e))
     });
     let renewed = renewed.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: &usize| kinds.binary_search(j).expect("a first one is a kind");

@@ -1,5 +1,6 @@
 //! What a user may choose, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
+use super::local::interior::{LocalSolver, Ordering, Solver};
 use crate::petsc::{Options, Session};
 use crate::substructures::EntityKind;
 use crate::{Error, Result};
@@ -210,6 +211,8 @@ pub struct Settings {
     pub adaptive_max: usize,
     /// `fetifeti_recycle`: directions that are kept for the next load.
     pub recycle: usize,
+    /// `fetifeti_local_solver` and `fetifeti_local_ordering`: how subdomains are factored.
+    pub local: LocalSolver,
     /// `fetifeti_threads`: threads of this rank; `None`: all cores where one rank runs, else one.
     pub threads: Option<usize>,
     /// `fetifeti_check`: print the identities that the theory promises.
@@ -238,6 +241,7 @@ impl Default for Settings {
             adaptive: Adaptive::Auto,
             adaptive_max: 100,
             recycle: 0,
+            local: LocalSolver::default(),
             threads: None,
             check: false,
             spectrum: false,
@@ -318,6 +322,7 @@ impl Settings {
             0 => None,
             n => Some(n),
         };
+        self.local_solver(&o)?;
         let help = "print the operator identities, which must be zero";
         self.check = o.bool("check", self.check, help)?;
         let help = "exact extreme eigenvalues of the preconditioned operator";
@@ -344,5 +349,29 @@ impl Settings {
             o.list(name, "...", help)?;
         }
         Ok(self)
+    }
+
+    /// How subdomains are factored, and on how many threads that can be.
+    fn local_solver(&mut self, o: &Options) -> Result<()> {
+        let LocalSolver { kind, ordering } = self.local;
+        let help = "factorisation of the subdomains";
+        let i = o.choice("local_solver", Solver::NAMES, kind as usize, help)?;
+        let kind = Solver::ALL[i];
+        let help = "order of elimination in the subdomains";
+        let i = o.choice("local_ordering", Ordering::NAMES, ordering as usize, help)?;
+        let ordering = match i {
+            0 => Ordering::Auto,
+            i => Ordering::ALL[i - 1],
+        };
+        self.local = LocalSolver { kind, ordering };
+        self.local.check(&self.prefix)?;
+        match (self.threads, self.local.most_threads()) {
+            (Some(n), Some(most)) if n > most => Err(Error::input(format!(
+                "option -{0}threads is {n}, but {1} (-{0}local_solver) is not safe on several threads: expected {most}, or more ranks instead",
+                self.prefix,
+                kind.name()
+            ))),
+            _ => Ok(()),
+        }
     }
 }

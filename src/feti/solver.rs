@@ -19,6 +19,8 @@ use super::forms;
 use super::halo::Halo;
 use super::jump::Jump;
 use super::lifting::Lifting;
+use super::local::interior::{NoFactor, Solver};
+use super::local::multifrontal::SingularInterior;
 use super::local::problem::LocalProblem;
 use super::local::scaled::Local;
 use super::natural::NaturalCoarse;
@@ -26,7 +28,7 @@ use super::preconditioner::Preconditioner;
 use super::primal::PrimalSpace;
 use super::recover::{self, Judge, Solution};
 use super::refine::{self, Refinement};
-use super::settings::{Adaptive, PcType, Scaling, Settings};
+use super::settings::{Adaptive, Operators, PcType, Scaling, Settings};
 use super::sharing::Sharing;
 use super::stiffness::Stiffness;
 use super::team::Team;
@@ -140,7 +142,7 @@ impl FetiFeti {
             comm, &problem, &sharing, &mut jump, &locals, &team, adaptive,
         );
         if added.iter().any(|&n| n > 0) {
-            let fails = |sub: &Subdomain, dof| unfit_matrix(&problem, sub, dof);
+            let fails = |sub: &Subdomain, e| no_factor(&problem, sub, e);
             let renewed = adaptive::constrain(&problem, &jump, &locals, &team, fails);
             locals = session.agree(renewed)?;
         }
@@ -345,9 +347,10 @@ impl FetiFeti {
 
 fn threads(session: &Session, settings: &Settings) -> usize {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    settings
+    let wanted = settings
         .threads
-        .unwrap_or(if session.size() == 1 { cores } else { 1 })
+        .unwrap_or(if session.size() == 1 { cores } else { 1 });
+    wanted.min(settings.local.most_threads().unwrap_or(wanted))
 }
 
 /// Factors one of each kind of subdomain.
@@ -363,12 +366,24 @@ fn factor(
     let wants_s = kind == PcType::CoarseCorrected
         || settings.scaling == Scaling::Deluxe
         || matches!(settings.adaptive, Adaptive::Below(_));
+    let ours = settings.local.kind == Solver::Multifrontal;
+    if !ours && settings.operators == Operators::Implicit {
+        return Err(Error::input(format!(
+            "option -{}operators is implicit, which goes with the local solver multifrontal alone, but -{0}local_solver is {}",
+            settings.prefix,
+            settings.local.kind.name()
+        )));
+    }
     let first = equal::representatives(problem, jump, team);
     let kinds = forms::kinds(problem, jump, &first);
     let forms = forms::choose(
         &kinds,
         team,
-        settings.operators,
+        if ours {
+            settings.operators
+        } else {
+            Operators::Explicit
+        },
         forms::APPLICATIONS[usize::from(jump.inequality.iter().any(|i| *i))],
         settings
             .memory
@@ -380,14 +395,32 @@ fn factor(
         let averages = jump.averages[kind.j].iter();
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
         let places = sub.coordinates.as_deref();
-        LocalProblem::new(&sub.k, kind.delta, kind.primal, &averages, places, forms[k])
-            .map(Arc::new)
-            .map_err(|e| unfit_matrix(problem, sub, e.dof))
+        let (delta, primal, form) = (kind.delta, kind.primal, forms[k]);
+        LocalProblem::new(
+            &sub.k,
+            delta,
+            primal,
+            &averages,
+            places,
+            settings.local,
+            form,
+        )
+        .map(Arc::new)
+        .map_err(|e| no_factor(problem, sub, e))
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
     let of = |&(j, factor): &(usize, f64)| Local::new(factored[place(j)].clone(), factor);
     Ok(first.iter().map(of).collect())
+}
+
+fn no_factor(problem: &Substructures, sub: &Subdomain, error: NoFactor) -> Error {
+    match error {
+        NoFactor::Interior(SingularInterior { dof }) | NoFactor::Indefinite(dof) => {
+            unfit_matrix(problem, sub, dof)
+        }
+        NoFactor::Failed(why) => Error::environment(why),
+    }
 }
 
 fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {

@@ -5,11 +5,14 @@
 //! - PETSc owns what a shell ([`ShellMat`], [`ShellPc`], [`ShellOp`]) captures and drops it with the object.
 //! - An error or a panic in a callback travels through PETSc's C frames as an error code and comes out of the outer
 //!   call ([`Ksp::solve`], [`Mat::mult`], …) as the original Rust error.
-//! - Nothing here is `Send`: PETSc is not thread safe.
+//! - Nothing that is PETSc's is `Send`: PETSc is not thread safe. The direct solvers that come with it ([`Cholmod`], [`Mumps`],
+//!   [`ordering`]) are called without it, and say what they allow.
 
 #[macro_use]
 mod error;
+mod cholmod;
 mod citations;
+mod direct;
 mod eps;
 mod handle;
 mod is;
@@ -17,8 +20,10 @@ mod ksp;
 mod log;
 mod mat;
 mod matis;
+mod mumps;
 mod nested;
 mod options;
+pub mod ordering;
 mod partition;
 mod pc;
 mod scatter;
@@ -28,13 +33,16 @@ mod spectrum;
 pub mod testing;
 mod vec;
 
+pub use cholmod::{have_cholmod, Cholmod, CholmodSymbolic, Supernode, Upper};
 pub use citations::cite;
+pub use direct::Refusal;
 pub use eps::{Eps, ProblemType, Which};
 pub use is::Is;
 pub use ksp::{ConvergedReason, Ksp, NormType};
 pub use log::{counters, Counters, Event, Scope, Stage};
 pub use mat::{Mat, MatFlag};
 pub use matis::Attached;
+pub use mumps::{have_mumps, Mumps};
 pub use options::Options;
 pub use partition::partition;
 pub use pc::Pc;

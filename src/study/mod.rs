@@ -8,6 +8,7 @@ mod direct;
 pub mod hard_cases;
 pub mod hertz;
 pub mod kappa;
+pub mod kernels;
 pub mod scaling;
 mod solved;
 pub mod speed_error;

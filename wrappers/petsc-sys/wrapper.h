@@ -1,4 +1,5 @@
-/* What bindgen reads: the public headers of the classes that fetifeti uses, and the shim. */
+/* What bindgen reads: the public headers of the classes that fetifeti uses, and our own. */
 #include <petscksp.h>
 #include <slepceps.h>
 #include "shim.h"
+#include "direct.h"

@@ -5,6 +5,7 @@ mod condense;
 pub mod dense;
 pub mod dissection;
 pub mod implicit;
+pub mod interior;
 pub mod lanes;
 pub mod multifrontal;
 pub mod pencil;
@@ -13,6 +14,7 @@ mod rectangular;
 pub mod scaled;
 pub mod semidefinite;
 pub mod single;
+mod substitution;
 
 #[cfg(test)]
 pub(crate) mod testing {

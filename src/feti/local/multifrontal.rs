@@ -19,7 +19,7 @@ use crate::sparse::Csr;
 
 /// A pivot below this fraction of the diagonal entry it came from counts as zero: rounding leaves about 1e-16 times
 /// the number of updates, while a body held by a spring of 1e-8 of its stiffness still shows 1e-8.
-const SINGULAR: f64 = 1e-13;
+pub(super) const SINGULAR: f64 = 1e-13;
 
 /// The interior block is singular: part of the subdomain touches neither a boundary condition nor the interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +74,12 @@ impl Symbolic {
         interface.iter().for_each(|&i| kept[i as usize] = true);
         let inside: Vec<u32> = (0..n as u32).filter(|&i| !kept[i as usize]).collect();
         let supernodes = nested_dissection(k, &inside, coordinates).supernodes;
+        Symbolic::with_supernodes(k, interface, &supernodes)
+    }
 
+    /// The same for a given order of the interior: sets of dofs in the order of elimination, each to be one front.
+    pub fn with_supernodes(k: &Csr, interface: &[u32], supernodes: &[Vec<u32>]) -> Symbolic {
+        let n = k.n();
         let interior: Vec<u32> = supernodes.iter().flatten().copied().collect();
         let mut position = vec![0; n];
         for (p, &i) in interior.iter().chain(interface).enumerate() {
@@ -140,6 +145,41 @@ impl Symbolic {
             };
             fronts[s].into_parent = map;
         }
+        Symbolic {
+            interior,
+            interface: interface.to_vec(),
+            position,
+            fronts,
+            storage,
+        }
+    }
+
+    /// Of a factor that was made elsewhere: fronts as (first column, number of columns, rows below), the columns of all of them together
+    /// being the interior. Good for solves alone.
+    pub(super) fn of_factor(
+        interior: Vec<u32>,
+        interface: &[u32],
+        fronts: impl Iterator<Item = (usize, usize, Vec<u32>)>,
+    ) -> Symbolic {
+        let mut position = vec![0; interior.len() + interface.len()];
+        for (p, &i) in interior.iter().chain(interface).enumerate() {
+            position[i as usize] = p as u32;
+        }
+        let mut storage = 0;
+        let fronts = fronts
+            .map(|(start, width, below)| {
+                let panel = storage;
+                storage += width * (width + below.len());
+                Front {
+                    start,
+                    end: start + width,
+                    below,
+                    parent: None,
+                    into_parent: Vec::new(),
+                    panel,
+                }
+            })
+            .collect();
         Symbolic {
             interior,
             interface: interface.to_vec(),
@@ -262,51 +302,6 @@ impl PartialCholesky {
         Ok((PartialCholesky { symbolic, panels }, s))
     }
 
-    /// Forward elimination: `b` (length n, by dof) becomes [L_II⁻¹ b_I; b_Γ − L_ΓI L_II⁻¹ b_I].
-    ///
-    /// The interface part is the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I.
-    pub fn forward(&self, b: &mut [f64]) {
-        let sym = &*self.symbolic;
-        let mut x = Vec::new();
-        for front in &sym.fronts {
-            let width = front.width();
-            let panel = self.panel(front);
-            x.clear();
-            x.extend(self.pivot_dofs(front).iter().map(|&i| b[i as usize]));
-            dense::solve_lower(panel.subrows(0, width), column(&mut x));
-            for (&i, &v) in self.pivot_dofs(front).iter().zip(&x) {
-                b[i as usize] = v;
-            }
-            for (j, &xj) in x.iter().enumerate() {
-                let column = &self.panels[front.panel + j * front.size()..][width..front.size()];
-                for (&p, &l) in front.below.iter().zip(column) {
-                    b[self.dof(p)] -= l * xj;
-                }
-            }
-        }
-    }
-
-    /// Back substitution: given [y_I; u_Γ] with y_I from [`forward`](Self::forward), leaves [u_I; u_Γ].
-    pub fn backward(&self, b: &mut [f64]) {
-        let sym = &*self.symbolic;
-        let (mut x, mut u) = (Vec::new(), Vec::new());
-        for front in sym.fronts.iter().rev() {
-            let width = front.width();
-            let panel = self.panel(front);
-            u.clear();
-            u.extend(front.below.iter().map(|&p| b[self.dof(p)]));
-            x.clear();
-            for (j, &i) in self.pivot_dofs(front).iter().enumerate() {
-                let column = &self.panels[front.panel + j * front.size()..][width..front.size()];
-                x.push(b[i as usize] - dense::dot(column, &u));
-            }
-            dense::solve_lower_transpose(panel.subrows(0, width), column(&mut x));
-            for (&i, &v) in self.pivot_dofs(front).iter().zip(&x) {
-                b[i as usize] = v;
-            }
-        }
-    }
-
     /// Number of dofs.
     pub fn n(&self) -> usize {
         self.symbolic.n()
@@ -315,11 +310,11 @@ impl PartialCholesky {
     /// The smallest pivot relative to the diagonal entry of `k` that it came from; one where nothing was eliminated.
     pub fn weakest_pivot(&self, k: &Csr) -> f64 {
         let of = |front: &Front| {
-            let panel = self.panel(front);
-            let dofs = self.pivot_dofs(front).iter().enumerate();
-            let relative = dofs.map(|(j, &dof)| {
+            let panel = &self.panels[front.panel..];
+            let dofs = &self.symbolic.interior[front.start..front.end];
+            let relative = dofs.iter().enumerate().map(|(j, &dof)| {
                 let d = k.get(dof as usize, dof as usize);
-                panel[(j, j)].powi(2) / d
+                panel[j * front.size() + j].powi(2) / d
             });
             relative.fold(1.0, f64::min)
         };
@@ -330,32 +325,6 @@ impl PartialCholesky {
     pub fn bytes(&self) -> usize {
         self.panels.len() * std::mem::size_of::<f64>()
     }
-
-    fn panel(&self, front: &Front) -> faer::MatRef<'_, f64> {
-        let data = &self.panels[front.panel..][..front.size() * front.width()];
-        faer::MatRef::from_column_major_slice(data, front.size(), front.width())
-    }
-
-    fn pivot_dofs(&self, front: &Front) -> &[u32] {
-        &self.symbolic.interior[front.start..front.end]
-    }
-
-    fn dof(&self, position: u32) -> usize {
-        let sym = &*self.symbolic;
-        let p = position as usize;
-        let n = sym.interior.len();
-        (if p < n {
-            sym.interior[p]
-        } else {
-            sym.interface[p - n]
-        }) as usize
-    }
-}
-
-/// A vector as a one-column matrix.
-fn column(x: &mut [f64]) -> faer::MatMut<'_, f64> {
-    let n = x.len();
-    faer::MatMut::from_column_major_slice_mut(x, n, 1)
 }
 
 /// K_ΓΓ on the lower triangle.

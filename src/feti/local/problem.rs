@@ -21,8 +21,8 @@ use std::sync::{Arc, OnceLock};
 use super::basis::Basis;
 use super::dense::{multiply, Dense};
 use super::implicit::Implicit;
+use super::interior::{Factor, LocalSolver, NoFactor, Solver};
 use super::lanes::LANES;
-use super::multifrontal::{PartialCholesky, SingularInterior, Symbolic};
 use crate::sparse::Csr;
 
 /// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
@@ -83,27 +83,31 @@ pub struct LocalProblem {
 #[derive(Debug)]
 enum Inside {
     /// The factor that S came from.
-    Partial(Arc<PartialCholesky>),
+    Partial(Arc<Factor>),
     Implicit(Box<Implicit>),
 }
 
 impl LocalProblem {
     /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists dual dofs whose means
     /// are primal.
+    ///
+    /// # Errors
+    /// A matrix that is no stiffness matrix; what the solver says.
     pub fn new(
         k: &Csr,
         delta: &[u32],
         primal: &[u32],
         averages: &[&[u32]],
         coordinates: Option<&[[f64; 3]]>,
+        solver: LocalSolver,
         form: Form,
-    ) -> Result<LocalProblem, SingularInterior> {
+    ) -> Result<LocalProblem, NoFactor> {
         let mut basis = Basis::default();
         let at = positions(delta);
         let at = averages.iter().map(|a| at.of(a));
         at.for_each(|at| basis.push_mean(at));
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
-        if form == Form::Implicit {
+        if form == Form::Implicit && solver.kind == Solver::Multifrontal {
             let interface = [delta, primal].concat();
             // An interior that nothing holds is for the dense form to deal with.
             let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);
@@ -126,11 +130,10 @@ impl LocalProblem {
         let mut delta = delta.to_vec();
         let (interface, factor, s) = loop {
             let interface = [&delta[..], primal].concat();
-            let symbolic = Arc::new(Symbolic::new(k, &interface, coordinates));
-            match PartialCholesky::new(k, symbolic) {
+            match solver.condense(k, &interface, coordinates) {
                 Ok((factor, s)) => break (interface, factor, s),
                 // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
-                Err(e) if delta.len() < given + MOST_FREE => delta.push(e.dof),
+                Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => delta.push(e.dof),
                 Err(e) => return Err(e),
             }
         };
@@ -157,12 +160,12 @@ impl LocalProblem {
         k: &Csr,
         functionals: impl Iterator<Item = (&'a [u32], &'a [f64])>,
         coordinates: Option<&[[f64; 3]]>,
-    ) -> Result<LocalProblem, SingularInterior> {
+    ) -> Result<LocalProblem, NoFactor> {
         let (s, factor) = match &self.inside {
             Inside::Partial(factor) => (self.s().clone(), factor.clone()),
             Inside::Implicit(_) => {
-                let symbolic = Symbolic::new(k, &self.interface, coordinates);
-                let (factor, s) = PartialCholesky::new(k, Arc::new(symbolic))?;
+                let solver = LocalSolver::default();
+                let (factor, s) = solver.condense(k, &self.interface, coordinates)?;
                 (Arc::new(s), Arc::new(factor))
             }
         };
@@ -448,7 +451,16 @@ mod tests {
     }
 
     fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: Form) {
-        let local = LocalProblem::new(k, delta, &[0, 8], &[], Some(x), form).expect("definite");
+        let local = LocalProblem::new(
+            k,
+            delta,
+            &[0, 8],
+            &[],
+            Some(x),
+            LocalSolver::default(),
+            form,
+        )
+        .expect("definite");
         assert_eq!(local.is_implicit(), form == Form::Implicit);
         assert!(local.fixing.is_empty());
         let u = random(k.n(), 5);
@@ -492,10 +504,27 @@ mod tests {
             }
             let delta: Vec<u32> = (0..12).collect();
             assert!(
-                LocalProblem::new(&k, &delta, &[], &[], Some(&x), Form::Explicit).is_err(),
+                LocalProblem::new(
+                    &k,
+                    &delta,
+                    &[],
+                    &[],
+                    Some(&x),
+                    LocalSolver::default(),
+                    Form::Explicit
+                )
+                .is_err(),
                 "{value}"
             );
-            let sparse = LocalProblem::new(&k, &delta, &[], &[], Some(&x), Form::Implicit);
+            let sparse = LocalProblem::new(
+                &k,
+                &delta,
+                &[],
+                &[],
+                Some(&x),
+                LocalSolver::default(),
+                Form::Implicit,
+            );
             assert!(sparse.is_err(), "{value}");
         }
     }
@@ -505,7 +534,8 @@ mod tests {
         let (k, x) = grid_laplacian(8, 6, 0.0);
         let delta: Vec<u32> = (0..8).collect();
         let form = Form::Implicit; // becomes dense: no vertex holds anything
-        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x), form).expect("one is held");
+        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x), LocalSolver::default(), form)
+            .expect("one is held");
         assert!(!local.is_implicit());
         assert_eq!((local.fixing.len(), local.n_pi()), (1, 1));
         assert!(local.sigma.get(0, 0).abs() < 1e-13);
@@ -519,7 +549,17 @@ mod tests {
         let delta: Vec<u32> = (1..10).chain((1..6).map(|y| node(10, y))).collect();
         let vertices = [node(0, 0), node(10, 0), node(10, 6)];
         let averages: [&[u32]; 2] = [&delta[..9], &delta[9..]];
-        let make = |form| LocalProblem::new(&k, &delta, &vertices, &averages, Some(&x), form);
+        let make = |form| {
+            LocalProblem::new(
+                &k,
+                &delta,
+                &vertices,
+                &averages,
+                Some(&x),
+                LocalSolver::default(),
+                form,
+            )
+        };
         let dense = make(Form::Explicit).expect("held by vertices");
         let sparse = make(Form::Implicit).expect("held by vertices");
         assert!(sparse.is_implicit() && !dense.is_implicit());

@@ -116,6 +116,12 @@ pub struct SolveReport {
     pub ksp_type: String,
     /// `none`, `lumped`, `dirichlet` or `coarse_corrected`.
     pub preconditioner: String,
+    /// Factorisation of the subdomains: `multifrontal`, `faer`, `cholmod` or `mumps`.
+    #[serde(default)]
+    pub local_solver: String,
+    /// Its order of elimination: `nd`, `amd`, `metis` or `scotch`.
+    #[serde(default)]
+    pub local_ordering: String,
     /// Weight Q of the projector: `none` without floating bodies, else `identity`, `diagonal` or `preconditioner`.
     pub projector: String,
     /// Relative defects of the operators' identities, where `-fetifeti_check` asked for them.
@@ -334,6 +340,8 @@ mod tests {
             converged_reason: "CONVERGED_RTOL".into(),
             ksp_type: "cg".into(),
             preconditioner: "dirichlet".into(),
+            local_solver: "multifrontal".into(),
+            local_ordering: "nd".into(),
             projector: "identity".into(),
             check: None,
             rtol: 1e-6,

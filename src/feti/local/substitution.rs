@@ -1,0 +1,192 @@
+//! Forward and backward substitution for one right-hand side.
+//!
+//! Every front works on one dense vector [x; w]: x at its pivots, w at the rows below them. Four columns of the panel at a time meet the whole
+//! of what is below their own rows, so that the vector is read and written once for four, and the panel once at all.
+
+use super::multifrontal::PartialCholesky;
+
+/// Columns that go together.
+const COLUMNS: usize = 4;
+
+/// Partial sums of a product: two vector registers for each column.
+const SUMS: usize = 8;
+
+impl PartialCholesky {
+    /// Forward elimination: `b` (length n, by dof) becomes [L_II⁻¹ b_I; b_Γ − L_ΓI L_II⁻¹ b_I].
+    ///
+    /// The interface part is the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I.
+    pub fn forward(&self, b: &mut [f64]) {
+        let mut y = self.in_order(b);
+        let mut work = Vec::new();
+        for front in &self.symbolic.fronts {
+            let (width, size) = (front.width(), front.size());
+            let panel = &self.panels[front.panel..][..size * width];
+            let (pivots, below) = y[front.start..].split_at_mut(width);
+            work.clear();
+            work.extend_from_slice(pivots);
+            work.resize(size, 0.0);
+            eliminate(panel, width, &mut work);
+            pivots.copy_from_slice(&work[..width]);
+            for (&p, w) in front.below.iter().zip(&work[width..]) {
+                below[p as usize - front.end] += w;
+            }
+        }
+        self.by_dof(&y, b);
+    }
+
+    /// Back substitution: given [y_I; u_Γ] with y_I from [`forward`](Self::forward), leaves [u_I; u_Γ].
+    pub fn backward(&self, b: &mut [f64]) {
+        let mut y = self.in_order(b);
+        let mut work = Vec::new();
+        for front in self.symbolic.fronts.iter().rev() {
+            let (width, size) = (front.width(), front.size());
+            let panel = &self.panels[front.panel..][..size * width];
+            let (pivots, below) = y[front.start..].split_at_mut(width);
+            work.clear();
+            work.extend_from_slice(pivots);
+            let rows = front.below.iter().map(|&p| below[p as usize - front.end]);
+            work.extend(rows);
+            substitute(panel, width, &mut work);
+            pivots.copy_from_slice(&work[..width]);
+        }
+        self.by_dof(&y, b);
+    }
+
+    fn in_order(&self, b: &[f64]) -> Vec<f64> {
+        self.symbolic.dofs().map(|i| b[i as usize]).collect()
+    }
+
+    fn by_dof(&self, y: &[f64], b: &mut [f64]) {
+        for (y, i) in y.iter().zip(self.symbolic.dofs()) {
+            b[i as usize] = *y;
+        }
+    }
+}
+
+/// x ← L⁻¹ x and w ← w − L_below x for `work` = [x; w] and a panel of `width` columns.
+fn eliminate(panel: &[f64], width: usize, work: &mut [f64]) {
+    let size = work.len();
+    for j in (0..width).step_by(COLUMNS) {
+        let n = COLUMNS.min(width - j);
+        let inverse = reciprocals(panel, size, j, n);
+        for k in j..j + n {
+            let column = &panel[k * size..(k + 1) * size];
+            let x = work[k] * inverse[k - j];
+            work[k] = x;
+            for i in k + 1..j + n {
+                work[i] -= column[i] * x;
+            }
+        }
+        let (x, rest) = work.split_at_mut(j + n);
+        let x = &x[j..];
+        let column = |k: usize| &panel[(j + k) * size + j + n..(j + k + 1) * size];
+        if n == COLUMNS {
+            let (l0, l1, l2, l3) = (column(0), column(1), column(2), column(3));
+            let all = rest.iter_mut().zip(l0).zip(l1).zip(l2).zip(l3);
+            for ((((y, l0), l1), l2), l3) in all {
+                let first = (-l1).mul_add(x[1], (-l0).mul_add(x[0], *y));
+                *y = (-l3).mul_add(x[3], (-l2).mul_add(x[2], first));
+            }
+        } else {
+            for (k, x) in x.iter().enumerate() {
+                for (y, l) in rest.iter_mut().zip(column(k)) {
+                    *y = (-l).mul_add(*x, *y);
+                }
+            }
+        }
+    }
+}
+
+/// x ← L⁻ᵀ (x − L_belowᵀ w) for `work` = [x; w].
+fn substitute(panel: &[f64], width: usize, work: &mut [f64]) {
+    let size = work.len();
+    for j in (0..width).step_by(COLUMNS).rev() {
+        let n = COLUMNS.min(width - j);
+        let (x, rest) = work.split_at_mut(j + n);
+        let x = &mut x[j..];
+        let column = |k: usize| &panel[(j + k) * size + j + n..(j + k + 1) * size];
+        if n == COLUMNS {
+            let pulled = products([column(0), column(1), column(2), column(3)], rest);
+            x.iter_mut().zip(pulled).for_each(|(x, p)| *x -= p);
+        } else {
+            for (k, x) in x.iter_mut().enumerate() {
+                *x -= super::dense::dot(column(k), rest);
+            }
+        }
+        let inverse = reciprocals(panel, size, j, n);
+        for k in (0..n).rev() {
+            let column = &panel[(j + k) * size + j..(j + k) * size + j + n];
+            let pulled: f64 = (k + 1..n).map(|i| column[i] * x[i]).sum();
+            x[k] = (x[k] - pulled) * inverse[k];
+        }
+    }
+}
+
+/// Of `n` diagonal entries from column `j` on: divisions that do not wait for each other.
+fn reciprocals(panel: &[f64], size: usize, j: usize, n: usize) -> [f64; COLUMNS] {
+    let mut out = [0.0; COLUMNS];
+    for (k, out) in out.iter_mut().enumerate().take(n) {
+        *out = 1.0 / panel[(j + k) * (size + 1)];
+    }
+    out
+}
+
+/// The products of four columns with one vector.
+fn products(columns: [&[f64]; COLUMNS], w: &[f64]) -> [f64; COLUMNS] {
+    let mut sums = [[0.0; SUMS]; COLUMNS];
+    let whole = w.len() - w.len() % SUMS;
+    for at in (0..whole).step_by(SUMS) {
+        let w: &[f64; SUMS] = w[at..at + SUMS].try_into().expect("as long");
+        for (sums, column) in sums.iter_mut().zip(&columns) {
+            let l: &[f64; SUMS] = column[at..at + SUMS].try_into().expect("as long");
+            for i in 0..SUMS {
+                sums[i] = l[i].mul_add(w[i], sums[i]);
+            }
+        }
+    }
+    let mut out = [0.0; COLUMNS];
+    for ((out, sums), column) in out.iter_mut().zip(&sums).zip(&columns) {
+        let rest = column[whole..].iter().zip(&w[whole..]);
+        *out = sums.iter().sum::<f64>() + rest.map(|(l, w)| l * w).sum::<f64>();
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feti::local::testing::random;
+
+    /// A panel of `width` columns and `size` rows, its diagonal large.
+    fn panel(width: usize, size: usize) -> Vec<f64> {
+        let mut panel = random(width * size, (width + 31 * size) as u64);
+        (0..width).for_each(|j| panel[j * size + j] += 3.0);
+        panel
+    }
+
+    #[test]
+    fn panels_of_every_width_are_solved_with() {
+        for (width, below) in (1..=9).flat_map(|w| [0, 1, 7, 8, 21].map(|b| (w, b))) {
+            let size = width + below;
+            let panel = panel(width, size);
+            let l = |i: usize, j: usize| panel[j * size + i];
+            let start = random(size, 5);
+
+            let mut work = start.clone();
+            eliminate(&panel, width, &mut work);
+            for i in 0..size {
+                let known: f64 = (0..width.min(i + 1)).map(|j| l(i, j) * work[j]).sum();
+                let expected = if i < width { known } else { known + work[i] };
+                assert!((expected - start[i]).abs() < 1e-13, "{width} {below} {i}");
+            }
+
+            let mut work = start.clone();
+            substitute(&panel, width, &mut work);
+            assert_eq!(work[width..], start[width..]);
+            for (j, b) in start.iter().enumerate().take(width) {
+                let product: f64 = (j..size).map(|i| l(i, j) * work[i]).sum();
+                assert!((product - b).abs() < 1e-13, "{width} {below} {j}");
+            }
+        }
+    }
+}
