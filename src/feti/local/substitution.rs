@@ -81,12 +81,8 @@ fn eliminate(panel: &[f64], width: usize, work: &mut [f64]) {
         let x = &x[j..];
         let column = |k: usize| &panel[(j + k) * size + j + n..(j + k + 1) * size];
         if n == COLUMNS {
-            let (l0, l1, l2, l3) = (column(0), column(1), column(2), column(3));
-            let all = rest.iter_mut().zip(l0).zip(l1).zip(l2).zip(l3);
-            for ((((y, l0), l1), l2), l3) in all {
-                let first = (-l1).mul_add(x[1], (-l0).mul_add(x[0], *y));
-                *y = (-l3).mul_add(x[3], (-l2).mul_add(x[2], first));
-            }
+            let minus = [-x[0], -x[1], -x[2], -x[3]];
+            add_columns([column(0), column(1), column(2), column(3)], minus, rest);
         } else {
             for (k, x) in x.iter().enumerate() {
                 for (y, l) in rest.iter_mut().zip(column(k)) {
@@ -131,25 +127,50 @@ fn reciprocals(panel: &[f64], size: usize, j: usize, n: usize) -> [f64; COLUMNS]
     out
 }
 
-/// The products of four columns with one vector.
-fn products(columns: [&[f64]; COLUMNS], w: &[f64]) -> [f64; COLUMNS] {
-    let mut sums = [[0.0; SUMS]; COLUMNS];
-    let whole = w.len() - w.len() % SUMS;
+/// Entries that go together: two vector registers.
+type Lot = [f64; SUMS];
+
+fn lot(values: &[f64], at: usize) -> &Lot {
+    values[at..at + SUMS].try_into().expect("as long")
+}
+
+/// y ← y + Σ x_k column_k. Written by lots of a fixed length, which the compiler turns into vector instructions.
+fn add_columns([l0, l1, l2, l3]: [&[f64]; COLUMNS], x: [f64; COLUMNS], y: &mut [f64]) {
+    let whole = y.len() - y.len() % SUMS;
     for at in (0..whole).step_by(SUMS) {
-        let w: &[f64; SUMS] = w[at..at + SUMS].try_into().expect("as long");
-        for (sums, column) in sums.iter_mut().zip(&columns) {
-            let l: &[f64; SUMS] = column[at..at + SUMS].try_into().expect("as long");
-            for i in 0..SUMS {
-                sums[i] = l[i].mul_add(w[i], sums[i]);
-            }
+        let (l0, l1, l2, l3) = (lot(l0, at), lot(l1, at), lot(l2, at), lot(l3, at));
+        let y: &mut Lot = (&mut y[at..at + SUMS]).try_into().expect("as long");
+        for i in 0..SUMS {
+            let first = l1[i].mul_add(x[1], l0[i].mul_add(x[0], y[i]));
+            y[i] = l3[i].mul_add(x[3], l2[i].mul_add(x[2], first));
         }
     }
-    let mut out = [0.0; COLUMNS];
-    for ((out, sums), column) in out.iter_mut().zip(&sums).zip(&columns) {
-        let rest = column[whole..].iter().zip(&w[whole..]);
-        *out = sums.iter().sum::<f64>() + rest.map(|(l, w)| l * w).sum::<f64>();
+    for i in whole..y.len() {
+        y[i] += (l0[i] * x[0] + l1[i] * x[1]) + (l2[i] * x[2] + l3[i] * x[3]);
     }
-    out
+}
+
+/// The products of four columns with one vector.
+fn products([l0, l1, l2, l3]: [&[f64]; COLUMNS], w: &[f64]) -> [f64; COLUMNS] {
+    let (mut s0, mut s1, mut s2, mut s3) = ([0.0; SUMS], [0.0; SUMS], [0.0; SUMS], [0.0; SUMS]);
+    let whole = w.len() - w.len() % SUMS;
+    let add = |sums: &mut Lot, l: &Lot, w: &Lot| {
+        for i in 0..SUMS {
+            sums[i] = l[i].mul_add(w[i], sums[i]);
+        }
+    };
+    for at in (0..whole).step_by(SUMS) {
+        let w = lot(w, at);
+        add(&mut s0, lot(l0, at), w);
+        add(&mut s1, lot(l1, at), w);
+        add(&mut s2, lot(l2, at), w);
+        add(&mut s3, lot(l3, at), w);
+    }
+    let total = |sums: Lot, l: &[f64]| {
+        let rest = l[whole..].iter().zip(&w[whole..]);
+        sums.iter().sum::<f64>() + rest.map(|(l, w)| l * w).sum::<f64>()
+    };
+    [total(s0, l0), total(s1, l1), total(s2, l2), total(s3, l3)]
 }
 
 #[cfg(test)]
