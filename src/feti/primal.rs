@@ -129,7 +129,6 @@ impl PrimalSpace {
     ) -> Vec<Vec<u32>> {
         let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
-            let local = local;
             // A vertex is known by its body dof, an average by its entity, another functional by a body dof; a fixing dof belongs to its
             // subdomain alone.
             let vertices = local.interface[local.n_delta..].iter();

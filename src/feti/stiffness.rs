@@ -79,7 +79,7 @@ impl Stiffness {
         team: Team,
     ) -> Stiffness {
         let buffers = Buffers {
-            work: locals.iter().map(|l| Work::for_subdomain(l)).collect(),
+            work: locals.iter().map(Work::for_subdomain).collect(),
             ghost: vec![0.0; jump.ghosts.len()],
         };
         let products = Products::new(&locals, |most| batches(&locals, most));
@@ -330,7 +330,7 @@ impl Stiffness {
 
     /// Fresh buffers for all subdomains of this rank.
     pub fn work(&self) -> Vec<Work> {
-        self.locals.iter().map(|l| Work::for_subdomain(l)).collect()
+        self.locals.iter().map(Work::for_subdomain).collect()
     }
 }
 

@@ -158,8 +158,8 @@ impl Implicit {
                 let own = if j < n_v { s_vv.get(i, j) } else { 0.0 };
                 sigma.set(i, j, own - dense::dot(a.col(i), &c));
             }
-            for i in 0..n_q {
-                sigma.set(n_v + i, j, basis.factor(i) * c[i]);
+            for (i, c) in c.iter().enumerate() {
+                sigma.set(n_v + i, j, basis.factor(i) * c);
             }
         }
         for j in 0..n_pi {
