@@ -19,10 +19,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use super::basis::Basis;
-use super::dense::{multiply, Dense};
+use super::dense::Dense;
 use super::implicit::Implicit;
 use super::interior::{Factor, LocalSolver, NoFactor, Solver};
-use super::lanes::LANES;
 use crate::sparse::Csr;
 
 /// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
@@ -71,17 +70,17 @@ pub struct LocalProblem {
     /// Σ, n_Π × n_Π.
     pub(super) sigma: Dense,
     /// S on Γ, n_Γ × n_Γ, both triangles; with sparse solves once it has been asked for.
-    s: OnceLock<Arc<Dense>>,
+    pub(super) s: OnceLock<Arc<Dense>>,
     /// T, n_Δ × n_Δ, both triangles, as S.
-    t: OnceLock<Dense>,
+    pub(super) t: OnceLock<Dense>,
     /// The diagonal of K on Γ.
-    stiff: Vec<f64>,
-    inside: Inside,
+    pub(super) stiff: Vec<f64>,
+    pub(super) inside: Inside,
 }
 
 /// What eliminates the interior.
 #[derive(Debug)]
-enum Inside {
+pub(super) enum Inside {
     /// The factor that S came from.
     Partial(Arc<Factor>),
     Implicit(Box<Implicit>),
@@ -190,95 +189,6 @@ impl LocalProblem {
         Ok(out)
     }
 
-    /// S and T are sparse solves.
-    pub fn is_implicit(&self) -> bool {
-        matches!(self.inside, Inside::Implicit(_))
-    }
-
-    /// S as a dense matrix. From sparse solves it is made column by column, once: for checks and other rare uses.
-    pub fn s(&self) -> &Arc<Dense> {
-        self.s.get_or_init(|| Arc::new(self.assembled(Operator::S)))
-    }
-
-    /// T as a dense matrix, as [`s`](Self::s).
-    pub fn t(&self) -> &Dense {
-        self.t.get_or_init(|| self.assembled(Operator::T))
-    }
-
-    pub(super) fn set_condensed(&mut self, t: Dense, psi: Dense, sigma: Dense) {
-        (self.t, self.psi, self.sigma) = (OnceLock::from(t), psi, sigma);
-    }
-
-    /// The diagonal of K on Γ.
-    pub(super) fn stiff(&self) -> &[f64] {
-        &self.stiff
-    }
-
-    /// The order of an operator.
-    pub fn order(&self, which: Operator) -> usize {
-        match which {
-            Operator::S => self.n_gamma(),
-            Operator::T => self.n_delta,
-        }
-    }
-
-    fn assembled(&self, which: Operator) -> Dense {
-        let n = self.order(which);
-        let mut unit = Dense::zeros(n, n);
-        (0..n).for_each(|i| unit.set(i, i, 1.0));
-        let mut out = Dense::zeros(n, n);
-        self.apply(which, &unit, &mut out, n);
-        // Both triangles alike, as those who read one of them expect.
-        out.mirror_lower();
-        out
-    }
-
-    /// The first `n` columns of y ← A v, A one of the operators, v and y of its order. One matrix-matrix product with a dense matrix, sweeps with
-    /// several right-hand sides at once with sparse factors.
-    pub fn apply(&self, which: Operator, v: &Dense, y: &mut Dense, n: usize) {
-        if n == 0 {
-            return;
-        }
-        match &self.inside {
-            Inside::Partial(_) => {
-                let a = self.dense(which);
-                let y = y.view_mut().subcols_mut(0, n);
-                multiply(y, false, 1.0, a.view(), v.view().subcols(0, n));
-            }
-            Inside::Implicit(implicit) => {
-                for first in (0..n).step_by(LANES) {
-                    let last = n.min(first + LANES);
-                    let lanes: Vec<&[f64]> = (first..last).map(|c| v.col(c)).collect();
-                    let done = implicit.apply(which, &lanes);
-                    for (c, done) in (first..last).zip(&done) {
-                        y.col_mut(c).copy_from_slice(done);
-                    }
-                }
-            }
-        }
-    }
-
-    /// y ← A v, A one of the operators; only the leading entries of v count, later ones of y are set to zero.
-    pub fn apply_one(&self, which: Operator, v: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        let n = self.order(which);
-        match &self.inside {
-            Inside::Partial(_) => self.dense(which).add_mul(&v[..n], &mut y[..n]),
-            Inside::Implicit(implicit) => {
-                if v[..n].iter().any(|v| *v != 0.0) {
-                    y[..n].copy_from_slice(&implicit.apply(which, &[&v[..n]])[0]);
-                }
-            }
-        }
-    }
-
-    fn dense(&self, which: Operator) -> &Dense {
-        match which {
-            Operator::S => self.s(),
-            Operator::T => self.t(),
-        }
-    }
-
     /// Number of interface dofs n_Γ.
     pub fn n_gamma(&self) -> usize {
         self.interface.len()
@@ -318,66 +228,6 @@ impl LocalProblem {
         let vertices = (self.n_delta..n).map(own);
         let fixing = self.fixing.iter().map(|&i| own(i));
         vertices.chain(vectors.map(along)).chain(fixing).collect()
-    }
-
-    /// A lower bound of the condition number of S on Δ: max T_ii max S_ii.
-    pub fn condition(&self) -> f64 {
-        let largest = |m: &Dense, n: usize| (0..n).map(|i| m.get(i, i)).fold(0.0, f64::max);
-        largest(self.t(), self.n_delta) * largest(self.s(), self.n_delta)
-    }
-
-    /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
-    pub(super) fn stiffness(&self) -> f64 {
-        let n = self.n_gamma();
-        let of = |i: usize| self.s.get().map_or(self.stiff[i], |s| s.get(i, i));
-        (0..n).map(of).fold(0.0, f64::max)
-    }
-
-    /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
-    /// handed to [`Local::recover`](super::scaled::Local::recover).
-    pub fn condense(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut both = self.condense_many(&[f]);
-        both.pop().expect("one load")
-    }
-
-    /// [`condense`](Self::condense) of several loads, at most [`LANES`].
-    pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
-        let factor = match &self.inside {
-            Inside::Partial(factor) => factor,
-            Inside::Implicit(implicit) => return implicit.condense(loads),
-        };
-        let mut work: Vec<Vec<f64>> = loads.iter().map(|f| f.to_vec()).collect();
-        match &mut work[..] {
-            [one] => factor.forward(one),
-            several => factor.forward_many(several),
-        }
-        let with_gamma = |w: Vec<f64>| {
-            let g = self.interface.iter().map(|&i| w[i as usize]).collect();
-            (w, g)
-        };
-        work.into_iter().map(with_gamma).collect()
-    }
-
-    /// Solutions on all dofs, at most [`LANES`]: `work` of [`condense`](Self::condense) and the interface values `u_gamma` of each. The matrix is so many
-    /// times as stiff as the one that is factored (`scales`).
-    pub(super) fn recover_many(&self, parts: &[(&[f64], &[f64])], scales: &[f64]) -> Vec<Vec<f64>> {
-        let placed = |((work, u_gamma), scale): (&(&[f64], &[f64]), &f64)| {
-            let mut x: Vec<f64> = match *scale {
-                1.0 => work.to_vec(),
-                scale => work.iter().map(|w| w / scale).collect(),
-            };
-            for (&i, &u) in self.interface.iter().zip(*u_gamma) {
-                x[i as usize] = u;
-            }
-            x
-        };
-        let mut x: Vec<Vec<f64>> = parts.iter().zip(scales).map(placed).collect();
-        match (&self.inside, &mut x[..]) {
-            (Inside::Partial(factor), [one]) => factor.backward(one),
-            (Inside::Partial(factor), several) => factor.backward_many(several),
-            (Inside::Implicit(implicit), several) => implicit.recover(several),
-        }
-        x
     }
 
     /// p ← Ψᵀ v, v on Γ.

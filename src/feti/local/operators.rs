@@ -1,0 +1,111 @@
+//! S and T applied, whether they are dense matrices or sparse solves.
+
+use std::sync::{Arc, OnceLock};
+
+use super::dense::{multiply, Dense};
+use super::lanes::LANES;
+use super::problem::{Inside, LocalProblem, Operator};
+
+impl LocalProblem {
+    /// S and T are sparse solves.
+    pub fn is_implicit(&self) -> bool {
+        matches!(self.inside, Inside::Implicit(_))
+    }
+
+    /// S as a dense matrix. From sparse solves it is made column by column, once: for checks and other rare uses.
+    pub fn s(&self) -> &Arc<Dense> {
+        self.s.get_or_init(|| Arc::new(self.assembled(Operator::S)))
+    }
+
+    /// T as a dense matrix, as [`s`](Self::s).
+    pub fn t(&self) -> &Dense {
+        self.t.get_or_init(|| self.assembled(Operator::T))
+    }
+
+    pub(super) fn set_condensed(&mut self, t: Dense, psi: Dense, sigma: Dense) {
+        (self.t, self.psi, self.sigma) = (OnceLock::from(t), psi, sigma);
+    }
+
+    /// The diagonal of K on Γ.
+    pub(super) fn stiff(&self) -> &[f64] {
+        &self.stiff
+    }
+
+    /// The order of an operator.
+    pub fn order(&self, which: Operator) -> usize {
+        match which {
+            Operator::S => self.n_gamma(),
+            Operator::T => self.n_delta,
+        }
+    }
+
+    fn assembled(&self, which: Operator) -> Dense {
+        let n = self.order(which);
+        let mut unit = Dense::zeros(n, n);
+        (0..n).for_each(|i| unit.set(i, i, 1.0));
+        let mut out = Dense::zeros(n, n);
+        self.apply(which, &unit, &mut out, n);
+        // Both triangles alike, as those who read one of them expect.
+        out.mirror_lower();
+        out
+    }
+
+    /// The first `n` columns of y ← A v, A one of the operators, v and y of its order. One matrix-matrix product with a dense matrix, sweeps with
+    /// several right-hand sides at once with sparse factors.
+    pub fn apply(&self, which: Operator, v: &Dense, y: &mut Dense, n: usize) {
+        if n == 0 {
+            return;
+        }
+        match &self.inside {
+            Inside::Partial(_) => {
+                let a = self.dense(which);
+                let y = y.view_mut().subcols_mut(0, n);
+                multiply(y, false, 1.0, a.view(), v.view().subcols(0, n));
+            }
+            Inside::Implicit(implicit) => {
+                for first in (0..n).step_by(LANES) {
+                    let last = n.min(first + LANES);
+                    let lanes: Vec<&[f64]> = (first..last).map(|c| v.col(c)).collect();
+                    let done = implicit.apply(which, &lanes);
+                    for (c, done) in (first..last).zip(&done) {
+                        y.col_mut(c).copy_from_slice(done);
+                    }
+                }
+            }
+        }
+    }
+
+    /// y ← A v, A one of the operators; only the leading entries of v count, later ones of y are set to zero.
+    pub fn apply_one(&self, which: Operator, v: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        let n = self.order(which);
+        match &self.inside {
+            Inside::Partial(_) => self.dense(which).add_mul(&v[..n], &mut y[..n]),
+            Inside::Implicit(implicit) => {
+                if v[..n].iter().any(|v| *v != 0.0) {
+                    y[..n].copy_from_slice(&implicit.apply(which, &[&v[..n]])[0]);
+                }
+            }
+        }
+    }
+
+    fn dense(&self, which: Operator) -> &Dense {
+        match which {
+            Operator::S => self.s(),
+            Operator::T => self.t(),
+        }
+    }
+
+    /// A lower bound of the condition number of S on Δ: max T_ii max S_ii.
+    pub fn condition(&self) -> f64 {
+        let largest = |m: &Dense, n: usize| (0..n).map(|i| m.get(i, i)).fold(0.0, f64::max);
+        largest(self.t(), self.n_delta) * largest(self.s(), self.n_delta)
+    }
+
+    /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
+    pub(super) fn stiffness(&self) -> f64 {
+        let n = self.n_gamma();
+        let of = |i: usize| self.s.get().map_or(self.stiff[i], |s| s.get(i, i));
+        (0..n).map(of).fold(0.0, f64::max)
+    }
+}
