@@ -65,8 +65,22 @@ impl PrimalProblem {
 
     /// `values` (at this rank's ghosts): in, every rank's contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
     pub fn solve(&self, team: &Team, values: &mut [f64]) -> Result<()> {
+        self.begin(values)?;
+        self.finish(team, values)
+    }
+
+    /// The first half of [`solve`](Self::solve): sends the contributions. Collective.
+    pub fn begin(&self, values: &[f64]) -> Result<()> {
+        match &self.parts {
+            Some(p) => p.halo.sum_begin(values, &p.rhs),
+            None => Ok(()),
+        }
+    }
+
+    /// The second half: receives them, and solves. Collective.
+    pub fn finish(&self, team: &Team, values: &mut [f64]) -> Result<()> {
         let Some(p) = &self.parts else { return Ok(()) };
-        p.halo.sum(values, &p.rhs)?;
+        p.halo.sum_end(&p.rhs)?;
         match &p.solver {
             Solver::Petsc(ksp) => {
                 clock::timed(Phase::Primal, || ksp.solve(&p.rhs, &p.solution))?;

@@ -53,12 +53,26 @@ impl Halo {
 
     /// `y` ← the sum of every rank's `ghost` entries. Collective.
     pub fn sum(&self, ghost: &[f64], y: &PetscVec) -> Result<()> {
+        self.sum_begin(ghost, y)?;
+        self.sum_end(y)
+    }
+
+    /// Starts the messages of [`sum`](Self::sum): local work goes on while they are on their way. Nothing else may use this halo or `y` until
+    /// [`sum_end`](Self::sum_end). Collective.
+    pub fn sum_begin(&self, ghost: &[f64], y: &PetscVec) -> Result<()> {
         traffic::count(self.sent.1);
         clock::timed(Phase::Exchange, || {
             let buffer = self.buffer.borrow_mut();
             buffer.array_mut()?.copy_from_slice(ghost);
             y.set(0.0)?;
-            self.scatter.reverse_add(&buffer, y)
+            self.scatter.reverse_add_begin(&buffer, y)
+        })
+    }
+
+    /// Completes [`sum_begin`](Self::sum_begin). Collective.
+    pub fn sum_end(&self, y: &PetscVec) -> Result<()> {
+        clock::timed(Phase::Exchange, || {
+            self.scatter.reverse_add_end(&self.buffer.borrow(), y)
         })
     }
 }

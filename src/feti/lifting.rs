@@ -142,21 +142,28 @@ impl Lifting {
         self.z[j].add_mul(&c, y);
     }
 
-    /// work.y ← work.y − Y A⁺ Yᵀ work.v. Collective.
-    pub fn remove(&self, stiffness: &Stiffness, work: &mut [Work]) -> Result<()> {
+    /// Sends Yᵀ work.v on its way. Collective.
+    pub fn begin(&self, stiffness: &Stiffness, work: &[Work]) -> Result<()> {
         let mut ghost = self.ghost.borrow_mut();
         ghost.fill(0.0);
         let mut local: Vec<Vec<f64>> = self.columns.iter().map(|c| vec![0.0; c.len()]).collect();
-        let (inputs, ys, columns) = (&*work, &self.y, &self.columns);
+        let ys = &self.y;
         stiffness.team.for_each(&mut local, |j, t| {
-            ys[j].add_mul_transpose(&inputs[j].v, t); /*  t ← Yᵀ v        */
+            ys[j].add_mul_transpose(&work[j].v, t); /*    t ← Yᵀ v        */
         });
         for (t, places) in local.iter().zip(&self.columns) {
             for (&g, v) in places.iter().zip(t) {
                 ghost[g as usize] += v;
             }
         }
-        self.halo.sum(&ghost, &self.vector)?;
+        self.halo.sum_begin(&ghost, &self.vector)
+    }
+
+    /// work.y ← work.y − Y A⁺ Yᵀ work.v, after [`begin`](Self::begin). Collective.
+    pub fn finish(&self, stiffness: &Stiffness, work: &mut [Work]) -> Result<()> {
+        let mut ghost = self.ghost.borrow_mut();
+        let (ys, columns) = (&self.y, &self.columns);
+        self.halo.sum_end(&self.vector)?;
         {
             let mut owned = self.vector.array_mut()?;
             clock::timed(Phase::Lifting, || {

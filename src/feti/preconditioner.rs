@@ -101,6 +101,10 @@ impl Preconditioner {
         team.for_each(work, |j, w| {
             columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
         });
+        // Yᵀ v is on its way while S v is computed.
+        if let Some(lifting) = &self.lifting {
+            lifting.begin(stiffness, work)?;
+        }
         match kind {
             PcType::Lumped => team.for_each(work, |j, w| {
                 k_gamma[j].mul(&w.v, &mut w.y); /*            y ← K_ΓΓ v         */
@@ -124,7 +128,7 @@ impl Preconditioner {
             }
         }
         if let Some(lifting) = &self.lifting {
-            lifting.remove(stiffness, work)?; /*              y ← y − Y A⁺ Yᵀ v  */
+            lifting.finish(stiffness, work)?; /*              y ← y − Y A⁺ Yᵀ v  */
         }
         ghost.fill(0.0);
         for (w, columns) in work.iter().zip(columns) {

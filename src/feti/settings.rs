@@ -213,7 +213,7 @@ pub struct Settings {
     pub recycle: usize,
     /// `fetifeti_local_solver` and `fetifeti_local_ordering`: how subdomains are factored.
     pub local: LocalSolver,
-    /// `fetifeti_threads`: threads of this rank; `None`: all cores where one rank runs, else one.
+    /// `fetifeti_threads`: threads of this rank; `None`: the cores of the machine divided by the ranks on it.
     pub threads: Option<usize>,
     /// `fetifeti_check`: print the identities that the theory promises.
     pub check: bool,
@@ -317,7 +317,7 @@ impl Settings {
         let help =
             "search directions kept for the next load with the same matrices and active rows";
         self.recycle = o.usize("recycle", self.recycle, help)?;
-        let help = "threads per rank; 0: all cores where one rank runs, else 1";
+        let help = "threads per rank; 0: the cores of the machine divided by the ranks on it";
         self.threads = match o.usize("threads", self.threads.unwrap_or(0), help)? {
             0 => None,
             n => Some(n),

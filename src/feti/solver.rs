@@ -34,6 +34,7 @@ use crate::contact;
 use crate::petsc::{cite, Comm, Ksp, NormType, Session, Stage, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
+use mpi::traits::Communicator;
 
 const CITATION: &str = "@techreport{Lee2010,
   author = {Jungho Lee},
@@ -342,12 +343,31 @@ impl FetiFeti {
     }
 }
 
+/// Threads of this rank. Collective.
 fn threads(session: &Session, settings: &Settings) -> usize {
-    let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-    let wanted = settings
-        .threads
-        .unwrap_or(if session.size() == 1 { cores } else { 1 });
+    let wanted = settings.threads.unwrap_or_else(|| {
+        let neighbours = session.comm().split_shared(session.rank() as i32);
+        usual_threads(neighbours.size() as usize)
+    });
     wanted.min(settings.local.most_threads().unwrap_or(wanted))
+}
+
+/// The cores of this machine divided among the ranks on it, no more than this rank is bound to.
+fn usual_threads(ranks: usize) -> usize {
+    let bound = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let online = std::fs::read_to_string("/sys/devices/system/cpu/online");
+    let cores = online.ok().and_then(|text| count(&text)).unwrap_or(bound);
+    (cores / ranks).clamp(1, bound)
+}
+
+/// How many numbers a list such as 0-3,8 names.
+fn count(list: &str) -> Option<usize> {
+    let ranges = list.trim().split(',').map(|range| {
+        let (low, high) = range.split_once('-').unwrap_or((range, range));
+        let (low, high): (usize, usize) = (low.parse().ok()?, high.parse().ok()?);
+        (high + 1).checked_sub(low)
+    });
+    ranges.sum()
 }
 
 fn facts(
@@ -422,5 +442,19 @@ fn unfit_norm(error: Error, prefix: &str) -> Error {
             ))
         }
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{count, usual_threads};
+
+    #[test]
+    fn ranks_share_the_cores_of_a_machine() {
+        assert_eq!(count("0-3,8\n"), Some(5));
+        assert_eq!(count("0"), Some(1));
+        assert_eq!(count("none"), None);
+        assert!(usual_threads(1) >= 1);
+        assert_eq!(usual_threads(1 << 20), 1);
     }
 }

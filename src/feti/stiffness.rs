@@ -101,13 +101,13 @@ impl Stiffness {
         self.refinement = Some(refinement);
     }
 
-    /// `c` (at this rank's ghosts): in, contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
-    fn primal_solve(&self, c: &mut [f64]) -> Result<()> {
+    /// `c` (at this rank's ghosts): in, contributions to Ψᵀ v, which are on their way; out, S_Π⁺ of their sum. Collective.
+    fn primal_finish(&self, c: &mut [f64]) -> Result<()> {
         let Some(refinement) = &self.refinement else {
-            return self.primal.solve(&self.team, c);
+            return self.primal.finish(&self.team, c);
         };
         let b = c.to_vec();
-        self.primal.solve(&self.team, c)?;
+        self.primal.finish(&self.team, c)?;
         for _ in 0..refine::STEPS {
             let mut r = b.clone();
             refinement.subtract(&self.space, &self.locals, c, &mut r);
@@ -119,6 +119,13 @@ impl Stiffness {
 
     /// S_Π⁺ Ψᵀ work.v at this rank's ghosts. Collective.
     fn coarse_values(&self, work: &mut [Work]) -> Result<Vec<f64>> {
+        let mut sum = self.coarse_begin(work)?;
+        self.primal_finish(&mut sum)?; /*                 c ← S_Π⁺ p     */
+        Ok(sum)
+    }
+
+    /// Ψᵀ work.v at this rank's ghosts, on its way to those who own them. Collective.
+    fn coarse_begin(&self, work: &mut [Work]) -> Result<Vec<f64>> {
         let locals = &self.locals;
         self.team.for_each(work, |j, w| {
             locals[j].psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
@@ -129,7 +136,7 @@ impl Stiffness {
                 sum[g as usize] += p;
             }
         }
-        self.primal_solve(&mut sum)?; /*                  c ← S_Π⁺ p     */
+        self.primal.begin(&sum)?;
         Ok(sum)
     }
 
@@ -143,17 +150,21 @@ impl Stiffness {
     /// work.y ← S̃⁺ work.v on every subdomain. Collective.
     pub fn s_plus(&self, work: &mut [Work]) -> Result<()> {
         let (locals, space) = (&self.locals, &self.space);
-        let coarse = self.coarse_values(work)?;
+        let mut coarse = self.coarse_begin(work)?; /*     p ← Ψᵀ v       */
         let (team, products) = (&self.team, &self.products);
         let panels = products.multiply(team, locals, work, Operator::T, |j, v, y, n| {
             locals[j].kind().apply(Operator::T, v, y, n)
         });
         let products = products.results(&panels, Operator::T);
+        // While the coarse values are on their way:
         self.team.for_each(work, |j, w| {
-            Self::local_values(space, j, &coarse, &mut w.p);
             products.take(j, &locals[j], &mut w.y, |y| {
                 locals[j].apply_one(Operator::T, &w.v, y)
-            }); /* y ← T v        */
+            }); /*                                        y ← T v        */
+        });
+        self.primal_finish(&mut coarse)?; /*              c ← S_Π⁺ p     */
+        self.team.for_each(work, |j, w| {
+            Self::local_values(space, j, &coarse, &mut w.p);
             locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
         });
         Ok(())
