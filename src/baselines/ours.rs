@@ -20,9 +20,6 @@ use crate::scene::Scene;
 use crate::substructures::Subdomain;
 use crate::Result;
 
-/// Directions that a first solve leaves to the second one.
-const DIRECTIONS: usize = 30;
-
 /// Solves a scene by the FETI-FETI method.
 ///
 /// # Errors
@@ -38,7 +35,8 @@ pub fn solve(
     let (substructures, assemble) = timed(session, || problem::substructures(session, scene))?;
     let settings = Settings {
         rtol: job.rtol,
-        recycle: if job.again { DIRECTIONS } else { 0 },
+        // Directions of one attempt would shorten the next one, which is the one that is timed.
+        recycle: 0,
         ..Settings::default()
     };
     let (mut solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
