@@ -71,8 +71,11 @@ impl Csr {
         out
     }
 
-    /// As [`from_triplets`](Self::from_triplets), for many entries in rows that are short: sorted row by row.
-    pub fn from_contributions(n: usize, entries: &[(u32, u32, f64)]) -> Csr {
+    /// The matrix with the given (row, column, value) entries, repeated ones added up.
+    ///
+    /// Entries are summed in the order in which they come, so that the result does not depend on how the
+    /// sort treats equal keys.
+    pub fn from_triplets(n: usize, entries: &[(u32, u32, f64)]) -> Csr {
         let mut start = vec![0usize; n + 1];
         entries.iter().for_each(|e| start[e.0 as usize + 1] += 1);
         for i in 0..n {
@@ -102,41 +105,6 @@ impl Csr {
                 }
             }
             out.row_ptr.push(out.col.len());
-        }
-        out
-    }
-
-    /// The matrix with the given (row, column, value) entries, repeated ones added up.
-    ///
-    /// Entries are summed in the order in which they come, so that the result does not depend on how the
-    /// sort treats equal keys.
-    pub fn from_triplets(n: usize, triplets: &[(u32, u32, f64)]) -> Csr {
-        let mut order: Vec<u32> = (0..triplets.len() as u32).collect();
-        order.sort_by_key(|&k| {
-            let (i, j, _) = triplets[k as usize];
-            (i, j)
-        });
-        let mut out = Csr {
-            row_ptr: vec![0; n + 1],
-            col: Vec::with_capacity(triplets.len()),
-            val: Vec::with_capacity(triplets.len()),
-        };
-        let mut last = None;
-        for k in order {
-            let (i, j, v) = triplets[k as usize];
-            if last == Some((i, j)) {
-                *out.val
-                    .last_mut()
-                    .expect("an entry was pushed for this key") += v;
-            } else {
-                out.col.push(j);
-                out.val.push(v);
-                out.row_ptr[i as usize + 1] += 1;
-                last = Some((i, j));
-            }
-        }
-        for i in 0..n {
-            out.row_ptr[i + 1] += out.row_ptr[i];
         }
         out
     }

@@ -144,7 +144,7 @@ fn own(
     }
     let factors = team.map(of_body.len(), |b| {
         let range = &space.owned[b].range;
-        let k = Csr::from_contributions(range.len(), &of_body[b]);
+        let k = Csr::from_triplets(range.len(), &of_body[b]);
         let symbolic = Symbolic::new(&k, &[], None);
         let factor = PartialCholesky::new(&k, symbolic.into()).ok()?.0;
         Some((range.start, factor))

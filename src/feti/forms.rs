@@ -32,6 +32,9 @@ const MANY: usize = 4;
 /// Dense operators that take less than this to make are made without asking.
 const SHORT: f64 = 5e-3;
 
+/// Making S and T takes about so many times n_Γ³ operations where the interface is not large beside the interior.
+const SMALL: f64 = 3.0;
+
 /// Applications of F and M⁻¹ that one set-up is for: tied problems, and loops over active sets.
 pub const APPLICATIONS: [f64; 2] = [25.0, 60.0];
 
@@ -178,6 +181,10 @@ fn cost(kind: &Kind, always: bool) -> Option<Cost> {
     let (k, x) = (&kind.sub.k, kind.sub.coordinates.as_deref());
     let interface = [kind.delta, kind.primal].concat();
     let (n_gamma, n_delta) = (interface.len() as f64, kind.delta.len() as f64);
+    // The set-up analyses again what it factors: not worth it for small interfaces.
+    if FLOP * SMALL * n_gamma.powi(3) < SHORT && !always {
+        return None;
+    }
     let partial = Symbolic::new(k, &interface, x);
     // T: Cholesky factorisation and inverse of S_ΔΔ.
     let make = FLOP * (partial.flops() + n_delta.powi(3));

@@ -16,13 +16,13 @@ use super::exchange::{max_all, min_all};
 use super::lifting::Lifting;
 use super::local::dense::Dense;
 use super::local::problem::{LocalProblem, Operator};
+use super::local::rectangular::Rectangular;
 use super::local::scaled::Local;
 use super::local::single::Single;
 use super::products::Products;
 use super::settings::{PcType, Precision};
 use super::stiffness::{Columns, Stiffness, Work};
 use crate::petsc::Vec as PetscVec;
-use crate::sparse::Csr;
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -31,7 +31,7 @@ pub struct Preconditioner {
     kind: PcType,
     lifting: Option<Lifting>,
     /// K_ΓΓ of each local subdomain in the order of Γ, for the lumped preconditioner.
-    k_gamma: Vec<Csr>,
+    k_gamma: Vec<Rectangular>,
     /// S of each local subdomain in single precision, where that is asked for and S is a dense matrix; equal subdomains share it.
     single: Vec<Option<Arc<Single>>>,
     /// S for subdomains that share it.
@@ -54,7 +54,7 @@ impl Preconditioner {
                 .local
                 .iter()
                 .zip(&stiffness.locals)
-                .map(|(sub, local)| restrict(&sub.k, &local.interface))
+                .map(|(sub, local)| Rectangular::block(&sub.k, &local.interface, &local.interface))
                 .collect(),
             _ => Vec::new(),
         };
@@ -107,7 +107,8 @@ impl Preconditioner {
         }
         match kind {
             PcType::Lumped => team.for_each(work, |j, w| {
-                k_gamma[j].mul(&w.v, &mut w.y); /*            y ← K_ΓΓ v         */
+                w.y.fill(0.0);
+                k_gamma[j].add_mul(1.0, &w.v, &mut w.y); /*   y ← K_ΓΓ v         */
             }),
             _ => {
                 let products = &self.products;
@@ -209,22 +210,4 @@ fn in_single(comm: &SimpleCommunicator, stiffness: &Stiffness) -> Vec<Option<Arc
         Some(single.clone())
     };
     stiffness.locals.iter().map(of).collect()
-}
-
-/// The rows and columns of `k` listed in `interface`, in that order.
-fn restrict(k: &Csr, interface: &[u32]) -> Csr {
-    let mut place = vec![u32::MAX; k.n()];
-    for (p, &i) in interface.iter().enumerate() {
-        place[i as usize] = p as u32;
-    }
-    let mut triplets = Vec::new();
-    for (p, &i) in interface.iter().enumerate() {
-        let (col, val) = k.row(i as usize);
-        for (&j, &v) in col.iter().zip(val) {
-            if place[j as usize] != u32::MAX {
-                triplets.push((p as u32, place[j as usize], v));
-            }
-        }
-    }
-    Csr::from_triplets(interface.len(), &triplets)
 }

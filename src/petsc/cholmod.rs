@@ -5,7 +5,7 @@ use std::ptr::null_mut;
 
 use petsc_sys as sys;
 
-use super::direct::{complaint, refusal, Refusal};
+use super::direct::{blas, complaint, refusal, Refusal};
 
 const NAME: &str = "CHOLMOD";
 
@@ -48,8 +48,8 @@ struct Handle {
     n: usize,
 }
 
-// SAFETY: the object is memory that no thread owns; CHOLMOD has no variables of the process apart from the pointers to malloc, and every
-// call makes a workspace of its own.
+// SAFETY: the object is memory that no thread owns; CHOLMOD has no variables of the process apart from the pointers to malloc, every call
+// makes a workspace of its own, and those that reach BLAS ask whether it takes several threads.
 unsafe impl Send for Handle {}
 // SAFETY: shared calls only read the object.
 unsafe impl Sync for Handle {}
@@ -101,6 +101,7 @@ impl CholmodSymbolic {
         pattern.check();
         assert_eq!((pattern.n(), pattern.row.len()), (self.0.n, values.len()));
         let (mut raw, mut column, mut why) = (null_mut(), -1, 0);
+        let _alone = blas();
         // SAFETY: as above, and `values` is as long as the pattern says.
         let code = unsafe {
             sys::ff_cholmod_factor(
@@ -148,6 +149,7 @@ impl Cholmod {
         }
         assert_eq!(x.len() % self.0.n, 0);
         let mut why = 0;
+        let _alone = blas();
         // SAFETY: `x` holds that many vectors of length n.
         let code = unsafe {
             let columns = (x.len() / self.0.n) as c_int;

@@ -1,6 +1,24 @@
 //! What the wrappers of the direct solvers return, in Rust.
 
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+
 use petsc_sys as sys;
+
+/// One caller at a time, for all instances of all libraries that take this lock.
+static ALONE: Mutex<()> = Mutex::new(());
+
+pub(super) fn alone() -> MutexGuard<'static, ()> {
+    // What a panic elsewhere left behind does not matter: the lock guards no data of ours.
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Held around calls that reach BLAS: the sequential OpenBLAS hands the same buffer to two callers at once, and both get wrong results.
+pub(super) fn blas() -> Option<MutexGuard<'static, ()>> {
+    static TAKES_THREADS: OnceLock<bool> = OnceLock::new();
+    // SAFETY: takes nothing, asks a constant of the library.
+    let takes = TAKES_THREADS.get_or_init(|| unsafe { sys::ff_blas_takes_threads() != 0 });
+    (!takes).then(alone)
+}
 
 /// Why there is no factor.
 #[derive(Debug, Clone, PartialEq, Eq)]

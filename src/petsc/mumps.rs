@@ -6,21 +6,12 @@
 
 use std::os::raw::c_int;
 use std::ptr::null_mut;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use petsc_sys as sys;
 
-use super::direct::{complaint, refusal, Refusal};
+use super::direct::{alone, complaint, refusal, Refusal};
 
 const NAME: &str = "MUMPS";
-
-/// One caller at a time, for all instances.
-static ALONE: Mutex<()> = Mutex::new(());
-
-fn alone() -> MutexGuard<'static, ()> {
-    // What a panic elsewhere left behind does not matter: the lock guards no data of ours.
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// Whether this build has MUMPS.
 pub fn have_mumps() -> bool {
@@ -39,7 +30,7 @@ pub struct Mumps {
     col: Vec<i32>,
 }
 
-// SAFETY: an instance belongs to no thread; calls are made one at a time, under the lock of this module.
+// SAFETY: an instance belongs to no thread; calls are made one at a time, under one lock.
 unsafe impl Send for Mumps {}
 // SAFETY: as above: shared calls take the lock.
 unsafe impl Sync for Mumps {}

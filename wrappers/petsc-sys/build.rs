@@ -7,7 +7,7 @@ use std::{env, fs};
 include!("names.rs");
 
 /// Sparse Cholesky factorisations and orderings of the C libraries that usually come with PETSc.
-const DIRECT: [&str; 4] = ["direct.h", "cholmod.c", "scotch.c", "mumps.c"];
+const DIRECT: [&str; 5] = ["direct.h", "blas.c", "cholmod.c", "scotch.c", "mumps.c"];
 
 fn main() {
     for file in ["build.rs", "names.rs", "wrapper.h", "shim.h", "shim.c"] {

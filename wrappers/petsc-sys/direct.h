@@ -19,6 +19,9 @@ int ff_have_metis(void);
 int ff_have_scotch(void);
 int ff_have_mumps(void);
 
+/* Whether several threads may call BLAS at once: all that we know of but OpenBLAS built for one thread. */
+int ff_blas_takes_threads(void);
+
 /* ---- orderings: order[k] is the vertex eliminated k-th; the graph is symmetric, without loops, in compressed rows ----
    Neither library may be called by two threads at once. */
 int ff_metis_order(int n, const int *row, const int *col, int *order);
@@ -30,7 +33,7 @@ typedef struct ff_cholmod ff_cholmod;
 int ff_cholmod_analyse(int n, const int *ptr, const int *row, int supernodal, ff_cholmod **out, int *why);
 /* A factor of its own with this analysis; `column` is where a pivot was not positive. */
 int ff_cholmod_factor(const ff_cholmod *analysis, const int *ptr, const int *row, const double *value, ff_cholmod **out, int *column, int *why);
-/* b <- A^-1 b, `columns` vectors one after the other; any number of threads. */
+/* b <- A^-1 b, `columns` vectors one after the other. This and the factorisation take as many threads as BLAS does. */
 int ff_cholmod_solve(const ff_cholmod *factor, int columns, double *b, int *why);
 /* The diagonal of L. */
 void ff_cholmod_diagonal(const ff_cholmod *factor, double *diagonal);

@@ -12,7 +12,7 @@ pub mod multifrontal;
 mod operators;
 pub mod pencil;
 pub mod problem;
-mod rectangular;
+pub mod rectangular;
 pub mod scaled;
 pub mod semidefinite;
 pub mod single;

@@ -106,12 +106,6 @@ impl Local {
             [first, ..] => first.problem.recover_many(parts, &scales),
         }
     }
-
-    /// The solution on all dofs from its values on Γ and the `work` of [`LocalProblem::condense`].
-    pub fn recover(&self, work: &[f64], u_gamma: &[f64]) -> Vec<f64> {
-        let one = Local::recover_many(&[self], &[(work, u_gamma)]);
-        one.into_iter().next().expect("one solution")
-    }
 }
 
 fn scale(by: f64, values: &mut [f64]) {

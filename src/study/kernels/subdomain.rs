@@ -41,7 +41,7 @@ impl Sample {
         let surface = surface(&positions, case.dim);
         let (interface, inside): (Vec<u32>, Vec<u32>) =
             (0..k.n() as u32).partition(|&i| surface[i as usize]);
-        let inner = restricted(&k, &inside);
+        let inner = k.restricted(&inside);
         let solution: Vec<f64> = (0..k.n()).map(|i| (1.0 + i as f64).sin()).collect();
         let inner_solution: Vec<f64> = inside.iter().map(|&i| solution[i as usize]).collect();
         let product = |a: &Csr, u: &[f64]| {
@@ -89,29 +89,6 @@ fn surface(x: &[[f64; 3]], dim: usize) -> Vec<bool> {
         for (out, v) in out.iter_mut().zip(values()) {
             *out |= (v - low).min(high - v) < 1e-9 * (high - low);
         }
-    }
-    out
-}
-
-/// Rows and columns of `dofs`, which increase.
-fn restricted(k: &Csr, dofs: &[u32]) -> Csr {
-    let mut place = vec![u32::MAX; k.n()];
-    for (p, &i) in dofs.iter().enumerate() {
-        place[i as usize] = p as u32;
-    }
-    let mut out = Csr {
-        row_ptr: vec![0],
-        ..Csr::default()
-    };
-    for &i in dofs {
-        let (col, val) = k.row(i as usize);
-        for (&j, &v) in col.iter().zip(val) {
-            if place[j as usize] != u32::MAX {
-                out.col.push(place[j as usize]);
-                out.val.push(v);
-            }
-        }
-        out.row_ptr.push(out.col.len());
     }
     out
 }
