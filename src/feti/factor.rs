@@ -67,7 +67,12 @@ pub(super) fn factor(
             settings.local,
             form,
         )
-        .map(Arc::new)
+        .map(|mut local| {
+            if kind.copies < forms::MANY {
+                local.pack();
+            }
+            Arc::new(local)
+        })
         .map_err(|e| no_factor(problem, sub, e))
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;

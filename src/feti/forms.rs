@@ -18,16 +18,18 @@ use crate::substructures::{Subdomain, Substructures};
 /// Seconds per multiplication and addition in dense fronts.
 pub(super) const FLOP: f64 = 8e-11;
 
-/// Seconds per entry of a dense operator and application: by itself, and where many copies make it a matrix-matrix product.
-pub(super) const DENSE: f64 = 4e-10;
+/// Seconds per entry of a dense operator and application: by itself (half of the entries are read), and where many copies make it a
+/// matrix-matrix product.
+pub(super) const DENSE: f64 = 2e-10;
 pub(super) const DENSE_SHARED: f64 = 6e-11;
 
 /// Seconds per entry of a sparse factor and pass over it, for one vector, and for each of several.
 const SPARSE: f64 = 6e-10;
 const SPARSE_SHARED: f64 = 2e-10;
 
-/// So many copies make a product of matrices.
-const MANY: usize = 4;
+/// So many copies on a rank make a product of matrices; with fewer, products with S and T take longer to read them than to multiply, and their lower
+/// triangles are kept alone.
+pub(super) const MANY: usize = 8;
 
 /// Dense operators that take less than this to make are made without asking.
 const SHORT: f64 = 5e-3;
@@ -173,7 +175,8 @@ pub fn choose(
 fn dense_bytes(kind: &Kind) -> f64 {
     let n_delta = kind.delta.len() as f64;
     let n_gamma = n_delta + kind.primal.len() as f64;
-    8.0 * (n_gamma.powi(2) + n_delta.powi(2))
+    let each = if kind.copies < MANY { 4.0 } else { 8.0 };
+    each * (n_gamma.powi(2) + n_delta.powi(2))
 }
 
 /// `None` where dense operators are made so fast that nothing else is worth analysing, unless memory is short (`always`).
@@ -264,7 +267,7 @@ mod tests {
     fn what_does_not_fit_is_solved_sparsely() {
         forms(PLANE, 0.0, |f| assert!(!f.contains(&Form::Explicit)));
         let n = 4.0 * 48.0; // a subdomain has no more rows than that
-        forms(PLANE, 2.5 * 16.0 * n * n, |f| {
+        forms(PLANE, 2.5 * 8.0 * n * n, |f| {
             let dense = f.iter().filter(|f| **f == Form::Explicit).count();
             assert!((2..9).contains(&dense), "{dense} of {}", f.len());
         });

@@ -206,7 +206,7 @@ fn in_single(comm: &SimpleCommunicator, stiffness: &Stiffness) -> Vec<Option<Arc
             return None;
         }
         let entry = known.entry(Arc::as_ptr(local.kind()));
-        let single = entry.or_insert_with(|| Arc::new(Single::new(local.s())));
+        let single = entry.or_insert_with(|| Arc::new(Single::new(&local.s())));
         Some(single.clone())
     };
     stiffness.locals.iter().map(of).collect()

@@ -17,6 +17,7 @@ pub mod scaled;
 pub mod semidefinite;
 pub mod single;
 mod substitution;
+mod symmetric;
 
 #[cfg(test)]
 pub(crate) mod testing {

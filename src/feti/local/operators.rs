@@ -1,10 +1,12 @@
 //! S and T applied, whether they are dense matrices or sparse solves.
 
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use super::dense::{multiply, Dense};
 use super::lanes::LANES;
-use super::problem::{Inside, LocalProblem, Operator};
+use super::problem::{Inside, LocalProblem, Operator, Packed};
+use super::symmetric::Symmetric;
 
 impl LocalProblem {
     /// S and T are sparse solves.
@@ -12,14 +14,64 @@ impl LocalProblem {
         matches!(self.inside, Inside::Implicit(_))
     }
 
-    /// S as a dense matrix. From sparse solves it is made column by column, once: for checks and other rare uses.
-    pub fn s(&self) -> &Arc<Dense> {
-        self.s.get_or_init(|| Arc::new(self.assembled(Operator::S)))
+    /// S as a dense matrix. From sparse solves it is made column by column, once: for checks and other rare uses. From its lower triangle
+    /// it is made every time.
+    pub fn s(&self) -> Arc<Dense> {
+        match &self.packed {
+            Some(packed) => Arc::new(packed.s.to_dense()),
+            None => self.whole_s().clone(),
+        }
     }
 
     /// T as a dense matrix, as [`s`](Self::s).
-    pub fn t(&self) -> &Dense {
+    pub fn t(&self) -> Cow<'_, Dense> {
+        match &self.packed {
+            Some(packed) => Cow::Owned(packed.t.to_dense()),
+            None => Cow::Borrowed(self.whole_t()),
+        }
+    }
+
+    fn whole_s(&self) -> &Arc<Dense> {
+        self.s.get_or_init(|| Arc::new(self.assembled(Operator::S)))
+    }
+
+    fn whole_t(&self) -> &Dense {
         self.t.get_or_init(|| self.assembled(Operator::T))
+    }
+
+    /// Keeps the lower triangles of S and T alone. For subdomains with few copies: products wait for memory then. With many copies the
+    /// whole matrices are read once for all of them, and matrix-matrix products are faster.
+    pub fn pack(&mut self) {
+        if !self.is_implicit() && self.packed.is_none() {
+            self.packed = Some(Packed {
+                s: Symmetric::new(self.whole_s()),
+                t: Symmetric::new(self.whole_t()),
+            });
+            (self.s, self.t) = (OnceLock::new(), OnceLock::new());
+        }
+    }
+
+    /// Whether [`pack`](Self::pack) has been called.
+    pub fn is_packed(&self) -> bool {
+        self.packed.is_some()
+    }
+
+    /// An entry of one of the operators.
+    pub fn entry(&self, which: Operator, i: usize, j: usize) -> f64 {
+        match (&self.packed, which) {
+            (Some(packed), _) => packed.of(which).get(i, j),
+            (None, Operator::S) => self.whole_s().get(i, j),
+            (None, Operator::T) => self.whole_t().get(i, j),
+        }
+    }
+
+    /// A diagonal entry of S, or of K on Γ where S is not at hand: a bound.
+    pub(super) fn s_diagonal(&self, i: usize) -> f64 {
+        match (&self.packed, self.s.get()) {
+            (Some(packed), _) => packed.s.get(i, i),
+            (None, Some(s)) => s.get(i, i),
+            (None, None) => self.stiff[i],
+        }
     }
 
     pub(super) fn set_condensed(&mut self, t: Dense, psi: Dense, sigma: Dense) {
@@ -57,11 +109,14 @@ impl LocalProblem {
             return;
         }
         match &self.inside {
-            Inside::Partial(_) => {
-                let a = self.dense(which);
-                let y = y.view_mut().subcols_mut(0, n);
-                multiply(y, false, 1.0, a.view(), v.view().subcols(0, n));
-            }
+            Inside::Partial(_) => match &self.packed {
+                Some(packed) => packed.of(which).mul_columns(v, y, n),
+                None => {
+                    let y = y.view_mut().subcols_mut(0, n);
+                    let v = v.view().subcols(0, n);
+                    multiply(y, false, 1.0, self.dense(which).view(), v);
+                }
+            },
             Inside::Implicit(implicit) => {
                 for first in (0..n).step_by(LANES) {
                     let last = n.min(first + LANES);
@@ -80,7 +135,10 @@ impl LocalProblem {
         y.fill(0.0);
         let n = self.order(which);
         match &self.inside {
-            Inside::Partial(_) => self.dense(which).add_mul(&v[..n], &mut y[..n]),
+            Inside::Partial(_) => match &self.packed {
+                Some(packed) => packed.of(which).add_mul(&v[..n], &mut y[..n]),
+                None => self.dense(which).add_mul(&v[..n], &mut y[..n]),
+            },
             Inside::Implicit(implicit) => {
                 if v[..n].iter().any(|v| *v != 0.0) {
                     y[..n].copy_from_slice(&implicit.apply(which, &[&v[..n]])[0]);
@@ -91,21 +149,32 @@ impl LocalProblem {
 
     fn dense(&self, which: Operator) -> &Dense {
         match which {
-            Operator::S => self.s(),
-            Operator::T => self.t(),
+            Operator::S => self.whole_s(),
+            Operator::T => self.whole_t(),
         }
     }
 
     /// A lower bound of the condition number of S on Δ: max T_ii max S_ii.
     pub fn condition(&self) -> f64 {
-        let largest = |m: &Dense, n: usize| (0..n).map(|i| m.get(i, i)).fold(0.0, f64::max);
-        largest(self.t(), self.n_delta) * largest(self.s(), self.n_delta)
+        let largest = |which| {
+            let diagonal = (0..self.n_delta).map(|i| self.entry(which, i, i));
+            diagonal.fold(0.0, f64::max)
+        };
+        largest(Operator::T) * largest(Operator::S)
     }
 
     /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
     pub(super) fn stiffness(&self) -> f64 {
-        let n = self.n_gamma();
-        let of = |i: usize| self.s.get().map_or(self.stiff[i], |s| s.get(i, i));
-        (0..n).map(of).fold(0.0, f64::max)
+        let diagonal = (0..self.n_gamma()).map(|i| self.s_diagonal(i));
+        diagonal.fold(0.0, f64::max)
+    }
+}
+
+impl Packed {
+    fn of(&self, which: Operator) -> &Symmetric {
+        match which {
+            Operator::S => &self.s,
+            Operator::T => &self.t,
+        }
     }
 }

@@ -22,6 +22,7 @@ use super::basis::Basis;
 use super::dense::Dense;
 use super::implicit::Implicit;
 use super::interior::{Factor, LocalSolver, NoFactor, Solver};
+use super::symmetric::Symmetric;
 use crate::sparse::Csr;
 
 /// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
@@ -73,9 +74,18 @@ pub struct LocalProblem {
     pub(super) s: OnceLock<Arc<Dense>>,
     /// T, n_Δ × n_Δ, both triangles, as S.
     pub(super) t: OnceLock<Dense>,
+    /// Both by their lower triangles, in the place of the dense matrices: see [`pack`](Self::pack).
+    pub(super) packed: Option<Packed>,
     /// The diagonal of K on Γ.
     pub(super) stiff: Vec<f64>,
     pub(super) inside: Inside,
+}
+
+/// S and T by their lower triangles.
+#[derive(Debug)]
+pub(super) struct Packed {
+    pub s: Symmetric,
+    pub t: Symmetric,
 }
 
 /// What eliminates the interior.
@@ -121,6 +131,7 @@ impl LocalProblem {
                     sigma: coarse.sigma,
                     s: OnceLock::new(),
                     t: OnceLock::new(),
+                    packed: None,
                     inside: Inside::Implicit(Box::new(implicit)),
                 });
             }
@@ -146,6 +157,7 @@ impl LocalProblem {
             sigma: Dense::default(),
             s: OnceLock::from(Arc::new(s)),
             t: OnceLock::new(),
+            packed: None,
             inside: Inside::Partial(Arc::new(factor)),
         };
         out.condense_dual()?;
@@ -153,7 +165,7 @@ impl LocalProblem {
     }
 
     /// The same subdomain with more functionals primal, Σ weights · u over dual dofs each. S and the factor are shared with what is
-    /// there; only T, Ψ and Σ are computed again. Sparse solves become dense matrices.
+    /// there; only T, Ψ and Σ are computed again. Sparse solves become dense matrices; lower triangles stay lower triangles.
     pub fn constrained<'a>(
         &self,
         k: &Csr,
@@ -161,7 +173,7 @@ impl LocalProblem {
         coordinates: Option<&[[f64; 3]]>,
     ) -> Result<LocalProblem, NoFactor> {
         let (s, factor) = match &self.inside {
-            Inside::Partial(factor) => (self.s().clone(), factor.clone()),
+            Inside::Partial(factor) => (self.s(), factor.clone()),
             Inside::Implicit(_) => {
                 let solver = LocalSolver::default();
                 let (factor, s) = solver.condense(k, &self.interface, coordinates)?;
@@ -177,6 +189,7 @@ impl LocalProblem {
             sigma: Dense::default(),
             s: OnceLock::from(s),
             t: OnceLock::new(),
+            packed: None,
             stiff: self.stiff.clone(),
             inside: Inside::Partial(factor),
         };
@@ -186,6 +199,9 @@ impl LocalProblem {
             debug_assert!(new, "functionals are independent");
         }
         out.condense_dual()?;
+        if self.is_packed() {
+            out.pack();
+        }
         Ok(out)
     }
 
@@ -219,7 +235,7 @@ impl LocalProblem {
     pub(super) fn primal_stiffness(&self) -> Vec<f64> {
         let n = self.n_gamma();
         // The diagonal of K bounds that of S, where that one is not at hand.
-        let own = |i: usize| self.s.get().map_or(self.stiff[i], |s| s.get(i, i));
+        let own = |i: usize| self.s_diagonal(i);
         let along = |(k, q): (usize, Vec<f64>)| {
             let terms = q.iter().enumerate().map(|(i, q)| q * q * own(i));
             self.basis.factor(k).powi(2) * terms.sum::<f64>()
@@ -255,7 +271,9 @@ impl LocalProblem {
         let s = self.s.get().map_or(0, |s| s.data.len());
         let t = self.t.get().map_or(0, |t| t.data.len());
         let dense = s + t + self.psi.data.len() + self.sigma.data.len();
-        (sparse, more + dense * std::mem::size_of::<f64>())
+        let packed = self.packed.as_ref();
+        let packed = packed.map_or(0, |p| p.s.bytes() + p.t.bytes());
+        (sparse, more + packed + dense * std::mem::size_of::<f64>())
     }
 }
 

@@ -77,12 +77,12 @@ impl Local {
 
     /// S on some positions of Γ.
     pub fn s_on(&self, at: &[usize]) -> Dense {
-        block(self.problem.s(), at, self.factor)
+        self.block(Operator::S, at)
     }
 
     /// T on some positions of Δ.
     pub fn t_on(&self, at: &[usize]) -> Dense {
-        block(self.problem.t(), at, 1.0 / self.factor)
+        self.block(Operator::T, at)
     }
 
     /// A stiffness of each primal dof that does not vanish with Σ: what it takes to move its dofs alone.
@@ -108,19 +108,21 @@ impl Local {
     }
 }
 
+impl Local {
+    fn block(&self, which: Operator, at: &[usize]) -> Dense {
+        let (n, factor) = (at.len(), self.multiple(which));
+        let mut out = Dense::zeros(n, n);
+        for (q, &j) in at.iter().enumerate() {
+            for (p, &i) in at.iter().enumerate() {
+                out.set(p, q, factor * self.problem.entry(which, i, j));
+            }
+        }
+        out
+    }
+}
+
 fn scale(by: f64, values: &mut [f64]) {
     if by != 1.0 {
         values.iter_mut().for_each(|v| *v *= by);
     }
-}
-
-fn block(m: &Dense, at: &[usize], factor: f64) -> Dense {
-    let n = at.len();
-    let mut out = Dense::zeros(n, n);
-    for (q, &j) in at.iter().enumerate() {
-        for (p, &i) in at.iter().enumerate() {
-            out.set(p, q, factor * m.get(i, j));
-        }
-    }
-    out
 }
