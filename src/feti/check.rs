@@ -286,8 +286,9 @@ impl Check<'_> {
         let stiffness = &self.dual.stiffness;
         let mut work = stiffness.work();
         let mut size = 0.0f64;
-        for (j, w) in work.iter_mut().enumerate() {
-            lifting.combine(j, |column| noise(u64::from(column) + 17), &mut w.y);
+        let combined = lifting.combine(stiffness, |column| noise(u64::from(column) + 17))?;
+        for (w, y) in work.iter_mut().zip(combined) {
+            w.y = y;
             size = w.y.iter().fold(size, |a, v| a.max(v.abs()));
         }
         let jump = self.dual.multipliers()?;

@@ -1,10 +1,15 @@
 //! Z_c before anything is multiplied with it: copies of Ψ averaged inside the bodies.
+//!
+//! On one subdomain Z_c has a column for every coarse function of the neighbourhood, six hundred in space: it is built where it is needed and thrown away, from a
+//! [`Recipe`] that says whose rows go where. Recipes that are the same, of subdomains in the same surroundings, are recognised by their
+//! [signatures](Recipe::signature).
 
 use std::collections::BTreeMap;
 
 use mpi::traits::Communicator;
 
 use super::exchange::exchange_words;
+use super::interpolation::Functions;
 use super::jump::Jump;
 use super::local::dense::Dense;
 use super::local::scaled::Local;
@@ -13,123 +18,143 @@ use super::stiffness::Stiffness;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
 
-/// Z_c on one subdomain with the global numbers of its columns.
-pub(super) struct Averaged {
-    /// n_Γ × columns.
-    pub z: Dense,
-    /// Global numbers, increasing.
+/// How Z_c is made on one subdomain.
+pub(super) struct Recipe {
+    /// Order of Γ.
+    rows: usize,
+    /// Global numbers of the columns, increasing.
     pub columns: Vec<u32>,
+    contributions: Vec<Contribution>,
+    /// (position in Γ, column): vertices where the function of the vertex is one.
+    vertices: Vec<(u32, u32)>,
 }
 
 /// What one subdomain contributes to the columns of another one: rows of D Ψ, D scaled to a sum of one over the copies.
 struct Contribution {
     /// The subdomain that it comes from.
     from: u64,
-    /// Global numbers of its columns.
+    /// Global numbers of its columns; later their places among the columns of the recipe.
     columns: Vec<u32>,
-    /// (position in Γ of the one that it goes to, a value for each column).
-    rows: Vec<(u32, Vec<f64>)>,
+    /// (position in Γ of the one that it goes to, row of the source, factor).
+    rows: Vec<(u32, u32, f64)>,
+    source: Source,
 }
 
-/// Exchanges rows of Ψ between the copies of every shared dof and averages them.
-pub(super) fn average_copies(
+enum Source {
+    /// Functions of a subdomain of this rank.
+    Local(usize),
+    /// Rows that another rank has sent, one of each contribution.
+    Remote(Dense),
+}
+
+/// What to do for every local subdomain; exchanges rows of Ψ between ranks.
+pub(super) fn recipes(
     session: &Session,
     problem: &Substructures,
     sharing: &Sharing,
     stiffness: &Stiffness,
-) -> Vec<Averaged> {
+    functions: &[Functions],
+) -> Vec<Recipe> {
     let (comm, team) = (session.comm(), &stiffness.team);
     let (space, locals, jump) = (&stiffness.space, &stiffness.locals, &stiffness.jump);
+    let me = comm.rank() as u32;
     let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
-    // For each subdomain that shares something: [to, from, columns, rows, column numbers, (local dof, values) of each row].
-    let packed = team.map(locals.len(), |j| {
+    let columns = |j: usize| -> Vec<u32> {
+        let of = functions[j].columns.iter();
+        of.map(|&p| global(j, p)).collect()
+    };
+    let places: Vec<Vec<u32>> = team.map(locals.len(), |j| {
+        let mut place = vec![u32::MAX; problem.local[j].k.n()];
+        let interface = locals[j].interface.iter().zip(0..);
+        interface.for_each(|(&i, p)| place[i as usize] = p);
+        place
+    });
+    let candidate: Vec<Vec<bool>> = (0..locals.len())
+        .map(|j| candidates(jump, &locals[j], j))
+        .collect();
+    // (to, (local dof of that one, row, factor)) by subdomain.
+    let given = team.map(locals.len(), |j| {
         let (sub, local) = (&problem.local[j], &locals[j]);
-        let shared = shared_columns(jump, local, j);
-        let mut lists: BTreeMap<u32, Vec<u64>> = BTreeMap::new();
+        let mut lists: BTreeMap<u32, Vec<(u32, u32, f64)>> = BTreeMap::new();
         for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
             let copies = sharing.shared(sub.dofs[dof as usize]);
-            let total: f64 = copies.iter().map(|c| c.weight).sum();
-            let Some(own) = copies.iter().find(|c| c.subdomain as usize == sub.index) else {
+            let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
+            let Some(own) = own.filter(|_| !candidate[j][i]) else {
                 continue;
             };
+            let total: f64 = copies.iter().map(|c| c.weight).sum();
             for to in copies {
-                let list = lists.entry(to.subdomain).or_insert_with(|| {
-                    let head = [
-                        to.subdomain as u64,
-                        sub.index as u64,
-                        shared.len() as u64,
-                        0,
-                    ];
-                    let columns = shared.iter().map(|&p| u64::from(global(j, p)));
-                    head.into_iter().chain(columns).collect()
-                });
-                list[3] += 1;
-                list.push(u64::from(to.local));
-                let value = |&p: &usize| (own.weight / total * local.psi.get(i, p)).to_bits();
-                list.extend(shared.iter().map(value));
+                let row = (to.local, i as u32, own.weight / total);
+                lists.entry(to.subdomain).or_default().push(row);
             }
         }
         lists
     });
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
-    for (to, list) in packed.into_iter().flatten() {
-        outgoing[sharing.rank_of[to as usize] as usize].extend(list);
-    }
-    let places: Vec<Vec<(u32, u32)>> = locals
-        .iter()
-        .map(|local| {
-            let mut place: Vec<(u32, u32)> = local.interface.iter().copied().zip(0..).collect();
-            place.sort_unstable();
-            place
-        })
-        .collect();
     let mut received: Vec<Vec<Contribution>> = locals.iter().map(|_| Vec::new()).collect();
+    for (j, lists) in given.into_iter().enumerate() {
+        let from = problem.local[j].index as u64;
+        for (to, mut rows) in lists {
+            let rank = sharing.rank_of[to as usize];
+            if rank == me {
+                let at = jump.local_index(to);
+                rows.iter_mut().for_each(|r| r.0 = places[at][r.0 as usize]);
+                received[at].push(Contribution {
+                    from,
+                    columns: columns(j),
+                    rows,
+                    source: Source::Local(j),
+                });
+            } else {
+                let words = &mut outgoing[rank as usize];
+                let columns = columns(j);
+                words.extend([u64::from(to), from, columns.len() as u64, rows.len() as u64]);
+                words.extend(columns.iter().map(|&c| u64::from(c)));
+                for (dof, i, factor) in rows {
+                    words.push(u64::from(dof));
+                    let values = (0..columns.len()).map(|c| functions[j].psi.get(i as usize, c));
+                    words.extend(values.map(|v| (factor * v).to_bits()));
+                }
+            }
+        }
+    }
     for words in exchange_words(comm, outgoing) {
         let mut rest = &words[..];
         while let [to, from, n, m, tail @ ..] = rest {
             let j = jump.local_index(*to as u32);
-            let n = *n as usize;
+            let (n, m) = (*n as usize, *m as usize);
             let (columns, tail) = tail.split_at(n);
-            let (rows, tail) = tail.split_at(*m as usize * (n + 1));
-            let row = |w: &[u64]| {
-                let at = places[j].binary_search_by_key(&(w[0] as u32), |p| p.0);
-                let at = places[j][at.expect("a shared dof is an interface dof")].1;
-                (at, w[1..].iter().map(|&v| f64::from_bits(v)).collect())
-            };
+            let (sent, tail) = tail.split_at(m * (n + 1));
+            let mut values = Dense::zeros(m, n);
+            let mut rows = Vec::with_capacity(m);
+            for (r, w) in sent.chunks_exact(n + 1).enumerate() {
+                rows.push((places[j][w[0] as usize], r as u32, 1.0));
+                for (c, &v) in w[1..].iter().enumerate() {
+                    values.set(r, c, f64::from_bits(v));
+                }
+            }
             received[j].push(Contribution {
                 from: *from,
                 columns: columns.iter().map(|&c| c as u32).collect(),
-                rows: rows.chunks_exact(n + 1).map(row).collect(),
+                rows,
+                source: Source::Remote(values),
             });
             rest = tail;
         }
     }
-    // Added up in the same order whatever the ranks.
-    received
-        .iter_mut()
-        .for_each(|list| list.sort_unstable_by_key(|c| c.from));
-    team.map(locals.len(), |j| {
-        let n_shared = jump.n_shared[j];
-        let vertices: Vec<u32> = (0..n_shared).map(|p| global(j, p)).collect();
-        gather(
-            &locals[j],
-            &received[j],
-            &vertices,
-            &candidates(jump, &locals[j], j),
-        )
-    })
-}
-
-/// The primal dofs of local subdomain `j` that it shares: vertices and averages.
-fn shared_columns(jump: &Jump, local: &Local, j: usize) -> Vec<usize> {
-    let first = local.n_vertices();
-    (0..jump.n_shared[j])
-        .chain(first..first + jump.averages[j].len())
-        .collect()
+    let recipe = |(j, mut contributions): (usize, Vec<Contribution>)| {
+        // Added up in the same order whatever the ranks.
+        contributions.sort_unstable_by_key(|c| c.from);
+        let n_delta = locals[j].n_delta;
+        let held = (0..jump.n_shared[j]).filter(|p| !candidate[j][n_delta + p]);
+        let held: Vec<(u32, u32)> = held.map(|p| ((n_delta + p) as u32, global(j, p))).collect();
+        Recipe::new(locals[j].n_gamma(), contributions, held)
+    };
+    received.into_iter().enumerate().map(recipe).collect()
 }
 
 /// Which interface positions of local subdomain `j` may be in contact: those with an entry of B_gl.
-fn candidates(jump: &Jump, local: &Local, j: usize) -> Vec<bool> {
+pub(super) fn candidates(jump: &Jump, local: &Local, j: usize) -> Vec<bool> {
     let columns = &jump.columns[j];
     let mut out = vec![false; local.n_gamma()];
     for (&row, &at) in columns.row.iter().zip(&columns.at) {
@@ -138,42 +163,68 @@ fn candidates(jump: &Jump, local: &Local, j: usize) -> Vec<bool> {
     out
 }
 
-/// Z_c on one subdomain: the sum of the contributions, one at each shared vertex, zero where bodies may touch.
-fn gather(
-    local: &Local,
-    received: &[Contribution],
-    vertices: &[u32],
-    candidate: &[bool],
-) -> Averaged {
-    let live = |row: &(u32, Vec<f64>)| !candidate[row.0 as usize];
-    let mut columns: Vec<u32> = received
-        .iter()
-        .filter(|c| c.rows.iter().any(live))
-        .flat_map(|c| c.columns.iter().copied())
-        .collect();
-    let held = vertices.iter().enumerate();
-    let held = held.filter(|(p, _)| !candidate[local.n_delta + p]);
-    columns.extend(held.clone().map(|(_, g)| g));
-    columns.sort_unstable();
-    columns.dedup();
-    let place = |c: &u32| {
-        columns
-            .binary_search(c)
-            .expect("every column was collected")
-    };
-    let mut z = Dense::zeros(local.n_gamma(), columns.len());
-    for contribution in received {
-        let rows = || contribution.rows.iter().filter(|r| live(r));
-        if rows().next().is_none() {
-            continue;
-        }
-        for (k, column) in contribution.columns.iter().map(place).enumerate() {
-            let z = z.col_mut(column);
-            rows().for_each(|(i, values)| z[*i as usize] += values[k]);
+impl Recipe {
+    fn new(rows: usize, mut contributions: Vec<Contribution>, held: Vec<(u32, u32)>) -> Recipe {
+        let mut columns: Vec<u32> = contributions
+            .iter()
+            .flat_map(|c| c.columns.iter().copied())
+            .chain(held.iter().map(|h| h.1))
+            .collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let place = |g: &mut u32| {
+            let at = columns.binary_search(g);
+            *g = at.expect("every column was collected") as u32;
+        };
+        let theirs = contributions.iter_mut().flat_map(|c| &mut c.columns);
+        theirs.for_each(place);
+        let mut vertices = held;
+        vertices.iter_mut().for_each(|(_, g)| place(g));
+        Recipe {
+            rows,
+            columns,
+            contributions,
+            vertices,
         }
     }
-    for (p, g) in held {
-        z.set(local.n_delta + p, place(g), 1.0);
+
+    /// Z_c, n_Γ × columns: zero where bodies may touch.
+    pub fn build(&self, functions: &[Functions]) -> Dense {
+        let mut z = Dense::zeros(self.rows, self.columns.len());
+        for contribution in &self.contributions {
+            let source = match &contribution.source {
+                Source::Local(j) => &functions[*j].psi,
+                Source::Remote(values) => values,
+            };
+            for (k, &column) in contribution.columns.iter().enumerate() {
+                let (z, values) = (z.col_mut(column as usize), source.col(k));
+                for &(at, row, factor) in &contribution.rows {
+                    z[at as usize] += factor * values[row as usize];
+                }
+            }
+        }
+        for &(at, column) in &self.vertices {
+            z.set(at as usize, column as usize, 1.0);
+        }
+        z
     }
-    Averaged { z, columns }
+
+    /// Numbers that are the same for two subdomains only if Z_c is the same on both; `kind` tells functions of one subdomain from those of another.
+    pub fn signature(&self, kind: impl Fn(usize) -> u64) -> Vec<u64> {
+        let pair = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
+        let mut out = vec![self.rows as u64, self.columns.len() as u64];
+        for c in &self.contributions {
+            out.extend([c.columns.len() as u64, c.rows.len() as u64]);
+            out.extend(c.columns.iter().map(|&c| u64::from(c)));
+            for &(at, row, factor) in &c.rows {
+                out.extend([pair(at, row), factor.to_bits()]);
+            }
+            match &c.source {
+                Source::Local(j) => out.push(kind(*j)),
+                Source::Remote(values) => out.extend(values.data.iter().map(|v| v.to_bits())),
+            }
+        }
+        out.extend(self.vertices.iter().map(|&(at, c)| pair(at, c)));
+        out
+    }
 }

@@ -1,6 +1,7 @@
 //! The method, one file per operator, symbols as in the theory page.
 
 pub mod adaptive;
+mod averaging;
 pub mod blocks;
 pub mod bounded;
 pub mod candidates;
@@ -22,10 +23,13 @@ pub mod forms;
 pub mod gtg;
 pub mod halo;
 pub mod inner;
+mod interpolation;
 pub mod jump;
 pub mod kernel;
 pub mod kkt;
 pub mod lifting;
+mod lifting_matrix;
+mod lifting_stored;
 pub mod local;
 pub mod natural;
 pub mod persist;
@@ -50,7 +54,7 @@ pub mod weights;
 
 pub use kkt::Kkt;
 pub use recover::Solution;
-pub use settings::{PcType, Precision, Primal, ProjectorKind, Scaling, Settings};
+pub use settings::{CoarseFunctions, PcType, Precision, Primal, ProjectorKind, Scaling, Settings};
 pub use solver::FetiFeti;
 pub use spectrum::Spectrum;
 pub use tally::Communication;

@@ -94,42 +94,32 @@ impl Preconditioner {
             return out.copy_from(lambda);
         }
         let (work, ghost) = &mut *self.buffers.borrow_mut();
-        let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
+        let columns = &stiffness.jump.columns;
         stiffness.dual_halo.fetch(lambda, ghost)?;
         let (received, kind, k_gamma) = (&*ghost, self.kind, &self.k_gamma);
-        let (single, team) = (&self.single, &stiffness.team);
+        let team = &stiffness.team;
         team.for_each(work, |j, w| {
             columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
         });
+        let lifting = self.lifting.as_ref();
         // Yᵀ v is on its way while S v is computed.
-        if let Some(lifting) = &self.lifting {
-            lifting.begin(stiffness, work)?;
-        }
+        lifting.map_or(Ok(()), |l| l.begin(stiffness, work))?;
         match kind {
             PcType::Lumped => team.for_each(work, |j, w| {
                 w.y.fill(0.0);
                 k_gamma[j].add_mul(1.0, &w.v, &mut w.y); /*   y ← K_ΓΓ v         */
             }),
-            _ => {
-                let products = &self.products;
-                let rounded = |j: usize| single.get(j).and_then(|s| s.as_ref());
-                let many = |j: usize, v: &Dense, y: &mut Dense, n: usize| match rounded(j) {
-                    Some(s) => s.mul_columns(v, y, n),
-                    None => locals[j].kind().apply(Operator::S, v, y, n),
-                };
-                let panels = products.multiply(team, locals, work, Operator::S, many);
-                let products = products.results(&panels, Operator::S);
-                team.for_each(work, |j, w| {
-                    let v = &w.v;
-                    products.take(j, &locals[j], &mut w.y, |y| match rounded(j) {
-                        Some(s) => s.mul(locals[j].factor(), v, y),
-                        None => locals[j].apply_one(Operator::S, v, y),
-                    }); /*                                        y ← S v            */
-                });
-            }
+            _ => self.multiply(stiffness, work), /*           y ← S v            */
         }
-        if let Some(lifting) = &self.lifting {
-            lifting.finish(stiffness, work)?; /*              y ← y − Y A⁺ Yᵀ v  */
+        lifting.map_or(Ok(()), |l| l.finish(stiffness, work))?; /* y ← y − Y A⁺ Yᵀ v  */
+        if let Some(lifting) = lifting.filter(|l| !l.keeps_y()) {
+            let mut lifted: Vec<Vec<f64>> = work.iter().map(|w| w.y.clone()).collect();
+            lifting.remove(stiffness, &mut lifted)?;
+            for (w, lifted) in work.iter_mut().zip(&lifted) {
+                let terms = w.v.iter_mut().zip(lifted);
+                terms.for_each(|(v, l)| *v -= l); /*          v ← v − Z_c A⁺ Z_cᵀ y */
+            }
+            self.multiply(stiffness, work); /*                y ← S v            */
         }
         ghost.fill(0.0);
         for (w, columns) in work.iter().zip(columns) {
@@ -140,6 +130,26 @@ impl Preconditioner {
 }
 
 impl Preconditioner {
+    /// work.y ← S work.v.
+    fn multiply(&self, stiffness: &Stiffness, work: &mut [Work]) {
+        let (team, locals, products) = (&stiffness.team, &stiffness.locals, &self.products);
+        let single = &self.single;
+        let rounded = |j: usize| single.get(j).and_then(|s| s.as_ref());
+        let many = |j: usize, v: &Dense, y: &mut Dense, n: usize| match rounded(j) {
+            Some(s) => s.mul_columns(v, y, n),
+            None => locals[j].kind().apply(Operator::S, v, y, n),
+        };
+        let panels = products.multiply(team, locals, work, Operator::S, many);
+        let products = products.results(&panels, Operator::S);
+        team.for_each(work, |j, w| {
+            let v = &w.v;
+            products.take(j, &locals[j], &mut w.y, |y| match rounded(j) {
+                Some(s) => s.mul(locals[j].factor(), v, y),
+                None => locals[j].apply_one(Operator::S, v, y),
+            });
+        });
+    }
+
     /// outs ← M⁻¹ λs. S is read once for all of them, and only for those that reach the subdomain. Collective.
     pub fn apply_many(
         &self,
@@ -169,8 +179,21 @@ impl Preconditioner {
         stiffness.team.for_each(&mut blocks, |j, b| {
             locals[j].apply(Operator::S, &b.v, &mut b.y); /*      y ← S v          */
         });
-        if let Some(lifting) = &self.lifting {
-            lifting.remove_many(stiffness, &mut blocks)?; /*      y ← y − Y A⁺ Yᵀ v */
+        let lifting = self.lifting.as_ref();
+        lifting.map_or(Ok(()), |l| l.remove_many(stiffness, &mut blocks))?; /* y ← y − Y A⁺ Yᵀ v */
+        if let Some(lifting) = lifting.filter(|l| !l.keeps_y()) {
+            for c in 0..lambdas.len() {
+                let mut lifted: Vec<Vec<f64>> =
+                    blocks.iter().map(|b| b.y.col(c).to_vec()).collect();
+                lifting.remove(stiffness, &mut lifted)?;
+                for (b, lifted) in blocks.iter_mut().zip(&lifted) {
+                    let terms = b.v.col_mut(c).iter_mut().zip(lifted);
+                    terms.for_each(|(v, l)| *v -= l); /*          v ← v − Z_c A⁺ Z_cᵀ y */
+                }
+            }
+            stiffness.team.for_each(&mut blocks, |j, b| {
+                locals[j].apply(Operator::S, &b.v, &mut b.y); /*  y ← S v          */
+            });
         }
         for (c, out) in outs.iter().enumerate() {
             ghost.fill(0.0);

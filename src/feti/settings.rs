@@ -31,6 +31,15 @@ pub enum Scaling {
     Deluxe,
 }
 
+/// What Z_c is made of: in the plane there is nothing but vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CoarseFunctions {
+    /// Functions of vertices and of averages.
+    All,
+    /// Functions of vertices, averages following them: fewer than half as many.
+    Vertices,
+}
+
 /// The digits of M⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
@@ -175,6 +184,7 @@ macro_rules! names {
 }
 
 names!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
+names!(CoarseFunctions { All = "all", Vertices = "vertices" });
 names!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness", Deluxe = "deluxe" });
 names!(Precision { Double = "double", Mixed = "mixed" });
 names!(Operators { Auto = "auto", Explicit = "explicit", Implicit = "implicit" });
@@ -191,6 +201,8 @@ pub struct Settings {
     /// `fetifeti_pc_type`; `None` chooses coarse_corrected where a body has more than one subdomain and there is more than
     /// one body, dirichlet otherwise.
     pub pc_type: Option<PcType>,
+    /// `fetifeti_lifting`: what M_C takes away; `None`: vertices where `pc_type` is chosen here, all where coarse_corrected is asked for.
+    pub lifting: Option<CoarseFunctions>,
     /// `fetifeti_scaling`.
     pub scaling: Scaling,
     /// `fetifeti_scaling_gamma`, γ ∈ [1/2, ∞).
@@ -231,6 +243,7 @@ impl Default for Settings {
     fn default() -> Self {
         Settings {
             pc_type: None,
+            lifting: None,
             scaling: Scaling::Rho,
             gamma: 1.0,
             primal: Primal::default(),
@@ -263,6 +276,13 @@ impl Settings {
         self.pc_type = match o.choice("pc_type", &auto, now, help)? {
             0 => None,
             i => Some(PcType::from_index(i - 1)),
+        };
+        let auto = [&["auto"], CoarseFunctions::NAMES].concat();
+        let now = self.lifting.map_or(0, |l| 1 + l as usize);
+        let help = "coarse functions that coarse_corrected takes away";
+        self.lifting = match o.choice("lifting", &auto, now, help)? {
+            0 => None,
+            i => Some(CoarseFunctions::from_index(i - 1)),
         };
         let help = "weights of the scaled jump operator";
         let i = o.choice("scaling", Scaling::NAMES, self.scaling as usize, help)?;
@@ -349,6 +369,14 @@ impl Settings {
             o.list(name, "...", help)?;
         }
         Ok(self)
+    }
+
+    /// The coarse functions of M_C.
+    pub fn coarse_functions(&self) -> CoarseFunctions {
+        self.lifting.unwrap_or(match self.pc_type {
+            None => CoarseFunctions::Vertices,
+            Some(_) => CoarseFunctions::All,
+        })
     }
 
     /// How subdomains are factored, and on how many threads that can be.

@@ -8,7 +8,7 @@ use super::jump::Jump;
 use super::kernel;
 use super::local::dense::Dense;
 use super::local::problem::Form;
-use super::settings::{Operators, PcType, Primal};
+use super::settings::{CoarseFunctions, Operators, PcType, Primal};
 use super::sharing::Sharing;
 use super::team::Team;
 use super::{choice, entities, equal, forms};
@@ -65,7 +65,8 @@ impl Sizes {
         let jump = Jump::new(comm, problem, &sharing);
         let first = equal::representatives(problem, &jump, team);
         let kinds = forms::kinds(problem, &jump, &first);
-        let preconditioner = choice::preconditioner(comm, problem, &sharing, &jump);
+        let preconditioner =
+            choice::preconditioner(comm, problem, &sharing, &jump, CoarseFunctions::Vertices);
         let contact = jump.inequality.iter().any(|i| *i);
         let forms = forms::choose(
             &kinds,

@@ -121,9 +121,9 @@ impl FetiFeti {
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing);
         let mut team = Team::new(threads(session, &settings))?;
-        let kind = settings
-            .pc_type
-            .unwrap_or_else(|| choice::preconditioner(comm, &problem, &sharing, &jump));
+        let kind = settings.pc_type.unwrap_or_else(|| {
+            choice::preconditioner(comm, &problem, &sharing, &jump, settings.coarse_functions())
+        });
         let factored = clock::timed(Phase::LocalSetup, || {
             factor(session, &problem, &jump, &team, &settings, kind)
         });
@@ -160,7 +160,13 @@ impl FetiFeti {
 
         let lifting = match kind {
             PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
-                Lifting::new(session, &problem, &sharing, &stiffness)
+                Lifting::new(
+                    session,
+                    &problem,
+                    &sharing,
+                    &stiffness,
+                    settings.coarse_functions(),
+                )
             })?,
             _ => None,
         };

@@ -240,9 +240,7 @@ fn work(session: &Session, solver: &FetiFeti) -> Work {
     }
     if let Some(lifting) = dual.preconditioner.lifting() {
         own.ghosts += 2.0 * space.ghosts.len() as f64;
-        for (z, local) in lifting.z.iter().zip(&stiffness.locals) {
-            own.lifting_products += (local.n_gamma() as f64).powi(2) * z.cols as f64;
-        }
+        own.lifting_products += lifting.products;
         let bodies = space.owned.len().max(1) as f64;
         let order = lifting.rank_and_order.1 as f64 / bodies;
         own.lifting = bodies * order;

@@ -1,0 +1,227 @@
+//! A = Z_cᵀ S̃ Z_c of every body: blocks of subdomains, of which those in the same surroundings share one, added up and factored.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::coarse_functions::Recipe;
+use super::interpolation::Functions;
+use super::local::dense::{multiply, Dense};
+use super::local::problem::Operator;
+use super::local::scaled::Local;
+use super::local::semidefinite::Semidefinite;
+use super::stiffness::Stiffness;
+use crate::substructures::Substructures;
+
+/// So many subdomains of a body are added up before their sum is sent to the one who factors A.
+const GROUP: usize = 32;
+
+/// So many blocks Z_cᵀ S Z_c are held at the same time.
+const BLOCKS: usize = 32;
+
+/// A of one body.
+pub(super) struct BodyFactor {
+    /// Its columns among this rank's primal dofs.
+    at: Vec<usize>,
+    pub factor: Semidefinite,
+}
+
+impl BodyFactor {
+    /// A of the body with these primal dofs, of which this rank's begin at `first`, from what [`Sum::pack`] has written.
+    pub fn new(received: &[Vec<u64>], body: Range<u32>, first: usize) -> BodyFactor {
+        let mut columns = Vec::new();
+        each(received, &body, |c, _| columns.extend_from_slice(c));
+        columns.sort_unstable();
+        columns.dedup();
+        let mut a = Dense::zeros(columns.len(), columns.len());
+        each(received, &body, |theirs, mut values| {
+            let place = |g: &u64| columns.binary_search(g).expect("it was collected");
+            let at: Vec<usize> = theirs.iter().map(place).collect();
+            for (q, &to) in at.iter().enumerate() {
+                let (column, rest) = values.split_at(at.len() - q);
+                values = rest;
+                let target = a.col_mut(to);
+                for (&i, &v) in at[q..].iter().zip(column) {
+                    target[i] += f64::from_bits(v);
+                }
+            }
+        });
+        a.mirror_lower();
+        BodyFactor {
+            at: columns.iter().map(|&c| c as usize - first).collect(),
+            factor: Semidefinite::new(&a),
+        }
+    }
+
+    /// x ← A⁺ x at the columns, zero at the body's other primal dofs as they are.
+    pub fn solve(&self, x: &mut [f64]) {
+        let mut part: Vec<f64> = self.at.iter().map(|&i| x[i]).collect();
+        self.factor.solve(&mut part);
+        self.at.iter().zip(&part).for_each(|(&i, v)| x[i] = *v);
+    }
+}
+
+/// Columns and lower triangle of every sum of one body.
+fn each<'a>(
+    received: &'a [Vec<u64>],
+    body: &Range<u32>,
+    mut see: impl FnMut(&'a [u64], &'a [u64]),
+) {
+    for mut words in received.iter().map(|w| &w[..]) {
+        while let [n, tail @ ..] = words {
+            let n = *n as usize;
+            let (columns, tail) = tail.split_at(n);
+            let (values, tail) = tail.split_at(n * (n + 1) / 2);
+            words = tail;
+            // All columns are of one body.
+            if n > 0 && body.contains(&(columns[0] as u32)) {
+                see(columns, values);
+            }
+        }
+    }
+}
+
+/// Z_cᵀ S Z_c of some subdomains of a body.
+pub(super) struct Sum {
+    pub body: usize,
+    members: Vec<usize>,
+    /// Global columns, increasing.
+    columns: Vec<u32>,
+    /// Its lower triangle counts.
+    a: Dense,
+}
+
+/// What this rank adds to A.
+pub(super) struct Sums {
+    /// By groups of subdomains of a body.
+    pub sums: Vec<Sum>,
+    /// Σ n_Γ² · columns over the blocks that were made.
+    pub products: f64,
+    /// Y = S Z_c of every local subdomain, where it is to be kept; subdomains in the same surroundings share one.
+    pub y: Vec<Arc<Dense>>,
+}
+
+impl Sums {
+    /// Collects the blocks of all local subdomains.
+    pub fn new(
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        functions: &[Functions],
+        recipes: &[Recipe],
+        keep_y: bool,
+    ) -> Sums {
+        let (locals, team) = (&stiffness.locals, &stiffness.team);
+        let mut sums: Vec<Sum> = Vec::new();
+        for (j, sub) in problem.local.iter().enumerate() {
+            let group = sums.iter_mut().rev().find(|s| s.body == sub.body);
+            match group.filter(|s| s.members.len() < GROUP) {
+                Some(sum) => sum.members.push(j),
+                None => sums.push(Sum {
+                    body: sub.body,
+                    members: vec![j],
+                    columns: Vec::new(),
+                    a: Dense::default(),
+                }),
+            }
+        }
+        team.for_each(&mut sums, |_, sum| {
+            let members = sum.members.iter();
+            let mut columns: Vec<u32> = members.flat_map(|&j| recipes[j].columns.clone()).collect();
+            columns.sort_unstable();
+            columns.dedup();
+            sum.a = Dense::zeros(columns.len(), columns.len());
+            sum.columns = columns;
+        });
+        let first = representatives(locals, functions, recipes);
+        let mut kinds: Vec<usize> = first.clone();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let products =
+            |&j: &usize| recipes[j].columns.len() as f64 * (locals[j].n_gamma() as f64).powi(2);
+        let total = kinds.iter().map(products).sum();
+        let mut kept: Vec<Arc<Dense>> = Vec::new();
+        for some in kinds.chunks(BLOCKS) {
+            let blocks = team.map(some.len(), |k| {
+                let j = some[k];
+                block(&locals[j], &recipes[j].build(functions))
+            });
+            team.for_each(&mut sums, |_, sum| {
+                for &j in &sum.members {
+                    if let Ok(k) = some.binary_search(&first[j]) {
+                        add(&mut sum.a, &sum.columns, &recipes[j].columns, &blocks[k].0);
+                    }
+                }
+            });
+            if keep_y {
+                kept.extend(blocks.into_iter().map(|b| Arc::new(b.1)));
+            }
+        }
+        let of = |j: &usize| kept[kinds.binary_search(j).expect("a first one is a kind")].clone();
+        Sums {
+            sums,
+            products: total,
+            y: if keep_y {
+                first.iter().map(of).collect()
+            } else {
+                Vec::new()
+            },
+        }
+    }
+}
+
+/// The first local subdomain with the same Z_cᵀ S Z_c, for each.
+fn representatives(locals: &[Local], functions: &[Functions], recipes: &[Recipe]) -> Vec<usize> {
+    let mut names: HashMap<Vec<u64>, u64> = HashMap::new();
+    let mut name = |j: usize| {
+        let mut key = vec![Arc::as_ptr(locals[j].kind()) as u64];
+        for &(p, c, w) in &functions[j].weights {
+            key.extend([u64::from(p) << 32 | u64::from(c), w.to_bits()]);
+        }
+        let next = names.len() as u64;
+        *names.entry(key).or_insert(next)
+    };
+    let names: Vec<u64> = (0..locals.len()).map(&mut name).collect();
+    let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+    let first = |(j, recipe): (usize, &Recipe)| {
+        let mut key = recipe.signature(|i| names[i]);
+        key.extend([
+            Arc::as_ptr(locals[j].kind()) as u64,
+            locals[j].factor().to_bits(),
+        ]);
+        *known.entry(key).or_insert(j)
+    };
+    recipes.iter().enumerate().map(first).collect()
+}
+
+/// Z_cᵀ S Z_c and S Z_c of one subdomain.
+fn block(local: &Local, z: &Dense) -> (Dense, Dense) {
+    let mut y = Dense::zeros(z.rows, z.cols);
+    local.apply(Operator::S, z, &mut y);
+    let mut a = Dense::zeros(z.cols, z.cols);
+    multiply(a.view_mut(), false, 1.0, z.view().transpose(), y.view());
+    (a, y)
+}
+
+/// Adds the lower triangle of `block`, of which `theirs` are the columns, to that of `a`. Columns are in the same order here and there.
+fn add(a: &mut Dense, columns: &[u32], theirs: &[u32], block: &Dense) {
+    let place = |g: &u32| columns.binary_search(g).expect("it was collected");
+    let at: Vec<usize> = theirs.iter().map(place).collect();
+    for (q, &to) in at.iter().enumerate() {
+        let target = a.col_mut(to);
+        for (&i, v) in at[q..].iter().zip(&block.col(q)[q..]) {
+            target[i] += v;
+        }
+    }
+}
+
+impl Sum {
+    /// [n, global columns, lower triangle by columns].
+    pub fn pack(&self, words: &mut Vec<u64>) {
+        let n = self.columns.len();
+        words.push(n as u64);
+        words.extend(self.columns.iter().map(|&g| u64::from(g)));
+        for q in 0..n {
+            words.extend(self.a.col(q)[q..].iter().map(|v| v.to_bits()));
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Y = S Z_c as matrices, where subdomains see few columns of Z_c: in the plane some 40, where the interface has hundreds of dofs.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use super::halo::Halo;
+use super::local::dense::Dense;
+use super::stiffness::{Columns, Stiffness, Work};
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::Result;
+
+/// Y of every local subdomain, and whose columns they are.
+pub(super) struct Stored {
+    /// n_Γ × its columns; subdomains in the same surroundings share one.
+    y: Vec<Arc<Dense>>,
+    /// For each local subdomain, the ghost column behind each of its columns.
+    columns: Vec<Vec<u32>>,
+    halo: Halo,
+    ghost: RefCell<Vec<f64>>,
+}
+
+impl Stored {
+    /// `columns` has the global numbers of the columns of each `y`; vectors of columns are laid out like `layout`. Collective.
+    pub fn new(
+        session: &Session,
+        layout: &PetscVec,
+        y: Vec<Arc<Dense>>,
+        columns: &[&[u32]],
+    ) -> Result<Stored> {
+        let mut ghosts: Vec<u32> = columns.concat();
+        ghosts.sort_unstable();
+        ghosts.dedup();
+        let place = |g: &u32| {
+            let at = ghosts.binary_search(g);
+            at.expect("every column was collected") as u32
+        };
+        Ok(Stored {
+            y,
+            columns: columns
+                .iter()
+                .map(|l| l.iter().map(place).collect())
+                .collect(),
+            halo: Halo::new(session, layout, &ghosts)?,
+            ghost: RefCell::new(vec![0.0; ghosts.len()]),
+        })
+    }
+
+    /// Sends Yᵀ work.v on its way. Collective.
+    pub fn begin(&self, stiffness: &Stiffness, work: &[Work], vector: &PetscVec) -> Result<()> {
+        let mut ghost = self.ghost.borrow_mut();
+        ghost.fill(0.0);
+        let mut local: Vec<Vec<f64>> = self.columns.iter().map(|c| vec![0.0; c.len()]).collect();
+        let ys = &self.y;
+        stiffness.team.for_each(&mut local, |j, t| {
+            ys[j].add_mul_transpose(&work[j].v, t); /*    t ← Yᵀ v        */
+        });
+        for (t, places) in local.iter().zip(&self.columns) {
+            for (&g, v) in places.iter().zip(t) {
+                ghost[g as usize] += v;
+            }
+        }
+        self.halo.sum_begin(&ghost, vector)
+    }
+
+    /// work.y ← work.y − Y A⁺ Yᵀ work.v, after [`begin`](Self::begin), `solve` being A⁺. Collective.
+    pub fn finish(
+        &self,
+        stiffness: &Stiffness,
+        work: &mut [Work],
+        vector: &PetscVec,
+        solve: impl Fn(&mut [f64]),
+    ) -> Result<()> {
+        let mut ghost = self.ghost.borrow_mut();
+        let (ys, columns) = (&self.y, &self.columns);
+        self.halo.sum_end(vector)?;
+        solve(&mut vector.array_mut()?); /*               c ← A⁺ t        */
+        self.halo.fetch(vector, &mut ghost)?;
+        let ghost = &*ghost;
+        stiffness.team.for_each(work, |j, w| {
+            let c: Vec<f64> = columns[j].iter().map(|&g| -ghost[g as usize]).collect();
+            ys[j].add_mul(&c, &mut w.y); /*               y ← y − Y c     */
+        });
+        Ok(())
+    }
+
+    /// The same for several columns of every local subdomain, y ← y − Y A⁺ Yᵀ v. Collective.
+    pub fn remove_many(
+        &self,
+        stiffness: &Stiffness,
+        blocks: &mut [Columns],
+        vector: &PetscVec,
+        solve: impl Fn(&mut [f64]),
+    ) -> Result<()> {
+        let n = blocks.first().map_or(0, |b| b.v.cols);
+        let (inputs, ys, columns) = (&*blocks, &self.y, &self.columns);
+        let products = stiffness.team.map(blocks.len(), |j| {
+            let mut t = Dense::zeros(ys[j].cols, n);
+            ys[j].add_mul_transpose_columns(&inputs[j].v, &mut t); /*  t ← Yᵀ v        */
+            t
+        });
+        let mut all = Dense::zeros(self.halo.n_ghosts(), n);
+        for (t, places) in products.iter().zip(columns) {
+            for c in 0..n {
+                let column = all.col_mut(c);
+                for (&g, v) in places.iter().zip(t.col(c)) {
+                    column[g as usize] += v;
+                }
+            }
+        }
+        for c in 0..n {
+            self.halo.sum(all.col(c), vector)?;
+            solve(&mut vector.array_mut()?); /*                        c ← A⁺ t        */
+            self.halo.fetch(vector, all.col_mut(c))?;
+        }
+        let all = &all;
+        stiffness.team.for_each(blocks, |j, b| {
+            let mut x = Dense::zeros(columns[j].len(), n);
+            for c in 0..n {
+                for (x, &g) in x.col_mut(c).iter_mut().zip(&columns[j]) {
+                    *x = -all.get(g as usize, c);
+                }
+            }
+            ys[j].add_mul_columns(&x, &mut b.y); /*                    y ← y − Y c     */
+        });
+        Ok(())
+    }
+}
