@@ -83,7 +83,12 @@ fn pipes_press_on_each_other_as_lame_says() {
     }
     let face = &report["contact"]["interfaces"][0];
     let largest = pressure.iter().copied().fold(0.0, f64::max);
-    assert_eq!(number(&face["max_pressure"]), largest);
+    // Reading a number may cost its last digit.
+    assert!(near(
+        number(&face["max_pressure"]),
+        largest,
+        1e-14 * largest
+    ));
     // A polygon of 24 chords.
     let arc = 48.0 * 1.5 * (std::f64::consts::PI / 96.0).sin();
     assert!(near(number(&face["area"]), arc, 1e-10), "{face}");
