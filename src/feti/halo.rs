@@ -17,6 +17,20 @@ pub struct Halo {
     sent: (Traffic, Traffic),
 }
 
+/// The numbers in all lists, increasing, and the place of each among them: ghosts, and what refers to them.
+pub fn numbered<L: AsRef<[u32]>>(lists: &[L]) -> (Vec<u32>, Vec<Vec<u32>>) {
+    let each = || lists.iter().map(|l| l.as_ref());
+    let mut ghosts: Vec<u32> = each().flatten().copied().collect();
+    ghosts.sort_unstable();
+    ghosts.dedup();
+    let place = |g: &u32| {
+        let at = ghosts.binary_search(g);
+        at.expect("every number was collected") as u32
+    };
+    let places = each().map(|l| l.iter().map(place).collect()).collect();
+    (ghosts, places)
+}
+
 impl Halo {
     /// A halo for vectors laid out like `layout`; `ghosts` lists global numbers. Collective.
     pub fn new(session: &Session, layout: &PetscVec, ghosts: &[u32]) -> Result<Halo> {

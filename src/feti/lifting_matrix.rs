@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
+use super::lifting_stored::Pair;
 use super::local::dense::{multiply, Dense};
 use super::local::problem::Operator;
 use super::local::scaled::Local;
@@ -53,7 +54,7 @@ impl BodyFactor {
         }
     }
 
-    /// x ← A⁺ x at the columns, zero at the body's other primal dofs as they are.
+    /// x ← A⁺ x at the columns; the body's other primal dofs stay as they are.
     pub fn solve(&self, x: &mut [f64]) {
         let mut part: Vec<f64> = self.at.iter().map(|&i| x[i]).collect();
         self.factor.solve(&mut part);
@@ -97,8 +98,8 @@ pub(super) struct Sums {
     pub sums: Vec<Sum>,
     /// Σ n_Γ² · columns over the blocks that were made.
     pub products: f64,
-    /// Y = S Z_c of every local subdomain, where it is to be kept; subdomains in the same surroundings share one.
-    pub y: Vec<Arc<Dense>>,
+    /// Z_c and S Z_c of every local subdomain, where they are to be kept; subdomains in the same surroundings share them.
+    pub kept: Vec<Arc<Pair>>,
 }
 
 impl Sums {
@@ -108,7 +109,7 @@ impl Sums {
         stiffness: &Stiffness,
         functions: &[Functions],
         recipes: &[Recipe],
-        keep_y: bool,
+        keep: bool,
     ) -> Sums {
         let (locals, team) = (&stiffness.locals, &stiffness.team);
         let mut sums: Vec<Sum> = Vec::new();
@@ -139,11 +140,12 @@ impl Sums {
         let products =
             |&j: &usize| recipes[j].columns.len() as f64 * (locals[j].n_gamma() as f64).powi(2);
         let total = kinds.iter().map(products).sum();
-        let mut kept: Vec<Arc<Dense>> = Vec::new();
+        let mut pairs: Vec<Arc<Pair>> = Vec::new();
         for some in kinds.chunks(BLOCKS) {
             let blocks = team.map(some.len(), |k| {
                 let j = some[k];
-                block(&locals[j], &recipes[j].build(functions))
+                let (a, pair) = block(&locals[j], recipes[j].build(functions));
+                (a, keep.then(|| Arc::new(pair)))
             });
             team.for_each(&mut sums, |_, sum| {
                 for &j in &sum.members {
@@ -152,15 +154,13 @@ impl Sums {
                     }
                 }
             });
-            if keep_y {
-                kept.extend(blocks.into_iter().map(|b| Arc::new(b.1)));
-            }
+            pairs.extend(blocks.into_iter().filter_map(|b| b.1));
         }
-        let of = |j: &usize| kept[kinds.binary_search(j).expect("a first one is a kind")].clone();
+        let of = |j: &usize| pairs[kinds.binary_search(j).expect("a first one is a kind")].clone();
         Sums {
             sums,
             products: total,
-            y: if keep_y {
+            kept: if keep {
                 first.iter().map(of).collect()
             } else {
                 Vec::new()
@@ -193,13 +193,13 @@ fn representatives(locals: &[Local], functions: &[Functions], recipes: &[Recipe]
     recipes.iter().enumerate().map(first).collect()
 }
 
-/// Z_cᵀ S Z_c and S Z_c of one subdomain.
-fn block(local: &Local, z: &Dense) -> (Dense, Dense) {
+/// Z_cᵀ S Z_c of one subdomain, and what it is made of.
+fn block(local: &Local, z: Dense) -> (Dense, Pair) {
     let mut y = Dense::zeros(z.rows, z.cols);
-    local.apply(Operator::S, z, &mut y);
+    local.apply(Operator::S, &z, &mut y);
     let mut a = Dense::zeros(z.cols, z.cols);
     multiply(a.view_mut(), false, 1.0, z.view().transpose(), y.view());
-    (a, y)
+    (a, Pair { z, y })
 }
 
 /// Adds the lower triangle of `block`, of which `theirs` are the columns, to that of `a`. Columns are in the same order here and there.

@@ -1,48 +1,62 @@
-//! Y = S Z_c as matrices, where subdomains see few columns of Z_c: in the plane some 40, where the interface has hundreds of dofs.
+//! Z_c and Y = S Z_c as matrices, where subdomains see few columns of Z_c: in the plane some 40, where the interface has hundreds of dofs.
 
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use super::halo::Halo;
+use super::halo::{numbered, Halo};
 use super::local::dense::Dense;
 use super::stiffness::{Columns, Stiffness, Work};
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
-/// Y of every local subdomain, and whose columns they are.
+/// Z_c and Y = S Z_c on one subdomain, n_Γ × its columns.
+pub(super) struct Pair {
+    pub z: Dense,
+    pub y: Dense,
+}
+
+/// Both on every local subdomain, and whose columns they are.
 pub(super) struct Stored {
-    /// n_Γ × its columns; subdomains in the same surroundings share one.
-    y: Vec<Arc<Dense>>,
+    /// Subdomains in the same surroundings share one.
+    pairs: Vec<Arc<Pair>>,
     /// For each local subdomain, the ghost column behind each of its columns.
     columns: Vec<Vec<u32>>,
+    /// Global number of each ghost column.
+    ghosts: Vec<u32>,
     halo: Halo,
     ghost: RefCell<Vec<f64>>,
 }
 
 impl Stored {
-    /// `columns` has the global numbers of the columns of each `y`; vectors of columns are laid out like `layout`. Collective.
+    /// `columns` has the global numbers of the columns of each pair; vectors of columns are laid out like `layout`. Collective.
     pub fn new(
         session: &Session,
         layout: &PetscVec,
-        y: Vec<Arc<Dense>>,
+        pairs: Vec<Arc<Pair>>,
         columns: &[&[u32]],
     ) -> Result<Stored> {
-        let mut ghosts: Vec<u32> = columns.concat();
-        ghosts.sort_unstable();
-        ghosts.dedup();
-        let place = |g: &u32| {
-            let at = ghosts.binary_search(g);
-            at.expect("every column was collected") as u32
-        };
+        let (ghosts, columns) = numbered(columns);
         Ok(Stored {
-            y,
-            columns: columns
-                .iter()
-                .map(|l| l.iter().map(place).collect())
-                .collect(),
+            pairs,
+            columns,
             halo: Halo::new(session, layout, &ghosts)?,
             ghost: RefCell::new(vec![0.0; ghosts.len()]),
+            ghosts,
         })
+    }
+
+    /// Z_c x on the interface of every local subdomain, x given by global column number.
+    pub fn combine(&self, x: impl Fn(u32) -> f64) -> Vec<Vec<f64>> {
+        let of = |(pair, columns): (&Arc<Pair>, &Vec<u32>)| {
+            let c: Vec<f64> = columns
+                .iter()
+                .map(|&g| x(self.ghosts[g as usize]))
+                .collect();
+            let mut out = vec![0.0; pair.z.rows];
+            pair.z.add_mul(&c, &mut out);
+            out
+        };
+        self.pairs.iter().zip(&self.columns).map(of).collect()
     }
 
     /// Sends Yᵀ work.v on its way. Collective.
@@ -50,9 +64,9 @@ impl Stored {
         let mut ghost = self.ghost.borrow_mut();
         ghost.fill(0.0);
         let mut local: Vec<Vec<f64>> = self.columns.iter().map(|c| vec![0.0; c.len()]).collect();
-        let ys = &self.y;
+        let pairs = &self.pairs;
         stiffness.team.for_each(&mut local, |j, t| {
-            ys[j].add_mul_transpose(&work[j].v, t); /*    t ← Yᵀ v        */
+            pairs[j].y.add_mul_transpose(&work[j].v, t); /*    t ← Yᵀ v        */
         });
         for (t, places) in local.iter().zip(&self.columns) {
             for (&g, v) in places.iter().zip(t) {
@@ -71,14 +85,14 @@ impl Stored {
         solve: impl Fn(&mut [f64]),
     ) -> Result<()> {
         let mut ghost = self.ghost.borrow_mut();
-        let (ys, columns) = (&self.y, &self.columns);
+        let (pairs, columns) = (&self.pairs, &self.columns);
         self.halo.sum_end(vector)?;
         solve(&mut vector.array_mut()?); /*               c ← A⁺ t        */
         self.halo.fetch(vector, &mut ghost)?;
         let ghost = &*ghost;
         stiffness.team.for_each(work, |j, w| {
             let c: Vec<f64> = columns[j].iter().map(|&g| -ghost[g as usize]).collect();
-            ys[j].add_mul(&c, &mut w.y); /*               y ← y − Y c     */
+            pairs[j].y.add_mul(&c, &mut w.y); /*               y ← y − Y c     */
         });
         Ok(())
     }
@@ -92,10 +106,10 @@ impl Stored {
         solve: impl Fn(&mut [f64]),
     ) -> Result<()> {
         let n = blocks.first().map_or(0, |b| b.v.cols);
-        let (inputs, ys, columns) = (&*blocks, &self.y, &self.columns);
+        let (inputs, pairs, columns) = (&*blocks, &self.pairs, &self.columns);
         let products = stiffness.team.map(blocks.len(), |j| {
-            let mut t = Dense::zeros(ys[j].cols, n);
-            ys[j].add_mul_transpose_columns(&inputs[j].v, &mut t); /*  t ← Yᵀ v        */
+            let mut t = Dense::zeros(pairs[j].y.cols, n);
+            pairs[j].y.add_mul_transpose_columns(&inputs[j].v, &mut t); /*  t ← Yᵀ v        */
             t
         });
         let mut all = Dense::zeros(self.halo.n_ghosts(), n);
@@ -120,7 +134,7 @@ impl Stored {
                     *x = -all.get(g as usize, c);
                 }
             }
-            ys[j].add_mul_columns(&x, &mut b.y); /*                    y ← y − Y c     */
+            pairs[j].y.add_mul_columns(&x, &mut b.y); /*                    y ← y − Y c     */
         });
         Ok(())
     }

@@ -28,6 +28,7 @@ pub mod jump;
 pub mod kernel;
 pub mod kkt;
 pub mod lifting;
+mod lifting_applied;
 mod lifting_matrix;
 mod lifting_stored;
 pub mod local;

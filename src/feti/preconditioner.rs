@@ -103,7 +103,9 @@ impl Preconditioner {
         });
         let lifting = self.lifting.as_ref();
         // Yᵀ v is on its way while S v is computed.
-        lifting.map_or(Ok(()), |l| l.begin(stiffness, work))?;
+        if let Some(lifting) = lifting {
+            lifting.begin(stiffness, work)?;
+        }
         match kind {
             PcType::Lumped => team.for_each(work, |j, w| {
                 w.y.fill(0.0);
@@ -111,15 +113,8 @@ impl Preconditioner {
             }),
             _ => self.multiply(stiffness, work), /*           y ← S v            */
         }
-        lifting.map_or(Ok(()), |l| l.finish(stiffness, work))?; /* y ← y − Y A⁺ Yᵀ v  */
-        if let Some(lifting) = lifting.filter(|l| !l.keeps_y()) {
-            let mut lifted: Vec<Vec<f64>> = work.iter().map(|w| w.y.clone()).collect();
-            lifting.remove(stiffness, &mut lifted)?;
-            for (w, lifted) in work.iter_mut().zip(&lifted) {
-                let terms = w.v.iter_mut().zip(lifted);
-                terms.for_each(|(v, l)| *v -= l); /*          v ← v − Z_c A⁺ Z_cᵀ y */
-            }
-            self.multiply(stiffness, work); /*                y ← S v            */
+        if let Some(lifting) = lifting {
+            lifting.finish(stiffness, work, |work| self.multiply(stiffness, work))?;
         }
         ghost.fill(0.0);
         for (w, columns) in work.iter().zip(columns) {
@@ -176,24 +171,14 @@ impl Preconditioner {
                 columns[j].bd_transpose(received, b.v.col_mut(c)); /* v ← B_Dᵀ λ   */
             });
         }
-        stiffness.team.for_each(&mut blocks, |j, b| {
-            locals[j].apply(Operator::S, &b.v, &mut b.y); /*      y ← S v          */
-        });
-        let lifting = self.lifting.as_ref();
-        lifting.map_or(Ok(()), |l| l.remove_many(stiffness, &mut blocks))?; /* y ← y − Y A⁺ Yᵀ v */
-        if let Some(lifting) = lifting.filter(|l| !l.keeps_y()) {
-            for c in 0..lambdas.len() {
-                let mut lifted: Vec<Vec<f64>> =
-                    blocks.iter().map(|b| b.y.col(c).to_vec()).collect();
-                lifting.remove(stiffness, &mut lifted)?;
-                for (b, lifted) in blocks.iter_mut().zip(&lifted) {
-                    let terms = b.v.col_mut(c).iter_mut().zip(lifted);
-                    terms.for_each(|(v, l)| *v -= l); /*          v ← v − Z_c A⁺ Z_cᵀ y */
-                }
-            }
-            stiffness.team.for_each(&mut blocks, |j, b| {
+        let multiply = |blocks: &mut [Columns]| {
+            stiffness.team.for_each(blocks, |j, b| {
                 locals[j].apply(Operator::S, &b.v, &mut b.y); /*  y ← S v          */
             });
+        };
+        multiply(&mut blocks);
+        if let Some(lifting) = &self.lifting {
+            lifting.finish_many(stiffness, &mut blocks, multiply)?;
         }
         for (c, out) in outs.iter().enumerate() {
             ghost.fill(0.0);

@@ -10,6 +10,7 @@ use mpi::traits::Communicator;
 
 use super::entities::Average;
 use super::exchange::{exchange, exchange_words, offsets, sum_all, Record};
+use super::halo::numbered;
 use super::kernel;
 use super::local::dense::Dense;
 use super::local::scaled::Local;
@@ -195,17 +196,7 @@ impl PrimalSpace {
                     .collect()
             })
             .collect();
-        self.ghosts = global.concat();
-        self.ghosts.sort_unstable();
-        self.ghosts.dedup();
-        let place = |g: &u32| {
-            let at = self.ghosts.binary_search(g);
-            at.expect("every number was collected") as u32
-        };
-        self.of_subdomain = global
-            .iter()
-            .map(|l| l.iter().map(place).collect())
-            .collect();
+        (self.ghosts, self.of_subdomain) = numbered(&global);
         asked
     }
 
