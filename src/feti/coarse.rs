@@ -5,7 +5,8 @@
 
 use super::clock::{self, Phase};
 use super::halo::Halo;
-use super::local::multifrontal::{PartialCholesky, Symbolic};
+use super::local::multifrontal::PartialCholesky;
+use super::local::symbolic::Symbolic;
 use super::primal::{PrimalEntry, PrimalSpace};
 use super::team::Team;
 use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
@@ -100,8 +101,7 @@ impl PrimalProblem {
                     .collect();
                 clock::timed(Phase::Primal, || {
                     team.for_each(&mut parts, |b, x| {
-                        factors[b].1.forward(x);
-                        factors[b].1.backward(x);
+                        factors[b].1.solve(x);
                     });
                 });
                 let mut solution = p.solution.array_mut()?;

@@ -1,13 +1,16 @@
 //! Factoring one of each kind of subdomain.
 
+use std::collections::hash_map::DefaultHasher;
+use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use super::equal;
-use super::forms;
+use super::forms::{self, Kind};
 use super::jump::Jump;
-use super::local::interior::{NoFactor, Solver};
+use super::local::interior::{Analysis, LocalSolver, NoFactor, Solver, Way};
 use super::local::multifrontal::SingularInterior;
-use super::local::problem::LocalProblem;
+use super::local::problem::{Form, LocalProblem};
 use super::local::scaled::Local;
 use super::settings::{Adaptive, Operators, PcType, Scaling, Settings};
 use super::team::Team;
@@ -52,33 +55,94 @@ pub(super) fn factor(
             .map_or(forms::usual_memory(session.size()), |mb| 1e6 * mb as f64),
         wants_s,
     );
+    let analyses = analyses(&kinds, &forms, team, settings.local);
     let factored = team.map(kinds.len(), |k| {
         let (kind, sub) = (&kinds[k], kinds[k].sub);
+        let way = Way {
+            solver: settings.local,
+            analysis: analyses.of[k].map(|a| &*analyses.all[a]),
+            keep: kind.keep(),
+        };
         let averages = jump.averages[kind.j].iter();
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
         let places = sub.coordinates.as_deref();
         let (delta, primal, form) = (kind.delta, kind.primal, forms[k]);
-        LocalProblem::new(
-            &sub.k,
-            delta,
-            primal,
-            &averages,
-            places,
-            settings.local,
-            form,
-        )
-        .map(|mut local| {
-            if kind.copies < forms::MANY {
-                local.pack();
-            }
-            Arc::new(local)
-        })
-        .map_err(|e| no_factor(problem, sub, e))
+        LocalProblem::new(&sub.k, delta, primal, &averages, places, way, form)
+            .map(|mut local| {
+                if kind.copies < forms::MANY {
+                    local.pack();
+                }
+                Arc::new(local)
+            })
+            .map_err(|e| no_factor(problem, sub, e))
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
     let of = |&(j, factor): &(usize, f64)| Local::new(factored[place(j)].clone(), factor);
     Ok(first.iter().map(of).collect())
+}
+
+/// Analyses of patterns that several kinds have.
+struct Analyses {
+    all: Vec<Box<dyn Analysis>>,
+    /// The one of each kind.
+    of: Vec<Option<usize>>,
+}
+
+/// One analysis for kinds with dense operators that have the same pattern and interface: coefficients and moved nodes change numbers alone.
+fn analyses(kinds: &[Kind], forms: &[Form], team: &Team, solver: LocalSolver) -> Analyses {
+    let mut found: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
+    let hashes = team.map(kinds.len(), |k| pattern_hash(&kinds[k]));
+    for (k, hash) in hashes.iter().enumerate() {
+        if forms[k] == Form::Explicit {
+            let groups = found.entry(*hash).or_default();
+            match groups
+                .iter_mut()
+                .find(|g| same_pattern(&kinds[g[0]], &kinds[k]))
+            {
+                Some(group) => group.push(k),
+                None => groups.push(vec![k]),
+            }
+        }
+    }
+    // A pattern that one kind alone has is analysed where it is factored, and forgotten there.
+    let mut shared: Vec<Vec<usize>> = found
+        .into_values()
+        .flatten()
+        .filter(|g| g.len() > 1)
+        .collect();
+    shared.sort_unstable();
+    let made = team.map(shared.len(), |g| {
+        let kind = &kinds[shared[g][0]];
+        let interface = [kind.delta, kind.primal].concat();
+        solver
+            .analyse(&kind.sub.k, &interface, kind.sub.coordinates.as_deref())
+            .ok()
+    });
+    let mut out = Analyses {
+        all: Vec::new(),
+        of: vec![None; kinds.len()],
+    };
+    // One that failed is tried again, and reported, for each of its kinds.
+    for (analysis, group) in made.into_iter().zip(&shared) {
+        if let Some(analysis) = analysis {
+            group.iter().for_each(|&k| out.of[k] = Some(out.all.len()));
+            out.all.push(analysis);
+        }
+    }
+    out
+}
+
+fn pattern_hash(kind: &Kind) -> u64 {
+    let mut state = DefaultHasher::new();
+    let k = &kind.sub.k;
+    (k.n(), k.nnz(), kind.delta, kind.primal).hash(&mut state);
+    state.finish()
+}
+
+fn same_pattern(a: &Kind, b: &Kind) -> bool {
+    let (k, l) = (&a.sub.k, &b.sub.k);
+    (a.delta, a.primal) == (b.delta, b.primal) && k.row_ptr == l.row_ptr && k.col == l.col
 }
 
 /// Why subdomain `sub` cannot be factored, for the user.

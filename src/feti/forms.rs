@@ -9,8 +9,9 @@
 //! as measured (`fetifeti study kernels` measures them again). They are the same everywhere, so that runs can be repeated.
 
 use super::jump::Jump;
-use super::local::multifrontal::Symbolic;
+use super::local::interior::Keep;
 use super::local::problem::Form;
+use super::local::symbolic::Symbolic;
 use super::settings::Operators;
 use super::team::Team;
 use crate::substructures::{Subdomain, Substructures};
@@ -84,12 +85,18 @@ impl Kind<'_> {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
         match form {
             Form::Explicit => {
-                Symbolic::new(k, &[self.delta, self.primal].concat(), x).factor_entries()
+                Symbolic::new(k, &[self.delta, self.primal].concat(), x).factor_entries(self.keep())
             }
-            Form::Implicit => {
-                let [held, interior] = self.sparse();
-                held.factor_entries() + interior.factor_entries()
-            }
+            Form::Implicit => sparse_entries(&self.sparse()),
+        }
+    }
+
+    /// What is kept of its factor beside dense operators: a few copies alone do not pay for rows that save each of them half a solve.
+    pub fn keep(&self) -> Keep {
+        if self.copies < MANY {
+            Keep::Interior
+        } else {
+            Keep::Boundary
         }
     }
 
@@ -171,6 +178,14 @@ pub fn choose(
     forms
 }
 
+/// Entries of the factors behind sparse solves.
+fn sparse_entries(factors: &[Symbolic; 2]) -> usize {
+    factors
+        .iter()
+        .map(|f| f.factor_entries(Keep::Interior))
+        .sum()
+}
+
 /// Bytes of S and T.
 fn dense_bytes(kind: &Kind) -> f64 {
     let n_delta = kind.delta.len() as f64;
@@ -195,20 +210,21 @@ fn cost(kind: &Kind, always: bool) -> Option<Cost> {
         return None;
     }
     let [held, interior] = kind.sparse();
-    let entries = (held.factor_entries() + interior.factor_entries()) as f64;
+    let of_held = held.factor_entries(Keep::Interior) as f64;
+    let (flops, entries) = (
+        held.flops() + interior.flops(),
+        sparse_entries(&[held, interior]) as f64,
+    );
     let columns = (kind.primal.len() + 2 * kind.averages) as f64;
     let (dense, sparse) = match kind.copies {
         n if n < MANY => (DENSE, SPARSE),
         _ => (DENSE_SHARED, SPARSE_SHARED),
     };
     let copies = kind.copies as f64;
-    let psi = columns * 2.0 * held.factor_entries() as f64 * SPARSE_SHARED;
+    let psi = columns * 2.0 * of_held * SPARSE_SHARED;
     Some(Cost {
         explicit: [make, copies * dense * (n_gamma.powi(2) + n_delta.powi(2))],
-        implicit: [
-            FLOP * (held.flops() + interior.flops()) + psi,
-            copies * sparse * 2.0 * entries,
-        ],
+        implicit: [FLOP * flops + psi, copies * sparse * 2.0 * entries],
         dense_bytes: dense_bytes(kind),
     })
 }

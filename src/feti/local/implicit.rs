@@ -16,10 +16,10 @@ use std::sync::Arc;
 
 use super::basis::Basis;
 use super::dense::{self, Dense, Scratch};
-use super::lanes::LANES;
-use super::multifrontal::{PartialCholesky, SingularInterior, Symbolic};
+use super::multifrontal::{PartialCholesky, SingularInterior};
 use super::problem::Operator;
 use super::rectangular::Rectangular;
+use super::symbolic::Symbolic;
 use crate::sparse::Csr;
 
 /// K_rr counts as singular where a pivot is below this fraction of its diagonal entry: the vertices alone do not hold the subdomain then.
@@ -112,23 +112,21 @@ impl Implicit {
             return Ok(None);
         }
         out.m = m;
-        let coarse = out.coarse(&q, &s_vv, basis, vertices);
+        let coarse = out.coarse(k, &q, &s_vv, basis);
         Ok(Some((out, coarse)))
     }
 
-    fn coarse(&self, q: &[&[f64]], s_vv: &Dense, basis: &Basis, vertices: &[u32]) -> Coarse {
+    fn coarse(&self, k: &Csr, q: &[&[f64]], s_vv: &Dense, basis: &Basis) -> Coarse {
+        let vertices = &self.interface[self.n_delta..];
         let (n_v, n_q) = (vertices.len(), q.len());
-        // Ψ₀: the vertices move, nothing pulls.
-        let unit = |&v: &u32| {
+        // −K_rv: the vertices move, nothing else pulls.
+        let pull = |&v: &u32| {
             let mut b = vec![0.0; self.n()];
-            b[v as usize] = 1.0;
+            let (col, val) = k.row(v as usize);
+            col.iter().zip(val).for_each(|(&j, v)| b[j as usize] = -v);
             b
         };
-        let mut moved: Vec<Vec<f64>> = vertices.iter().map(unit).collect();
-        for lanes in moved.chunks_mut(LANES) {
-            backward(&self.held, lanes);
-        }
-        let moved: Vec<Vec<f64>> = moved.iter().map(|b| self.take_delta(b)).collect();
+        let moved = self.solve_held(vertices.iter().map(pull).collect());
         // M⁻¹ [A, D]
         let mut right = Dense::zeros(n_q, n_v + n_q);
         let mut a = Dense::zeros(n_q, n_v);
@@ -191,14 +189,7 @@ impl Implicit {
 
     /// K_rr⁻¹ of loads on all dofs, on Δ.
     fn solve_held(&self, mut b: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-        for lanes in b.chunks_mut(LANES) {
-            forward(&self.held, lanes);
-            for b in lanes.iter_mut() {
-                let vertices = self.interface[self.n_delta..].iter();
-                vertices.for_each(|&i| b[i as usize] = 0.0);
-            }
-            backward(&self.held, lanes);
-        }
+        self.held.solve_many(&mut b);
         b.iter().map(|b| self.take_delta(b)).collect()
     }
 
@@ -229,10 +220,7 @@ impl Implicit {
 
     /// K_II⁻¹ of several loads on the interior dofs.
     fn solve_interior(&self, b: &mut [Vec<f64>]) {
-        for lanes in b.chunks_mut(LANES) {
-            forward(&self.interior, lanes);
-            backward(&self.interior, lanes);
-        }
+        self.interior.solve_many(b);
     }
 
     /// S v for each of `v` (length n_Γ).
@@ -298,28 +286,13 @@ impl Implicit {
     }
 }
 
-/// Forward elimination of at most [`LANES`] vectors.
-fn forward(factor: &PartialCholesky, b: &mut [Vec<f64>]) {
-    match b {
-        [one] => factor.forward(one),
-        several => factor.forward_many(several),
-    }
-}
-
-/// Back substitution of at most [`LANES`] vectors.
-fn backward(factor: &PartialCholesky, b: &mut [Vec<f64>]) {
-    match b {
-        [one] => factor.backward(one),
-        several => factor.backward_many(several),
-    }
-}
-
 fn factored(
     k: &Csr,
     interface: &[u32],
     coordinates: Option<&[[f64; 3]]>,
 ) -> Result<(PartialCholesky, Dense), SingularInterior> {
-    PartialCholesky::new(k, Arc::new(Symbolic::new(k, interface, coordinates)))
+    let symbolic = Symbolic::new(k, interface, coordinates);
+    PartialCholesky::inside(k, &symbolic, Arc::new(symbolic.inside()))
 }
 
 fn columns(rows: usize, of: &[Vec<f64>]) -> Dense {

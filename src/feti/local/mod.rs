@@ -10,6 +10,7 @@ pub mod lanes;
 mod loads;
 pub mod multifrontal;
 mod operators;
+mod panel;
 pub mod pencil;
 pub mod problem;
 pub mod rectangular;
@@ -17,6 +18,7 @@ pub mod scaled;
 pub mod semidefinite;
 pub mod single;
 mod substitution;
+pub mod symbolic;
 mod symmetric;
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use std::sync::{Arc, OnceLock};
 use super::basis::Basis;
 use super::dense::Dense;
 use super::implicit::Implicit;
-use super::interior::{Factor, LocalSolver, NoFactor, Solver};
+use super::interior::{Factor, Keep, LocalSolver, NoFactor, Solver, Way};
 use super::symmetric::Symmetric;
 use crate::sparse::Csr;
 
@@ -98,7 +98,7 @@ pub(super) enum Inside {
 
 impl LocalProblem {
     /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists dual dofs whose means
-    /// are primal.
+    /// are primal. An analysis that comes with `way` is one for the interface [delta, primal].
     ///
     /// # Errors
     /// A matrix that is no stiffness matrix; what the solver says.
@@ -108,7 +108,7 @@ impl LocalProblem {
         primal: &[u32],
         averages: &[&[u32]],
         coordinates: Option<&[[f64; 3]]>,
-        solver: LocalSolver,
+        mut way: Way,
         form: Form,
     ) -> Result<LocalProblem, NoFactor> {
         let mut basis = Basis::default();
@@ -116,7 +116,7 @@ impl LocalProblem {
         let at = averages.iter().map(|a| at.of(a));
         at.for_each(|at| basis.push_mean(at));
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
-        if form == Form::Implicit && solver.kind == Solver::Multifrontal {
+        if form == Form::Implicit && way.solver.kind == Solver::Multifrontal {
             let interface = [delta, primal].concat();
             // An interior that nothing holds is for the dense form to deal with.
             let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);
@@ -140,10 +140,13 @@ impl LocalProblem {
         let mut delta = delta.to_vec();
         let (interface, factor, s) = loop {
             let interface = [&delta[..], primal].concat();
-            match solver.condense(k, &interface, coordinates) {
+            match way.condense(k, &interface, coordinates) {
                 Ok((factor, s)) => break (interface, factor, s),
                 // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
-                Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => delta.push(e.dof),
+                Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => {
+                    delta.push(e.dof);
+                    way.analysis = None;
+                }
                 Err(e) => return Err(e),
             }
         };
@@ -175,8 +178,8 @@ impl LocalProblem {
         let (s, factor) = match &self.inside {
             Inside::Partial(factor) => (self.s(), factor.clone()),
             Inside::Implicit(_) => {
-                let solver = LocalSolver::default();
-                let (factor, s) = solver.condense(k, &self.interface, coordinates)?;
+                let way = LocalSolver::default().way(Keep::Interior);
+                let (factor, s) = way.condense(k, &self.interface, coordinates)?;
                 (Arc::new(s), Arc::new(factor))
             }
         };
@@ -325,7 +328,7 @@ mod tests {
             &[0, 8],
             &[],
             Some(x),
-            LocalSolver::default(),
+            LocalSolver::default().way(Keep::Interior),
             form,
         )
         .expect("definite");
@@ -378,7 +381,7 @@ mod tests {
                     &[],
                     &[],
                     Some(&x),
-                    LocalSolver::default(),
+                    LocalSolver::default().way(Keep::Interior),
                     Form::Explicit
                 )
                 .is_err(),
@@ -390,7 +393,7 @@ mod tests {
                 &[],
                 &[],
                 Some(&x),
-                LocalSolver::default(),
+                LocalSolver::default().way(Keep::Interior),
                 Form::Implicit,
             );
             assert!(sparse.is_err(), "{value}");
@@ -402,8 +405,16 @@ mod tests {
         let (k, x) = grid_laplacian(8, 6, 0.0);
         let delta: Vec<u32> = (0..8).collect();
         let form = Form::Implicit; // becomes dense: no vertex holds anything
-        let local = LocalProblem::new(&k, &delta, &[], &[], Some(&x), LocalSolver::default(), form)
-            .expect("one is held");
+        let local = LocalProblem::new(
+            &k,
+            &delta,
+            &[],
+            &[],
+            Some(&x),
+            LocalSolver::default().way(Keep::Interior),
+            form,
+        )
+        .expect("one is held");
         assert!(!local.is_implicit());
         assert_eq!((local.fixing.len(), local.n_pi()), (1, 1));
         assert!(local.sigma.get(0, 0).abs() < 1e-13);
@@ -424,7 +435,7 @@ mod tests {
                 &vertices,
                 &averages,
                 Some(&x),
-                LocalSolver::default(),
+                LocalSolver::default().way(Keep::Interior),
                 form,
             )
         };

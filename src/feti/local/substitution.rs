@@ -4,9 +4,7 @@
 //! of what is below their own rows, so that the vector is read and written once for four, and the panel once at all.
 
 use super::multifrontal::PartialCholesky;
-
-/// Columns that go together.
-const COLUMNS: usize = 4;
+use super::panel::{self, COLUMNS};
 
 /// Partial sums of a product: two vector registers for each column.
 const SUMS: usize = 8;
@@ -17,10 +15,32 @@ impl PartialCholesky {
     /// The interface part is the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I.
     pub fn forward(&self, b: &mut [f64]) {
         let mut y = self.in_order(b);
+        self.lower(&mut y);
+        self.by_dof(&y, b);
+    }
+
+    /// Back substitution: given [y_I; u_Γ] with y_I from [`forward`](Self::forward), leaves [u_I; u_Γ].
+    pub fn backward(&self, b: &mut [f64]) {
+        let mut y = self.in_order(b);
+        self.upper(&mut y);
+        self.by_dof(&y, b);
+    }
+
+    /// `b` ← [K_II⁻¹ b_I; 0].
+    pub fn solve(&self, b: &mut [f64]) {
+        let mut y = self.in_order(b);
+        self.lower(&mut y);
+        y[self.symbolic.n_interior()..].fill(0.0);
+        self.upper(&mut y);
+        self.by_dof(&y, b);
+    }
+
+    /// y ← [L_II⁻¹ y_I; y_Γ − L_ΓI L_II⁻¹ y_I] in the order of elimination.
+    fn lower(&self, y: &mut [f64]) {
         let mut work = Vec::new();
         for front in &self.symbolic.fronts {
             let (width, size) = (front.width(), front.size());
-            let panel = &self.panels[front.panel..][..size * width];
+            let panel = &self.panels[front.panel..];
             let (pivots, below) = y[front.start..].split_at_mut(width);
             work.clear();
             work.extend_from_slice(pivots);
@@ -31,16 +51,14 @@ impl PartialCholesky {
                 below[p as usize - front.end] += w;
             }
         }
-        self.by_dof(&y, b);
     }
 
-    /// Back substitution: given [y_I; u_Γ] with y_I from [`forward`](Self::forward), leaves [u_I; u_Γ].
-    pub fn backward(&self, b: &mut [f64]) {
-        let mut y = self.in_order(b);
+    /// y ← [L_II⁻ᵀ (y_I − L_ΓIᵀ y_Γ); y_Γ] in the order of elimination.
+    fn upper(&self, y: &mut [f64]) {
         let mut work = Vec::new();
         for front in self.symbolic.fronts.iter().rev() {
-            let (width, size) = (front.width(), front.size());
-            let panel = &self.panels[front.panel..][..size * width];
+            let width = front.width();
+            let panel = &self.panels[front.panel..];
             let (pivots, below) = y[front.start..].split_at_mut(width);
             work.clear();
             work.extend_from_slice(pivots);
@@ -49,7 +67,6 @@ impl PartialCholesky {
             substitute(panel, width, &mut work);
             pivots.copy_from_slice(&work[..width]);
         }
-        self.by_dof(&y, b);
     }
 
     fn in_order(&self, b: &[f64]) -> Vec<f64> {
@@ -63,29 +80,33 @@ impl PartialCholesky {
     }
 }
 
+/// Column `k` of a group of columns with `rows` entries each.
+fn column(group: &[f64], rows: usize, k: usize) -> &[f64] {
+    &group[k * rows..(k + 1) * rows]
+}
+
 /// x ← L⁻¹ x and w ← w − L_below x for `work` = [x; w] and a panel of `width` columns.
 fn eliminate(panel: &[f64], width: usize, work: &mut [f64]) {
     let size = work.len();
     for j in (0..width).step_by(COLUMNS) {
-        let n = COLUMNS.min(width - j);
-        let inverse = reciprocals(panel, size, j, n);
-        for k in j..j + n {
-            let column = &panel[k * size..(k + 1) * size];
-            let x = work[k] * inverse[k - j];
-            work[k] = x;
-            for i in k + 1..j + n {
-                work[i] -= column[i] * x;
+        let (n, rows) = (COLUMNS.min(width - j), size - j);
+        let group = &panel[panel::group(j, size)..];
+        let inverse = reciprocals(group, rows, n);
+        let (x, rest) = work[j..].split_at_mut(n);
+        for k in 0..n {
+            let l = column(group, rows, k);
+            x[k] *= inverse[k];
+            for i in k + 1..n {
+                x[i] -= l[i] * x[k];
             }
         }
-        let (x, rest) = work.split_at_mut(j + n);
-        let x = &x[j..];
-        let column = |k: usize| &panel[(j + k) * size + j + n..(j + k + 1) * size];
+        let below = |k: usize| &column(group, rows, k)[n..];
         if n == COLUMNS {
             let minus = [-x[0], -x[1], -x[2], -x[3]];
-            add_columns([column(0), column(1), column(2), column(3)], minus, rest);
+            add_columns([below(0), below(1), below(2), below(3)], minus, rest);
         } else {
             for (k, x) in x.iter().enumerate() {
-                for (y, l) in rest.iter_mut().zip(column(k)) {
+                for (y, l) in rest.iter_mut().zip(below(k)) {
                     *y = (-l).mul_add(*x, *y);
                 }
             }
@@ -97,32 +118,32 @@ fn eliminate(panel: &[f64], width: usize, work: &mut [f64]) {
 fn substitute(panel: &[f64], width: usize, work: &mut [f64]) {
     let size = work.len();
     for j in (0..width).step_by(COLUMNS).rev() {
-        let n = COLUMNS.min(width - j);
-        let (x, rest) = work.split_at_mut(j + n);
-        let x = &mut x[j..];
-        let column = |k: usize| &panel[(j + k) * size + j + n..(j + k + 1) * size];
+        let (n, rows) = (COLUMNS.min(width - j), size - j);
+        let group = &panel[panel::group(j, size)..];
+        let (x, rest) = work[j..].split_at_mut(n);
+        let below = |k: usize| &column(group, rows, k)[n..];
         if n == COLUMNS {
-            let pulled = products([column(0), column(1), column(2), column(3)], rest);
+            let pulled = products([below(0), below(1), below(2), below(3)], rest);
             x.iter_mut().zip(pulled).for_each(|(x, p)| *x -= p);
         } else {
             for (k, x) in x.iter_mut().enumerate() {
-                *x -= super::dense::dot(column(k), rest);
+                *x -= super::dense::dot(below(k), rest);
             }
         }
-        let inverse = reciprocals(panel, size, j, n);
+        let inverse = reciprocals(group, rows, n);
         for k in (0..n).rev() {
-            let column = &panel[(j + k) * size + j..(j + k) * size + j + n];
-            let pulled: f64 = (k + 1..n).map(|i| column[i] * x[i]).sum();
+            let l = column(group, rows, k);
+            let pulled: f64 = (k + 1..n).map(|i| l[i] * x[i]).sum();
             x[k] = (x[k] - pulled) * inverse[k];
         }
     }
 }
 
-/// Of `n` diagonal entries from column `j` on: divisions that do not wait for each other.
-fn reciprocals(panel: &[f64], size: usize, j: usize, n: usize) -> [f64; COLUMNS] {
+/// Of the `n` pivots of a group: divisions that do not wait for each other.
+fn reciprocals(group: &[f64], rows: usize, n: usize) -> [f64; COLUMNS] {
     let mut out = [0.0; COLUMNS];
     for (k, out) in out.iter_mut().enumerate().take(n) {
-        *out = 1.0 / panel[(j + k) * (size + 1)];
+        *out = 1.0 / group[k * (rows + 1)];
     }
     out
 }
@@ -178,19 +199,21 @@ mod tests {
     use super::*;
     use crate::feti::local::testing::random;
 
-    /// A panel of `width` columns and `size` rows, its diagonal large.
-    fn panel(width: usize, size: usize) -> Vec<f64> {
-        let mut panel = random(width * size, (width + 31 * size) as u64);
-        (0..width).for_each(|j| panel[j * size + j] += 3.0);
-        panel
+    /// Columns of a panel of `width` columns and `size` rows, their diagonal large.
+    fn columns(width: usize, size: usize) -> Vec<f64> {
+        let mut columns = random(width * size, (width + 31 * size) as u64);
+        (0..width).for_each(|j| columns[j * size + j] += 3.0);
+        columns
     }
 
     #[test]
     fn panels_of_every_width_are_solved_with() {
         for (width, below) in (1..=9).flat_map(|w| [0, 1, 7, 8, 21].map(|b| (w, b))) {
             let size = width + below;
-            let panel = panel(width, size);
-            let l = |i: usize, j: usize| panel[j * size + i];
+            let columns = columns(width, size);
+            let l = |i: usize, j: usize| columns[j * size + i];
+            let mut panel = vec![0.0; panel::length(width, size)];
+            panel::store(&columns, size, width, size, &mut panel);
             let start = random(size, 5);
 
             let mut work = start.clone();

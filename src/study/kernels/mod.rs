@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use crate::feti::local::interior::{LocalSolver, NoFactor, Ordering, Solver};
+use crate::feti::local::interior::{Keep, LocalSolver, NoFactor, Ordering, Solver};
 use crate::petsc::Session;
 use crate::{Error, Result};
 use subdomain::Sample;
@@ -236,7 +236,7 @@ fn measure(
 
     let analysis = solver.analyse(&sample.k, &sample.interface, Some(&sample.positions))?;
     let clock = Instant::now();
-    let (factor, s) = analysis.condense(&sample.k)?;
+    let (factor, s) = analysis.condense(&sample.k, Keep::Boundary)?;
     seconds.schur.push(clock.elapsed().as_secs_f64());
     // The condensed load of K u is S u_Γ.
     let mut work = sample.load.clone();

@@ -11,8 +11,11 @@ use faer::linalg::matmul::triangular::{matmul, BlockStructure};
 use faer::{Accum, Par};
 
 use super::triangle::Triangle;
+use super::Keep;
 use crate::feti::local::dense::Dense;
-use crate::feti::local::multifrontal::{PartialCholesky, SingularInterior, Symbolic, SINGULAR};
+use crate::feti::local::multifrontal::{PartialCholesky, SingularInterior, SINGULAR};
+use crate::feti::local::panel;
+use crate::feti::local::symbolic::Symbolic;
 
 /// A supernode of L.
 pub struct Panel<'a> {
@@ -29,6 +32,7 @@ pub struct Panel<'a> {
 /// The factor of the interior, and S, from the supernodes of L. `diagonal` is that of K in the interior.
 pub fn split(
     triangle: &Triangle,
+    keep: Keep,
     diagonal: impl Iterator<Item = f64>,
     shift: &[f64],
     panels: &[Panel],
@@ -39,12 +43,37 @@ pub fn split(
     let inside = |p: &Panel| (p.start + p.width).min(interior).saturating_sub(p.start);
     let size = |p: &Panel| p.width + p.below.len();
 
-    let mut values = Vec::with_capacity(panels.iter().map(|p| inside(p) * size(p)).sum());
+    // The rows after the columns of the interior that are kept.
+    let below = |p: &Panel| -> Vec<u32> {
+        let rest = (p.start + inside(p)..p.start + p.width).map(|r| r as u32);
+        let all = rest.chain(p.below.iter().copied());
+        match keep {
+            Keep::Boundary => all.collect(),
+            Keep::Interior => all.take_while(|&r| (r as usize) < interior).collect(),
+        }
+    };
+    let fronts = panels.iter().filter(|p| inside(p) > 0);
+    let fronts: Vec<_> = fronts.map(|p| (p.start, inside(p), below(p))).collect();
+    let length =
+        |(_, width, below): &(usize, usize, Vec<u32>)| panel::length(*width, width + below.len());
+    let mut values = vec![0.0; fronts.iter().map(length).sum()];
+    let mut kept = fronts.iter();
+    let mut at = 0;
     let mut l = Dense::zeros(n, n);
     let mut pivots = Vec::with_capacity(interior);
     for panel in panels {
         let (width, size) = (inside(panel), size(panel));
-        values.extend_from_slice(&panel.values[..width * size]);
+        if width > 0 {
+            let front = kept.next().expect("a front for each of these");
+            panel::store(
+                panel.values,
+                size,
+                width,
+                width + front.2.len(),
+                &mut values[at..],
+            );
+            at += length(front);
+        }
         pivots.extend((0..width).map(|j| panel.values[j * size + j]));
         for j in width..panel.width {
             let column = &panel.values[j * size..(j + 1) * size];
@@ -56,17 +85,8 @@ pub fn split(
     }
     held(diagonal, &pivots, &triangle.dofs)?;
 
-    let fronts = panels.iter().filter(|p| inside(p) > 0).map(|p| {
-        let width = inside(p);
-        let rest = (p.start + width..p.start + p.width).map(|r| r as u32);
-        (
-            p.start,
-            width,
-            rest.chain(p.below.iter().copied()).collect(),
-        )
-    });
     let (dofs, interface) = triangle.dofs.split_at(interior);
-    let symbolic = Symbolic::of_factor(dofs.to_vec(), interface, fronts);
+    let symbolic = Symbolic::of_factor(dofs.to_vec(), interface, fronts.into_iter());
     let factor = PartialCholesky {
         symbolic: Arc::new(symbolic),
         panels: values,

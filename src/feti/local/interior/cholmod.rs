@@ -6,7 +6,7 @@ use super::boundary::{held, split, Panel};
 use super::condensation::{Condensation, Factor};
 use super::order::Elimination;
 use super::triangle::Triangle;
-use super::{positive_diagonal, refused, Analysis, NoFactor, SparseCholesky};
+use super::{positive_diagonal, refused, Analysis, Keep, NoFactor, SparseCholesky};
 use crate::feti::local::dense::Dense;
 use crate::petsc::{Cholmod, CholmodSymbolic, Refusal, Supernode, Upper};
 use crate::sparse::Csr;
@@ -67,7 +67,7 @@ impl Analysis for OfCholmod {
         }))
     }
 
-    fn condense(&self, k: &Csr) -> Result<(Factor, Dense), NoFactor> {
+    fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), NoFactor> {
         let triangle = &*self.triangle;
         if triangle.n_interior() == triangle.n() {
             return Ok(Condensation::of_all(k, self.factor(k)?));
@@ -78,8 +78,9 @@ impl Analysis for OfCholmod {
         let supernodes = l.supernodes();
         let panels: Vec<Panel> = supernodes.iter().map(panel).collect();
         let diagonal = triangle.interior_diagonal(&values);
-        let (factor, s) = split(triangle, diagonal, &shift, &panels)?;
-        Ok((Factor::Fronts(factor), s))
+        let (factor, s) = split(triangle, keep, diagonal, &shift, &panels)?;
+        let interface = &triangle.dofs[triangle.n_interior()..];
+        Ok((Factor::new(k, interface, factor, keep), s))
     }
 }
 

@@ -1,6 +1,6 @@
 //! From loads to the interface and back, whoever factored the interior.
 
-use super::SparseCholesky;
+use super::{Keep, SparseCholesky};
 use crate::feti::local::dense::Dense;
 use crate::feti::local::multifrontal::PartialCholesky;
 use crate::sparse::Csr;
@@ -18,6 +18,14 @@ pub enum Factor {
 }
 
 impl Factor {
+    /// The fronts of `k` with the rows of the interface or without them.
+    pub(super) fn new(k: &Csr, interface: &[u32], fronts: PartialCholesky, keep: Keep) -> Factor {
+        match keep {
+            Keep::Boundary => Factor::Fronts(fronts),
+            Keep::Interior => Factor::Solves(Condensation::new(k, interface, Box::new(fronts))),
+        }
+    }
+
     /// Condenses `b` (length n, by dof).
     pub fn forward(&self, b: &mut [f64]) {
         match self {
@@ -59,13 +67,13 @@ impl Factor {
     }
 }
 
-/// Solves with K_II, and the rows of K on the interface.
+/// Solves with K_II, and K_ΓI.
 #[derive(Debug)]
 pub struct Condensation {
     /// x ← [K_II⁻¹ x_I; 0].
     interior: Box<dyn SparseCholesky>,
     interface: Vec<u32>,
-    /// Rows of K, interface after interface dof.
+    /// Rows of K_ΓI, interface after interface dof.
     ptr: Vec<usize>,
     col: Vec<u32>,
     val: Vec<f64>,
@@ -81,12 +89,19 @@ impl Condensation {
             col: Vec::new(),
             val: Vec::new(),
         };
+        let mut outside = vec![false; k.n()];
+        interface.iter().for_each(|&i| outside[i as usize] = true);
         for &i in interface {
             let (col, val) = k.row(i as usize);
-            out.col.extend_from_slice(col);
-            out.val.extend_from_slice(val);
+            let inside = col.iter().zip(val).filter(|e| !outside[*e.0 as usize]);
+            for (&j, &v) in inside {
+                out.col.push(j);
+                out.val.push(v);
+            }
             out.ptr.push(out.col.len());
         }
+        out.col.shrink_to_fit();
+        out.val.shrink_to_fit();
         out
     }
 
@@ -98,7 +113,7 @@ impl Condensation {
         )
     }
 
-    /// The dofs of the interface with their rows of K.
+    /// The dofs of the interface with their rows of K_ΓI.
     fn rows(&self) -> impl Iterator<Item = (usize, &[u32], &[f64])> {
         let row =
             |(&i, w): (&u32, &[usize])| (i as usize, &self.col[w[0]..w[1]], &self.val[w[0]..w[1]]);
@@ -114,7 +129,6 @@ impl Condensation {
         self.interior.solve_many(&mut x);
         for (b, x) in columns.iter_mut().zip(&x) {
             for (i, col, val) in self.rows() {
-                // x vanishes on the interface.
                 let pulled: f64 = col.iter().zip(val).map(|(&j, v)| v * x[j as usize]).sum();
                 b[i] -= pulled;
             }
@@ -129,7 +143,6 @@ impl Condensation {
         for (b, u) in columns.iter_mut().zip(&u) {
             for ((_, col, val), u) in self.rows().zip(u) {
                 for (&j, v) in col.iter().zip(val) {
-                    // What lands on the interface is thrown away.
                     b[j as usize] -= v * u;
                 }
             }

@@ -129,6 +129,15 @@ impl Ordering {
     }
 }
 
+/// What is kept of [L_II; L_ΓI].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// All of it: condensing a load and recovering a solution are half a solve each.
+    Boundary,
+    /// L_II: they are a whole solve each, in three quarters of the memory in the plane and in a quarter of it in space.
+    Interior,
+}
+
 /// How subdomains are factored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LocalSolver {
@@ -182,7 +191,7 @@ pub trait Analysis: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`NoFactor`].
-    fn condense(&self, k: &Csr) -> std::result::Result<(Factor, Dense), NoFactor>;
+    fn condense(&self, k: &Csr, keep: Keep) -> std::result::Result<(Factor, Dense), NoFactor>;
 }
 
 impl LocalSolver {
@@ -215,17 +224,13 @@ impl LocalSolver {
         })
     }
 
-    /// Analysis and elimination of the interior at once.
-    ///
-    /// # Errors
-    /// [`NoFactor`].
-    pub fn condense(
-        self,
-        k: &Csr,
-        interface: &[u32],
-        coordinates: Option<&[[f64; 3]]>,
-    ) -> std::result::Result<(Factor, Dense), NoFactor> {
-        self.analyse(k, interface, coordinates)?.condense(k)
+    /// The way of one that nothing is known of.
+    pub fn way(self, keep: Keep) -> Way<'static> {
+        Way {
+            solver: self,
+            analysis: None,
+            keep,
+        }
     }
 
     /// Says so where this build has not what was chosen.
@@ -256,6 +261,38 @@ impl LocalSolver {
     /// The largest number of threads that may factor and solve; `None`: any. MUMPS is not safe on several, and speaks to MPI.
     pub fn most_threads(self) -> Option<usize> {
         (self.kind == Solver::Mumps).then_some(1)
+    }
+}
+
+/// How the interior of one subdomain is eliminated.
+#[derive(Debug, Clone, Copy)]
+pub struct Way<'a> {
+    /// By whom.
+    pub solver: LocalSolver,
+    /// The analysis of a matrix with the same pattern and interface, where there is one.
+    pub analysis: Option<&'a dyn Analysis>,
+    /// What is kept.
+    pub keep: Keep,
+}
+
+impl Way<'_> {
+    /// The factor and S of `k`, which is analysed if it has not been.
+    ///
+    /// # Errors
+    /// [`NoFactor`].
+    pub fn condense(
+        self,
+        k: &Csr,
+        interface: &[u32],
+        coordinates: Option<&[[f64; 3]]>,
+    ) -> std::result::Result<(Factor, Dense), NoFactor> {
+        match self.analysis {
+            Some(analysis) => analysis.condense(k, self.keep),
+            None => {
+                let analysis = self.solver.analyse(k, interface, coordinates)?;
+                analysis.condense(k, self.keep)
+            }
+        }
     }
 }
 

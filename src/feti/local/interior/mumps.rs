@@ -9,7 +9,7 @@ use super::condensation::{Condensation, Factor};
 use super::order::Elimination;
 use super::own::Own;
 use super::triangle::Triangle;
-use super::{positive_diagonal, refused, Analysis, NoFactor, SparseCholesky};
+use super::{positive_diagonal, refused, Analysis, Keep, NoFactor, SparseCholesky};
 use crate::feti::local::dense::Dense;
 use crate::feti::local::multifrontal::SINGULAR;
 use crate::petsc::{Mumps, Refusal};
@@ -67,7 +67,7 @@ impl OfMumps {
     /// MUMPS counts negative pivots and does not say where they are: our own elimination does.
     fn located(&self, k: &Csr, error: Refusal) -> NoFactor {
         let first = self.triangle.dofs.first().copied().unwrap_or(0);
-        let unknown = match (&error, Own::new(k, &self.order).condense(k)) {
+        let unknown = match (&error, Own::new(k, &self.order).condense(k, Keep::Interior)) {
             (Refusal::NotPositive(None), Err(NoFactor::Interior(e))) => e.dof,
             _ => first,
         };
@@ -88,7 +88,7 @@ impl Analysis for OfMumps {
         Ok(Box::new(self.numeric(k)?.0))
     }
 
-    fn condense(&self, k: &Csr) -> Result<(Factor, Dense), NoFactor> {
+    fn condense(&self, k: &Csr, _: Keep) -> Result<(Factor, Dense), NoFactor> {
         let (factor, schur) = self.numeric(k)?;
         let n = self.order.interface.len();
         let s = Dense {

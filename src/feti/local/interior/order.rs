@@ -169,7 +169,9 @@ fn fronts(tree: &Tree, counts: &[u32]) -> Vec<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::feti::local::multifrontal::{PartialCholesky, Symbolic};
+    use crate::feti::local::interior::Keep;
+    use crate::feti::local::multifrontal::PartialCholesky;
+    use crate::feti::local::symbolic::Symbolic;
     use crate::feti::local::testing::grid_laplacian;
     use std::sync::Arc;
 
@@ -193,8 +195,8 @@ mod tests {
         let entries = |sets: &[Vec<u32>]| {
             let symbolic = Arc::new(Symbolic::with_supernodes(&k, &[], sets));
             let (factor, _) = PartialCholesky::new(&k, symbolic.clone()).expect("definite");
-            assert_eq!(factor.bytes(), 8 * symbolic.factor_entries());
-            symbolic.factor_entries()
+            assert_eq!(factor.bytes(), 8 * symbolic.factor_entries(Keep::Boundary));
+            symbolic.factor_entries(Keep::Boundary)
         };
         let single: Vec<Vec<u32>> = (0..k.n() as u32).map(|i| vec![i]).collect();
         let natural = entries(&single);

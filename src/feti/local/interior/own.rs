@@ -1,62 +1,72 @@
 //! Our multifrontal method behind the common face.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::condensation::Factor;
 use super::order::Elimination;
-use super::{Analysis, NoFactor, SparseCholesky};
+use super::{Analysis, Keep, NoFactor, SparseCholesky};
 use crate::feti::local::dense::Dense;
-use crate::feti::local::lanes::LANES;
-use crate::feti::local::multifrontal::{PartialCholesky, Symbolic};
+use crate::feti::local::multifrontal::PartialCholesky;
+use crate::feti::local::symbolic::Symbolic;
 use crate::sparse::Csr;
 
 /// The fronts.
 #[derive(Debug)]
-pub struct Own(Arc<Symbolic>);
+pub struct Own {
+    symbolic: Arc<Symbolic>,
+    interface: Vec<u32>,
+    /// The fronts without the rows of the interface, once they have been asked for.
+    inside: OnceLock<Arc<Symbolic>>,
+}
 
 impl Own {
     /// Fronts as they are ordered.
     pub fn new(k: &Csr, order: &Elimination) -> Own {
         let symbolic = Symbolic::with_supernodes(k, &order.interface, &order.supernodes);
-        Own(Arc::new(symbolic))
+        Own::with(symbolic, &order.interface)
     }
 
     /// Fronts by nested dissection.
     pub fn nested(k: &Csr, interface: &[u32], coordinates: Option<&[[f64; 3]]>) -> Own {
-        Own(Arc::new(Symbolic::new(k, interface, coordinates)))
+        Own::with(Symbolic::new(k, interface, coordinates), interface)
+    }
+
+    fn with(symbolic: Symbolic, interface: &[u32]) -> Own {
+        Own {
+            symbolic: Arc::new(symbolic),
+            interface: interface.to_vec(),
+            inside: OnceLock::new(),
+        }
     }
 }
 
 impl Analysis for Own {
     fn factor(&self, k: &Csr) -> Result<Box<dyn SparseCholesky>, NoFactor> {
-        assert_eq!(self.0.n_interior(), k.n(), "an interface is kept");
-        let (factor, _) = PartialCholesky::new(k, self.0.clone())?;
+        assert_eq!(self.symbolic.n_interior(), k.n(), "an interface is kept");
+        let (factor, _) = PartialCholesky::new(k, self.symbolic.clone())?;
         Ok(Box::new(factor))
     }
 
-    fn condense(&self, k: &Csr) -> Result<(Factor, Dense), NoFactor> {
-        let (factor, s) = PartialCholesky::new(k, self.0.clone())?;
-        Ok((Factor::Fronts(factor), s))
+    fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), NoFactor> {
+        let (factor, s) = match keep {
+            Keep::Boundary => PartialCholesky::new(k, self.symbolic.clone())?,
+            Keep::Interior => {
+                let inside = || Arc::new(self.symbolic.inside());
+                let inside = self.inside.get_or_init(inside).clone();
+                PartialCholesky::inside(k, &self.symbolic, inside)?
+            }
+        };
+        Ok((Factor::new(k, &self.interface, factor, keep), s))
     }
 }
 
-/// Where nothing is kept, the partial factorisation is the whole one.
 impl SparseCholesky for PartialCholesky {
     fn solve(&self, x: &mut [f64]) {
-        self.forward(x);
-        self.backward(x);
+        PartialCholesky::solve(self, x);
     }
 
     fn solve_many(&self, x: &mut [Vec<f64>]) {
-        for lanes in x.chunks_mut(LANES) {
-            match lanes {
-                [x] => self.solve(x),
-                _ => {
-                    self.forward_many(lanes);
-                    self.backward_many(lanes);
-                }
-            }
-        }
+        PartialCholesky::solve_many(self, x);
     }
 
     fn bytes(&self) -> usize {

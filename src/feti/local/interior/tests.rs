@@ -2,7 +2,7 @@
 
 use faer::linalg::solvers::Solve;
 
-use super::{Factor, LocalSolver, NoFactor, Ordering, Solver};
+use super::{Factor, Keep, LocalSolver, NoFactor, Ordering, Solver};
 use crate::feti::local::testing::{grid_laplacian, random};
 use crate::petsc::testing::with_session;
 use crate::scene::Scene;
@@ -127,8 +127,11 @@ fn solutions_are_those_of_the_dense_matrix() {
 #[test]
 fn s_is_the_dense_schur_complement_and_the_factor_condenses_and_recovers() {
     for_all(|solver| {
-        for case in cases() {
+        let both = [Keep::Boundary, Keep::Interior]
+            .map(|keep| cases().into_iter().map(move |c| (keep, c)));
+        for (keep, case) in both.into_iter().flatten() {
             let (factor, s) = solver
+                .way(keep)
                 .condense(&case.k, &case.interface, Some(&case.x))
                 .expect("the interior is held");
             let (dofs, gamma) = (inside(&case), &case.interface);
@@ -226,7 +229,9 @@ fn matrices_that_are_not_definite_are_refused() {
                         .position(|&j| j as usize == dof)
                         .expect("a diagonal entry");
                 k.val[at] += value * k.val[at];
-                let found = solver.condense(&k, &case.interface, Some(&case.x));
+                let found = solver
+                    .way(Keep::Interior)
+                    .condense(&k, &case.interface, Some(&case.x));
                 let refused = matches!(found, Err(NoFactor::Interior(_)));
                 assert!(refused, "{solver:?}, {}: {name}", case.name);
             }
@@ -239,7 +244,9 @@ fn matrices_that_are_not_definite_are_refused() {
                     }
                 }
             }
-            let found = solver.condense(&k, &case.interface, Some(&case.x));
+            let found = solver
+                .way(Keep::Interior)
+                .condense(&k, &case.interface, Some(&case.x));
             assert!(
                 matches!(found, Err(NoFactor::Interior(_))),
                 "{solver:?}, {}: indefinite",
@@ -253,13 +260,19 @@ fn matrices_that_are_not_definite_are_refused() {
 fn an_interface_without_interior_and_an_interior_without_interface() {
     for_all(|solver| {
         let k = Csr::from_triplets(2, &[(0, 0, 2.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 2.0)]);
-        let (factor, s) = solver.condense(&k, &[1, 0], None).expect("nothing to do");
+        let (factor, s) = solver
+            .way(Keep::Interior)
+            .condense(&k, &[1, 0], None)
+            .expect("nothing to do");
         assert!(far(&s.data, &[2.0, -1.0, -1.0, 2.0]) < 1e-14);
         let mut b = vec![3.0, 4.0];
         factor.forward(&mut b);
         factor.backward(&mut b);
         assert_eq!(b, [3.0, 4.0]);
-        let (factor, s) = solver.condense(&k, &[], None).expect("definite");
+        let (factor, s) = solver
+            .way(Keep::Interior)
+            .condense(&k, &[], None)
+            .expect("definite");
         assert!(s.data.is_empty());
         let mut b = vec![3.0, 0.0];
         factor.forward(&mut b);
