@@ -2,6 +2,7 @@
 
 pub mod basis;
 mod condense;
+mod cover;
 pub mod dense;
 pub mod dissection;
 pub mod implicit;
