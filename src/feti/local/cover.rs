@@ -15,9 +15,9 @@ pub fn smallest(edges: &[Vec<u32>], n_right: usize) -> (Vec<bool>, Vec<bool>) {
         round: 0,
     };
     // What can be matched at once mostly is; the rest along augmenting paths.
-    for l in 0..edges.len() {
+    for (l, of) in edges.iter().enumerate() {
         let free = |r: &&u32| matching.of_right[**r as usize] == FREE;
-        if let Some(&r) = edges[l].iter().find(free) {
+        if let Some(&r) = of.iter().find(free) {
             matching.pair(l, r);
         }
     }
