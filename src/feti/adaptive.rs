@@ -3,7 +3,7 @@
 //! The rank of a class's lowest subdomain solves the eigenproblem of [`pencil`] on it and tells the functionals to all sharers.
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -167,11 +167,12 @@ pub fn find(
     per_body.iter().map(|&n| n as usize).collect()
 }
 
-/// Gives the subdomains the constraints that [`find`] added. Equal ones stay equal.
+/// Gives the subdomains the constraints that [`find`] added. Equal ones stay equal. What is replaced is given up one by one, so that there are never two
+/// operators of every subdomain.
 pub fn constrain(
     problem: &Substructures,
     jump: &Jump,
-    locals: &[Local],
+    locals: Vec<Local>,
     team: &Team,
     fails: impl Fn(&Subdomain, NoFactor) -> crate::Error + Sync,
 ) -> Result<Vec<Local>> {
@@ -185,19 +186,24 @@ pub fn constrain(
         first.push((0..j).find(same).unwrap_or(j));
     }
     let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
+    let held = |&j: &usize| Mutex::new(Some(locals[j].kind().clone()));
+    let held: Vec<_> = kinds.iter().map(held).collect();
+    let factors: Vec<f64> = locals.iter().map(Local::factor).collect();
+    drop(locals);
     let renewed = team.map(kinds.len(), |k| {
-        let j = kinds[k];
+        let (j, old) = (kinds[k], held[k].lock().expect("nobody panics").take());
+        let old = old.expect("each is taken once");
         if added(j).next().is_none() {
-            return Ok(locals[j].kind().clone());
+            return Ok(old);
         }
         let sub = &problem.local[j];
-        let renewed = locals[j].constrained(&sub.k, added(j), sub.coordinates.as_deref());
+        let renewed = old.constrained(&sub.k, added(j), sub.coordinates.as_deref());
         renewed.map(Arc::new).map_err(|e| fails(sub, e))
     });
     let renewed = renewed.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: &usize| kinds.binary_search(j).expect("a first one is a kind");
-    let of = |(j, local): (&usize, &Local)| Local::new(renewed[place(j)].clone(), local.factor());
-    Ok(first.iter().zip(locals).map(of).collect())
+    let of = |(j, factor): (&usize, f64)| Local::new(renewed[place(j)].clone(), factor);
+    Ok(first.iter().zip(factors).map(of).collect())
 }
 
 /// All that the functionals of a class depend on, as numbers: the subdomains that share it, given with their class, by their matrices (equal ones are one

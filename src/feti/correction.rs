@@ -55,8 +55,9 @@ pub(super) fn refine(
         if !solution.converged || !(asked || far) {
             break;
         }
-        // No more digits than are missing.
-        let reduction = (0.1 * rtol / now).clamp(1e-6, 1e-2);
+        // No more digits than are missing; where the displacements are no solution yet, what is missing is not known.
+        let most = if far { 1e-2 } else { 0.3 };
+        let reduction = (rtol / now).clamp(1e-6, most);
         match step(session, problem, shared, ksp, &solution, reduction)? {
             Some(better) => solution = better,
             None => break,

@@ -141,7 +141,7 @@ impl FetiFeti {
         );
         if added.iter().any(|&n| n > 0) {
             let fails = |sub: &Subdomain, e| no_factor(&problem, sub, e);
-            let renewed = adaptive::constrain(&problem, &jump, &locals, &team, fails);
+            let renewed = adaptive::constrain(&problem, &jump, locals, &team, fails);
             locals = session.agree(renewed)?;
         }
         let adapting = adapting.elapsed().as_secs_f64();

@@ -43,12 +43,16 @@ impl LocalProblem {
     /// whole matrices are read once for all of them, and matrix-matrix products are faster.
     pub fn pack(&mut self) {
         if !self.is_implicit() && self.packed.is_none() {
-            self.packed = Some(Packed {
-                s: Symmetric::new(self.whole_s()),
-                t: Symmetric::new(self.whole_t()),
-            });
-            (self.s, self.t) = (OnceLock::new(), OnceLock::new());
+            let s = Arc::new(Symmetric::new(self.whole_s()));
+            self.pack_beside(s);
         }
+    }
+
+    /// The same where the lower triangle of S is there already.
+    pub(super) fn pack_beside(&mut self, s: Arc<Symmetric>) {
+        let t = Symmetric::new(self.whole_t());
+        self.packed = Some(Packed { s, t });
+        (self.s, self.t) = (OnceLock::new(), OnceLock::new());
     }
 
     /// Whether [`pack`](Self::pack) has been called.

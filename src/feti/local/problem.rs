@@ -84,7 +84,8 @@ pub struct LocalProblem {
 /// S and T by their lower triangles.
 #[derive(Debug)]
 pub(super) struct Packed {
-    pub s: Symmetric,
+    /// Shared with those that have the same S and other primal dofs.
+    pub s: Arc<Symmetric>,
     pub t: Symmetric,
 }
 
@@ -202,8 +203,8 @@ impl LocalProblem {
             debug_assert!(new, "functionals are independent");
         }
         out.condense_dual()?;
-        if self.is_packed() {
-            out.pack();
+        if let Some(packed) = &self.packed {
+            out.pack_beside(packed.s.clone());
         }
         Ok(out)
     }
