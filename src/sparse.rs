@@ -76,25 +76,16 @@ impl Csr {
     /// Entries are summed in the order in which they come, so that the result does not depend on how the
     /// sort treats equal keys.
     pub fn from_triplets(n: usize, entries: &[(u32, u32, f64)]) -> Csr {
-        let mut start = vec![0usize; n + 1];
-        entries.iter().for_each(|e| start[e.0 as usize + 1] += 1);
-        for i in 0..n {
-            start[i + 1] += start[i];
-        }
-        let mut next = start.clone();
-        let mut order = vec![(0u32, 0u32); entries.len()];
-        for (k, e) in entries.iter().enumerate() {
-            let at = &mut next[e.0 as usize];
-            order[*at] = (e.1, k as u32);
-            *at += 1;
-        }
+        let order = match entries.len() / n.max(1) {
+            ..LONG => rows_sorted(n, entries),
+            _ => rows_counted(n, entries),
+        };
         let mut out = Csr {
             row_ptr: vec![0],
             ..Csr::default()
         };
-        for i in 0..n {
-            let row = &mut order[start[i]..start[i + 1]];
-            row.sort_unstable();
+        for row in order.start.windows(2) {
+            let row = &order.entries[row[0]..row[1]];
             for (p, &(j, k)) in row.iter().enumerate() {
                 let value = entries[k as usize].2;
                 if p > 0 && row[p - 1].0 == j {
@@ -107,5 +98,107 @@ impl Csr {
             out.row_ptr.push(out.col.len());
         }
         out
+    }
+}
+
+/// Rows with more entries than this are ordered by counting: it costs two passes through memory, sorting about log₂ of their length.
+const LONG: usize = 64;
+
+/// Entries by row and column, those of one place in the order in which they come.
+struct Ordered {
+    /// Start of each row; length n + 1.
+    start: Vec<usize>,
+    /// (column, which entry).
+    entries: Vec<(u32, u32)>,
+}
+
+/// Each row sorted.
+fn rows_sorted(n: usize, entries: &[(u32, u32, f64)]) -> Ordered {
+    let all = entries.iter().zip(0..).map(|(e, k)| (e.0, (e.1, k)));
+    let mut out = Ordered::by_row(n, entries, all);
+    for row in out.start.windows(2) {
+        out.entries[row[0]..row[1]].sort_unstable();
+    }
+    out
+}
+
+/// Entries by column first: taken in that order, those of each row come by column.
+fn rows_counted(n: usize, entries: &[(u32, u32, f64)]) -> Ordered {
+    let mut next = starts(n, entries.iter().map(|e| e.1));
+    let mut by_column = vec![0u32; entries.len()];
+    for (e, k) in entries.iter().zip(0..) {
+        let at = &mut next[e.1 as usize];
+        by_column[*at] = k;
+        *at += 1;
+    }
+    let all = by_column.iter().map(|&k| {
+        let e = &entries[k as usize];
+        (e.0, (e.1, k))
+    });
+    Ordered::by_row(n, entries, all)
+}
+
+impl Ordered {
+    /// Deals `all` of the entries, with their rows, out to the rows.
+    fn by_row(
+        n: usize,
+        entries: &[(u32, u32, f64)],
+        all: impl Iterator<Item = (u32, (u32, u32))>,
+    ) -> Ordered {
+        let start = starts(n, entries.iter().map(|e| e.0));
+        let mut next = start.clone();
+        let mut out = vec![(0, 0); entries.len()];
+        for (row, entry) in all {
+            let at = &mut next[row as usize];
+            out[*at] = entry;
+            *at += 1;
+        }
+        Ordered {
+            start,
+            entries: out,
+        }
+    }
+}
+
+/// Where the entries of each of `n` lists start, and where the last one ends, from the list of each entry.
+fn starts(n: usize, lists: impl Iterator<Item = u32>) -> Vec<usize> {
+    let mut start = vec![0usize; n + 1];
+    lists.for_each(|l| start[l as usize + 1] += 1);
+    for i in 0..n {
+        start[i + 1] += start[i];
+    }
+    start
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sorted_and_counted_rows_are_the_same_and_add_up_what_is_repeated() {
+        let n = 7;
+        let draw = |k: u32| k.wrapping_mul(2_654_435_761) >> 7;
+        let entries: Vec<(u32, u32, f64)> = (0..400)
+            .map(|k| {
+                (
+                    draw(k) % 6,
+                    draw(k + 1000) % 7,
+                    f64::from(draw(k + 2000) % 100),
+                )
+            })
+            .collect();
+        let [sorted, counted] = [rows_sorted(n, &entries), rows_counted(n, &entries)];
+        assert_eq!(sorted.start, counted.start);
+        assert_eq!(sorted.entries, counted.entries);
+        for few in [&entries[..20], &entries[..]] {
+            let a = Csr::from_triplets(n, few);
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                let here = few
+                    .iter()
+                    .filter(|e| (e.0 as usize, e.1 as usize) == (i, j));
+                assert_eq!(a.get(i, j), here.map(|e| e.2).sum::<f64>());
+            }
+            assert!((0..n).all(|i| a.row(i).0.is_sorted()));
+        }
     }
 }

@@ -264,7 +264,7 @@ impl Jump {
         }
         let old = std::mem::replace(&mut self.active, active.to_vec());
         self.reconcile(|block| old[block.rows.clone()] != active[block.rows.clone()]);
-        for entry in exchange(comm, &outgoing).concat() {
+        for entry in exchange(comm, outgoing) {
             let j = self.subdomains.binary_search(&entry.subdomain);
             let j = j.expect("entries go to the rank of their subdomain");
             let row = self.ghosts.binary_search(&(entry.row as u32));

@@ -19,28 +19,36 @@ pub trait Record: Sized {
     fn unpack(words: &[u64]) -> Self;
 }
 
-/// Sends `outgoing[r]` to rank r and returns what every rank sent here, by rank of the sender. Collective.
-pub fn exchange<T: Record>(comm: &SimpleCommunicator, outgoing: &[Vec<T>]) -> Vec<Vec<T>> {
-    let packed: Vec<Vec<u64>> = outgoing
-        .iter()
-        .map(|list| {
-            let mut words = Vec::with_capacity(list.len() * T::WORDS);
-            list.iter().for_each(|record| record.pack(&mut words));
-            words
-        })
-        .collect();
-    exchange_words(comm, packed)
-        .iter()
-        .map(|words| words.chunks_exact(T::WORDS).map(T::unpack).collect())
-        .collect()
+/// Sends `outgoing[r]` to rank r and returns what all ranks sent here, one after the other by rank of the sender. Collective.
+pub fn exchange<T: Record>(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<T>>) -> Vec<T> {
+    let rank = comm.rank() as usize;
+    // What stays here is not packed: most of it does.
+    let mut own = Some(std::mem::take(&mut outgoing[rank]));
+    let pack = |list: &Vec<T>| {
+        let mut words = Vec::with_capacity(list.len() * T::WORDS);
+        list.iter().for_each(|record| record.pack(&mut words));
+        words
+    };
+    let packed = outgoing.iter().map(pack).collect();
+    drop(outgoing);
+    let mut all = Vec::new();
+    for (from, words) in exchange_words(comm, packed).into_iter().enumerate() {
+        match own.take_if(|_| from == rank) {
+            Some(own) if all.is_empty() => all = own,
+            Some(own) => all.extend(own),
+            None => all.extend(words.chunks_exact(T::WORDS).map(T::unpack)),
+        }
+    }
+    all
 }
 
-/// The same with plain words and lists of any length. Collective.
+/// Sends `outgoing[r]`, words and lists of any length, to rank r and returns what every rank sent here, by rank of the sender. Collective.
 pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
-    let size = comm.size() as usize;
+    let (size, rank) = (comm.size() as usize, comm.rank() as usize);
     debug_assert_eq!(outgoing.len(), size);
+    let own = std::mem::take(&mut outgoing[rank]);
     if size == 1 {
-        return vec![std::mem::take(&mut outgoing[0])];
+        return vec![own];
     }
     let send_counts: Vec<i32> = outgoing.iter().map(|w| count(w.len())).collect();
     let mut receive_counts = vec![0i32; size];
@@ -65,11 +73,13 @@ pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) ->
             PartitionMut::new(&mut received[..], &receive_counts[..], &receive_starts[..]);
         comm.all_to_all_varcount_into(&from, &mut into);
     }
-    receive_counts
+    let mut all: Vec<Vec<u64>> = receive_counts
         .iter()
         .zip(&receive_starts)
         .map(|(&c, &s)| received[s as usize..(s + c) as usize].to_vec())
-        .collect()
+        .collect();
+    all[rank] = own;
+    all
 }
 
 /// MPI counts are C ints: 2³¹ words to one rank would be 16 GB of interface.

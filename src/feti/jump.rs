@@ -204,7 +204,7 @@ impl Jump {
         };
         jump.held = jump.gap.clone();
         jump.reconcile(|_| true);
-        jump.receive(problem, sharing, exchange(comm, &outgoing).concat());
+        jump.receive(problem, sharing, exchange(comm, outgoing));
         jump
     }
 

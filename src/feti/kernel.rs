@@ -23,12 +23,21 @@ const FREE_SPECTRUM: f64 = 1e-10;
 pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
     let (n, m) = (k.n(), columns.len());
     let mut rows = faer::Mat::<f64>::zeros(n.max(m), m);
+    // Rows of N side by side: an entry of K meets all columns at once.
+    let by_row: Vec<f64> = (0..n)
+        .flat_map(|i| columns.iter().map(move |x| x[i]))
+        .collect();
+    let mut sums = vec![0.0; m];
     for i in 0..n {
         let (col, val) = k.row(i);
         let size: f64 = val.iter().map(|v| v.abs()).sum();
         if size > 0.0 {
-            for (c, x) in columns.iter().enumerate() {
-                let sum: f64 = col.iter().zip(val).map(|(&j, v)| v * x[j as usize]).sum();
+            sums.fill(0.0);
+            for (&j, v) in col.iter().zip(val) {
+                let x = &by_row[j as usize * m..][..m];
+                sums.iter_mut().zip(x).for_each(|(s, x)| *s += v * x);
+            }
+            for (c, sum) in sums.iter().enumerate() {
                 rows[(i, c)] = sum / size;
             }
         }

@@ -178,8 +178,7 @@ impl NaturalCoarse {
                 }
             }
         }
-        let entries = exchange(comm, &outgoing)
-            .concat()
+        let entries = exchange(comm, outgoing)
             .iter()
             .map(|e| (e.row - jump.first as u32, e.col, e.value))
             .collect();

@@ -100,7 +100,11 @@ impl PrimalSpace {
             ..PrimalSpace::default()
         };
         let asked = space.number(comm, problem, averages, locals);
-        let mut entries: Vec<Vec<PrimalEntry>> = vec![Vec::new(); comm.size() as usize];
+        let mut room = vec![0; comm.size() as usize];
+        for (j, local) in locals.iter().enumerate() {
+            room[space.owner[problem.local[j].body] as usize] += local.n_pi().pow(2);
+        }
+        let mut entries: Vec<Vec<PrimalEntry>> = room.into_iter().map(Vec::with_capacity).collect();
         for (j, local) in locals.iter().enumerate() {
             let to = space.owner[problem.local[j].body] as usize;
             let places = &space.of_subdomain[j];
@@ -115,7 +119,7 @@ impl PrimalSpace {
                 }
             }
         }
-        space.entries = exchange(comm, &entries).concat();
+        space.entries = exchange(comm, entries);
         space.find_kernels(comm, problem, locals, &asked);
         space
     }

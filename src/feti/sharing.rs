@@ -99,8 +99,7 @@ impl Sharing {
                 reports[home(dof)].push((dof, copy));
             }
         }
-        let mut all: Vec<(u64, Copy)> = exchange(comm, &reports).concat();
-        drop(reports);
+        let mut all: Vec<(u64, Copy)> = exchange(comm, reports);
         all.sort_unstable_by_key(|(dof, c)| (*dof, c.subdomain, c.local));
 
         // Shared dofs go back to all who hold a copy.
@@ -123,7 +122,7 @@ impl Sharing {
             averages: Vec::new(),
             vertices: constraints.vertices,
         };
-        sharing.absorb(exchange(comm, &replies).concat());
+        sharing.absorb(exchange(comm, replies));
 
         // The dofs in our rows, shared or not.
         let mut queries: Vec<Vec<u64>> = vec![Vec::new(); size];
@@ -149,7 +148,7 @@ impl Sharing {
                 asked.iter().flat_map(find).collect()
             })
             .collect();
-        sharing.absorb(exchange(comm, &answers).concat());
+        sharing.absorb(exchange(comm, answers));
         let shared = |(sub, possible): (&Subdomain, Vec<u32>)| {
             let kept = possible.into_iter();
             kept.filter(|&i| !sharing.shared(sub.dofs[i as usize]).is_empty())
