@@ -3,7 +3,7 @@
 //! The tree's nodes are the supernodes of the factorisation. A leaf is a small set eliminated as one dense front;
 //! an inner node is the separator of its two children. Cutting at the median of a coordinate gives orderings of
 //! METIS quality on boxes at no cost; without coordinates the breadth-first distance from a
-//! far node takes the coordinate's place. The separator is the smallest one that the cut allows ([`cover`]): a layer of
+//! far node takes the coordinate's place. The separator is the smallest one that the cut allows (`cover.rs`): a layer of
 //! nodes, even if they have been moved and the cut runs to and fro between two layers.
 
 use super::cover;

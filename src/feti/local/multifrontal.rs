@@ -43,7 +43,7 @@ impl PartialCholesky {
         Ok((PartialCholesky { symbolic, panels }, s))
     }
 
-    /// The same, but of the factor only what `inside` has, which is [`Symbolic::inside`] of `symbolic`: it can [`solve`](Self::solve), not more.
+    /// The same, but of the factor only what `inside` has, the inside of `symbolic`: it can [`solve`](Self::solve), not more.
     pub fn inside(
         k: &Csr,
         symbolic: &Symbolic,
