@@ -1,7 +1,7 @@
 //! M_C or M_D: whether lifting jumps into whole bodies pays.
 //!
 //! M_C takes fewer iterations the more subdomains lie across a body, and costs a product S Z_c per subdomain, a dense A per body, and in every iteration
-//! reading Y = S Z_c twice or S once more. In the plane a subdomain sees some 40 columns of Z_c, in space 200 from vertices and 600 with averages.
+//! reading Y = S Z_c twice or S once more. In the plane a subdomain sees a dozen columns of Z_c for each component, in space 200 from vertices and 600 with averages.
 
 use std::collections::BTreeSet;
 

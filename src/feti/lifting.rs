@@ -12,7 +12,7 @@
 //! every active set, so nothing here changes in a contact step.
 //!
 //! A subdomain in space sees hundreds of columns of Z_c, as many as its interface has dofs: there Z_c is never stored, and S is multiplied with
-//! twice. In the plane it sees some 40, and Y = S Z_c is kept: S̃ ( I − Z_c A⁺ Z_cᵀ S̃ ) = S̃ − Y A⁺ Yᵀ.
+//! twice. In the plane it sees a dozen for each component, and Y = S Z_c is kept: S̃ ( I − Z_c A⁺ Z_cᵀ S̃ ) = S̃ − Y A⁺ Yᵀ.
 
 use mpi::traits::Communicator;
 
@@ -22,7 +22,8 @@ use super::coarse_functions::recipes;
 use super::exchange::{exchange_words, sum_all};
 use super::interpolation::Functions;
 use super::lifting_applied::Applied;
-use super::lifting_matrix::{BodyFactor, Sums};
+use super::lifting_factor::BodyFactor;
+use super::lifting_matrix::Sums;
 use super::lifting_stored::Stored;
 use super::settings::CoarseFunctions;
 use super::sharing::Sharing;
@@ -50,6 +51,12 @@ enum Form {
     Applied(Box<Applied>),
 }
 
+/// An entry of Y, which is read for one vector, takes so many times as long as one of S in a product with many.
+const ALONE: f64 = 2.0;
+
+/// E_D and its transpose take as long as this many entries of a row of S.
+const AVERAGES: f64 = 30.0;
+
 impl Lifting {
     /// Builds Z_c; `None` if no body has a column. Collective.
     pub fn new(
@@ -65,12 +72,12 @@ impl Lifting {
             Functions::new(which, &problem.local[j], sharing, jump, &locals[j], j)
         });
         let recipes = recipes(session, problem, sharing, stiffness, &functions);
-        // What an application reads: Y twice, by itself, or S once more, which equal subdomains share.
+        // What an application costs: Y twice, by itself; or S once more, which equal subdomains share, and averages.
         let mut entries = [0.0; 2];
         for (recipe, local) in recipes.iter().zip(locals) {
             let n_gamma = local.n_gamma() as f64;
-            entries[0] += 4.0 * n_gamma * recipe.columns.len() as f64;
-            entries[1] += n_gamma.powi(2);
+            entries[0] += ALONE * 2.0 * n_gamma * recipe.columns.len() as f64;
+            entries[1] += n_gamma * (n_gamma + AVERAGES);
         }
         sum_all(comm, &mut entries);
         let keep = entries[0] <= entries[1];
@@ -90,8 +97,8 @@ impl Lifting {
             let first = (space.first + range.start) as u32;
             BodyFactor::new(&received, first..first + range.len() as u32, space.first)
         });
-        let rank = bodies.iter().map(|b| b.factor.rank()).sum();
-        let order = bodies.iter().map(|b| b.factor.nonzero()).sum::<usize>();
+        let sizes = bodies.iter().map(BodyFactor::rank_and_order);
+        let (rank, order) = sizes.fold((0, 0), |(r, o), (rank, order)| (r + rank, o + order));
         let mut total = [order as f64];
         sum_all(comm, &mut total);
         if total[0] == 0.0 {

@@ -1,7 +1,6 @@
-//! A = Z_cᵀ S̃ Z_c of every body: blocks of subdomains, of which those in the same surroundings share one, added up and factored.
+//! A = Z_cᵀ S̃ Z_c of every body: blocks of subdomains, of which those in the same surroundings share one, added up.
 
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::coarse_functions::Recipe;
@@ -10,7 +9,6 @@ use super::lifting_stored::Pair;
 use super::local::dense::{multiply, Dense};
 use super::local::problem::Operator;
 use super::local::scaled::Local;
-use super::local::semidefinite::Semidefinite;
 use super::stiffness::Stiffness;
 use crate::substructures::Substructures;
 
@@ -19,68 +17,6 @@ const GROUP: usize = 32;
 
 /// So many blocks Z_cᵀ S Z_c are held at the same time.
 const BLOCKS: usize = 32;
-
-/// A of one body.
-pub(super) struct BodyFactor {
-    /// Its columns among this rank's primal dofs.
-    at: Vec<usize>,
-    pub factor: Semidefinite,
-}
-
-impl BodyFactor {
-    /// A of the body with these primal dofs, of which this rank's begin at `first`, from what [`Sum::pack`] has written.
-    pub fn new(received: &[Vec<u64>], body: Range<u32>, first: usize) -> BodyFactor {
-        let mut columns = Vec::new();
-        each(received, &body, |c, _| columns.extend_from_slice(c));
-        columns.sort_unstable();
-        columns.dedup();
-        let mut a = Dense::zeros(columns.len(), columns.len());
-        each(received, &body, |theirs, mut values| {
-            let place = |g: &u64| columns.binary_search(g).expect("it was collected");
-            let at: Vec<usize> = theirs.iter().map(place).collect();
-            for (q, &to) in at.iter().enumerate() {
-                let (column, rest) = values.split_at(at.len() - q);
-                values = rest;
-                let target = a.col_mut(to);
-                for (&i, &v) in at[q..].iter().zip(column) {
-                    target[i] += f64::from_bits(v);
-                }
-            }
-        });
-        a.mirror_lower();
-        BodyFactor {
-            at: columns.iter().map(|&c| c as usize - first).collect(),
-            factor: Semidefinite::new(&a),
-        }
-    }
-
-    /// x ← A⁺ x at the columns; the body's other primal dofs stay as they are.
-    pub fn solve(&self, x: &mut [f64]) {
-        let mut part: Vec<f64> = self.at.iter().map(|&i| x[i]).collect();
-        self.factor.solve(&mut part);
-        self.at.iter().zip(&part).for_each(|(&i, v)| x[i] = *v);
-    }
-}
-
-/// Columns and lower triangle of every sum of one body.
-fn each<'a>(
-    received: &'a [Vec<u64>],
-    body: &Range<u32>,
-    mut see: impl FnMut(&'a [u64], &'a [u64]),
-) {
-    for mut words in received.iter().map(|w| &w[..]) {
-        while let [n, tail @ ..] = words {
-            let n = *n as usize;
-            let (columns, tail) = tail.split_at(n);
-            let (values, tail) = tail.split_at(n * (n + 1) / 2);
-            words = tail;
-            // All columns are of one body.
-            if n > 0 && body.contains(&(columns[0] as u32)) {
-                see(columns, values);
-            }
-        }
-    }
-}
 
 /// Z_cᵀ S Z_c of some subdomains of a body.
 pub(super) struct Sum {

@@ -1,4 +1,4 @@
-//! Z_c and Y = S Z_c as matrices, where subdomains see few columns of Z_c: in the plane some 40, where the interface has hundreds of dofs.
+//! Z_c and Y = S Z_c as matrices, where subdomains see few columns of Z_c: in the plane a dozen for each component, where the interface has hundreds of dofs.
 
 use std::cell::RefCell;
 use std::sync::Arc;

@@ -7,7 +7,10 @@ use super::dense::{self, Dense, Scratch};
 
 /// After scaling to unit diagonal, a pivot below this means that the column depends on those before it. Rounding in
 /// sums of many subdomains' contributions leaves about 1e-14.
-const DEPENDENT: f64 = 1e-10;
+pub const DEPENDENT: f64 = 1e-10;
+
+/// Columns with less than this part of the largest diagonal entry are zero: far below any scaling by coefficients.
+pub const ZERO: f64 = 1e-30;
 
 /// A factored semidefinite matrix A (n × n).
 #[derive(Debug)]
@@ -38,8 +41,8 @@ impl Semidefinite {
     pub fn above(a: &Dense, dependent: f64) -> Semidefinite {
         let n = a.rows;
         let largest = (0..n).map(|i| a.get(i, i)).fold(0.0, f64::max);
-        // Columns of size zero are no columns. 1e-30 of the largest is far below any scaling by coefficients.
-        let nonzero: Vec<usize> = (0..n).filter(|&i| a.get(i, i) > 1e-30 * largest).collect();
+        // Columns of size zero are no columns.
+        let nonzero: Vec<usize> = (0..n).filter(|&i| a.get(i, i) > ZERO * largest).collect();
         let known = |out: Semidefinite| Semidefinite {
             nonzero: nonzero.len(),
             ..out
