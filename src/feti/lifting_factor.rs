@@ -128,7 +128,7 @@ fn sparse(a: &Dense) -> Option<PartialCholesky> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::feti::local::testing::{grid_laplacian, random};
+    use crate::feti::local::testing::{distance, grid_laplacian, random};
 
     fn dense(k: &Csr) -> Dense {
         let mut a = Dense::zeros(k.n(), k.n());
@@ -150,11 +150,7 @@ mod tests {
         let mut y = x.clone();
         factor.solve(&mut x);
         Semidefinite::new(&a).solve(&mut y);
-        let far = x
-            .iter()
-            .zip(&y)
-            .map(|(x, y)| (x - y).abs())
-            .fold(0.0, f64::max);
+        let far = distance(&x, &y);
         assert!(far < 1e-12, "{far:.1e}");
 
         // A free body; two columns that are one; a column that is zero; few columns.

@@ -56,6 +56,13 @@ pub(crate) mod testing {
         faer::Mat::from_fn(k.n(), k.n(), |i, j| k.get(i, j))
     }
 
+    /// The largest difference of two vectors of one length.
+    pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+        assert_eq!(a.len(), b.len());
+        let far = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        far.fold(0.0, f64::max)
+    }
+
     /// Reproducible numbers in (−1, 1).
     pub fn random(n: usize, seed: u64) -> Vec<f64> {
         let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;

@@ -221,7 +221,7 @@ fn factor_front(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::feti::local::testing::{dense_of, grid_laplacian, random};
+    use crate::feti::local::testing::{dense_of, distance, grid_laplacian, random};
 
     fn rim(nx: usize, ny: usize) -> Vec<u32> {
         let on_rim = |i: &u32| {
@@ -279,11 +279,7 @@ mod tests {
             b[i as usize] = u[i as usize];
         }
         factor.backward(&mut b);
-        let error = b
-            .iter()
-            .zip(&u)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
+        let error = distance(&b, &u);
         assert!(error < 1e-12, "error {error:.1e}");
     }
 

@@ -12,7 +12,7 @@ pub struct Symbolic {
     pub(super) interior: Vec<u32>,
     /// Interface dofs in the order of S.
     pub(super) interface: Vec<u32>,
-    /// Position of each dof in [interior, interface].
+    /// Position of each dof in [interior, interface]: what a factorisation reads; empty where solves alone are asked for.
     pub(super) position: Vec<u32>,
     pub(super) fronts: Vec<Front>,
     /// Length of all panels together.
@@ -138,10 +138,6 @@ impl Symbolic {
         interface: &[u32],
         fronts: impl Iterator<Item = (usize, usize, Vec<u32>)>,
     ) -> Symbolic {
-        let mut position = vec![0; interior.len() + interface.len()];
-        for (p, &i) in interior.iter().chain(interface).enumerate() {
-            position[i as usize] = p as u32;
-        }
         let mut storage = 0;
         let fronts = fronts
             .map(|(start, width, below)| {
@@ -160,7 +156,7 @@ impl Symbolic {
         Symbolic {
             interior,
             interface: interface.to_vec(),
-            position,
+            position: Vec::new(),
             fronts,
             storage,
         }
@@ -178,7 +174,7 @@ impl Symbolic {
 
     /// Number of dofs.
     pub(super) fn n(&self) -> usize {
-        self.position.len()
+        self.interior.len() + self.interface.len()
     }
 
     /// The dofs in the order [interior, interface].
