@@ -71,6 +71,51 @@ impl Csr {
         out
     }
 
+    /// The sum of dense blocks: block b has rows and columns `lists[b]` and entries `value(b, i, j)`, i and j being places in its list. They are
+    /// added up in the order of the blocks.
+    pub fn from_blocks(
+        n: usize,
+        lists: &[Vec<u32>],
+        value: impl Fn(usize, usize, usize) -> f64,
+    ) -> Csr {
+        let mut rows: Vec<Vec<(u32, u32)>> = vec![Vec::new(); n];
+        for (b, list) in (0..).zip(lists) {
+            for (a, &i) in (0..).zip(list) {
+                rows[i as usize].push((b, a));
+            }
+        }
+        let mut out = Csr {
+            row_ptr: vec![0],
+            ..Csr::default()
+        };
+        // The last row that a column was seen in, and its place there.
+        let mut seen = vec![u32::MAX; n];
+        let mut place = vec![0; n];
+        for (i, blocks) in (0..).zip(&rows) {
+            let start = out.col.len();
+            for &(b, _) in blocks {
+                for &j in &lists[b as usize] {
+                    if seen[j as usize] != i {
+                        seen[j as usize] = i;
+                        out.col.push(j);
+                    }
+                }
+            }
+            out.col[start..].sort_unstable();
+            for (p, &j) in (start..).zip(&out.col[start..]) {
+                place[j as usize] = p;
+            }
+            out.val.resize(out.col.len(), 0.0);
+            for &(b, a) in blocks {
+                for (c, &j) in lists[b as usize].iter().enumerate() {
+                    out.val[place[j as usize]] += value(b as usize, a as usize, c);
+                }
+            }
+            out.row_ptr.push(out.col.len());
+        }
+        out
+    }
+
     /// The matrix with the given (row, column, value) entries, repeated ones added up.
     ///
     /// Entries are summed in the order in which they come, so that the result does not depend on how the
@@ -173,6 +218,21 @@ fn starts(n: usize, lists: impl Iterator<Item = u32>) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn blocks_are_added_up() {
+        let lists = [vec![3, 0, 1], vec![4, 3], vec![], vec![1]];
+        let value = |b: usize, i: usize, j: usize| (1 + b * 9 + i * 3 + j) as f64;
+        let a = Csr::from_blocks(6, &lists, value);
+        let mut triplets = Vec::new();
+        for (b, list) in lists.iter().enumerate() {
+            for (i, &row) in list.iter().enumerate() {
+                let entry = |(j, &col): (usize, &u32)| (row, col, value(b, i, j));
+                triplets.extend(list.iter().enumerate().map(entry));
+            }
+        }
+        assert_eq!(a, Csr::from_triplets(6, &triplets));
+    }
 
     #[test]
     fn sorted_and_counted_rows_are_the_same_and_add_up_what_is_repeated() {

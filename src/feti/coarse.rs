@@ -7,10 +7,10 @@ use super::clock::{self, Phase};
 use super::halo::Halo;
 use super::local::multifrontal::PartialCholesky;
 use super::local::symbolic::Symbolic;
-use super::primal::{PrimalEntry, PrimalSpace};
+use super::primal::PrimalSpace;
+use super::primal_matrix::PrimalMatrix;
 use super::team::Team;
 use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
-use crate::sparse::Csr;
 use crate::{Error, Result};
 
 /// S_Π, regularised, with its solver. Nothing at all where no body has primal dofs.
@@ -32,7 +32,7 @@ enum Solver {
 }
 
 impl PrimalProblem {
-    /// Assembles the matrix and sets its solver up; takes the entries. Collective.
+    /// Assembles the matrix and sets its solver up; takes S_Π. Collective.
     pub fn new(
         session: &Session,
         space: &mut PrimalSpace,
@@ -42,15 +42,15 @@ impl PrimalProblem {
         if space.n_global == 0 {
             return Ok(PrimalProblem { parts: None });
         }
-        let entries = std::mem::take(&mut space.entries);
+        let matrix = std::mem::take(&mut space.matrix);
         let rhs = PetscVec::mpi(session, space.n_owned)?;
         let own = match Options::new(session, prefix).any()? {
             true => None,
-            false => own(session, space, team, &entries),
+            false => own(session, space, team, &matrix),
         };
         let solver = match own {
             Some(factors) => Solver::Own(factors),
-            None => Solver::Petsc(petsc(session, space, &entries, prefix)?),
+            None => Solver::Petsc(petsc(session, space, &matrix, prefix)?),
         };
         let solution = rhs.duplicate()?;
         let halo = Halo::new(session, &rhs, &space.ghosts)?;
@@ -129,22 +129,11 @@ fn own(
     session: &Session,
     space: &PrimalSpace,
     team: &Team,
-    entries: &[PrimalEntry],
+    matrix: &PrimalMatrix,
 ) -> Option<Vec<(usize, PartialCholesky)>> {
-    let mut of_body: Vec<Vec<(u32, u32, f64)>> = vec![Vec::new(); space.owned.len()];
-    let mut body_of = vec![u32::MAX; space.n_owned];
-    for (b, body) in space.owned.iter().enumerate() {
-        body_of[body.range.clone()].fill(b as u32);
-    }
-    for e in entries {
-        let (i, j) = (e.row as usize - space.first, e.col as usize - space.first);
-        let b = body_of[i] as usize;
-        let start = space.owned[b].range.start;
-        of_body[b].push(((i - start) as u32, (j - start) as u32, e.value));
-    }
-    let factors = team.map(of_body.len(), |b| {
+    let factors = team.map(space.owned.len(), |b| {
         let range = &space.owned[b].range;
-        let k = Csr::from_triplets(range.len(), &of_body[b]);
+        let k = matrix.sparse(range);
         let symbolic = Symbolic::new(&k, &[], None);
         let factor = PartialCholesky::new(&k, symbolic.into()).ok()?.0;
         Some((range.start, factor))
@@ -160,13 +149,10 @@ fn own(
 fn petsc(
     session: &Session,
     space: &PrimalSpace,
-    entries: &[PrimalEntry],
+    matrix: &PrimalMatrix,
     prefix: &str,
 ) -> Result<Ksp> {
-    let entries = entries.iter();
-    let triplets: Vec<(i32, i32, f64)> = entries
-        .map(|e| (e.row as i32, e.col as i32, e.value))
-        .collect();
+    let triplets = matrix.triplets();
     let n = space.n_owned;
     let matrix = Mat::from_triplets(session, Comm::World, n, n, &triplets)?;
     matrix.set_flag(MatFlag::Spd)?;

@@ -120,6 +120,26 @@ fn combination(
     let mean = |n: &Vec<f64>| dofs.iter().map(|&i| n[i as usize]).sum::<f64>() / dofs.len() as f64;
     let wanted: Vec<f64> = kernel.iter().map(mean).collect();
     let at = |c: usize, v: usize| kernel[c][vertices[v] as usize];
+    let size = wanted.iter().fold(0.0f64, |s, n| s.max(n.abs()));
+    let right = |weights: &[(usize, f64)]| {
+        size > 0.0
+            && (0..k).all(|c| {
+                let found: f64 = weights.iter().map(|&(v, w)| w * at(c, v)).sum();
+                (found - wanted[c]).abs() <= WRONG * size
+            })
+    };
+    // The smallest weights are those in the range of Nᵀ. On a straight edge a multiple of one column does: a translation.
+    for (c, n) in wanted.iter().enumerate() {
+        let square: f64 = ends.iter().map(|&v| at(c, v).powi(2)).sum();
+        if *n != 0.0 && square > 0.0 {
+            let weight = |v: &usize| (*v, at(c, *v) * n / square);
+            let some = ends.iter().map(weight).filter(|w| w.1 != 0.0);
+            let weights: Vec<(usize, f64)> = some.collect();
+            if right(&weights) {
+                return Some(weights);
+            }
+        }
+    }
     // w = Nᵀ (N Nᵀ)⁺ n
     let mut gram = Dense::zeros(k, k);
     for a in 0..k {
@@ -133,10 +153,5 @@ fn combination(
     let mut weights: Vec<(usize, f64)> = ends.iter().map(weight).collect();
     let largest = weights.iter().fold(0.0f64, |s, w| s.max(w.1.abs()));
     weights.retain(|w| w.1.abs() > NOTHING * largest);
-    let size = wanted.iter().fold(0.0f64, |s, n| s.max(n.abs()));
-    let right = (0..k).all(|c| {
-        let found: f64 = weights.iter().map(|&(v, w)| w * at(c, v)).sum();
-        (found - wanted[c]).abs() <= WRONG * size
-    });
-    (right && size > 0.0).then_some(weights)
+    right(&weights).then_some(weights)
 }

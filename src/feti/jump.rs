@@ -223,23 +223,27 @@ impl Jump {
         self.inequality[i] || self.initial[i]
     }
 
-    fn receive(&mut self, problem: &Substructures, sharing: &Sharing, mut entries: Vec<Entry>) {
-        let mut ghosts: Vec<(u32, bool)> =
-            entries.iter().map(|e| (e.row as u32, e.contact)).collect();
-        ghosts.sort_unstable();
-        ghosts.dedup();
-        (self.ghosts, self.ghost_is_contact) = ghosts.into_iter().unzip();
+    fn receive(&mut self, problem: &Substructures, sharing: &Sharing, entries: Vec<Entry>) {
+        let seen = GhostRows::new(self.first, self.n_owned, &entries);
+        (self.ghosts, self.ghost_is_contact) = seen.all().unzip();
 
         let mut subdomains_of = vec![0; problem.n_bodies];
         for &body in &sharing.body_of {
             subdomains_of[body as usize] += 1;
         }
-        entries.sort_unstable_by_key(|e| (e.subdomain, e.local, e.row));
-        let mut rest = &entries[..];
+        // By subdomain, then by dof and row: what is sorted is small.
+        let mut here = vec![u32::MAX; problem.n_subdomains];
+        for (j, sub) in (0..).zip(&problem.local) {
+            here[sub.index] = j;
+        }
+        let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
+        for (k, e) in (0..).zip(&entries) {
+            let row = seen.place(e.row as u32);
+            dealt[here[e.subdomain as usize] as usize].push((e.local, row, k));
+        }
         for (j, sub) in problem.local.iter().enumerate() {
-            let n = rest.partition_point(|e| e.subdomain as usize == sub.index);
-            let (mine, others) = rest.split_at(n);
-            rest = others;
+            let mut mine = std::mem::take(&mut dealt[j]);
+            mine.sort_unstable();
             let mut columns = JumpColumns::default();
             // Corners of a body of several subdomains are primal too, but not those of a solid: with ν near 1/2, holding a
             // corner makes the coarse functions stiffer than the cut that it saves.
@@ -247,9 +251,8 @@ impl Jump {
             let pinned = scalar && subdomains_of[sub.body] > 1;
             let mut dual = Vec::new();
             let mut corners = Vec::new();
-            for e in mine {
-                let row = self.ghosts.binary_search(&(e.row as u32));
-                let row = row.expect("every entry's row was collected") as u32;
+            for (_, row, k) in mine {
+                let e = &entries[k as usize];
                 if e.contact {
                     let k = columns.row.len() as u32;
                     columns.contact.push((k, e.full));
@@ -300,6 +303,73 @@ impl Jump {
             let found = position.binary_search_by_key(at, |p| p.0);
             *at = position[found.expect("a row's dof is an interface dof")].1;
         }
+    }
+}
+
+/// The rows that entries are in, numbered upwards: a table for the rank's own ones, a list for the few others.
+struct GhostRows {
+    first: u32,
+    /// By owned row: its place among the owned rows that are seen, and whether it is one of B_gl; `None` where no entry is.
+    own: Vec<Option<(u32, bool)>>,
+    n_own: u32,
+    /// The others, increasing, and how many of them come before the owned ones.
+    others: Vec<(u32, bool)>,
+    before: u32,
+}
+
+impl GhostRows {
+    fn new(first: usize, n_owned: usize, entries: &[Entry]) -> GhostRows {
+        let first = first as u32;
+        let mut own = vec![None; n_owned];
+        let mut others = Vec::new();
+        for e in entries {
+            let row = e.row as u32;
+            match own.get_mut(row.wrapping_sub(first) as usize) {
+                Some(seen) => *seen = Some((0, e.contact)),
+                None => others.push((row, e.contact)),
+            }
+        }
+        others.sort_unstable();
+        others.dedup();
+        let before = others.partition_point(|o| o.0 < first) as u32;
+        let mut n_own = 0;
+        for seen in own.iter_mut().flatten() {
+            seen.0 = n_own;
+            n_own += 1;
+        }
+        GhostRows {
+            first,
+            own,
+            n_own,
+            others,
+            before,
+        }
+    }
+
+    /// (row, whether it is one of B_gl), increasing.
+    fn all(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
+        let (below, above) = self.others.split_at(self.before as usize);
+        let own = (self.first..).zip(&self.own);
+        let own = own.filter_map(|(row, seen)| Some((row, (*seen)?.1)));
+        below
+            .iter()
+            .copied()
+            .chain(own)
+            .chain(above.iter().copied())
+    }
+
+    /// Where a row stands among all.
+    ///
+    /// # Panics
+    /// If no entry is in it.
+    fn place(&self, row: u32) -> u32 {
+        let here = self.own.get(row.wrapping_sub(self.first) as usize);
+        if let Some(seen) = here {
+            return self.before + seen.expect("an entry is in the row").0;
+        }
+        let at = self.others.binary_search_by_key(&row, |o| o.0);
+        let at = at.expect("an entry is in the row") as u32;
+        at + if row < self.first { 0 } else { self.n_own }
     }
 }
 

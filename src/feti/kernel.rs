@@ -23,24 +23,15 @@ const FREE_SPECTRUM: f64 = 1e-10;
 pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
     let (n, m) = (k.n(), columns.len());
     let mut rows = faer::Mat::<f64>::zeros(n.max(m), m);
-    // Rows of N side by side: an entry of K meets all columns at once.
-    let by_row: Vec<f64> = (0..n)
-        .flat_map(|i| columns.iter().map(move |x| x[i]))
-        .collect();
-    let mut sums = vec![0.0; m];
-    for i in 0..n {
-        let (col, val) = k.row(i);
-        let size: f64 = val.iter().map(|v| v.abs()).sum();
-        if size > 0.0 {
-            sums.fill(0.0);
-            for (&j, v) in col.iter().zip(val) {
-                let x = &by_row[j as usize * m..][..m];
-                sums.iter_mut().zip(x).for_each(|(s, x)| *s += v * x);
-            }
-            for (c, sum) in sums.iter().enumerate() {
-                rows[(i, c)] = sum / size;
-            }
+    let mut first = 0;
+    for group in columns.chunks(SIDE) {
+        // The widths of a scalar, of plane and of solid elasticity.
+        match group.len() {
+            1 => residuals::<1>(k, group, &mut rows, first),
+            2..=3 => residuals::<3>(k, group, &mut rows, first),
+            _ => residuals::<SIDE>(k, group, &mut rows, first),
         }
+        first += group.len();
     }
     if m == 1 {
         // The usual scalar case needs no Householder reflections.
@@ -59,14 +50,46 @@ pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
     out
 }
 
+/// So many columns meet an entry of K at once.
+const SIDE: usize = 6;
+
+/// Rows of K N over the sums of |K|, for at most `W` columns, into `rows` from column `first`.
+fn residuals<const W: usize>(
+    k: &Csr,
+    columns: &[Vec<f64>],
+    rows: &mut faer::Mat<f64>,
+    first: usize,
+) {
+    // Rows of N side by side, filled up with zeros.
+    let entry = |i: usize, c: usize| columns.get(c).map_or(0.0, |x| x[i]);
+    let by_row: Vec<[f64; W]> = (0..k.n())
+        .map(|i| std::array::from_fn(|c| entry(i, c)))
+        .collect();
+    for i in 0..k.n() {
+        let (col, val) = k.row(i);
+        let (mut sums, mut size) = ([0.0; W], 0.0);
+        for (&j, &v) in col.iter().zip(val) {
+            let x = &by_row[j as usize];
+            (0..W).for_each(|c| sums[c] += v * x[c]);
+            size += v.abs();
+        }
+        if size > 0.0 {
+            for (c, sum) in sums[..columns.len()].iter().enumerate() {
+                rows[(i, first + c)] = sum / size;
+            }
+        }
+    }
+}
+
 /// Combinations c (k × defect) with K N c = 0 in all subdomains of a body, from their stacked factors.
 pub fn null_combinations(factors: &[Dense]) -> Dense {
     let Some(k) = factors.first().map(|f| f.cols) else {
         return Dense::default();
     };
     let stacked = faer::Mat::from_fn(factors.len() * k, k, |i, j| factors[i / k].get(i % k, j));
+    // Left singular vectors, as many as rows, are not wanted.
     let svd = stacked
-        .svd()
+        .thin_svd()
         .expect("an SVD of a small finite matrix converges");
     let sigma = svd.S().column_vector();
     let scale = (stacked.nrows() as f64).sqrt();

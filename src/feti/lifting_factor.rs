@@ -37,26 +37,20 @@ impl BodyFactor {
         each(received, &body, |c, _| columns.extend_from_slice(c));
         columns.sort_unstable();
         columns.dedup();
-        let mut a = Dense::zeros(columns.len(), columns.len());
-        each(received, &body, |theirs, mut values| {
-            let place = |g: &u64| columns.binary_search(g).expect("it was collected");
-            let at: Vec<usize> = theirs.iter().map(place).collect();
-            for (q, &to) in at.iter().enumerate() {
-                let (column, rest) = values.split_at(at.len() - q);
-                values = rest;
-                let target = a.col_mut(to);
-                for (&i, &v) in at[q..].iter().zip(column) {
-                    target[i] += f64::from_bits(v);
-                }
-            }
+        let place = |g: &u64| columns.binary_search(g).expect("it was collected") as u32;
+        let (mut lists, mut blocks) = (Vec::new(), Vec::new());
+        each(received, &body, |theirs, values| {
+            lists.push(theirs.iter().map(place).collect::<Vec<u32>>());
+            blocks.push(values);
         });
-        a.mirror_lower();
+        let n = columns.len();
+        let factor = sparse(n, &lists, &blocks).map_or_else(
+            || Factor::Dense(Semidefinite::new(&dense(n, &lists, &blocks))),
+            Factor::Sparse,
+        );
         BodyFactor {
             at: columns.iter().map(|&c| c as usize - first).collect(),
-            factor: match sparse(&a) {
-                Some(factor) => Factor::Sparse(factor),
-                None => Factor::Dense(Semidefinite::new(&a)),
-            },
+            factor,
         }
     }
 
@@ -99,30 +93,44 @@ fn each<'a>(
     }
 }
 
-/// The sparse factor of a regular matrix with many zeros; both triangles are read.
-fn sparse(a: &Dense) -> Option<PartialCholesky> {
-    let n = a.rows;
-    let entries = a.data.iter().filter(|v| **v != 0.0).count();
-    let largest = (0..n).map(|i| a.get(i, i)).fold(0.0, f64::max);
-    let regular = (0..n).all(|i| a.get(i, i) > ZERO * largest);
-    if n < MANY || entries as f64 > FILLED * (n * n) as f64 || !regular {
+/// The sum of lower triangles, both triangles filled.
+fn dense(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Dense {
+    let mut a = Dense::zeros(n, n);
+    for (list, mut values) in lists.iter().zip(blocks.iter().copied()) {
+        for (q, &to) in list.iter().enumerate() {
+            let (column, rest) = values.split_at(list.len() - q);
+            values = rest;
+            let target = a.col_mut(to as usize);
+            for (&i, &v) in list[q..].iter().zip(column) {
+                target[i as usize] += f64::from_bits(v);
+            }
+        }
+    }
+    a.mirror_lower();
+    a
+}
+
+/// The sparse factor of the same, where it is regular and has many zeros.
+fn sparse(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Option<PartialCholesky> {
+    let full = |entries: usize| entries as f64 > FILLED * (n * n) as f64;
+    if n < MANY || lists.iter().any(|l| full(l.len() * l.len())) {
         return None;
     }
-    let mut k = Csr {
-        row_ptr: vec![0],
-        ..Csr::default()
+    let entry = |b: usize, i: usize, j: usize| {
+        // Columns are packed one after the other, each from the diagonal down.
+        let (low, high) = (i.min(j), i.max(j));
+        let start = low * lists[b].len() - low * low.saturating_sub(1) / 2;
+        f64::from_bits(blocks[b][start + high - low])
     };
-    for j in 0..n {
-        let column = (0..).zip(a.col(j)).filter(|e: &(u32, &f64)| *e.1 != 0.0);
-        for (i, &v) in column {
-            k.col.push(i);
-            k.val.push(v);
-        }
-        k.row_ptr.push(k.col.len());
+    let a = Csr::from_blocks(n, lists, entry);
+    let diagonal = a.diagonal();
+    let largest = diagonal.iter().copied().fold(0.0, f64::max);
+    if full(a.nnz()) || diagonal.iter().any(|d| *d <= ZERO * largest) {
+        return None;
     }
-    let symbolic = Arc::new(Symbolic::new(&k, &[], None));
-    let (factor, _) = PartialCholesky::new(&k, symbolic).ok()?;
-    (factor.weakest_pivot(&k) > DEPENDENT).then_some(factor)
+    let symbolic = Arc::new(Symbolic::new(&a, &[], None));
+    let (factor, _) = PartialCholesky::new(&a, symbolic).ok()?;
+    (factor.weakest_pivot(&a) > DEPENDENT).then_some(factor)
 }
 
 #[cfg(test)]
@@ -130,22 +138,55 @@ mod tests {
     use super::*;
     use crate::feti::local::testing::{distance, grid_laplacian, random};
 
-    fn dense(k: &Csr) -> Dense {
-        let mut a = Dense::zeros(k.n(), k.n());
+    /// The entries of K as blocks: each off-diagonal one with its mirror image, each diagonal one by itself.
+    fn parts(k: &Csr) -> (Vec<Vec<u32>>, Vec<Vec<u64>>) {
+        let (mut lists, mut blocks) = (Vec::new(), Vec::new());
         for i in 0..k.n() {
             let (col, val) = k.row(i);
-            col.iter()
-                .zip(val)
-                .for_each(|(&j, &v)| a.set(i, j as usize, v));
+            for (&j, v) in col.iter().zip(val) {
+                match j as usize {
+                    j if j == i => {
+                        lists.push(vec![i as u32]);
+                        blocks.push(vec![v.to_bits()]);
+                    }
+                    j if j > i => {
+                        lists.push(vec![i as u32, j as u32]);
+                        blocks.push(vec![0, v.to_bits(), 0]);
+                    }
+                    _ => {}
+                }
+            }
         }
-        a
+        (lists, blocks)
+    }
+
+    fn both(k: &Csr) -> (Option<PartialCholesky>, Dense) {
+        let (lists, blocks) = parts(k);
+        let blocks: Vec<&[u64]> = blocks.iter().map(|b| &b[..]).collect();
+        (
+            sparse(k.n(), &lists, &blocks),
+            dense(k.n(), &lists, &blocks),
+        )
+    }
+
+    /// K with row and column `to` being those of `from`, or zero.
+    fn changed(k: &Csr, to: usize, from: Option<usize>) -> Csr {
+        let source = |i: usize| if i == to { from } else { Some(i) };
+        let entry = |i: usize, j: usize| Some(k.get(source(i)?, source(j)?));
+        let pairs = (0..k.n()).flat_map(|i| (0..k.n()).map(move |j| (i, j)));
+        let triplets: Vec<(u32, u32, f64)> = pairs
+            .filter_map(|(i, j)| Some((i as u32, j as u32, entry(i, j)?)))
+            .filter(|t| t.2 != 0.0 || t.0 == t.1)
+            .collect();
+        Csr::from_triplets(k.n(), &triplets)
     }
 
     #[test]
     fn sparse_and_dense_factors_solve_alike_and_dependent_columns_are_left_to_the_dense_one() {
         let (k, _) = grid_laplacian(19, 17, 0.2);
-        let a = dense(&k);
-        let factor = sparse(&a).expect("regular, with many zeros");
+        let (factor, a) = both(&k);
+        let factor = factor.expect("regular, with many zeros");
+        assert!((0..k.n()).all(|i| (0..k.n()).all(|j| a.get(i, j) == k.get(i, j))));
         let mut x = random(k.n(), 4);
         let mut y = x.clone();
         factor.solve(&mut x);
@@ -154,23 +195,10 @@ mod tests {
         assert!(far < 1e-12, "{far:.1e}");
 
         // A free body; two columns that are one; a column that is zero; few columns.
-        assert!(sparse(&dense(&grid_laplacian(19, 17, 0.0).0)).is_none());
-        let mut twice = a.clone();
-        for i in 0..k.n() {
-            let v = twice.get(i, 0);
-            twice.set(i, 5, v);
-        }
-        for i in 0..k.n() {
-            let v = twice.get(0, i);
-            twice.set(5, i, v);
-        }
-        assert!(sparse(&twice).is_none());
-        let mut zero = a;
-        for i in 0..k.n() {
-            zero.set(i, 7, 0.0);
-            zero.set(7, i, 0.0);
-        }
-        assert!(sparse(&zero).is_none());
-        assert!(sparse(&dense(&grid_laplacian(9, 9, 0.2).0)).is_none());
+        let refused = |k: &Csr| both(k).0.is_none();
+        assert!(refused(&grid_laplacian(19, 17, 0.0).0));
+        assert!(refused(&changed(&k, 5, Some(0))));
+        assert!(refused(&changed(&k, 7, None)));
+        assert!(refused(&grid_laplacian(9, 9, 0.2).0));
     }
 }

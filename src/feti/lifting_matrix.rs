@@ -48,27 +48,18 @@ impl Sums {
         keep: bool,
     ) -> Sums {
         let (locals, team) = (&stiffness.locals, &stiffness.team);
-        let mut sums: Vec<Sum> = Vec::new();
+        let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
         for (j, sub) in problem.local.iter().enumerate() {
-            let group = sums.iter_mut().rev().find(|s| s.body == sub.body);
-            match group.filter(|s| s.members.len() < GROUP) {
-                Some(sum) => sum.members.push(j),
-                None => sums.push(Sum {
-                    body: sub.body,
-                    members: vec![j],
-                    columns: Vec::new(),
-                    a: Dense::default(),
-                }),
+            let group = groups.iter_mut().rev().find(|g| g.0 == sub.body);
+            match group.filter(|g| g.1.len() < GROUP) {
+                Some(group) => group.1.push(j),
+                None => groups.push((sub.body, vec![j])),
             }
         }
-        team.for_each(&mut sums, |_, sum| {
-            let members = sum.members.iter();
-            let mut columns: Vec<u32> = members.flat_map(|&j| recipes[j].columns.clone()).collect();
-            columns.sort_unstable();
-            columns.dedup();
-            sum.a = Dense::zeros(columns.len(), columns.len());
-            sum.columns = columns;
+        let each = team.map(groups.len(), |g| {
+            Sum::over(groups[g].0, &groups[g].1, recipes)
         });
+        let mut sums: Vec<Sum> = each.into_iter().flatten().collect();
         let first = representatives(locals, functions, recipes);
         let mut kinds: Vec<usize> = first.clone();
         kinds.sort_unstable();
@@ -151,6 +142,28 @@ fn add(a: &mut Dense, columns: &[u32], theirs: &[u32], block: &Dense) {
 }
 
 impl Sum {
+    /// Room for the sum over `members`, or for each by itself where columns of some do not meet those of others: less is sent then.
+    fn over(body: usize, members: &[usize], recipes: &[Recipe]) -> Vec<Sum> {
+        let empty = |members: &[usize], columns: Vec<u32>| Sum {
+            body,
+            members: members.to_vec(),
+            a: Dense::zeros(columns.len(), columns.len()),
+            columns,
+        };
+        let words = |n: usize| n * (n + 1) / 2;
+        let each = members.iter().map(|&j| &recipes[j].columns);
+        let mut columns: Vec<u32> = each.clone().flatten().copied().collect();
+        columns.sort_unstable();
+        columns.dedup();
+        if words(columns.len()) < each.map(|c| words(c.len())).sum() {
+            return vec![empty(members, columns)];
+        }
+        let alone = members.iter();
+        alone
+            .map(|j| empty(std::slice::from_ref(j), recipes[*j].columns.clone()))
+            .collect()
+    }
+
     /// [n, global columns, lower triangle by columns].
     pub fn pack(&self, words: &mut Vec<u64>) {
         let n = self.columns.len();

@@ -37,6 +37,7 @@ pub mod natural;
 pub mod persist;
 pub mod preconditioner;
 pub mod primal;
+mod primal_matrix;
 pub mod products;
 pub mod recover;
 pub mod recycle;

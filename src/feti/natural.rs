@@ -16,8 +16,7 @@ use super::exchange::{exchange, gather_all, max_all, sum_all};
 use super::gtg::{Gtg, Side};
 use super::local::dense::Dense;
 use super::preconditioner::Preconditioner;
-use super::primal::PrimalEntry;
-use super::rows::Rows;
+use super::rows::{RowEntry, Rows};
 use super::settings::{PcType, ProjectorKind};
 use super::stiffness::Stiffness;
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
@@ -155,7 +154,7 @@ impl NaturalCoarse {
             .iter()
             .map(|w| w[0] as u32)
             .collect();
-        let mut outgoing: Vec<Vec<PrimalEntry>> = vec![Vec::new(); comm.size() as usize];
+        let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
         let largest = self.largest(comm);
         for (j, kernel) in self.kernels.iter().enumerate() {
             let columns = &jump.columns[j];
@@ -169,7 +168,7 @@ impl NaturalCoarse {
                     let value = kernel.get(at as usize, c);
                     // A body that cannot move along a row's normal moves there by rounding: such a row would hold it.
                     if value.abs() > STILL * largest[col] {
-                        outgoing[to].push(PrimalEntry {
+                        outgoing[to].push(RowEntry {
                             row,
                             col: col as u32,
                             value: full * value,

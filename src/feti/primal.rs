@@ -9,42 +9,15 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::entities::Average;
-use super::exchange::{exchange, exchange_words, offsets, sum_all, Record};
+use super::exchange::{exchange_words, offsets, sum_all};
 use super::halo::numbered;
 use super::kernel;
 use super::local::dense::Dense;
 use super::local::scaled::Local;
+use super::primal_matrix::{Outgoing, PrimalMatrix};
 use super::sharing::Sharing;
 use crate::sparse::Csr;
 use crate::substructures::Substructures;
-
-/// An entry of a matrix between primal dofs, on its way to the rank that owns them.
-#[derive(Debug, Clone, Copy)]
-pub struct PrimalEntry {
-    /// Global primal row.
-    pub row: u32,
-    /// Global primal column.
-    pub col: u32,
-    /// Value to be added.
-    pub value: f64,
-}
-
-impl Record for PrimalEntry {
-    const WORDS: usize = 2;
-    fn pack(&self, out: &mut Vec<u64>) {
-        out.extend([
-            u64::from(self.row) << 32 | u64::from(self.col),
-            self.value.to_bits(),
-        ]);
-    }
-    fn unpack(w: &[u64]) -> Self {
-        PrimalEntry {
-            row: (w[0] >> 32) as u32,
-            col: (w[0] & u64::from(u32::MAX)) as u32,
-            value: f64::from_bits(w[1]),
-        }
-    }
-}
 
 /// A body whose primal dofs this rank owns.
 #[derive(Debug)]
@@ -82,8 +55,8 @@ pub struct PrimalSpace {
     pub kernel_start: Vec<usize>,
     /// Rows of the kernel basis at `ghosts`: length of the body's defect each.
     pub z_at_ghosts: Vec<Vec<f64>>,
-    /// S_Π on the owned rows (global numbers), regularised at the fixing dofs of floating bodies.
-    pub entries: Vec<PrimalEntry>,
+    /// S_Π of the owned bodies, regularised at the fixing dofs of floating ones.
+    pub matrix: PrimalMatrix,
 }
 
 impl PrimalSpace {
@@ -101,25 +74,17 @@ impl PrimalSpace {
         };
         let asked = space.number(comm, problem, averages, locals);
         let mut room = vec![0; comm.size() as usize];
+        let to = |j: usize| space.owner[problem.local[j].body] as usize;
         for (j, local) in locals.iter().enumerate() {
-            room[space.owner[problem.local[j].body] as usize] += local.n_pi().pow(2);
+            room[to(j)] += Outgoing::words(local.n_pi());
         }
-        let mut entries: Vec<Vec<PrimalEntry>> = room.into_iter().map(Vec::with_capacity).collect();
+        let mut outgoing = Outgoing::with_capacity(&room);
         for (j, local) in locals.iter().enumerate() {
-            let to = space.owner[problem.local[j].body] as usize;
-            let places = &space.of_subdomain[j];
-            let sigma = local.sigma();
-            for (a, &ga) in places.iter().enumerate() {
-                for (b, &gb) in places.iter().enumerate() {
-                    entries[to].push(PrimalEntry {
-                        row: space.ghosts[ga as usize],
-                        col: space.ghosts[gb as usize],
-                        value: sigma.get(a, b),
-                    });
-                }
-            }
+            let numbers = space.of_subdomain[j].iter();
+            let numbers = numbers.map(|&g| space.ghosts[g as usize]);
+            outgoing.push(to(j), numbers, &local.sigma());
         }
-        space.entries = exchange(comm, entries);
+        space.matrix = PrimalMatrix::new(comm, outgoing, space.first, space.n_owned);
         space.find_kernels(comm, problem, locals, &asked);
         space
     }
@@ -245,26 +210,17 @@ impl PrimalSpace {
             body.z = self.kernel_of(body, &factors, &values, stiffness);
             body.fixing = kernel::fixing_rows(&body.z);
             defect[body.body] = body.z.cols as f64;
-            let first = self.first + body.range.start;
             let n = body.range.len() as f64;
-            let inside = |e: &&PrimalEntry| {
-                e.row == e.col && body.range.contains(&(e.row as usize - self.first))
-            };
             // Any positive number makes S_Π regular; the mean diagonal keeps it as well conditioned as it was. A body held
             // by nothing but its fixing dof has a diagonal of rounding: then one.
-            let trace: f64 = self.entries.iter().filter(inside).map(|e| e.value).sum();
+            let trace = self.matrix.trace(&body.range);
             let shift = if trace / n > 1e-10 * stiffness {
                 trace / n
             } else {
                 stiffness.max(1.0)
             };
             for &i in &body.fixing {
-                let at = (first + i) as u32;
-                self.entries.push(PrimalEntry {
-                    row: at,
-                    col: at,
-                    value: shift,
-                });
+                self.matrix.shift(body.range.start + i, shift);
             }
         }
         self.owned = owned;
@@ -319,13 +275,7 @@ impl PrimalSpace {
             rest = tail;
         }
         if !known {
-            let mut s_pi = Dense::zeros(n, n);
-            for e in &self.entries {
-                let (i, j) = (e.row as usize - self.first, e.col as usize - self.first);
-                if body.range.contains(&i) {
-                    s_pi.data[i - body.range.start + (j - body.range.start) * n] += e.value;
-                }
-            }
+            let s_pi = self.matrix.dense(&body.range);
             return kernel::null_space(&s_pi, stiffness);
         }
         let combinations = kernel::null_combinations(&mine);

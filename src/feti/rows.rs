@@ -1,5 +1,35 @@
 //! Sparse rows with few columns, such as G: a row of every multiplier that this rank owns.
 
+use super::exchange::Record;
+
+/// An entry of such rows on its way to the rank that owns its row.
+#[derive(Debug, Clone, Copy)]
+pub struct RowEntry {
+    /// Global row.
+    pub row: u32,
+    /// Column.
+    pub col: u32,
+    /// Value to be added.
+    pub value: f64,
+}
+
+impl Record for RowEntry {
+    const WORDS: usize = 2;
+    fn pack(&self, out: &mut Vec<u64>) {
+        out.extend([
+            u64::from(self.row) << 32 | u64::from(self.col),
+            self.value.to_bits(),
+        ]);
+    }
+    fn unpack(w: &[u64]) -> Self {
+        RowEntry {
+            row: (w[0] >> 32) as u32,
+            col: (w[0] & u64::from(u32::MAX)) as u32,
+            value: f64::from_bits(w[1]),
+        }
+    }
+}
+
 /// Rows of a matrix with r columns, on the rank that owns them.
 #[derive(Debug, Clone, Default)]
 pub struct Rows {

@@ -88,6 +88,15 @@ impl ShellMat for InnerProduct {
     }
 }
 
+/// Vectors between restarts, which is when SLEPc looks whether it is done. The largest eigenvalue stands alone and is there after some
+/// tens of them; the smallest ones lie close together at the lower end.
+fn subspace(which: Which) -> usize {
+    match which {
+        Which::LargestReal => 40,
+        _ => 240,
+    }
+}
+
 /// The smallest and the largest eigenvalue of C A on range A.
 ///
 /// `a` and `c` are symmetric positive semidefinite, of the same shape and distribution. `e` is a projection with A E = A and range E ∩ ker A = {0} that also
@@ -150,7 +159,7 @@ pub fn extreme_eigenvalues(
         eps.set_operators(&operator, Some(&inner_product))?;
         eps.set_problem_type(ProblemType::Ghep)?;
         eps.set_which(which)?;
-        eps.set_dimensions(1, Some(n.clamp(1, 240)))?;
+        eps.set_dimensions(1, Some(n.clamp(1, subspace(which))))?;
         eps.set_tolerances(tol, Some(500))?;
         eps.set_purify(false)?;
         eps.set_initial_space(std::slice::from_ref(&first))?;
