@@ -188,6 +188,37 @@ impl Recipe {
         }
     }
 
+    /// Order of Γ.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// For each column, the rows in which it may differ from zero: a bit of each.
+    pub fn support(&self) -> Vec<Vec<u64>> {
+        let words = self.rows.div_ceil(64);
+        let mut out = vec![vec![0; words]; self.columns.len()];
+        for contribution in &self.contributions {
+            let mut rows = vec![0u64; words];
+            for &(at, ..) in &contribution.rows {
+                rows[at as usize / 64] |= 1 << (at % 64);
+            }
+            for &c in &contribution.columns {
+                let all = out[c as usize].iter_mut().zip(&rows);
+                all.for_each(|(w, r)| *w |= r);
+            }
+        }
+        // Functions of its own vertices have all vertices in common with each other.
+        let mut vertices = vec![0u64; words];
+        for &(at, _) in &self.vertices {
+            vertices[at as usize / 64] |= 1 << (at % 64);
+        }
+        for &(_, c) in &self.vertices {
+            let all = out[c as usize].iter_mut().zip(&vertices);
+            all.for_each(|(w, r)| *w |= r);
+        }
+        out
+    }
+
     /// Z_c, n_Γ × columns: zero where bodies may touch.
     pub fn build(&self, functions: &[Functions]) -> Dense {
         let mut z = Dense::zeros(self.rows, self.columns.len());

@@ -19,6 +19,9 @@ const WRONG: f64 = 1e-8;
 /// Weights below this part of the largest are rounding.
 const NOTHING: f64 = 1e-10;
 
+/// Weights are multiples of one over this: equal subdomains have equal ones then, wherever they are.
+const STEPS: f64 = (1u64 << 40) as f64;
+
 /// Coarse functions of one subdomain.
 pub(super) struct Functions {
     /// The primal dof of the subdomain that gives each column its name, vertices first.
@@ -149,7 +152,10 @@ fn combination(
     }
     let mut x = wanted.clone();
     Semidefinite::new(&gram).solve(&mut x);
-    let weight = |&v: &usize| (v, (0..k).map(|c| at(c, v) * x[c]).sum::<f64>());
+    let weight = |&v: &usize| {
+        let sum: f64 = (0..k).map(|c| at(c, v) * x[c]).sum();
+        (v, (sum * STEPS).round() / STEPS)
+    };
     let mut weights: Vec<(usize, f64)> = ends.iter().map(weight).collect();
     let largest = weights.iter().fold(0.0f64, |s, w| s.max(w.1.abs()));
     weights.retain(|w| w.1.abs() > NOTHING * largest);

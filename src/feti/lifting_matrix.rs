@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
+use super::lifting_block;
 use super::lifting_stored::Pair;
 use super::local::dense::{multiply, Dense};
 use super::local::problem::Operator;
@@ -71,6 +72,12 @@ impl Sums {
         for some in kinds.chunks(BLOCKS) {
             let blocks = team.map(some.len(), |k| {
                 let j = some[k];
+                if !keep && !locals[j].is_implicit() {
+                    return (
+                        lifting_block::block(&locals[j], &recipes[j], functions),
+                        None,
+                    );
+                }
                 let (a, pair) = block(&locals[j], recipes[j].build(functions));
                 (a, keep.then(|| Arc::new(pair)))
             });

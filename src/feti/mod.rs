@@ -29,6 +29,7 @@ pub mod kernel;
 pub mod kkt;
 pub mod lifting;
 mod lifting_applied;
+mod lifting_block;
 mod lifting_factor;
 mod lifting_matrix;
 mod lifting_stored;

@@ -75,6 +75,18 @@ impl Local {
         out
     }
 
+    /// S with rows and columns in this order of the positions of Γ.
+    pub fn s_in_order(&self, order: &[u32]) -> Dense {
+        let (s, factor) = (self.problem.s(), self.multiple(Operator::S));
+        let mut out = Dense::zeros(order.len(), order.len());
+        for (q, &j) in order.iter().enumerate() {
+            let column = s.col(j as usize);
+            let target = out.col_mut(q).iter_mut().zip(order);
+            target.for_each(|(t, &i)| *t = factor * column[i as usize]);
+        }
+        out
+    }
+
     /// S on some positions of Γ.
     pub fn s_on(&self, at: &[usize]) -> Dense {
         self.block(Operator::S, at)
