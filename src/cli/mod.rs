@@ -21,12 +21,13 @@ mod usage;
 
 use args::{Command, Invocation};
 
-use crate::petsc::{Comm, Ksp, Session};
+use crate::petsc::{self, Comm, Ksp, Session};
 use crate::report::output;
 use crate::{Error, Result, Settings};
 
 /// Runs the program with the process's arguments and returns its exit code.
 pub fn main() -> i32 {
+    petsc::let_threads_allocate();
     let args: Vec<String> = std::env::args().skip(1).collect();
     let parsed = args::parse(&args);
     let petsc = parsed.as_ref().map(|p| p.petsc.clone()).unwrap_or_default();

@@ -50,6 +50,7 @@ pub(super) fn identities(
     }
     if dual.preconditioner.lifting().is_some() {
         out.push(("B Z_c = 0", check.lifted()?));
+        out.push(("A = Z_c^T S Z_c", check.removed()?));
     }
     Ok(out)
 }
@@ -294,5 +295,34 @@ impl Check<'_> {
         let jump = self.dual.multipliers()?;
         stiffness.jump_of(&work, &jump)?;
         Ok(self.relative(jump.norm_inf()?, size))
+    }
+
+    /// What M_C leaves of S Z_c x for a random x: nothing if A is Z_cᵀ S̃ Z_c and A⁺ its inverse on its range.
+    fn removed(&self) -> Result<f64> {
+        let Some(lifting) = self.dual.preconditioner.lifting() else {
+            return Ok(0.0);
+        };
+        let stiffness = &self.dual.stiffness;
+        let locals = &stiffness.locals;
+        let mut work = stiffness.work();
+        let combined = lifting.combine(stiffness, |column| noise(u64::from(column) + 29))?;
+        for (w, z) in work.iter_mut().zip(combined) {
+            w.v = z;
+        }
+        // In double precision, whatever M⁻¹ does.
+        let multiply = |work: &mut [Work]| {
+            stiffness.team.for_each(work, |j, w| {
+                locals[j].apply_one(Operator::S, &w.v, &mut w.y);
+            });
+        };
+        let largest = |work: &[Work]| {
+            let all = work.iter().flat_map(|w| &w.y);
+            all.fold(0.0f64, |a, v| a.max(v.abs()))
+        };
+        lifting.begin(stiffness, &work)?;
+        multiply(&mut work);
+        let size = largest(&work);
+        lifting.finish(stiffness, &mut work, multiply)?;
+        Ok(self.relative(largest(&work), size))
     }
 }
