@@ -97,7 +97,7 @@ pub fn watch(adaptive: Adaptive, varies: f64) -> Option<f64> {
     match adaptive {
         Adaptive::Off => None,
         Adaptive::Auto if varies > JUMPS => Some(EXPECTED),
-        Adaptive::Auto => Some(50.0 * Adaptive::USUAL),
+        Adaptive::Auto => Some(20.0 * Adaptive::USUAL),
         Adaptive::Below(tau) => Some(1.2 * tau),
     }
 }
