@@ -131,11 +131,12 @@ fn combination(
                 (found - wanted[c]).abs() <= WRONG * size
             })
     };
+    let rounded = |v: usize, weight: f64| (v, (weight * STEPS).round() / STEPS);
     // The smallest weights are those in the range of Nᵀ. On a straight edge a multiple of one column does: a translation.
     for (c, n) in wanted.iter().enumerate() {
         let square: f64 = ends.iter().map(|&v| at(c, v).powi(2)).sum();
         if *n != 0.0 && square > 0.0 {
-            let weight = |v: &usize| (*v, at(c, *v) * n / square);
+            let weight = |&v: &usize| rounded(v, at(c, v) * n / square);
             let some = ends.iter().map(weight).filter(|w| w.1 != 0.0);
             let weights: Vec<(usize, f64)> = some.collect();
             if right(&weights) {
@@ -152,10 +153,7 @@ fn combination(
     }
     let mut x = wanted.clone();
     Semidefinite::new(&gram).solve(&mut x);
-    let weight = |&v: &usize| {
-        let sum: f64 = (0..k).map(|c| at(c, v) * x[c]).sum();
-        (v, (sum * STEPS).round() / STEPS)
-    };
+    let weight = |&v: &usize| rounded(v, (0..k).map(|c| at(c, v) * x[c]).sum());
     let mut weights: Vec<(usize, f64)> = ends.iter().map(weight).collect();
     let largest = weights.iter().fold(0.0f64, |s, w| s.max(w.1.abs()));
     weights.retain(|w| w.1.abs() > NOTHING * largest);

@@ -42,10 +42,12 @@ pub struct PrimalMatrix {
     /// First global number owned by this rank.
     first: usize,
     received: Vec<Vec<u64>>,
+    /// The blocks by their first owned dof: (that dof, sender, where its words start). Those of a body follow each other.
+    index: Vec<(u32, u32, usize)>,
     /// The diagonal of the sum, by owned dof.
     diagonal: Vec<f64>,
-    /// (owned dof, what is added to its diagonal entry).
-    shifts: Vec<(usize, f64)>,
+    /// What is added to it.
+    shifts: Vec<f64>,
 }
 
 /// A subdomain's part: owned dofs, and entries row by row.
@@ -59,14 +61,28 @@ impl PrimalMatrix {
         first: usize,
         n: usize,
     ) -> PrimalMatrix {
+        PrimalMatrix::received(exchange_words(comm, outgoing.0), first, n)
+    }
+
+    fn received(received: Vec<Vec<u64>>, first: usize, n: usize) -> PrimalMatrix {
+        let mut index = Vec::new();
+        for (sender, words) in (0..).zip(&received) {
+            let mut at = 0;
+            while at < words.len() {
+                index.push((words[at + 1] as u32 - first as u32, sender, at));
+                at += Outgoing::words(words[at] as usize);
+            }
+        }
+        index.sort_unstable();
         let mut matrix = PrimalMatrix {
             first,
-            received: exchange_words(comm, outgoing.0),
+            received,
+            index,
             diagonal: Vec::new(),
-            shifts: Vec::new(),
+            shifts: vec![0.0; n],
         };
         let mut diagonal = vec![0.0; n];
-        for (dofs, values) in matrix.blocks() {
+        for (dofs, values) in matrix.of_body(&(0..n)) {
             for (i, value) in dofs.iter().zip(values.iter().step_by(dofs.len() + 1)) {
                 diagonal[*i as usize] += f64::from_bits(*value);
             }
@@ -75,29 +91,17 @@ impl PrimalMatrix {
         matrix
     }
 
-    fn blocks(&self) -> impl Iterator<Item = Block<'_>> {
-        let mut words = self.received.iter().map(|w| &w[..]);
-        let mut rest: &[u64] = &[];
-        std::iter::from_fn(move || {
-            while rest.is_empty() {
-                rest = words.next()?;
-            }
-            let n = rest[0] as usize;
-            let (numbers, tail) = rest[1..].split_at(n);
-            let (values, tail) = tail.split_at(n * n);
-            rest = tail;
-            let dofs = numbers.iter().map(|&g| g as u32 - self.first as u32);
-            Some((dofs.collect(), values))
-        })
-    }
-
-    /// Blocks of the body with these owned dofs; their dofs counted from its first one.
-    fn of_body<'a>(&'a self, body: &'a Range<usize>) -> impl Iterator<Item = Block<'a>> {
-        let inside = |dofs: &[u32]| dofs.first().is_some_and(|&i| body.contains(&(i as usize)));
-        let blocks = self.blocks().filter(move |b| inside(&b.0));
-        blocks.map(|(dofs, values)| {
-            let dofs = dofs.into_iter().map(|i| i - body.start as u32);
-            (dofs.collect(), values)
+    /// Blocks of the body (or bodies) with these owned dofs; their dofs counted from its first one.
+    fn of_body<'a>(&'a self, body: &Range<usize>) -> impl Iterator<Item = Block<'a>> {
+        let place = |dof: usize| self.index.partition_point(|b| (b.0 as usize) < dof);
+        let offset = (self.first + body.start) as u32;
+        let blocks = self.index[place(body.start)..place(body.end)].iter();
+        blocks.map(move |&(_, sender, at)| {
+            let words = &self.received[sender as usize][at..];
+            let n = words[0] as usize;
+            let (numbers, tail) = words[1..].split_at(n);
+            let dofs = numbers.iter().map(|&g| g as u32 - offset);
+            (dofs.collect(), &tail[..n * n])
         })
     }
 
@@ -108,12 +112,12 @@ impl PrimalMatrix {
 
     /// Adds to the diagonal entry of an owned dof.
     pub fn shift(&mut self, dof: usize, value: f64) {
-        self.shifts.push((dof, value));
+        self.shifts[dof] += value;
     }
 
-    fn shifts<'a>(&'a self, body: &'a Range<usize>) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let inside = self.shifts.iter().filter(|s| body.contains(&s.0));
-        inside.map(|&(i, v)| (i - body.start, v))
+    fn shifts(&self, body: &Range<usize>) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let all = self.shifts[body.clone()].iter().copied().enumerate();
+        all.filter(|s| s.1 != 0.0)
     }
 
     /// S_Π of the body with these owned dofs.
@@ -150,7 +154,7 @@ impl PrimalMatrix {
     pub fn triplets(&self) -> Vec<(i32, i32, f64)> {
         let first = self.first as i32;
         let mut out = Vec::new();
-        for (dofs, values) in self.blocks() {
+        for (dofs, values) in self.of_body(&(0..self.shifts.len())) {
             for (&i, row) in dofs.iter().zip(values.chunks_exact(dofs.len())) {
                 let entry = |(&j, v): (&u32, &u64)| {
                     (first + i as i32, first + j as i32, f64::from_bits(*v))
@@ -158,8 +162,8 @@ impl PrimalMatrix {
                 out.extend(dofs.iter().zip(row).map(entry));
             }
         }
-        let shifts = self.shifts.iter();
-        out.extend(shifts.map(|&(i, v)| (first + i as i32, first + i as i32, v)));
+        let shifts = self.shifts(&(0..self.shifts.len()));
+        out.extend(shifts.map(|(i, v)| (first + i as i32, first + i as i32, v)));
         out
     }
 }
@@ -182,12 +186,7 @@ mod tests {
         outgoing.push(0, std::iter::empty(), &block(0, 0.0));
         outgoing.push(1, [101, 102].into_iter(), &block(2, 3.0));
         outgoing.push(1, [106, 105].into_iter(), &block(2, 4.0));
-        let mut matrix = PrimalMatrix {
-            first: 100,
-            received: outgoing.0,
-            diagonal: vec![0.0; 7],
-            shifts: Vec::new(),
-        };
+        let mut matrix = PrimalMatrix::received(outgoing.0, 100, 7);
         matrix.shift(1, 10.0);
         matrix.shift(6, 20.0);
         let triplets = matrix.triplets();
