@@ -10,7 +10,7 @@
 
 use std::process::ExitCode;
 
-use fetifeti::feti::exchange::max_all;
+use fetifeti::parallel::exchange::max_all;
 use fetifeti::{
     Csr, Error, FetiFeti, InterfaceRow, Result, RowKind, Session, Settings, Subdomain,
     Substructures,

@@ -8,7 +8,7 @@
 
 use std::process::ExitCode;
 
-use fetifeti::feti::exchange::max_all;
+use fetifeti::parallel::exchange::max_all;
 use fetifeti::scene::{free_all_round, Field, GridSpec, Scene};
 use fetifeti::{FetiFeti, Result, Session, Settings};
 

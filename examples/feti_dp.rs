@@ -9,8 +9,8 @@
 
 use std::process::ExitCode;
 
-use fetifeti::feti::exchange::max_all;
 use fetifeti::mesh::BoxMesh;
+use fetifeti::parallel::exchange::max_all;
 use fetifeti::scene::{BodySpec, By, Field, Scene, SceneSpec};
 use fetifeti::{FetiFeti, Result, Session, Settings};
 

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::process::ExitCode;
 
 use fetifeti::fem::{ErrorNorms, Quadrature};
-use fetifeti::feti::exchange::{max_all, sum_all};
+use fetifeti::parallel::exchange::{max_all, sum_all};
 use fetifeti::scene::{Expr, Field, GridSpec, Load, Scene, SceneSpec};
 use fetifeti::{Error, FetiFeti, Result, Session, Settings};
 

@@ -20,20 +20,20 @@
 //! | symbol | shape | meaning | where |
 //! |---|---|---|---|
 //! | K, f | n × n, n | stiffness and load of one subdomain, Dirichlet dofs eliminated | [`substructures`] |
-//! | Γ = Δ ∪ Π | | interface dofs of a subdomain: dual, then primal ones | [`feti::local::problem`] |
-//! | S | n_Γ × n_Γ | Schur complement K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ, with T = S_ΔΔ⁻¹ and the coarse basis Ψ | [`feti::local::problem`] |
+//! | Γ = Δ ∪ Π | | interface dofs of a subdomain: dual, then primal ones | [`feti::subdomain::problem`] |
+//! | S | n_Γ × n_Γ | Schur complement K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ, with T = S_ΔΔ⁻¹ and the coarse basis Ψ | [`feti::subdomain::problem`] |
 //! | W̃ | | functions continuous at the primal dofs of a body, torn elsewhere, \[Lee\] (3.5)–(3.7) | [`feti::primal`] |
-//! | S̃⁺ | dim W̃ | Σ T + Ψ S_Π⁺ Ψᵀ, block diagonal by body | [`feti::stiffness`], [`feti::coarse`] |
+//! | S̃⁺ | dim W̃ | Σ T + Ψ S_Π⁺ Ψᵀ, block diagonal by body | [`feti::operators::stiffness`], [`feti::primal::coarse`] |
 //! | B = \[B_loc; B_gl\] | m × dim W̃ | jumps inside the bodies (fully redundant) and between them | [`feti::jump`] |
 //! | Z | m × m | 0/1 diagonal: rows that hold; 1 on B_loc | [`feti::jump`] |
-//! | B_D | m × dim W̃ | (B D⁻¹ Bᵀ)⁺ B D⁻¹, jumps scaled with D = ρ^γ | [`feti::scaling`] |
-//! | R | dim W̃ × r | kernels of the floating bodies, found from the matrices | [`feti::kernel`] |
-//! | F | m × m | Z B S̃⁺ Bᵀ Z, \[Lee\] (3.8) | [`feti::stiffness`] |
-//! | G, e | m × r, r | Z B R and Rᵀ g | [`feti::natural`] |
-//! | P | m × m | I − Q G (Gᵀ Q G)⁻¹ Gᵀ, \[Lee\] (2.11) | [`feti::natural`] |
-//! | M_D⁻¹ | m × m | Z B_D S̃ B_Dᵀ Z, \[Lee\] section 3.1 | [`feti::preconditioner`] |
+//! | B_D | m × dim W̃ | (B D⁻¹ Bᵀ)⁺ B D⁻¹, jumps scaled with D = ρ^γ | [`feti::jump::scaling`] |
+//! | R | dim W̃ × r | kernels of the floating bodies, found from the matrices | [`feti::primal::kernel`] |
+//! | F | m × m | Z B S̃⁺ Bᵀ Z, \[Lee\] (3.8) | [`feti::operators::stiffness`] |
+//! | G, e | m × r, r | Z B R and Rᵀ g | [`feti::projector::natural`] |
+//! | P | m × m | I − Q G (Gᵀ Q G)⁻¹ Gᵀ, \[Lee\] (2.11) | [`feti::projector::natural`] |
+//! | M_D⁻¹ | m × m | Z B_D S̃ B_Dᵀ Z, \[Lee\] section 3.1 | [`feti::operators::preconditioner`] |
 //! | Z_c, M_C⁻¹ | dim W̃ × n_c, m × m | coarse functions that vanish where bodies may touch; M_D⁻¹ with their span removed | [`feti::lifting`] |
-//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | [`feti::spectrum`] |
+//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | [`feti::krylov::spectrum`] |
 //!
 //! # The way data flows
 //!
@@ -91,27 +91,28 @@
 pub mod baselines;
 #[allow(unsafe_code)]
 pub mod capi;
+pub mod cholesky;
 pub mod cli;
 pub mod contact;
 pub mod embed;
 pub mod error;
 pub mod fem;
 pub mod feti;
+pub mod linalg;
 pub mod mesh;
+pub mod parallel;
 #[allow(unsafe_code)]
 pub mod petsc;
 pub mod report;
 pub mod scene;
-pub mod sparse;
 pub mod study;
 pub mod substructures;
-mod vec3;
 
 pub use error::{Error, Result};
 pub use feti::{FetiFeti, PcType, Primal, ProjectorKind, Scaling, Settings, Solution, Spectrum};
+pub use linalg::csr::Csr;
 pub use petsc::Session;
 pub use scene::Scene;
-pub use sparse::Csr;
 pub use substructures::{Entity, EntityKind, InterfaceRow, RowKind, Subdomain, Substructures};
 
 /// Runs `work` as the whole program: starts PETSc with the process's arguments (so that PETSc options work), ends it

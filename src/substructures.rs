@@ -3,7 +3,7 @@
 //! A scene and a MATIS both end here, and nothing to the right of this module knows where the matrices came
 //! from. Everything is distributed: a rank holds its own subdomains and provides its own rows.
 
-use crate::sparse::Csr;
+use crate::linalg::csr::Csr;
 
 /// One subdomain Ω_ij with its Dirichlet degrees of freedom eliminated.
 ///

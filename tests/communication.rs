@@ -2,7 +2,7 @@
 
 mod mpi;
 
-use fetifeti::feti::traffic;
+use fetifeti::parallel::traffic;
 use fetifeti::petsc::{counters, Session};
 use fetifeti::{FetiFeti, Result, Scene, Settings};
 use mpi::{run_case, run_fetifeti, Scratch};

@@ -3,7 +3,7 @@
 
 mod mpi;
 
-use fetifeti::feti::local::interior::{LocalSolver, Ordering, Solver};
+use fetifeti::cholesky::interior::{LocalSolver, Ordering, Solver};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::{FetiFeti, Scene, Settings};
 use mpi::{fetifeti, run_fetifeti};

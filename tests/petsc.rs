@@ -2,12 +2,12 @@
 
 mod mpi;
 
+use fetifeti::linalg::csr::Csr;
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::{
     cite, max_memory, Comm, Event, Is, Ksp, Mat, MatFlag, NormType, Options, Scatter, Session,
     ShellMat, ShellPc, Stage, Vec as PVec,
 };
-use fetifeti::sparse::Csr;
 use fetifeti::{Error, Result};
 use std::cell::Cell;
 use std::rc::Rc;

@@ -113,7 +113,7 @@ fn values(session: &Session) -> Result<()> {
     assert_eq!(sum.norm_inf()?, 0.0);
 
     // MATIS: every rank brings the 2 × 2 matrix of an edge; assembled they are the Laplacian with free ends.
-    let edge = fetifeti::sparse::Csr::from_triplets(
+    let edge = fetifeti::linalg::csr::Csr::from_triplets(
         2,
         &[(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)],
     );

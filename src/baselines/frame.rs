@@ -3,7 +3,7 @@
 //! The directions of the rows at the node are rows of M, unit vectors orthogonal to them the others. Directions need not be
 //! orthogonal to each other, but independent.
 
-use crate::vec3::{dot, norm};
+use crate::linalg::vec3::{dot, norm};
 
 /// A direction that is less than this off the span of those before it (its sine) cannot be told from them.
 const INDEPENDENT: f64 = 0.05;

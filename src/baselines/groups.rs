@@ -6,8 +6,8 @@
 //! ```
 
 use super::rows::Rows;
-use crate::feti::local::dense::Dense;
-use crate::feti::local::semidefinite::Semidefinite;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
 
 /// Disjoint sets of 0..n with known differences between the members.
 #[derive(Debug, Clone)]

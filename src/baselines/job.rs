@@ -14,7 +14,7 @@ use super::judge::judge;
 use super::table::{Baseline, Case, Format};
 use super::{contact, linear, ours};
 use crate::cli::problem;
-use crate::feti::exchange::{max_all, sum_all};
+use crate::parallel::exchange::{max_all, sum_all};
 use crate::petsc::{max_memory, Session};
 use crate::report::json;
 use crate::{Error, Result};

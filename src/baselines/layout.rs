@@ -12,11 +12,11 @@ use std::collections::BTreeMap;
 
 use super::frame::{parallel, Frame};
 use super::motions::{Echelon, Form, Motions};
-use crate::feti::exchange::sum_all;
+use crate::linalg::vec3::norm;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::scene::{Numbering, Scene};
 use crate::substructures::{InterfaceRow, RowKind};
-use crate::vec3::norm;
 use crate::Result;
 use std::ops::Range;
 

@@ -2,9 +2,9 @@
 
 use super::unknowns::Unknowns;
 use crate::fem::cell::rigid_count;
+use crate::linalg::vec3::ball;
 use crate::petsc::{Mat, Vec as PetscVec};
 use crate::scene::Scene;
-use crate::vec3::ball;
 use crate::Result;
 
 /// The rigid motions that a method wants to know.

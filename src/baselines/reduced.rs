@@ -11,7 +11,7 @@ use super::near::NearKernel;
 use super::rows::Rows;
 use super::system::System;
 use super::unknowns::Trace;
-use crate::feti::exchange::sum_all;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
 use crate::Result;
 

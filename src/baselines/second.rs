@@ -3,9 +3,9 @@
 
 use super::layout::Layout;
 use super::unknowns::Unknowns;
+use crate::linalg::vec3::ball;
 use crate::petsc::Vec as PetscVec;
 use crate::scene::Scene;
-use crate::vec3::ball;
 use crate::Result;
 
 /// How much the factor changes along x and y over half the size of the scene.

@@ -3,7 +3,7 @@
 use super::groups::Groups;
 use super::layout::Layout;
 use super::rows::Rows;
-use crate::feti::exchange::sum_all;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
 use crate::Result;
 use mpi::topology::SimpleCommunicator;

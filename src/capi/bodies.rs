@@ -5,8 +5,8 @@ use super::coordinates::Coordinates;
 use super::error::Kind;
 use super::handle::{alone, array, list, not_null, starts, together, Handle};
 use super::object::Given;
+use crate::linalg::csr::Csr;
 use crate::petsc::{raw, Attached, Mat};
-use crate::sparse::Csr;
 use std::ffi::c_int;
 
 #[no_mangle]

@@ -1,6 +1,6 @@
 //! How a Rust error reaches C: a status, and the sentence on request.
 
-use crate::feti::exchange::max_all;
+use crate::parallel::exchange::max_all;
 use crate::petsc::raw::{self, caught, settle};
 use crate::petsc::Session;
 use crate::{Error, Result};

@@ -8,10 +8,10 @@ use super::stack::{fits, Local, Stack};
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Grouping, Outcome, Torn};
-use crate::feti::exchange::{gather_all, max_all};
-use crate::feti::halo::Halo;
+use crate::linalg::csr::Csr;
+use crate::parallel::exchange::{gather_all, max_all};
+use crate::parallel::halo::Halo;
 use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
-use crate::sparse::Csr;
 use crate::{Error, Result, Settings};
 use std::collections::HashSet;
 

@@ -6,9 +6,9 @@ use super::error::Kind;
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::{modes, unassembled};
 use crate::embed::Piece;
-use crate::feti::exchange::gather_all;
+use crate::linalg::csr::Csr;
+use crate::parallel::exchange::gather_all;
 use crate::petsc::{Mat, Session, Vec as PetscVec};
-use crate::sparse::Csr;
 use crate::Result;
 
 /// A matrix with its own numbering.

@@ -1,12 +1,12 @@
 //! Equilibrium of every body: loads, forces on interfaces and obstacles, reactions; in elasticity by components and with moments.
 
 use super::contact::ContactRow;
-use crate::feti::exchange::sum_all;
 use crate::feti::FetiFeti;
+use crate::linalg::vec3::{cross, minus, norm};
+use crate::parallel::exchange::sum_all;
 use crate::petsc::Session;
 use crate::report::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Scene};
-use crate::vec3::{cross, minus, norm};
 use crate::Result;
 
 /// What acts on a body. Moments are about its centre.

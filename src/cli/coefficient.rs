@@ -1,6 +1,6 @@
 //! The coefficient in words: how far it ranges, and where it was read.
 
-use crate::feti::exchange::{max_all, min_all};
+use crate::parallel::exchange::{max_all, min_all};
 use crate::petsc::Session;
 use crate::scene::{Cells, Field, Scene};
 use crate::Result;

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::{areas, problem};
 use crate::contact::Step;
-use crate::feti::exchange::exchange_words;
 use crate::feti::{FetiFeti, Solution};
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::json;

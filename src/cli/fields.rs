@@ -5,9 +5,9 @@ use std::path::Path;
 
 use super::contact::{has_pressure, ContactRow};
 use crate::fem::cell::{centre_stress, CellStress};
-use crate::feti::exchange::exchange_words;
 use crate::feti::{FetiFeti, Solution};
 use crate::mesh::SubdomainMesh;
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::contact_fields::ContactFields;
 use crate::report::vtu::{Shape, Vtu};

@@ -8,11 +8,11 @@ use super::areas::side;
 use super::contact::{by_source, ContactRow};
 use super::fields::Gathered;
 use crate::fem::cell::CellStress;
+use crate::linalg::vec3::{minus, norm};
 use crate::report::field::{self, ContactMark, Field, Mesh, Values};
 use crate::report::solid::{self, FaceMark, Solid};
 use crate::report::ticks::{number, Scale};
 use crate::scene::Scene;
-use crate::vec3::{minus, norm};
 use crate::Result;
 
 /// Displacements are magnified so that the largest is at most this part of the scene's size.

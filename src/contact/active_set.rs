@@ -12,11 +12,12 @@
 use std::time::Instant;
 
 use super::{checkpoint, judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
-use crate::feti::dual::Dual;
-use crate::feti::exchange::{gather_all, max_all, sum_all};
-use crate::feti::inner::{target, to_the_end, Inner, Loads, Residual};
-use crate::feti::rows::Rows;
-use crate::feti::{recover, FetiFeti, Solution, Spectrum};
+use crate::feti::krylov::inner::{target, to_the_end, Inner, Loads, Residual};
+use crate::feti::krylov::recover;
+use crate::feti::operators::dual::Dual;
+use crate::feti::projector::rows::Rows;
+use crate::feti::{FetiFeti, Solution, Spectrum};
+use crate::parallel::exchange::{gather_all, max_all, sum_all};
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 

@@ -15,7 +15,7 @@ use std::rc::Rc;
 
 use super::balance::Balance;
 use super::mprgp::Bounded;
-use crate::feti::rows::Rows;
+use crate::feti::projector::rows::Rows;
 use crate::feti::FetiFeti;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
@@ -116,7 +116,7 @@ impl<'a> Augmented<'a> {
         for _ in 0..POWER_STEPS {
             balance.project(comm, &mut x);
             let mut size = [x.iter().map(|x| x * x).sum::<f64>()];
-            crate::feti::exchange::sum_all(comm, &mut size);
+            crate::parallel::exchange::sum_all(comm, &mut size);
             if size[0] == 0.0 {
                 break;
             }
@@ -125,7 +125,7 @@ impl<'a> Augmented<'a> {
             self.f(&x, &mut y)?;
             balance.project(comm, &mut y);
             let mut size = [y.iter().map(|y| y * y).sum::<f64>()];
-            crate::feti::exchange::sum_all(comm, &mut size);
+            crate::parallel::exchange::sum_all(comm, &mut size);
             largest = size[0].sqrt();
             std::mem::swap(&mut x, &mut y);
         }

@@ -2,10 +2,10 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::feti::exchange::sum_all;
-use crate::feti::local::dense::Dense;
-use crate::feti::local::semidefinite::Semidefinite;
-use crate::feti::rows::Rows;
+use crate::feti::projector::rows::Rows;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::exchange::sum_all;
 
 /// G (this rank's rows) with N = GᵀG factored; dependent columns are found and left out.
 pub struct Balance {

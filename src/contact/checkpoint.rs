@@ -13,9 +13,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::{Caution, State};
-use crate::feti::exchange::exchange_words;
-use crate::feti::jump::Jump;
+use crate::feti::jump::operator::Jump;
 use crate::feti::FetiFeti;
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::{Error, Result};

@@ -1,10 +1,10 @@
 //! How far a load lies outside the cone of the forces that rows can exert, for many rigid motions: by MPRGP, where the exact method
-//! of [`super::nnls`] would take too long.
+//! of [`crate::linalg::nnls`] would take too long.
 
 use mpi::topology::SimpleCommunicator;
 
 use super::mprgp::{Bounded, Setting};
-use crate::feti::local::dense::Dense;
+use crate::linalg::dense::Dense;
 use crate::Result;
 
 /// Products with GᵀG at most.
@@ -118,7 +118,7 @@ pub fn outside(g: &Dense, e: &[f64], equation: &[bool], enough: f64) -> Result<(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::nnls::nnls;
+    use crate::linalg::nnls::nnls;
     use crate::petsc::testing::with_session;
 
     #[test]

@@ -3,9 +3,9 @@
 //! Rows of different blocks share no dof, and u may take any values at the dofs of a block, so that B_E u = c_E, B_I u ≤ c_I has a
 //! solution if and only if every block has one; by Farkas' lemma, unless some λ with λ_I ≥ 0 has B ᵀλ = 0 and cᵀλ < 0.
 
-use super::nnls::nnls;
-use crate::feti::dual::Dual;
-use crate::feti::local::dense::Dense;
+use crate::feti::operators::dual::Dual;
+use crate::linalg::dense::Dense;
+use crate::linalg::nnls::nnls;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::{Error, Result};

@@ -3,8 +3,8 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use crate::feti::exchange::{gather_all, max_all, sum_all};
-use crate::feti::jump::Jump;
+use crate::feti::jump::operator::Jump;
+use crate::parallel::exchange::{gather_all, max_all, sum_all};
 
 /// A gap counts as violated above this multiple of the largest jump that is left on the rows that hold: a row that depends on
 /// three others inherits the sum of theirs.

@@ -17,13 +17,12 @@ pub mod feasible;
 pub mod judge;
 pub mod motion;
 pub mod mprgp;
-pub mod nnls;
 pub mod settings;
 pub mod smalbe;
 
 pub use settings::{ContactType, Settings};
 
-use crate::feti::jump::Jump;
+use crate::feti::jump::operator::Jump;
 use crate::feti::{FetiFeti, Solution, Spectrum};
 use crate::Result;
 

@@ -10,15 +10,15 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::cone;
-use super::nnls::nnls;
-use crate::feti::dual::Dual;
-use crate::feti::exchange::{gather_all, sum_all};
-use crate::feti::gtg::null_vectors;
-use crate::feti::jump::Jump;
-use crate::feti::local::dense::Dense;
-use crate::feti::local::semidefinite::Semidefinite;
-use crate::feti::natural::{moving, KernelLoad};
-use crate::feti::rows::Rows;
+use crate::feti::jump::operator::Jump;
+use crate::feti::operators::dual::Dual;
+use crate::feti::projector::gtg::null_vectors;
+use crate::feti::projector::natural::{moving, KernelLoad};
+use crate::feti::projector::rows::Rows;
+use crate::linalg::dense::Dense;
+use crate::linalg::nnls::nnls;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::exchange::{gather_all, sum_all};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 

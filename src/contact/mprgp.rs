@@ -6,7 +6,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::feti::exchange::{min_all, sum_all};
+use crate::parallel::exchange::{min_all, sum_all};
 use crate::Result;
 
 /// Γ: how much larger than the free gradient the chopped gradient may be before a face is left.

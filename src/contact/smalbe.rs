@@ -17,9 +17,9 @@ use super::active_set::{Run, Verdict};
 use super::augmented::Augmented;
 use super::mprgp::Setting;
 use super::{Caution, ContactType, Observer, State, Step};
-use crate::feti::exchange::sum_all;
-use crate::feti::inner::{Loads, Residual};
+use crate::feti::krylov::inner::{Loads, Residual};
 use crate::feti::{FetiFeti, Solution};
+use crate::parallel::exchange::sum_all;
 use crate::Result;
 
 /// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.

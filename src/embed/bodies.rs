@@ -2,7 +2,7 @@
 
 use super::hold::Bond;
 use super::parts::Part;
-use crate::feti::halo::Halo;
+use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::{Error, Result};
 use std::cmp::Reverse;

@@ -9,7 +9,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
-use crate::feti::exchange::{exchange_words, max_all};
+use crate::parallel::exchange::{exchange_words, max_all};
 use crate::petsc::Session;
 use crate::substructures::EntityKind;
 use mpi::traits::Communicator;

@@ -9,7 +9,7 @@ use super::parts::Part;
 use super::rows::body_dof;
 use super::states::State;
 use super::torn::Torn;
-use crate::feti::exchange::{exchange_words, gather_all};
+use crate::parallel::exchange::{exchange_words, gather_all};
 use crate::petsc::Session;
 use crate::substructures::{InterfaceRow, RowKind};
 use crate::{Error, Result};

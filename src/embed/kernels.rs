@@ -1,8 +1,8 @@
 //! Motions that cost no energy: the host's vectors on the subdomains, checked, and a good basis of them for every body.
 
 use super::parts::Part;
-use crate::feti::exchange::{max_all, sum_all};
-use crate::feti::halo::Halo;
+use crate::parallel::exchange::{max_all, sum_all};
+use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 

@@ -5,7 +5,7 @@
 
 use super::bodies::bodies;
 use super::hold::Bond;
-use crate::feti::exchange::sum_all;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{partition as by_petsc, Options, Session};
 use crate::Result;
 

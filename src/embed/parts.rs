@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::pieces::Piece;
 use super::states::State;
 use super::torn::Torn;
-use crate::sparse::Csr;
+use crate::linalg::csr::Csr;
 use crate::{Error, Result};
 
 /// Entries (i, j) and (j, i) may differ by this much of the diagonal.

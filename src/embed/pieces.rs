@@ -1,6 +1,6 @@
 //! Local matrices as the host stores them, and the subdomain matrices in them.
 
-use crate::sparse::Csr;
+use crate::linalg::csr::Csr;
 use std::collections::HashMap;
 
 /// One subdomain matrix of the host.

@@ -3,7 +3,7 @@
 use super::contact::Contact;
 use super::parts::Part;
 use super::sharing::Sharers;
-use crate::feti::exchange::exchange_words;
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::{InterfaceRow, RowKind};
 

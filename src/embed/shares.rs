@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::parts::Part;
 use super::states::State;
 use super::torn::Torn;
-use crate::feti::halo::Halo;
+use crate::parallel::halo::Halo;
 use crate::petsc::Session;
 use crate::{Error, Result};
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::parts::Part;
-use crate::feti::exchange::{exchange_words, gather_all, offsets};
+use crate::parallel::exchange::{exchange_words, gather_all, offsets};
 use crate::petsc::Session;
 use mpi::traits::Communicator;
 

@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 
 use super::torn::Torn;
-use crate::feti::exchange::exchange_words;
+use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use mpi::traits::Communicator;
 

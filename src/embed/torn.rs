@@ -1,7 +1,7 @@
 //! What a host program hands over: matrices of subdomains, as yet without a shape.
 
 use super::pieces::{torn_from, Piece};
-use crate::feti::halo::Halo;
+use crate::parallel::halo::Halo;
 use crate::petsc::{Attached, Mat, Session, Vec as PetscVec};
 use crate::substructures::RowKind;
 use crate::{Error, Result};

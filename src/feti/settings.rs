@@ -1,6 +1,6 @@
 //! What a user may choose, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
-use super::local::interior::{LocalSolver, Ordering, Solver};
+use crate::cholesky::interior::{LocalSolver, Ordering, Solver};
 use crate::petsc::{Options, Session};
 use crate::substructures::EntityKind;
 use crate::{Error, Result};

@@ -5,32 +5,36 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::adaptive;
-use super::choice;
-use super::clock::{self, Phase};
-use super::coarse::PrimalProblem;
-use super::correction;
+use super::adaptive::constraints as adaptive;
+use super::cost::choice;
 use super::deflation;
-use super::deluxe;
-use super::dual::{self, Dual, Shared};
-use super::entities;
-use super::factor::{factor, no_factor};
-use super::halo::Halo;
-use super::jump::Jump;
-use super::lifting::Lifting;
-use super::local::problem::LocalProblem;
-use super::local::scaled::Local;
-use super::natural::NaturalCoarse;
-use super::preconditioner::Preconditioner;
-use super::primal::PrimalSpace;
-use super::recover::{self, Judge, Solution};
-use super::refine::{self, Refinement};
+use super::interface::entities;
+use super::interface::sharing::Sharing;
+use super::jump::deluxe;
+use super::jump::operator::Jump;
+use super::jump::weights::weights;
+use super::krylov::correction;
+use super::krylov::recover;
+use super::krylov::recover::{Judge, Solution};
+use super::lifting::correction::Lifting;
+use super::operators::dual;
+use super::operators::dual::{Dual, Shared};
+use super::operators::preconditioner::Preconditioner;
+use super::operators::stiffness::Stiffness;
+use super::primal::coarse::PrimalProblem;
+use super::primal::refine;
+use super::primal::refine::Refinement;
+use super::primal::space::PrimalSpace;
+use super::projector::natural::NaturalCoarse;
 use super::settings::{PcType, Scaling, Settings};
-use super::sharing::Sharing;
-use super::stiffness::Stiffness;
-use super::team::Team;
-use super::weights::weights;
+use super::subdomain::factor::{factor, no_factor};
+use super::subdomain::problem::LocalProblem;
+use super::subdomain::scaled::Local;
 use crate::contact;
+use crate::parallel::clock;
+use crate::parallel::clock::Phase;
+use crate::parallel::halo::Halo;
+use crate::parallel::team::Team;
 use crate::petsc::{cite, Comm, Ksp, NormType, Session, Stage, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
@@ -310,7 +314,7 @@ impl FetiFeti {
 
     /// The identities that the theory promises, each with its relative defect, which must be about rounding. Collective.
     pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
-        super::check::identities(&self.session, &self.problem, &self.dual())
+        super::operators::check::identities(&self.session, &self.problem, &self.dual())
     }
 
     /// Facts about the problem.
@@ -386,7 +390,7 @@ fn facts(
     let active = contact.filter(|a| **a).count();
     let inequalities = jump.inequality.iter().filter(|i| **i).count();
     let mut counts = [active as f64, inequalities as f64];
-    super::exchange::sum_all(comm, &mut counts);
+    crate::parallel::exchange::sum_all(comm, &mut counts);
     let mut kinds: Vec<&Arc<LocalProblem>> = stiffness.locals.iter().map(Local::kind).collect();
     kinds.sort_by_key(|l| Arc::as_ptr(l));
     kinds.dedup_by(|a, b| Arc::ptr_eq(a, b));

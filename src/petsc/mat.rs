@@ -2,7 +2,7 @@
 
 use super::handle::Handle;
 use super::{Comm, Session, Vec};
-use crate::sparse::Csr;
+use crate::linalg::csr::Csr;
 use crate::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;

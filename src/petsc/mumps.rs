@@ -1,7 +1,7 @@
 //! MUMPS on this process alone.
 //!
 //! MUMPS keeps a list of its instances in variables of the process and speaks to MPI, which most programs start for one thread: all calls are
-//! made one at a time, and [`LocalSolver::most_threads`](crate::feti::local::interior::LocalSolver::most_threads) keeps them on the thread that
+//! made one at a time, and [`LocalSolver::most_threads`](crate::cholesky::interior::LocalSolver::most_threads) keeps them on the thread that
 //! started MPI.
 
 use std::os::raw::c_int;

@@ -1,6 +1,6 @@
 //! The surface of bodies made of hexahedra as pictures see it: outer faces, edges of bodies, lines between subdomains.
 
-use crate::vec3::{cross, norm};
+use crate::linalg::vec3::{cross, norm};
 use crate::{Error, Result};
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;

@@ -1,7 +1,7 @@
 //! Coefficients by element: their values, the weights that follow from them, how far they range.
 
-use super::field::Field;
 use super::joint::evaluate;
+use super::model::field::Field;
 use super::{Body, Scene};
 use crate::error::Result;
 use crate::mesh::{Block, SubdomainMesh};

@@ -1,17 +1,17 @@
 //! From a scene to [`Substructures`]: subdomain by subdomain, row by row.
 
 use super::coefficient::{by_element, stiffest};
-use super::field::{At, Field};
-use super::spec::Force;
-use super::steps::Factors;
-use super::topology::{entities, rigid_motions};
+use super::geometry::topology::{entities, rigid_motions};
+use super::model::field::{At, Field};
+use super::model::spec::Force;
+use super::model::steps::Factors;
 use super::validate::{bad_load, bad_spring, checked_poisson, checked_rho};
 use super::{Body, Scene, Variables};
 use crate::error::Result;
 use crate::fem;
+use crate::linalg::vec3::{cross, minus};
 use crate::mesh::{Block, SubdomainMesh};
 use crate::substructures::{Subdomain, Substructures};
-use crate::vec3::{cross, minus};
 use rayon::prelude::*;
 
 impl Scene {

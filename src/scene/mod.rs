@@ -11,58 +11,39 @@
 //! what happens on the boundaries of bodies, O(boundary nodes), and is the same on every rank; matrices are made
 //! subdomain by subdomain, on the rank that owns the subdomain. Coefficients from arrays in files are read there, too.
 
-mod bounds;
-mod cells;
 mod coefficient;
-mod document;
-mod dual;
-mod entries;
-mod expr;
-mod field;
-mod interface;
+pub(crate) mod geometry;
 mod joint;
-mod links;
-mod map;
-mod normals;
+pub(crate) mod model;
 mod numbering;
-mod obstacles;
 mod plan;
-mod points;
-mod profile;
 mod read;
-mod rigid;
-mod rows;
-mod select;
-mod sides;
-mod spec;
-mod steps;
-mod topology;
-mod union_find;
+pub(crate) mod rows;
 mod validate;
 
-pub use cells::{Cells, NumberFormat, Tone};
-pub use dual::Dual;
-pub use expr::{Expr, Variables};
-pub use field::{At, By, Field, Region};
-pub use interface::{Interface, Link, Shape, SharedNode};
-pub use map::{BodyShape, Map, Round};
-pub use numbering::Numbering;
-pub use obstacles::Obstacle;
-pub use plan::{BodyPlan, InterfacePlan, Plan};
-pub use points::{Direction, Member, Point, PointBound, PointRow};
-pub use profile::{Limit, Limits, Profile};
-pub use rigid::Rigid;
-pub use rows::{RowLabel, RowSource};
-pub use spec::{
+pub use geometry::interface::{Interface, Link, Shape, SharedNode};
+pub use model::cells::{Cells, NumberFormat, Tone};
+pub use model::expr::gradient::Dual;
+pub use model::expr::{Expr, Variables};
+pub use model::field::{At, By, Field, Region};
+pub use model::map::{BodyShape, Map, Round};
+pub use model::profile::{Limit, Limits, Profile};
+pub use model::rigid::Rigid;
+pub use model::spec::{
     free_all_round, held_all_round, lee, BodySpec, ByDefault, ContactSpec, Extent, Faces, Force,
     GridSpec, Load, ObstacleSpec, Pair, SceneSpec, Sides, SurfaceLoad, TieSpec, SIDES,
 };
-pub use steps::{Ramp, Steps, StepsSpec};
+pub use model::steps::{Ramp, Steps, StepsSpec};
+pub use numbering::Numbering;
+pub use plan::{BodyPlan, InterfacePlan, Plan};
+pub use rows::obstacles::Obstacle;
+pub use rows::points::{Direction, Member, Point, PointBound, PointRow};
+pub use rows::table::{RowLabel, RowSource};
 
 use crate::error::{Error, Result};
 use crate::fem::Form;
+use crate::linalg::vec3::ball;
 use crate::mesh::BoxMesh;
-use crate::vec3::ball;
 use std::path::Path;
 
 /// A body of a checked scene.
@@ -172,10 +153,11 @@ impl Scene {
             first_dof += (nodes * components) as u64;
             first_subdomain += subdomains;
         }
-        let interfaces = entries::find(&bodies, &spec, &steps)?;
-        let obstacles = obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
-        let mut points = points::collect(&mut bodies, &interfaces)?;
-        bounds::Checks::new(&bodies, &interfaces, &obstacles, &spec, &steps).apply(&mut points)?;
+        let interfaces = rows::entries::find(&bodies, &spec, &steps)?;
+        let obstacles = rows::obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
+        let mut points = rows::points::collect(&mut bodies, &interfaces)?;
+        rows::bounds::Checks::new(&bodies, &interfaces, &obstacles, &spec, &steps)
+            .apply(&mut points)?;
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             title: spec.title,

@@ -1,7 +1,7 @@
 //! What will be built for a scene, counted without building it.
 
-use super::interface::{Link, Shape};
-use super::points::PointRow;
+use super::geometry::interface::{Link, Shape};
+use super::rows::points::PointRow;
 use super::{Body, Scene};
 use crate::error::Result;
 use crate::mesh::{places, BoxMesh};

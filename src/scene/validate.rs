@@ -1,7 +1,7 @@
 //! Checks of a scene that look at one body at a time.
 
-use super::field::{At, Field};
-use super::spec::{BodySpec, Force, SceneSpec, SIDES};
+use super::model::field::{At, Field};
+use super::model::spec::{BodySpec, Force, SceneSpec, SIDES};
 use super::{Body, Variables};
 use crate::error::{Error, Result};
 use crate::fem::cell::jacobian_is_positive;

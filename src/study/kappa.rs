@@ -149,7 +149,7 @@ pub fn grid(
     let mine = crate::share(session, scene.n_subdomains());
     let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
     let mut dofs = [problem.local.iter().map(|s| s.k.n() as f64).sum::<f64>()];
-    crate::feti::exchange::sum_all(session.comm(), &mut dofs);
+    crate::parallel::exchange::sum_all(session.comm(), &mut dofs);
     let found = |pc: PcType| -> Result<Found> {
         let settings = Settings {
             pc_type: Some(pc),

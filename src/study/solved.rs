@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use crate::cli::problem;
-use crate::feti::exchange::gather_all;
 use crate::feti::{FetiFeti, Settings, Solution};
+use crate::parallel::exchange::gather_all;
 use crate::petsc::{Options, Session};
 use crate::scene::{Member, Numbering, RowLabel, RowSource, Scene};
 use crate::{Error, Result};

@@ -10,8 +10,8 @@ pub mod compare;
 use std::collections::BTreeMap;
 
 use crate::qp::{Outcome, Qp, Row, Solved};
+use fetifeti::linalg::csr::Csr;
 use fetifeti::scene::Scene;
-use fetifeti::sparse::Csr;
 use fetifeti::substructures::{InterfaceRow, RowKind, Substructures};
 
 /// Where a row of the problem went.

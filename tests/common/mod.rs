@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use fetifeti::sparse::Csr;
+use fetifeti::linalg::csr::Csr;
 use fetifeti::substructures::{InterfaceRow, RowKind, Subdomain, Substructures};
 
 /// N_b × N_b bodies of N_s × N_s subdomains of n × n bilinear elements on the unit square, held on its whole boundary.

@@ -3,8 +3,8 @@
 use crate::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use crate::assembled::{Assembled, Reference};
 use fetifeti::contact::ContactType;
-use fetifeti::feti::exchange::gather_all;
 use fetifeti::feti::{FetiFeti, Settings};
+use fetifeti::parallel::exchange::gather_all;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::{Error, Result};

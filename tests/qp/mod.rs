@@ -17,7 +17,7 @@ mod polish;
 pub mod scaled;
 
 use faer::{Mat, Side};
-use fetifeti::sparse::Csr;
+use fetifeti::linalg::csr::Csr;
 
 pub use certificate::Kkt;
 

@@ -6,7 +6,7 @@ mod element;
 
 use std::collections::BTreeMap;
 
-use fetifeti::sparse::Csr;
+use fetifeti::linalg::csr::Csr;
 use fetifeti::substructures::{
     Entity, EntityKind, InterfaceRow, RowKind, Subdomain, Substructures,
 };

@@ -3,7 +3,7 @@
 use super::map::place;
 use super::reference::{for_each, ReferencePoint, Rule};
 use super::Element;
-use crate::vec3::{cross, norm};
+use crate::linalg::vec3::{cross, norm};
 
 /// A side of a cell: where coordinate `axis` of the unit cell is 0 or 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,10 +10,10 @@
 //! change nothing on V, where they are balanced already, and put the reaction where the body is stiff.
 
 use super::pencil::Pencil;
-use crate::feti::dual::Dual;
-use crate::feti::exchange::sum_all;
-use crate::feti::local::dense::Dense;
-use crate::feti::local::semidefinite::Semidefinite;
+use crate::feti::operators::dual::Dual;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 

@@ -1,13 +1,14 @@
 //! W, F W and Wᵀ F W for the rows that hold, and P_2 made of them.
 
 use super::balance::Balance;
-use super::graph::BodyGraph;
 use super::panels::Panels;
-use super::sweep::{self, Column};
-use crate::feti::dual::Dual;
-use crate::feti::exchange::sum_all;
-use crate::feti::local::dense::Dense;
-use crate::feti::local::semidefinite::Semidefinite;
+use crate::feti::operators::dual::Dual;
+use crate::feti::projector::graph::BodyGraph;
+use crate::feti::projector::sweep;
+use crate::feti::projector::sweep::Column;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 

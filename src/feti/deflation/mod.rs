@@ -15,31 +15,29 @@
 //! ```
 
 pub mod balance;
-pub mod graph;
 pub mod matrices;
 pub mod panels;
 pub mod pencil;
 pub mod search;
-pub mod sweep;
 pub mod whole;
 
 use std::time::Instant;
 
 use mpi::topology::SimpleCommunicator;
 
-use self::balance::Balance;
-use self::graph::BodyGraph;
-use self::matrices::Matrices;
-use self::pencil::Pencil;
-use self::sweep::Column;
-use self::whole::Whole;
-use super::dual::Dual;
-use super::exchange::max_all;
+use super::krylov::spectrum::Spectrum;
+use super::operators::dual::Dual;
+use super::projector::graph::BodyGraph;
+use super::projector::sweep::{self, Column};
 use super::settings::Adaptive;
-use super::spectrum::Spectrum;
+use crate::parallel::exchange::max_all;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::Result;
+use balance::Balance;
+use matrices::Matrices;
+use pencil::Pencil;
+use whole::Whole;
 
 /// What was found and what it cost; the same on every rank except for the seconds.
 #[derive(Debug, Clone, Default)]

@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::sweep::Column;
-use crate::feti::local::dense::{multiply, Dense};
+use crate::feti::projector::sweep::Column;
+use crate::linalg::dense::{multiply, Dense};
 
 /// Consecutive columns with the same reach.
 #[derive(Debug, Default)]

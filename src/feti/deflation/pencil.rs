@@ -11,12 +11,12 @@
 
 use std::ops::Range;
 
-use super::graph::BodyGraph;
 use super::search::Pencils;
-use crate::feti::dual::Dual;
-use crate::feti::exchange::sum_all;
-use crate::feti::local::dense::Dense;
-use crate::feti::local::semidefinite::Semidefinite;
+use crate::feti::operators::dual::Dual;
+use crate::feti::projector::graph::BodyGraph;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;

@@ -12,8 +12,8 @@ use std::ops::Range;
 
 use super::search::Pencils;
 use super::Deflation;
-use crate::feti::dual::Dual;
-use crate::feti::exchange::sum_all;
+use crate::feti::operators::dual::Dual;
+use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 

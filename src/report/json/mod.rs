@@ -252,7 +252,7 @@ pub struct PerIteration {
 
 impl From<crate::feti::Communication> for Communication {
     fn from(c: crate::feti::Communication) -> Communication {
-        let both = |q: crate::feti::tally::PerIteration| PerIteration {
+        let both = |q: crate::feti::krylov::tally::PerIteration| PerIteration {
             sum: q.sum,
             max: q.max,
         };

@@ -1,11 +1,11 @@
 //! Coefficients from files.
 
+use super::document::{Item, Section};
 use super::fields::Shape;
 use super::Reader;
 use crate::error::Result;
-use crate::scene::cells::{Cells, NumberFormat, Tone};
-use crate::scene::document::{Item, Section};
-use crate::scene::field::Field;
+use crate::scene::model::cells::{Cells, NumberFormat, Tone};
+use crate::scene::model::field::Field;
 use std::path::{Path, PathBuf};
 
 impl<'a> Reader<'a> {

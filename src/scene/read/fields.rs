@@ -1,11 +1,11 @@
 //! Coefficients, loads and boundary values in all their forms.
 
+use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
 use crate::fem::Quadrature;
-use crate::scene::document::{Item, Section, Value};
-use crate::scene::expr::Expr;
-use crate::scene::field::{By, Field, Region};
+use crate::scene::model::expr::Expr;
+use crate::scene::model::field::{By, Field, Region};
 
 /// What tables of values are checked against.
 pub(super) struct Shape {

@@ -1,11 +1,11 @@
 //! What is solved: dimension, physics, elements; the exact solution.
 
+use super::document::{Item, Section, Source, Value};
 use super::Reader;
 use crate::error::Result;
 use crate::fem::cell::{Cure, Element, Plane};
 use crate::fem::{Form, Physics};
-use crate::scene::document::{Item, Section, Source, Value};
-use crate::scene::expr::Expr;
+use crate::scene::model::expr::Expr;
 
 impl<'a> Reader<'a> {
     /// Reads the keys of the scene that everything else depends on.

@@ -1,6 +1,7 @@
 //! From TOML to a [`SceneSpec`]: keys, types and shapes.
 
 mod cells;
+pub(crate) mod document;
 mod fields;
 mod form;
 mod shape;
@@ -9,15 +10,15 @@ mod steps;
 mod ties;
 mod values;
 
-use super::document::{Item, Section, Source, Value};
-use super::field::{By, Field};
-use super::spec::{
+use super::model::field::{By, Field};
+use super::model::spec::{
     free_all_round, BodySpec, ByDefault, GridSpec, Load, SceneSpec, Sides, SurfaceLoad, POISSON,
 };
 use super::validate::MOST_BODIES;
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use crate::mesh::BoxMesh;
+use document::{Item, Section, Source, Value};
 use fields::Shape;
 use values::MOST;
 

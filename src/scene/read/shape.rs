@@ -1,12 +1,12 @@
 //! `shape` of a body, and the rigid bodies that obstacles are.
 
+use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
-use crate::scene::document::{Item, Section, Value};
-use crate::scene::expr::Expr;
-use crate::scene::map::{BodyShape, Map, Round};
-use crate::scene::rigid::Rigid;
-use crate::vec3::norm;
+use crate::linalg::vec3::norm;
+use crate::scene::model::expr::Expr;
+use crate::scene::model::map::{BodyShape, Map, Round};
+use crate::scene::model::rigid::Rigid;
 
 impl<'a> Reader<'a> {
     /// How a box is bent: coordinates as expressions, or a named shape with its measures.

@@ -1,10 +1,10 @@
 //! What is written for sides of bodies: given values, fluxes, tractions, pressures.
 
+use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
-use crate::scene::document::{Item, Section, Value};
-use crate::scene::field::Field;
-use crate::scene::spec::{free_all_round, held_all_round, Force, Sides, SurfaceLoad, SIDES};
+use crate::scene::model::field::Field;
+use crate::scene::model::spec::{free_all_round, held_all_round, Force, Sides, SurfaceLoad, SIDES};
 
 impl<'a> Reader<'a> {
     /// Dirichlet conditions: "all", "none", a list of sides held at zero, or a table of values.

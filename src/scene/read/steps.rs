@@ -1,10 +1,10 @@
 //! `[steps]`, `ramp`, and gaps and bounds in all their forms.
 
+use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
-use crate::scene::document::{Item, Section, Value};
-use crate::scene::profile::Profile;
-use crate::scene::steps::{Ramp, StepsSpec};
+use crate::scene::model::profile::Profile;
+use crate::scene::model::steps::{Ramp, StepsSpec};
 
 /// Largest number of load steps.
 const MOST_STEPS: usize = 1 << 20;

@@ -1,10 +1,12 @@
 //! [interface], [[tie]], [[contact]] and [[obstacle]].
 
+use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
-use crate::scene::document::{Item, Section, Value};
-use crate::scene::profile::Profile;
-use crate::scene::spec::{BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec};
+use crate::scene::model::profile::Profile;
+use crate::scene::model::spec::{
+    BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec,
+};
 
 impl<'a> Reader<'a> {
     pub(super) fn interface(&self, item: &'a Item) -> Result<ByDefault> {

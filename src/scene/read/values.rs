@@ -1,10 +1,10 @@
 //! Single values: numbers, texts, counts, sizes, each with a message for what is found instead.
 
+use super::document::{Item, Value};
 use super::Reader;
 use crate::error::{Error, Result};
-use crate::scene::document::{Item, Value};
-use crate::scene::expr::Expr;
-use crate::scene::spec::SIDES;
+use crate::scene::model::expr::Expr;
+use crate::scene::model::spec::SIDES;
 
 /// Largest number of elements or subdomains along one side of a body: a slip of the pen must not exhaust the memory
 /// before anything can be said about it.

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use super::direct::Direct;
 use super::solved::Solved;
-use crate::feti::exchange::gather_all;
 use crate::feti::Settings;
+use crate::parallel::exchange::gather_all;
 use crate::petsc::Session;
 use crate::report::json;
 use crate::report::table::{count, fixed, scientific, Align, Table};

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::theory::{Contact, Pair};
+use crate::linalg::vec3::dot;
 use crate::scene::{Member, RowSource, Scene};
 use crate::study::solved::Row;
-use crate::vec3::dot;
 
 /// The pressure at a node that may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]

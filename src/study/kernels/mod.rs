@@ -1,4 +1,4 @@
-//! `study kernels`: every solver of [`crate::feti::local::interior`] in every order, on the matrices of subdomains.
+//! `study kernels`: every solver of [`crate::cholesky::interior`] in every order, on the matrices of subdomains.
 //!
 //! A subdomain is the middle one of three in every direction, so that it floats and its whole surface is interface Γ. Measured are, on one
 //! thread and without the analysis of the pattern, L Lᵀ = K_II, a solve with it, and S on Γ. All combinations of a case run one after the
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use crate::feti::local::interior::{Keep, LocalSolver, NoFactor, Ordering, Solver};
+use crate::cholesky::interior::{Keep, LocalSolver, NoFactor, Ordering, Solver};
 use crate::petsc::Session;
 use crate::{Error, Result};
 use subdomain::Sample;

@@ -1,8 +1,8 @@
 //! The matrix of a subdomain that touches no side, with loads whose solutions are known.
 
 use super::Case;
+use crate::linalg::csr::Csr;
 use crate::scene::Scene;
-use crate::sparse::Csr;
 use crate::{Error, Result};
 
 /// A floating subdomain.

@@ -1,7 +1,7 @@
 //! What `study kernels` prints: ours in milliseconds, the others as ratios.
 
 use super::{Report, Row, WORTH_CHANGING};
-use crate::feti::local::interior::{Ordering, Solver};
+use crate::cholesky::interior::{Ordering, Solver};
 use crate::report::table::{Align, Table};
 
 /// A column of seconds.

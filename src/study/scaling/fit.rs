@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::nnls::nnls;
-use crate::feti::local::dense::Dense;
+use crate::linalg::dense::Dense;
+use crate::linalg::nnls::nnls;
 
 /// A measurement of this part of the largest one counts relative to itself and this part of the largest: clocks and caches make small ones uncertain.
 const SMALL: f64 = 0.01;

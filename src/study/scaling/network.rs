@@ -7,7 +7,7 @@ use mpi::traits::{Communicator, CommunicatorCollectives, Destination, Source};
 use serde::{Deserialize, Serialize};
 
 use super::fit::Law;
-use crate::feti::exchange::sum_all;
+use crate::parallel::exchange::sum_all;
 
 /// Numbers in the messages that are measured.
 const LENGTHS: [usize; 8] = [1, 8, 64, 512, 2048, 8192, 32_768, 131_072];

@@ -1,0 +1,141 @@
+//! The smallest vertex cover of a bipartite graph: the smallest separator that a cut of a graph allows.
+//!
+//! By König's theorem it has as many vertices as a largest matching has edges. With Z all vertices that are reached from free left ones by
+//! paths that take edges of the matching from right to left alone, it is (left \ Z) ∪ (right ∩ Z).
+
+const FREE: u32 = u32::MAX;
+
+/// Marks the cover on both sides; `edges` has the right neighbours of each left vertex. Without free left vertices it is the left side.
+pub fn smallest(edges: &[Vec<u32>], n_right: usize) -> (Vec<bool>, Vec<bool>) {
+    let mut matching = Matching {
+        edges,
+        of_left: vec![FREE; edges.len()],
+        of_right: vec![FREE; n_right],
+        visited: vec![FREE; n_right],
+        round: 0,
+    };
+    // What can be matched at once mostly is; the rest along augmenting paths.
+    for (l, of) in edges.iter().enumerate() {
+        let free = |r: &&u32| matching.of_right[**r as usize] == FREE;
+        if let Some(&r) = of.iter().find(free) {
+            matching.pair(l, r);
+        }
+    }
+    for l in 0..edges.len() {
+        if matching.of_left[l] == FREE {
+            matching.augment(l);
+        }
+    }
+    matching.cover()
+}
+
+struct Matching<'a> {
+    edges: &'a [Vec<u32>],
+    of_left: Vec<u32>,
+    of_right: Vec<u32>,
+    /// The round in which a right vertex was seen last.
+    visited: Vec<u32>,
+    round: u32,
+}
+
+impl Matching<'_> {
+    fn pair(&mut self, l: usize, r: u32) {
+        self.of_left[l] = r;
+        self.of_right[r as usize] = l as u32;
+    }
+
+    /// Looks for a path from the free left vertex `start` to a free right one, breadth first, and swaps its edges.
+    fn augment(&mut self, start: usize) {
+        let round = self.round;
+        self.round += 1;
+        // Edges of paths: (left, right, edge before), and left vertices with the edge before them.
+        let mut steps: Vec<(usize, u32, u32)> = Vec::new();
+        let mut queue = vec![(start, FREE)];
+        let mut head = 0;
+        while let Some(&(l, before)) = queue.get(head) {
+            head += 1;
+            for &r in &self.edges[l] {
+                if std::mem::replace(&mut self.visited[r as usize], round) == round {
+                    continue;
+                }
+                let here = steps.len() as u32;
+                steps.push((l, r, before));
+                match self.of_right[r as usize] {
+                    FREE => return self.swap(&steps),
+                    next => queue.push((next as usize, here)),
+                }
+            }
+        }
+    }
+
+    /// Matches along the path that ends with the last step.
+    fn swap(&mut self, steps: &[(usize, u32, u32)]) {
+        let mut at = steps.len() - 1;
+        loop {
+            let (l, r, before) = steps[at];
+            self.pair(l, r);
+            if before == FREE {
+                return;
+            }
+            at = before as usize;
+        }
+    }
+
+    fn cover(&self) -> (Vec<bool>, Vec<bool>) {
+        let mut left = vec![true; self.edges.len()];
+        let mut right = vec![false; self.of_right.len()];
+        let free = (0..left.len()).filter(|&l| self.of_left[l] == FREE);
+        let mut queue: Vec<usize> = free.collect();
+        while let Some(l) = queue.pop() {
+            left[l] = false;
+            for &r in &self.edges[l] {
+                if !std::mem::replace(&mut right[r as usize], true) {
+                    // Matched, or there would be an augmenting path.
+                    queue.push(self.of_right[r as usize] as usize);
+                }
+            }
+        }
+        (left, right)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::testing::random;
+
+    /// The size of the smallest set that covers all edges, by trying all sets of left vertices.
+    fn exhaustive(edges: &[Vec<u32>], n_right: usize) -> usize {
+        let sets = 0..1u32 << edges.len();
+        let size = |set: u32| {
+            let mut right = vec![false; n_right];
+            for (_, of) in edges.iter().enumerate().filter(|(l, _)| set >> l & 1 == 0) {
+                of.iter().for_each(|&r| right[r as usize] = true);
+            }
+            set.count_ones() as usize + right.iter().filter(|r| **r).count()
+        };
+        sets.map(size).min().expect("the empty set is one")
+    }
+
+    #[test]
+    fn covers_are_covers_and_smallest() {
+        for seed in 0..200 {
+            let (n, m) = (1 + seed % 9, 1 + seed * 7 % 11);
+            let draw = random(n * m, seed as u64 + 1);
+            let density = -0.9 + 0.15 * (seed % 8) as f64;
+            let of = |l: usize| {
+                (0..m)
+                    .filter(|r| draw[l * m + r] < density)
+                    .map(|r| r as u32)
+                    .collect()
+            };
+            let edges: Vec<Vec<u32>> = (0..n).map(of).collect();
+            let (left, right) = smallest(&edges, m);
+            for (l, of) in edges.iter().enumerate() {
+                assert!(left[l] || of.iter().all(|&r| right[r as usize]), "{seed}");
+            }
+            let size = left.iter().chain(&right).filter(|c| **c).count();
+            assert_eq!(size, exhaustive(&edges, m), "{seed}");
+        }
+    }
+}

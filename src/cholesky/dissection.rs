@@ -1,0 +1,246 @@
+//! Nested dissection: the elimination tree of a subdomain's interior.
+//!
+//! The tree's nodes are the supernodes of the factorisation. A leaf is a small set eliminated as one dense front;
+//! an inner node is the separator of its two children. Cutting at the median of a coordinate gives orderings of
+//! METIS quality on boxes at no cost; without coordinates the breadth-first distance from a
+//! far node takes the coordinate's place. The separator is the smallest one that the cut allows (`cover.rs`): a layer of
+//! nodes, even if they have been moved and the cut runs to and fro between two layers.
+
+use super::cover;
+use crate::linalg::csr::Csr;
+
+/// Sets of at most this many dofs are eliminated as one dense front: below it the dense kernels' overhead
+/// outweighs the fill that cutting further would save.
+const LEAF: usize = 12;
+
+/// The supernodes of the interior in elimination order (children before parents).
+#[derive(Debug, Clone, Default)]
+pub struct Dissection {
+    /// Dofs of each supernode.
+    pub supernodes: Vec<Vec<u32>>,
+}
+
+/// Orders the dofs listed in `interior` of the graph of `k` by nested dissection.
+///
+/// `coordinates`, if given, has one position per dof of `k`.
+pub fn nested_dissection(
+    k: &Csr,
+    interior: &[u32],
+    coordinates: Option<&[[f64; 3]]>,
+) -> Dissection {
+    let mut work = Work {
+        k,
+        coordinates,
+        part: vec![NONE; k.n()],
+        distance: vec![0; k.n()],
+        out: Dissection::default(),
+        next_part: 0,
+    };
+    work.dissect(interior.to_vec());
+    work.out
+}
+
+const NONE: u32 = u32::MAX;
+
+struct Work<'a> {
+    k: &'a Csr,
+    coordinates: Option<&'a [[f64; 3]]>,
+    /// The set that a dof belongs to at the moment; `NONE` for dofs outside every live set.
+    part: Vec<u32>,
+    /// Breadth-first distance, valid inside the set that is being cut.
+    distance: Vec<u32>,
+    out: Dissection,
+    next_part: u32,
+}
+
+impl Work<'_> {
+    fn dissect(&mut self, set: Vec<u32>) {
+        if set.len() <= LEAF {
+            if !set.is_empty() {
+                self.finish(set);
+            }
+            return;
+        }
+        let (lower, upper) = match self.cut_by_coordinate(&set) {
+            Some(cut) => cut,
+            None => match self.cut_by_distance(&set) {
+                Some(cut) => cut,
+                // Nothing can be cut off (a dense block): one front for all.
+                None => return self.finish(set),
+            },
+        };
+        let (lower, upper, separator) = self.separate(lower, upper);
+        self.dissect(lower);
+        self.dissect(upper);
+        if !separator.is_empty() {
+            self.finish(separator);
+        }
+    }
+
+    /// Takes the fewest dofs out of both sides so that no edge goes from one to the other: (lower, upper, separator).
+    fn separate(&mut self, lower: Vec<u32>, upper: Vec<u32>) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
+        // Dofs of `upper` that `lower` sees get numbers as they turn up.
+        let (unseen, first) = (self.next_part, self.next_part + 1);
+        upper.iter().for_each(|&i| self.part[i as usize] = unseen);
+        let (mut edges, mut layer, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+        for &i in &lower {
+            let mut of = Vec::new();
+            for &j in self.k.row(i as usize).0 {
+                let part = &mut self.part[j as usize];
+                if *part == unseen {
+                    *part = first + seen.len() as u32;
+                    seen.push(j);
+                }
+                if *part != NONE && *part >= first {
+                    of.push(*part - first);
+                }
+            }
+            if !of.is_empty() {
+                edges.push(of);
+                layer.push(i);
+            }
+        }
+        upper.iter().for_each(|&i| self.part[i as usize] = NONE);
+        let (left, right) = cover::smallest(&edges, seen.len());
+        let chosen = |dofs: &[u32], cover: &[bool]| -> Vec<u32> {
+            let both = dofs.iter().zip(cover).filter(|c| *c.1);
+            both.map(|c| *c.0).collect()
+        };
+        let separator = [chosen(&layer, &left), chosen(&seen, &right)].concat();
+        separator
+            .iter()
+            .for_each(|&i| self.part[i as usize] = unseen);
+        let rest = |set: Vec<u32>| -> Vec<u32> {
+            let outside = set.into_iter().filter(|&i| self.part[i as usize] == NONE);
+            outside.collect()
+        };
+        let (lower, upper) = (rest(lower), rest(upper));
+        separator.iter().for_each(|&i| self.part[i as usize] = NONE);
+        (lower, upper, separator)
+    }
+
+    fn finish(&mut self, set: Vec<u32>) {
+        self.out.supernodes.push(set);
+    }
+
+    /// Halves the set at the median of its longest extent; `None` without coordinates or when all coincide.
+    fn cut_by_coordinate(&self, set: &[u32]) -> Option<(Vec<u32>, Vec<u32>)> {
+        let x = self.coordinates?;
+        let axis_of = |axis: usize| {
+            let values = set.iter().map(|&i| x[i as usize][axis]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            });
+            (high - low, low, high)
+        };
+        let axis = (0..3)
+            .max_by(|&a, &b| axis_of(a).0.total_cmp(&axis_of(b).0).then(b.cmp(&a)))
+            .expect("there are three axes");
+        let (extent, _, high) = axis_of(axis);
+        if extent <= 0.0 || !extent.is_finite() {
+            return None;
+        }
+        let mut values: Vec<f64> = set.iter().map(|&i| x[i as usize][axis]).collect();
+        let middle = values.len() / 2;
+        let (_, &mut median, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+        // Equal coordinates stay on one side, and the upper side is never empty.
+        let tolerance = 1e-9 * extent;
+        let cut = if median >= high - tolerance {
+            high - tolerance
+        } else {
+            median + tolerance
+        };
+        let (lower, upper): (Vec<u32>, Vec<u32>) =
+            set.iter().partition(|&&i| x[i as usize][axis] < cut);
+        (!lower.is_empty() && !upper.is_empty()).then_some((lower, upper))
+    }
+
+    /// Halves the set by breadth-first distance from a node at its rim.
+    fn cut_by_distance(&mut self, set: &[u32]) -> Option<(Vec<u32>, Vec<u32>)> {
+        let first = self.breadth_first(set, set[0]);
+        let far = *first.last().expect("the start itself is reached");
+        let order = self.breadth_first(set, far);
+        if order.len() < set.len() {
+            // Not connected: the component that was reached against the rest needs no separator.
+            let (reached, rest) = set
+                .iter()
+                .partition(|&&i| self.distance[i as usize] != NONE);
+            return Some((reached, rest));
+        }
+        let level = self.distance[order[order.len() / 2] as usize];
+        let last = self.distance[*order.last().expect("not empty") as usize];
+        let level = level.min(last.checked_sub(1)?);
+        let (lower, upper): (Vec<u32>, Vec<u32>) = set
+            .iter()
+            .partition(|&&i| self.distance[i as usize] <= level);
+        (!lower.is_empty() && !upper.is_empty()).then_some((lower, upper))
+    }
+
+    fn breadth_first(&mut self, set: &[u32], start: u32) -> Vec<u32> {
+        let mark = self.next_part;
+        self.next_part += 1;
+        for &i in set {
+            self.part[i as usize] = mark;
+            self.distance[i as usize] = NONE;
+        }
+        let mut order = vec![start];
+        self.distance[start as usize] = 0;
+        let mut head = 0;
+        while head < order.len() {
+            let i = order[head] as usize;
+            head += 1;
+            let (col, _) = self.k.row(i);
+            for &j in col {
+                let j = j as usize;
+                if self.part[j] == mark && self.distance[j] == NONE {
+                    self.distance[j] = self.distance[i] + 1;
+                    order.push(j as u32);
+                }
+            }
+        }
+        set.iter().for_each(|&i| self.part[i as usize] = NONE);
+        order
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::testing::grid_laplacian;
+
+    fn covers_once(d: &Dissection, n: usize) {
+        let mut seen: Vec<u32> = d.supernodes.iter().flatten().copied().collect();
+        seen.sort_unstable();
+        assert_eq!(seen, (0..n as u32).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn every_dof_is_eliminated_once_with_and_without_coordinates() {
+        let (k, x) = grid_laplacian(17, 9, 0.0);
+        let all: Vec<u32> = (0..k.n() as u32).collect();
+        covers_once(&nested_dissection(&k, &all, Some(&x)), k.n());
+        covers_once(&nested_dissection(&k, &all, None), k.n());
+    }
+
+    #[test]
+    fn moved_nodes_do_not_make_separators_larger() {
+        let (k, x) = grid_laplacian(40, 40, 0.0);
+        let draw = crate::linalg::testing::random(2 * k.n(), 9);
+        let moved = |(x, d): (&[f64; 3], &[f64])| [x[0] + 0.2 * d[0], x[1] + 0.2 * d[1], 0.0];
+        let x: Vec<[f64; 3]> = x.iter().zip(draw.chunks(2)).map(moved).collect();
+        let all: Vec<u32> = (0..k.n() as u32).collect();
+        let d = nested_dissection(&k, &all, Some(&x));
+        covers_once(&d, k.n());
+        assert_eq!(d.supernodes.last().expect("not empty").len(), 40);
+    }
+
+    #[test]
+    fn the_top_separator_of_a_strip_is_its_short_side() {
+        let (k, x) = grid_laplacian(40, 5, 0.0);
+        let all: Vec<u32> = (0..k.n() as u32).collect();
+        for coordinates in [Some(&x[..]), None] {
+            let d = nested_dissection(&k, &all, coordinates);
+            assert!(d.supernodes.last().expect("not empty").len() <= 6);
+        }
+    }
+}

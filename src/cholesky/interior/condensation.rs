@@ -1,0 +1,168 @@
+//! From loads to the interface and back, whoever factored the interior.
+
+use super::{Keep, SparseCholesky};
+use crate::cholesky::multifrontal::PartialCholesky;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+
+/// The factored interior of a subdomain.
+///
+/// [`forward`](Factor::forward) turns a load f into [work; g] with the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I; [`backward`](Factor::backward)
+/// turns [work; u_Γ] into the solution with u_I = K_II⁻¹ (f_I − K_IΓ u_Γ). What `work` is, is the factor's own affair.
+#[derive(Debug)]
+pub enum Factor {
+    /// [L_II; L_ΓI] by fronts, whoever made them: half a solve each way.
+    Fronts(PartialCholesky),
+    /// Solves with K_II: a whole one each way.
+    Solves(Condensation),
+}
+
+impl Factor {
+    /// The fronts of `k` with the rows of the interface or without them.
+    pub(crate) fn new(k: &Csr, interface: &[u32], fronts: PartialCholesky, keep: Keep) -> Factor {
+        match keep {
+            Keep::Boundary => Factor::Fronts(fronts),
+            Keep::Interior => Factor::Solves(Condensation::new(k, interface, Box::new(fronts))),
+        }
+    }
+
+    /// Condenses `b` (length n, by dof).
+    pub fn forward(&self, b: &mut [f64]) {
+        match self {
+            Factor::Fronts(f) => f.forward(b),
+            Factor::Solves(c) => c.one(b, Condensation::forward),
+        }
+    }
+
+    /// Solves in the interior for the values on the interface in `b`.
+    pub fn backward(&self, b: &mut [f64]) {
+        match self {
+            Factor::Fronts(f) => f.backward(b),
+            Factor::Solves(c) => c.one(b, Condensation::backward),
+        }
+    }
+
+    /// [`forward`](Factor::forward) of at most [`LANES`](crate::cholesky::lanes::LANES) vectors.
+    pub fn forward_many(&self, columns: &mut [Vec<f64>]) {
+        match self {
+            Factor::Fronts(f) => f.forward_many(columns),
+            Factor::Solves(c) => c.forward(columns),
+        }
+    }
+
+    /// [`backward`](Factor::backward) of at most [`LANES`](crate::cholesky::lanes::LANES) vectors.
+    pub fn backward_many(&self, columns: &mut [Vec<f64>]) {
+        match self {
+            Factor::Fronts(f) => f.backward_many(columns),
+            Factor::Solves(c) => c.backward(columns),
+        }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Factor::Fronts(f) => f.bytes(),
+            Factor::Solves(c) => c.bytes(),
+        }
+    }
+}
+
+/// Solves with K_II, and K_ΓI.
+#[derive(Debug)]
+pub struct Condensation {
+    /// x ← [K_II⁻¹ x_I; 0].
+    interior: Box<dyn SparseCholesky>,
+    interface: Vec<u32>,
+    /// Rows of K_ΓI, interface after interface dof.
+    ptr: Vec<usize>,
+    col: Vec<u32>,
+    val: Vec<f64>,
+}
+
+impl Condensation {
+    /// `interior` solves with K_II on vectors by dof and leaves zero on the interface.
+    pub fn new(k: &Csr, interface: &[u32], interior: Box<dyn SparseCholesky>) -> Condensation {
+        let mut out = Condensation {
+            interior,
+            interface: interface.to_vec(),
+            ptr: vec![0],
+            col: Vec::new(),
+            val: Vec::new(),
+        };
+        let mut outside = vec![false; k.n()];
+        interface.iter().for_each(|&i| outside[i as usize] = true);
+        for &i in interface {
+            let (col, val) = k.row(i as usize);
+            let inside = col.iter().zip(val).filter(|e| !outside[*e.0 as usize]);
+            for (&j, &v) in inside {
+                out.col.push(j);
+                out.val.push(v);
+            }
+            out.ptr.push(out.col.len());
+        }
+        out.col.shrink_to_fit();
+        out.val.shrink_to_fit();
+        out
+    }
+
+    /// All of `k` factored and nothing kept.
+    pub fn of_all(k: &Csr, factor: Box<dyn SparseCholesky>) -> (Factor, Dense) {
+        (
+            Factor::Solves(Condensation::new(k, &[], factor)),
+            Dense::default(),
+        )
+    }
+
+    /// The dofs of the interface with their rows of K_ΓI.
+    fn rows(&self) -> impl Iterator<Item = (usize, &[u32], &[f64])> {
+        let row =
+            |(&i, w): (&u32, &[usize])| (i as usize, &self.col[w[0]..w[1]], &self.val[w[0]..w[1]]);
+        self.interface.iter().zip(self.ptr.windows(2)).map(row)
+    }
+
+    /// g ← f_Γ − K_ΓI K_II⁻¹ f_I; f_I stays.
+    fn forward(&self, columns: &mut [Vec<f64>]) {
+        if self.interface.is_empty() {
+            return;
+        }
+        let mut x = columns.to_vec();
+        self.interior.solve_many(&mut x);
+        for (b, x) in columns.iter_mut().zip(&x) {
+            for (i, col, val) in self.rows() {
+                let pulled: f64 = col.iter().zip(val).map(|(&j, v)| v * x[j as usize]).sum();
+                b[i] -= pulled;
+            }
+        }
+    }
+
+    /// u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ); u_Γ stays.
+    fn backward(&self, columns: &mut [Vec<f64>]) {
+        let on_interface =
+            |b: &Vec<f64>| -> Vec<f64> { self.interface.iter().map(|&i| b[i as usize]).collect() };
+        let u: Vec<Vec<f64>> = columns.iter().map(on_interface).collect();
+        for (b, u) in columns.iter_mut().zip(&u) {
+            for ((_, col, val), u) in self.rows().zip(u) {
+                for (&j, v) in col.iter().zip(val) {
+                    b[j as usize] -= v * u;
+                }
+            }
+        }
+        self.interior.solve_many(columns);
+        for (b, u) in columns.iter_mut().zip(&u) {
+            for (&i, &u) in self.interface.iter().zip(u) {
+                b[i as usize] = u;
+            }
+        }
+    }
+
+    /// One vector as several.
+    fn one(&self, b: &mut [f64], work: impl Fn(&Condensation, &mut [Vec<f64>])) {
+        let mut columns = [b.to_vec()];
+        work(self, &mut columns);
+        b.copy_from_slice(&columns[0]);
+    }
+
+    fn bytes(&self) -> usize {
+        self.interior.bytes() + 12 * self.val.len()
+    }
+}

@@ -1,0 +1,229 @@
+//! The order in which the interior is eliminated, and which of its columns make one front.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::linalg::amd;
+use faer::sparse::SymbolicSparseColMatRef;
+
+use super::graph::{graph_of, Tree, NONE};
+use super::{NoFactor, Ordering};
+use crate::cholesky::dissection::nested_dissection;
+use crate::linalg::csr::Csr;
+use crate::petsc::ordering::{metis, scotch, Graph};
+
+/// The dofs of a subdomain in the order [interior, interface].
+#[derive(Debug, Clone)]
+pub struct Elimination {
+    /// Interior dofs by front, in the order of elimination.
+    pub supernodes: Vec<Vec<u32>>,
+    /// Interior dofs in an order with the same fill in which every subtree of the elimination tree is in one piece.
+    pub interior: Vec<u32>,
+    /// The dofs that are kept, in the order wanted.
+    pub interface: Vec<u32>,
+}
+
+impl Elimination {
+    /// Orders the dofs of `k` that are not in `interface`; `coordinates`, if given, has one position per dof.
+    ///
+    /// # Errors
+    /// [`NoFactor::Failed`] where the library of the ordering fails.
+    pub fn new(
+        k: &Csr,
+        interface: &[u32],
+        coordinates: Option<&[[f64; 3]]>,
+        ordering: Ordering,
+    ) -> Result<Elimination, NoFactor> {
+        let mut kept = vec![false; k.n()];
+        interface.iter().for_each(|&i| kept[i as usize] = true);
+        let inside: Vec<u32> = (0..k.n() as u32).filter(|&i| !kept[i as usize]).collect();
+        let graph = graph_of(k, &inside);
+        let library = |found: Result<Vec<u32>, String>| found.map_err(NoFactor::Failed);
+        let (order, given) = match ordering.taken() {
+            Ordering::Auto | Ordering::Nd => {
+                let sets = nested_dissection(k, &inside, coordinates).supernodes;
+                let vertex = |i: &u32| inside.binary_search(i).expect("an interior dof") as u32;
+                (sets.iter().flatten().map(vertex).collect(), Some(sets))
+            }
+            Ordering::Amd => (minimum_degree(&graph), None),
+            Ordering::Metis => (library(metis(&graph))?, None),
+            Ordering::Scotch => (library(scotch(&graph))?, None),
+        };
+        let tree = Tree::new(&graph, order).postordered(&graph);
+        let dofs = |set: &Vec<u32>| set.iter().map(|&v| inside[v as usize]).collect();
+        let supernodes = match given {
+            Some(sets) => sets,
+            None => fronts(&tree, &tree.counts(&graph))
+                .iter()
+                .map(dofs)
+                .collect(),
+        };
+        Ok(Elimination {
+            supernodes,
+            interior: dofs(&tree.order),
+            interface: interface.to_vec(),
+        })
+    }
+
+    /// All dofs in the order [interior, interface].
+    pub fn dofs(&self) -> Vec<u32> {
+        [&self.interior[..], &self.interface].concat()
+    }
+}
+
+/// faer's approximate minimum degree.
+fn minimum_degree(graph: &Graph) -> Vec<u32> {
+    let n = graph.row.len() - 1;
+    let row: Vec<u32> = graph.row.iter().map(|&r| r as u32).collect();
+    let col: Vec<u32> = graph.col.iter().map(|&c| c as u32).collect();
+    let a = SymbolicSparseColMatRef::new_checked(n, n, &row, None, &col);
+    let (mut order, mut place) = (vec![0; n], vec![0; n]);
+    let scratch = amd::order_scratch::<u32>(n, col.len());
+    let mut buffer = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut buffer);
+    amd::order(&mut order, &mut place, a, amd::Control::default(), stack)
+        .expect("the pattern is square, and its size is known");
+    order
+}
+
+/// Whether two fronts become one: small ones, where the dense kernels' overhead outweighs some zeros, and others where zeros are few.
+fn worth_merging(columns: usize, zeros: usize, entries: usize) -> bool {
+    let share = zeros as f64 / entries as f64;
+    columns <= 8 || (columns <= 24 && share < 0.5) || (columns <= 48 && share < 0.2) || share < 0.05
+}
+
+/// A front that grows.
+struct Growing {
+    /// Positions, in the order of elimination.
+    columns: Vec<u32>,
+    below: usize,
+    zeros: usize,
+    parent: u32,
+    children: Vec<usize>,
+}
+
+impl Growing {
+    fn size(&self) -> usize {
+        self.columns.len() + self.below
+    }
+}
+
+/// The vertices of a postordered tree by front: columns of one pattern, and children merged into their parents where that is worth it
+/// (relaxed supernodes, Ashcraft and Grimes 1989).
+fn fronts(tree: &Tree, counts: &[u32]) -> Vec<Vec<u32>> {
+    let mut all: Vec<Growing> = Vec::new();
+    let mut front_of = vec![0usize; counts.len()];
+    for p in 0..counts.len() {
+        let same = p > 0
+            && tree.parent[p - 1] as usize == p
+            && counts[p - 1] as usize == counts[p] as usize + 1;
+        if !same {
+            all.push(Growing {
+                columns: Vec::new(),
+                below: 0,
+                zeros: 0,
+                parent: NONE,
+                children: Vec::new(),
+            });
+        }
+        front_of[p] = all.len() - 1;
+        let front = all.last_mut().expect("just pushed");
+        front.columns.push(p as u32);
+        front.below = counts[p] as usize - 1;
+        front.parent = tree.parent[p];
+    }
+    for f in 0..all.len() {
+        if all[f].parent != NONE {
+            let parent = front_of[all[f].parent as usize];
+            all[parent].children.push(f);
+        }
+    }
+    for f in 0..all.len() {
+        let mut kept = Vec::new();
+        // From the last child on: its pattern is the nearest as a rule.
+        for c in std::mem::take(&mut all[f].children).into_iter().rev() {
+            let (child, front) = (&all[c], &all[f]);
+            let (width, columns) = (
+                child.columns.len(),
+                child.columns.len() + front.columns.len(),
+            );
+            let zeros = child.zeros + front.zeros + width * (front.size() - child.below);
+            let size = columns + front.below;
+            let entries = columns * size - columns * (columns - 1) / 2;
+            if !worth_merging(columns, zeros, entries) {
+                kept.push(c);
+                continue;
+            }
+            let mut merged = std::mem::take(&mut all[c].columns);
+            merged.append(&mut all[f].columns);
+            kept.append(&mut all[c].children);
+            all[f].columns = merged;
+            all[f].zeros = zeros;
+        }
+        all[f].children = kept;
+    }
+    // A front comes behind all fronts below it, merged or not: those had lower numbers.
+    let sets = all.iter().filter(|f| !f.columns.is_empty());
+    sets.map(|f| f.columns.iter().map(|&p| tree.order[p as usize]).collect())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cholesky::interior::Keep;
+    use crate::cholesky::multifrontal::PartialCholesky;
+    use crate::cholesky::symbolic::Symbolic;
+    use crate::linalg::testing::grid_laplacian;
+    use std::sync::Arc;
+
+    #[test]
+    fn every_ordering_eliminates_every_dof_once() {
+        let (k, x) = grid_laplacian(31, 22, 0.1);
+        let interface: Vec<u32> = (0..31).collect();
+        for ordering in Ordering::ALL {
+            let found = Elimination::new(&k, &interface, Some(&x), ordering).expect("ordered");
+            for list in [found.interior.clone(), found.supernodes.concat()] {
+                let mut sorted = list;
+                sorted.sort_unstable();
+                assert_eq!(sorted, (31..k.n() as u32).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn minimum_degree_fills_less_than_the_natural_order_and_fronts_are_few() {
+        let (k, x) = grid_laplacian(60, 60, 0.1);
+        let entries = |sets: &[Vec<u32>]| {
+            let symbolic = Arc::new(Symbolic::with_supernodes(&k, &[], sets));
+            let (factor, _) = PartialCholesky::new(&k, symbolic.clone()).expect("definite");
+            assert_eq!(factor.bytes(), 8 * symbolic.factor_entries(Keep::Boundary));
+            symbolic.factor_entries(Keep::Boundary)
+        };
+        let single: Vec<Vec<u32>> = (0..k.n() as u32).map(|i| vec![i]).collect();
+        let natural = entries(&single);
+        for ordering in Ordering::ALL {
+            let found = Elimination::new(&k, &[], Some(&x), ordering).expect("ordered");
+            let ours = entries(&found.supernodes);
+            assert!(ours < natural, "{ordering:?}: {ours} of {natural}");
+            assert!(found.supernodes.len() < k.n() / 4, "{ordering:?}");
+        }
+    }
+
+    #[test]
+    fn orderings_are_the_same_on_every_thread() {
+        let (k, _) = grid_laplacian(50, 40, 0.1);
+        for ordering in [Ordering::Metis, Ordering::Scotch] {
+            let order = || {
+                let found = Elimination::new(&k, &[], None, ordering).expect("ordered");
+                found.interior
+            };
+            let all: Vec<Vec<u32>> = std::thread::scope(|s| {
+                let started: Vec<_> = (0..4).map(|_| s.spawn(order)).collect();
+                started
+                    .into_iter()
+                    .map(|t| t.join().expect("no panic"))
+                    .collect()
+            });
+            assert!(all.iter().all(|o| *o == all[0]), "{ordering:?}");
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Our multifrontal method behind the common face.
+
+use std::sync::{Arc, OnceLock};
+
+use super::condensation::Factor;
+use super::order::Elimination;
+use super::{Analysis, Keep, NoFactor, SparseCholesky};
+use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::symbolic::Symbolic;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+
+/// The fronts.
+#[derive(Debug)]
+pub struct Own {
+    symbolic: Arc<Symbolic>,
+    interface: Vec<u32>,
+    /// The fronts without the rows of the interface, once they have been asked for.
+    inside: OnceLock<Arc<Symbolic>>,
+}
+
+impl Own {
+    /// Fronts as they are ordered.
+    pub fn new(k: &Csr, order: &Elimination) -> Own {
+        let symbolic = Symbolic::with_supernodes(k, &order.interface, &order.supernodes);
+        Own::with(symbolic, &order.interface)
+    }
+
+    /// Fronts by nested dissection.
+    pub fn nested(k: &Csr, interface: &[u32], coordinates: Option<&[[f64; 3]]>) -> Own {
+        Own::with(Symbolic::new(k, interface, coordinates), interface)
+    }
+
+    fn with(symbolic: Symbolic, interface: &[u32]) -> Own {
+        Own {
+            symbolic: Arc::new(symbolic),
+            interface: interface.to_vec(),
+            inside: OnceLock::new(),
+        }
+    }
+}
+
+impl Analysis for Own {
+    fn factor(&self, k: &Csr) -> Result<Box<dyn SparseCholesky>, NoFactor> {
+        assert_eq!(self.symbolic.n_interior(), k.n(), "an interface is kept");
+        let (factor, _) = PartialCholesky::new(k, self.symbolic.clone())?;
+        Ok(Box::new(factor))
+    }
+
+    fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), NoFactor> {
+        let (factor, s) = match keep {
+            Keep::Boundary => PartialCholesky::new(k, self.symbolic.clone())?,
+            Keep::Interior => {
+                let inside = || Arc::new(self.symbolic.inside());
+                let inside = self.inside.get_or_init(inside).clone();
+                PartialCholesky::inside(k, &self.symbolic, inside)?
+            }
+        };
+        Ok((Factor::new(k, &self.interface, factor, keep), s))
+    }
+}
+
+impl SparseCholesky for PartialCholesky {
+    fn solve(&self, x: &mut [f64]) {
+        PartialCholesky::solve(self, x);
+    }
+
+    fn solve_many(&self, x: &mut [Vec<f64>]) {
+        PartialCholesky::solve_many(self, x);
+    }
+
+    fn bytes(&self) -> usize {
+        PartialCholesky::bytes(self)
+    }
+}

@@ -1,0 +1,177 @@
+//! Forward and backward substitution for several right-hand sides at once: what equal subdomains share.
+//!
+//! A single right-hand side waits for the factor to come from memory and uses each entry once. Here eight of them stand side by side, row by row,
+//! so that an entry of the factor meets eight numbers in one vector register after the other.
+
+use super::multifrontal::PartialCholesky;
+use super::panel;
+
+/// Right-hand sides that go together.
+pub const LANES: usize = 8;
+
+type Lane = [f64; LANES];
+
+fn subtract(y: &mut Lane, l: f64, x: &Lane) {
+    y.iter_mut()
+        .zip(x)
+        .for_each(|(y, x)| *y = (-l).mul_add(*x, *y));
+}
+
+fn scale(y: &mut Lane, by: f64) {
+    y.iter_mut().for_each(|y| *y *= by);
+}
+
+impl PartialCholesky {
+    /// [`forward`](Self::forward) of at most [`LANES`] vectors, each of length n, by dof.
+    pub fn forward_many(&self, columns: &mut [Vec<f64>]) {
+        let mut x = self.gather(columns);
+        self.lower_lanes(&mut x);
+        self.scatter(&x, columns);
+    }
+
+    /// [`backward`](Self::backward) of at most [`LANES`] vectors, each of length n, by dof.
+    pub fn backward_many(&self, columns: &mut [Vec<f64>]) {
+        let mut x = self.gather(columns);
+        self.upper_lanes(&mut x);
+        self.scatter(&x, columns);
+    }
+
+    /// [`solve`](Self::solve) of any number of vectors, each of length n, by dof.
+    pub fn solve_many(&self, columns: &mut [Vec<f64>]) {
+        for lanes in columns.chunks_mut(LANES) {
+            if let [one] = lanes {
+                self.solve(one);
+                continue;
+            }
+            let mut x = self.gather(lanes);
+            self.lower_lanes(&mut x);
+            x[self.symbolic.n_interior()..].fill([0.0; LANES]);
+            self.upper_lanes(&mut x);
+            self.scatter(&x, lanes);
+        }
+    }
+
+    fn lower_lanes(&self, x: &mut [Lane]) {
+        for front in &self.symbolic.fronts {
+            let (width, size) = (front.width(), front.size());
+            let panel = &self.panels[front.panel..];
+            let (head, below) = x.split_at_mut(front.end);
+            let pivots = &mut head[front.start..];
+            for j in 0..width {
+                let (start, first) = panel::column(j, size);
+                let l = &panel[start..][..width - first];
+                let (done, rest) = pivots.split_at_mut(j + 1);
+                scale(&mut done[j], 1.0 / l[j - first]);
+                for (y, &l) in rest.iter_mut().zip(&l[j + 1 - first..]) {
+                    subtract(y, l, &done[j]);
+                }
+            }
+            for j in (0..width).step_by(panel::COLUMNS) {
+                let rows = size - j;
+                let group = &panel[panel::group(j, size)..];
+                let at = |k: usize| &group[k * rows + width - j..(k + 1) * rows];
+                if j + panel::COLUMNS <= width {
+                    let (l0, l1, l2, l3) = (at(0), at(1), at(2), at(3));
+                    for (k, &p) in front.below.iter().enumerate() {
+                        let y = &mut below[p as usize - front.end];
+                        subtract(y, l0[k], &pivots[j]);
+                        subtract(y, l1[k], &pivots[j + 1]);
+                        subtract(y, l2[k], &pivots[j + 2]);
+                        subtract(y, l3[k], &pivots[j + 3]);
+                    }
+                } else {
+                    for (k, pivot) in pivots[j..].iter().enumerate() {
+                        for (&p, &l) in front.below.iter().zip(at(k)) {
+                            subtract(&mut below[p as usize - front.end], l, pivot);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn upper_lanes(&self, x: &mut [Lane]) {
+        for front in self.symbolic.fronts.iter().rev() {
+            let (width, size) = (front.width(), front.size());
+            let panel = &self.panels[front.panel..];
+            let (head, below) = x.split_at_mut(front.end);
+            let pivots = &mut head[front.start..];
+            let column = |j: usize| {
+                let (start, first) = panel::column(j, size);
+                &panel[start + j - first..start + size - first]
+            };
+            for (j, y) in pivots.iter_mut().enumerate() {
+                let mut sum = *y;
+                for (&p, &l) in front.below.iter().zip(&column(j)[width - j..]) {
+                    subtract(&mut sum, l, &below[p as usize - front.end]);
+                }
+                *y = sum;
+            }
+            for j in (0..width).rev() {
+                let l = column(j);
+                let (first, done) = pivots.split_at_mut(j + 1);
+                let y = &mut first[j];
+                for (x, &l) in done.iter().zip(&l[1..width - j]) {
+                    subtract(y, l, x);
+                }
+                scale(y, 1.0 / l[0]);
+            }
+        }
+    }
+
+    /// Rows in the order of elimination, columns side by side; unused lanes are zero.
+    fn gather(&self, columns: &[Vec<f64>]) -> Vec<Lane> {
+        debug_assert!(columns.len() <= LANES);
+        let mut x = vec![[0.0; LANES]; self.symbolic.n()];
+        for (c, column) in columns.iter().enumerate() {
+            for (x, dof) in x.iter_mut().zip(self.symbolic.dofs()) {
+                x[c] = column[dof as usize];
+            }
+        }
+        x
+    }
+
+    fn scatter(&self, x: &[Lane], columns: &mut [Vec<f64>]) {
+        for (c, column) in columns.iter_mut().enumerate() {
+            for (x, dof) in x.iter().zip(self.symbolic.dofs()) {
+                column[dof as usize] = x[c];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::cholesky::multifrontal::PartialCholesky;
+    use crate::cholesky::symbolic::Symbolic;
+    use crate::linalg::testing::{grid_laplacian, random};
+    use std::sync::Arc;
+
+    #[test]
+    fn many_are_like_one() {
+        let (k, x) = grid_laplacian(23, 17, 0.01);
+        let interface: Vec<u32> = (0..23).chain([100, 200]).collect();
+        let symbolic = Arc::new(Symbolic::new(&k, &interface, Some(&x)));
+        let (factor, _) = PartialCholesky::new(&k, symbolic).expect("definite");
+        for n in [1, 3, 8] {
+            let start: Vec<Vec<f64>> = (0..n).map(|c| random(k.n(), c as u64 + 1)).collect();
+            let (mut forward, mut backward) = (start.clone(), start.clone());
+            let mut solved = start.clone();
+            factor.solve_many(&mut solved);
+            factor.forward_many(&mut forward);
+            factor.backward_many(&mut backward);
+            for (c, b) in start.iter().enumerate() {
+                let (mut f, mut g, mut s) = (b.clone(), b.clone(), b.clone());
+                factor.forward(&mut f);
+                factor.backward(&mut g);
+                factor.solve(&mut s);
+                for (one, many) in [(f, &forward[c]), (g, &backward[c]), (s, &solved[c])] {
+                    let far = one.iter().zip(many).map(|(a, b)| (a - b).abs());
+                    let size = one.iter().fold(1.0f64, |a, v| a.max(v.abs()));
+                    let far = far.fold(0.0, f64::max) / size;
+                    assert!(far < 1e-13, "{far:e}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Partial Cholesky factorisation of one subdomain: interior eliminated, interface kept.
+//!
+//! With K ordered [interior I, interface Γ],
+//!
+//! ```text
+//!     K = [ L_II      ] [ I     ] [ L_IIᵀ  L_ΓIᵀ ]        S = K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ
+//!         [ L_ΓI   I  ] [     S ] [          I   ]
+//! ```
+//!
+//! The multifrontal method (Duff and Reid 1983): the elimination tree's nodes are dense fronts, a front's
+//! Schur complement is added into its parent's front, and what reaches the root is S itself. S is never
+//! factored here, so a singular (floating) subdomain needs no special treatment.
+
+use std::sync::Arc;
+
+use super::panel;
+use super::symbolic::{Front, Symbolic};
+use crate::linalg::csr::Csr;
+use crate::linalg::dense;
+use crate::linalg::dense::{Dense, Scratch};
+
+/// A pivot below this fraction of the diagonal entry it came from counts as zero: rounding leaves about 1e-16 times
+/// the number of updates, while a body held by a spring of 1e-8 of its stiffness still shows 1e-8.
+pub(crate) const SINGULAR: f64 = 1e-13;
+
+/// The interior block is singular: part of the subdomain touches neither a boundary condition nor the interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SingularInterior {
+    /// The dof whose pivot vanished.
+    pub dof: u32,
+}
+
+/// The factor [L_II; L_ΓI] of one subdomain, or L_II alone.
+#[derive(Debug)]
+pub struct PartialCholesky {
+    pub(crate) symbolic: Arc<Symbolic>,
+    pub(crate) panels: Vec<f64>,
+}
+
+impl PartialCholesky {
+    /// Factors the interior of `k` and returns the factor with S (both triangles), in the order of the interface.
+    pub fn new(k: &Csr, symbolic: Arc<Symbolic>) -> Result<(Self, Dense), SingularInterior> {
+        let (panels, s) = factor(k, &symbolic, &symbolic)?;
+        Ok((PartialCholesky { symbolic, panels }, s))
+    }
+
+    /// The same, but of the factor only what `inside` has, the inside of `symbolic`: it can [`solve`](Self::solve), not more.
+    pub fn inside(
+        k: &Csr,
+        symbolic: &Symbolic,
+        inside: Arc<Symbolic>,
+    ) -> Result<(Self, Dense), SingularInterior> {
+        let (panels, s) = factor(k, symbolic, &inside)?;
+        let factor = PartialCholesky {
+            symbolic: inside,
+            panels,
+        };
+        Ok((factor, s))
+    }
+
+    /// Number of dofs.
+    pub fn n(&self) -> usize {
+        self.symbolic.n()
+    }
+
+    /// The smallest pivot relative to the diagonal entry of `k` that it came from; one where nothing was eliminated.
+    pub fn weakest_pivot(&self, k: &Csr) -> f64 {
+        let of = |front: &Front| {
+            let panel = &self.panels[front.panel..];
+            let size = front.size();
+            let dofs = &self.symbolic.interior[front.start..front.end];
+            let relative = dofs.iter().enumerate().map(|(j, &dof)| {
+                let d = k.get(dof as usize, dof as usize);
+                panel[panel::diagonal(j, size)].powi(2) / d
+            });
+            relative.fold(1.0, f64::min)
+        };
+        self.symbolic.fronts.iter().map(of).fold(1.0, f64::min)
+    }
+
+    /// Bytes held by the factor.
+    pub fn bytes(&self) -> usize {
+        self.panels.len() * std::mem::size_of::<f64>()
+    }
+}
+
+/// The panels that `kept` has room for, and S.
+fn factor(k: &Csr, sym: &Symbolic, kept: &Symbolic) -> Result<(Vec<f64>, Dense), SingularInterior> {
+    let mut s = schur_start(k, sym);
+    let mut panels = vec![0.0; kept.storage];
+    let mut updates: Vec<Vec<f64>> = vec![Vec::new(); sym.fronts.len()];
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); sym.fronts.len()];
+    let mut place = vec![0u32; k.n()];
+    let mut scratch = Scratch::default();
+    for (f, front) in sym.fronts.iter().enumerate() {
+        let (width, size) = (front.width(), front.size());
+        let mut panel = Dense::zeros(size, width);
+        let mut update = Dense::zeros(size - width, size - width);
+
+        for (l, &p) in front.below.iter().enumerate() {
+            place[p as usize] = (width + l) as u32;
+        }
+        for j in 0..width {
+            let dof = sym.interior[front.start + j] as usize;
+            let column = panel.col_mut(j);
+            let (col, val) = k.row(dof);
+            for (&i, &v) in col.iter().zip(val) {
+                let p = sym.position[i as usize] as usize;
+                if p >= front.end {
+                    column[place[p] as usize] += v;
+                } else if p >= front.start + j {
+                    column[p - front.start] += v;
+                }
+            }
+        }
+        let diagonal: Vec<f64> = (0..width)
+            .map(|j| {
+                let dof = sym.interior[front.start + j] as usize;
+                k.get(dof, dof)
+            })
+            .collect();
+        for &c in &children[f] {
+            let child = &sym.fronts[c];
+            extend_add(&mut panel, &mut update, &child.into_parent, &updates[c]);
+            updates[c] = Vec::new();
+        }
+        factor_front(&mut panel, &mut update, &diagonal, &mut scratch).map_err(|j| {
+            SingularInterior {
+                dof: sym.interior[front.start + j],
+            }
+        })?;
+        let into = &kept.fronts[f];
+        panel::store(
+            &panel.data,
+            size,
+            width,
+            into.size(),
+            &mut panels[into.panel..],
+        );
+        match front.parent {
+            Some(t) => {
+                updates[f] = update.data;
+                children[t].push(f);
+            }
+            None => add_lower(&mut s, &front.into_parent, &update.data),
+        }
+    }
+    s.mirror_lower();
+    Ok((panels, s))
+}
+
+/// K_ΓΓ on the lower triangle.
+fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
+    let n = sym.interface.len();
+    let offset = sym.n_interior() as u32;
+    let mut s = Dense::zeros(n, n);
+    for (j, &dof) in sym.interface.iter().enumerate() {
+        let (col, val) = k.row(dof as usize);
+        for (&i, &v) in col.iter().zip(val) {
+            let p = sym.position[i as usize];
+            if p >= offset + j as u32 {
+                s.data[(p - offset) as usize + j * n] += v;
+            }
+        }
+    }
+    s
+}
+
+/// Adds a child's update (lower triangle) into its parent's front, split into panel and update.
+fn extend_add(panel: &mut Dense, update: &mut Dense, map: &[u32], child: &[f64]) {
+    let n = map.len();
+    let width = panel.cols;
+    for j in 0..n {
+        let target = map[j] as usize;
+        let source = &child[j * n + j..(j + 1) * n];
+        if target < width {
+            let column = panel.col_mut(target);
+            for (&i, &v) in map[j..].iter().zip(source) {
+                column[i as usize] += v;
+            }
+        } else {
+            let column = update.col_mut(target - width);
+            for (&i, &v) in map[j..].iter().zip(source) {
+                column[i as usize - width] += v;
+            }
+        }
+    }
+}
+
+/// Adds an update (lower triangle) to S.
+fn add_lower(s: &mut Dense, map: &[u32], update: &[f64]) {
+    let n = map.len();
+    for j in 0..n {
+        let column = s.col_mut(map[j] as usize);
+        for (&i, &v) in map[j..].iter().zip(&update[j * n + j..(j + 1) * n]) {
+            column[i as usize] += v;
+        }
+    }
+}
+
+/// Factors the pivot block, scales the rows below it and updates the rest; `Err(j)` where pivot j vanishes.
+fn factor_front(
+    panel: &mut Dense,
+    update: &mut Dense,
+    diagonal: &[f64],
+    scratch: &mut Scratch,
+) -> Result<(), usize> {
+    let width = panel.cols;
+    let (mut pivot, mut below) = panel.view_mut().split_at_row_mut(width);
+    dense::cholesky(pivot.as_mut(), scratch).map_err(|e| e.index)?;
+    for (j, &d) in diagonal.iter().enumerate() {
+        let l = pivot[(j, j)];
+        if l * l <= SINGULAR * d || l.is_nan() {
+            return Err(j);
+        }
+    }
+    dense::solve_right_transpose(pivot.as_ref(), below.as_mut());
+    dense::rank_k_update(update.view_mut(), -1.0, below.as_ref());
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::testing::{dense_of, distance, grid_laplacian, random};
+
+    fn rim(nx: usize, ny: usize) -> Vec<u32> {
+        let on_rim = |i: &u32| {
+            let (x, y) = (*i as usize % nx, *i as usize / nx);
+            x == 0 || y == 0 || x == nx - 1 || y == ny - 1
+        };
+        (0..(nx * ny) as u32).filter(on_rim).collect()
+    }
+
+    /// K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ by faer's dense LU.
+    fn reference(k: &Csr, interface: &[u32]) -> faer::Mat<f64> {
+        use faer::linalg::solvers::Solve;
+        let a = dense_of(k);
+        let inside: Vec<usize> = (0..k.n())
+            .filter(|i| !interface.contains(&(*i as u32)))
+            .collect();
+        let pick =
+            |r: &[usize], c: &[usize]| faer::Mat::from_fn(r.len(), c.len(), |i, j| a[(r[i], c[j])]);
+        let outside: Vec<usize> = interface.iter().map(|&i| i as usize).collect();
+        let inner = pick(&inside, &inside).partial_piv_lu();
+        pick(&outside, &outside) - pick(&outside, &inside) * inner.solve(pick(&inside, &outside))
+    }
+
+    #[test]
+    fn schur_complement_equals_the_dense_one_even_when_k_is_singular() {
+        for shift in [0.0, 0.3] {
+            let (k, x) = grid_laplacian(19, 14, shift);
+            let interface = rim(19, 14);
+            for coordinates in [Some(&x[..]), None] {
+                let sym = Arc::new(Symbolic::new(&k, &interface, coordinates));
+                let (_, s) = PartialCholesky::new(&k, sym).expect("interior is definite");
+                let expected = reference(&k, &interface);
+                let error = (s.view() - &expected).norm_max() / expected.norm_max();
+                assert!(error < 1e-13, "relative error {error:.1e}");
+            }
+        }
+    }
+
+    #[test]
+    fn forward_and_backward_solve_with_the_interior() {
+        let (k, x) = grid_laplacian(15, 15, 0.0);
+        let interface = rim(15, 15);
+        let sym = Arc::new(Symbolic::new(&k, &interface, Some(&x)));
+        let (factor, s) = PartialCholesky::new(&k, sym).expect("interior is definite");
+        let u = random(k.n(), 3);
+        let mut b = vec![0.0; k.n()];
+        k.mul(&u, &mut b);
+        factor.forward(&mut b);
+        // The condensed load of b = K u is S u_Γ.
+        let u_gamma: Vec<f64> = interface.iter().map(|&i| u[i as usize]).collect();
+        let mut g = vec![0.0; u_gamma.len()];
+        s.add_mul(&u_gamma, &mut g);
+        for (&i, &gi) in interface.iter().zip(&g) {
+            assert!((b[i as usize] - gi).abs() < 1e-12);
+            b[i as usize] = u[i as usize];
+        }
+        factor.backward(&mut b);
+        let error = distance(&b, &u);
+        assert!(error < 1e-12, "error {error:.1e}");
+    }
+
+    #[test]
+    fn an_interior_that_nothing_holds_is_reported() {
+        let (k, x) = grid_laplacian(8, 8, 0.0);
+        let sym = Arc::new(Symbolic::new(&k, &[], Some(&x)));
+        assert!(PartialCholesky::new(&k, sym).is_err());
+    }
+}

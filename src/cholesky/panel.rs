@@ -1,0 +1,72 @@
+//! How the panel of a front lies in memory: columns in groups of four, each group from its first pivot's row on.
+//!
+//! What is above the pivots is zero and not stored, but for the triangles inside the groups; columns of a group are equally long, so that the
+//! four go through memory side by side.
+
+/// Columns that go together.
+pub const COLUMNS: usize = 4;
+
+/// Start of the group whose first column is `j`, a multiple of four, in a panel of `size` rows.
+pub fn group(j: usize, size: usize) -> usize {
+    j * size - j * j.saturating_sub(COLUMNS) / 2
+}
+
+/// Length of a panel.
+pub fn length(width: usize, size: usize) -> usize {
+    let last = width / COLUMNS * COLUMNS;
+    group(last, size) + (width - last) * (size - last)
+}
+
+/// Start of column `j`, and the row of its first entry.
+pub fn column(j: usize, size: usize) -> (usize, usize) {
+    let first = j / COLUMNS * COLUMNS;
+    (group(first, size) + (j - first) * (size - first), first)
+}
+
+/// Where the pivot of column `j` is.
+pub fn diagonal(j: usize, size: usize) -> usize {
+    let (start, first) = column(j, size);
+    start + j - first
+}
+
+/// Stores the first `size` rows of `width` columns that lie `stride` apart.
+pub fn store(columns: &[f64], stride: usize, width: usize, size: usize, out: &mut [f64]) {
+    for j in 0..width {
+        let (start, first) = column(j, size);
+        out[start..][..size - first].copy_from_slice(&columns[j * stride..][first..size]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::dense::Dense;
+
+    #[test]
+    fn every_entry_below_the_diagonal_has_a_place_of_its_own() {
+        for (width, more) in (1..=13).flat_map(|w| [0, 1, 9].map(|m| (w, m))) {
+            let size = width + more;
+            let mut dense = Dense::zeros(size + 2, width);
+            for j in 0..width {
+                for i in j..size + 2 {
+                    dense.set(i, j, (100 * j + i + 1) as f64);
+                }
+            }
+            let mut out = vec![0.0; length(width, size)];
+            store(&dense.data, size + 2, width, size, &mut out);
+            for j in 0..width {
+                let (start, first) = column(j, size);
+                assert_eq!(out[diagonal(j, size)], dense.get(j, j));
+                for i in first..size {
+                    assert_eq!(
+                        out[start + i - first],
+                        dense.get(i, j),
+                        "{width} {size} {i} {j}"
+                    );
+                }
+            }
+            let groups: usize = (0..width).map(|j| size - j / COLUMNS * COLUMNS).sum();
+            assert_eq!(out.len(), groups);
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! The pattern of a partial factorisation: order of elimination, fronts, and where their entries go.
+
+use super::dissection::nested_dissection;
+use super::interior::Keep;
+use super::panel;
+use crate::linalg::csr::Csr;
+
+/// What depends on the pattern alone: elimination order, fronts, index maps.
+#[derive(Debug)]
+pub struct Symbolic {
+    /// Interior dofs in elimination order.
+    pub(crate) interior: Vec<u32>,
+    /// Interface dofs in the order of S.
+    pub(crate) interface: Vec<u32>,
+    /// Position of each dof in [interior, interface]: what a factorisation reads; empty where solves alone are asked for.
+    pub(crate) position: Vec<u32>,
+    pub(crate) fronts: Vec<Front>,
+    /// Length of all panels together.
+    pub(crate) storage: usize,
+}
+
+#[derive(Debug)]
+pub(crate) struct Front {
+    /// Eliminated positions `start..end`.
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+    /// Positions below the pivot block, increasing.
+    pub(crate) below: Vec<u32>,
+    /// The front that takes this one's update; `None`: S does.
+    pub(crate) parent: Option<usize>,
+    /// Place of each entry of `below` in the parent's front (or in S).
+    pub(crate) into_parent: Vec<u32>,
+    /// Start of this front's panel in the storage.
+    pub(crate) panel: usize,
+}
+
+impl Front {
+    pub(crate) fn width(&self) -> usize {
+        self.end - self.start
+    }
+    pub(crate) fn size(&self) -> usize {
+        self.width() + self.below.len()
+    }
+}
+
+impl Symbolic {
+    /// Analyses the pattern of `k`; `interface` lists the dofs that are kept, in the order wanted for S.
+    pub fn new(k: &Csr, interface: &[u32], coordinates: Option<&[[f64; 3]]>) -> Symbolic {
+        let n = k.n();
+        let mut kept = vec![false; n];
+        interface.iter().for_each(|&i| kept[i as usize] = true);
+        let inside: Vec<u32> = (0..n as u32).filter(|&i| !kept[i as usize]).collect();
+        let supernodes = nested_dissection(k, &inside, coordinates).supernodes;
+        Symbolic::with_supernodes(k, interface, &supernodes)
+    }
+
+    /// The same for a given order of the interior: sets of dofs in the order of elimination, each to be one front.
+    pub fn with_supernodes(k: &Csr, interface: &[u32], supernodes: &[Vec<u32>]) -> Symbolic {
+        let n = k.n();
+        let interior: Vec<u32> = supernodes.iter().flatten().copied().collect();
+        let mut position = vec![0; n];
+        for (p, &i) in interior.iter().chain(interface).enumerate() {
+            position[i as usize] = p as u32;
+        }
+        let mut front_of = vec![0u32; interior.len()];
+        let mut start = 0;
+        for (s, set) in supernodes.iter().enumerate() {
+            front_of[start..start + set.len()].fill(s as u32);
+            start += set.len();
+        }
+
+        let mut fronts: Vec<Front> = Vec::with_capacity(supernodes.len());
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); supernodes.len()];
+        let mut seen = vec![u32::MAX; n];
+        let (mut start, mut storage) = (0, 0);
+        for (s, set) in supernodes.iter().enumerate() {
+            let end = start + set.len();
+            let mut below = Vec::new();
+            let mut add = |p: u32| {
+                if p as usize >= end && seen[p as usize] != s as u32 {
+                    seen[p as usize] = s as u32;
+                    below.push(p);
+                }
+            };
+            for &i in set {
+                k.row(i as usize)
+                    .0
+                    .iter()
+                    .for_each(|&j| add(position[j as usize]));
+            }
+            for &c in &children[s] {
+                fronts[c].below.iter().for_each(|&p| add(p));
+            }
+            below.sort_unstable();
+            let parent = below
+                .first()
+                .filter(|&&p| (p as usize) < interior.len())
+                .map(|&p| front_of[p as usize] as usize);
+            if let Some(parent) = parent {
+                children[parent].push(s);
+            }
+            let front = Front {
+                start,
+                end,
+                below,
+                parent,
+                into_parent: Vec::new(),
+                panel: storage,
+            };
+            storage += panel::length(front.width(), front.size());
+            fronts.push(front);
+            start = end;
+        }
+        for s in 0..fronts.len() {
+            let map = match fronts[s].parent {
+                None => fronts[s]
+                    .below
+                    .iter()
+                    .map(|&p| p - interior.len() as u32)
+                    .collect(),
+                Some(t) => place_in(&fronts[s].below, &fronts[t]),
+            };
+            fronts[s].into_parent = map;
+        }
+        Symbolic {
+            interior,
+            interface: interface.to_vec(),
+            position,
+            fronts,
+            storage,
+        }
+    }
+
+    /// Of a factor that was made elsewhere: fronts as (first column, number of columns, rows below), the columns of all of them together
+    /// being the interior. Good for solves alone.
+    pub(crate) fn of_factor(
+        interior: Vec<u32>,
+        interface: &[u32],
+        fronts: impl Iterator<Item = (usize, usize, Vec<u32>)>,
+    ) -> Symbolic {
+        let mut storage = 0;
+        let fronts = fronts
+            .map(|(start, width, below)| {
+                let panel = storage;
+                storage += panel::length(width, width + below.len());
+                Front {
+                    start,
+                    end: start + width,
+                    below,
+                    parent: None,
+                    into_parent: Vec::new(),
+                    panel,
+                }
+            })
+            .collect();
+        Symbolic {
+            interior,
+            interface: interface.to_vec(),
+            position: Vec::new(),
+            fronts,
+            storage,
+        }
+    }
+
+    /// The same without the rows of the interface: what is left of a factor that solves with K_II alone.
+    pub(crate) fn inside(&self) -> Symbolic {
+        let n = self.n_interior() as u32;
+        let fronts = self.fronts.iter().map(|front| {
+            let inside = front.below.iter().take_while(|&&p| p < n);
+            (front.start, front.width(), inside.copied().collect())
+        });
+        Symbolic::of_factor(self.interior.clone(), &self.interface, fronts)
+    }
+
+    /// Number of dofs.
+    pub(crate) fn n(&self) -> usize {
+        self.interior.len() + self.interface.len()
+    }
+
+    /// The dofs in the order [interior, interface].
+    pub(crate) fn dofs(&self) -> impl Iterator<Item = u32> + '_ {
+        self.interior.iter().chain(&self.interface).copied()
+    }
+
+    /// Number of interior dofs.
+    pub fn n_interior(&self) -> usize {
+        self.interior.len()
+    }
+
+    /// Multiplications and additions of the factorisation, S included.
+    pub fn flops(&self) -> f64 {
+        let of = |front: &Front| {
+            let (w, m) = (front.width() as f64, front.below.len() as f64);
+            w.powi(3) / 3.0 + w * w * m + w * m * m
+        };
+        self.fronts.iter().map(of).sum()
+    }
+
+    /// Entries of the factor.
+    pub fn factor_entries(&self, keep: Keep) -> usize {
+        let n = self.n_interior() as u32;
+        let of = |front: &Front| {
+            let inside = front.below.partition_point(|&p| p < n);
+            panel::length(front.width(), front.width() + inside)
+        };
+        match keep {
+            Keep::Boundary => self.storage,
+            Keep::Interior => self.fronts.iter().map(of).sum(),
+        }
+    }
+}
+
+/// Where the sorted positions `rows` stand in the front `t` that contains them all.
+fn place_in(rows: &[u32], t: &Front) -> Vec<u32> {
+    let mut next = 0;
+    rows.iter()
+        .map(|&p| {
+            if (p as usize) < t.end {
+                return p - t.start as u32;
+            }
+            while t.below[next] != p {
+                next += 1;
+            }
+            (t.width() + next) as u32
+        })
+        .collect()
+}

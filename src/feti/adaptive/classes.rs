@@ -1,0 +1,147 @@
+//! Classes: the dual dofs that the same subdomains of a body share, and whether coefficients vary along them.
+//!
+//! In the plane a class is an edge, in space a face with the edges in which it meets the surface of its body, or an edge; all components
+//! of the field together.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::Arc;
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::jump::operator::Jump;
+use crate::feti::subdomain::scaled::Local;
+use crate::parallel::exchange::{exchange_words, sum_all};
+use crate::substructures::{Subdomain, Substructures};
+
+/// Diagonal entries of K along a class and beside it that differ by less than this come from the mesh, or from jumps that weights alone deal with.
+const SMOOTH: f64 = 1e2;
+
+/// Dual dofs of one subdomain that the same subdomains share, in the order of body dof.
+pub struct Class {
+    /// The subdomains, increasing.
+    pub sharers: Vec<u32>,
+    /// The body dofs; the lowest one names the class.
+    pub dofs: Vec<u64>,
+    /// Positions in Γ.
+    pub at: Vec<usize>,
+    /// Where the entries of its rows stand in the subdomain's list of entries of B_D.
+    pub entries: Vec<u32>,
+}
+
+impl Class {
+    /// Unique over all bodies.
+    pub fn name(&self) -> u64 {
+        self.dofs[0]
+    }
+}
+
+/// The classes of a subdomain.
+pub fn of(sub: &Subdomain, sharing: &Sharing, local: &Local) -> Vec<Class> {
+    let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
+    for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+        let dof = sub.dofs[dof as usize];
+        let copies = sharing.shared(dof);
+        if copies.len() > 1 {
+            let sharers = copies.iter().map(|c| c.subdomain).collect();
+            found.entry(sharers).or_default().push((dof, i));
+        }
+    }
+    let class = |(sharers, mut members): (Vec<u32>, Vec<(u64, usize)>)| {
+        members.sort_unstable();
+        let (dofs, at) = members.into_iter().unzip();
+        Class {
+            sharers,
+            dofs,
+            at,
+            entries: Vec::new(),
+        }
+    };
+    found.into_iter().map(class).collect()
+}
+
+/// For each class of each local subdomain, whether coefficients vary in one of its sharers. Collective.
+pub fn rough(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    sharing: &Sharing,
+    locals: &[Local],
+    classes: &[Vec<Class>],
+) -> Vec<Vec<bool>> {
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    for (j, list) in classes.iter().enumerate() {
+        let stiff = diagonal(&problem.local[j]);
+        for class in list {
+            let dofs = class.at.iter().map(|&i| locals[j].interface[i]);
+            if varies(&problem.local[j], &stiff, dofs) {
+                for &to in &class.sharers {
+                    outgoing[sharing.rank_of[to as usize] as usize].push(class.name());
+                }
+            }
+        }
+    }
+    let mut names = exchange_words(comm, outgoing).concat();
+    names.sort_unstable();
+    let of = |class: &Class| names.binary_search(&class.name()).is_ok();
+    classes
+        .iter()
+        .map(|list| list.iter().map(of).collect())
+        .collect()
+}
+
+/// Whether stiffness varies along the interface of any subdomain at all; equal subdomains are looked at once. Collective.
+pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Local]) -> bool {
+    let mut seen = HashSet::new();
+    let mut locals = locals.iter().zip(&problem.local);
+    let found = locals.any(|(local, sub)| {
+        let shared = local.interface[..local.n_delta].iter().copied();
+        seen.insert(Arc::as_ptr(local.kind())) && varies(sub, &diagonal(sub), shared)
+    });
+    let mut found = [f64::from(u8::from(found))];
+    sum_all(comm, &mut found);
+    found[0] > 0.0
+}
+
+/// The diagonal of K.
+fn diagonal(sub: &Subdomain) -> Vec<f64> {
+    (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect()
+}
+
+/// Whether stiffness (the diagonal of K) varies along these dofs of a subdomain or next to them.
+fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bool {
+    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
+    for i in dofs {
+        for &k in sub.k.row(i as usize).0 {
+            let d = stiff[k as usize];
+            (low, high) = (low.min(d), high.max(d));
+        }
+    }
+    high > SMOOTH * low
+}
+
+/// Places in the class of the dofs of the averages that are primal already.
+pub fn means(local: &Local, class: &Class) -> Vec<Vec<usize>> {
+    let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
+    let inside = local
+        .basis
+        .supports()
+        .filter(|at| place.contains_key(&at[0]));
+    inside
+        .map(|at| at.iter().map(|i| place[i]).collect())
+        .collect()
+}
+
+/// Notes the entries of B_D in the rows of every class.
+pub fn collect_entries(jump: &Jump, j: usize, n_gamma: usize, classes: &mut [Class]) {
+    let mut of = vec![None; n_gamma];
+    for (c, class) in classes.iter().enumerate() {
+        class.at.iter().for_each(|&i| of[i] = Some(c));
+    }
+    let columns = &jump.columns[j];
+    for (k, (&row, &at)) in columns.row.iter().zip(&columns.at).enumerate() {
+        if let Some(c) = of[at as usize].filter(|_| !jump.ghost_is_contact[row as usize]) {
+            classes[c].entries.push(k as u32);
+        }
+    }
+}

@@ -1,0 +1,357 @@
+//! Adaptive primal constraints: what is made primal inside bodies where coefficients jump along and beside the interfaces of their subdomains.
+//!
+//! The rank of a class's lowest subdomain solves the eigenproblem of [`pencil`] on it and tells the functionals to all sharers.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::classes;
+use super::classes::Class;
+use super::pencil;
+use super::pencil::Part;
+use crate::cholesky::interior::NoFactor;
+use crate::feti::interface::entities::Average;
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::jump::operator::Jump;
+use crate::feti::settings::Adaptive;
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::dense::{multiply, Dense};
+use crate::parallel::exchange::{exchange_words, sum_all};
+use crate::parallel::team::Team;
+use crate::substructures::{Subdomain, Substructures};
+use crate::Result;
+
+/// Finds the constraints that keep the eigenvalues of every class below τ and adds them to `jump.averages`. Entries of `jump` are on interface
+/// positions. Returns how many each body gets, over all ranks; nothing where none is wanted. Collective.
+pub fn find(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    sharing: &Sharing,
+    jump: &mut Jump,
+    locals: &[Local],
+    team: &Team,
+    adaptive: Adaptive,
+) -> Vec<usize> {
+    let (tau, all) = match adaptive {
+        Adaptive::Off => return Vec::new(),
+        Adaptive::Auto => (Adaptive::USUAL, false),
+        // Where coefficients do not vary along a class its eigenvalues are those of the mesh, below ten or so; the deflation knows of them, too.
+        Adaptive::Below(tau) => (tau, tau < Adaptive::USUAL),
+    };
+    if !all && !classes::anywhere(comm, problem, locals) {
+        return Vec::new();
+    }
+    let mut classes: Vec<Vec<Class>> = (0..locals.len())
+        .map(|j| classes::of(&problem.local[j], sharing, &locals[j]))
+        .collect();
+    if !all {
+        let rough = classes::rough(comm, problem, sharing, locals, &classes);
+        let keep = classes.iter_mut().zip(rough);
+        keep.for_each(|(list, rough)| {
+            let mut rough = rough.into_iter();
+            list.retain(|_| rough.next() == Some(true));
+        });
+    }
+    let mut left = [classes.iter().map(Vec::len).sum::<usize>() as f64];
+    sum_all(comm, &mut left);
+    if left[0] == 0.0 {
+        return Vec::new();
+    }
+
+    for (j, list) in classes.iter_mut().enumerate() {
+        classes::collect_entries(jump, j, locals[j].n_gamma(), list);
+    }
+    // Parts travel to the rank of the lowest sharer.
+    let rank = comm.rank() as u32;
+    let rank_of = |s: u32| sharing.rank_of[s as usize];
+    let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    for (j, list) in classes.iter().enumerate() {
+        for class in list.iter().filter(|c| rank_of(c.sharers[0]) != rank) {
+            let words = &mut outgoing[rank_of(class.sharers[0]) as usize];
+            words.extend([class.name(), problem.local[j].index as u64]);
+            pack(&part(j, class), words);
+        }
+    }
+    let mut received: HashMap<(u64, u64), Part> = HashMap::new();
+    for words in exchange_words(comm, outgoing) {
+        let mut rest = &words[..];
+        while let [name, from, tail @ ..] = rest {
+            rest = tail;
+            received.insert((*name, *from), unpack(&mut rest));
+        }
+    }
+    let mut here: HashMap<(u64, u64), (usize, &Class)> = HashMap::new();
+    let mut owned = Vec::new();
+    for (j, list) in classes.iter().enumerate() {
+        for class in list {
+            let index = problem.local[j].index;
+            here.insert((class.name(), index as u64), (j, class));
+            if class.sharers[0] as usize == index {
+                owned.push((j, class));
+            }
+        }
+    }
+    // Equal subdomains that meet in the same way have the same functionals.
+    let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+    let mut kinds: Vec<(usize, &Class)> = Vec::new();
+    let kind_of: Vec<usize> = owned
+        .iter()
+        .map(|&(j, class)| {
+            let next = kinds.len();
+            let sharers = class.sharers.iter();
+            let present: Option<Vec<_>> = sharers
+                .map(|&s| here.get(&(class.name(), u64::from(s))).copied())
+                .collect();
+            let kind = present.map_or(next, |present| {
+                let key = signature(problem, jump, locals, &present);
+                *known.entry(key).or_insert(next)
+            });
+            if kind == next {
+                kinds.push((j, class));
+            }
+            kind
+        })
+        .collect();
+    let of_kind = team.map(kinds.len(), |i| {
+        let (j, class) = kinds[i];
+        let own = |&s: &u32| {
+            let key = (class.name(), u64::from(s));
+            match here.get(&key) {
+                Some((j, class)) => part(*j, class),
+                None => received[&key].clone(),
+            }
+        };
+        let parts: Vec<Part> = class.sharers.iter().map(own).collect();
+        pencil::functionals(&parts, &classes::means(&locals[j], class), tau)
+    });
+    let found: Vec<&Vec<Vec<f64>>> = kind_of.iter().map(|&k| &of_kind[k]).collect();
+
+    // [to, class, k, k functionals] to every sharer
+    let mut per_body = vec![0.0; problem.n_bodies];
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    for ((j, class), list) in owned.iter().zip(found) {
+        per_body[problem.local[*j].body] += list.len() as f64;
+        for &to in class.sharers.iter().filter(|_| !list.is_empty()) {
+            let words = &mut outgoing[rank_of(to) as usize];
+            words.extend([u64::from(to), class.name(), list.len() as u64]);
+            words.extend(list.iter().flatten().map(|v| v.to_bits()));
+        }
+    }
+    let answers = exchange_words(comm, outgoing);
+    let mut added: Vec<(usize, Average)> = Vec::new();
+    for words in answers {
+        let mut rest = &words[..];
+        while let [to, name, k, tail @ ..] = rest {
+            let (j, class) = here[&(*name, *to)];
+            let (values, tail) = tail.split_at(*k as usize * class.dofs.len());
+            let interface = &locals[j].interface;
+            let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
+            added.extend(functionals.map(|(values, &key)| {
+                let average = Average {
+                    key,
+                    dofs: class.at.iter().map(|&i| interface[i]).collect(),
+                    weights: Some(values.iter().map(|&w| f64::from_bits(w)).collect()),
+                };
+                (j, average)
+            }));
+            rest = tail;
+        }
+    }
+    drop(here);
+    for (j, average) in added {
+        jump.averages[j].push(average);
+    }
+    sum_all(comm, &mut per_body);
+    per_body.iter().map(|&n| n as usize).collect()
+}
+
+/// Gives the subdomains the constraints that [`find`] added. Equal ones stay equal. What is replaced is given up one by one, so that there are never two
+/// operators of every subdomain.
+pub fn constrain(
+    problem: &Substructures,
+    jump: &Jump,
+    locals: Vec<Local>,
+    team: &Team,
+    fails: impl Fn(&Subdomain, NoFactor) -> crate::Error + Sync,
+) -> Result<Vec<Local>> {
+    let added = |j: usize| {
+        let list = jump.averages[j].iter();
+        list.filter_map(|a| Some((&a.dofs[..], a.weights.as_deref()?)))
+    };
+    let mut first: Vec<usize> = Vec::new();
+    for j in 0..locals.len() {
+        let same = |&i: &usize| locals[i].shares_with(&locals[j]) && added(i).eq(added(j));
+        first.push((0..j).find(same).unwrap_or(j));
+    }
+    let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
+    let held = |&j: &usize| Mutex::new(Some(locals[j].kind().clone()));
+    let held: Vec<_> = kinds.iter().map(held).collect();
+    let factors: Vec<f64> = locals.iter().map(Local::factor).collect();
+    drop(locals);
+    let renewed = team.map(kinds.len(), |k| {
+        let (j, old) = (kinds[k], held[k].lock().expect("nobody panics").take());
+        let old = old.expect("each is taken once");
+        if added(j).next().is_none() {
+            return Ok(old);
+        }
+        let sub = &problem.local[j];
+        let renewed = old.constrained(&sub.k, added(j), sub.coordinates.as_deref());
+        renewed.map(Arc::new).map_err(|e| fails(sub, e))
+    });
+    let renewed = renewed.into_iter().collect::<Result<Vec<_>>>()?;
+    let place = |j: &usize| kinds.binary_search(j).expect("a first one is a kind");
+    let of = |(j, factor): (&usize, f64)| Local::new(renewed[place(j)].clone(), factor);
+    Ok(first.iter().zip(factors).map(of).collect())
+}
+
+/// All that the functionals of a class depend on, as numbers: the subdomains that share it, given with their class, by their matrices (equal ones are one
+/// object), where the class lies in them, the entries of B_D there, and which of their primal dofs are one.
+fn signature(
+    problem: &Substructures,
+    jump: &Jump,
+    locals: &[Local],
+    sharers: &[(usize, &Class)],
+) -> Vec<u64> {
+    fn number<K: std::hash::Hash + Eq>(seen: &mut HashMap<K, u64>, key: K) -> u64 {
+        let next = seen.len() as u64;
+        *seen.entry(key).or_insert(next)
+    }
+    let mut primal = HashMap::new();
+    let mut rows = HashMap::new();
+    let mut out = Vec::new();
+    for &(j, class) in sharers {
+        out.extend([
+            Arc::as_ptr(locals[j].kind()) as u64,
+            locals[j].factor().to_bits(),
+            class.at.len() as u64,
+        ]);
+        out.extend(class.at.iter().map(|&i| i as u64));
+        let columns = &jump.columns[j];
+        out.push(class.entries.len() as u64);
+        for &k in &class.entries {
+            let k = k as usize;
+            let row = number(&mut rows, columns.row[k]);
+            out.extend([row, u64::from(columns.at[k]), columns.bd[k].to_bits()]);
+        }
+        let names = names(&problem.local[j], jump, &locals[j], j);
+        out.extend(names.into_iter().map(|name| number(&mut primal, name)));
+    }
+    out
+}
+
+/// Names of the primal dofs of local subdomain `j`: equal where subdomains share them.
+fn names(sub: &Subdomain, jump: &Jump, local: &Local, j: usize) -> Vec<[u64; 2]> {
+    let vertices = local.interface[local.n_delta..].iter();
+    let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
+    let averages = jump.averages[j].iter().map(|a| [1, a.key]);
+    let fixing = local.fixing.iter();
+    let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
+    vertices.chain(averages).chain(fixing).collect()
+}
+
+/// What local subdomain `j` has to say about a class.
+fn part(problem: &Substructures, jump: &Jump, local: &Local, j: usize, class: &Class) -> Part {
+    let sub = &problem.local[j];
+    let (n, at) = (class.at.len(), &class.at);
+    let q = lifted(jump, j, class);
+    let s = local.s_on(at);
+    let mut sq = Dense::zeros(n, q.cols);
+    multiply(sq.view_mut(), false, 1.0, s.view(), q.view());
+    let mut a = Dense::zeros(q.cols, q.cols);
+    multiply(a.view_mut(), false, 1.0, q.view().transpose(), sq.view());
+    let mut psi = Dense::zeros(n, local.n_pi());
+    for p in 0..psi.cols {
+        for (k, &i) in at.iter().enumerate() {
+            psi.set(k, p, local.psi.get(i, p));
+        }
+    }
+    Part {
+        a,
+        t: local.t_on(at),
+        psi,
+        sigma: local.sigma(),
+        stiff: local.primal_stiffness(),
+        names: names(sub, jump, local, j),
+    }
+}
+
+/// Q_c: what B_Dᵀ B makes, on the copy in local subdomain `j`, of differences to the last sharer, read from the entries of B_D.
+fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
+    let (n, q) = (class.at.len(), class.sharers.len());
+    let columns = &jump.columns[j];
+    let place: HashMap<u32, usize> = class.at.iter().map(|&i| i as u32).zip(0..).collect();
+    let entries = class.entries.iter().map(|&k| {
+        let k = k as usize;
+        (columns.row[k], place[&columns.at[k]], columns.bd[k])
+    });
+    // The first entry of a row is the one on the dof that it belongs to; rows of a dof are numbered pair after pair.
+    let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n];
+    let mut known: HashMap<u32, usize> = HashMap::new();
+    for (row, x, _) in entries.clone() {
+        known.entry(row).or_insert_with(|| {
+            rows[x].push(row);
+            x
+        });
+    }
+    rows.iter_mut().for_each(|r| r.sort_unstable());
+    let pairs: Vec<(usize, usize)> = (0..q)
+        .flat_map(|a| (a + 1..q).map(move |b| (a, b)))
+        .collect();
+    let mut out = Dense::zeros(n, (q - 1) * n);
+    for (row, y, bd) in entries {
+        let x = known[&row];
+        let pair = rows[x].binary_search(&row).expect("a row of the dof");
+        let (a, b) = pairs[pair];
+        let mut add = |k: usize, value: f64| {
+            if k < q - 1 {
+                let sum = out.get(y, k * n + x) + value;
+                out.set(y, k * n + x, sum);
+            }
+        };
+        add(a, bd);
+        add(b, -bd);
+    }
+    out
+}
+
+fn pack(part: &Part, words: &mut Vec<u64>) {
+    for m in [&part.a, &part.t, &part.psi, &part.sigma] {
+        words.extend([m.rows as u64, m.cols as u64]);
+        words.extend(m.data.iter().map(|v| v.to_bits()));
+    }
+    words.extend(part.stiff.iter().map(|v| v.to_bits()));
+    words.extend(part.names.iter().flatten());
+}
+
+fn unpack(words: &mut &[u64]) -> Part {
+    let take = |words: &mut &[u64], n: usize| {
+        let (head, tail) = words.split_at(n);
+        *words = tail;
+        head.to_vec()
+    };
+    let floats = |w: Vec<u64>| -> Vec<f64> { w.into_iter().map(f64::from_bits).collect() };
+    let matrix = |words: &mut &[u64]| {
+        let size = take(words, 2);
+        let (rows, cols) = (size[0] as usize, size[1] as usize);
+        let data = floats(take(words, rows * cols));
+        Dense { rows, cols, data }
+    };
+    let (a, t) = (matrix(words), matrix(words));
+    let (psi, sigma) = (matrix(words), matrix(words));
+    let n_pi = sigma.rows;
+    Part {
+        a,
+        t,
+        psi,
+        sigma,
+        stiff: floats(take(words, n_pi)),
+        names: take(words, 2 * n_pi)
+            .chunks_exact(2)
+            .map(|w| [w[0], w[1]])
+            .collect(),
+    }
+}

@@ -1,0 +1,5 @@
+//! Adaptive primal constraints inside bodies whose coefficients jump.
+
+pub mod classes;
+pub mod constraints;
+pub mod pencil;

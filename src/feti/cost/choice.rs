@@ -1,0 +1,140 @@
+//! M_C or M_D: whether lifting jumps into whole bodies pays.
+//!
+//! M_C takes fewer iterations the more subdomains lie across a body, and costs a product S Z_c per subdomain, a dense A per body, and in every iteration
+//! reading Y = S Z_c twice or S once more. In the plane a subdomain sees a dozen columns of Z_c for each component, in space 200 from vertices and 600 with averages.
+
+use std::collections::BTreeSet;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::forms::{APPLICATIONS, DENSE_SHARED, FLOP};
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::jump::operator::Jump;
+use crate::feti::settings::{CoarseFunctions, PcType};
+use crate::parallel::exchange::sum_all;
+use crate::substructures::Substructures;
+
+/// Each neighbour adds this part of a subdomain's own columns to those that it sees, in the plane and in space; the others it shares already.
+const NEW_COLUMNS: [f64; 2] = [0.4, 0.3];
+
+/// Each column is shared by so many subdomains, in the plane and in space.
+const SHARED_BY: [f64; 2] = [2.7, 5.0];
+
+/// Seconds per entry of a matrix that is read for one vector.
+const DENSE_BY_ITSELF: f64 = 4e-10;
+
+/// Subdomains with more neighbours lie in space.
+const PLANE: f64 = 9.0;
+
+/// Seconds of an application of F and M⁻¹ per dof of an interface besides the dense operators, in the plane and in space, where more copies are
+/// tied: jumps, Ψ, vectors.
+const PER_DOF: [f64; 2] = [6e-8, 1.6e-7];
+
+/// Iterations of M_D grow with the subdomains across a body, H_b/H_s, as √(1 + this · (H_b/H_s − 1)) where those of M_C do not: in the plane; in space,
+/// tied and with inequalities (measured at H_b/H_s from 4.8 to 6.3).
+const GROWTH: [f64; 3] = [0.35, 0.65, 1.6];
+
+/// Iterations of M_C in space, in all steps of a contact loop together.
+const ITERATIONS_IN_SPACE: f64 = 12.0;
+
+/// So large a part of the subdomains in space has surroundings of its own where bodies are cut regularly: the others share its block of A.
+const OF_ITS_OWN: f64 = 0.5;
+
+/// What both cost on this rank, from sizes alone: the same on any number of ranks once it is added up.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Estimate {
+    /// Seconds of set-up that M_C adds.
+    setup: f64,
+    /// Seconds that it adds to an iteration.
+    more: f64,
+    /// Seconds of an iteration with M_D.
+    iteration: f64,
+}
+
+/// What numbers of iterations depend on.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// H_b/H_s.
+    across: f64,
+    in_space: bool,
+    inequalities: bool,
+}
+
+impl Estimate {
+    /// Whether M_C takes less time in space. In the plane, whether what it adds is less than all iterations with M_D: it is the safer one, with numbers of
+    /// iterations that neither subdomains nor coefficients change much.
+    fn pays(&self, shape: Shape) -> bool {
+        let contact = usize::from(shape.inequalities);
+        let (few, growth, own) = match shape.in_space {
+            true => (ITERATIONS_IN_SPACE, GROWTH[1 + contact], self.iteration),
+            false => (APPLICATIONS[contact], GROWTH[0], 0.0),
+        };
+        let many = few * (1.0 + growth * (shape.across - 1.0)).sqrt();
+        self.setup + few * (own + self.more) < many * self.iteration
+    }
+}
+
+/// M_C where there is something to lift, a body cut into subdomains that other bodies pull at, and where it costs little enough; else M_D. Collective.
+pub fn preconditioner(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    sharing: &Sharing,
+    jump: &Jump,
+    functions: CoarseFunctions,
+) -> PcType {
+    let cut = problem.n_subdomains > problem.n_bodies;
+    if !(cut && problem.n_bodies > 1 && jump.n_global > jump.n_local) {
+        return PcType::Dirichlet;
+    }
+    let neighbours = |j: usize| {
+        let sub = &problem.local[j];
+        let shared = sharing.shared_dofs[j].iter();
+        let copies = shared.flat_map(|&i| sharing.shared(sub.dofs[i as usize]));
+        let others: BTreeSet<u32> = copies.map(|c| c.subdomain).collect();
+        (others.len() as f64 - 1.0).max(0.0)
+    };
+    let neighbours: Vec<f64> = (0..problem.local.len()).map(neighbours).collect();
+    let mut seen = [neighbours.iter().sum()];
+    sum_all(comm, &mut seen);
+    let (n, bodies) = (problem.n_subdomains as f64, problem.n_bodies as f64);
+    let space = usize::from(seen[0] / n > PLANE);
+    let mut sum = Estimate::default();
+    let mut primal = 0.0;
+    for (j, m) in neighbours.iter().enumerate() {
+        let averages = match functions {
+            CoarseFunctions::All => jump.averages[j].len(),
+            CoarseFunctions::Vertices => 0,
+        };
+        let own = (jump.n_shared[j] + averages) as f64;
+        let columns = own * (1.0 + NEW_COLUMNS[space] * m);
+        let n_gamma = (jump.delta[j].len() + jump.primal[j].len()) as f64;
+        sum.setup += FLOP * (n_gamma.powi(2) * columns + n_gamma * columns.powi(2));
+        let stored = DENSE_BY_ITSELF * 2.0 * n_gamma * columns;
+        let again = DENSE_SHARED * n_gamma.powi(2) + 0.5 * PER_DOF[space] * n_gamma;
+        sum.more += stored.min(again);
+        sum.iteration += DENSE_SHARED * 2.0 * n_gamma.powi(2) + PER_DOF[space] * n_gamma;
+        primal += own;
+    }
+    let inequalities = jump.inequality.iter().filter(|i| **i).count() as f64;
+    let mut all = [sum.setup, sum.more, sum.iteration, primal, inequalities];
+    sum_all(comm, &mut all);
+    let [setup, more, iteration, primal, inequalities] = all;
+    let order = primal / SHARED_BY[space] / bodies;
+    let part = if space == 1 { OF_ITS_OWN } else { 1.0 };
+    let estimate = Estimate {
+        // A of every body is factored, and solved with.
+        setup: part * setup + bodies * FLOP * order.powi(3) / 3.0,
+        more: more + bodies * DENSE_BY_ITSELF * order.powi(2),
+        iteration,
+    };
+    let dimension = if space == 1 { 3.0 } else { 2.0 };
+    let shape = Shape {
+        across: (n / bodies).powf(1.0 / dimension),
+        in_space: space == 1,
+        inequalities: inequalities > 0.0,
+    };
+    match estimate.pays(shape) {
+        true => PcType::CoarseCorrected,
+        false => PcType::Dirichlet,
+    }
+}

@@ -1,0 +1,161 @@
+//! What would be built, counted exactly without factoring anything (`fetifeti plan`).
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::{choice, forms};
+use crate::feti::interface::entities;
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::jump::operator::Jump;
+use crate::feti::primal::kernel;
+use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
+use crate::feti::subdomain::equal;
+use crate::feti::subdomain::problem::Form;
+use crate::linalg::dense::Dense;
+use crate::parallel::exchange::{exchange_words, max_all, sum_all};
+use crate::parallel::team::Team;
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// Sizes over all ranks.
+#[derive(Debug, Clone)]
+pub struct Sizes {
+    /// Rows of B_loc.
+    pub multipliers_local: usize,
+    /// Rows of B_gl.
+    pub multipliers_global: usize,
+    /// Rows of B_gl that hold.
+    pub multipliers_active: usize,
+    /// Rows of B_gl that are inequalities.
+    pub inequalities: usize,
+    /// Primal dofs of all bodies, averages included, fixing dofs left out.
+    pub primal: usize,
+    /// Largest primal problem of a body.
+    pub largest_primal: usize,
+    /// Largest number of interface dofs of a subdomain.
+    pub largest_interface: usize,
+    /// Dimension of every body's kernel.
+    pub defect: Vec<usize>,
+    /// Different subdomains, each counted once per rank.
+    pub kinds: usize,
+    /// How many of them have S and T as sparse solves.
+    pub implicit_kinds: usize,
+    /// M⁻¹ unless it is chosen.
+    pub preconditioner: PcType,
+    /// Bytes of the sparse factors.
+    pub factor_bytes: f64,
+    /// Bytes of the dense operators S, T, Ψ.
+    pub dense_bytes: f64,
+}
+
+impl Sizes {
+    /// Counts with the default constraints. Collective.
+    pub fn new(comm: &SimpleCommunicator, problem: &Substructures, team: &Team) -> Result<Sizes> {
+        Sizes::with(comm, problem, team, Primal::default())
+    }
+
+    /// Counts with the chosen constraints. Collective.
+    pub fn with(
+        comm: &SimpleCommunicator,
+        problem: &Substructures,
+        team: &Team,
+        constraints: Primal,
+    ) -> Result<Sizes> {
+        entities::check(problem, constraints)?;
+        let weights: Vec<Vec<f64>> = problem.local.iter().map(|s| s.rho.clone()).collect();
+        let sharing = Sharing::new(comm, problem, &weights, constraints)?;
+        let jump = Jump::new(comm, problem, &sharing);
+        let first = equal::representatives(problem, &jump, team);
+        let kinds = forms::kinds(problem, &jump, &first);
+        let preconditioner =
+            choice::preconditioner(comm, problem, &sharing, &jump, CoarseFunctions::Vertices);
+        let contact = jump.inequality.iter().any(|i| *i);
+        let forms = forms::choose(
+            &kinds,
+            team,
+            Operators::Auto,
+            forms::APPLICATIONS[usize::from(contact)],
+            forms::usual_memory(comm.size() as usize),
+            preconditioner == PcType::CoarseCorrected,
+        );
+        let entries = team.map(kinds.len(), |k| kinds[k].factor_entries(forms[k]));
+
+        let mut primal = vec![0.0; problem.n_bodies];
+        let mut sums = [0.0; 6];
+        sums[4] = kinds.len() as f64;
+        for ((kind, form), &entries) in kinds.iter().zip(&forms).zip(&entries) {
+            let j = kind.j;
+            let n_delta = jump.delta[j].len() as f64;
+            let n_gamma = n_delta + jump.primal[j].len() as f64;
+            let n_pi = (jump.primal[j].len() + jump.averages[j].len()) as f64;
+            sums[0] += 8.0 * entries as f64;
+            // Ψ and Σ; S and T.
+            sums[1] += 8.0 * (n_delta * n_pi + n_pi.powi(2));
+            match form {
+                Form::Explicit => sums[1] += 8.0 * (n_gamma.powi(2) + n_delta.powi(2)),
+                Form::Implicit => sums[5] += 1.0,
+            }
+        }
+        let mut largest = [0.0f64];
+        for (j, sub) in problem.local.iter().enumerate() {
+            let n_gamma = jump.delta[j].len() + jump.primal[j].len();
+            largest[0] = largest[0].max(n_gamma as f64);
+            let averages = jump.averages[j].iter().map(|a| &a.dofs[0]);
+            for &i in jump.primal[j].iter().chain(averages) {
+                // Every primal dof is counted by its lowest subdomain; an average is where its dofs are.
+                let copies = sharing.shared(sub.dofs[i as usize]);
+                let first = copies
+                    .first()
+                    .is_none_or(|c| c.subdomain as usize == sub.index);
+                primal[sub.body] += f64::from(u8::from(first));
+            }
+        }
+        let contact = jump.n_owned_local..jump.n_owned;
+        sums[2] = contact.clone().filter(|&r| jump.active[r]).count() as f64;
+        sums[3] = contact.filter(|&r| jump.inequality[r]).count() as f64;
+        sum_all(comm, &mut sums);
+        sum_all(comm, &mut primal);
+        max_all(comm, &mut largest);
+        Ok(Sizes {
+            multipliers_local: jump.n_local,
+            multipliers_global: jump.n_global - jump.n_local,
+            multipliers_active: sums[2] as usize,
+            inequalities: sums[3] as usize,
+            primal: primal.iter().sum::<f64>() as usize,
+            largest_primal: primal.iter().fold(0.0f64, |a, &b| a.max(b)) as usize,
+            largest_interface: largest[0] as usize,
+            defect: defects(comm, problem),
+            kinds: sums[4] as usize,
+            implicit_kinds: sums[5] as usize,
+            preconditioner,
+            factor_bytes: sums[0],
+            dense_bytes: sums[1],
+        })
+    }
+}
+
+/// Dimension of every body's kernel, from its matrices and near-kernels; a body without near-kernel counts as held.
+fn defects(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<usize> {
+    let mut words = Vec::new();
+    for sub in &problem.local {
+        let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
+        let factor = kernel::residual_factor(&sub.k, columns);
+        words.extend([sub.body as u64, columns.len() as u64]);
+        words.extend(factor.data.iter().map(|v| v.to_bits()));
+    }
+    let all = exchange_words(comm, vec![words; comm.size() as usize]).concat();
+    let mut factors: Vec<Vec<Dense>> = vec![Vec::new(); problem.n_bodies];
+    let mut rest = &all[..];
+    while let [body, k, tail @ ..] = rest {
+        let k = *k as usize;
+        let (data, tail) = tail.split_at(k * k);
+        factors[*body as usize].push(Dense {
+            rows: k,
+            cols: k,
+            data: data.iter().map(|&w| f64::from_bits(w)).collect(),
+        });
+        rest = tail;
+    }
+    let defect = |f: &Vec<Dense>| kernel::null_combinations(f).cols;
+    factors.iter().map(defect).collect()
+}

@@ -1,0 +1,201 @@
+//! Averages over edges and faces: which of the entities that subdomains list are primal constraints.
+//!
+//! Every entity is reported to a rendezvous rank that follows from its key. That rank sees all subdomains that list it, compares
+//! what they say and tells them how many they are.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::sharing::Sharing;
+use crate::feti::settings::Primal;
+use crate::parallel::exchange::exchange_words;
+use crate::substructures::{Entity, Subdomain, Substructures};
+use crate::{Error, Result};
+
+/// The mean over some dofs, or another functional of them, as a primal constraint that several subdomains of a body share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Average {
+    /// Key of the entity; of a functional that adaptivity added, a body dof that no other one has.
+    pub key: u64,
+    /// Local dofs, none of them a shared vertex.
+    pub dofs: Vec<u32>,
+    /// Σ weights · u is the same in all these subdomains; `None` for the mean.
+    pub weights: Option<Vec<f64>>,
+}
+
+/// Words of a report: key, body, subdomain, number of dofs, hash of the body dofs.
+const WORDS: usize = 5;
+
+/// The entities of a subdomain that are chosen.
+pub fn chosen(sub: &Subdomain, primal: Primal) -> impl Iterator<Item = &Entity> {
+    sub.entities.iter().filter(move |e| primal.takes(e.kind))
+}
+
+/// The averages of every local subdomain, those that other subdomains have too; the entities must have passed [`check`].
+/// Collective.
+pub fn averages(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    sharing: &Sharing,
+    primal: Primal,
+) -> Result<Vec<Vec<Average>>> {
+    let size = comm.size() as usize;
+    let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
+    for sub in &problem.local {
+        for entity in chosen(sub, primal) {
+            let mut state = DefaultHasher::new();
+            for &i in &entity.dofs {
+                sub.dofs[i as usize].hash(&mut state);
+            }
+            reports[(entity.key % size as u64) as usize].extend([
+                entity.key,
+                sub.body as u64,
+                sub.index as u64,
+                entity.dofs.len() as u64,
+                state.finish(),
+            ]);
+        }
+    }
+    let received = exchange_words(comm, reports);
+    let mut all: Vec<&[u64]> = received
+        .iter()
+        .flat_map(|w| w.chunks_exact(WORDS))
+        .collect();
+    all.sort_unstable();
+    let agreed = all
+        .chunk_by(|a, b| a[0] == b[0])
+        .try_for_each(|group| agree(problem, group));
+    let count = |report: &[u64]| {
+        let start = all.partition_point(|r| r[0] < report[0]);
+        let same = all[start..].iter().take_while(|r| r[0] == report[0]);
+        same.count() as u64
+    };
+    let replies = received
+        .iter()
+        .map(|w| w.chunks_exact(WORDS).map(count).collect())
+        .collect();
+    let answers: Vec<Vec<u64>> = exchange_words(comm, replies);
+    agreed?;
+
+    let mut next = vec![0; size];
+    let mut out = Vec::new();
+    for sub in &problem.local {
+        let mut mine = Vec::new();
+        for entity in chosen(sub, primal) {
+            let home = (entity.key % size as u64) as usize;
+            let count = answers[home][next[home]] as usize;
+            next[home] += 1;
+            mine.extend(average(problem, sharing, sub, entity, count)?);
+        }
+        out.push(mine);
+    }
+    Ok(out)
+}
+
+/// What can be said of the chosen entities of every local subdomain by itself: their dofs exist and belong to one entity each.
+pub fn check(problem: &Substructures, primal: Primal) -> Result<()> {
+    let mut each = problem.local.iter();
+    each.try_for_each(|sub| valid(problem, sub, primal))
+}
+
+/// The constraint that an entity of `count` subdomains is; `None` for one, or where all its dofs are vertices.
+fn average(
+    problem: &Substructures,
+    sharing: &Sharing,
+    sub: &Subdomain,
+    entity: &Entity,
+    count: usize,
+) -> Result<Option<Average>> {
+    let mut dofs = Vec::new();
+    for &i in &entity.dofs {
+        let copies = sharing.shared(sub.dofs[i as usize]);
+        if Sharing::is_primal(copies) {
+            continue;
+        }
+        if copies.len().max(1) != count {
+            return Err(Error::input(format!(
+                "{} lists entity {} with local dof {i}, which {} subdomains hold, but {count} list the entity, expected the same number",
+                name(problem, sub.index, sub.body),
+                entity.key,
+                copies.len().max(1),
+            )));
+        }
+        dofs.push(i);
+    }
+    Ok((count > 1 && !dofs.is_empty()).then_some(Average {
+        key: entity.key,
+        dofs,
+        weights: None,
+    }))
+}
+
+fn valid(problem: &Substructures, sub: &Subdomain, primal: Primal) -> Result<()> {
+    let mut taken = vec![false; sub.dofs.len()];
+    for entity in chosen(sub, primal) {
+        let who = || {
+            format!(
+                "{} lists entity {}",
+                name(problem, sub.index, sub.body),
+                entity.key
+            )
+        };
+        if entity.dofs.is_empty() {
+            return Err(Error::input(format!(
+                "{} without dofs, expected at least one",
+                who()
+            )));
+        }
+        for &i in &entity.dofs {
+            match taken.get_mut(i as usize) {
+                None => {
+                    return Err(Error::input(format!(
+                        "{} with local dof {i}, expected one below {}",
+                        who(),
+                        sub.dofs.len()
+                    )))
+                }
+                Some(true) => {
+                    return Err(Error::input(format!(
+                        "{} with local dof {i}, which is listed before, expected every dof in one edge or face",
+                        who()
+                    )))
+                }
+                Some(free) => *free = true,
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What several subdomains list under one key is the same.
+fn agree(problem: &Substructures, group: &[&[u64]]) -> Result<()> {
+    let first = group[0];
+    let who = |r: &[u64]| name(problem, r[2] as usize, r[1] as usize);
+    for other in &group[1..] {
+        if first[1] == other[1] && first[2] != other[2] && first[3..] == other[3..] {
+            continue;
+        }
+        let what = if first[2] == other[2] {
+            "twice"
+        } else {
+            "with different dofs"
+        };
+        return Err(Error::input(format!(
+            "entity {} is listed by {} and by {} {what}, expected the same body dofs in the same order, once in each subdomain of one body",
+            first[0],
+            who(first),
+            who(other)
+        )));
+    }
+    Ok(())
+}
+
+fn name(problem: &Substructures, subdomain: usize, body: usize) -> String {
+    match problem.body_names.get(body) {
+        Some(name) => format!("subdomain {subdomain} of body \"{name}\""),
+        // Whether bodies exist is seen later.
+        None => format!("subdomain {subdomain}"),
+    }
+}

@@ -1,0 +1,198 @@
+//! Deluxe scaling: inside a body the copies of an edge or face are averaged with their Schur complements as weights.
+//!
+//! A group is what the same subdomains share: a face with the edges in it, an edge. With
+//!
+//! ```text
+//!     A_k = (Σ S)⁻¹ S_k,      E w = Σ_k A_k w_k,      B_D,locᵀ = (I − E) B_loc⁺
+//! ```
+//!
+//! B B_Dᵀ B = B holds as for weights that are numbers. Dofs that carry rows of B_gl keep those: B_gl acts on the weighted average of the copies,
+//! which B_D,locᵀ must not change.
+
+use std::collections::{BTreeMap, HashMap};
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::operator::Jump;
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::dense;
+use crate::linalg::dense::{Dense, Scratch};
+use crate::parallel::exchange::exchange_words;
+use crate::substructures::Substructures;
+
+/// Dofs of one subdomain that the same subdomains share, in the order of body dof.
+struct Group {
+    /// The subdomains, increasing.
+    sharers: Vec<u32>,
+    /// Positions in Γ.
+    at: Vec<usize>,
+    /// The lowest body dof: names the group.
+    name: u64,
+}
+
+/// Replaces the weights of B_loc. Entries of `jump` are on interface positions. Collective.
+pub fn apply(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    sharing: &Sharing,
+    jump: &mut Jump,
+    locals: &[Local],
+) {
+    let groups: Vec<Vec<Group>> = (0..locals.len())
+        .map(|j| groups(problem, sharing, jump, &locals[j], j))
+        .collect();
+    // [to, from, group, m², entries] to every sharer
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    for (j, sub) in problem.local.iter().enumerate() {
+        for group in &groups[j] {
+            let s = locals[j].s_on(&group.at);
+            for &to in &group.sharers {
+                let list = &mut outgoing[sharing.rank_of[to as usize] as usize];
+                list.extend([
+                    u64::from(to),
+                    sub.index as u64,
+                    group.name,
+                    s.data.len() as u64,
+                ]);
+                list.extend(s.data.iter().map(|v| v.to_bits()));
+            }
+        }
+    }
+    let mut received: HashMap<(u64, u64), BTreeMap<u64, Vec<f64>>> = HashMap::new();
+    for words in exchange_words(comm, outgoing) {
+        let mut rest = &words[..];
+        while let [to, from, name, n, tail @ ..] = rest {
+            let (data, tail) = tail.split_at(*n as usize);
+            let data = data.iter().map(|&w| f64::from_bits(w)).collect();
+            received
+                .entry((*to, *name))
+                .or_default()
+                .insert(*from, data);
+            rest = tail;
+        }
+    }
+    for (j, sub) in problem.local.iter().enumerate() {
+        for group in &groups[j] {
+            let schur = &received[&(sub.index as u64, group.name)];
+            // Every sharer adds the same numbers in the same order and comes to the same conclusion.
+            if let Some(weights) = group.weights(schur.values()) {
+                let own = group.sharers.binary_search(&(sub.index as u32));
+                group.replace(jump, j, own.expect("a sharer"), &weights);
+            }
+        }
+    }
+}
+
+/// The groups of local subdomain `j`.
+fn groups(
+    problem: &Substructures,
+    sharing: &Sharing,
+    jump: &Jump,
+    local: &Local,
+    j: usize,
+) -> Vec<Group> {
+    let dofs = &problem.local[j].dofs;
+    let columns = &jump.columns[j];
+    let mut plain = vec![false; local.n_gamma()];
+    for &(k, _) in &columns.contact {
+        plain[columns.at[k as usize] as usize] = true;
+    }
+    let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
+    for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+        let copies = sharing.shared(dofs[dof as usize]);
+        if copies.len() > 1 && !plain[i] {
+            let sharers = copies.iter().map(|c| c.subdomain).collect();
+            let of = found.entry(sharers).or_default();
+            of.push((dofs[dof as usize], i));
+        }
+    }
+    let group = |(sharers, mut members): (Vec<u32>, Vec<(u64, usize)>)| {
+        members.sort_unstable();
+        Group {
+            sharers,
+            name: members[0].0,
+            at: members.into_iter().map(|(_, i)| i).collect(),
+        }
+    };
+    found.into_iter().map(group).collect()
+}
+
+impl Group {
+    /// (Σ S)⁻¹ S_k for every sharer; nothing where nothing holds the group.
+    fn weights<'a>(&self, schur: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Option<Vec<Dense>> {
+        let m = self.at.len();
+        let mut l = Dense::zeros(m, m);
+        for s in schur.clone() {
+            l.data.iter_mut().zip(s).for_each(|(l, s)| *l += s);
+        }
+        let diagonal: Vec<f64> = (0..m).map(|i| l.get(i, i)).collect();
+        dense::cholesky(l.view_mut(), &mut Scratch::default()).ok()?;
+        if (0..m).any(|i| l.get(i, i).powi(2) <= 1e-10 * diagonal[i]) {
+            return None;
+        }
+        let solve = |s: &Vec<f64>| {
+            let mut a = Dense {
+                rows: m,
+                cols: m,
+                data: s.clone(),
+            };
+            dense::solve_lower(l.view(), a.view_mut());
+            dense::solve_lower_transpose(l.view(), a.view_mut());
+            a
+        };
+        Some(schur.map(solve).collect())
+    }
+
+    /// B_D of the rows of this group on the copy number `c`, that of local subdomain `j`.
+    fn replace(&self, jump: &mut Jump, j: usize, c: usize, weights: &[Dense]) {
+        let (n, q) = (self.at.len(), self.sharers.len());
+        let columns = &mut jump.columns[j];
+        let mut place = HashMap::new();
+        for (p, &i) in self.at.iter().enumerate() {
+            place.insert(i as u32, p);
+        }
+        // Rows of a dof are numbered pair after pair, and every copy has an entry in each of them.
+        let mut rows: Vec<Vec<(u32, usize)>> = vec![Vec::new(); n];
+        for (k, (&row, at)) in columns.row.iter().zip(&columns.at).enumerate() {
+            if let Some(&p) = place.get(at) {
+                rows[p].push((row, k));
+            }
+        }
+        rows.iter_mut().for_each(|r| r.sort_unstable());
+        let pairs = (0..q).flat_map(|a| (a + 1..q).map(move |b| (a, b)));
+        for (pair, ab) in pairs.enumerate() {
+            let entries = self.pair(ab, c, weights);
+            for (x, rows) in rows.iter().enumerate() {
+                let (row, own) = rows[pair];
+                for (y, &at) in self.at.iter().enumerate() {
+                    let value = entries.get(y, x);
+                    if x == y {
+                        columns.bd[own] = value;
+                    } else if value != 0.0 {
+                        columns.row.push(row);
+                        columns.at.push(at as u32);
+                        columns.b.push(0.0);
+                        columns.bd.push(value);
+                    }
+                }
+            }
+        }
+    }
+
+    /// B_Dᵀ of the rows (a, b) on copy c: Σ_k A_k (z_c − z_k) with z = B⁺ λ, added up without cancellation.
+    fn pair(&self, (a, b): (usize, usize), c: usize, weights: &[Dense]) -> Dense {
+        let (n, q) = (self.at.len(), weights.len() as f64);
+        let value = |k: usize| f64::from(u8::from(k == a)) - f64::from(u8::from(k == b));
+        let mut out = Dense::zeros(n, n);
+        for (k, weight) in weights.iter().enumerate() {
+            let factor = (value(c) - value(k)) / q;
+            if factor != 0.0 {
+                let terms = out.data.iter_mut().zip(&weight.data);
+                terms.for_each(|(o, w)| *o += factor * w);
+            }
+        }
+        out
+    }
+}

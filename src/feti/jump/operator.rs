@@ -1,0 +1,402 @@
+//! The jump operator B = [B_loc; B_gl] and its scaled companion B_D, as every rank sees them.
+//!
+//! Rows (multipliers) are numbered rank after rank; the rank of a dof's lowest subdomain owns its local rows, the
+//! rank that provides a contact row owns that. A rank also sees *ghost* rows: all those that touch
+//! its subdomains. Entries are kept per subdomain on interface positions, B and B_D side by side.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::blocks;
+use super::blocks::{Block, Entry};
+use super::scaling;
+use crate::feti::interface::entities::Average;
+use crate::feti::interface::sharing::{Copy, Sharing};
+use crate::parallel::exchange::{exchange, offsets, sum_all};
+use crate::substructures::{RowKind, Substructures};
+
+/// The entries of B and B_D in the columns of one subdomain.
+#[derive(Debug, Clone, Default)]
+pub struct JumpColumns {
+    /// Ghost row of each entry.
+    pub row: Vec<u32>,
+    /// Interface position (index into Γ) of each entry; before [`Jump::place`], the local dof.
+    pub at: Vec<u32>,
+    /// Entry of Z B (zero where only B_D has one, and in rows that do not hold).
+    pub b: Vec<f64>,
+    /// Entry of Z B_D.
+    pub bd: Vec<f64>,
+    /// Entries of B_gl: where they stand in the lists above, and their value in B, whether or not the row holds.
+    pub contact: Vec<(u32, f64)>,
+}
+
+impl JumpColumns {
+    /// v ← Bᵀ λ on this subdomain's interface.
+    pub fn b_transpose(&self, ghost: &[f64], v: &mut [f64]) {
+        v.fill(0.0);
+        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.b) {
+            v[i as usize] += b * ghost[r as usize];
+        }
+    }
+
+    /// v ← Bᵀ λ with all rows of B_gl, those that do not hold included.
+    pub fn b_transpose_all(&self, ghost: &[f64], v: &mut [f64]) {
+        self.b_transpose(ghost, v);
+        for &(k, full) in &self.contact {
+            let k = k as usize;
+            v[self.at[k] as usize] += (full - self.b[k]) * ghost[self.row[k] as usize];
+        }
+    }
+
+    /// ghost ← ghost + B y on the rows of B_gl, those that do not hold included.
+    pub fn add_contact(&self, y: &[f64], ghost: &mut [f64]) {
+        for &(k, full) in &self.contact {
+            let k = k as usize;
+            ghost[self.row[k] as usize] += full * y[self.at[k] as usize];
+        }
+    }
+
+    /// v ← B_Dᵀ λ on this subdomain's interface.
+    pub fn bd_transpose(&self, ghost: &[f64], v: &mut [f64]) {
+        self.bd_transpose_of(ghost, v, |_| true);
+    }
+
+    /// v ← B_Dᵀ λ with some of the ghost rows.
+    pub fn bd_transpose_of(&self, ghost: &[f64], v: &mut [f64], rows: impl Fn(usize) -> bool) {
+        v.fill(0.0);
+        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
+            if rows(r as usize) {
+                v[i as usize] += b * ghost[r as usize];
+            }
+        }
+    }
+
+    /// ghost ← ghost + B y.
+    pub fn add_b(&self, y: &[f64], ghost: &mut [f64]) {
+        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.b) {
+            ghost[r as usize] += b * y[i as usize];
+        }
+    }
+
+    /// ghost ← ghost + B_D y.
+    pub fn add_bd(&self, y: &[f64], ghost: &mut [f64]) {
+        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
+            ghost[r as usize] += b * y[i as usize];
+        }
+    }
+}
+
+/// The dual space and its operators.
+#[derive(Debug, Default)]
+pub struct Jump {
+    /// Rows owned by this rank: first global number and count.
+    pub first: usize,
+    /// Number of rows that this rank owns.
+    pub n_owned: usize,
+    /// Number of rows over all ranks, m.
+    pub n_global: usize,
+    /// How many of the owned rows (the first ones) tie subdomains inside a body; the others are rows of B_gl.
+    pub n_owned_local: usize,
+    /// Rows of B_loc over all ranks.
+    pub n_local: usize,
+    /// Global number of each ghost row, increasing.
+    pub ghosts: Vec<u32>,
+    /// Which ghost rows are rows of B_gl.
+    pub ghost_is_contact: Vec<bool>,
+    /// Right-hand side c of each owned row.
+    pub gap: Vec<f64>,
+    /// The right-hand side that each owned row is held to: c, or the nearest that the rows of its block that hold can satisfy
+    /// together.
+    pub held: Vec<f64>,
+    /// Whether each owned row may be switched off by the contact loop.
+    pub inequality: Vec<bool>,
+    /// Z⁰ on the owned rows: whether the row holds to begin with.
+    pub initial: Vec<bool>,
+    /// Z^k on the owned rows: whether the row holds.
+    pub active: Vec<bool>,
+    /// Blocks of the owned rows of B_gl.
+    pub blocks: Vec<Block>,
+    /// For each owned row of B_gl, which of the rows that this rank provides it is.
+    pub order: Vec<usize>,
+    /// First owned local row of each local subdomain, and the end: a subdomain's rows are those of the dofs in which it is
+    /// the lowest.
+    pub local_start: Vec<usize>,
+    /// Rank that holds each subdomain.
+    pub(crate) rank_of: Vec<u32>,
+    /// Global indices of the local subdomains, increasing.
+    pub(crate) subdomains: Vec<u32>,
+    /// Where the entries of B_gl stand: (ghost row, local subdomain, its dof, entry), increasing.
+    pub(crate) places: Vec<(u32, u32, u32, u32)>,
+    /// Entries by local subdomain.
+    pub columns: Vec<JumpColumns>,
+    /// Dual interface dofs of each local subdomain, increasing.
+    pub delta: Vec<Vec<u32>>,
+    /// Primal interface dofs of each local subdomain: those shared with other subdomains of the body, then corners of the body
+    /// that may touch other bodies.
+    pub primal: Vec<Vec<u32>>,
+    /// How many of them are shared.
+    pub n_shared: Vec<usize>,
+    /// Averages over dual dofs of each local subdomain that are primal too.
+    pub averages: Vec<Vec<Average>>,
+}
+
+impl Jump {
+    /// Builds Z B and Z B_D with the rows that hold to begin with. Collective.
+    pub fn new(comm: &SimpleCommunicator, problem: &Substructures, sharing: &Sharing) -> Jump {
+        let rank = comm.rank() as u32;
+        let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
+        let mut send = |entry: Entry| {
+            let to = sharing.rank_of[entry.subdomain as usize];
+            outgoing[to as usize].push(entry);
+        };
+
+        let (own_local, per_subdomain) = local_groups(problem, sharing, rank);
+        let n_owned_local = own_local.iter().map(|g| g.len() * (g.len() - 1) / 2).sum();
+        let n_owned = n_owned_local + problem.rows.len();
+        let (first, n_global) = offsets(comm, n_owned);
+
+        let mut row = first as u64;
+        for group in &own_local {
+            let weights: Vec<f64> = group.iter().map(|c| c.weight).collect();
+            for a in 0..group.len() {
+                for b in a + 1..group.len() {
+                    for (c, copy) in group.iter().enumerate() {
+                        let bd = scaling::pair_entry(&weights, (a, b), c);
+                        let sign = f64::from(u8::from(c == a)) - f64::from(u8::from(c == b));
+                        send(Entry::new(row, copy, false, [sign, sign, bd]));
+                    }
+                    row += 1;
+                }
+            }
+        }
+
+        let (order, blocks) = blocks::collect(problem, sharing, n_owned_local);
+        let locals_hold = std::iter::repeat_n(true, n_owned_local);
+        let contacts_hold = order.iter().map(|&r| problem.rows[r].holds);
+        let active: Vec<bool> = locals_hold.chain(contacts_hold).collect();
+        for block in &blocks {
+            block.entries(first, &active[block.rows.clone()], &mut send);
+        }
+
+        let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
+        let zeros = std::iter::repeat_n(0.0, n_owned_local);
+        let never = std::iter::repeat_n(false, n_owned_local);
+        let mut n_local = [n_owned_local as f64];
+        sum_all(comm, &mut n_local);
+        let mut jump = Jump {
+            first,
+            n_owned,
+            n_global,
+            n_owned_local,
+            n_local: n_local[0] as usize,
+            gap: zeros.chain(rows.iter().map(|r| r.gap)).collect(),
+            inequality: never
+                .chain(rows.iter().map(|r| r.kind == RowKind::Inequality))
+                .collect(),
+            initial: active.clone(),
+            averages: sharing.averages.clone(),
+            active,
+            blocks,
+            order,
+            local_start: per_subdomain,
+            rank_of: sharing.rank_of.clone(),
+            subdomains: problem.local.iter().map(|s| s.index as u32).collect(),
+            ..Jump::default()
+        };
+        jump.held = jump.gap.clone();
+        jump.reconcile(|_| true);
+        jump.receive(problem, sharing, exchange(comm, outgoing));
+        jump
+    }
+
+    /// Replaces c; `gaps` is in the order in which this rank provides its rows.
+    pub fn set_gaps(&mut self, gaps: &[f64]) {
+        let rows = &mut self.gap[self.n_owned_local..];
+        for (c, &r) in rows.iter_mut().zip(&self.order) {
+            *c = gaps[r];
+        }
+        self.held.clone_from(&self.gap);
+        self.reconcile(|_| true);
+    }
+
+    /// Whether owned row `i` may hold at all: open rows of faces that are tied in part may not.
+    pub fn is_candidate(&self, i: usize) -> bool {
+        self.inequality[i] || self.initial[i]
+    }
+
+    fn receive(&mut self, problem: &Substructures, sharing: &Sharing, entries: Vec<Entry>) {
+        let seen = GhostRows::new(self.first, self.n_owned, &entries);
+        (self.ghosts, self.ghost_is_contact) = seen.all().unzip();
+
+        let mut subdomains_of = vec![0; problem.n_bodies];
+        for &body in &sharing.body_of {
+            subdomains_of[body as usize] += 1;
+        }
+        // By subdomain, then by dof and row: what is sorted is small.
+        let mut here = vec![u32::MAX; problem.n_subdomains];
+        for (j, sub) in (0..).zip(&problem.local) {
+            here[sub.index] = j;
+        }
+        let mut dealt: Vec<Vec<(u32, u32, u32)>> = vec![Vec::new(); problem.local.len()];
+        for (k, e) in (0..).zip(&entries) {
+            let row = seen.place(e.row as u32);
+            dealt[here[e.subdomain as usize] as usize].push((e.local, row, k));
+        }
+        for (j, sub) in problem.local.iter().enumerate() {
+            let mut mine = std::mem::take(&mut dealt[j]);
+            mine.sort_unstable();
+            let mut columns = JumpColumns::default();
+            // Corners of a body of several subdomains are primal too, but not those of a solid: with ν near 1/2, holding a
+            // corner makes the coarse functions stiffer than the cut that it saves.
+            let scalar = sub.near_kernel.as_ref().is_none_or(|n| n.len() < 2);
+            let pinned = scalar && subdomains_of[sub.body] > 1;
+            let mut dual = Vec::new();
+            let mut corners = Vec::new();
+            for (_, row, k) in mine {
+                let e = &entries[k as usize];
+                if e.contact {
+                    let k = columns.row.len() as u32;
+                    columns.contact.push((k, e.full));
+                    self.places.push((row, j as u32, e.local, k));
+                }
+                columns.row.push(row);
+                columns.at.push(e.local);
+                columns.b.push(e.b);
+                columns.bd.push(e.bd);
+                let vertex = sharing.vertices && sub.primal.binary_search(&e.local).is_ok();
+                let alone = sharing.shared(sub.dofs[e.local as usize]).is_empty();
+                if e.contact && vertex && alone && pinned {
+                    corners.push(e.local);
+                } else {
+                    dual.push(e.local);
+                }
+            }
+            let shared = sharing.shared_dofs[j].iter().copied();
+            let mut primal: Vec<u32> = shared
+                .filter(|&i| Sharing::is_primal(sharing.shared(sub.dofs[i as usize])))
+                .collect();
+            corners.dedup();
+            dual.dedup();
+            dual.retain(|i| primal.binary_search(i).is_err());
+            self.n_shared.push(primal.len());
+            primal.extend(corners);
+            self.columns.push(columns);
+            self.delta.push(dual);
+            self.primal.push(primal);
+        }
+        self.places.sort_unstable();
+    }
+
+    /// Which local subdomain has this global index.
+    ///
+    /// # Panics
+    /// If none has.
+    pub fn local_index(&self, subdomain: u32) -> usize {
+        let found = self.subdomains.binary_search(&subdomain);
+        found.expect("the subdomain is on this rank")
+    }
+
+    /// Turns the entries' local dofs into positions in `interface` (the order of Γ) of subdomain `j`.
+    pub fn place(&mut self, j: usize, interface: &[u32]) {
+        let mut position: Vec<(u32, u32)> = interface.iter().copied().zip(0..).collect();
+        position.sort_unstable();
+        for at in &mut self.columns[j].at {
+            let found = position.binary_search_by_key(at, |p| p.0);
+            *at = position[found.expect("a row's dof is an interface dof")].1;
+        }
+    }
+}
+
+/// The rows that entries are in, numbered upwards: a table for the rank's own ones, a list for the few others.
+struct GhostRows {
+    first: u32,
+    /// By owned row: its place among the owned rows that are seen, and whether it is one of B_gl; `None` where no entry is.
+    own: Vec<Option<(u32, bool)>>,
+    n_own: u32,
+    /// The others, increasing, and how many of them come before the owned ones.
+    others: Vec<(u32, bool)>,
+    before: u32,
+}
+
+impl GhostRows {
+    fn new(first: usize, n_owned: usize, entries: &[Entry]) -> GhostRows {
+        let first = first as u32;
+        let mut own = vec![None; n_owned];
+        let mut others = Vec::new();
+        for e in entries {
+            let row = e.row as u32;
+            match own.get_mut(row.wrapping_sub(first) as usize) {
+                Some(seen) => *seen = Some((0, e.contact)),
+                None => others.push((row, e.contact)),
+            }
+        }
+        others.sort_unstable();
+        others.dedup();
+        let before = others.partition_point(|o| o.0 < first) as u32;
+        let mut n_own = 0;
+        for seen in own.iter_mut().flatten() {
+            seen.0 = n_own;
+            n_own += 1;
+        }
+        GhostRows {
+            first,
+            own,
+            n_own,
+            others,
+            before,
+        }
+    }
+
+    /// (row, whether it is one of B_gl), increasing.
+    fn all(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
+        let (below, above) = self.others.split_at(self.before as usize);
+        let own = (self.first..).zip(&self.own);
+        let own = own.filter_map(|(row, seen)| Some((row, (*seen)?.1)));
+        below
+            .iter()
+            .copied()
+            .chain(own)
+            .chain(above.iter().copied())
+    }
+
+    /// Where a row stands among all.
+    ///
+    /// # Panics
+    /// If no entry is in it.
+    fn place(&self, row: u32) -> u32 {
+        let here = self.own.get(row.wrapping_sub(self.first) as usize);
+        if let Some(seen) = here {
+            return self.before + seen.expect("an entry is in the row").0;
+        }
+        let at = self.others.binary_search_by_key(&row, |o| o.0);
+        let at = at.expect("an entry is in the row") as u32;
+        at + if row < self.first { 0 } else { self.n_own }
+    }
+}
+
+/// The dual dofs shared inside a body whose lowest subdomain lives here, in a reproducible order, and where the rows of each local
+/// subdomain start (and end).
+fn local_groups<'a>(
+    problem: &Substructures,
+    sharing: &'a Sharing,
+    rank: u32,
+) -> (Vec<&'a [Copy]>, Vec<usize>) {
+    let mut groups = Vec::new();
+    let mut start = vec![0];
+    let mut rows = 0;
+    for (sub, shared) in problem.local.iter().zip(&sharing.shared_dofs) {
+        debug_assert_eq!(sharing.rank_of[sub.index], rank);
+        for &i in shared {
+            let copies = sharing.shared(sub.dofs[i as usize]);
+            let lowest = copies
+                .first()
+                .is_some_and(|c| c.subdomain as usize == sub.index);
+            if lowest && !Sharing::is_primal(copies) {
+                groups.push(copies);
+                rows += copies.len() * (copies.len() - 1) / 2;
+            }
+        }
+        start.push(rows);
+    }
+    (groups, start)
+}

@@ -1,0 +1,115 @@
+//! D: what the copies of a dof weigh in averages.
+
+use crate::feti::settings::{Scaling, Settings};
+use crate::substructures::{Subdomain, Substructures};
+
+/// Noise: from dof to dof ln ρ changes by at least this part of its standard deviation. White noise has about 0.8, a field that varies over ten elements 0.2.
+const NOISE: f64 = 0.4;
+
+/// And from the mean over its neighbours by this part, as root mean square: 0.74 for white noise, 0.4 for a slope over three elements.
+const AWAY: f64 = 0.6;
+
+/// Fewer dofs are too few to tell noise from a slope.
+const SAMPLE: usize = 100;
+
+/// Largest ρ over smallest up to which noise is averaged away. Beyond that single stiff elements carry the stiffness of whole edges.
+const MODERATE: f64 = 1e3;
+
+/// The diagonal of D for every local subdomain.
+///
+/// ρ stands for what a copy resists with when it is moved together with its neighbours. Where ρ is noise, that is the mean: weights as rough as ρ itself would turn smooth jumps
+/// into rough averages, whose energy is larger by up to H/h.
+pub fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
+    let of = |sub: &Subdomain| -> Vec<f64> {
+        match settings.scaling {
+            Scaling::Multiplicity => vec![1.0; sub.k.n()],
+            Scaling::Rho if is_noise(sub) => {
+                let mean = sub.rho.iter().sum::<f64>() / sub.rho.len() as f64;
+                vec![mean.powf(settings.gamma); sub.rho.len()]
+            }
+            Scaling::Rho if settings.gamma == 1.0 => sub.rho.clone(),
+            Scaling::Rho => sub.rho.iter().map(|r| r.powf(settings.gamma)).collect(),
+            Scaling::Stiffness | Scaling::Deluxe => sub.k.diagonal(),
+        }
+    };
+    problem.local.iter().map(of).collect()
+}
+
+/// Whether ρ changes from dof to dof without a pattern, by moderate factors.
+fn is_noise(sub: &Subdomain) -> bool {
+    let (low, high) = sub
+        .rho
+        .iter()
+        .fold((f64::INFINITY, 0.0f64), |(l, h), &r| (l.min(r), h.max(r)));
+    if sub.rho.len() < SAMPLE || low == high || !(low > 0.0 && high <= MODERATE * low) {
+        return false;
+    }
+    let ln: Vec<f64> = sub.rho.iter().map(|r| r.ln()).collect();
+    let n = ln.len() as f64;
+    let mean = ln.iter().sum::<f64>() / n;
+    let deviation = (ln.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let (mut sum, mut pairs, mut away) = (0.0, 0.0, 0.0);
+    for i in 0..sub.k.n() {
+        // Components of one node are no neighbours.
+        let row = sub.k.row(i).0.iter().map(|&j| j as usize);
+        let neighbours = row.filter(|&j| j != i && !same_place(sub, i, j));
+        let (mut of_row, mut near, mut count) = (0.0, 0.0, 0.0);
+        for j in neighbours {
+            of_row += (ln[i] - ln[j]).abs();
+            near += ln[j];
+            count += 1.0;
+        }
+        if count > 0.0 {
+            away += (ln[i] - near / count).powi(2);
+        }
+        sum += of_row;
+        pairs += count;
+    }
+    pairs > 0.0 && sum >= NOISE * deviation * pairs && (away / n).sqrt() >= AWAY * deviation
+}
+
+fn same_place(sub: &Subdomain, i: usize, j: usize) -> bool {
+    let places = sub.coordinates.as_ref();
+    places.is_some_and(|x| x[i] == x[j])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn noisy(rho: &str) -> Vec<bool> {
+        let text = format!(
+            "title = \"field\"\n[grid]\nbodies = 1\nsubdomains = 2\nelements_per_subdomain = 24\nload = 1\nrho = \"{rho}\"\n"
+        );
+        let scene = Scene::parse("field.toml", &text).expect("a scene");
+        let problem = scene.substructures(&|_| true).expect("substructures");
+        problem.local.iter().map(is_noise).collect()
+    }
+
+    #[test]
+    fn noise_is_told_from_fields_and_channels() {
+        let draw = "mod(43758.5453*sin(12.9898*48*x + 78.233*48*y), 1)";
+        assert_eq!(noisy(&format!("10^(2*{draw} - 1)")), [true; 4]);
+        // Too rough, smooth, constant, channels of four elements.
+        assert_eq!(noisy(&format!("10^(8*{draw} - 4)")), [false; 4]);
+        assert_eq!(noisy("10^(x + y)"), [false; 4]);
+        assert_eq!(noisy("1 + 20*si + 3*sj + x"), [false; 4]);
+        assert_eq!(noisy("2"), [false; 4]);
+        assert_eq!(noisy("1 + 99*(mod(6*y, 1) < 0.5)"), [false; 4]);
+    }
+
+    #[test]
+    fn weights_of_noise_are_the_mean() {
+        let draw = "mod(43758.5453*sin(12.9898*48*x + 78.233*48*y), 1)";
+        let text = format!(
+            "title = \"field\"\n[grid]\nbodies = 1\nsubdomains = 1\nelements_per_subdomain = 24\nload = 1\nrho = \"2 + {draw}\"\n"
+        );
+        let scene = Scene::parse("field.toml", &text).expect("a scene");
+        let problem = scene.substructures(&|_| true).expect("substructures");
+        let d = &weights(&problem, &Settings::default())[0];
+        let mean = problem.local[0].rho.iter().sum::<f64>() / d.len() as f64;
+        assert!(d.iter().all(|d| (d - mean).abs() < 1e-14 * mean));
+        assert!((1.5..3.0).contains(&mean));
+    }
+}

@@ -1,0 +1,179 @@
+//! The certificate: how well (u, λ) satisfies the optimality conditions of the whole problem, from K, f and B alone.
+
+use crate::feti::jump::operator::JumpColumns;
+use crate::feti::operators::dual::Dual;
+use crate::feti::subdomain::scaled::Local;
+use crate::parallel::exchange::{max_all, min_all, sum_all};
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::substructures::{Subdomain, Substructures};
+use crate::Result;
+
+/// How well the optimality conditions hold, relative to the sizes of their terms.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Kkt {
+    /// ‖K u − f + Bᵀ λ‖ / (‖f‖ + ‖Bᵀ λ‖) in the norm of diag(K)⁻¹, in which stiff and soft parts count alike; residuals of
+    /// primal dofs and averages are summed over their copies.
+    pub stationarity: f64,
+    /// Largest violation of B u = c (≤ c) over the largest |u|; inequality rows count whether or not they hold.
+    pub feasibility: f64,
+    /// Largest |λ_r (B u − c)_r| over inequality rows, relative to max |λ| · max |u|; zero without inequality rows.
+    pub complementarity: f64,
+    /// Smallest multiplier of an inequality row, relative to max |λ|; zero without inequality rows.
+    pub min_multiplier: f64,
+}
+
+/// What is known of a pair (u, λ).
+pub struct Certificate {
+    /// Optimality.
+    pub kkt: Kkt,
+    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c), the value of the Lagrangian: equal to the energy at the solution, and stationary there,
+    /// so that its error is of second order.
+    pub energy: f64,
+    /// B u − c on the owned rows, those that do not hold included.
+    pub gaps: Vec<f64>,
+}
+
+/// Computes the certificate. Collective.
+pub fn certify(
+    session: &Session,
+    problem: &Substructures,
+    dual: &Dual,
+    u: &[Vec<f64>],
+    lambda: &PetscVec,
+) -> Result<Certificate> {
+    let comm = session.comm();
+    let stiffness = &dual.stiffness;
+    let jump = &stiffness.jump;
+    let mut ghost = vec![0.0; jump.ghosts.len()];
+    stiffness.dual_halo.fetch(lambda, &mut ghost)?;
+
+    let (locals, places) = (&stiffness.locals, &stiffness.space.of_subdomain);
+    let examined = stiffness.team.map(locals.len(), |j| {
+        let (sub, columns) = (&problem.local[j], &jump.columns[j]);
+        examine((sub, &u[j]), &locals[j], (columns, &ghost), &places[j])
+    });
+    let mut sums = [0.0; 4];
+    let mut primal = vec![0.0; stiffness.space.ghosts.len()];
+    let mut primal_d = primal.clone();
+    let mut work = stiffness.work();
+    for (part, work) in examined.into_iter().zip(&mut work) {
+        sums.iter_mut().zip(part.sums).for_each(|(s, p)| *s += p);
+        for (at, r, d) in part.primal {
+            primal[at as usize] += r;
+            primal_d[at as usize] += d;
+        }
+        // Fixing dofs take nothing over: no residual, any divisor.
+        part.fixing
+            .iter()
+            .for_each(|&at| primal_d[at as usize] = 1.0);
+        work.y = part.on_interface;
+    }
+    let rows = dual.multipliers()?;
+    stiffness.jump_of_all(&work, &rows)?;
+    let mut gaps = rows.to_vec()?;
+    gaps.iter_mut().zip(&jump.gap).for_each(|(b, c)| *b -= c);
+    let lambda = lambda.array()?;
+    sums[3] += gaps.iter().zip(&*lambda).map(|(b, l)| b * l).sum::<f64>();
+    sum_all(comm, &mut sums);
+    let primal = stiffness.primal.weighted_square(&primal, &primal_d)?;
+    let stationarity = (sums[0] + primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
+
+    let mut largest = [0.0f64; 4]; // |u|, |λ|, violation, |λ (Bu − c)|
+    let mut smallest = [0.0f64];
+    largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
+    for r in 0..jump.n_owned {
+        largest[1] = largest[1].max(lambda[r].abs());
+        if jump.inequality[r] {
+            largest[2] = largest[2].max(gaps[r]);
+            largest[3] = largest[3].max((lambda[r] * gaps[r]).abs());
+            smallest[0] = smallest[0].min(lambda[r]);
+        } else if jump.active[r] {
+            largest[2] = largest[2].max(gaps[r].abs());
+        }
+    }
+    drop(lambda);
+    max_all(comm, &mut largest);
+    min_all(comm, &mut smallest);
+    let [u_max, lambda_max, violation, product] = largest;
+    Ok(Certificate {
+        kkt: Kkt {
+            stationarity,
+            feasibility: violation / positive(u_max),
+            complementarity: product / positive(lambda_max * u_max),
+            min_multiplier: smallest[0] / positive(lambda_max),
+        },
+        energy: sums[3],
+        gaps,
+    })
+}
+
+/// What one subdomain adds to the certificate.
+struct Examined {
+    /// Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d and the energy, with d = diag(K).
+    sums: [f64; 4],
+    /// Residuals and d of primal dofs, to be summed over copies: (ghost, r, d).
+    primal: Vec<(u32, f64, f64)>,
+    /// Ghosts of fixing dofs.
+    fixing: Vec<u32>,
+    /// u on Γ.
+    on_interface: Vec<f64>,
+}
+
+fn examine(
+    (sub, u): (&Subdomain, &[f64]),
+    local: &Local,
+    (columns, ghost): (&JumpColumns, &[f64]),
+    places: &[u32],
+) -> Examined {
+    let mut sums = [0.0; 4];
+    let mut primal = Vec::new();
+    let mut r = vec![0.0; sub.k.n()];
+    sub.k.mul(u, &mut r);
+    let products = u.iter().zip(&r).zip(&sub.f);
+    sums[3] = products.map(|((u, ku), f)| u * (0.5 * ku - f)).sum();
+    let d = sub.k.diagonal();
+    sums[1] = sub.f.iter().zip(&d).map(|(f, d)| f * f / d).sum();
+    r.iter_mut().zip(&sub.f).for_each(|(r, f)| *r -= f);
+    let mut pull = vec![0.0; local.n_gamma()];
+    columns.b_transpose_all(ghost, &mut pull);
+    for (&i, v) in local.interface.iter().zip(&pull) {
+        r[i as usize] += v;
+        sums[2] += v * v / d[i as usize];
+    }
+    let on = |x: &[f64]| -> Vec<f64> { local.interface.iter().map(|&i| x[i as usize]).collect() };
+    // What a copy takes over from another one: a force at a vertex, one along a functional on an edge or face.
+    let (mut on_gamma, stiff) = (on(&r), on(&d));
+    for (i, &at) in (local.n_delta..local.n_gamma()).zip(places) {
+        primal.push((at, std::mem::take(&mut on_gamma[i]), stiff[i]));
+    }
+    if !local.basis.is_empty() {
+        local.basis.to_coordinates(&mut on_gamma);
+        let vectors = local.basis.vectors(stiff.len());
+        let pivots = local.basis.pivots().into_iter().zip(&vectors);
+        for ((p, q), &at) in pivots.zip(&places[local.n_vertices()..]) {
+            let weights = q.iter().zip(&stiff);
+            let d = weights.map(|(q, d)| q * q * d).sum::<f64>();
+            primal.push((at, std::mem::take(&mut on_gamma[p]), d));
+        }
+        local.basis.to_nodes(&mut on_gamma);
+    }
+    for (&i, v) in local.interface.iter().zip(&on_gamma) {
+        r[i as usize] = *v;
+    }
+    sums[0] = r.iter().zip(&d).map(|(r, d)| r * r / d).sum();
+    Examined {
+        sums,
+        primal,
+        fixing: places[local.n_pi() - local.fixing.len()..].to_vec(),
+        on_interface: on(u),
+    }
+}
+
+/// A divisor: one in place of zero, for problems without load.
+fn positive(x: f64) -> f64 {
+    if x > 0.0 {
+        x
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,155 @@
+//! Directions of earlier iterations for the next load.
+//!
+//! CG's search directions p and A p = Pᵀ F P p are kept, A the operator of the dual problem. For another load, with the same rows holding, the Galerkin
+//! solution on their span is where the iteration begins:
+//!
+//! ```text
+//!     x₀ = W (Wᵀ A W)⁺ Wᵀ r,      r ← r − A W (Wᵀ A W)⁺ Wᵀ r
+//! ```
+//!
+//! It costs m products of vectors each way and no application of F. For loads in proportion to earlier ones x₀ is the solution; in general it has what the loads have in
+//! common. A and with it A W change with the active set: then the directions are forgotten, since to renew A W would take an
+//! application of F for each, as many as the iteration takes itself.
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::exchange::sum_all;
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+/// Directions that others make up to this are left out.
+const DEPENDENT: f64 = 1e-12;
+
+/// What is kept from load to load.
+#[derive(Default)]
+pub struct Recycle {
+    most: usize,
+    recording: bool,
+    /// Entries of this rank, by columns.
+    w: Vec<Vec<f64>>,
+    aw: Vec<Vec<f64>>,
+    /// The rows of this rank that held.
+    active: Vec<bool>,
+    /// Wᵀ A W, factored.
+    gram: Option<Semidefinite>,
+    /// The direction that gives way to the next one when there is no room any more.
+    next: usize,
+}
+
+impl Recycle {
+    /// Keeps at most `most` directions.
+    pub fn new(most: usize) -> Recycle {
+        Recycle {
+            most,
+            ..Recycle::default()
+        }
+    }
+
+    /// Whether anything is to be kept.
+    pub fn is_on(&self) -> bool {
+        self.most > 0
+    }
+
+    /// Number of directions.
+    pub fn len(&self) -> usize {
+        self.w.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.w.is_empty()
+    }
+
+    /// Forgets all directions.
+    pub fn forget(&mut self) {
+        *self = Recycle {
+            recording: self.recording,
+            active: std::mem::take(&mut self.active),
+            ..Recycle::new(self.most)
+        };
+    }
+
+    /// What is applied from now on is kept, or is not.
+    pub fn record(&mut self, on: bool) {
+        self.recording = on && self.is_on();
+    }
+
+    /// Forgets what belongs to other active rows. The same on all ranks. Collective.
+    pub fn fit(&mut self, comm: &SimpleCommunicator, active: &[bool]) {
+        if !self.is_on() {
+            return;
+        }
+        let mut differs = [f64::from(u8::from(self.active != active))];
+        sum_all(comm, &mut differs);
+        if differs[0] > 0.0 {
+            *self = Recycle::new(self.most);
+            self.active = active.to_vec();
+        }
+    }
+
+    /// Keeps a direction and what the operator makes of it.
+    pub fn keep(&mut self, x: &PetscVec, ax: &PetscVec) -> Result<()> {
+        if !self.recording {
+            return Ok(());
+        }
+        let (x, ax) = (x.array()?.to_vec(), ax.array()?.to_vec());
+        if self.w.len() < self.most {
+            self.w.push(x);
+            self.aw.push(ax);
+        } else {
+            (self.w[self.next], self.aw[self.next]) = (x, ax);
+            self.next = (self.next + 1) % self.most;
+        }
+        self.gram = None;
+        Ok(())
+    }
+
+    /// λ ← λ + x₀ and r ← r − A x₀. Collective.
+    pub fn begin(
+        &mut self,
+        comm: &SimpleCommunicator,
+        residual: &PetscVec,
+        lambda: &PetscVec,
+    ) -> Result<()> {
+        if self.w.is_empty() {
+            return Ok(());
+        }
+        let m = self.w.len();
+        if self.gram.is_none() {
+            let mut a = Dense::zeros(m, m);
+            for j in 0..m {
+                for i in j..m {
+                    a.set(i, j, dot(&self.w[i], &self.aw[j]));
+                }
+            }
+            sum_all(comm, &mut a.data);
+            self.gram = Some(Semidefinite::above(&a, DEPENDENT));
+        }
+        let Some(gram) = &self.gram else {
+            return Ok(());
+        };
+        let mut c: Vec<f64> = {
+            let r = residual.array()?;
+            self.w.iter().map(|w| dot(w, &r)).collect()
+        };
+        sum_all(comm, &mut c);
+        gram.solve(&mut c);
+        add(&self.w, &c, 1.0, &mut lambda.array_mut()?);
+        add(&self.aw, &c, -1.0, &mut residual.array_mut()?);
+        Ok(())
+    }
+}
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    crate::linalg::dense::dot(x, y)
+}
+
+fn add(columns: &[Vec<f64>], c: &[f64], factor: f64, y: &mut [f64]) {
+    for (column, c) in columns.iter().zip(c) {
+        for (y, v) in y.iter_mut().zip(column) {
+            *y += factor * c * v;
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! What the Krylov iterations of a solver have sent and how long they took, over all ranks.
+
+use crate::feti::solver::FetiFeti;
+use crate::parallel::clock;
+use crate::parallel::clock::Times;
+use crate::parallel::exchange::{max_all, sum_all};
+use crate::parallel::traffic;
+use crate::parallel::traffic::Traffic;
+use crate::petsc;
+use crate::Result;
+use std::time::Instant;
+
+/// Iterations of this rank, added up.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Tally {
+    /// Krylov iterations.
+    pub iterations: usize,
+    /// What they sent.
+    pub sent: Traffic,
+    /// Their seconds by phase.
+    pub times: Times,
+    /// All their seconds.
+    pub seconds: f64,
+}
+
+/// Readings at the start of an iteration.
+pub struct Start {
+    sent: Traffic,
+    times: Times,
+    clock: Instant,
+    petsc: Option<petsc::Counters>,
+}
+
+impl Start {
+    /// Reads clocks and counters.
+    pub fn now() -> Start {
+        Start {
+            sent: traffic::sent(),
+            times: clock::spent(),
+            petsc: petsc::counters(),
+            clock: Instant::now(),
+        }
+    }
+
+    /// What `iterations` iterations since then have added. The all-reduces of the Krylov method itself, one number each, are PETSc's to
+    /// count; a build of PETSc without its log does not.
+    pub fn since(&self, iterations: usize) -> Tally {
+        let seconds = self.clock.elapsed().as_secs_f64();
+        let mut sent = traffic::sent() - self.sent;
+        if let (Some(before), Some(now)) = (self.petsc, petsc::counters()) {
+            let dots = (now.reductions - before.reductions) as u64;
+            sent += Traffic {
+                reductions: dots,
+                reduced_bytes: 8 * dots,
+                ..Traffic::default()
+            };
+        }
+        Tally {
+            iterations,
+            sent,
+            times: clock::spent().since(&self.times),
+            seconds,
+        }
+    }
+}
+
+impl Tally {
+    /// Adds more iterations.
+    pub fn add(&mut self, more: &Tally) {
+        self.iterations += more.iterations;
+        self.sent += more.sent;
+        self.times.add(&more.times);
+        self.seconds += more.seconds;
+    }
+}
+
+/// A quantity per iteration.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PerIteration {
+    /// Over all ranks.
+    pub sum: f64,
+    /// Of the rank that has most.
+    pub max: f64,
+}
+
+/// What one Krylov iteration sends: means over the iterations, what starts and ends a run of them included.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Communication {
+    /// Messages from rank to rank.
+    pub messages: PerIteration,
+    /// Their bytes.
+    pub bytes: PerIteration,
+    /// All-reduces; every rank takes part in each.
+    pub reductions: f64,
+    /// Bytes that a rank puts into them.
+    pub reduced_bytes: f64,
+}
+
+impl FetiFeti {
+    /// What an iteration sends, over all iterations of the Krylov method so far; `None` where there were none. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn communication(&self) -> Result<Option<Communication>> {
+        let tally = self.dual().tally();
+        if tally.iterations == 0 {
+            return Ok(None);
+        }
+        let n = tally.iterations as f64;
+        let mine = [tally.sent.messages, tally.sent.bytes].map(|v| v as f64 / n);
+        let reduced = [tally.sent.reductions, tally.sent.reduced_bytes].map(|v| v as f64 / n);
+        let comm = self.session().comm();
+        let (mut sum, mut max) = (mine, mine);
+        sum_all(comm, &mut sum);
+        max_all(comm, &mut max);
+        let both = |k: usize| PerIteration {
+            sum: sum[k],
+            max: max[k],
+        };
+        Ok(Some(Communication {
+            messages: both(0),
+            bytes: both(1),
+            reductions: reduced[0],
+            reduced_bytes: reduced[1],
+        }))
+    }
+}

@@ -1,0 +1,261 @@
+//! Z_c before anything is multiplied with it: copies of Ψ averaged inside the bodies.
+//!
+//! On one subdomain Z_c has a column for every coarse function of the neighbourhood, six hundred in space: it is built where it is needed and thrown away, from a
+//! [`Recipe`] that says whose rows go where. Recipes that are the same, of subdomains in the same surroundings, are recognised by their
+//! [signatures](Recipe::signature).
+
+use std::collections::BTreeMap;
+
+use mpi::traits::Communicator;
+
+use super::interpolation::Functions;
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::jump::operator::Jump;
+use crate::feti::operators::stiffness::Stiffness;
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::dense::Dense;
+use crate::parallel::exchange::exchange_words;
+use crate::petsc::Session;
+use crate::substructures::Substructures;
+
+/// How Z_c is made on one subdomain.
+pub(crate) struct Recipe {
+    /// Order of Γ.
+    rows: usize,
+    /// Global numbers of the columns, increasing.
+    pub columns: Vec<u32>,
+    contributions: Vec<Contribution>,
+    /// (position in Γ, column): vertices where the function of the vertex is one.
+    vertices: Vec<(u32, u32)>,
+}
+
+/// What one subdomain contributes to the columns of another one: rows of D Ψ, D scaled to a sum of one over the copies.
+struct Contribution {
+    /// The subdomain that it comes from.
+    from: u64,
+    /// Global numbers of its columns; later their places among the columns of the recipe.
+    columns: Vec<u32>,
+    /// (position in Γ of the one that it goes to, row of the source, factor).
+    rows: Vec<(u32, u32, f64)>,
+    source: Source,
+}
+
+enum Source {
+    /// Functions of a subdomain of this rank.
+    Local(usize),
+    /// Rows that another rank has sent, one of each contribution.
+    Remote(Dense),
+}
+
+/// What to do for every local subdomain; exchanges rows of Ψ between ranks.
+pub(crate) fn recipes(
+    session: &Session,
+    problem: &Substructures,
+    sharing: &Sharing,
+    stiffness: &Stiffness,
+    functions: &[Functions],
+) -> Vec<Recipe> {
+    let (comm, team) = (session.comm(), &stiffness.team);
+    let (space, locals, jump) = (&stiffness.space, &stiffness.locals, &stiffness.jump);
+    let me = comm.rank() as u32;
+    let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
+    let columns = |j: usize| -> Vec<u32> {
+        let of = functions[j].columns.iter();
+        of.map(|&p| global(j, p)).collect()
+    };
+    let places: Vec<Vec<u32>> = team.map(locals.len(), |j| {
+        let mut place = vec![u32::MAX; problem.local[j].k.n()];
+        let interface = locals[j].interface.iter().zip(0..);
+        interface.for_each(|(&i, p)| place[i as usize] = p);
+        place
+    });
+    let candidate: Vec<Vec<bool>> = (0..locals.len())
+        .map(|j| candidates(jump, &locals[j], j))
+        .collect();
+    // (to, (local dof of that one, row, factor)) by subdomain.
+    let given = team.map(locals.len(), |j| {
+        let (sub, local) = (&problem.local[j], &locals[j]);
+        let mut lists: BTreeMap<u32, Vec<(u32, u32, f64)>> = BTreeMap::new();
+        for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+            let copies = sharing.shared(sub.dofs[dof as usize]);
+            let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
+            let Some(own) = own.filter(|_| !candidate[j][i]) else {
+                continue;
+            };
+            let total: f64 = copies.iter().map(|c| c.weight).sum();
+            for to in copies {
+                let row = (to.local, i as u32, own.weight / total);
+                lists.entry(to.subdomain).or_default().push(row);
+            }
+        }
+        lists
+    });
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+    let mut received: Vec<Vec<Contribution>> = locals.iter().map(|_| Vec::new()).collect();
+    for (j, lists) in given.into_iter().enumerate() {
+        let from = problem.local[j].index as u64;
+        for (to, mut rows) in lists {
+            let rank = sharing.rank_of[to as usize];
+            if rank == me {
+                let at = jump.local_index(to);
+                rows.iter_mut().for_each(|r| r.0 = places[at][r.0 as usize]);
+                received[at].push(Contribution {
+                    from,
+                    columns: columns(j),
+                    rows,
+                    source: Source::Local(j),
+                });
+            } else {
+                let words = &mut outgoing[rank as usize];
+                let columns = columns(j);
+                words.extend([u64::from(to), from, columns.len() as u64, rows.len() as u64]);
+                words.extend(columns.iter().map(|&c| u64::from(c)));
+                for (dof, i, factor) in rows {
+                    words.push(u64::from(dof));
+                    let values = (0..columns.len()).map(|c| functions[j].psi.get(i as usize, c));
+                    words.extend(values.map(|v| (factor * v).to_bits()));
+                }
+            }
+        }
+    }
+    for words in exchange_words(comm, outgoing) {
+        let mut rest = &words[..];
+        while let [to, from, n, m, tail @ ..] = rest {
+            let j = jump.local_index(*to as u32);
+            let (n, m) = (*n as usize, *m as usize);
+            let (columns, tail) = tail.split_at(n);
+            let (sent, tail) = tail.split_at(m * (n + 1));
+            let mut values = Dense::zeros(m, n);
+            let mut rows = Vec::with_capacity(m);
+            for (r, w) in sent.chunks_exact(n + 1).enumerate() {
+                rows.push((places[j][w[0] as usize], r as u32, 1.0));
+                for (c, &v) in w[1..].iter().enumerate() {
+                    values.set(r, c, f64::from_bits(v));
+                }
+            }
+            received[j].push(Contribution {
+                from: *from,
+                columns: columns.iter().map(|&c| c as u32).collect(),
+                rows,
+                source: Source::Remote(values),
+            });
+            rest = tail;
+        }
+    }
+    let recipe = |(j, mut contributions): (usize, Vec<Contribution>)| {
+        // Added up in the same order whatever the ranks.
+        contributions.sort_unstable_by_key(|c| c.from);
+        let n_delta = locals[j].n_delta;
+        let held = (0..jump.n_shared[j]).filter(|p| !candidate[j][n_delta + p]);
+        let held: Vec<(u32, u32)> = held.map(|p| ((n_delta + p) as u32, global(j, p))).collect();
+        Recipe::new(locals[j].n_gamma(), contributions, held)
+    };
+    received.into_iter().enumerate().map(recipe).collect()
+}
+
+/// Which interface positions of local subdomain `j` may be in contact: those with an entry of B_gl.
+pub(crate) fn candidates(jump: &Jump, local: &Local, j: usize) -> Vec<bool> {
+    let columns = &jump.columns[j];
+    let mut out = vec![false; local.n_gamma()];
+    for (&row, &at) in columns.row.iter().zip(&columns.at) {
+        out[at as usize] |= jump.ghost_is_contact[row as usize];
+    }
+    out
+}
+
+impl Recipe {
+    fn new(rows: usize, mut contributions: Vec<Contribution>, held: Vec<(u32, u32)>) -> Recipe {
+        let mut columns: Vec<u32> = contributions
+            .iter()
+            .flat_map(|c| c.columns.iter().copied())
+            .chain(held.iter().map(|h| h.1))
+            .collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let place = |g: &mut u32| {
+            let at = columns.binary_search(g);
+            *g = at.expect("every column was collected") as u32;
+        };
+        let theirs = contributions.iter_mut().flat_map(|c| &mut c.columns);
+        theirs.for_each(place);
+        let mut vertices = held;
+        vertices.iter_mut().for_each(|(_, g)| place(g));
+        Recipe {
+            rows,
+            columns,
+            contributions,
+            vertices,
+        }
+    }
+
+    /// Order of Γ.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// For each column, the rows in which it may differ from zero: a bit of each.
+    pub fn support(&self) -> Vec<Vec<u64>> {
+        let words = self.rows.div_ceil(64);
+        let mut out = vec![vec![0; words]; self.columns.len()];
+        for contribution in &self.contributions {
+            let mut rows = vec![0u64; words];
+            for &(at, ..) in &contribution.rows {
+                rows[at as usize / 64] |= 1 << (at % 64);
+            }
+            for &c in &contribution.columns {
+                let all = out[c as usize].iter_mut().zip(&rows);
+                all.for_each(|(w, r)| *w |= r);
+            }
+        }
+        // Functions of its own vertices have all vertices in common with each other.
+        let mut vertices = vec![0u64; words];
+        for &(at, _) in &self.vertices {
+            vertices[at as usize / 64] |= 1 << (at % 64);
+        }
+        for &(_, c) in &self.vertices {
+            let all = out[c as usize].iter_mut().zip(&vertices);
+            all.for_each(|(w, r)| *w |= r);
+        }
+        out
+    }
+
+    /// Z_c, n_Γ × columns: zero where bodies may touch.
+    pub fn build(&self, functions: &[Functions]) -> Dense {
+        let mut z = Dense::zeros(self.rows, self.columns.len());
+        for contribution in &self.contributions {
+            let source = match &contribution.source {
+                Source::Local(j) => &functions[*j].psi,
+                Source::Remote(values) => values,
+            };
+            for (k, &column) in contribution.columns.iter().enumerate() {
+                let (z, values) = (z.col_mut(column as usize), source.col(k));
+                for &(at, row, factor) in &contribution.rows {
+                    z[at as usize] += factor * values[row as usize];
+                }
+            }
+        }
+        for &(at, column) in &self.vertices {
+            z.set(at as usize, column as usize, 1.0);
+        }
+        z
+    }
+
+    /// Numbers that are the same for two subdomains only if Z_c is the same on both; `kind` tells functions of one subdomain from those of another.
+    pub fn signature(&self, kind: impl Fn(usize) -> u64) -> Vec<u64> {
+        let pair = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
+        let mut out = vec![self.rows as u64, self.columns.len() as u64];
+        for c in &self.contributions {
+            out.extend([c.columns.len() as u64, c.rows.len() as u64]);
+            out.extend(c.columns.iter().map(|&c| u64::from(c)));
+            for &(at, row, factor) in &c.rows {
+                out.extend([pair(at, row), factor.to_bits()]);
+            }
+            match &c.source {
+                Source::Local(j) => out.push(kind(*j)),
+                Source::Remote(values) => out.extend(values.data.iter().map(|v| v.to_bits())),
+            }
+        }
+        out.extend(self.vertices.iter().map(|&(at, c)| pair(at, c)));
+        out
+    }
+}

@@ -1,0 +1,199 @@
+//! Z_c: coarse functions of the bodies that vanish where bodies may touch (method section 5).
+//!
+//! Columns of Z_c are columns of Ψ at vertices and averages that subdomains of the body share, their copies averaged inside the body with the scaling weights, set to zero on
+//! candidate contact nodes: Z_c = E_D Ψ I, with I the identity or the interpolation of averages from vertices. Removing their span S̃-orthogonally from what
+//! B_Dᵀ lifts,
+//!
+//! ```text
+//!     M_C⁻¹ = B_D S̃ ( I − Z_c A⁺ Z_cᵀ S̃ ) B_Dᵀ,      A = Z_cᵀ S̃ Z_c
+//! ```
+//!
+//! lets a jump on a body's face decay over the whole body instead of over the layer of subdomains beside it. B Z_c = 0 for
+//! every active set, so nothing here changes in a contact step.
+//!
+//! A subdomain in space sees hundreds of columns of Z_c, as many as its interface has dofs: there Z_c is never stored, and S is multiplied with
+//! twice. In the plane it sees a dozen for each component, and Y = S Z_c is kept: S̃ ( I − Z_c A⁺ Z_cᵀ S̃ ) = S̃ − Y A⁺ Yᵀ.
+
+use mpi::traits::Communicator;
+
+use super::applied::Applied;
+use super::averaging::Averaging;
+use super::coarse_functions::recipes;
+use super::factor::BodyFactor;
+use super::interpolation::Functions;
+use super::matrix::Sums;
+use super::stored::Stored;
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::operators::stiffness::{Columns, Stiffness, Work};
+use crate::feti::settings::CoarseFunctions;
+use crate::parallel::clock;
+use crate::parallel::clock::Phase;
+use crate::parallel::exchange::{exchange_words, sum_all};
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// Z_c of all bodies, with A factored. Columns carry the numbers of the primal dofs they come from.
+pub struct Lifting {
+    form: Form,
+    bodies: Vec<BodyFactor>,
+    vector: PetscVec,
+    /// Rank of A and its order (columns that are not zero), over this rank's bodies.
+    pub rank_and_order: (usize, usize),
+    /// Σ n_Γ² · columns of Z_c over the blocks of A that this rank has made.
+    pub products: f64,
+}
+
+/// What is kept of Z_c.
+enum Form {
+    /// Matrices: few columns.
+    Stored(Box<Stored>),
+    /// What it is the product of.
+    Applied(Box<Applied>),
+}
+
+/// An entry of Y, which is read for one vector, takes so many times as long as one of S in a product with many.
+const ALONE: f64 = 2.0;
+
+/// E_D and its transpose take as long as this many entries of a row of S.
+const AVERAGES: f64 = 30.0;
+
+impl Lifting {
+    /// Builds Z_c; `None` if no body has a column. Collective.
+    pub fn new(
+        session: &Session,
+        problem: &Substructures,
+        sharing: &Sharing,
+        stiffness: &Stiffness,
+        which: CoarseFunctions,
+    ) -> Result<Option<Lifting>> {
+        let comm = session.comm();
+        let (space, locals, jump) = (&stiffness.space, &stiffness.locals, &stiffness.jump);
+        let functions = stiffness.team.map(locals.len(), |j| {
+            Functions::new(which, &problem.local[j], sharing, jump, &locals[j], j)
+        });
+        let recipes = recipes(session, problem, sharing, stiffness, &functions);
+        // What an application costs: Y twice, by itself; or S once more, which equal subdomains share, and averages.
+        let mut entries = [0.0; 2];
+        for (recipe, local) in recipes.iter().zip(locals) {
+            let n_gamma = local.n_gamma() as f64;
+            entries[0] += ALONE * 2.0 * n_gamma * recipe.columns.len() as f64;
+            entries[1] += n_gamma * (n_gamma + AVERAGES);
+        }
+        sum_all(comm, &mut entries);
+        let keep = entries[0] <= entries[1];
+        let Sums {
+            sums,
+            products,
+            kept,
+        } = Sums::new(problem, stiffness, &functions, &recipes, keep);
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+        for sum in &sums {
+            sum.pack(&mut outgoing[space.owner[sum.body] as usize]);
+        }
+        drop(sums);
+        let received = exchange_words(comm, outgoing);
+        let bodies = stiffness.team.map(space.owned.len(), |b| {
+            let range = &space.owned[b].range;
+            let first = (space.first + range.start) as u32;
+            BodyFactor::new(&received, first..first + range.len() as u32, space.first)
+        });
+        let sizes = bodies.iter().map(BodyFactor::rank_and_order);
+        let (rank, order) = sizes.fold((0, 0), |(r, o), (rank, order)| (r + rank, o + order));
+        let mut total = [order as f64];
+        sum_all(comm, &mut total);
+        if total[0] == 0.0 {
+            return Ok(None);
+        }
+        let vector = PetscVec::mpi(session, space.n_owned)?;
+        let form = if keep {
+            let columns: Vec<&[u32]> = recipes.iter().map(|r| &r.columns[..]).collect();
+            Form::Stored(Box::new(Stored::new(session, &vector, kept, &columns)?))
+        } else {
+            let averaging = Averaging::new(session, problem, sharing, stiffness)?;
+            let applied = Applied::new(session, &vector, space, functions, averaging)?;
+            Form::Applied(Box::new(applied))
+        };
+        Ok(Some(Lifting {
+            form,
+            bodies,
+            vector,
+            rank_and_order: (rank, order),
+            products,
+        }))
+    }
+
+    /// Z_c x on the interface of every local subdomain, x given by global column number. Collective.
+    pub fn combine(&self, stiffness: &Stiffness, x: impl Fn(u32) -> f64) -> Result<Vec<Vec<f64>>> {
+        match &self.form {
+            Form::Stored(stored) => Ok(stored.combine(x)),
+            Form::Applied(applied) => applied.combine(stiffness, x),
+        }
+    }
+
+    /// The first half of work.y ← S̃ (I − Z_c A⁺ Z_cᵀ S̃) work.v: what can be sent before work.y ← S work.v is there. Collective.
+    pub fn begin(&self, stiffness: &Stiffness, work: &[Work]) -> Result<()> {
+        match &self.form {
+            Form::Stored(stored) => stored.begin(stiffness, work, &self.vector),
+            Form::Applied(_) => Ok(()),
+        }
+    }
+
+    /// The second half, after work.y ← S work.v, which `multiply` does, has been done. Collective.
+    pub fn finish(
+        &self,
+        stiffness: &Stiffness,
+        work: &mut [Work],
+        multiply: impl Fn(&mut [Work]),
+    ) -> Result<()> {
+        let solve = |x: &mut [f64]| self.solve(x);
+        match &self.form {
+            Form::Stored(stored) => stored.finish(stiffness, work, &self.vector, solve),
+            Form::Applied(applied) => {
+                let mut lifted: Vec<Vec<f64>> = work.iter().map(|w| w.y.clone()).collect();
+                applied.project(stiffness, &mut lifted, &self.vector, solve)?;
+                for (w, lifted) in work.iter_mut().zip(&lifted) {
+                    subtract(&mut w.v, lifted); /*            v ← v − Z_c A⁺ Z_cᵀ y */
+                }
+                multiply(work); /*                            y ← S v            */
+                Ok(())
+            }
+        }
+    }
+
+    /// Both halves for several columns of every local subdomain, after blocks.y ← S blocks.v, which `multiply` does. Collective.
+    pub fn finish_many(
+        &self,
+        stiffness: &Stiffness,
+        blocks: &mut [Columns],
+        multiply: impl Fn(&mut [Columns]),
+    ) -> Result<()> {
+        let solve = |x: &mut [f64]| self.solve(x);
+        match &self.form {
+            Form::Stored(stored) => stored.remove_many(stiffness, blocks, &self.vector, solve),
+            Form::Applied(applied) => {
+                for c in 0..blocks.first().map_or(0, |b| b.v.cols) {
+                    let columns = blocks.iter().map(|b| b.y.col(c).to_vec());
+                    let mut lifted: Vec<Vec<f64>> = columns.collect();
+                    applied.project(stiffness, &mut lifted, &self.vector, solve)?;
+                    for (b, lifted) in blocks.iter_mut().zip(&lifted) {
+                        subtract(b.v.col_mut(c), lifted);
+                    }
+                }
+                multiply(blocks);
+                Ok(())
+            }
+        }
+    }
+
+    /// x ← A⁺ x on this rank's bodies.
+    fn solve(&self, x: &mut [f64]) {
+        clock::timed(Phase::Lifting, || {
+            self.bodies.iter().for_each(|b| b.solve(x))
+        });
+    }
+}
+
+fn subtract(v: &mut [f64], what: &[f64]) {
+    v.iter_mut().zip(what).for_each(|(v, w)| *v -= w);
+}

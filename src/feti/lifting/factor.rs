@@ -1,0 +1,204 @@
+//! A⁺ = (Z_cᵀ S̃ Z_c)⁺ of one body: sparse where it has many columns that see few others, dense where there are few or where they depend on each other.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::symbolic::Symbolic;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::{Semidefinite, DEPENDENT, ZERO};
+
+/// With fewer columns a dense factor stays in the cache.
+const MANY: usize = 200;
+
+/// A is worth an ordering if no larger part of its entries is there.
+const FILLED: f64 = 0.25;
+
+/// A of one body.
+pub(crate) struct BodyFactor {
+    /// Its columns among this rank's primal dofs.
+    at: Vec<usize>,
+    factor: Factor,
+}
+
+/// How A⁺ is held.
+enum Factor {
+    /// Columns far from each other have nothing in common.
+    Sparse(PartialCholesky),
+    /// The rank is found.
+    Dense(Semidefinite),
+}
+
+impl BodyFactor {
+    /// A of the body with these primal dofs, of which this rank's begin at `first`, from what [`Sum::pack`] has written.
+    pub fn new(received: &[Vec<u64>], body: Range<u32>, first: usize) -> BodyFactor {
+        let mut columns = Vec::new();
+        each(received, &body, |c, _| columns.extend_from_slice(c));
+        columns.sort_unstable();
+        columns.dedup();
+        let place = |g: &u64| columns.binary_search(g).expect("it was collected") as u32;
+        let (mut lists, mut blocks) = (Vec::new(), Vec::new());
+        each(received, &body, |theirs, values| {
+            lists.push(theirs.iter().map(place).collect::<Vec<u32>>());
+            blocks.push(values);
+        });
+        let n = columns.len();
+        let factor = sparse(n, &lists, &blocks).map_or_else(
+            || Factor::Dense(Semidefinite::new(&dense(n, &lists, &blocks))),
+            Factor::Sparse,
+        );
+        BodyFactor {
+            at: columns.iter().map(|&c| c as usize - first).collect(),
+            factor,
+        }
+    }
+
+    /// Rank of A and its order, columns that are zero left out.
+    pub fn rank_and_order(&self) -> (usize, usize) {
+        match &self.factor {
+            Factor::Sparse(factor) => (factor.n(), factor.n()),
+            Factor::Dense(factor) => (factor.rank(), factor.nonzero()),
+        }
+    }
+
+    /// x ← A⁺ x at the columns; the body's other primal dofs stay as they are.
+    pub fn solve(&self, x: &mut [f64]) {
+        let mut part: Vec<f64> = self.at.iter().map(|&i| x[i]).collect();
+        match &self.factor {
+            Factor::Sparse(factor) => factor.solve(&mut part),
+            Factor::Dense(factor) => factor.solve(&mut part),
+        }
+        self.at.iter().zip(&part).for_each(|(&i, v)| x[i] = *v);
+    }
+}
+
+/// Columns and lower triangle of every sum of one body.
+fn each<'a>(
+    received: &'a [Vec<u64>],
+    body: &Range<u32>,
+    mut see: impl FnMut(&'a [u64], &'a [u64]),
+) {
+    for mut words in received.iter().map(|w| &w[..]) {
+        while let [n, tail @ ..] = words {
+            let n = *n as usize;
+            let (columns, tail) = tail.split_at(n);
+            let (values, tail) = tail.split_at(n * (n + 1) / 2);
+            words = tail;
+            // All columns are of one body.
+            if n > 0 && body.contains(&(columns[0] as u32)) {
+                see(columns, values);
+            }
+        }
+    }
+}
+
+/// The sum of lower triangles, both triangles filled.
+fn dense(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Dense {
+    let mut a = Dense::zeros(n, n);
+    for (list, mut values) in lists.iter().zip(blocks.iter().copied()) {
+        for (q, &to) in list.iter().enumerate() {
+            let (column, rest) = values.split_at(list.len() - q);
+            values = rest;
+            let target = a.col_mut(to as usize);
+            for (&i, &v) in list[q..].iter().zip(column) {
+                target[i as usize] += f64::from_bits(v);
+            }
+        }
+    }
+    a.mirror_lower();
+    a
+}
+
+/// The sparse factor of the same, where it is regular and has many zeros.
+fn sparse(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Option<PartialCholesky> {
+    let full = |entries: usize| entries as f64 > FILLED * (n * n) as f64;
+    if n < MANY || lists.iter().any(|l| full(l.len() * l.len())) {
+        return None;
+    }
+    let entry = |b: usize, i: usize, j: usize| {
+        // Columns are packed one after the other, each from the diagonal down.
+        let (low, high) = (i.min(j), i.max(j));
+        let start = low * lists[b].len() - low * low.saturating_sub(1) / 2;
+        f64::from_bits(blocks[b][start + high - low])
+    };
+    let a = Csr::from_blocks(n, lists, entry);
+    let diagonal = a.diagonal();
+    let largest = diagonal.iter().copied().fold(0.0, f64::max);
+    if full(a.nnz()) || diagonal.iter().any(|d| *d <= ZERO * largest) {
+        return None;
+    }
+    let symbolic = Arc::new(Symbolic::new(&a, &[], None));
+    let (factor, _) = PartialCholesky::new(&a, symbolic).ok()?;
+    (factor.weakest_pivot(&a) > DEPENDENT).then_some(factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::testing::{distance, grid_laplacian, random};
+
+    /// The entries of K as blocks: each off-diagonal one with its mirror image, each diagonal one by itself.
+    fn parts(k: &Csr) -> (Vec<Vec<u32>>, Vec<Vec<u64>>) {
+        let (mut lists, mut blocks) = (Vec::new(), Vec::new());
+        for i in 0..k.n() {
+            let (col, val) = k.row(i);
+            for (&j, v) in col.iter().zip(val) {
+                match j as usize {
+                    j if j == i => {
+                        lists.push(vec![i as u32]);
+                        blocks.push(vec![v.to_bits()]);
+                    }
+                    j if j > i => {
+                        lists.push(vec![i as u32, j as u32]);
+                        blocks.push(vec![0, v.to_bits(), 0]);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        (lists, blocks)
+    }
+
+    fn both(k: &Csr) -> (Option<PartialCholesky>, Dense) {
+        let (lists, blocks) = parts(k);
+        let blocks: Vec<&[u64]> = blocks.iter().map(|b| &b[..]).collect();
+        (
+            sparse(k.n(), &lists, &blocks),
+            dense(k.n(), &lists, &blocks),
+        )
+    }
+
+    /// K with row and column `to` being those of `from`, or zero.
+    fn changed(k: &Csr, to: usize, from: Option<usize>) -> Csr {
+        let source = |i: usize| if i == to { from } else { Some(i) };
+        let entry = |i: usize, j: usize| Some(k.get(source(i)?, source(j)?));
+        let pairs = (0..k.n()).flat_map(|i| (0..k.n()).map(move |j| (i, j)));
+        let triplets: Vec<(u32, u32, f64)> = pairs
+            .filter_map(|(i, j)| Some((i as u32, j as u32, entry(i, j)?)))
+            .filter(|t| t.2 != 0.0 || t.0 == t.1)
+            .collect();
+        Csr::from_triplets(k.n(), &triplets)
+    }
+
+    #[test]
+    fn sparse_and_dense_factors_solve_alike_and_dependent_columns_are_left_to_the_dense_one() {
+        let (k, _) = grid_laplacian(19, 17, 0.2);
+        let (factor, a) = both(&k);
+        let factor = factor.expect("regular, with many zeros");
+        assert!((0..k.n()).all(|i| (0..k.n()).all(|j| a.get(i, j) == k.get(i, j))));
+        let mut x = random(k.n(), 4);
+        let mut y = x.clone();
+        factor.solve(&mut x);
+        Semidefinite::new(&a).solve(&mut y);
+        let far = distance(&x, &y);
+        assert!(far < 1e-12, "{far:.1e}");
+
+        // A free body; two columns that are one; a column that is zero; few columns.
+        let refused = |k: &Csr| both(k).0.is_none();
+        assert!(refused(&grid_laplacian(19, 17, 0.0).0));
+        assert!(refused(&changed(&k, 5, Some(0))));
+        assert!(refused(&changed(&k, 7, None)));
+        assert!(refused(&grid_laplacian(9, 9, 0.2).0));
+    }
+}

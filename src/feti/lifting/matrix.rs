@@ -1,0 +1,183 @@
+//! A = Z_cᵀ S̃ Z_c of every body: blocks of subdomains, of which those in the same surroundings share one, added up.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::block as lifting_block;
+use super::coarse_functions::Recipe;
+use super::interpolation::Functions;
+use super::stored::Pair;
+use crate::feti::operators::stiffness::Stiffness;
+use crate::feti::subdomain::problem::Operator;
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::dense::{multiply, Dense};
+use crate::substructures::Substructures;
+
+/// So many subdomains of a body are added up before their sum is sent to the one who factors A.
+const GROUP: usize = 32;
+
+/// So many blocks Z_cᵀ S Z_c are held at the same time.
+const BLOCKS: usize = 32;
+
+/// Z_cᵀ S Z_c of some subdomains of a body.
+pub(crate) struct Sum {
+    pub body: usize,
+    members: Vec<usize>,
+    /// Global columns, increasing.
+    columns: Vec<u32>,
+    /// Its lower triangle counts.
+    a: Dense,
+}
+
+/// What this rank adds to A.
+pub(crate) struct Sums {
+    /// By groups of subdomains of a body.
+    pub sums: Vec<Sum>,
+    /// Σ n_Γ² · columns over the blocks that were made.
+    pub products: f64,
+    /// Z_c and S Z_c of every local subdomain, where they are to be kept; subdomains in the same surroundings share them.
+    pub kept: Vec<Arc<Pair>>,
+}
+
+impl Sums {
+    /// Collects the blocks of all local subdomains.
+    pub fn new(
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        functions: &[Functions],
+        recipes: &[Recipe],
+        keep: bool,
+    ) -> Sums {
+        let (locals, team) = (&stiffness.locals, &stiffness.team);
+        let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
+        for (j, sub) in problem.local.iter().enumerate() {
+            let group = groups.iter_mut().rev().find(|g| g.0 == sub.body);
+            match group.filter(|g| g.1.len() < GROUP) {
+                Some(group) => group.1.push(j),
+                None => groups.push((sub.body, vec![j])),
+            }
+        }
+        let each = team.map(groups.len(), |g| {
+            Sum::over(groups[g].0, &groups[g].1, recipes)
+        });
+        let mut sums: Vec<Sum> = each.into_iter().flatten().collect();
+        let first = representatives(locals, functions, recipes);
+        let mut kinds: Vec<usize> = first.clone();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let products =
+            |&j: &usize| recipes[j].columns.len() as f64 * (locals[j].n_gamma() as f64).powi(2);
+        let total = kinds.iter().map(products).sum();
+        let mut pairs: Vec<Arc<Pair>> = Vec::new();
+        for some in kinds.chunks(BLOCKS) {
+            let blocks = team.map(some.len(), |k| {
+                let j = some[k];
+                if !keep && !locals[j].is_implicit() {
+                    return (
+                        lifting_block::block(&locals[j], &recipes[j], functions),
+                        None,
+                    );
+                }
+                let (a, pair) = block(&locals[j], recipes[j].build(functions));
+                (a, keep.then(|| Arc::new(pair)))
+            });
+            team.for_each(&mut sums, |_, sum| {
+                for &j in &sum.members {
+                    if let Ok(k) = some.binary_search(&first[j]) {
+                        add(&mut sum.a, &sum.columns, &recipes[j].columns, &blocks[k].0);
+                    }
+                }
+            });
+            pairs.extend(blocks.into_iter().filter_map(|b| b.1));
+        }
+        let of = |j: &usize| pairs[kinds.binary_search(j).expect("a first one is a kind")].clone();
+        Sums {
+            sums,
+            products: total,
+            kept: if keep {
+                first.iter().map(of).collect()
+            } else {
+                Vec::new()
+            },
+        }
+    }
+}
+
+/// The first local subdomain with the same Z_cᵀ S Z_c, for each.
+fn representatives(locals: &[Local], functions: &[Functions], recipes: &[Recipe]) -> Vec<usize> {
+    let mut names: HashMap<Vec<u64>, u64> = HashMap::new();
+    let mut name = |j: usize| {
+        let mut key = vec![Arc::as_ptr(locals[j].kind()) as u64];
+        for &(p, c, w) in &functions[j].weights {
+            key.extend([u64::from(p) << 32 | u64::from(c), w.to_bits()]);
+        }
+        let next = names.len() as u64;
+        *names.entry(key).or_insert(next)
+    };
+    let names: Vec<u64> = (0..locals.len()).map(&mut name).collect();
+    let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+    let first = |(j, recipe): (usize, &Recipe)| {
+        let mut key = recipe.signature(|i| names[i]);
+        key.extend([
+            Arc::as_ptr(locals[j].kind()) as u64,
+            locals[j].factor().to_bits(),
+        ]);
+        *known.entry(key).or_insert(j)
+    };
+    recipes.iter().enumerate().map(first).collect()
+}
+
+/// Z_cᵀ S Z_c of one subdomain, and what it is made of.
+fn block(local: &Local, z: Dense) -> (Dense, Pair) {
+    let mut y = Dense::zeros(z.rows, z.cols);
+    local.apply(Operator::S, &z, &mut y);
+    let mut a = Dense::zeros(z.cols, z.cols);
+    multiply(a.view_mut(), false, 1.0, z.view().transpose(), y.view());
+    (a, Pair { z, y })
+}
+
+/// Adds the lower triangle of `block`, of which `theirs` are the columns, to that of `a`. Columns are in the same order here and there.
+fn add(a: &mut Dense, columns: &[u32], theirs: &[u32], block: &Dense) {
+    let place = |g: &u32| columns.binary_search(g).expect("it was collected");
+    let at: Vec<usize> = theirs.iter().map(place).collect();
+    for (q, &to) in at.iter().enumerate() {
+        let target = a.col_mut(to);
+        for (&i, v) in at[q..].iter().zip(&block.col(q)[q..]) {
+            target[i] += v;
+        }
+    }
+}
+
+impl Sum {
+    /// Room for the sum over `members`, or for each by itself where columns of some do not meet those of others: less is sent then.
+    fn over(body: usize, members: &[usize], recipes: &[Recipe]) -> Vec<Sum> {
+        let empty = |members: &[usize], columns: Vec<u32>| Sum {
+            body,
+            members: members.to_vec(),
+            a: Dense::zeros(columns.len(), columns.len()),
+            columns,
+        };
+        let words = |n: usize| n * (n + 1) / 2;
+        let each = members.iter().map(|&j| &recipes[j].columns);
+        let mut columns: Vec<u32> = each.clone().flatten().copied().collect();
+        columns.sort_unstable();
+        columns.dedup();
+        if words(columns.len()) < each.map(|c| words(c.len())).sum() {
+            return vec![empty(members, columns)];
+        }
+        let alone = members.iter();
+        alone
+            .map(|j| empty(std::slice::from_ref(j), recipes[*j].columns.clone()))
+            .collect()
+    }
+
+    /// [n, global columns, lower triangle by columns].
+    pub fn pack(&self, words: &mut Vec<u64>) {
+        let n = self.columns.len();
+        words.push(n as u64);
+        words.extend(self.columns.iter().map(|&g| u64::from(g)));
+        for q in 0..n {
+            words.extend(self.a.col(q)[q..].iter().map(|v| v.to_bits()));
+        }
+    }
+}

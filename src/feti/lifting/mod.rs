@@ -1,0 +1,11 @@
+//! Z_c and M_C: jumps between bodies are lifted into whole bodies.
+
+pub mod applied;
+pub mod averaging;
+pub mod block;
+mod coarse_functions;
+pub mod correction;
+pub mod factor;
+pub mod interpolation;
+pub mod matrix;
+pub mod stored;

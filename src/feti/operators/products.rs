@@ -1,0 +1,132 @@
+//! Products with operators that equal subdomains share: one matrix-matrix product, or one sweep through a sparse factor, for many of them.
+//!
+//! A matrix-vector product reads an n × n operator to do 2 n² operations and waits for the cache; with thirty vectors side by side the same reading does thirty times
+//! the work.
+
+use std::cell::{Ref, RefCell};
+
+use super::stiffness::Work;
+use crate::feti::subdomain::problem::Operator;
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::dense::Dense;
+use crate::parallel::team::Team;
+
+/// Vectors side by side: enough to keep the arithmetic busy, few enough to leave work for several threads.
+const WIDTH: usize = 32;
+
+/// Operators of a smaller order are applied one by one: they are in the cache anyway.
+const WORTH_PACKING: usize = 48;
+
+/// Which subdomains go together, and room for their vectors.
+pub struct Products {
+    batches: Vec<Vec<usize>>,
+    /// (batch, column) of each local subdomain that goes with others.
+    place: Vec<Option<(usize, usize)>>,
+    panels: RefCell<Vec<Panel>>,
+}
+
+/// Vectors of one batch.
+#[derive(Default)]
+pub struct Panel {
+    v: Dense,
+    y: Dense,
+    /// Columns that are in use: the others are zero and stay so.
+    live: Vec<bool>,
+}
+
+impl Products {
+    /// `batches(n)` are the local subdomains in groups of at most n that share their operators.
+    pub fn new(locals: &[Local], batches: impl Fn(usize) -> Vec<Vec<usize>>) -> Products {
+        let worth = |l: &Local| l.is_implicit() || l.n_delta >= WORTH_PACKING;
+        let together = |b: &Vec<usize>| b.len() > 1 && worth(&locals[b[0]]);
+        let batches: Vec<Vec<usize>> = batches(WIDTH).into_iter().filter(together).collect();
+        let mut place = vec![None; locals.len()];
+        for (b, members) in batches.iter().enumerate() {
+            for (c, &j) in members.iter().enumerate() {
+                place[j] = Some((b, c));
+            }
+        }
+        let panels = batches.iter().map(|_| Panel::default()).collect();
+        Products {
+            batches,
+            place,
+            panels: RefCell::new(panels),
+        }
+    }
+
+    /// Computes A v for all that go together, v being the leading entries of the subdomain's `v`; [`results`](Self::results) has them. `apply` makes
+    /// y ← A v of the first columns, as many as it is told, for what local subdomain j shares with others.
+    pub fn multiply(
+        &self,
+        team: &Team,
+        locals: &[Local],
+        work: &[Work],
+        which: Operator,
+        apply: impl Fn(usize, &Dense, &mut Dense, usize) + Sync + Send,
+    ) -> Ref<'_, Vec<Panel>> {
+        let batches = &self.batches;
+        team.for_each(&mut self.panels.borrow_mut(), |b, panel| {
+            let members = &batches[b];
+            let kind = locals[members[0]].kind();
+            let order = kind.order(which);
+            panel.shape(order, members.len());
+            let mut n = 0;
+            for (c, &j) in members.iter().enumerate() {
+                let v = &work[j].v[..order];
+                panel.live[c] = v.iter().any(|v| *v != 0.0);
+                if panel.live[c] {
+                    panel.v.col_mut(n).copy_from_slice(v);
+                    n += 1;
+                }
+            }
+            apply(members[0], &panel.v, &mut panel.y, n);
+        });
+        self.panels.borrow()
+    }
+
+    /// What [`multiply`](Self::multiply) has computed, by local subdomain.
+    pub fn results<'a>(&'a self, panels: &'a [Panel], which: Operator) -> Results<'a> {
+        Results {
+            place: &self.place,
+            panels,
+            which,
+        }
+    }
+}
+
+/// Products by local subdomain.
+pub struct Results<'a> {
+    place: &'a [Option<(usize, usize)>],
+    panels: &'a [Panel],
+    which: Operator,
+}
+
+impl Results<'_> {
+    /// y ← A v of local subdomain `j`, made by `alone` if it goes with no other; entries beyond the operator's order are set to zero.
+    pub fn take(&self, j: usize, local: &Local, y: &mut [f64], alone: impl Fn(&mut [f64])) {
+        match self.place[j] {
+            None => alone(y),
+            Some((b, c)) if self.panels[b].live[c] => {
+                let panel = &self.panels[b];
+                let before = panel.live[..c].iter().filter(|l| **l).count();
+                let multiple = local.multiple(self.which);
+                let (head, tail) = y.split_at_mut(panel.y.rows);
+                for (y, p) in head.iter_mut().zip(panel.y.col(before)) {
+                    *y = multiple * p;
+                }
+                tail.fill(0.0);
+            }
+            Some(_) => y.fill(0.0),
+        }
+    }
+}
+
+impl Panel {
+    fn shape(&mut self, rows: usize, cols: usize) {
+        if (self.v.rows, self.v.cols) != (rows, cols) {
+            self.v = Dense::zeros(rows, cols);
+            self.y = Dense::zeros(rows, cols);
+            self.live = vec![false; cols];
+        }
+    }
+}

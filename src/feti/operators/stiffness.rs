@@ -1,0 +1,370 @@
+//! S̃⁺ and F: the FETI-DP solve inside every body (method section 2).
+//!
+//! ```text
+//!     S̃⁺ v = Σ_j T_j v_j + Ψ S_Π⁺ Ψᵀ v            F = Z B S̃⁺ Bᵀ Z
+//! ```
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::products::Products;
+use crate::feti::jump::operator::Jump;
+use crate::feti::primal::coarse::PrimalProblem;
+use crate::feti::primal::refine;
+use crate::feti::primal::refine::Refinement;
+use crate::feti::primal::space::PrimalSpace;
+use crate::feti::subdomain::problem::{LocalProblem, Operator};
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::dense::Dense;
+use crate::parallel::halo::Halo;
+use crate::parallel::team::Team;
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+/// Buffers of one subdomain on its interface Γ.
+#[derive(Debug, Clone, Default)]
+pub struct Work {
+    /// Input: a load, length n_Γ.
+    pub v: Vec<f64>,
+    /// Output: a displacement, length n_Γ.
+    pub y: Vec<f64>,
+    /// Coarse values in and out, length n_Π.
+    pub p: Vec<f64>,
+}
+
+/// Several columns of one subdomain on its interface Γ.
+#[derive(Debug, Clone, Default)]
+pub struct Columns {
+    /// Inputs, n_Γ × their number.
+    pub v: Dense,
+    /// Outputs, same shape.
+    pub y: Dense,
+}
+
+/// Everything that depends on the matrices alone, with the jump operator on top.
+pub struct Stiffness {
+    /// B and B_D.
+    pub jump: Jump,
+    /// The factored subdomains of this rank.
+    pub locals: Vec<Local>,
+    /// Numbering and kernels of the bodies.
+    pub space: PrimalSpace,
+    /// The bodies' primal problem S_Π behind a KSP.
+    pub primal: PrimalProblem,
+    /// Moves multipliers to and from the subdomains.
+    pub dual_halo: Halo,
+    /// The threads of this rank.
+    pub team: Team,
+    /// T for subdomains that share it.
+    products: Products,
+    /// Corrections of S_Π⁺, where coefficients jump inside bodies.
+    refinement: Option<Refinement>,
+    buffers: RefCell<Buffers>,
+}
+
+#[derive(Default)]
+struct Buffers {
+    work: Vec<Work>,
+    ghost: Vec<f64>,
+}
+
+impl Stiffness {
+    /// Puts the parts together.
+    pub fn new(
+        jump: Jump,
+        locals: Vec<Local>,
+        space: PrimalSpace,
+        primal: PrimalProblem,
+        dual_halo: Halo,
+        team: Team,
+    ) -> Stiffness {
+        let buffers = Buffers {
+            work: locals.iter().map(Work::for_subdomain).collect(),
+            ghost: vec![0.0; jump.ghosts.len()],
+        };
+        let products = Products::new(&locals, |most| batches(&locals, most));
+        Stiffness {
+            products,
+            jump,
+            locals,
+            space,
+            primal,
+            dual_halo,
+            team,
+            refinement: None,
+            buffers: RefCell::new(buffers),
+        }
+    }
+
+    /// From now on S_Π⁺ is corrected by `refinement`.
+    pub fn refine(&mut self, refinement: Refinement) {
+        self.refinement = Some(refinement);
+    }
+
+    /// `c` (at this rank's ghosts): in, contributions to Ψᵀ v, which are on their way; out, S_Π⁺ of their sum. Collective.
+    fn primal_finish(&self, c: &mut [f64]) -> Result<()> {
+        let Some(refinement) = &self.refinement else {
+            return self.primal.finish(&self.team, c);
+        };
+        let b = c.to_vec();
+        self.primal.finish(&self.team, c)?;
+        for _ in 0..refine::STEPS {
+            let mut r = b.clone();
+            refinement.subtract(&self.space, &self.locals, c, &mut r);
+            self.primal.solve(&self.team, &mut r)?;
+            c.iter_mut().zip(&r).for_each(|(c, r)| *c += r);
+        }
+        Ok(())
+    }
+
+    /// S_Π⁺ Ψᵀ work.v at this rank's ghosts. Collective.
+    fn coarse_values(&self, work: &mut [Work]) -> Result<Vec<f64>> {
+        let mut sum = self.coarse_begin(work)?;
+        self.primal_finish(&mut sum)?; /*                 c ← S_Π⁺ p     */
+        Ok(sum)
+    }
+
+    /// Ψᵀ work.v at this rank's ghosts, on its way to those who own them. Collective.
+    fn coarse_begin(&self, work: &mut [Work]) -> Result<Vec<f64>> {
+        let locals = &self.locals;
+        self.team.for_each(work, |j, w| {
+            locals[j].psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
+        });
+        let mut sum = vec![0.0; self.space.ghosts.len()];
+        for (w, places) in work.iter().zip(&self.space.of_subdomain) {
+            for (&g, p) in places.iter().zip(&w.p) {
+                sum[g as usize] += p;
+            }
+        }
+        self.primal.begin(&sum)?;
+        Ok(sum)
+    }
+
+    /// p ← the coarse values of local subdomain `j`.
+    fn local_values(space: &PrimalSpace, j: usize, coarse: &[f64], p: &mut [f64]) {
+        for (&g, p) in space.of_subdomain[j].iter().zip(p) {
+            *p = coarse[g as usize];
+        }
+    }
+
+    /// work.y ← S̃⁺ work.v on every subdomain. Collective.
+    pub fn s_plus(&self, work: &mut [Work]) -> Result<()> {
+        let (locals, space) = (&self.locals, &self.space);
+        let mut coarse = self.coarse_begin(work)?; /*     p ← Ψᵀ v       */
+        let (team, products) = (&self.team, &self.products);
+        let panels = products.multiply(team, locals, work, Operator::T, |j, v, y, n| {
+            locals[j].kind().apply(Operator::T, v, y, n)
+        });
+        let products = products.results(&panels, Operator::T);
+        // While the coarse values are on their way:
+        self.team.for_each(work, |j, w| {
+            products.take(j, &locals[j], &mut w.y, |y| {
+                locals[j].apply_one(Operator::T, &w.v, y)
+            }); /*                                        y ← T v        */
+        });
+        self.primal_finish(&mut coarse)?; /*              c ← S_Π⁺ p     */
+        self.team.for_each(work, |j, w| {
+            Self::local_values(space, j, &coarse, &mut w.p);
+            locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
+        });
+        Ok(())
+    }
+
+    /// out ← F λ = B S̃⁺ Bᵀ λ. Collective.
+    pub fn f_mult(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        self.dual_halo.fetch(lambda, ghost)?;
+        let columns = &self.jump.columns;
+        self.team.for_each(work, |j, w| {
+            columns[j].b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
+        });
+        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
+        self.jump_of(work, out) /*                        out ← B y      */
+    }
+
+    /// outs ← F λs of each colour of bodies: λ and F λ of one colour are about the bodies of that colour alone, `colour` is that of each
+    /// local subdomain's body. One product with S̃⁺ serves all of them. Collective.
+    pub fn f_mult_coloured(
+        &self,
+        lambdas: &[PetscVec],
+        outs: &[PetscVec],
+        colour: &[usize],
+    ) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        let columns = &self.jump.columns;
+        for (c, lambda) in lambdas.iter().enumerate() {
+            self.dual_halo.fetch(lambda, ghost)?;
+            let ghost = &*ghost;
+            self.team.for_each(work, |j, w| {
+                if colour[j] == c {
+                    columns[j].b_transpose(ghost, &mut w.v); /* v ← Bᵀ λ */
+                }
+            });
+        }
+        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
+        for (c, out) in outs.iter().enumerate() {
+            ghost.fill(0.0);
+            for (j, w) in work.iter().enumerate().filter(|w| colour[w.0] == c) {
+                columns[j].add_b(&w.y, ghost); /*         out ← B y      */
+            }
+            self.dual_halo.sum(ghost, out)?;
+        }
+        Ok(())
+    }
+
+    /// outs ← F λs, several columns at once; `change` may change the loads Bᵀ λ of each before they act. T is read once for all of
+    /// them. Collective.
+    pub fn f_mult_many(
+        &self,
+        lambdas: &[PetscVec],
+        outs: &[PetscVec],
+        change: impl Fn(&mut [Work]),
+    ) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        let (columns, locals) = (&self.jump.columns, &self.locals);
+        let room = |local: &Local| {
+            let zeros = || Dense::zeros(local.n_delta, lambdas.len());
+            (zeros(), zeros())
+        };
+        let mut blocks: Vec<(Dense, Dense)> = locals.iter().map(room).collect();
+        let mut coarse = Vec::new();
+        for (c, lambda) in lambdas.iter().enumerate() {
+            self.dual_halo.fetch(lambda, ghost)?;
+            let received = &*ghost;
+            self.team.for_each(work, |j, w| {
+                columns[j].b_transpose(received, &mut w.v); /* v ← Bᵀ λ  */
+            });
+            change(work);
+            coarse.push(self.coarse_values(work)?); /*        c ← S_Π⁺ Ψᵀ v  */
+            for (w, (v, _)) in work.iter().zip(&mut blocks) {
+                let n = v.rows;
+                v.col_mut(c).copy_from_slice(&w.v[..n]);
+            }
+        }
+        self.team.for_each(&mut blocks, |j, (v, y)| {
+            locals[j].apply(Operator::T, v, y); /*            y ← T v        */
+        });
+        for (c, out) in outs.iter().enumerate() {
+            let (blocks, sum, space) = (&blocks, &coarse[c], &self.space);
+            self.team.for_each(work, |j, w| {
+                w.y.fill(0.0);
+                let y = blocks[j].1.col(c);
+                w.y[..y.len()].copy_from_slice(y);
+                Self::local_values(space, j, sum, &mut w.p);
+                locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
+            });
+            self.jump_of(work, out)?; /*                      out ← B y      */
+        }
+        Ok(())
+    }
+
+    /// out ← B S̃⁺ Bᵀ λ with all rows of B_gl, those that do not hold included. Collective.
+    pub fn f_mult_all(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        self.dual_halo.fetch(lambda, ghost)?;
+        let columns = &self.jump.columns;
+        self.team.for_each(work, |j, w| {
+            columns[j].b_transpose_all(ghost, &mut w.v); /* v ← Bᵀ λ     */
+        });
+        self.s_plus(work)?; /*                            y ← S̃⁺ v       */
+        self.jump_of_all(work, out) /*                    out ← B y      */
+    }
+
+    /// The orthogonal projection onto B W̃: on the rows of B_loc out ← B N B_Dᵀ λ, on those of B_gl out ← B B_Dᵀ λ. Redundant multipliers
+    /// are removed, and so is what functionals that are continuous in W̃ leave no work for (N takes them out of the jumps
+    /// inside bodies; B_gl sees weighted averages of the copies, with which N does not commute). Collective.
+    pub fn range_projection(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
+        self.dual_halo.fetch(lambda, ghost)?;
+        let contact = &self.jump.ghost_is_contact;
+        let mut inside = vec![0.0; ghost.len()];
+        let mut between = vec![0.0; ghost.len()];
+        for (j, w) in work.iter_mut().enumerate() {
+            let columns = &self.jump.columns[j];
+            columns.bd_transpose_of(ghost, &mut w.y, |r| !contact[r]);
+            self.locals[j].basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
+            columns.add_b(&w.y, &mut inside); /*          inside ← B y     */
+            columns.bd_transpose_of(ghost, &mut w.y, |r| contact[r]);
+            columns.add_b(&w.y, &mut between); /*         between ← B B_D,glᵀ λ */
+        }
+        for ((sum, other), contact) in inside.iter_mut().zip(&between).zip(contact) {
+            *sum = if *contact { *other } else { *sum };
+        }
+        self.dual_halo.sum(&inside, out)
+    }
+
+    /// out ← B y of the displacements in `work`. Collective.
+    pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+        let mut sum = vec![0.0; self.jump.ghosts.len()];
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_b(&w.y, &mut sum);
+        }
+        self.dual_halo.sum(&sum, out)
+    }
+
+    /// out ← B y with all rows of B_gl, those that do not hold included. Collective.
+    pub fn jump_of_all(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+        let mut sum = vec![0.0; self.jump.ghosts.len()];
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_b(&w.y, &mut sum);
+        }
+        for (s, contact) in sum.iter_mut().zip(&self.jump.ghost_is_contact) {
+            *s = if *contact { 0.0 } else { *s };
+        }
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_contact(&w.y, &mut sum);
+        }
+        self.dual_halo.sum(&sum, out)
+    }
+
+    /// The subdomains of this rank in groups of at most `most` that share their operators.
+    pub fn batches(&self, most: usize) -> Vec<Vec<usize>> {
+        batches(&self.locals, most)
+    }
+
+    /// `work` of every batch at once, the results by local subdomain.
+    pub fn by_batch<T: Send>(
+        &self,
+        batches: &[Vec<usize>],
+        work: impl Fn(&[&Local], &[usize]) -> Vec<T> + Sync + Send,
+    ) -> Vec<T> {
+        let locals = &self.locals;
+        let of = |b: usize| {
+            let members: Vec<&Local> = batches[b].iter().map(|&j| &locals[j]).collect();
+            work(&members, &batches[b])
+        };
+        let done = self.team.map(batches.len(), of).into_iter().flatten();
+        let mut placed: Vec<(usize, T)> = batches.iter().flatten().copied().zip(done).collect();
+        placed.sort_unstable_by_key(|(j, _)| *j);
+        placed.into_iter().map(|(_, value)| value).collect()
+    }
+
+    /// Fresh buffers for all subdomains of this rank.
+    pub fn work(&self) -> Vec<Work> {
+        self.locals.iter().map(Work::for_subdomain).collect()
+    }
+}
+
+fn batches(locals: &[Local], most: usize) -> Vec<Vec<usize>> {
+    let mut kinds: BTreeMap<*const LocalProblem, Vec<usize>> = BTreeMap::new();
+    for (j, local) in locals.iter().enumerate() {
+        kinds.entry(Arc::as_ptr(local.kind())).or_default().push(j);
+    }
+    let mut kinds: Vec<Vec<usize>> = kinds.into_values().collect();
+    // Addresses are not the same from run to run.
+    kinds.sort_unstable();
+    let chunks = kinds.iter().flat_map(|kind| kind.chunks(most));
+    chunks.map(<[usize]>::to_vec).collect()
+}
+
+impl Work {
+    /// Zeros of the sizes of a subdomain.
+    pub fn for_subdomain(local: &Local) -> Work {
+        Work {
+            v: vec![0.0; local.n_gamma()],
+            y: vec![0.0; local.n_gamma()],
+            p: vec![0.0; local.n_pi()],
+        }
+    }
+}

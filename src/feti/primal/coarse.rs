@@ -1,0 +1,185 @@
+//! The bodies' primal problem S_Π.
+//!
+//! S_Π is block diagonal by body, and a body's rows live on one rank: a Cholesky factorisation per body, ours, solves it exactly without a
+//! message. With any option `-fetifeti_coarse_…` a PETSc KSP takes its place.
+
+use super::matrix::PrimalMatrix;
+use super::space::PrimalSpace;
+use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::symbolic::Symbolic;
+use crate::parallel::clock;
+use crate::parallel::clock::Phase;
+use crate::parallel::halo::Halo;
+use crate::parallel::team::Team;
+use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
+use crate::{Error, Result};
+
+/// S_Π, regularised, with its solver. Nothing at all where no body has primal dofs.
+pub struct PrimalProblem {
+    parts: Option<Parts>,
+}
+
+struct Parts {
+    solver: Solver,
+    rhs: PetscVec,
+    solution: PetscVec,
+    halo: Halo,
+}
+
+enum Solver {
+    /// For each body of this rank: its first row here, and the factor.
+    Own(Vec<(usize, PartialCholesky)>),
+    Petsc(Ksp),
+}
+
+impl PrimalProblem {
+    /// Assembles the matrix and sets its solver up; takes S_Π. Collective.
+    pub fn new(
+        session: &Session,
+        space: &mut PrimalSpace,
+        team: &Team,
+        prefix: &str,
+    ) -> Result<PrimalProblem> {
+        if space.n_global == 0 {
+            return Ok(PrimalProblem { parts: None });
+        }
+        let matrix = std::mem::take(&mut space.matrix);
+        let rhs = PetscVec::mpi(session, space.n_owned)?;
+        let own = match Options::new(session, prefix).any()? {
+            true => None,
+            false => own(session, space, team, &matrix),
+        };
+        let solver = match own {
+            Some(factors) => Solver::Own(factors),
+            None => Solver::Petsc(petsc(session, space, &matrix, prefix)?),
+        };
+        let solution = rhs.duplicate()?;
+        let halo = Halo::new(session, &rhs, &space.ghosts)?;
+        Ok(PrimalProblem {
+            parts: Some(Parts {
+                solver,
+                rhs,
+                solution,
+                halo,
+            }),
+        })
+    }
+
+    /// `values` (at this rank's ghosts): in, every rank's contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
+    pub fn solve(&self, team: &Team, values: &mut [f64]) -> Result<()> {
+        self.begin(values)?;
+        self.finish(team, values)
+    }
+
+    /// The first half of [`solve`](Self::solve): sends the contributions. Collective.
+    pub fn begin(&self, values: &[f64]) -> Result<()> {
+        match &self.parts {
+            Some(p) => p.halo.sum_begin(values, &p.rhs),
+            None => Ok(()),
+        }
+    }
+
+    /// The second half: receives them, and solves. Collective.
+    pub fn finish(&self, team: &Team, values: &mut [f64]) -> Result<()> {
+        let Some(p) = &self.parts else { return Ok(()) };
+        p.halo.sum_end(&p.rhs)?;
+        match &p.solver {
+            Solver::Petsc(ksp) => {
+                clock::timed(Phase::Primal, || ksp.solve(&p.rhs, &p.solution))?;
+                let reason = ksp.converged_reason()?;
+                if reason.code < 0 {
+                    return Err(Error::NotConverged(format!(
+                        "the primal problem of the bodies was not solved ({}): change the -fetifeti_coarse_ options, or take more constraints with -fetifeti_primal",
+                        reason.name
+                    )));
+                }
+            }
+            Solver::Own(factors) => {
+                let rhs = p.rhs.array()?;
+                let mut parts: Vec<Vec<f64>> = factors
+                    .iter()
+                    .map(|(first, factor)| rhs[*first..first + factor.n()].to_vec())
+                    .collect();
+                clock::timed(Phase::Primal, || {
+                    team.for_each(&mut parts, |b, x| {
+                        factors[b].1.solve(x);
+                    });
+                });
+                let mut solution = p.solution.array_mut()?;
+                for ((first, _), x) in factors.iter().zip(&parts) {
+                    solution[*first..first + x.len()].copy_from_slice(x);
+                }
+            }
+        }
+        p.halo.fetch(&p.solution, values)
+    }
+
+    /// Σ r²/d of two vectors of which every rank has contributions at its ghosts. Collective.
+    pub fn weighted_square(&self, r: &[f64], d: &[f64]) -> Result<f64> {
+        let Some(p) = &self.parts else { return Ok(0.0) };
+        p.halo.sum(r, &p.rhs)?;
+        p.halo.sum(d, &p.solution)?;
+        let quotient = p.rhs.duplicate()?;
+        quotient.pointwise_divide(&p.rhs, &p.solution)?;
+        quotient.dot(&p.rhs)
+    }
+}
+
+/// A factor for each body of this rank; `None` where one of the matrices is too close to a singular one for it, the same on all ranks. Collective.
+fn own(
+    session: &Session,
+    space: &PrimalSpace,
+    team: &Team,
+    matrix: &PrimalMatrix,
+) -> Option<Vec<(usize, PartialCholesky)>> {
+    let factors = team.map(space.owned.len(), |b| {
+        let range = &space.owned[b].range;
+        let k = matrix.sparse(range);
+        let symbolic = Symbolic::new(&k, &[], None);
+        let factor = PartialCholesky::new(&k, symbolic.into()).ok()?.0;
+        Some((range.start, factor))
+    });
+    let factors: Option<Vec<_>> = factors.into_iter().collect();
+    // All ranks take the same way.
+    let mut failed = [f64::from(u8::from(factors.is_none()))];
+    crate::parallel::exchange::sum_all(session.comm(), &mut failed);
+    factors.filter(|_| failed[0] == 0.0)
+}
+
+/// The KSP with the prefix `fetifeti_coarse_`.
+fn petsc(
+    session: &Session,
+    space: &PrimalSpace,
+    matrix: &PrimalMatrix,
+    prefix: &str,
+) -> Result<Ksp> {
+    let triplets = matrix.triplets();
+    let n = space.n_owned;
+    let matrix = Mat::from_triplets(session, Comm::World, n, n, &triplets)?;
+    matrix.set_flag(MatFlag::Spd)?;
+    let ksp = Ksp::new(session, Comm::World)?;
+    ksp.set_operators(&matrix, &matrix)?;
+    ksp.set_options_prefix(prefix)?;
+    ksp.set_type("preonly")?;
+    let pc = ksp.pc()?;
+    let options = Options::new(session, prefix);
+    let mut lent = Vec::new();
+    if session.size() == 1 {
+        pc.set_type("cholesky")?;
+    } else {
+        // Every body's primal dofs are on one rank.
+        pc.set_type("bjacobi")?;
+        for (name, value) in [("sub_ksp_type", "preonly"), ("sub_pc_type", "cholesky")] {
+            if options.set_default(name, value)? {
+                lent.push(name);
+            }
+        }
+    }
+    ksp.set_from_options()?;
+    ksp.setup()?;
+    // The blocks have read theirs; a host's database is not ours to keep things in.
+    for name in lent {
+        options.clear_value(name)?;
+    }
+    Ok(ksp)
+}

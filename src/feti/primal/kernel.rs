@@ -1,0 +1,227 @@
+//! Floating bodies, found from their matrices.
+//!
+//! A body floats in the directions that every one of its subdomain matrices maps to zero. Where the possible
+//! directions N are known (constants; rigid body modes) the test is row by row: |K N c| against the size of
+//! the terms that should cancel in that row. It sees a boundary condition or a spring in the softest corner of a body
+//! with coefficient jumps of any size, where eigenvalues of the whole matrix would drown it.
+//! Where nothing is known, the kernel of the body's primal matrix S_Π tells.
+
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+
+/// Rows whose terms cancel to less than this are rows of a free body: rounding leaves 1e-15, a spring of 1e-8 of a
+/// row's stiffness leaves 1e-8.
+const FREE: f64 = 1e-11;
+
+/// Eigenvalues of the scaled S_Π below this count as zero. S_Π carries the rounding of the local elimination, about
+/// 1e-14 times the subdomain's condition number.
+const FREE_SPECTRUM: f64 = 1e-10;
+
+/// The triangular factor of the row-scaled K N (k × k, column-major): what one subdomain has to say about its body's kernel.
+///
+/// `columns` has the k columns of N, entries of order one.
+pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
+    let (n, m) = (k.n(), columns.len());
+    let mut rows = faer::Mat::<f64>::zeros(n.max(m), m);
+    let mut first = 0;
+    for group in columns.chunks(SIDE) {
+        // The widths of a scalar, of plane and of solid elasticity.
+        match group.len() {
+            1 => residuals::<1>(k, group, &mut rows, first),
+            2..=3 => residuals::<3>(k, group, &mut rows, first),
+            _ => residuals::<SIDE>(k, group, &mut rows, first),
+        }
+        first += group.len();
+    }
+    if m == 1 {
+        // The usual scalar case needs no Householder reflections.
+        let mut out = Dense::zeros(1, 1);
+        out.data[0] = rows.norm_l2();
+        return out;
+    }
+    let r = rows.qr();
+    let r = r.thin_R();
+    let mut out = Dense::zeros(m, m);
+    for j in 0..m {
+        for i in 0..=j {
+            out.set(i, j, r[(i, j)]);
+        }
+    }
+    out
+}
+
+/// So many columns meet an entry of K at once.
+const SIDE: usize = 6;
+
+/// Rows of K N over the sums of |K|, for at most `W` columns, into `rows` from column `first`.
+fn residuals<const W: usize>(
+    k: &Csr,
+    columns: &[Vec<f64>],
+    rows: &mut faer::Mat<f64>,
+    first: usize,
+) {
+    // Rows of N side by side, filled up with zeros.
+    let entry = |i: usize, c: usize| columns.get(c).map_or(0.0, |x| x[i]);
+    let by_row: Vec<[f64; W]> = (0..k.n())
+        .map(|i| std::array::from_fn(|c| entry(i, c)))
+        .collect();
+    for i in 0..k.n() {
+        let (col, val) = k.row(i);
+        let (mut sums, mut size) = ([0.0; W], 0.0);
+        for (&j, &v) in col.iter().zip(val) {
+            let x = &by_row[j as usize];
+            (0..W).for_each(|c| sums[c] += v * x[c]);
+            size += v.abs();
+        }
+        if size > 0.0 {
+            for (c, sum) in sums[..columns.len()].iter().enumerate() {
+                rows[(i, first + c)] = sum / size;
+            }
+        }
+    }
+}
+
+/// Combinations c (k × defect) with K N c = 0 in all subdomains of a body, from their stacked factors.
+pub fn null_combinations(factors: &[Dense]) -> Dense {
+    let Some(k) = factors.first().map(|f| f.cols) else {
+        return Dense::default();
+    };
+    let stacked = faer::Mat::from_fn(factors.len() * k, k, |i, j| factors[i / k].get(i % k, j));
+    // Left singular vectors, as many as rows, are not wanted.
+    let svd = stacked
+        .thin_svd()
+        .expect("an SVD of a small finite matrix converges");
+    let sigma = svd.S().column_vector();
+    let scale = (stacked.nrows() as f64).sqrt();
+    let rank = (0..k).filter(|&i| sigma[i] > FREE * scale).count();
+    let mut out = Dense::zeros(k, k - rank);
+    for j in rank..k {
+        for i in 0..k {
+            out.set(i, j - rank, svd.V()[(i, j)]);
+        }
+    }
+    out
+}
+
+/// Diagonal entries of S_Π below this fraction of the body's stiffness are rounding: what is left of a dof that nothing else holds.
+const NOTHING: f64 = 1e-12;
+
+/// A basis of the kernel of the body's primal matrix (n × n, both triangles): n × defect. `stiffness` is the largest diagonal entry of K in
+/// the body, or one like it.
+pub fn null_space(s_pi: &Dense, stiffness: f64) -> Dense {
+    let n = s_pi.rows;
+    // A body with one primal dof and nothing else to hold it has a 1 × 1 matrix of rounding, which is small only beside K.
+    let alone = if stiffness > 0.0 { stiffness } else { 1.0 };
+    let safe = |i: usize| match s_pi.get(i, i) {
+        d if d > NOTHING * stiffness => d.sqrt(),
+        _ => alone.sqrt(),
+    };
+    let a = faer::Mat::from_fn(n, n, |i, j| s_pi.get(i, j) / (safe(i) * safe(j)));
+    let eigen = a
+        .self_adjoint_eigen(faer::Side::Lower)
+        .expect("eigenvalues of a small symmetric finite matrix converge");
+    let values = eigen.S().column_vector();
+    let defect = (0..n).filter(|&i| values[i] < FREE_SPECTRUM).count();
+    let mut out = Dense::zeros(n, defect);
+    for c in 0..defect {
+        let column: Vec<f64> = (0..n).map(|i| eigen.U()[(i, c)] / safe(i)).collect();
+        let size = column.iter().fold(0.0, |a: f64, &b| a.max(b.abs()));
+        for (i, v) in column.iter().enumerate() {
+            out.set(i, c, v / size);
+        }
+    }
+    out
+}
+
+/// Rows of `z` (n × defect) to hold so that the body is held: greedy, largest remaining row first (Gram–Schmidt on rows), which
+/// spreads them. As many as columns.
+pub fn fixing_rows(z: &Dense) -> Vec<usize> {
+    let mut rest: Vec<Vec<f64>> = (0..z.rows)
+        .map(|i| (0..z.cols).map(|j| z.get(i, j)).collect())
+        .collect();
+    let mut chosen = Vec::new();
+    for _ in 0..z.cols {
+        let size = |r: &Vec<f64>| r.iter().map(|v| v * v).sum::<f64>();
+        let best = (0..rest.len())
+            .filter(|i| !chosen.contains(i))
+            .max_by(|&a, &b| size(&rest[a]).total_cmp(&size(&rest[b])).then(b.cmp(&a)));
+        let Some(best) = best else { break };
+        let pivot = rest[best].clone();
+        let norm = size(&pivot);
+        chosen.push(best);
+        if norm > 0.0 {
+            for row in &mut rest {
+                let factor = row.iter().zip(&pivot).map(|(a, b)| a * b).sum::<f64>() / norm;
+                row.iter_mut()
+                    .zip(&pivot)
+                    .for_each(|(a, b)| *a -= factor * b);
+            }
+        }
+    }
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::testing::grid_laplacian;
+
+    #[test]
+    fn a_weak_spring_holds_and_rounding_does_not() {
+        for (spring, defect) in [(0.0, 1), (1e-8, 0), (1.0, 0)] {
+            let (mut k, _) = grid_laplacian(60, 60, 0.0);
+            let at = k.row_ptr[1777]
+                + k.row(1777)
+                    .0
+                    .iter()
+                    .position(|&j| j == 1777)
+                    .expect("diagonal");
+            k.val[at] += spring;
+            // Stiffness that jumps between subdomains does not matter: the other one floats at 1e12.
+            let (mut stiff, _) = grid_laplacian(60, 60, 0.0);
+            stiff.val.iter_mut().for_each(|v| *v *= 1e12);
+            let ones = vec![vec![1.0; k.n()]];
+            let factors = [residual_factor(&k, &ones), residual_factor(&stiff, &ones)];
+            assert_eq!(
+                null_combinations(&factors).cols,
+                defect,
+                "spring {spring:e}"
+            );
+        }
+    }
+
+    #[test]
+    fn several_columns_find_the_one_combination() {
+        // N = {1, x}: the Laplacian's kernel is the constant only.
+        let (k, x) = grid_laplacian(9, 4, 0.0);
+        let columns = vec![
+            x.iter().map(|p| p[0] / 8.0 + 0.5).collect(),
+            x.iter().map(|p| p[0] / 8.0 - 0.5).collect(),
+        ];
+        let c = null_combinations(&[residual_factor(&k, &columns)]);
+        assert_eq!(c.cols, 1);
+        assert!((c.get(0, 0) + c.get(1, 0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_primal_matrix_shows_the_kernel_when_nothing_is_known() {
+        let (k, _) = grid_laplacian(5, 5, 0.0);
+        let dense = |k: &Csr| {
+            let mut a = Dense::zeros(k.n(), k.n());
+            (0..k.n()).for_each(|i| (0..k.n()).for_each(|j| a.set(i, j, k.get(i, j))));
+            a
+        };
+        let z = null_space(&dense(&k), 8.0 / 3.0);
+        assert_eq!(z.cols, 1);
+        assert!(z.data.iter().all(|v| (v.abs() - 1.0).abs() < 1e-10));
+        assert_eq!(fixing_rows(&z).len(), 1);
+        let (held, _) = grid_laplacian(5, 5, 1e-6);
+        assert_eq!(null_space(&dense(&held), 8.0 / 3.0).cols, 0);
+        // One dof of a floating body: rounding of either sign, or a spring.
+        for (left, defect) in [(3e-15, 1), (-3e-15, 1), (0.0, 1), (1e-6, 0)] {
+            let mut one = Dense::zeros(1, 1);
+            one.set(0, 0, left);
+            assert_eq!(null_space(&one, 4.0).cols, defect, "{left:e}");
+        }
+    }
+}

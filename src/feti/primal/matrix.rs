@@ -1,0 +1,210 @@
+//! S_Π of the bodies: the matrices Σ that subdomains have at their primal dofs, added up by the rank that owns them.
+
+use std::ops::Range;
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+use crate::parallel::exchange::exchange_words;
+
+/// Blocks on their way to the ranks that own their bodies: [n, global numbers (n), entries row by row (n²)] of each.
+pub struct Outgoing(Vec<Vec<u64>>);
+
+impl Outgoing {
+    /// Room for so many words to each rank.
+    pub fn with_capacity(words: &[usize]) -> Outgoing {
+        Outgoing(words.iter().map(|&n| Vec::with_capacity(n)).collect())
+    }
+
+    /// Words of a block of order n.
+    pub fn words(n: usize) -> usize {
+        1 + n + n * n
+    }
+
+    /// Adds a block for rank `to`: `numbers` are those of its rows and columns. One without any is left out.
+    pub fn push(&mut self, to: usize, numbers: impl Iterator<Item = u32>, block: &Dense) {
+        if block.rows == 0 {
+            return;
+        }
+        let words = &mut self.0[to];
+        words.push(block.rows as u64);
+        words.extend(numbers.map(u64::from));
+        for i in 0..block.rows {
+            words.extend((0..block.cols).map(|j| block.get(i, j).to_bits()));
+        }
+    }
+}
+
+/// The blocks of this rank's bodies, and what regularises them.
+#[derive(Debug, Default)]
+pub struct PrimalMatrix {
+    /// First global number owned by this rank.
+    first: usize,
+    received: Vec<Vec<u64>>,
+    /// The blocks by their first owned dof: (that dof, sender, where its words start). Those of a body follow each other.
+    index: Vec<(u32, u32, usize)>,
+    /// The diagonal of the sum, by owned dof.
+    diagonal: Vec<f64>,
+    /// What is added to it.
+    shifts: Vec<f64>,
+}
+
+/// A subdomain's part: owned dofs, and entries row by row.
+type Block<'a> = (Vec<u32>, &'a [u64]);
+
+impl PrimalMatrix {
+    /// Sends the blocks; `n` dofs from global number `first` on are owned here. Collective.
+    pub fn new(
+        comm: &SimpleCommunicator,
+        outgoing: Outgoing,
+        first: usize,
+        n: usize,
+    ) -> PrimalMatrix {
+        PrimalMatrix::received(exchange_words(comm, outgoing.0), first, n)
+    }
+
+    fn received(received: Vec<Vec<u64>>, first: usize, n: usize) -> PrimalMatrix {
+        let mut index = Vec::new();
+        for (sender, words) in (0..).zip(&received) {
+            let mut at = 0;
+            while at < words.len() {
+                index.push((words[at + 1] as u32 - first as u32, sender, at));
+                at += Outgoing::words(words[at] as usize);
+            }
+        }
+        index.sort_unstable();
+        let mut matrix = PrimalMatrix {
+            first,
+            received,
+            index,
+            diagonal: Vec::new(),
+            shifts: vec![0.0; n],
+        };
+        let mut diagonal = vec![0.0; n];
+        for (dofs, values) in matrix.of_body(&(0..n)) {
+            for (i, value) in dofs.iter().zip(values.iter().step_by(dofs.len() + 1)) {
+                diagonal[*i as usize] += f64::from_bits(*value);
+            }
+        }
+        matrix.diagonal = diagonal;
+        matrix
+    }
+
+    /// Blocks of the body (or bodies) with these owned dofs; their dofs counted from its first one.
+    fn of_body<'a>(&'a self, body: &Range<usize>) -> impl Iterator<Item = Block<'a>> {
+        let place = |dof: usize| self.index.partition_point(|b| (b.0 as usize) < dof);
+        let offset = (self.first + body.start) as u32;
+        let blocks = self.index[place(body.start)..place(body.end)].iter();
+        blocks.map(move |&(_, sender, at)| {
+            let words = &self.received[sender as usize][at..];
+            let n = words[0] as usize;
+            let (numbers, tail) = words[1..].split_at(n);
+            let dofs = numbers.iter().map(|&g| g as u32 - offset);
+            (dofs.collect(), &tail[..n * n])
+        })
+    }
+
+    /// The sum of the diagonal entries of a body, without what regularises it.
+    pub fn trace(&self, body: &Range<usize>) -> f64 {
+        self.diagonal[body.clone()].iter().sum()
+    }
+
+    /// Adds to the diagonal entry of an owned dof.
+    pub fn shift(&mut self, dof: usize, value: f64) {
+        self.shifts[dof] += value;
+    }
+
+    fn shifts(&self, body: &Range<usize>) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let all = self.shifts[body.clone()].iter().copied().enumerate();
+        all.filter(|s| s.1 != 0.0)
+    }
+
+    /// S_Π of the body with these owned dofs.
+    pub fn dense(&self, body: &Range<usize>) -> Dense {
+        let n = body.len();
+        let mut out = Dense::zeros(n, n);
+        for (dofs, values) in self.of_body(body) {
+            for (&i, row) in dofs.iter().zip(values.chunks_exact(dofs.len())) {
+                for (&j, v) in dofs.iter().zip(row) {
+                    out.data[i as usize + j as usize * n] += f64::from_bits(*v);
+                }
+            }
+        }
+        self.shifts(body)
+            .for_each(|(i, v)| out.data[i + i * n] += v);
+        out
+    }
+
+    /// The same, sparse.
+    pub fn sparse(&self, body: &Range<usize>) -> Csr {
+        let (lists, values): (Vec<Vec<u32>>, Vec<&[u64]>) = self.of_body(body).unzip();
+        let value =
+            |b: usize, i: usize, j: usize| f64::from_bits(values[b][i * lists[b].len() + j]);
+        let mut out = Csr::from_blocks(body.len(), &lists, value);
+        for (i, value) in self.shifts(body) {
+            let at = out.row(i).0.binary_search(&(i as u32));
+            let at = out.row_ptr[i] + at.expect("a primal dof is in some block");
+            out.val[at] += value;
+        }
+        out
+    }
+
+    /// All entries as (global row, global column, value), repeated ones not added up.
+    pub fn triplets(&self) -> Vec<(i32, i32, f64)> {
+        let first = self.first as i32;
+        let mut out = Vec::new();
+        for (dofs, values) in self.of_body(&(0..self.shifts.len())) {
+            for (&i, row) in dofs.iter().zip(values.chunks_exact(dofs.len())) {
+                let entry = |(&j, v): (&u32, &u64)| {
+                    (first + i as i32, first + j as i32, f64::from_bits(*v))
+                };
+                out.extend(dofs.iter().zip(row).map(entry));
+            }
+        }
+        let shifts = self.shifts(&(0..self.shifts.len()));
+        out.extend(shifts.map(|(i, v)| (first + i as i32, first + i as i32, v)));
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sparse_and_dense_sums_and_triplets_are_the_same_matrix() {
+        // Dofs 100..107 of two bodies, {0..4} and {4..7}; blocks that overlap, in any order of their dofs.
+        let mut outgoing = Outgoing::with_capacity(&[0, 0]);
+        let block = |n: usize, s: f64| Dense {
+            rows: n,
+            cols: n,
+            data: (0..n * n).map(|k| s + (k as f64).sin()).collect(),
+        };
+        outgoing.push(0, [103, 100, 101].into_iter(), &block(3, 1.0));
+        outgoing.push(0, [104, 106].into_iter(), &block(2, 2.0));
+        outgoing.push(0, std::iter::empty(), &block(0, 0.0));
+        outgoing.push(1, [101, 102].into_iter(), &block(2, 3.0));
+        outgoing.push(1, [106, 105].into_iter(), &block(2, 4.0));
+        let mut matrix = PrimalMatrix::received(outgoing.0, 100, 7);
+        matrix.shift(1, 10.0);
+        matrix.shift(6, 20.0);
+        let triplets = matrix.triplets();
+        for body in [0..4, 4..7] {
+            let (dense, sparse) = (matrix.dense(&body), matrix.sparse(&body));
+            for (i, j) in (0..body.len()).flat_map(|i| (0..body.len()).map(move |j| (i, j))) {
+                let at = |i: usize| (100 + body.start + i) as i32;
+                let here = triplets.iter().filter(|t| (t.0, t.1) == (at(i), at(j)));
+                let sum: f64 = here.map(|t| t.2).sum();
+                assert!((dense.get(i, j) - sum).abs() < 1e-14);
+                assert!((sparse.get(i, j) - sum).abs() < 1e-14);
+            }
+        }
+        assert!((0..4).all(|i| sparse_is_sorted(&matrix.sparse(&(0..4)), i)));
+        assert_eq!(matrix.sparse(&(0..4)).get(0, 2), 0.0);
+    }
+
+    fn sparse_is_sorted(k: &Csr, i: usize) -> bool {
+        k.row(i).0.windows(2).all(|w| w[0] < w[1])
+    }
+}

@@ -1,0 +1,7 @@
+//! The primal problem of the bodies: S_Π, the kernels that it shows, and its refinement.
+
+pub mod coarse;
+pub mod kernel;
+pub mod matrix;
+pub mod refine;
+pub mod space;

@@ -1,0 +1,97 @@
+//! Primal problems of bodies whose coefficients jump: S_Π⁺ to the accuracy of the subdomains' own matrices.
+//!
+//! A stiff subdomain in soft ones is held by the difference of large entries of the assembled S_Π: with jumps of 1e12 that difference has four
+//! digits left. Unassembled it has all: Σ_j annihilates the rigid motions of its subdomain, and made to do so exactly, it tells the forces on
+//! the subdomain as a whole from its neighbours alone. So the assembled matrix is solved with, and residuals are formed with the Σ_j:
+//!
+//! ```text
+//!     c ← c + S_Π⁺ ( b − Σ_j R_jᵀ Π_j Σ_j Π_j R_j c ),    Π_j = I − N_j N_jᵀ
+//! ```
+
+use super::space::PrimalSpace;
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::dense::Dense;
+use crate::substructures::{Subdomain, Substructures};
+
+/// Largest ratio of coefficients in a body up to which the assembled matrix is good enough.
+pub const PLAIN: f64 = 1e3;
+
+/// Corrections after the first solve; each leaves about (jump · 1e-14) of the error.
+pub const STEPS: usize = 2;
+
+/// Σ_j N below this part of its terms is zero.
+const FREE: f64 = 1e-9;
+
+/// N_j of each local subdomain: orthonormal, n_Π × its rigid motions (none where something holds it).
+pub struct Refinement {
+    motions: Vec<Dense>,
+}
+
+impl Refinement {
+    /// The rigid motions at the primal dofs.
+    pub fn new(problem: &Substructures, locals: &[Local]) -> Refinement {
+        let pairs = problem.local.iter().zip(locals);
+        Refinement {
+            motions: pairs.map(|(sub, l)| motions(sub, l)).collect(),
+        }
+    }
+
+    /// r ← r − Σ_j R_jᵀ Π_j Σ_j Π_j R_j c, all at this rank's ghosts.
+    pub fn subtract(&self, space: &PrimalSpace, locals: &[Local], c: &[f64], r: &mut [f64]) {
+        let mut force = Vec::new();
+        for ((places, local), n) in space.of_subdomain.iter().zip(locals).zip(&self.motions) {
+            let mut x: Vec<f64> = places.iter().map(|&g| c[g as usize]).collect();
+            remove(n, &mut x); /*                               x ← Π R c       */
+            force.clear();
+            force.resize(x.len(), 0.0);
+            local.sigma().add_mul(&x, &mut force); /*    f ← Σ x         */
+            remove(n, &mut force); /*                           f ← Π f         */
+            for (&g, f) in places.iter().zip(&force) {
+                r[g as usize] -= f;
+            }
+        }
+    }
+}
+
+/// x ← x − N Nᵀ x, twice for the digits.
+fn remove(n: &Dense, x: &mut [f64]) {
+    for _ in 0..2 {
+        for k in 0..n.cols {
+            let along: f64 = n.col(k).iter().zip(&*x).map(|(n, x)| n * x).sum();
+            x.iter_mut()
+                .zip(n.col(k))
+                .for_each(|(x, n)| *x -= along * n);
+        }
+    }
+}
+
+fn motions(sub: &Subdomain, local: &Local) -> Dense {
+    let n_pi = local.n_pi();
+    let mut out = Dense::zeros(n_pi, 0);
+    for column in sub.near_kernel.iter().flatten() {
+        let on_gamma = local.interface.iter().map(|&i| column[i as usize]);
+        let mut x = local.primal_values(&on_gamma.collect::<Vec<f64>>());
+        let before: f64 = x.iter().map(|v| v * v).sum();
+        remove(&out, &mut x);
+        let after: f64 = x.iter().map(|v| v * v).sum();
+        // Rigid motions that agree at the few primal dofs of a subdomain are one.
+        if after <= 1e-12 * before {
+            continue;
+        }
+        x.iter_mut().for_each(|v| *v /= after.sqrt());
+        if is_free(&local.sigma(), &x) {
+            out.data.extend(&x);
+            out.cols += 1;
+        }
+    }
+    out
+}
+
+/// Whether Σ x is rounding in every entry.
+fn is_free(sigma: &Dense, x: &[f64]) -> bool {
+    (0..sigma.rows).all(|i| {
+        let terms = (0..sigma.cols).map(|j| sigma.get(i, j) * x[j]);
+        let (sum, size) = terms.fold((0.0, 0.0), |(s, a): (f64, f64), t| (s + t, a + t.abs()));
+        sum.abs() <= FREE * size
+    })
+}

@@ -1,0 +1,347 @@
+//! The primal spaces of the bodies: numbering, the matrix S_Π, and the kernels it shows.
+//!
+//! All primal dofs of a body are owned by one rank, that of the body's lowest subdomain, so that S_Π is block diagonal
+//! by rank as well as by body. Primal dofs are numbered rank after rank, body after body.
+
+use std::ops::Range;
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::kernel;
+use super::matrix::{Outgoing, PrimalMatrix};
+use crate::feti::interface::entities::Average;
+use crate::feti::interface::sharing::Sharing;
+use crate::feti::subdomain::scaled::Local;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+use crate::parallel::exchange::{exchange_words, offsets, sum_all};
+use crate::parallel::halo::numbered;
+use crate::substructures::Substructures;
+
+/// A body whose primal dofs this rank owns.
+#[derive(Debug)]
+pub struct OwnedBody {
+    /// Index of the body.
+    pub body: usize,
+    /// Its primal dofs among this rank's owned ones.
+    pub range: Range<usize>,
+    /// Basis of the kernel at the primal dofs, n × defect.
+    pub z: Dense,
+    /// Primal dofs of the body (indices in 0..n) that are held to make S_Π regular; as many as the defect.
+    pub fixing: Vec<usize>,
+}
+
+/// The numbering of the primal dofs and the kernels of the bodies.
+#[derive(Debug, Default)]
+pub struct PrimalSpace {
+    /// First global number owned by this rank.
+    pub first: usize,
+    /// Number of primal dofs owned by this rank.
+    pub n_owned: usize,
+    /// Number of primal dofs over all ranks.
+    pub n_global: usize,
+    /// Global numbers of the primal dofs that this rank's subdomains use, increasing.
+    pub ghosts: Vec<u32>,
+    /// For each local subdomain, the place in `ghosts` of each of its primal dofs.
+    pub of_subdomain: Vec<Vec<u32>>,
+    /// Bodies owned by this rank.
+    pub owned: Vec<OwnedBody>,
+    /// Rank that owns each body; length n_bodies.
+    pub owner: Vec<u32>,
+    /// Dimension of each body's kernel; length n_bodies, the same on all ranks.
+    pub defect: Vec<usize>,
+    /// Column of R at which each body's kernel starts; length n_bodies + 1.
+    pub kernel_start: Vec<usize>,
+    /// Rows of the kernel basis at `ghosts`: length of the body's defect each.
+    pub z_at_ghosts: Vec<Vec<f64>>,
+    /// S_Π of the owned bodies, regularised at the fixing dofs of floating ones.
+    pub matrix: PrimalMatrix,
+}
+
+impl PrimalSpace {
+    /// Numbers the primal dofs (`averages` are those of every local subdomain), assembles S_Π and finds the kernels. Collective.
+    pub fn new(
+        comm: &SimpleCommunicator,
+        problem: &Substructures,
+        sharing: &Sharing,
+        averages: &[Vec<Average>],
+        locals: &[Local],
+    ) -> PrimalSpace {
+        let mut space = PrimalSpace {
+            owner: owners(problem, sharing),
+            ..PrimalSpace::default()
+        };
+        let asked = space.number(comm, problem, averages, locals);
+        let mut room = vec![0; comm.size() as usize];
+        let to = |j: usize| space.owner[problem.local[j].body] as usize;
+        for (j, local) in locals.iter().enumerate() {
+            room[to(j)] += Outgoing::words(local.n_pi());
+        }
+        let mut outgoing = Outgoing::with_capacity(&room);
+        for (j, local) in locals.iter().enumerate() {
+            let numbers = space.of_subdomain[j].iter();
+            let numbers = numbers.map(|&g| space.ghosts[g as usize]);
+            outgoing.push(to(j), numbers, &local.sigma());
+        }
+        space.matrix = PrimalMatrix::new(comm, outgoing, space.first, space.n_owned);
+        space.find_kernels(comm, problem, locals, &asked);
+        space
+    }
+
+    /// Rank after rank numbering; returns, for the owner, the numbers that every rank asked for.
+    fn number(
+        &mut self,
+        comm: &SimpleCommunicator,
+        problem: &Substructures,
+        averages: &[Vec<Average>],
+        locals: &[Local],
+    ) -> Vec<Vec<u32>> {
+        let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+        for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
+            // A vertex is known by its body dof, an average by its entity, another functional by a body dof; a fixing dof belongs to its
+            // subdomain alone.
+            let vertices = local.interface[local.n_delta..].iter();
+            let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
+            let averages = averages[j].iter();
+            let averages = averages.map(|a| (if a.weights.is_some() { 3 } else { 1 }, a.key));
+            let fixing = local.fixing.iter();
+            let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
+            for (kind, key) in vertices.chain(averages).chain(fixing) {
+                let body = (sub.body as u64) << 2 | kind;
+                requests[self.owner[sub.body] as usize].extend([body, key]);
+            }
+        }
+        let sent: Vec<usize> = requests.iter().map(|r| r.len() / 2).collect();
+        let received = exchange_words(comm, requests);
+        let pairs = |words: &[u64]| -> Vec<(u64, u64)> {
+            words.chunks_exact(2).map(|w| (w[0], w[1])).collect()
+        };
+        let mut all: Vec<(u64, u64)> = received.iter().flat_map(|w| pairs(w)).collect();
+        all.sort_unstable();
+        all.dedup();
+        self.n_owned = all.len();
+        (self.first, self.n_global) = offsets(comm, all.len());
+        let first = self.first;
+        let mut start = 0;
+        for group in all.chunk_by(|a, b| a.0 >> 2 == b.0 >> 2) {
+            self.owned.push(OwnedBody {
+                body: (group[0].0 >> 2) as usize,
+                range: start..start + group.len(),
+                z: Dense::default(),
+                fixing: Vec::new(),
+            });
+            start += group.len();
+        }
+        let number = |pair: (u64, u64)| {
+            let at = all
+                .binary_search(&pair)
+                .expect("every request was collected");
+            (first + at) as u32
+        };
+        let asked: Vec<Vec<u32>> = received
+            .iter()
+            .map(|w| pairs(w).into_iter().map(number).collect())
+            .collect();
+        let replies = asked
+            .iter()
+            .map(|list| list.iter().map(|&g| u64::from(g)).collect())
+            .collect();
+        let answers = exchange_words(comm, replies);
+        debug_assert!(answers.iter().zip(&sent).all(|(a, &n)| a.len() == n));
+
+        let mut next = vec![0; answers.len()];
+        let global: Vec<Vec<u32>> = problem
+            .local
+            .iter()
+            .zip(locals)
+            .map(|(sub, local)| {
+                let r = self.owner[sub.body] as usize;
+                let n = local.n_pi();
+                next[r] += n;
+                answers[r][next[r] - n..next[r]]
+                    .iter()
+                    .map(|&g| g as u32)
+                    .collect()
+            })
+            .collect();
+        (self.ghosts, self.of_subdomain) = numbered(&global);
+        asked
+    }
+
+    fn find_kernels(
+        &mut self,
+        comm: &SimpleCommunicator,
+        problem: &Substructures,
+        locals: &[Local],
+        asked: &[Vec<u32>],
+    ) {
+        // What the subdomains say: [body, k, factor (k²)], and N at the primal dofs: [number, k values].
+        let size = comm.size() as usize;
+        let mut factors: Vec<Vec<u64>> = vec![Vec::new(); size];
+        let mut values: Vec<Vec<u64>> = vec![Vec::new(); size];
+        for (j, sub) in problem.local.iter().enumerate() {
+            let to = self.owner[sub.body] as usize;
+            let local = &locals[j];
+            let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
+            let factor = kernel::residual_factor(&sub.k, columns);
+            factors[to].extend([sub.body as u64, columns.len() as u64]);
+            factors[to].extend(factor.data.iter().map(|v| v.to_bits()));
+            if columns.is_empty() {
+                continue;
+            }
+            let on_gamma = |c: &Vec<f64>| {
+                let values = local.interface.iter().map(|&i| c[i as usize]);
+                local.primal_values(&values.collect::<Vec<f64>>())
+            };
+            let primal: Vec<Vec<f64>> = columns.iter().map(on_gamma).collect();
+            for (p, &place) in self.of_subdomain[j].iter().enumerate() {
+                let number = self.ghosts[place as usize];
+                values[to].extend([u64::from(number), columns.len() as u64]);
+                values[to].extend(primal.iter().map(|c| c[p].to_bits()));
+            }
+        }
+        let factors = exchange_words(comm, factors).concat();
+        let values = exchange_words(comm, values).concat();
+        let mut owned = std::mem::take(&mut self.owned);
+        let mut defect = vec![0.0; problem.n_bodies];
+        for body in &mut owned {
+            let stiffness = self.local_stiffness(problem, locals, body.body);
+            body.z = self.kernel_of(body, &factors, &values, stiffness);
+            body.fixing = kernel::fixing_rows(&body.z);
+            defect[body.body] = body.z.cols as f64;
+            let n = body.range.len() as f64;
+            // Any positive number makes S_Π regular; the mean diagonal keeps it as well conditioned as it was. A body held
+            // by nothing but its fixing dof has a diagonal of rounding: then one.
+            let trace = self.matrix.trace(&body.range);
+            let shift = if trace / n > 1e-10 * stiffness {
+                trace / n
+            } else {
+                stiffness.max(1.0)
+            };
+            for &i in &body.fixing {
+                self.matrix.shift(body.range.start + i, shift);
+            }
+        }
+        self.owned = owned;
+        sum_all(comm, &mut defect);
+        self.defect = defect.iter().map(|&d| d as usize).collect();
+        self.kernel_start = std::iter::once(0)
+            .chain(self.defect.iter().scan(0, |sum, d| {
+                *sum += d;
+                Some(*sum)
+            }))
+            .collect();
+        self.share_kernels(comm, asked);
+    }
+
+    /// Largest diagonal entry of K on the interface among this rank's subdomains of a body.
+    fn local_stiffness(&self, problem: &Substructures, locals: &[Local], body: usize) -> f64 {
+        let of = |k: &Csr, interface: &[u32]| {
+            let diagonal = interface.iter().map(|&i| k.get(i as usize, i as usize));
+            diagonal.fold(0.0, f64::max)
+        };
+        problem
+            .local
+            .iter()
+            .zip(locals)
+            .filter(|(sub, _)| sub.body == body)
+            .map(|(sub, local)| of(&sub.k, &local.interface))
+            .fold(0.0, f64::max)
+    }
+
+    fn kernel_of(
+        &self,
+        body: &OwnedBody,
+        factors: &[u64],
+        values: &[u64],
+        stiffness: f64,
+    ) -> Dense {
+        let n = body.range.len();
+        let mut mine = Vec::new();
+        let mut known = true;
+        let mut rest = factors;
+        while let [index, k, tail @ ..] = rest {
+            let k = *k as usize;
+            let (data, tail) = tail.split_at(k * k);
+            if *index as usize == body.body {
+                known &= k > 0;
+                mine.push(Dense {
+                    rows: k,
+                    cols: k,
+                    data: data.iter().map(|&w| f64::from_bits(w)).collect(),
+                });
+            }
+            rest = tail;
+        }
+        if !known {
+            let s_pi = self.matrix.dense(&body.range);
+            return kernel::null_space(&s_pi, stiffness);
+        }
+        let combinations = kernel::null_combinations(&mine);
+        let mut z = Dense::zeros(n, combinations.cols);
+        let mut rest = values;
+        while let [number, k, tail @ ..] = rest {
+            let (row, tail) = tail.split_at(*k as usize);
+            let i = *number as usize - self.first;
+            if body.range.contains(&i) {
+                for c in 0..combinations.cols {
+                    let terms = row.iter().zip(combinations.col(c));
+                    let sum = terms.map(|(&w, c)| f64::from_bits(w) * c).sum();
+                    z.set(i - body.range.start, c, sum);
+                }
+            }
+            rest = tail;
+        }
+        z
+    }
+
+    fn share_kernels(&mut self, comm: &SimpleCommunicator, asked: &[Vec<u32>]) {
+        let row_of = |g: &u32| -> Vec<u64> {
+            let i = *g as usize - self.first;
+            let body = self.owned.iter().find(|b| b.range.contains(&i));
+            let body = body.expect("an owned primal dof belongs to an owned body");
+            let row = (0..body.z.cols).map(|c| body.z.get(i - body.range.start, c).to_bits());
+            [u64::from(*g), body.z.cols as u64]
+                .into_iter()
+                .chain(row)
+                .collect()
+        };
+        let replies = asked
+            .iter()
+            .map(|l| l.iter().flat_map(row_of).collect())
+            .collect();
+        let answers = exchange_words(comm, replies).concat();
+        self.z_at_ghosts = vec![Vec::new(); self.ghosts.len()];
+        let mut rest = &answers[..];
+        while let [number, k, tail @ ..] = rest {
+            let (row, tail) = tail.split_at(*k as usize);
+            let at = self.ghosts.binary_search(&(*number as u32));
+            let at = at.expect("answers are to our own requests");
+            self.z_at_ghosts[at] = row.iter().map(|&w| f64::from_bits(w)).collect();
+            rest = tail;
+        }
+    }
+
+    /// R of local subdomain `j` on its interface, n_Γ × defect of its body: Ψ times the kernel at the primal dofs.
+    pub fn kernel_on_interface(&self, j: usize, body: usize, local: &Local) -> Dense {
+        let mut r = Dense::zeros(local.n_gamma(), self.defect[body]);
+        for c in 0..r.cols {
+            let z: Vec<f64> = self.of_subdomain[j]
+                .iter()
+                .map(|&g| self.z_at_ghosts[g as usize][c])
+                .collect();
+            local.add_psi(&z, r.col_mut(c));
+        }
+        r
+    }
+}
+
+/// The rank of every body's lowest subdomain.
+fn owners(problem: &Substructures, sharing: &Sharing) -> Vec<u32> {
+    let mut owner = vec![0; problem.n_bodies];
+    for (&body, &rank) in sharing.body_of.iter().zip(&sharing.rank_of).rev() {
+        owner[body as usize] = rank;
+    }
+    owner
+}

@@ -1,0 +1,126 @@
+//! Which bodies meet in which rows, and groups of bodies that do not feel each other.
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::feti::operators::stiffness::Stiffness;
+use crate::parallel::exchange::gather_all;
+use crate::substructures::Substructures;
+
+/// Lists of bodies, one for each owned row.
+#[derive(Debug, Default)]
+pub struct Lists {
+    start: Vec<usize>,
+    item: Vec<u32>,
+}
+
+impl Lists {
+    fn new(lists: impl Iterator<Item = Vec<u32>>) -> Lists {
+        let mut out = Lists {
+            start: vec![0],
+            item: Vec::new(),
+        };
+        for mut list in lists {
+            list.sort_unstable();
+            list.dedup();
+            out.item.extend(list);
+            out.start.push(out.item.len());
+        }
+        out
+    }
+
+    /// The bodies of row `i`, increasing.
+    pub fn of(&self, i: usize) -> &[u32] {
+        &self.item[self.start[i]..self.start[i + 1]]
+    }
+}
+
+/// The bodies and the rows between them. Neighbours are known to every rank, rows to their owner.
+pub struct BodyGraph {
+    /// Number of bodies.
+    pub n: usize,
+    /// Bodies with an entry of B in each owned row, whether or not it holds.
+    pub terms: Lists,
+    /// Bodies with an entry of B_D there: those of the row's block.
+    pub touched: Lists,
+    /// For every body itself and all that it shares a block of rows with, increasing.
+    pub near: Vec<Vec<u32>>,
+}
+
+impl BodyGraph {
+    /// Reads the rows. Collective.
+    pub fn new(
+        comm: &SimpleCommunicator,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+    ) -> BodyGraph {
+        let jump = &stiffness.jump;
+        let n = problem.n_bodies;
+        let mut local = vec![0u32; jump.n_owned_local];
+        for (j, sub) in problem.local.iter().enumerate() {
+            local[jump.local_start[j]..jump.local_start[j + 1]].fill(sub.body as u32);
+        }
+        let mut terms: Vec<Vec<u32>> = local.iter().map(|&b| vec![b]).collect();
+        let mut touched = terms.clone();
+        let mut pairs: Vec<u64> = Vec::new();
+        for block in &jump.blocks {
+            for r in 0..block.rows.len() {
+                let inside = (0..block.dofs.len()).filter(|&j| block.b.get(r, j) != 0.0);
+                terms.push(inside.map(|j| block.bodies[j]).collect());
+                touched.push(block.bodies.clone());
+            }
+            for &a in &block.bodies {
+                pairs.extend(
+                    block
+                        .bodies
+                        .iter()
+                        .map(|&b| u64::from(a) << 32 | u64::from(b)),
+                );
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut near: Vec<Vec<u32>> = (0..n as u32).map(|b| vec![b]).collect();
+        for pair in gather_all(comm, &pairs).concat() {
+            near[(pair >> 32) as usize].push(pair as u32);
+        }
+        for list in &mut near {
+            list.sort_unstable();
+            list.dedup();
+        }
+        BodyGraph {
+            n,
+            terms: Lists::new(terms.into_iter()),
+            touched: Lists::new(touched.into_iter()),
+            near,
+        }
+    }
+
+    /// All bodies near one of `bodies`.
+    pub fn around(&self, bodies: &[u32]) -> Vec<u32> {
+        let lists = bodies.iter().flat_map(|&b| &self.near[b as usize]);
+        let mut out: Vec<u32> = lists.copied().collect();
+        out.sort_unstable();
+        out.dedup();
+        out
+    }
+
+    /// Groups of `bodies` such that no body is near two of one group: what M⁻¹ makes of a jump at one body does not reach the rows of
+    /// another one.
+    pub fn colours(&self, bodies: &[u32]) -> Vec<Vec<u32>> {
+        let mut colour = vec![usize::MAX; self.n];
+        let mut groups: Vec<Vec<u32>> = Vec::new();
+        for &body in bodies {
+            let others = self.around(&self.near[body as usize]);
+            let taken: Vec<usize> = others.iter().map(|&b| colour[b as usize]).collect();
+            let free = (0..)
+                .find(|c| !taken.contains(c))
+                .expect("there is always one more");
+            colour[body as usize] = free;
+            if free == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[free].push(body);
+        }
+        groups
+    }
+}

@@ -1,0 +1,172 @@
+//! Gᵀ Q G behind a PETSc KSP (prefix `fetifeti_gtg_`), the same on every rank.
+
+use std::cell::RefCell;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::rows::Rows;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::parallel::clock;
+use crate::parallel::clock::Phase;
+use crate::parallel::exchange::sum_all;
+use crate::petsc::{Comm, Ksp, Mat, Session, Vec as PetscVec};
+use crate::{Error, Result};
+
+/// Which of the two inverses.
+#[derive(Clone, Copy)]
+pub enum Side {
+    /// (Gᵀ Q G)⁻¹
+    Plain,
+    /// (Gᵀ Q G)⁻ᵀ
+    Transposed,
+}
+
+/// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹ with D² its diagonal: with Q = M⁻¹ the rows of stiff and soft bodies differ by the square
+/// of the jump in ρ.
+pub struct Gtg {
+    /// The solver, on this rank alone.
+    pub ksp: Ksp,
+    /// 1/D.
+    scale: Vec<f64>,
+    rhs: PetscVec,
+    solution: PetscVec,
+    /// Combinations of kernel vectors that no row sees: rigid motions of bodies that nothing holds.
+    pub unheld: Vec<Vec<f64>>,
+    /// The matrix, scaled.
+    matrix: Mat,
+    scratch: RefCell<Vec<f64>>,
+}
+
+impl Gtg {
+    /// Assembles and factors the r × r matrix Gᵀ (Q G). Collective.
+    pub fn new(session: &Session, r: usize, g: &Rows, qg: &Rows, prefix: &str) -> Result<Gtg> {
+        let mut a = Dense::zeros(r, r);
+        for i in 0..g.n() {
+            for (p, gp) in g.row(i) {
+                for (q, gq) in qg.row(i) {
+                    a.data[p + q * r] += gp * gq;
+                }
+            }
+        }
+        sum_all(session.comm(), &mut a.data);
+        let diagonal = |i: usize| match a.get(i, i) {
+            d if d > 0.0 => 1.0 / d.sqrt(),
+            _ => 1.0,
+        };
+        let scale: Vec<f64> = (0..r).map(diagonal).collect();
+        for j in 0..r {
+            for i in 0..r {
+                a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
+            }
+        }
+        // Which bodies are held is a question to G alone: with Q = M⁻¹ two stiff bodies that soft ones hold look as if nothing did.
+        let (dropped, unheld) = dependent(session, r, g);
+        // Holding one dependent column of each unheld motion makes the matrix regular without changing what it does to
+        // right-hand sides in its range.
+        for i in dropped {
+            a.set(i, i, a.get(i, i) + 1.0);
+        }
+        let triplets: Vec<(i32, i32, f64)> = (0..r)
+            .flat_map(|i| (0..r).map(move |j| (i, j)))
+            .map(|(i, j)| (i as i32, j as i32, a.get(i, j)))
+            .filter(|&(i, j, v)| v != 0.0 || i == j)
+            .collect();
+        let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
+        let ksp = Ksp::new(session, Comm::Own)?;
+        ksp.set_operators(&matrix, &matrix)?;
+        ksp.set_options_prefix(prefix)?;
+        ksp.set_type("preonly")?;
+        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the same as
+        // long as it is this very matrix that is inverted: hence LU, and the transpose for Pᵀ.
+        ksp.pc()?.set_type("lu")?;
+        ksp.set_from_options()?;
+        ksp.setup()?;
+        Ok(Gtg {
+            ksp,
+            scale,
+            rhs: PetscVec::seq(session, r)?,
+            solution: PetscVec::seq(session, r)?,
+            unheld,
+            matrix,
+            scratch: RefCell::new(vec![0.0; r]),
+        })
+    }
+
+    /// The relative error of a vector that goes through the scaled matrix and back: about its condition number times rounding, and what P loses.
+    pub fn defect(&self) -> Result<f64> {
+        let x = self.rhs.duplicate()?;
+        // Neither smooth nor orthogonal to anything in particular.
+        for (i, x) in x.array_mut()?.iter_mut().enumerate() {
+            *x = 1.0 + ((i * 7919) % 13) as f64 / 13.0;
+        }
+        self.matrix.mult(&x, &self.rhs)?;
+        self.ksp.solve(&self.rhs, &self.solution)?;
+        self.solution.axpy(-1.0, &x)?;
+        Ok(self.solution.norm_inf()? / x.norm_inf()?)
+    }
+
+    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank.
+    pub fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        self.rhs.array_mut()?.copy_from_slice(x);
+        match side {
+            Side::Plain => self.ksp.solve(&self.rhs, &self.solution)?,
+            Side::Transposed => self.ksp.solve_transpose(&self.rhs, &self.solution)?,
+        }
+        let reason = self.ksp.converged_reason()?;
+        if reason.code < 0 {
+            return Err(Error::NotConverged(format!(
+                "the natural coarse problem was not solved ({}): change the -fetifeti_gtg_ options",
+                reason.name
+            )));
+        }
+        x.copy_from_slice(&self.solution.array()?);
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        Ok(())
+    }
+
+    /// x ← x − along (Gᵀ Q G)⁻¹ fromᵀ x (or with the transposed inverse). Collective.
+    pub fn remove(
+        &self,
+        comm: &SimpleCommunicator,
+        x: &PetscVec,
+        from: &Rows,
+        along: &Rows,
+        side: Side,
+    ) -> Result<()> {
+        let mut c = self.scratch.borrow_mut();
+        c.fill(0.0);
+        from.add_transpose(&x.array()?, &mut c);
+        clock::timed(Phase::Reduction, || sum_all(comm, &mut c));
+        clock::timed(Phase::Natural, || self.solve(&mut c, side))?;
+        along.add(-1.0, &c, &mut x.array_mut()?);
+        Ok(())
+    }
+}
+
+/// Columns of G that depend on the others, and the combinations of columns that vanish. Collective.
+fn dependent(session: &Session, r: usize, g: &Rows) -> (Vec<usize>, Vec<Vec<f64>>) {
+    let mut a = Dense::zeros(r, r);
+    for i in 0..g.n() {
+        for (p, gp) in g.row(i) {
+            for (q, gq) in g.row(i) {
+                a.data[p + q * r] += gp * gq;
+            }
+        }
+    }
+    sum_all(session.comm(), &mut a.data);
+    let factor = Semidefinite::new(&a);
+    (factor.dropped(), null_vectors(&a, &factor))
+}
+
+/// Vectors v with A v = 0, one per dropped column.
+pub fn null_vectors(a: &Dense, factor: &Semidefinite) -> Vec<Vec<f64>> {
+    let column = |&k: &usize| {
+        let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
+        factor.solve(&mut v);
+        v[k] = 1.0;
+        v
+    };
+    factor.dropped().iter().map(column).collect()
+}

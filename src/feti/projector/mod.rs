@@ -1,0 +1,7 @@
+//! The projector P of the floating bodies: G and Gᵀ Q G.
+
+pub mod graph;
+pub mod gtg;
+pub mod natural;
+pub mod rows;
+pub mod sweep;

@@ -1,0 +1,455 @@
+//! The natural coarse problem of the floating bodies and the projector that comes with it.
+//!
+//! ```text
+//!     G = Z B R,   e = Rᵀ g,   P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ,   λ₀ = Q G (Gᵀ Q G)⁻¹ e      [Lee (2.11)]
+//! ```
+//!
+//! Rows of G are sparse (the bodies at that node) and live with the row's owner; Gᵀ Q G is small and solved by every rank
+//! (prefix `fetifeti_gtg_`).
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::graph::BodyGraph;
+use super::gtg::{Gtg, Side};
+use super::rows::{RowEntry, Rows};
+use super::sweep;
+use crate::feti::deflation;
+use crate::feti::operators::preconditioner::Preconditioner;
+use crate::feti::operators::stiffness::Stiffness;
+use crate::feti::settings::{PcType, ProjectorKind};
+use crate::linalg::dense::Dense;
+use crate::parallel::exchange::{exchange, gather_all, max_all, sum_all};
+use crate::petsc::{Ksp, Session, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::{Error, Result};
+
+/// Entries of R below this part of their column's largest are rounding.
+const STILL: f64 = 1e-12;
+
+/// With Q = M⁻¹ a vector may lose this much on its way through Gᵀ Q G and back. Where stiff channels join bodies that only soft contact holds,
+/// Gᵀ M⁻¹ G is next to singular, and P is no projection any more.
+const SOUND: f64 = 1e-10;
+
+/// G, Q G and the factored Gᵀ Q G; nothing where no body floats.
+pub struct NaturalCoarse {
+    /// Number of kernel vectors of all bodies, r.
+    pub r: usize,
+    /// The weight Q that is in use (never `Auto`).
+    pub projector: ProjectorKind,
+    /// R on the interface of each local subdomain (n_Γ × defect of its body).
+    pub kernels: Vec<Dense>,
+    /// First column of R of each local subdomain's body.
+    first_column: Vec<usize>,
+    g: Rows,
+    /// Q G where it differs from G.
+    qg: Option<Rows>,
+    gtg: Option<Gtg>,
+    prefix: String,
+}
+
+/// What the loads do on the kernels: e = Rᵀ g, and the size of what may cancel in it.
+#[derive(Debug, Clone, Default)]
+pub struct KernelLoad {
+    /// e, length r.
+    pub e: Vec<f64>,
+    /// For each entry the largest |R| times Σ|f|: loads inside a subdomain cancel before they reach g.
+    pub size: Vec<f64>,
+}
+
+impl NaturalCoarse {
+    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body. Collective.
+    pub fn new(
+        session: &Session,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        preconditioner: &Preconditioner,
+        (wanted, varies): (ProjectorKind, f64),
+        prefix: &str,
+    ) -> Result<NaturalCoarse> {
+        let comm = session.comm();
+        let space = &stiffness.space;
+        let r = *space
+            .kernel_start
+            .last()
+            .expect("one start per body and the end");
+        let local = problem.local.iter().zip(&stiffness.locals).enumerate();
+        let kernels: Vec<Dense> = local
+            .map(|(j, (sub, local))| space.kernel_on_interface(j, sub.body, local))
+            .collect();
+        let first_column: Vec<usize> = problem
+            .local
+            .iter()
+            .map(|s| space.kernel_start[s.body])
+            .collect();
+        let mut natural = NaturalCoarse {
+            r,
+            projector: ProjectorKind::Identity,
+            kernels,
+            first_column,
+            g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
+            qg: None,
+            gtg: None,
+            prefix: prefix.into(),
+        };
+        if r > 0 {
+            natural.projector = choose(comm, problem, stiffness, preconditioner, wanted, varies);
+            natural.renew(session, problem, stiffness, preconditioner)?;
+            let auto = wanted == ProjectorKind::Auto;
+            if auto && natural.projector == ProjectorKind::Preconditioner {
+                let defect = natural.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
+                if defect.is_nan() || defect > SOUND {
+                    natural.projector = ProjectorKind::Diagonal;
+                    natural.renew(session, problem, stiffness, preconditioner)?;
+                }
+            }
+        }
+        Ok(natural)
+    }
+
+    /// Assembles G, Q G and Gᵀ Q G for the rows that hold now. Collective.
+    pub fn renew(
+        &mut self,
+        session: &Session,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        preconditioner: &Preconditioner,
+    ) -> Result<()> {
+        if self.r == 0 {
+            return Ok(());
+        }
+        self.g = self.assemble_g(session.comm(), stiffness);
+        self.qg = match self.projector {
+            ProjectorKind::Diagonal => {
+                let mut qg = self.g.clone();
+                qg.scale_rows(&self.superlumped(session, problem, stiffness)?);
+                Some(qg)
+            }
+            ProjectorKind::Preconditioner => {
+                let rigid = self.rigid_rows(session, problem, stiffness)?;
+                Some(self.probe(session, problem, stiffness, preconditioner, &rigid)?)
+            }
+            _ => None,
+        };
+        self.gtg = Some(Gtg::new(session, self.r, &self.g, self.qg(), &self.prefix)?);
+        Ok(())
+    }
+
+    /// G = Z B R for the rows that hold.
+    fn assemble_g(&self, comm: &SimpleCommunicator, stiffness: &Stiffness) -> Rows {
+        let mut g = self.all_rows(comm, stiffness);
+        let held = stiffness
+            .jump
+            .active
+            .iter()
+            .map(|&on| f64::from(u8::from(on)));
+        g.scale_rows(&held.collect::<Vec<f64>>());
+        g
+    }
+
+    /// B R with all rows of B_gl, those that do not hold included; rows of B_loc are left out, kernels are continuous inside a
+    /// body. Collective.
+    pub fn all_rows(&self, comm: &SimpleCommunicator, stiffness: &Stiffness) -> Rows {
+        let jump = &stiffness.jump;
+        let starts: Vec<u32> = gather_all(comm, &[jump.first as u64])
+            .iter()
+            .map(|w| w[0] as u32)
+            .collect();
+        let mut outgoing: Vec<Vec<RowEntry>> = vec![Vec::new(); comm.size() as usize];
+        let largest = self.largest(comm);
+        for (j, kernel) in self.kernels.iter().enumerate() {
+            let columns = &jump.columns[j];
+            for &(e, full) in &columns.contact {
+                let (ghost, at) = (columns.row[e as usize], columns.at[e as usize]);
+                let row = jump.ghosts[ghost as usize];
+                // The last rank that starts at or before the row: ranks without rows start where the next one does.
+                let to = starts.partition_point(|&s| s <= row) - 1;
+                for c in 0..kernel.cols {
+                    let col = self.first_column[j] + c;
+                    let value = kernel.get(at as usize, c);
+                    // A body that cannot move along a row's normal moves there by rounding: such a row would hold it.
+                    if value.abs() > STILL * largest[col] {
+                        outgoing[to].push(RowEntry {
+                            row,
+                            col: col as u32,
+                            value: full * value,
+                        });
+                    }
+                }
+            }
+        }
+        let entries = exchange(comm, outgoing)
+            .iter()
+            .map(|e| (e.row - jump.first as u32, e.col, e.value))
+            .collect();
+        Rows::from_triplets(jump.n_owned, entries)
+    }
+
+    /// The largest entry of each column of R. Collective.
+    fn largest(&self, comm: &SimpleCommunicator) -> Vec<f64> {
+        let mut largest = vec![0.0_f64; self.r];
+        for (kernel, first) in self.kernels.iter().zip(&self.first_column) {
+            for c in 0..kernel.cols {
+                let size = kernel.col(c).iter().fold(0.0f64, |a, v| a.max(v.abs()));
+                largest[first + c] = largest[first + c].max(size);
+            }
+        }
+        max_all(comm, &mut largest);
+        largest
+    }
+
+    /// diag(B_D diag(K) B_Dᵀ) on the owned rows. Collective.
+    pub fn superlumped(
+        &self,
+        session: &Session,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+    ) -> Result<Vec<f64>> {
+        let jump = &stiffness.jump;
+        let mut ghost = vec![0.0; jump.ghosts.len()];
+        for (j, columns) in jump.columns.iter().enumerate() {
+            let k = &problem.local[j].k;
+            for ((&row, &at), bd) in columns.row.iter().zip(&columns.at).zip(&columns.bd) {
+                let dof = stiffness.locals[j].interface[at as usize] as usize;
+                ghost[row as usize] += bd * bd * k.get(dof, dof);
+            }
+        }
+        let q = PetscVec::mpi(session, jump.n_owned)?;
+        stiffness.dual_halo.sum(&ghost, &q)?;
+        q.to_vec()
+    }
+
+    /// What Q has besides M⁻¹: the superlumped diagonal on rows of a single term, zero on the others. On the other side of such a
+    /// row stands something rigid, of which M⁻¹ knows nothing; for a floating body that touches nothing else M⁻¹ G vanishes.
+    fn rigid_rows(
+        &self,
+        session: &Session,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+    ) -> Result<Vec<f64>> {
+        let mut out = self.superlumped(session, problem, stiffness)?;
+        let jump = &stiffness.jump;
+        out[..jump.n_owned_local].fill(0.0);
+        for (q, &r) in out[jump.n_owned_local..].iter_mut().zip(&jump.order) {
+            if problem.rows[r].terms.len() > 1 {
+                *q = 0.0;
+            }
+        }
+        Ok(out)
+    }
+
+    /// Q G with Q = M⁻¹ + diag(`rigid`); columns of bodies that are far from each other go through M⁻¹ together.
+    fn probe(
+        &self,
+        session: &Session,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        preconditioner: &Preconditioner,
+        rigid: &[f64],
+    ) -> Result<Rows> {
+        let n = stiffness.jump.n_owned;
+        let graph = BodyGraph::new(session.comm(), problem, stiffness);
+        let start = &stiffness.space.kernel_start;
+        let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
+        let like = PetscVec::mpi(session, n)?;
+        let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
+        let images = sweep::images(&like, &graph, &columns, apply)?;
+        let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
+            let entries = list.iter().enumerate().flat_map(|(c, column)| {
+                let entries = column.entries.iter();
+                entries.map(move |&(row, v)| (row, c as u32, v * weigh(row)))
+            });
+            entries.collect::<Vec<_>>()
+        };
+        let mut entries = of(&images, &|_| 1.0);
+        entries.extend(of(&columns, &|row| rigid[row as usize]));
+        Ok(Rows::from_triplets(n, entries))
+    }
+
+    /// G on the owned rows.
+    pub fn g(&self) -> &Rows {
+        &self.g
+    }
+
+    /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank.
+    pub fn solve_gtg(&self, x: &mut [f64]) -> Result<()> {
+        self.gtg
+            .as_ref()
+            .map_or(Ok(()), |gtg| gtg.solve(x, Side::Plain))
+    }
+
+    /// Q G, which is G itself for Q = I.
+    pub fn qg(&self) -> &Rows {
+        self.qg.as_ref().unwrap_or(&self.g)
+    }
+
+    /// λ ← P λ. Collective.
+    pub fn project(&self, comm: &SimpleCommunicator, lambda: &PetscVec) -> Result<()> {
+        match &self.gtg {
+            Some(gtg) => gtg.remove(comm, lambda, &self.g, self.qg(), Side::Plain), /*  λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ */
+            None => Ok(()),
+        }
+    }
+
+    /// r ← Pᵀ r. Collective.
+    pub fn project_transpose(&self, comm: &SimpleCommunicator, residual: &PetscVec) -> Result<()> {
+        match &self.gtg {
+            Some(gtg) => gtg.remove(comm, residual, self.qg(), &self.g, Side::Transposed), /* r − G (Gᵀ Q G)⁻ᵀ (Q G)ᵀ r */
+            None => Ok(()),
+        }
+    }
+
+    /// e = Rᵀ g for condensed loads g of the loads f. Collective.
+    pub fn kernel_load(
+        &self,
+        comm: &SimpleCommunicator,
+        f: &[&[f64]],
+        g: &[Vec<f64>],
+    ) -> KernelLoad {
+        let mut e = vec![0.0; 2 * self.r];
+        for (j, kernel) in self.kernels.iter().enumerate() {
+            let load: f64 = f[j].iter().map(|f| f.abs()).sum();
+            for c in 0..kernel.cols {
+                let at = self.first_column[j] + c;
+                let largest = kernel.col(c).iter().fold(0.0f64, |a, r| a.max(r.abs()));
+                let work = kernel.col(c).iter().zip(&g[j]).map(|(r, g)| r * g);
+                e[at] += work.sum::<f64>();
+                e[self.r + at] += largest * load;
+            }
+        }
+        sum_all(comm, &mut e);
+        let size = e.split_off(self.r);
+        KernelLoad { e, size }
+    }
+
+    /// An error if the load moves a body that no row holds: e is not in the range of Gᵀ.
+    pub fn check_held(
+        &self,
+        problem: &Substructures,
+        stiffness: &Stiffness,
+        load: &KernelLoad,
+    ) -> Result<()> {
+        for motion in self.unheld() {
+            let work: f64 = motion.iter().zip(&load.e).map(|(m, e)| m * e).sum();
+            let terms = motion.iter().zip(&load.size);
+            let scale: f64 = terms.map(|(m, s)| (m * s).abs()).sum();
+            if work.abs() > 1e-10 * scale {
+                let who = moving(problem, &stiffness.space.kernel_start, motion);
+                return Err(Error::input(format!(
+                    "{who} held by nothing (no Dirichlet side and no tie to a held body) and the load does not balance, expected a Dirichlet side or a tie"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Combinations of kernel vectors that no row sees.
+    pub fn unheld(&self) -> &[Vec<f64>] {
+        self.gtg.as_ref().map_or(&[], |gtg| &gtg.unheld)
+    }
+
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): the forces on every floating body balance. λ₀ from λ = 0. Collective.
+    pub fn balance(
+        &self,
+        comm: &SimpleCommunicator,
+        load: &KernelLoad,
+        lambda: &PetscVec,
+    ) -> Result<()> {
+        let Some(solver) = &self.gtg else {
+            return Ok(());
+        };
+        // Once more for the digits that a badly conditioned Gᵀ Q G costs.
+        for _ in 0..2 {
+            let mut c = vec![0.0; self.r];
+            self.g.add_transpose(&lambda.array()?, &mut c);
+            sum_all(comm, &mut c);
+            c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
+            solver.solve(&mut c, Side::Plain)?;
+            self.qg().add(1.0, &c, &mut lambda.array_mut()?);
+        }
+        Ok(())
+    }
+
+    /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ). Collective.
+    pub fn alpha(&self, comm: &SimpleCommunicator, jump: &PetscVec) -> Result<Vec<f64>> {
+        let mut c = vec![0.0; self.r];
+        let qg = self.qg();
+        qg.add_transpose(&jump.array()?, &mut c);
+        sum_all(comm, &mut c);
+        if let Some(gtg) = &self.gtg {
+            gtg.solve(&mut c, Side::Transposed)?;
+        }
+        c.iter_mut().for_each(|v| *v = -*v);
+        Ok(c)
+    }
+
+    /// y ← y + R α on local subdomain `j`.
+    pub fn add_kernel(&self, j: usize, alpha: &[f64], y: &mut [f64]) {
+        let kernel = &self.kernels[j];
+        kernel.add_mul(&alpha[self.first_column[j]..][..kernel.cols], y);
+    }
+
+    /// The solver of Gᵀ Q G, where a body floats.
+    pub fn ksp(&self) -> Option<&Ksp> {
+        self.gtg.as_ref().map(|s| &s.ksp)
+    }
+}
+
+/// The bodies that a combination of kernel vectors moves, as the start of a sentence: "body "a" is".
+pub fn moving(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> String {
+    let largest = motion.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let moves = |b: &usize| {
+        let columns = &motion[kernel_start[*b]..kernel_start[*b + 1]];
+        columns.iter().any(|c| c.abs() > 1e-8 * largest)
+    };
+    let names: Vec<String> = (0..problem.n_bodies)
+        .filter(moves)
+        .map(|b| format!("\"{}\"", problem.body_names[b]))
+        .collect();
+    match names.len() {
+        1 => format!("body {} is", names[0]),
+        n if n > 4 => format!("bodies {} and {} more are", names[..3].join(", "), n - 3),
+        _ => format!("bodies {} are", names.join(", ")),
+    }
+}
+
+/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness, or coefficients jump inside them. Only called where some body floats.
+fn choose(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    stiffness: &Stiffness,
+    preconditioner: &Preconditioner,
+    wanted: ProjectorKind,
+    varies: f64,
+) -> ProjectorKind {
+    if wanted != ProjectorKind::Auto {
+        return match (wanted, preconditioner.kind()) {
+            // Q = M⁻¹ of no preconditioner is the identity.
+            (ProjectorKind::Preconditioner, PcType::None) => ProjectorKind::Identity,
+            _ => wanted,
+        };
+    }
+    // Mean diagonal of K over each body's interface; with Q = I the rows of stiff and soft bodies are weighed alike.
+    let n = problem.n_bodies;
+    let mut sums = vec![0.0; 2 * n];
+    for (sub, local) in problem.local.iter().zip(&stiffness.locals) {
+        for &i in &local.interface {
+            sums[sub.body] += sub.k.get(i as usize, i as usize);
+            sums[n + sub.body] += 1.0;
+        }
+    }
+    sum_all(comm, &mut sums);
+    let means = (0..n)
+        .filter(|&b| sums[n + b] > 0.0)
+        .map(|b| sums[b] / sums[n + b]);
+    let (low, high) = means.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), m| {
+        (l.min(m), h.max(m))
+    });
+    // A factor of two comes from corners and mesh sizes alone.
+    let differ = high > 3.0 * low || varies > deflation::JUMPS;
+    match (differ, preconditioner.kind()) {
+        (false, _) => ProjectorKind::Identity,
+        (true, PcType::None) => ProjectorKind::Diagonal,
+        (true, _) => ProjectorKind::Preconditioner,
+    }
+}

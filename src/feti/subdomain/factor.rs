@@ -1,0 +1,164 @@
+//! Factoring one of each kind of subdomain.
+
+use std::collections::hash_map::DefaultHasher;
+use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+use super::equal;
+use super::problem::{Form, LocalProblem};
+use super::scaled::Local;
+use crate::cholesky::interior::{Analysis, LocalSolver, NoFactor, Solver, Way};
+use crate::cholesky::multifrontal::SingularInterior;
+use crate::feti::cost::forms;
+use crate::feti::cost::forms::Kind;
+use crate::feti::jump::operator::Jump;
+use crate::feti::settings::{Adaptive, Operators, PcType, Scaling, Settings};
+use crate::parallel::team::Team;
+use crate::petsc::Session;
+use crate::substructures::{Subdomain, Substructures};
+use crate::{Error, Result};
+
+/// Factors one of each kind of subdomain.
+pub(crate) fn factor(
+    session: &Session,
+    problem: &Substructures,
+    jump: &Jump,
+    team: &Team,
+    settings: &Settings,
+    kind: PcType,
+) -> Result<Vec<Local>> {
+    // What multiplies with S or looks into it before the iteration begins wants a matrix.
+    let wants_s = kind == PcType::CoarseCorrected
+        || settings.scaling == Scaling::Deluxe
+        || matches!(settings.adaptive, Adaptive::Below(_));
+    let ours = settings.local.kind == Solver::Multifrontal;
+    if !ours && settings.operators == Operators::Implicit {
+        return Err(Error::input(format!(
+            "option -{}operators is implicit, which goes with the local solver multifrontal alone, but -{0}local_solver is {}",
+            settings.prefix,
+            settings.local.kind.name()
+        )));
+    }
+    let first = equal::representatives(problem, jump, team);
+    let kinds = forms::kinds(problem, jump, &first);
+    let forms = forms::choose(
+        &kinds,
+        team,
+        if ours {
+            settings.operators
+        } else {
+            Operators::Explicit
+        },
+        forms::APPLICATIONS[usize::from(jump.inequality.iter().any(|i| *i))],
+        settings
+            .memory
+            .map_or(forms::usual_memory(session.size()), |mb| 1e6 * mb as f64),
+        wants_s,
+    );
+    let analyses = analyses(&kinds, &forms, team, settings.local);
+    let factored = team.map(kinds.len(), |k| {
+        let (kind, sub) = (&kinds[k], kinds[k].sub);
+        let way = Way {
+            solver: settings.local,
+            analysis: analyses.of[k].map(|a| &*analyses.all[a]),
+            keep: kind.keep(),
+        };
+        let averages = jump.averages[kind.j].iter();
+        let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
+        let places = sub.coordinates.as_deref();
+        let (delta, primal, form) = (kind.delta, kind.primal, forms[k]);
+        LocalProblem::new(&sub.k, delta, primal, &averages, places, way, form)
+            .map(|mut local| {
+                if kind.copies < forms::MANY {
+                    local.pack();
+                }
+                Arc::new(local)
+            })
+            .map_err(|e| no_factor(problem, sub, e))
+    });
+    let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
+    let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
+    let of = |&(j, factor): &(usize, f64)| Local::new(factored[place(j)].clone(), factor);
+    Ok(first.iter().map(of).collect())
+}
+
+/// Analyses of patterns that several kinds have.
+struct Analyses {
+    all: Vec<Box<dyn Analysis>>,
+    /// The one of each kind.
+    of: Vec<Option<usize>>,
+}
+
+/// One analysis for kinds with dense operators that have the same pattern and interface: coefficients and moved nodes change numbers alone.
+fn analyses(kinds: &[Kind], forms: &[Form], team: &Team, solver: LocalSolver) -> Analyses {
+    let mut found: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
+    let hashes = team.map(kinds.len(), |k| pattern_hash(&kinds[k]));
+    for (k, hash) in hashes.iter().enumerate() {
+        if forms[k] == Form::Explicit {
+            let groups = found.entry(*hash).or_default();
+            match groups
+                .iter_mut()
+                .find(|g| same_pattern(&kinds[g[0]], &kinds[k]))
+            {
+                Some(group) => group.push(k),
+                None => groups.push(vec![k]),
+            }
+        }
+    }
+    // A pattern that one kind alone has is analysed where it is factored, and forgotten there.
+    let mut shared: Vec<Vec<usize>> = found
+        .into_values()
+        .flatten()
+        .filter(|g| g.len() > 1)
+        .collect();
+    shared.sort_unstable();
+    let made = team.map(shared.len(), |g| {
+        let kind = &kinds[shared[g][0]];
+        let interface = [kind.delta, kind.primal].concat();
+        solver
+            .analyse(&kind.sub.k, &interface, kind.sub.coordinates.as_deref())
+            .ok()
+    });
+    let mut out = Analyses {
+        all: Vec::new(),
+        of: vec![None; kinds.len()],
+    };
+    // One that failed is tried again, and reported, for each of its kinds.
+    for (analysis, group) in made.into_iter().zip(&shared) {
+        if let Some(analysis) = analysis {
+            group.iter().for_each(|&k| out.of[k] = Some(out.all.len()));
+            out.all.push(analysis);
+        }
+    }
+    out
+}
+
+fn pattern_hash(kind: &Kind) -> u64 {
+    let mut state = DefaultHasher::new();
+    let k = &kind.sub.k;
+    (k.n(), k.nnz(), kind.delta, kind.primal).hash(&mut state);
+    state.finish()
+}
+
+fn same_pattern(a: &Kind, b: &Kind) -> bool {
+    let (k, l) = (&a.sub.k, &b.sub.k);
+    (a.delta, a.primal) == (b.delta, b.primal) && k.row_ptr == l.row_ptr && k.col == l.col
+}
+
+/// Why subdomain `sub` cannot be factored, for the user.
+pub(crate) fn no_factor(problem: &Substructures, sub: &Subdomain, error: NoFactor) -> Error {
+    match error {
+        NoFactor::Interior(SingularInterior { dof }) | NoFactor::Indefinite(dof) => {
+            unfit_matrix(problem, sub, dof)
+        }
+        NoFactor::Failed(why) => Error::environment(why),
+    }
+}
+
+fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
+    Error::Unfit(format!(
+        "the matrix of subdomain {} in body \"{}\" is not positive semidefinite (at local dof {dof}), expected a stiffness matrix",
+        sub.index, problem.body_names[sub.body]
+    ))
+}

@@ -1,0 +1,305 @@
+//! S and T of one subdomain as sparse triangular solves, without a dense matrix.
+//!
+//! With K ordered [I, Γ] and, the vertices v aside, [r, v],
+//!
+//! ```text
+//!     S y = K_ΓΓ y − K_ΓI K_II⁻¹ K_IΓ y
+//!     T w = X₀ − X M⁻¹ Qᵀ X₀,     X₀ = K_rr⁻¹ w on Δ,   X = K_rr⁻¹ Q on Δ,   M = Qᵀ X
+//!     Ψ   = [Ψ₀ − X M⁻¹ Qᵀ Ψ₀,  X M⁻¹ D]               Ψ₀ = −K_rr⁻¹ K_rv on Δ,   D the factors of the averages
+//!     Σ   = [S_vv + AᵀM⁻¹A,  −AᵀM⁻¹D;  ·,  D M⁻¹ D]     A = Qᵀ Ψ₀
+//! ```
+//!
+//! where the columns of Q are the unit vectors behind the averages. Two sparse factorisations replace the dense ones; an application reads
+//! both factors twice. It pays in space, where S is nearly as large as a factor and takes many times as long to make.
+
+use std::sync::Arc;
+
+use super::basis::Basis;
+use super::problem::Operator;
+use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
+use crate::cholesky::symbolic::Symbolic;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense;
+use crate::linalg::dense::{Dense, Scratch};
+use crate::linalg::rectangular::Rectangular;
+
+/// K_rr counts as singular where a pivot is below this fraction of its diagonal entry: the vertices alone do not hold the subdomain then.
+const WEAKLY_HELD: f64 = 1e-6;
+
+/// The operators of one subdomain.
+#[derive(Debug)]
+pub struct Implicit {
+    /// Interior dofs.
+    inside: Vec<u32>,
+    /// Dofs of Γ in the order [Δ, vertices].
+    interface: Vec<u32>,
+    n_delta: usize,
+    /// K_IΓ and K_ΓΓ.
+    coupling: Rectangular,
+    k_gamma: Rectangular,
+    /// K_II.
+    interior: PartialCholesky,
+    /// K_rr, the vertices kept.
+    held: PartialCholesky,
+    /// X, n_Δ × averages.
+    x: Dense,
+    /// M = L Lᵀ.
+    m: Dense,
+}
+
+/// What comes with it: Ψ on Δ and Σ.
+pub struct Coarse {
+    /// n_Δ × n_Π.
+    pub psi: Dense,
+    /// n_Π × n_Π.
+    pub sigma: Dense,
+}
+
+impl Implicit {
+    /// Factors K_II and K_rr; `None` where the vertices do not hold the subdomain.
+    ///
+    /// # Errors
+    /// An interior that nothing holds.
+    pub fn new(
+        k: &Csr,
+        interface: &[u32],
+        n_delta: usize,
+        basis: &Basis,
+        coordinates: Option<&[[f64; 3]]>,
+    ) -> Result<Option<(Implicit, Coarse)>, SingularInterior> {
+        let vertices = &interface[n_delta..];
+        let mut kept = vec![false; k.n()];
+        interface.iter().for_each(|&i| kept[i as usize] = true);
+        let inside: Vec<u32> = (0..k.n() as u32).filter(|&i| !kept[i as usize]).collect();
+
+        let Ok((held, s_vv)) = factored(k, vertices, coordinates) else {
+            return Ok(None);
+        };
+        if held.weakest_pivot(k) <= WEAKLY_HELD {
+            return Ok(None);
+        }
+        let k_inside = k.restricted(&inside);
+        let places: Option<Vec<[f64; 3]>> =
+            coordinates.map(|x| inside.iter().map(|&i| x[i as usize]).collect());
+        let (interior, _) =
+            factored(&k_inside, &[], places.as_deref()).map_err(|e| SingularInterior {
+                dof: inside[e.dof as usize],
+            })?;
+
+        let mut out = Implicit {
+            coupling: Rectangular::block(k, &inside, interface),
+            k_gamma: Rectangular::block(k, interface, interface),
+            interface: interface.to_vec(),
+            inside,
+            n_delta,
+            interior,
+            held,
+            x: Dense::zeros(n_delta, 0),
+            m: Dense::default(),
+        };
+        let q = basis.vectors(interface.len());
+        let q: Vec<&[f64]> = q.iter().map(|q| &q[..n_delta]).collect();
+        let loads = q.iter().map(|q| out.on_delta(q)).collect();
+        let x = out.solve_held(loads);
+        out.x = columns(n_delta, &x);
+        let mut m = Dense::zeros(q.len(), q.len());
+        for (b, x) in x.iter().enumerate() {
+            for (a, q) in q.iter().enumerate() {
+                m.set(a, b, dense::dot(q, x));
+            }
+        }
+        // Averages that the vertices already fix would make M singular.
+        if dense::cholesky(m.view_mut(), &mut Scratch::default()).is_err() {
+            return Ok(None);
+        }
+        out.m = m;
+        let coarse = out.coarse(k, &q, &s_vv, basis);
+        Ok(Some((out, coarse)))
+    }
+
+    fn coarse(&self, k: &Csr, q: &[&[f64]], s_vv: &Dense, basis: &Basis) -> Coarse {
+        let vertices = &self.interface[self.n_delta..];
+        let (n_v, n_q) = (vertices.len(), q.len());
+        // −K_rv: the vertices move, nothing else pulls.
+        let pull = |&v: &u32| {
+            let mut b = vec![0.0; self.n()];
+            let (col, val) = k.row(v as usize);
+            col.iter().zip(val).for_each(|(&j, v)| b[j as usize] = -v);
+            b
+        };
+        let moved = self.solve_held(vertices.iter().map(pull).collect());
+        // M⁻¹ [A, D]
+        let mut right = Dense::zeros(n_q, n_v + n_q);
+        let mut a = Dense::zeros(n_q, n_v);
+        for (j, psi) in moved.iter().enumerate() {
+            for (i, q) in q.iter().enumerate() {
+                a.set(i, j, dense::dot(q, psi));
+            }
+            right.col_mut(j).copy_from_slice(a.col(j));
+        }
+        for i in 0..n_q {
+            right.set(i, n_v + i, basis.factor(i));
+        }
+        dense::solve_lower(self.m.view(), right.view_mut());
+        dense::solve_lower_transpose(self.m.view(), right.view_mut());
+
+        let n_pi = n_v + n_q;
+        let mut psi = Dense::zeros(self.n_delta, n_pi);
+        for (j, moved) in moved.iter().enumerate() {
+            psi.col_mut(j).copy_from_slice(moved);
+        }
+        let mut sigma = Dense::zeros(n_pi, n_pi);
+        for j in 0..n_pi {
+            let sign = if j < n_v { -1.0 } else { 1.0 };
+            let c: Vec<f64> = right.col(j).iter().map(|c| sign * c).collect();
+            self.x.add_mul(&c, psi.col_mut(j));
+            for i in 0..n_v {
+                let own = if j < n_v { s_vv.get(i, j) } else { 0.0 };
+                sigma.set(i, j, own - dense::dot(a.col(i), &c));
+            }
+            for (i, c) in c.iter().enumerate() {
+                sigma.set(n_v + i, j, basis.factor(i) * c);
+            }
+        }
+        for j in 0..n_pi {
+            for i in 0..j {
+                let mean = 0.5 * (sigma.get(i, j) + sigma.get(j, i));
+                sigma.set(i, j, mean);
+                sigma.set(j, i, mean);
+            }
+        }
+        Coarse { psi, sigma }
+    }
+
+    fn n(&self) -> usize {
+        self.inside.len() + self.interface.len()
+    }
+
+    /// A load on Δ as one on all dofs.
+    fn on_delta(&self, w: &[f64]) -> Vec<f64> {
+        let mut b = vec![0.0; self.n()];
+        let delta = self.interface[..self.n_delta].iter().zip(w);
+        delta.for_each(|(&i, w)| b[i as usize] = *w);
+        b
+    }
+
+    fn take_delta(&self, b: &[f64]) -> Vec<f64> {
+        let delta = self.interface[..self.n_delta].iter();
+        delta.map(|&i| b[i as usize]).collect()
+    }
+
+    /// K_rr⁻¹ of loads on all dofs, on Δ.
+    fn solve_held(&self, mut b: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        self.held.solve_many(&mut b);
+        b.iter().map(|b| self.take_delta(b)).collect()
+    }
+
+    /// A v for each of `v`, A one of the operators.
+    pub fn apply(&self, which: Operator, v: &[&[f64]]) -> Vec<Vec<f64>> {
+        match which {
+            Operator::S => self.s(v),
+            Operator::T => self.t(v),
+        }
+    }
+
+    /// T w for each of `w` (length n_Δ or more, of which the first n_Δ entries count).
+    fn t(&self, w: &[&[f64]]) -> Vec<Vec<f64>> {
+        let loads = w.iter().map(|w| self.on_delta(&w[..self.n_delta]));
+        let mut y = self.solve_held(loads.collect());
+        if self.x.cols > 0 {
+            for (y, w) in y.iter_mut().zip(w) {
+                let mut c = Dense::zeros(self.x.cols, 1);
+                self.x.add_mul_transpose(&w[..self.n_delta], c.col_mut(0));
+                dense::solve_lower(self.m.view(), c.view_mut());
+                dense::solve_lower_transpose(self.m.view(), c.view_mut());
+                c.data.iter_mut().for_each(|c| *c = -*c);
+                self.x.add_mul(c.col(0), y);
+            }
+        }
+        y
+    }
+
+    /// K_II⁻¹ of several loads on the interior dofs.
+    fn solve_interior(&self, b: &mut [Vec<f64>]) {
+        self.interior.solve_many(b);
+    }
+
+    /// S v for each of `v` (length n_Γ).
+    fn s(&self, v: &[&[f64]]) -> Vec<Vec<f64>> {
+        let inside = |v: &&[f64]| {
+            let mut b = vec![0.0; self.inside.len()];
+            self.coupling.add_mul(1.0, v, &mut b);
+            b
+        };
+        let mut b: Vec<Vec<f64>> = v.iter().map(inside).collect();
+        self.solve_interior(&mut b);
+        let back = |(v, b): (&&[f64], &Vec<f64>)| {
+            let mut y = vec![0.0; self.interface.len()];
+            self.k_gamma.add_mul(1.0, v, &mut y);
+            self.coupling.add_mul_transpose(-1.0, b, &mut y);
+            y
+        };
+        v.iter().zip(&b).map(back).collect()
+    }
+
+    /// Condensed loads: (K_II⁻¹ f_I on the interior dofs, zero elsewhere; g on Γ).
+    pub fn condense(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
+        let inside = |f: &&[f64]| self.inside.iter().map(|&i| f[i as usize]).collect();
+        let mut x: Vec<Vec<f64>> = loads.iter().map(inside).collect();
+        self.solve_interior(&mut x);
+        let of = |(f, x): (&&[f64], &Vec<f64>)| {
+            let mut g: Vec<f64> = self.interface.iter().map(|&i| f[i as usize]).collect();
+            self.coupling.add_mul_transpose(-1.0, x, &mut g);
+            let mut work = vec![0.0; self.n()];
+            self.inside
+                .iter()
+                .zip(x)
+                .for_each(|(&i, x)| work[i as usize] = *x);
+            (work, g)
+        };
+        loads.iter().zip(&x).map(of).collect()
+    }
+
+    /// Solutions from what [`condense`](Self::condense) has left in the interior, and from interface values, which `x` has in place.
+    pub fn recover(&self, x: &mut [Vec<f64>]) {
+        let lift = |x: &Vec<f64>| {
+            let u: Vec<f64> = self.interface.iter().map(|&i| x[i as usize]).collect();
+            let mut b = vec![0.0; self.inside.len()];
+            self.coupling.add_mul(1.0, &u, &mut b);
+            b
+        };
+        let mut b: Vec<Vec<f64>> = x.iter().map(lift).collect();
+        self.solve_interior(&mut b);
+        for (x, b) in x.iter_mut().zip(&b) {
+            for (&i, b) in self.inside.iter().zip(b) {
+                x[i as usize] -= b;
+            }
+        }
+    }
+
+    /// Bytes of the factors and of the blocks of K, and of the dense parts.
+    pub fn bytes(&self) -> (usize, usize) {
+        let sparse = self.interior.bytes()
+            + self.held.bytes()
+            + self.coupling.bytes()
+            + self.k_gamma.bytes();
+        (sparse, 8 * (self.x.data.len() + self.m.data.len()))
+    }
+}
+
+fn factored(
+    k: &Csr,
+    interface: &[u32],
+    coordinates: Option<&[[f64; 3]]>,
+) -> Result<(PartialCholesky, Dense), SingularInterior> {
+    let symbolic = Symbolic::new(k, interface, coordinates);
+    PartialCholesky::inside(k, &symbolic, Arc::new(symbolic.inside()))
+}
+
+fn columns(rows: usize, of: &[Vec<f64>]) -> Dense {
+    Dense {
+        rows,
+        cols: of.len(),
+        data: of.concat(),
+    }
+}

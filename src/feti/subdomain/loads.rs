@@ -1,0 +1,52 @@
+//! Loads condensed to the interface, and solutions from their values there.
+
+use super::problem::{Inside, LocalProblem};
+
+impl LocalProblem {
+    /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
+    /// handed to [`Local::recover_many`](super::scaled::Local::recover_many).
+    pub fn condense(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut both = self.condense_many(&[f]);
+        both.pop().expect("one load")
+    }
+
+    /// [`condense`](Self::condense) of several loads, at most [`LANES`](crate::cholesky::lanes::LANES).
+    pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
+        let factor = match &self.inside {
+            Inside::Partial(factor) => factor,
+            Inside::Implicit(implicit) => return implicit.condense(loads),
+        };
+        let mut work: Vec<Vec<f64>> = loads.iter().map(|f| f.to_vec()).collect();
+        match &mut work[..] {
+            [one] => factor.forward(one),
+            several => factor.forward_many(several),
+        }
+        let with_gamma = |w: Vec<f64>| {
+            let g = self.interface.iter().map(|&i| w[i as usize]).collect();
+            (w, g)
+        };
+        work.into_iter().map(with_gamma).collect()
+    }
+
+    /// Solutions on all dofs, at most [`LANES`](crate::cholesky::lanes::LANES): `work` of [`condense`](Self::condense) and the interface values `u_gamma` of each. The matrix is so many
+    /// times as stiff as the one that is factored (`scales`).
+    pub(crate) fn recover_many(&self, parts: &[(&[f64], &[f64])], scales: &[f64]) -> Vec<Vec<f64>> {
+        let placed = |((work, u_gamma), scale): (&(&[f64], &[f64]), &f64)| {
+            let mut x: Vec<f64> = match *scale {
+                1.0 => work.to_vec(),
+                scale => work.iter().map(|w| w / scale).collect(),
+            };
+            for (&i, &u) in self.interface.iter().zip(*u_gamma) {
+                x[i as usize] = u;
+            }
+            x
+        };
+        let mut x: Vec<Vec<f64>> = parts.iter().zip(scales).map(placed).collect();
+        match (&self.inside, &mut x[..]) {
+            (Inside::Partial(factor), [one]) => factor.backward(one),
+            (Inside::Partial(factor), several) => factor.backward_many(several),
+            (Inside::Implicit(implicit), several) => implicit.recover(several),
+        }
+        x
+    }
+}

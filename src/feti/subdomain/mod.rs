@@ -1,0 +1,11 @@
+//! The operators of one subdomain: S, T, Ψ and Σ.
+
+pub mod basis;
+pub mod condense;
+pub mod equal;
+pub mod factor;
+pub mod implicit;
+pub mod loads;
+pub mod operators;
+pub mod problem;
+pub mod scaled;

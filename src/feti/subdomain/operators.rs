@@ -1,0 +1,184 @@
+//! S and T applied, whether they are dense matrices or sparse solves.
+
+use std::borrow::Cow;
+use std::sync::{Arc, OnceLock};
+
+use super::problem::{Inside, LocalProblem, Operator, Packed};
+use crate::cholesky::lanes::LANES;
+use crate::linalg::dense::{multiply, Dense};
+use crate::linalg::symmetric::Symmetric;
+
+impl LocalProblem {
+    /// S and T are sparse solves.
+    pub fn is_implicit(&self) -> bool {
+        matches!(self.inside, Inside::Implicit(_))
+    }
+
+    /// S as a dense matrix. From sparse solves it is made column by column, once: for checks and other rare uses. From its lower triangle
+    /// it is made every time.
+    pub fn s(&self) -> Arc<Dense> {
+        match &self.packed {
+            Some(packed) => Arc::new(packed.s.to_dense()),
+            None => self.whole_s().clone(),
+        }
+    }
+
+    /// T as a dense matrix, as [`s`](Self::s).
+    pub fn t(&self) -> Cow<'_, Dense> {
+        match &self.packed {
+            Some(packed) => Cow::Owned(packed.t.to_dense()),
+            None => Cow::Borrowed(self.whole_t()),
+        }
+    }
+
+    fn whole_s(&self) -> &Arc<Dense> {
+        self.s.get_or_init(|| Arc::new(self.assembled(Operator::S)))
+    }
+
+    fn whole_t(&self) -> &Dense {
+        self.t.get_or_init(|| self.assembled(Operator::T))
+    }
+
+    /// Keeps the lower triangles of S and T alone. For subdomains with few copies: products wait for memory then. With many copies the
+    /// whole matrices are read once for all of them, and matrix-matrix products are faster.
+    pub fn pack(&mut self) {
+        if !self.is_implicit() && self.packed.is_none() {
+            let s = Arc::new(Symmetric::new(self.whole_s()));
+            self.pack_beside(s);
+        }
+    }
+
+    /// The same where the lower triangle of S is there already.
+    pub(crate) fn pack_beside(&mut self, s: Arc<Symmetric>) {
+        let t = Symmetric::new(self.whole_t());
+        self.packed = Some(Packed { s, t });
+        (self.s, self.t) = (OnceLock::new(), OnceLock::new());
+    }
+
+    /// Whether [`pack`](Self::pack) has been called.
+    pub fn is_packed(&self) -> bool {
+        self.packed.is_some()
+    }
+
+    /// An entry of one of the operators.
+    pub fn entry(&self, which: Operator, i: usize, j: usize) -> f64 {
+        match (&self.packed, which) {
+            (Some(packed), _) => packed.of(which).get(i, j),
+            (None, Operator::S) => self.whole_s().get(i, j),
+            (None, Operator::T) => self.whole_t().get(i, j),
+        }
+    }
+
+    /// A diagonal entry of S, or of K on Γ where S is not at hand: a bound.
+    pub(crate) fn s_diagonal(&self, i: usize) -> f64 {
+        match (&self.packed, self.s.get()) {
+            (Some(packed), _) => packed.s.get(i, i),
+            (None, Some(s)) => s.get(i, i),
+            (None, None) => self.stiff[i],
+        }
+    }
+
+    pub(crate) fn set_condensed(&mut self, t: Dense, psi: Dense, sigma: Dense) {
+        (self.t, self.psi, self.sigma) = (OnceLock::from(t), psi, sigma);
+    }
+
+    /// The diagonal of K on Γ.
+    pub(crate) fn stiff(&self) -> &[f64] {
+        &self.stiff
+    }
+
+    /// The order of an operator.
+    pub fn order(&self, which: Operator) -> usize {
+        match which {
+            Operator::S => self.n_gamma(),
+            Operator::T => self.n_delta,
+        }
+    }
+
+    fn assembled(&self, which: Operator) -> Dense {
+        let n = self.order(which);
+        let mut unit = Dense::zeros(n, n);
+        (0..n).for_each(|i| unit.set(i, i, 1.0));
+        let mut out = Dense::zeros(n, n);
+        self.apply(which, &unit, &mut out, n);
+        // Both triangles alike, as those who read one of them expect.
+        out.mirror_lower();
+        out
+    }
+
+    /// The first `n` columns of y ← A v, A one of the operators, v and y of its order. One matrix-matrix product with a dense matrix, sweeps with
+    /// several right-hand sides at once with sparse factors.
+    pub fn apply(&self, which: Operator, v: &Dense, y: &mut Dense, n: usize) {
+        if n == 0 {
+            return;
+        }
+        match &self.inside {
+            Inside::Partial(_) => match &self.packed {
+                Some(packed) => packed.of(which).mul_columns(v, y, n),
+                None => {
+                    let y = y.view_mut().subcols_mut(0, n);
+                    let v = v.view().subcols(0, n);
+                    multiply(y, false, 1.0, self.dense(which).view(), v);
+                }
+            },
+            Inside::Implicit(implicit) => {
+                for first in (0..n).step_by(LANES) {
+                    let last = n.min(first + LANES);
+                    let lanes: Vec<&[f64]> = (first..last).map(|c| v.col(c)).collect();
+                    let done = implicit.apply(which, &lanes);
+                    for (c, done) in (first..last).zip(&done) {
+                        y.col_mut(c).copy_from_slice(done);
+                    }
+                }
+            }
+        }
+    }
+
+    /// y ← A v, A one of the operators; only the leading entries of v count, later ones of y are set to zero.
+    pub fn apply_one(&self, which: Operator, v: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        let n = self.order(which);
+        match &self.inside {
+            Inside::Partial(_) => match &self.packed {
+                Some(packed) => packed.of(which).add_mul(&v[..n], &mut y[..n]),
+                None => self.dense(which).add_mul(&v[..n], &mut y[..n]),
+            },
+            Inside::Implicit(implicit) => {
+                if v[..n].iter().any(|v| *v != 0.0) {
+                    y[..n].copy_from_slice(&implicit.apply(which, &[&v[..n]])[0]);
+                }
+            }
+        }
+    }
+
+    fn dense(&self, which: Operator) -> &Dense {
+        match which {
+            Operator::S => self.whole_s(),
+            Operator::T => self.whole_t(),
+        }
+    }
+
+    /// A lower bound of the condition number of S on Δ: max T_ii max S_ii.
+    pub fn condition(&self) -> f64 {
+        let largest = |which| {
+            let diagonal = (0..self.n_delta).map(|i| self.entry(which, i, i));
+            diagonal.fold(0.0, f64::max)
+        };
+        largest(Operator::T) * largest(Operator::S)
+    }
+
+    /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
+    pub(crate) fn stiffness(&self) -> f64 {
+        let diagonal = (0..self.n_gamma()).map(|i| self.s_diagonal(i));
+        diagonal.fold(0.0, f64::max)
+    }
+}
+
+impl Packed {
+    fn of(&self, which: Operator) -> &Symmetric {
+        match which {
+            Operator::S => &self.s,
+            Operator::T => &self.t,
+        }
+    }
+}

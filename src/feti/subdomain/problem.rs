@@ -1,0 +1,311 @@
+//! The operators of one subdomain on its interface: S, T, Ψ and Σ of method section 2.
+//!
+//! The interface Γ is ordered [Δ, vertices]. Without averages the vertices are the primal dofs Π, and from the Schur complement S on Γ
+//! follow
+//!
+//! ```text
+//!     T = S_ΔΔ⁻¹          local solve with the primal dofs held
+//!     Ψ = [−T S_ΔΠ; I]    energy-minimal functions with value 1 at one primal dof, 0 at the others
+//!     Σ = Ψᵀ S Ψ = S_ΠΠ − S_ΠΔ T S_ΔΠ
+//! ```
+//!
+//! An average over dual dofs, or any other functional of them, is made a coordinate first ([`Basis`]), and so are the dofs that have to be held to make S_ΔΔ regular: the
+//! formulas hold in that basis, and only T and Ψ know of it. Everything outside sees nodal dofs.
+//!
+//! S and T are dense matrices or sparse solves, as the caller chooses ([`Form`]). What is here belongs to one matrix; subdomains with multiples of it
+//! share it as [`Local`](super::scaled::Local).
+
+#[cfg(test)]
+mod tests;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use super::basis::Basis;
+use super::implicit::Implicit;
+use crate::cholesky::interior::{Factor, Keep, LocalSolver, NoFactor, Solver, Way};
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+use crate::linalg::symmetric::Symmetric;
+
+/// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
+/// has a bad pivot then is not semidefinite at all, and trying on would cost a factorisation per dof.
+const MOST_FREE: usize = 12;
+
+/// Factorisations in this process so far.
+static FACTORISATIONS: AtomicUsize = AtomicUsize::new(0);
+
+/// How many subdomains this process has factored so far: a contact loop must not add to it.
+pub fn factorisations() -> usize {
+    FACTORISATIONS.load(Ordering::Relaxed)
+}
+
+/// How S and T are held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// As dense matrices.
+    Explicit,
+    /// As sparse solves; where the vertices alone do not hold the subdomain, dense matrices after all.
+    Implicit,
+}
+
+/// One of the operators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operator {
+    /// S, of order n_Γ.
+    S,
+    /// T, of order n_Δ.
+    T,
+}
+
+/// One subdomain, factored.
+#[derive(Debug)]
+pub struct LocalProblem {
+    /// Local dofs of the interface in the order [Δ, vertices]; length n_Γ.
+    pub interface: Vec<u32>,
+    /// Number of dual interface dofs. Those of averages and the fixing dofs are among them.
+    pub n_delta: usize,
+    /// Functionals of dual dofs that are primal: averages, and what adaptivity added.
+    pub basis: Basis,
+    /// Positions in Γ of the coordinates that were added here to the primal dofs to make S_ΔΔ regular.
+    pub fixing: Vec<usize>,
+    /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
+    pub psi: Dense,
+    /// Σ, n_Π × n_Π.
+    pub(crate) sigma: Dense,
+    /// S on Γ, n_Γ × n_Γ, both triangles; with sparse solves once it has been asked for.
+    pub(crate) s: OnceLock<Arc<Dense>>,
+    /// T, n_Δ × n_Δ, both triangles, as S.
+    pub(crate) t: OnceLock<Dense>,
+    /// Both by their lower triangles, in the place of the dense matrices: see [`pack`](Self::pack).
+    pub(crate) packed: Option<Packed>,
+    /// The diagonal of K on Γ.
+    pub(crate) stiff: Vec<f64>,
+    pub(crate) inside: Inside,
+}
+
+/// S and T by their lower triangles.
+#[derive(Debug)]
+pub(crate) struct Packed {
+    /// Shared with those that have the same S and other primal dofs.
+    pub s: Arc<Symmetric>,
+    pub t: Symmetric,
+}
+
+/// What eliminates the interior.
+#[derive(Debug)]
+pub(crate) enum Inside {
+    /// The factor that S came from.
+    Partial(Arc<Factor>),
+    Implicit(Box<Implicit>),
+}
+
+impl LocalProblem {
+    /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists dual dofs whose means
+    /// are primal. An analysis that comes with `way` is one for the interface [delta, primal].
+    ///
+    /// # Errors
+    /// A matrix that is no stiffness matrix; what the solver says.
+    pub fn new(
+        k: &Csr,
+        delta: &[u32],
+        primal: &[u32],
+        averages: &[&[u32]],
+        coordinates: Option<&[[f64; 3]]>,
+        mut way: Way,
+        form: Form,
+    ) -> Result<LocalProblem, NoFactor> {
+        let mut basis = Basis::default();
+        let at = positions(delta);
+        let at = averages.iter().map(|a| at.of(a));
+        at.for_each(|at| basis.push_mean(at));
+        FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
+        if form == Form::Implicit && way.solver.kind == Solver::Multifrontal {
+            let interface = [delta, primal].concat();
+            // An interior that nothing holds is for the dense form to deal with.
+            let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);
+            if let Ok(Some((implicit, coarse))) = made {
+                return Ok(LocalProblem {
+                    stiff: diagonal(k, &interface),
+                    interface,
+                    n_delta: delta.len(),
+                    basis,
+                    fixing: Vec::new(),
+                    psi: coarse.psi,
+                    sigma: coarse.sigma,
+                    s: OnceLock::new(),
+                    t: OnceLock::new(),
+                    packed: None,
+                    inside: Inside::Implicit(Box::new(implicit)),
+                });
+            }
+        }
+        let given = delta.len();
+        let mut delta = delta.to_vec();
+        let (interface, factor, s) = loop {
+            let interface = [&delta[..], primal].concat();
+            match way.condense(k, &interface, coordinates) {
+                Ok((factor, s)) => break (interface, factor, s),
+                // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
+                Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => {
+                    delta.push(e.dof);
+                    way.analysis = None;
+                }
+                Err(e) => return Err(e),
+            }
+        };
+        let mut out = LocalProblem {
+            stiff: diagonal(k, &interface),
+            interface,
+            n_delta: delta.len(),
+            basis,
+            fixing: Vec::new(),
+            psi: Dense::default(),
+            sigma: Dense::default(),
+            s: OnceLock::from(Arc::new(s)),
+            t: OnceLock::new(),
+            packed: None,
+            inside: Inside::Partial(Arc::new(factor)),
+        };
+        out.condense_dual()?;
+        Ok(out)
+    }
+
+    /// The same subdomain with more functionals primal, Σ weights · u over dual dofs each. S and the factor are shared with what is
+    /// there; only T, Ψ and Σ are computed again. Sparse solves become dense matrices; lower triangles stay lower triangles.
+    pub fn constrained<'a>(
+        &self,
+        k: &Csr,
+        functionals: impl Iterator<Item = (&'a [u32], &'a [f64])>,
+        coordinates: Option<&[[f64; 3]]>,
+    ) -> Result<LocalProblem, NoFactor> {
+        let (s, factor) = match &self.inside {
+            Inside::Partial(factor) => (self.s(), factor.clone()),
+            Inside::Implicit(_) => {
+                let way = LocalSolver::default().way(Keep::Interior);
+                let (factor, s) = way.condense(k, &self.interface, coordinates)?;
+                (Arc::new(s), Arc::new(factor))
+            }
+        };
+        let mut out = LocalProblem {
+            interface: self.interface.clone(),
+            n_delta: self.n_delta,
+            basis: self.basis.clone(),
+            fixing: Vec::new(),
+            psi: Dense::default(),
+            sigma: Dense::default(),
+            s: OnceLock::from(s),
+            t: OnceLock::new(),
+            packed: None,
+            stiff: self.stiff.clone(),
+            inside: Inside::Partial(factor),
+        };
+        let delta = positions(&self.interface[..self.n_delta]);
+        for (dofs, weights) in functionals {
+            let new = out.basis.push(delta.of(dofs), weights);
+            debug_assert!(new, "functionals are independent");
+        }
+        out.condense_dual()?;
+        if let Some(packed) = &self.packed {
+            out.pack_beside(packed.s.clone());
+        }
+        Ok(out)
+    }
+
+    /// Number of interface dofs n_Γ.
+    pub fn n_gamma(&self) -> usize {
+        self.interface.len()
+    }
+
+    /// Number of vertices: the primal dofs that are single dofs of Γ, the first ones.
+    pub fn n_vertices(&self) -> usize {
+        self.interface.len() - self.n_delta
+    }
+
+    /// Number of primal dofs n_Π: vertices, functionals, fixing dofs.
+    pub fn n_pi(&self) -> usize {
+        self.n_vertices() + self.basis.len() + self.fixing.len()
+    }
+
+    /// The primal dofs of a function on Γ.
+    pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
+        let mut changed = u.to_vec();
+        if !self.fixing.is_empty() {
+            self.basis.to_coordinates(&mut changed);
+        }
+        let vertices = u[self.n_delta..].iter().copied();
+        let fixing = self.fixing.iter().map(|&i| changed[i]);
+        vertices.chain(self.basis.values(u)).chain(fixing).collect()
+    }
+
+    /// A stiffness of each primal dof that does not vanish with Σ: what it takes to move its dofs alone.
+    pub(crate) fn primal_stiffness(&self) -> Vec<f64> {
+        let n = self.n_gamma();
+        // The diagonal of K bounds that of S, where that one is not at hand.
+        let own = |i: usize| self.s_diagonal(i);
+        let along = |(k, q): (usize, Vec<f64>)| {
+            let terms = q.iter().enumerate().map(|(i, q)| q * q * own(i));
+            self.basis.factor(k).powi(2) * terms.sum::<f64>()
+        };
+        let vectors = self.basis.vectors(n).into_iter().enumerate();
+        let vertices = (self.n_delta..n).map(own);
+        let fixing = self.fixing.iter().map(|&i| own(i));
+        vertices.chain(vectors.map(along)).chain(fixing).collect()
+    }
+
+    /// p ← Ψᵀ v, v on Γ.
+    pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
+        let (vertices, others) = p.split_at_mut(self.n_vertices());
+        vertices.copy_from_slice(&v[self.n_delta..]);
+        others.fill(0.0);
+        self.psi.add_mul_transpose(&v[..self.n_delta], p);
+    }
+
+    /// y ← y + Ψ c.
+    pub fn add_psi(&self, c: &[f64], y: &mut [f64]) {
+        self.psi.add_mul(c, &mut y[..self.n_delta]);
+        for (yi, ci) in y[self.n_delta..].iter_mut().zip(c) {
+            *yi += ci;
+        }
+    }
+
+    /// Bytes held by the factor and by the dense operators: (sparse, dense).
+    pub fn bytes(&self) -> (usize, usize) {
+        let (sparse, more) = match &self.inside {
+            Inside::Partial(factor) => (factor.bytes(), 0),
+            Inside::Implicit(implicit) => implicit.bytes(),
+        };
+        let s = self.s.get().map_or(0, |s| s.data.len());
+        let t = self.t.get().map_or(0, |t| t.data.len());
+        let dense = s + t + self.psi.data.len() + self.sigma.data.len();
+        let packed = self.packed.as_ref();
+        let packed = packed.map_or(0, |p| p.s.bytes() + p.t.bytes());
+        (sparse, more + packed + dense * std::mem::size_of::<f64>())
+    }
+}
+
+/// The diagonal of `k` at these dofs.
+fn diagonal(k: &Csr, dofs: &[u32]) -> Vec<f64> {
+    dofs.iter()
+        .map(|&i| k.get(i as usize, i as usize))
+        .collect()
+}
+
+/// Where the first dofs of Γ stand.
+struct Positions(Vec<(u32, usize)>);
+
+fn positions(delta: &[u32]) -> Positions {
+    let mut place: Vec<(u32, usize)> = delta.iter().copied().zip(0..).collect();
+    place.sort_unstable();
+    Positions(place)
+}
+
+impl Positions {
+    fn of(&self, dofs: &[u32]) -> Vec<usize> {
+        let position = |i: &u32| {
+            let at = self.0.binary_search_by_key(i, |p| p.0);
+            self.0[at.expect("dofs of a functional are dual")].1
+        };
+        dofs.iter().map(position).collect()
+    }
+}

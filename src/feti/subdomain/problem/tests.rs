@@ -1,0 +1,152 @@
+//! One subdomain against what its matrix says.
+
+use super::*;
+use crate::linalg::testing::{distance, grid_laplacian, random};
+
+#[test]
+fn s_plus_inverts_a_definite_subdomain() {
+    // With one subdomain, S̃⁺ = T + Ψ Σ⁻¹ Ψᵀ is S⁻¹; interiors come back through condense and recover.
+    let (k, x) = grid_laplacian(9, 9, 0.1);
+    let delta: Vec<u32> = (1..8).collect();
+    for form in [Form::Explicit, Form::Implicit] {
+        s_plus_inverts(&k, &x, &delta, form);
+    }
+}
+
+fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: Form) {
+    let local = LocalProblem::new(
+        k,
+        delta,
+        &[0, 8],
+        &[],
+        Some(x),
+        LocalSolver::default().way(Keep::Interior),
+        form,
+    )
+    .expect("definite");
+    assert_eq!(local.is_implicit(), form == Form::Implicit);
+    assert!(local.fixing.is_empty());
+    let u = random(k.n(), 5);
+    let mut f = vec![0.0; k.n()];
+    k.mul(&u, &mut f);
+    let (work, g) = local.condense(&f);
+    let mut p = vec![0.0; 2];
+    local.psi_transpose(&g, &mut p);
+    let s = |i, j| local.sigma.get(i, j);
+    let det = s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0);
+    let c = [
+        (s(1, 1) * p[0] - s(0, 1) * p[1]) / det,
+        (s(0, 0) * p[1] - s(1, 0) * p[0]) / det,
+    ];
+    let mut u_gamma = vec![0.0; local.n_gamma()];
+    let n_delta = local.n_delta;
+    local.apply_one(Operator::T, &g, &mut u_gamma);
+    assert_eq!(local.n_delta, n_delta);
+    local.add_psi(&c, &mut u_gamma);
+    let back = &local.recover_many(&[(&work, &u_gamma)], &[1.0])[0];
+    let error = distance(back, &u);
+    assert!(error < 1e-12, "error {error:.1e}");
+}
+
+#[test]
+fn an_indefinite_or_broken_matrix_is_refused() {
+    for value in [-3.0, f64::NAN] {
+        let (mut k, x) = grid_laplacian(12, 12, 0.1);
+        for i in 0..k.n() {
+            let at = k.row_ptr[i]
+                + k.row(i)
+                    .0
+                    .iter()
+                    .position(|&j| j as usize == i)
+                    .expect("diagonal");
+            k.val[at] += value;
+        }
+        let delta: Vec<u32> = (0..12).collect();
+        for form in [Form::Explicit, Form::Implicit] {
+            let way = LocalSolver::default().way(Keep::Interior);
+            let made = LocalProblem::new(&k, &delta, &[], &[], Some(&x), way, form);
+            assert!(made.is_err(), "{value}");
+        }
+    }
+}
+
+#[test]
+fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
+    let (k, x) = grid_laplacian(8, 6, 0.0);
+    let delta: Vec<u32> = (0..8).collect();
+    let form = Form::Implicit; // becomes dense: no vertex holds anything
+    let local = LocalProblem::new(
+        &k,
+        &delta,
+        &[],
+        &[],
+        Some(&x),
+        LocalSolver::default().way(Keep::Interior),
+        form,
+    )
+    .expect("one is held");
+    assert!(!local.is_implicit());
+    assert_eq!((local.fixing.len(), local.n_pi()), (1, 1));
+    assert!(local.sigma.get(0, 0).abs() < 1e-13);
+    assert!(local.psi.data.iter().all(|v| (v - 1.0).abs() < 1e-12));
+}
+
+#[test]
+fn sparse_solves_and_dense_matrices_are_the_same_operators() {
+    let (k, x) = grid_laplacian(11, 7, 0.0);
+    let node = |x: u32, y: u32| x + 11 * y;
+    let delta: Vec<u32> = (1..10).chain((1..6).map(|y| node(10, y))).collect();
+    let vertices = [node(0, 0), node(10, 0), node(10, 6)];
+    let averages: [&[u32]; 2] = [&delta[..9], &delta[9..]];
+    let make = |form| {
+        LocalProblem::new(
+            &k,
+            &delta,
+            &vertices,
+            &averages,
+            Some(&x),
+            LocalSolver::default().way(Keep::Interior),
+            form,
+        )
+    };
+    let dense = make(Form::Explicit).expect("held by vertices");
+    let sparse = make(Form::Implicit).expect("held by vertices");
+    assert!(sparse.is_implicit() && !dense.is_implicit());
+    let close = |a: &[f64], b: &[f64]| {
+        let far = distance(a, b);
+        assert!(far < 1e-12, "{far:.1e}");
+    };
+    close(&dense.psi.data, &sparse.psi.data);
+    close(&dense.sigma.data, &sparse.sigma.data);
+    close(&dense.s().data, &sparse.s().data);
+    close(&dense.t().data, &sparse.t().data);
+    // More columns than go side by side, and a load.
+    let v = Dense {
+        rows: dense.n_gamma(),
+        cols: 11,
+        data: random(11 * dense.n_gamma(), 3),
+    };
+    for which in [Operator::S, Operator::T] {
+        let n = dense.order(which);
+        let head = |c: usize| v.col(c)[..n].to_vec();
+        let v = Dense {
+            rows: n,
+            cols: 11,
+            data: (0..11).flat_map(head).collect(),
+        };
+        let (mut a, mut b) = (Dense::zeros(n, 11), Dense::zeros(n, 11));
+        dense.apply(which, &v, &mut a, 11);
+        sparse.apply(which, &v, &mut b, 11);
+        close(&a.data, &b.data);
+    }
+    let loads = [random(k.n(), 7), random(k.n(), 8)];
+    let loads: Vec<&[f64]> = loads.iter().map(|f| &f[..]).collect();
+    let (a, b) = (dense.condense_many(&loads), sparse.condense_many(&loads));
+    let u = random(dense.n_gamma(), 9);
+    for (a, b) in a.iter().zip(&b) {
+        close(&a.1, &b.1);
+        let a = dense.recover_many(&[(&a.0, &u)], &[3.0]);
+        let b = sparse.recover_many(&[(&b.0, &u)], &[3.0]);
+        close(&a[0], &b[0]);
+    }
+}

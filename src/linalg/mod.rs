@@ -1,0 +1,12 @@
+//! Small linear algebra that the whole crate uses: sparse matrices, dense kernels, vectors in space. No MPI, no PETSc.
+
+pub mod csr;
+pub mod dense;
+pub mod nnls;
+pub mod rectangular;
+pub mod semidefinite;
+pub mod single;
+pub mod symmetric;
+#[cfg(test)]
+pub(crate) mod testing;
+pub(crate) mod vec3;

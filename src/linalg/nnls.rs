@@ -1,0 +1,130 @@
+//! Nonnegative least squares by Lawson and Hanson (1974), for the small questions of feasibility.
+
+use super::dense::Dense;
+
+/// Gradients below this, relative to ‖b‖ and the column, are zero.
+const TOLERANCE: f64 = 1e-12;
+
+/// min ‖A x − b‖₂ with x_j ≥ 0 where `free[j]` is false. Returns x and the residual b − A x, which is what Farkas' lemma asks for:
+/// it is orthogonal to the free columns, has no positive product with the others, and is zero if and only if b is in
+/// the cone.
+pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
+    let (m, n) = (a.rows, a.cols);
+    let mut passive: Vec<usize> = (0..n).filter(|&j| free[j]).collect();
+    let mut x = vec![0.0; n];
+    let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let dot = |p: &[f64], q: &[f64]| p.iter().zip(q).map(|(p, q)| p * q).sum::<f64>();
+    let residual = |x: &[f64]| {
+        let mut r = b.to_vec();
+        for (j, &xj) in x.iter().enumerate().filter(|(_, xj)| **xj != 0.0) {
+            r.iter_mut().zip(a.col(j)).for_each(|(r, a)| *r -= a * xj);
+        }
+        r
+    };
+    let size = norm(b);
+    if !passive.is_empty() {
+        let z = least_squares(a, b, &passive);
+        passive.iter().zip(&z).for_each(|(&j, &z)| x[j] = z);
+    }
+    // Each round lowers the residual and no passive set comes back; rounding alone could turn the rounds into a circle.
+    for _ in 0..3 * (m + n) + 10 {
+        let r = residual(&x);
+        let gain = |j: usize| dot(a.col(j), &r) / norm(a.col(j)).max(f64::MIN_POSITIVE);
+        let open = (0..n).filter(|j| !passive.contains(j));
+        let best = open.max_by(|&i, &j| gain(i).total_cmp(&gain(j)));
+        let Some(j) = best.filter(|&j| gain(j) > TOLERANCE * size) else {
+            break;
+        };
+        passive.push(j);
+        loop {
+            let z = least_squares(a, b, &passive);
+            let bad = passive.iter().zip(&z);
+            let step = bad
+                .filter(|(&j, &z)| !free[j] && z <= 0.0)
+                .map(|(&j, &z)| x[j] / (x[j] - z))
+                .fold(f64::INFINITY, f64::min);
+            if step.is_infinite() {
+                passive.iter().zip(&z).for_each(|(&j, &z)| x[j] = z);
+                break;
+            }
+            let step = if step.is_finite() { step } else { 0.0 };
+            for (&j, &z) in passive.iter().zip(&z) {
+                x[j] += step * (z - x[j]);
+            }
+            passive.retain(|&j| free[j] || x[j] > 0.0);
+            (0..n)
+                .filter(|j| !passive.contains(j))
+                .collect::<Vec<_>>()
+                .into_iter()
+                .for_each(|j| x[j] = 0.0);
+            if passive.is_empty() {
+                break;
+            }
+        }
+    }
+    let r = residual(&x);
+    (x, r)
+}
+
+/// min ‖A z − b‖ over the given columns; the shortest z where they are dependent.
+fn least_squares(a: &Dense, b: &[f64], columns: &[usize]) -> Vec<f64> {
+    let part = faer::Mat::from_fn(a.rows, columns.len(), |i, k| a.get(i, columns[k]));
+    let svd = part
+        .thin_svd()
+        .expect("an SVD of a finite matrix converges");
+    let sigma = svd.S().column_vector();
+    let mut z = vec![0.0; columns.len()];
+    for l in 0..sigma.nrows() {
+        if sigma[l] > 1e-12 * sigma[0] {
+            let c: f64 = (0..a.rows).map(|i| svd.U()[(i, l)] * b[i]).sum::<f64>() / sigma[l];
+            z.iter_mut()
+                .enumerate()
+                .for_each(|(k, z)| *z += c * svd.V()[(k, l)]);
+        }
+    }
+    z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dense(rows: &[&[f64]]) -> Dense {
+        let mut a = Dense::zeros(rows.len(), rows[0].len());
+        for (i, row) in rows.iter().enumerate() {
+            row.iter().enumerate().for_each(|(j, &v)| a.set(i, j, v));
+        }
+        a
+    }
+
+    #[test]
+    fn a_vector_in_the_cone_is_reached() {
+        let a = dense(&[&[1.0, 1.0, 0.0], &[0.0, 1.0, -1.0]]);
+        let (x, r) = nnls(&a, &[3.0, -2.0], &[false; 3]);
+        assert!(r.iter().all(|r| r.abs() < 1e-14), "{r:?}");
+        assert!(x.iter().all(|x| *x >= 0.0), "{x:?}");
+    }
+
+    #[test]
+    fn outside_the_cone_the_residual_separates() {
+        let a = dense(&[&[1.0, 1.0], &[0.0, 1.0]]);
+        let (_, r) = nnls(&a, &[-1.0, 2.0], &[false; 2]);
+        // The nearest point of the cone is 0.5 (1, 1).
+        assert!(
+            (r[0] + 1.5).abs() < 1e-14 && (r[1] - 1.5).abs() < 1e-14,
+            "{r:?}"
+        );
+        let (x, r) = nnls(&a, &[-1.0, 2.0], &[true, false]);
+        assert!(r.iter().all(|r| r.abs() < 1e-14) && x[0] < 0.0, "{x:?}");
+    }
+
+    #[test]
+    fn dependent_columns_do_no_harm() {
+        let a = dense(&[&[1.0, 2.0, -1.0, 0.0], &[1.0, 2.0, -1.0, 0.0]]);
+        let (x, r) = nnls(&a, &[2.0, 0.0], &[false; 4]);
+        assert!(
+            (r[0] - 1.0).abs() < 1e-13 && (r[1] + 1.0).abs() < 1e-13,
+            "{x:?} {r:?}"
+        );
+    }
+}

@@ -1,0 +1,202 @@
+//! Symmetric positive semidefinite dense systems with rank detection.
+//!
+//! Used where columns of a basis may depend on each other (Z_cᵀ S̃ Z_c, Gᵀ Q G): dependent ones are dropped, which gives a
+//! generalised inverse on the span of the others.
+
+use super::dense;
+use super::dense::{Dense, Scratch};
+
+/// After scaling to unit diagonal, a pivot below this means that the column depends on those before it. Rounding in
+/// sums of many subdomains' contributions leaves about 1e-14.
+pub const DEPENDENT: f64 = 1e-10;
+
+/// Columns with less than this part of the largest diagonal entry are zero: far below any scaling by coefficients.
+pub const ZERO: f64 = 1e-30;
+
+/// A factored semidefinite matrix A (n × n).
+#[derive(Debug)]
+pub struct Semidefinite {
+    n: usize,
+    /// Columns that are not zero.
+    nonzero: usize,
+    /// Indices of the independent columns, increasing.
+    pub kept: Vec<usize>,
+    /// 1/√A_ii of the kept columns.
+    scale: Vec<f64>,
+    /// Cholesky factor of the scaled kept part.
+    l: Dense,
+}
+
+impl Semidefinite {
+    /// Number of columns that are not zero.
+    pub fn nonzero(&self) -> usize {
+        self.nonzero
+    }
+
+    /// Factors `a`; reads the lower triangle.
+    pub fn new(a: &Dense) -> Semidefinite {
+        Semidefinite::above(a, DEPENDENT)
+    }
+
+    /// The same with columns dropped whose pivots, relative to their diagonal entries, are below `dependent`.
+    pub fn above(a: &Dense, dependent: f64) -> Semidefinite {
+        let n = a.rows;
+        let largest = (0..n).map(|i| a.get(i, i)).fold(0.0, f64::max);
+        // Columns of size zero are no columns.
+        let nonzero: Vec<usize> = (0..n).filter(|&i| a.get(i, i) > ZERO * largest).collect();
+        let known = |out: Semidefinite| Semidefinite {
+            nonzero: nonzero.len(),
+            ..out
+        };
+        if let Some(out) = Self::factor(a, &nonzero, dependent) {
+            return known(out);
+        }
+        let mut kept = independent(a, &nonzero, dependent);
+        kept.sort_unstable();
+        // The order differs from the pivoted one, so a pivot may come out slightly smaller: only its sign matters now.
+        loop {
+            if let Some(out) = Self::factor(a, &kept, 0.0) {
+                return known(out);
+            }
+            kept.pop();
+        }
+    }
+
+    fn factor(a: &Dense, kept: &[usize], tolerance: f64) -> Option<Semidefinite> {
+        let scale: Vec<f64> = kept.iter().map(|&i| 1.0 / a.get(i, i).sqrt()).collect();
+        let mut l = Dense::zeros(kept.len(), kept.len());
+        for (j, &kj) in kept.iter().enumerate() {
+            for (i, &ki) in kept.iter().enumerate().skip(j) {
+                l.set(i, j, a.get(ki, kj) * scale[i] * scale[j]);
+            }
+        }
+        dense::cholesky(l.view_mut(), &mut Scratch::default()).ok()?;
+        let regular = (0..kept.len()).all(|j| l.get(j, j).powi(2) > tolerance);
+        regular.then(|| Semidefinite {
+            n: a.rows,
+            nonzero: kept.len(),
+            kept: kept.to_vec(),
+            scale,
+            l,
+        })
+    }
+
+    /// Number of rows and columns.
+    pub fn order(&self) -> usize {
+        self.n
+    }
+
+    /// Rank of the matrix.
+    pub fn rank(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Indices of the columns that were dropped, increasing.
+    pub fn dropped(&self) -> Vec<usize> {
+        let kept = &self.kept;
+        (0..self.n)
+            .filter(|i| kept.binary_search(i).is_err())
+            .collect()
+    }
+
+    /// x ← A⁺ x (zero in the dropped entries).
+    pub fn solve(&self, x: &mut [f64]) {
+        let mut y = Dense::zeros(self.kept.len(), 1);
+        for ((y, &i), s) in y.data.iter_mut().zip(&self.kept).zip(&self.scale) {
+            *y = x[i] * s;
+        }
+        dense::solve_lower(self.l.view(), y.view_mut());
+        dense::solve_lower_transpose(self.l.view(), y.view_mut());
+        x.fill(0.0);
+        for ((y, &i), s) in y.data.iter().zip(&self.kept).zip(&self.scale) {
+            x[i] = y * s;
+        }
+    }
+}
+
+/// Independent columns by Cholesky factorisation with diagonal pivoting.
+fn independent(a: &Dense, among: &[usize], dependent: f64) -> Vec<usize> {
+    let m = among.len();
+    let scale: Vec<f64> = among.iter().map(|&i| 1.0 / a.get(i, i).sqrt()).collect();
+    let entry = |i: usize, j: usize| {
+        let (p, q) = (among[i].max(among[j]), among[i].min(among[j]));
+        a.get(p, q) * scale[i] * scale[j]
+    };
+    let mut left: Vec<f64> = vec![1.0; m];
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    let mut kept = Vec::new();
+    loop {
+        let best = (0..m).max_by(|&i, &j| left[i].total_cmp(&left[j]).then(j.cmp(&i)));
+        let Some(p) = best.filter(|&p| left[p] > dependent) else {
+            return kept;
+        };
+        let root = left[p].sqrt();
+        let column: Vec<f64> = (0..m)
+            .map(|i| {
+                let known: f64 = columns.iter().map(|c| c[i] * c[p]).sum();
+                (entry(i, p) - known) / root
+            })
+            .collect();
+        for (l, c) in left.iter_mut().zip(&column) {
+            *l -= c * c;
+        }
+        left[p] = f64::NEG_INFINITY;
+        kept.push(among[p]);
+        columns.push(column);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::testing::random;
+
+    /// V Vᵀ with n × r random V, rows scaled over twelve decades.
+    fn gram(n: usize, r: usize) -> (Dense, Vec<Vec<f64>>) {
+        let v: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                let size = 10f64.powi((i % 7) as i32 - 3);
+                random(r, i as u64 + 1).iter().map(|x| size * x).collect()
+            })
+            .collect();
+        let mut a = Dense::zeros(n, n);
+        for i in 0..n {
+            for j in 0..n {
+                a.set(i, j, v[i].iter().zip(&v[j]).map(|(a, b)| a * b).sum());
+            }
+        }
+        (a, v)
+    }
+
+    #[test]
+    fn rank_is_found_and_the_solution_reproduces_the_right_hand_side() {
+        for (n, r) in [(12, 12), (12, 5), (30, 8)] {
+            let (a, _) = gram(n, r);
+            let factor = Semidefinite::new(&a);
+            assert_eq!(factor.rank(), r);
+            let x = random(n, 77);
+            let mut b = vec![0.0; n];
+            a.add_mul(&x, &mut b);
+            let mut y = b.clone();
+            factor.solve(&mut y);
+            let mut back = vec![0.0; n];
+            a.add_mul(&y, &mut back);
+            for i in 0..n {
+                let size = a.get(i, i).sqrt() * 10.0;
+                assert!((back[i] - b[i]).abs() < 1e-6 * size, "{} {}", back[i], b[i]);
+            }
+        }
+    }
+
+    #[test]
+    fn zero_columns_are_dropped() {
+        let mut a = Dense::zeros(3, 3);
+        a.set(0, 0, 4.0);
+        a.set(2, 2, 1.0);
+        let factor = Semidefinite::new(&a);
+        assert_eq!(factor.dropped(), [1]);
+        let mut x = [8.0, 5.0, 3.0];
+        factor.solve(&mut x);
+        assert_eq!(x, [2.0, 0.0, 3.0]);
+    }
+}

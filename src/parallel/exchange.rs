@@ -1,0 +1,126 @@
+//! Irregular messages during set-up: every rank sends every rank a list of records.
+//!
+//! Records travel as 64-bit words. Iterations never come here: they use PETSc's scatters, which are set up once.
+
+use mpi::collective::SystemOperation;
+use mpi::datatype::{Partition, PartitionMut};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator, CommunicatorCollectives};
+
+use super::traffic;
+use super::traffic::Traffic;
+
+/// Something that travels as a fixed number of words.
+pub trait Record: Sized {
+    /// Words of one record.
+    const WORDS: usize;
+    /// Appends the record.
+    fn pack(&self, out: &mut Vec<u64>);
+    /// Reads a record of `WORDS` words.
+    fn unpack(words: &[u64]) -> Self;
+}
+
+/// Sends `outgoing[r]` to rank r and returns what all ranks sent here, one after the other by rank of the sender. Collective.
+pub fn exchange<T: Record>(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<T>>) -> Vec<T> {
+    let rank = comm.rank() as usize;
+    // What stays here is not packed: most of it does.
+    let mut own = Some(std::mem::take(&mut outgoing[rank]));
+    let pack = |list: &Vec<T>| {
+        let mut words = Vec::with_capacity(list.len() * T::WORDS);
+        list.iter().for_each(|record| record.pack(&mut words));
+        words
+    };
+    let packed = outgoing.iter().map(pack).collect();
+    drop(outgoing);
+    let mut all = Vec::new();
+    for (from, words) in exchange_words(comm, packed).into_iter().enumerate() {
+        match own.take_if(|_| from == rank) {
+            Some(own) if all.is_empty() => all = own,
+            Some(own) => all.extend(own),
+            None => all.extend(words.chunks_exact(T::WORDS).map(T::unpack)),
+        }
+    }
+    all
+}
+
+/// Sends `outgoing[r]`, words and lists of any length, to rank r and returns what every rank sent here, by rank of the sender. Collective.
+pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
+    let (size, rank) = (comm.size() as usize, comm.rank() as usize);
+    debug_assert_eq!(outgoing.len(), size);
+    let own = std::mem::take(&mut outgoing[rank]);
+    if size == 1 {
+        return vec![own];
+    }
+    let send_counts: Vec<i32> = outgoing.iter().map(|w| count(w.len())).collect();
+    let mut receive_counts = vec![0i32; size];
+    comm.all_to_all_into(&send_counts[..], &mut receive_counts[..]);
+    let starts = |counts: &[i32]| {
+        let mut sum = 0;
+        counts
+            .iter()
+            .map(|&c| {
+                sum += c;
+                sum - c
+            })
+            .collect::<Vec<i32>>()
+    };
+    let (send_starts, receive_starts) = (starts(&send_counts), starts(&receive_counts));
+    let sent: Vec<u64> = outgoing.concat();
+    let total: i32 = receive_counts.iter().sum();
+    let mut received = vec![0u64; total as usize];
+    {
+        let from = Partition::new(&sent[..], &send_counts[..], &send_starts[..]);
+        let mut into =
+            PartitionMut::new(&mut received[..], &receive_counts[..], &receive_starts[..]);
+        comm.all_to_all_varcount_into(&from, &mut into);
+    }
+    let mut all: Vec<Vec<u64>> = receive_counts
+        .iter()
+        .zip(&receive_starts)
+        .map(|(&c, &s)| received[s as usize..(s + c) as usize].to_vec())
+        .collect();
+    all[rank] = own;
+    all
+}
+
+/// MPI counts are C ints: 2³¹ words to one rank would be 16 GB of interface.
+fn count(n: usize) -> i32 {
+    i32::try_from(n).expect("fewer than 2^31 words go to one rank")
+}
+
+/// Sum of each entry over the ranks. Collective.
+pub fn sum_all(comm: &SimpleCommunicator, values: &mut [f64]) {
+    reduce(comm, values, SystemOperation::sum());
+}
+
+/// Largest of each entry over the ranks. Collective.
+pub fn max_all(comm: &SimpleCommunicator, values: &mut [f64]) {
+    reduce(comm, values, SystemOperation::max());
+}
+
+/// Smallest of each entry over the ranks. Collective.
+pub fn min_all(comm: &SimpleCommunicator, values: &mut [f64]) {
+    reduce(comm, values, SystemOperation::min());
+}
+
+fn reduce(comm: &SimpleCommunicator, values: &mut [f64], operation: SystemOperation) {
+    if comm.size() > 1 && !values.is_empty() {
+        traffic::count(Traffic::reduction(values.len()));
+        let mine = values.to_vec();
+        comm.all_reduce_into(&mine[..], values, operation);
+    }
+}
+
+/// Every rank's words, in the order of the ranks. Collective.
+pub fn gather_all(comm: &SimpleCommunicator, mine: &[u64]) -> Vec<Vec<u64>> {
+    let size = comm.size() as usize;
+    exchange_words(comm, vec![mine.to_vec(); size])
+}
+
+/// (Σ of `n` over the lower ranks, Σ over all ranks). Collective.
+pub fn offsets(comm: &SimpleCommunicator, n: usize) -> (usize, usize) {
+    let all = gather_all(comm, &[n as u64]);
+    let counts = all.iter().map(|w| w[0] as usize);
+    let before = counts.clone().take(comm.rank() as usize).sum();
+    (before, counts.sum())
+}

@@ -1,0 +1,94 @@
+//! A distributed vector seen by a rank with the entries that its subdomains touch.
+
+use std::cell::RefCell;
+
+use super::clock;
+use super::clock::Phase;
+use super::traffic;
+use super::traffic::Traffic;
+use crate::petsc::{Scatter, Session, Vec as PetscVec};
+use crate::Result;
+
+/// Moves entries between a distributed vector and this rank's ghost list, both ways.
+pub struct Halo {
+    scatter: Scatter,
+    /// Sequential vector that holds the ghost entries on their way.
+    buffer: RefCell<PetscVec>,
+    n_ghosts: usize,
+    /// What this rank sends in [`fetch`](Self::fetch) and in [`sum`](Self::sum).
+    sent: (Traffic, Traffic),
+}
+
+/// The numbers in all lists, increasing, and the place of each among them: ghosts, and what refers to them.
+pub fn numbered<L: AsRef<[u32]>>(lists: &[L]) -> (Vec<u32>, Vec<Vec<u32>>) {
+    let each = || lists.iter().map(|l| l.as_ref());
+    let mut ghosts: Vec<u32> = each().flatten().copied().collect();
+    ghosts.sort_unstable();
+    ghosts.dedup();
+    let place = |g: &u32| {
+        let at = ghosts.binary_search(g);
+        at.expect("every number was collected") as u32
+    };
+    let places = each().map(|l| l.iter().map(place).collect()).collect();
+    (ghosts, places)
+}
+
+impl Halo {
+    /// A halo for vectors laid out like `layout`; `ghosts` lists global numbers. Collective.
+    pub fn new(session: &Session, layout: &PetscVec, ghosts: &[u32]) -> Result<Halo> {
+        let indices: Vec<i32> = ghosts.iter().map(|&g| g as i32).collect();
+        let buffer = PetscVec::seq(session, ghosts.len())?;
+        Ok(Halo {
+            scatter: Scatter::new(layout, &indices, &buffer)?,
+            buffer: RefCell::new(buffer),
+            n_ghosts: ghosts.len(),
+            sent: traffic::of_ghosts(session.comm(), layout.ownership_range().start, ghosts),
+        })
+    }
+
+    /// What this rank sends in one [`fetch`](Self::fetch) and in one [`sum`](Self::sum).
+    pub fn sent(&self) -> (Traffic, Traffic) {
+        self.sent
+    }
+
+    /// Number of ghost entries.
+    pub fn n_ghosts(&self) -> usize {
+        self.n_ghosts
+    }
+
+    /// `ghost` ← the entries of `x`. Collective.
+    pub fn fetch(&self, x: &PetscVec, ghost: &mut [f64]) -> Result<()> {
+        traffic::count(self.sent.0);
+        clock::timed(Phase::Exchange, || {
+            let buffer = self.buffer.borrow_mut();
+            self.scatter.forward(x, &buffer)?;
+            ghost.copy_from_slice(&buffer.array()?);
+            Ok(())
+        })
+    }
+
+    /// `y` ← the sum of every rank's `ghost` entries. Collective.
+    pub fn sum(&self, ghost: &[f64], y: &PetscVec) -> Result<()> {
+        self.sum_begin(ghost, y)?;
+        self.sum_end(y)
+    }
+
+    /// Starts the messages of [`sum`](Self::sum): local work goes on while they are on their way. Nothing else may use this halo or `y` until
+    /// [`sum_end`](Self::sum_end). Collective.
+    pub fn sum_begin(&self, ghost: &[f64], y: &PetscVec) -> Result<()> {
+        traffic::count(self.sent.1);
+        clock::timed(Phase::Exchange, || {
+            let buffer = self.buffer.borrow_mut();
+            buffer.array_mut()?.copy_from_slice(ghost);
+            y.set(0.0)?;
+            self.scatter.reverse_add_begin(&buffer, y)
+        })
+    }
+
+    /// Completes [`sum_begin`](Self::sum_begin). Collective.
+    pub fn sum_end(&self, y: &PetscVec) -> Result<()> {
+        clock::timed(Phase::Exchange, || {
+            self.scatter.reverse_add_end(&self.buffer.borrow(), y)
+        })
+    }
+}

@@ -1,0 +1,7 @@
+//! Ranks and threads: messages between ranks, the threads of a rank, and what both cost.
+
+pub mod clock;
+pub mod exchange;
+pub mod halo;
+pub mod team;
+pub mod traffic;

@@ -1,0 +1,65 @@
+//! What a subdomain says about itself besides its matrix: edges and faces, and the rigid motions of its body.
+
+use crate::fem::cell;
+use crate::mesh::{places, SubdomainMesh};
+use crate::scene::Body;
+use crate::substructures::{Entity, EntityKind};
+use std::collections::BTreeMap;
+
+/// The open edges and faces of a subdomain of a solid, by component, their free dofs in increasing order; in the plane there are none to list:
+/// vertices suffice. `dofs` has the body dof of each local one: the first of an entity names it.
+pub(crate) fn entities(mesh: &SubdomainMesh, dofs: &[u64]) -> Vec<Entity> {
+    if mesh.dim < 3 {
+        return Vec::new();
+    }
+    let c = mesh.components();
+    // Key: component, and for each direction whether the entity lies at the lower end, the upper end, or runs along it.
+    let mut found: BTreeMap<(usize, [u8; 3]), Vec<u32>> = BTreeMap::new();
+    for (node, place) in places(mesh.nodes()).enumerate() {
+        let code = [0, 1, 2].map(|d| match place[d] {
+            0 => 0,
+            p if p == mesh.elements[d] => 1,
+            _ => 2,
+        });
+        let along = code.iter().filter(|&&k| k == 2).count();
+        if along == 0 || along == 3 {
+            continue;
+        }
+        for component in 0..c {
+            if let Some(dof) = mesh.local_dof(c * node + component) {
+                found.entry((component, code)).or_default().push(dof);
+            }
+        }
+    }
+    let entity = |((_, code), list): ((usize, [u8; 3]), Vec<u32>)| Entity {
+        kind: match code.iter().filter(|&&k| k == 2).count() {
+            1 => EntityKind::Edge,
+            _ => EntityKind::Face,
+        },
+        key: dofs[list[0] as usize],
+        dofs: list,
+    };
+    found.into_iter().map(entity).collect()
+}
+
+/// The rigid motions of a body on the free dofs of one of its subdomains: translations, and rotations about the body's centre, all of order
+/// one over the body. 3 columns in the plane, 6 in space.
+pub(crate) fn rigid_motions(body: &Body, mesh: &SubdomainMesh) -> Vec<Vec<f64>> {
+    let [low, high] = body.bounds;
+    let size = (0..3).fold(0.0_f64, |a, d| a.max(0.5 * (high[d] - low[d])));
+    let (centre, _) = body.ball();
+    let c = mesh.components();
+    let n_modes = if c == 2 { 3 } else { 6 };
+    let mut out = vec![Vec::with_capacity(mesh.n_free()); n_modes];
+    for (node, &point) in mesh.points.iter().enumerate() {
+        let modes = cell::rigid_motions(mesh.dim, centre, size, point);
+        for component in 0..c {
+            if mesh.local_dof(c * node + component).is_some() {
+                for (column, mode) in out.iter_mut().zip(&modes) {
+                    column.push(mode[component]);
+                }
+            }
+        }
+    }
+    out
+}

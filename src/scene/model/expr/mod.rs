@@ -1,0 +1,359 @@
+//! Expressions in a scene: parsing and evaluation.
+//!
+//! Written here and not taken from a library because a scene needs the usual precedence (−x² is −(x²)),
+//! comparisons and `if`, numbers such as `1e-3`, and gradients of what was written.
+
+pub(crate) mod gradient;
+mod parse;
+mod tokens;
+
+use gradient::{Dual, Real};
+use std::fmt;
+
+/// Names of the variables, in the order of [`Variables`].
+const VARIABLES: [&str; 9] = ["x", "y", "z", "bi", "bj", "bk", "si", "sj", "sk"];
+
+/// Where an expression is evaluated.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Variables {
+    /// The point (x, y, z).
+    pub point: [f64; 3],
+    /// Place of the body in its grid (`bi`, `bj`, `bk`); zero for a body outside a grid.
+    pub body: [usize; 3],
+    /// Place of the subdomain in its body (`si`, `sj`, `sk`).
+    pub subdomain: [usize; 3],
+}
+
+/// An expression in x, y, z, bi, bj, bk, si, sj, sk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expr {
+    text: String,
+    root: Ast,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Ast {
+    Number(f64),
+    Variable(usize),
+    Unary(Unary, Box<Ast>),
+    Binary(Binary, Box<Ast>, Box<Ast>),
+    If(Box<Ast>, Box<Ast>, Box<Ast>),
+}
+
+macro_rules! functions {
+    ($enum:ident: $($variant:ident = $name:literal),* $(,)?) => {
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        enum $enum { $($variant),* }
+        impl $enum {
+            fn by_name(name: &str) -> Option<Self> {
+                match name { $($name => Some($enum::$variant),)* _ => None }
+            }
+        }
+    };
+}
+
+functions!(Unary:
+    Neg = "neg", Not = "not", Abs = "abs", Sign = "sign", Floor = "floor", Ceil = "ceil", Round = "round",
+    Sqrt = "sqrt", Exp = "exp", Ln = "ln", Log10 = "log10", Log2 = "log2",
+    Sin = "sin", Cos = "cos", Tan = "tan", Asin = "asin", Acos = "acos", Atan = "atan",
+    Sinh = "sinh", Cosh = "cosh", Tanh = "tanh",
+);
+
+functions!(Binary:
+    Add = "add", Sub = "sub", Mul = "mul", Div = "div", Pow = "pow", Min = "min", Max = "max",
+    Atan2 = "atan2", Hypot = "hypot", Mod = "mod",
+    Lt = "lt", Le = "le", Gt = "gt", Ge = "ge", Eq = "eq", Ne = "ne", And = "and", Or = "or",
+);
+
+impl Expr {
+    /// The expression written as `text`.
+    ///
+    /// # Errors
+    /// One clause that says what was found, at which character, and what was expected.
+    pub fn parse(text: &str) -> Result<Expr, String> {
+        Expr::parse_in(text, &VARIABLES)
+    }
+
+    /// The expression written as `text` for a plane scene, where there is no z.
+    pub(crate) fn parse_plane(text: &str) -> Result<Expr, String> {
+        let names = VARIABLES.map(|v| {
+            if ["z", "bk", "sk"].contains(&v) {
+                ""
+            } else {
+                v
+            }
+        });
+        Expr::parse_in(text, &names)
+    }
+
+    /// The expression written as `text`, with other names (at most nine) for the variables.
+    pub(crate) fn parse_in(text: &str, variables: &[&str]) -> Result<Expr, String> {
+        let root = parse::parse(text, variables)?;
+        Ok(Expr {
+            text: text.to_string(),
+            root,
+        })
+    }
+
+    /// The constant `value`.
+    pub fn constant(value: f64) -> Expr {
+        Expr {
+            text: format!("{value}"),
+            root: Ast::Number(value),
+        }
+    }
+
+    /// The value, if the expression contains no variable.
+    pub fn as_constant(&self) -> Option<f64> {
+        fn free(ast: &Ast) -> bool {
+            match ast {
+                Ast::Number(_) => true,
+                Ast::Variable(_) => false,
+                Ast::Unary(_, a) => free(a),
+                Ast::Binary(_, a, b) => free(a) && free(b),
+                Ast::If(c, a, b) => free(c) && free(a) && free(b),
+            }
+        }
+        free(&self.root).then(|| self.eval(&Variables::default()))
+    }
+
+    /// The value at `at`.
+    pub fn eval(&self, at: &Variables) -> f64 {
+        if let Ast::Number(value) = self.root {
+            return value;
+        }
+        evaluate(
+            &self.root,
+            &[
+                at.point[0],
+                at.point[1],
+                at.point[2],
+                at.body[0] as f64,
+                at.body[1] as f64,
+                at.body[2] as f64,
+                at.subdomain[0] as f64,
+                at.subdomain[1] as f64,
+                at.subdomain[2] as f64,
+            ],
+        )
+    }
+
+    /// The value and the gradient by (x, y, z) at `at`.
+    pub fn eval_gradient(&self, at: &Variables) -> Dual {
+        let along = |d: usize| {
+            let mut gradient = [0.0; 3];
+            gradient[d] = 1.0;
+            Dual {
+                value: at.point[d],
+                gradient,
+            }
+        };
+        let constant = |k: usize| Dual::constant(k as f64);
+        evaluate(
+            &self.root,
+            &[
+                along(0),
+                along(1),
+                along(2),
+                constant(at.body[0]),
+                constant(at.body[1]),
+                constant(at.body[2]),
+                constant(at.subdomain[0]),
+                constant(at.subdomain[1]),
+                constant(at.subdomain[2]),
+            ],
+        )
+    }
+}
+
+impl fmt::Display for Expr {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.text)
+    }
+}
+
+fn evaluate<T: Real>(ast: &Ast, variables: &[T; 9]) -> T {
+    match ast {
+        Ast::Number(value) => T::constant(*value),
+        Ast::Variable(k) => variables[*k],
+        Ast::Unary(op, a) => unary(*op, evaluate(a, variables)),
+        Ast::Binary(op, a, b) => binary(*op, evaluate(a, variables), evaluate(b, variables)),
+        // Only the chosen branch is evaluated, so that `if(x > 0, ln(x), 0)` is defined everywhere.
+        Ast::If(condition, a, b) => {
+            if evaluate(condition, variables).value() != 0.0 {
+                evaluate(a, variables)
+            } else {
+                evaluate(b, variables)
+            }
+        }
+    }
+}
+
+fn unary<T: Real>(op: Unary, a: T) -> T {
+    let v = a.value();
+    let (f, slope) = match op {
+        Unary::Neg => (-v, -1.0),
+        Unary::Not => (f64::from(v == 0.0), 0.0),
+        Unary::Abs => (v.abs(), sign(v)),
+        Unary::Sign => (sign(v), 0.0),
+        Unary::Floor => (v.floor(), 0.0),
+        Unary::Ceil => (v.ceil(), 0.0),
+        Unary::Round => (v.round(), 0.0),
+        Unary::Sqrt => (v.sqrt(), 0.5 / v.sqrt()),
+        Unary::Exp => (v.exp(), v.exp()),
+        Unary::Ln => (v.ln(), 1.0 / v),
+        Unary::Log10 => (v.log10(), 1.0 / (v * std::f64::consts::LN_10)),
+        Unary::Log2 => (v.log2(), 1.0 / (v * std::f64::consts::LN_2)),
+        Unary::Sin => (v.sin(), v.cos()),
+        Unary::Cos => (v.cos(), -v.sin()),
+        Unary::Tan => (v.tan(), 1.0 / v.cos().powi(2)),
+        Unary::Asin => (v.asin(), 1.0 / (1.0 - v * v).sqrt()),
+        Unary::Acos => (v.acos(), -1.0 / (1.0 - v * v).sqrt()),
+        Unary::Atan => (v.atan(), 1.0 / (1.0 + v * v)),
+        Unary::Sinh => (v.sinh(), v.cosh()),
+        Unary::Cosh => (v.cosh(), v.sinh()),
+        Unary::Tanh => (v.tanh(), 1.0 - v.tanh().powi(2)),
+    };
+    a.chain(f, slope)
+}
+
+fn sign(v: f64) -> f64 {
+    if v > 0.0 {
+        1.0
+    } else if v < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+fn power(v: f64, w: f64) -> f64 {
+    // Whole exponents by repeated multiplication: exact for negative bases and for squares.
+    if w == w.round() && w.abs() <= 64.0 {
+        v.powi(w as i32)
+    } else {
+        v.powf(w)
+    }
+}
+
+fn binary<T: Real>(op: Binary, a: T, b: T) -> T {
+    let (v, w) = (a.value(), b.value());
+    let truth = |holds: bool| (f64::from(holds), 0.0, 0.0);
+    let (g, by_a, by_b) = match op {
+        Binary::Add => (v + w, 1.0, 1.0),
+        Binary::Sub => (v - w, 1.0, -1.0),
+        Binary::Mul => (v * w, w, v),
+        Binary::Div => (v / w, 1.0 / w, -v / (w * w)),
+        Binary::Pow => {
+            let slope = if w == 0.0 { 0.0 } else { w * power(v, w - 1.0) };
+            (power(v, w), slope, power(v, w) * v.ln())
+        }
+        Binary::Min if v <= w => (v, 1.0, 0.0),
+        Binary::Min => (w, 0.0, 1.0),
+        Binary::Max if v >= w => (v, 1.0, 0.0),
+        Binary::Max => (w, 0.0, 1.0),
+        Binary::Atan2 => {
+            let r2 = v * v + w * w;
+            (v.atan2(w), w / r2, -v / r2)
+        }
+        Binary::Hypot => {
+            let r = v.hypot(w);
+            (r, v / r, w / r)
+        }
+        Binary::Mod => (v.rem_euclid(w), 1.0, -(v / w).floor()),
+        Binary::Lt => truth(v < w),
+        Binary::Le => truth(v <= w),
+        Binary::Gt => truth(v > w),
+        Binary::Ge => truth(v >= w),
+        Binary::Eq => truth(v == w),
+        Binary::Ne => truth(v != w),
+        Binary::And => truth(v != 0.0 && w != 0.0),
+        Binary::Or => truth(v != 0.0 || w != 0.0),
+    };
+    a.chain2(b, g, by_a, by_b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: f64, y: f64) -> Variables {
+        Variables {
+            point: [x, y, 0.0],
+            body: [2, 3, 0],
+            subdomain: [4, 5, 0],
+        }
+    }
+
+    fn value(text: &str) -> f64 {
+        Expr::parse(text).unwrap().eval(&at(0.5, -2.0))
+    }
+
+    #[test]
+    fn precedence_is_the_usual_one() {
+        assert_eq!(value("-x^2"), -0.25);
+        assert_eq!(value("2^3^2"), 512.0);
+        assert_eq!(value("2^-1"), 0.5);
+        assert_eq!(value("8/2*4"), 16.0);
+        assert_eq!(value("1 - 2 + 3"), 2.0);
+        assert_eq!(value("1e-3*1E3"), 1.0);
+        assert_eq!(value("1/3"), 1.0 / 3.0);
+        assert_eq!(value("2*e"), 2.0 * std::f64::consts::E);
+        assert_eq!(value("1 < 2 && !(3 <= 2) || 0"), 1.0);
+        assert_eq!(value("if(y < 0, 7, ln(-1))"), 7.0);
+        assert_eq!(value("bi + 10*bj + 100*si + 1000*sj"), 5432.0);
+        assert_eq!(value("mod(-1, 4) + min(2,3) + atan2(0, 1)"), 5.0);
+    }
+
+    #[test]
+    fn gradients_agree_with_central_differences() {
+        for text in [
+            "sin(pi*x)*cosh(y)",
+            "x^3*y^2 - x/y",
+            "exp(-x^2)*atan2(y, x) + sqrt(x + 4) + hypot(x,y)",
+            "if(x > 0, x^2.5, y) + abs(y)*max(x, y) + tanh(x*y) + 2^x",
+            "ln(x+3)*log10(4+x)*tan(x) + asin(x/2) + acos(x/2) + atan(y)",
+        ] {
+            let e = Expr::parse(text).unwrap();
+            let (x, y, h) = (0.7, -1.3, 1e-5);
+            let d = e.eval_gradient(&at(x, y));
+            assert_eq!(d.value, e.eval(&at(x, y)), "{text}");
+            let by_x = (e.eval(&at(x + h, y)) - e.eval(&at(x - h, y))) / (2.0 * h);
+            let by_y = (e.eval(&at(x, y + h)) - e.eval(&at(x, y - h))) / (2.0 * h);
+            assert!((d.gradient[0] - by_x).abs() < 1e-8, "{text}: {d:?} {by_x}");
+            assert!((d.gradient[1] - by_y).abs() < 1e-8, "{text}: {d:?} {by_y}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_place() {
+        let message = |text: &str| Expr::parse_plane(text).unwrap_err();
+        assert_eq!(
+            message("sin(x"),
+            "the end at character 6 where `,` or `)` was expected"
+        );
+        assert_eq!(
+            message("x +"),
+            "the end at character 4 where a number, a name or `(` was expected"
+        );
+        assert!(message("2*z").starts_with("unknown name `z` at character 3"));
+        assert_eq!(message("foo(1)"), "unknown function `foo` at character 1");
+        assert_eq!(
+            message("if(1,2)"),
+            "`if` at character 1 has 2 arguments where 3 were expected"
+        );
+        assert_eq!(message("x $ y"), "`$` at character 3 has no meaning");
+        assert_eq!(
+            message("1 2"),
+            "`2` at character 3 where an operator or the end was expected"
+        );
+        assert_eq!(message("1.2.3"), "`1.2.3` at character 1 is no number");
+        assert_eq!(
+            message(""),
+            "the end at character 1 where a number, a name or `(` was expected"
+        );
+        assert!(message(&"(".repeat(10_000)).contains("nesting"));
+        assert!(message(&"-".repeat(10_000)).contains("nesting"));
+        assert!(message(&"2^".repeat(10_000)).contains("nesting"));
+    }
+}

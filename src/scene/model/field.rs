@@ -1,0 +1,239 @@
+//! Data over bodies: coefficients, loads and boundary values.
+
+use super::cells::Cells;
+use super::expr::{Expr, Variables};
+
+/// What an alternation or a table follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    /// The place of the body in its grid.
+    Body,
+    /// The place of the subdomain in the whole grid of bodies.
+    Subdomain,
+}
+
+/// A box [x0, x1) × [y0, y1) (× [z0, z1)) with its own value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// x0 and x1; `None`: all x.
+    pub x: Option<[f64; 2]>,
+    /// y0 and y1; `None`: all y.
+    pub y: Option<[f64; 2]>,
+    /// z0 and z1; `None`: all z.
+    pub z: Option<[f64; 2]>,
+    /// The value inside.
+    pub value: Expr,
+}
+
+/// A scalar function on the bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Field {
+    /// A number or an expression in x, y, z, bi, bj, bk, si, sj, sk.
+    Expression(Expr),
+    /// `values[0]` and `values[1]` in turns, `values[0]` in the lower left corner.
+    Checkerboard {
+        /// The two values.
+        values: [f64; 2],
+        /// What they follow.
+        by: By,
+    },
+    /// `layers[k][j][i]` in column i, row j and layer k of bodies or subdomains, j counted upwards; one layer in the plane.
+    Table {
+        /// The values, layer by layer and row by row from the lower left corner.
+        layers: Vec<Vec<Vec<f64>>>,
+        /// Whether the place is that of the body in its grid or of the subdomain in its body.
+        by: By,
+    },
+    /// The last region that contains the point, `otherwise` where none does.
+    Regions {
+        /// The regions.
+        list: Vec<Region>,
+        /// The value outside all of them.
+        otherwise: Expr,
+    },
+    /// Values by element, from a file. Only coefficients have them.
+    Cells(Cells),
+}
+
+/// Where a field is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct At {
+    /// Point and places.
+    pub variables: Variables,
+    /// Subdomains of the body in x, y and z.
+    pub subdomains: [usize; 3],
+}
+
+impl Field {
+    /// The constant `value`.
+    pub fn constant(value: f64) -> Field {
+        Field::Expression(Expr::constant(value))
+    }
+
+    /// The value at `at`; NaN for [`Field::Cells`], which know elements and no points.
+    pub fn eval(&self, at: &At) -> f64 {
+        let v = &at.variables;
+        match self {
+            Field::Expression(e) => e.eval(v),
+            Field::Checkerboard { values, by } => {
+                let parity: usize = (0..3)
+                    .map(|d| match by {
+                        By::Body => v.body[d],
+                        By::Subdomain => v.body[d] * at.subdomains[d] + v.subdomain[d],
+                    })
+                    .sum();
+                values[parity % 2]
+            }
+            Field::Table { layers, by } => {
+                let [i, j, k] = match by {
+                    By::Body => v.body,
+                    By::Subdomain => v.subdomain,
+                };
+                // The shape was checked against the grid; NaN is reported as a bad value if it ever was not.
+                layers
+                    .get(k)
+                    .and_then(|rows| rows.get(j))
+                    .and_then(|row| row.get(i))
+                    .copied()
+                    .unwrap_or(f64::NAN)
+            }
+            Field::Regions { list, otherwise } => list
+                .iter()
+                .rev()
+                .find(|r| r.contains(v.point))
+                .map_or(otherwise, |r| &r.value)
+                .eval(v),
+            Field::Cells(_) => f64::NAN,
+        }
+    }
+
+    /// The value, if it is the same everywhere.
+    pub fn as_constant(&self) -> Option<f64> {
+        match self {
+            Field::Expression(e) => e.as_constant(),
+            _ => None,
+        }
+    }
+
+    /// Whether the value is the same at all points of a subdomain, so that one evaluation serves.
+    pub fn is_constant_by_subdomain(&self) -> bool {
+        match self {
+            Field::Expression(e) => e.as_constant().is_some(),
+            Field::Checkerboard { .. } | Field::Table { .. } => true,
+            Field::Regions { .. } | Field::Cells(_) => false,
+        }
+    }
+
+    /// The values that are written down as such, for checks before anything is assembled.
+    pub fn known_values(&self) -> Vec<f64> {
+        match self {
+            Field::Expression(e) => e.as_constant().into_iter().collect(),
+            Field::Checkerboard { values, .. } => values.to_vec(),
+            Field::Table { layers, .. } => layers.concat().concat(),
+            Field::Regions { list, otherwise } => list
+                .iter()
+                .map(|r| &r.value)
+                .chain([otherwise])
+                .filter_map(Expr::as_constant)
+                .collect(),
+            Field::Cells(cells) => cells.range().to_vec(),
+        }
+    }
+
+    /// The same field for the bodies of a grid: cells cover all of it.
+    pub(crate) fn over(&self, bodies: [usize; 3]) -> Field {
+        match self {
+            Field::Cells(cells) => Field::Cells(cells.over(bodies)),
+            other => other.clone(),
+        }
+    }
+}
+
+impl Region {
+    /// Half-open, so that a point on the border of two regions belongs to the right or upper one.
+    fn contains(&self, point: [f64; 3]) -> bool {
+        let inside = |range: &Option<[f64; 2]>, v: f64| match range {
+            Some([low, high]) => *low <= v && v < *high,
+            None => true,
+        };
+        [&self.x, &self.y, &self.z]
+            .into_iter()
+            .zip(point)
+            .all(|(range, v)| inside(range, v))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at([x, y]: [f64; 2], [bi, bj]: [usize; 2], [si, sj]: [usize; 2]) -> At {
+        At {
+            variables: Variables {
+                point: [x, y, 0.0],
+                body: [bi, bj, 0],
+                subdomain: [si, sj, 0],
+            },
+            subdomains: [3, 3, 1],
+        }
+    }
+
+    #[test]
+    fn checkerboards_continue_across_bodies() {
+        let board = |by| Field::Checkerboard {
+            values: [1.0, 9.0],
+            by,
+        };
+        // With three subdomains a body, the right neighbour of subdomain 2 of body 0 is subdomain 0 of body 1.
+        let by = board(By::Subdomain);
+        assert_eq!(by.eval(&at([0.0; 2], [0, 0], [2, 0])), 1.0);
+        assert_eq!(by.eval(&at([0.0; 2], [1, 0], [0, 0])), 9.0);
+        assert_eq!(by.eval(&at([0.0; 2], [1, 1], [0, 0])), 1.0);
+        let by = board(By::Body);
+        assert_eq!(by.eval(&at([0.0; 2], [1, 0], [2, 1])), 9.0);
+    }
+
+    #[test]
+    fn the_last_region_wins_and_borders_belong_to_the_right() {
+        let number = Expr::constant;
+        let field = Field::Regions {
+            list: vec![
+                Region {
+                    x: Some([0.0, 0.5]),
+                    y: None,
+                    z: None,
+                    value: number(1.0),
+                },
+                Region {
+                    x: Some([0.5, 1.0]),
+                    y: None,
+                    z: None,
+                    value: number(2.0),
+                },
+                Region {
+                    x: None,
+                    y: Some([0.9, 1.0]),
+                    z: None,
+                    value: number(3.0),
+                },
+            ],
+            otherwise: number(7.0),
+        };
+        let value = |p| field.eval(&at(p, [0; 2], [0; 2]));
+        assert_eq!(value([0.2, 0.2]), 1.0);
+        assert_eq!(value([0.5, 0.2]), 2.0);
+        assert_eq!(value([0.5, 0.95]), 3.0);
+        assert_eq!(value([2.0, 0.5]), 7.0);
+    }
+
+    #[test]
+    fn tables_are_read_upwards() {
+        let table = Field::Table {
+            layers: vec![vec![vec![1.0, 2.0], vec![3.0, 4.0]]],
+            by: By::Body,
+        };
+        assert_eq!(table.eval(&at([0.0; 2], [1, 0], [0, 0])), 2.0);
+        assert_eq!(table.eval(&at([0.0; 2], [0, 1], [0, 0])), 3.0);
+        assert!(table.eval(&at([0.0; 2], [2, 0], [0, 0])).is_nan());
+    }
+}

@@ -1,0 +1,10 @@
+//! What the user writes, as plain data.
+
+pub mod cells;
+pub mod expr;
+pub mod field;
+pub mod map;
+pub mod profile;
+pub mod rigid;
+pub mod spec;
+pub mod steps;

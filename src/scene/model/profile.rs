@@ -1,0 +1,98 @@
+//! Gaps and bounds along a face or a side.
+
+use super::expr::{Expr, Variables};
+
+/// A function on a face or side.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Profile {
+    /// A number or an expression in x, y, bi, bj.
+    Expression(Expr),
+    /// (t, value) by increasing t: linear in between, constant beyond the ends. t is the parameter of the face or side.
+    Table(Vec<[f64; 2]>),
+}
+
+impl Profile {
+    /// The constant `value`.
+    pub fn constant(value: f64) -> Profile {
+        Profile::Expression(Expr::constant(value))
+    }
+
+    /// The value at parameter `t` and position `at`.
+    pub fn eval(&self, t: f64, at: &Variables) -> f64 {
+        let rows = match self {
+            Profile::Expression(e) => return e.eval(at),
+            Profile::Table(rows) => rows,
+        };
+        let next = rows.partition_point(|row| row[0] <= t);
+        match (next.checked_sub(1).map(|k| rows[k]), rows.get(next)) {
+            (Some([t0, v0]), Some([t1, v1])) => v0 + (v1 - v0) * ((t - t0) / (t1 - t0)),
+            (Some([_, v]), None) | (None, Some(&[_, v])) => v,
+            // An empty table is refused when it is read; NaN is reported as a bad value if a program builds one.
+            (None, None) => f64::NAN,
+        }
+    }
+}
+
+/// Bounds g of the rows at the nodes of a face or side, entry by entry of the scene: a node that several entries select has
+/// several, and all of them hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Limits(Vec<Limit>);
+
+/// One bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// The node: for a face the index into [`Interface::shared`](crate::scene::Interface::shared), for a side the node of the body.
+    pub node: usize,
+    /// g before any factor of a load step.
+    pub value: f64,
+    /// Number of the entry that it comes from, contacts before obstacles; `None`: from the default.
+    pub entry: Option<usize>,
+}
+
+impl Limits {
+    pub(crate) fn new(mut list: Vec<Limit>) -> Limits {
+        list.sort_by_key(|l| l.node);
+        Limits(list)
+    }
+
+    /// All bounds, by increasing node.
+    pub fn all(&self) -> &[Limit] {
+        &self.0
+    }
+
+    /// The bounds at `node`.
+    pub fn at(&self, node: usize) -> &[Limit] {
+        let first = self.0.partition_point(|l| l.node < node);
+        let count = self.0[first..].partition_point(|l| l.node == node);
+        &self.0[first..first + count]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_linear_between_their_rows_and_constant_beyond() {
+        let table = Profile::Table(vec![[0.25, 1.0], [0.5, 3.0], [0.75, 2.0]]);
+        let value = |t| table.eval(t, &Variables::default());
+        assert_eq!([0.0, 0.25, 0.375, 0.5].map(value), [1.0, 1.0, 2.0, 3.0]);
+        assert_eq!([0.625, 0.75, 1.0].map(value), [2.5, 2.0, 2.0]);
+        let single = Profile::Table(vec![[0.5, 7.0]]);
+        assert_eq!(single.eval(0.0, &Variables::default()), 7.0);
+        assert_eq!(single.eval(1.0, &Variables::default()), 7.0);
+    }
+
+    #[test]
+    fn a_node_has_the_bounds_of_all_its_entries() {
+        let limit = |node, value| Limit {
+            node,
+            value,
+            entry: None,
+        };
+        let limits = Limits::new(vec![limit(4, 1.0), limit(2, 5.0), limit(4, 0.5)]);
+        assert_eq!(limits.at(4), [limit(4, 1.0), limit(4, 0.5)]);
+        assert_eq!(limits.at(3), []);
+        assert_eq!(limits.all().len(), 3);
+    }
+}

@@ -1,0 +1,87 @@
+//! Rigid obstacles of elastic bodies: plane, cylinder, sphere, as distance and normal.
+
+use crate::linalg::vec3::{dot, minus, norm};
+
+/// A rigid body that elastic bodies cannot enter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rigid {
+    /// The half space on the far side of a plane.
+    Plane {
+        /// A point of the plane.
+        point: [f64; 3],
+        /// The unit normal, towards the side that is free.
+        normal: [f64; 3],
+    },
+    /// A cylinder (a disc in the plane); a sphere has no axis.
+    Round {
+        /// A point of the axis, or the centre.
+        centre: [f64; 3],
+        /// The unit direction of the axis; `None` for a sphere.
+        axis: Option<[f64; 3]>,
+        /// The radius, > 0.
+        radius: f64,
+        /// The obstacle is what surrounds the cylinder or sphere.
+        cavity: bool,
+    },
+}
+
+impl Rigid {
+    /// Distance of a point from the surface (negative inside the obstacle) and the unit normal of the nearest point of the surface, towards
+    /// the free side; `None` where no point is the nearest (on an axis or in a centre).
+    pub fn distance(&self, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
+        match *self {
+            Rigid::Plane { point, normal } => Some((dot(minus(x, point), normal), normal)),
+            Rigid::Round {
+                centre,
+                axis,
+                radius,
+                cavity,
+            } => {
+                let mut from = minus(x, centre);
+                if let Some(axis) = axis {
+                    let along = dot(from, axis);
+                    from = minus(from, axis.map(|v| along * v));
+                }
+                let r = norm(from);
+                if r <= 1e-12 * radius {
+                    return None;
+                }
+                let sign = if cavity { -1.0 } else { 1.0 };
+                Some((sign * (r - radius), from.map(|v| sign * v / r)))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_and_normals() {
+        let plane = Rigid::Plane {
+            point: [0.0, -1.0, 0.0],
+            normal: [0.0, 1.0, 0.0],
+        };
+        assert_eq!(
+            plane.distance([7.0, 2.0, 5.0]),
+            Some((3.0, [0.0, 1.0, 0.0]))
+        );
+        let mut round = Rigid::Round {
+            centre: [1.0, 0.0, 9.0],
+            axis: Some([0.0, 0.0, 1.0]),
+            radius: 2.0,
+            cavity: false,
+        };
+        assert_eq!(
+            round.distance([4.0, 0.0, 0.0]),
+            Some((1.0, [1.0, 0.0, 0.0]))
+        );
+        assert_eq!(round.distance([1.0, 0.0, 3.0]), None);
+        if let Rigid::Round { cavity, axis, .. } = &mut round {
+            (*cavity, *axis) = (true, None);
+        }
+        let (distance, normal) = round.distance([1.0, 1.0, 9.0]).expect("a nearest point");
+        assert_eq!((distance, normal), (1.0, [0.0, -1.0, 0.0]));
+    }
+}

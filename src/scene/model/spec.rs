@@ -1,0 +1,445 @@
+//! A scene as plain data: what a file says, or what a program builds. Nothing here has been checked yet;
+//! [`Scene::new`](crate::scene::Scene::new) does that.
+
+use super::expr::Expr;
+use super::field::{Field, Region};
+use super::map::Map;
+use super::profile::Profile;
+use super::rigid::Rigid;
+use super::steps::{Ramp, StepsSpec};
+use crate::fem::Form;
+use crate::fem::Quadrature;
+use crate::mesh::{places, BoxMesh};
+
+/// The load of a body: a source, or a force per volume.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// f(x, y, z), one field per component; one alone stands for the first component.
+    pub fields: Vec<Field>,
+    /// How ∫ f N_a is computed.
+    pub quadrature: Quadrature,
+}
+
+impl Load {
+    /// The constant scalar load `value`.
+    pub fn constant(value: f64) -> Load {
+        Load::scalar(Field::constant(value))
+    }
+
+    /// A scalar load, by the midpoint rule.
+    pub fn scalar(field: Field) -> Load {
+        Load {
+            fields: vec![field],
+            quadrature: Quadrature::Midpoint,
+        }
+    }
+}
+
+/// What acts on a side of a body: a flux, or a force per area.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceLoad {
+    /// Index into [`SIDES`].
+    pub side: usize,
+    /// The force.
+    pub force: Force,
+}
+
+/// A force per area.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Force {
+    /// By components; of a scalar problem the flux into the body.
+    Traction(Vec<Field>),
+    /// Against the outer normal.
+    Pressure(Field),
+}
+
+/// Given values on the sides left, right, bottom, top, back, front, by component; `None`: this component is free there. A scalar
+/// has the first component only.
+pub type Sides = [[Option<Field>; 3]; 6];
+
+/// Names of the sides, in the order of [`Sides`]; the last two only in three dimensions.
+pub const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
+
+/// No side is held.
+pub fn free_all_round() -> Sides {
+    [const { [const { None }; 3] }; 6]
+}
+
+/// u = 0 on all sides, in all components.
+pub fn held_all_round() -> Sides {
+    [(); 6].map(|()| [(); 3].map(|()| Some(Field::constant(0.0))))
+}
+
+/// One body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodySpec {
+    /// Its name, unique in the scene.
+    pub name: String,
+    /// Box, elements and subdomains.
+    pub mesh: BoxMesh,
+    /// How the box is bent into shape; `None`: not at all.
+    pub map: Option<Map>,
+    /// Coefficient ρ, in elasticity Young's modulus, > 0; taken at element midpoints.
+    pub rho: Field,
+    /// Poisson's ratio, between −1 and ½; of no account in scalar problems.
+    pub poisson: Field,
+    /// Load f.
+    pub load: Load,
+    /// Loads on its sides.
+    pub surface: Vec<SurfaceLoad>,
+    /// Elastic foundations: k on a side (an index into [`SIDES`]) adds ∫ k u·v to the energy's form, a force −k u per area.
+    pub springs: Vec<(usize, Field)>,
+    /// Factor of the loads over the load steps; `None`: that of all loads.
+    pub ramp: Option<Ramp>,
+    /// Dirichlet conditions.
+    pub dirichlet: Sides,
+    /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
+    pub place: [usize; 3],
+    /// Where it was written ("scene.toml:12: "), or empty.
+    pub written: String,
+}
+
+impl BodySpec {
+    /// A body with ρ = 1 (ν = 0.3), no load and no Dirichlet side.
+    pub fn new(name: impl Into<String>, mesh: BoxMesh) -> BodySpec {
+        BodySpec {
+            name: name.into(),
+            mesh,
+            map: None,
+            rho: Field::constant(1.0),
+            poisson: Field::constant(POISSON),
+            load: Load::constant(0.0),
+            surface: Vec::new(),
+            springs: Vec::new(),
+            ramp: None,
+            dirichlet: free_all_round(),
+            place: [0; 3],
+            written: String::new(),
+        }
+    }
+
+    /// Position of the node at a place.
+    pub fn position(&self, place: [usize; 3]) -> [f64; 3] {
+        let point = self.mesh.position(place);
+        self.map.as_ref().map_or(point, |map| map.apply(point))
+    }
+
+    /// The position of the node at a place as messages name it: "(x, y)" or "(x, y, z)".
+    pub(crate) fn spot(&self, place: [usize; 3]) -> String {
+        self.spot_at(self.position(place))
+    }
+
+    /// A point as messages name it.
+    pub(crate) fn spot_at(&self, [x, y, z]: [f64; 3]) -> String {
+        match self.mesh.dim() {
+            2 => format!("({x}, {y})"),
+            _ => format!("({x}, {y}, {z})"),
+        }
+    }
+}
+
+/// Poisson's ratio where none is given.
+pub const POISSON: f64 = 0.3;
+
+/// A box cut into `bodies[0]` × `bodies[1]` (× `bodies[2]`) equal bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GridSpec {
+    /// Bodies are named `<name><i>_<j>` (`<name><i>_<j>_<k>` in three dimensions), column i, row j and layer k.
+    pub name: String,
+    /// Bodies in x, y and z.
+    pub bodies: [usize; 3],
+    /// Lower left corner of the whole grid.
+    pub origin: [f64; 3],
+    /// Edge lengths of the whole grid; 0 in z in the plane.
+    pub size: [f64; 3],
+    /// How the whole grid is bent into shape.
+    pub map: Option<Map>,
+    /// Elements of every body; 0 in z in the plane.
+    pub elements: [usize; 3],
+    /// Subdomains of every body.
+    pub subdomains: [usize; 3],
+    /// Coefficient ρ, or Young's modulus.
+    pub rho: Field,
+    /// Poisson's ratio.
+    pub poisson: Field,
+    /// Load f.
+    pub load: Load,
+    /// Loads on the outer sides of the whole grid.
+    pub surface: Vec<SurfaceLoad>,
+    /// Elastic foundations on the outer sides of the whole grid.
+    pub springs: Vec<(usize, Field)>,
+    /// Factor of the loads over the load steps; `None`: that of all loads.
+    pub ramp: Option<Ramp>,
+    /// Dirichlet conditions on the outer sides of the whole grid.
+    pub dirichlet: Sides,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+impl GridSpec {
+    /// The unit square, held all round, with ρ = 1 and f = 1.
+    pub fn unit_square(bodies: [usize; 2], subdomains: [usize; 2], elements: [usize; 2]) -> Self {
+        GridSpec {
+            bodies: [bodies[0], bodies[1], 1],
+            size: [1.0, 1.0, 0.0],
+            elements: [elements[0], elements[1], 0],
+            subdomains: [subdomains[0], subdomains[1], 1],
+            ..GridSpec::unit_cube([1; 3], [1; 3], [1; 3])
+        }
+    }
+
+    /// The unit cube, held all round, with ρ = 1 and f = 1.
+    pub fn unit_cube(bodies: [usize; 3], subdomains: [usize; 3], elements: [usize; 3]) -> Self {
+        GridSpec {
+            name: "b".into(),
+            bodies,
+            origin: [0.0; 3],
+            size: [1.0; 3],
+            map: None,
+            elements,
+            subdomains,
+            rho: Field::constant(1.0),
+            poisson: Field::constant(POISSON),
+            load: Load::constant(1.0),
+            surface: Vec::new(),
+            springs: Vec::new(),
+            ramp: None,
+            dirichlet: held_all_round(),
+            written: String::new(),
+        }
+    }
+
+    /// Its bodies, layer by layer and row by row.
+    pub fn expand(&self) -> Vec<BodySpec> {
+        // The same bits for every body: equal subdomains then have equal matrices.
+        let size = [0, 1, 2].map(|d| self.size[d] / self.bodies[d] as f64);
+        let solid = self.elements[2] > 0;
+        let body = |place: [usize; 3]| {
+            let outer = |s: usize| place[s / 2] == [0, self.bodies[s / 2] - 1][s % 2];
+            let mut dirichlet = self.dirichlet.clone();
+            for (s, side) in dirichlet.iter_mut().enumerate() {
+                if !outer(s) {
+                    *side = [const { None }; 3];
+                }
+            }
+            let [i, j, k] = place;
+            BodySpec {
+                name: match solid {
+                    false => format!("{}{i}_{j}", self.name),
+                    true => format!("{}{i}_{j}_{k}", self.name),
+                },
+                mesh: BoxMesh {
+                    origin: [0, 1, 2].map(|d| {
+                        self.origin[d] + self.size[d] * (place[d] as f64 / self.bodies[d] as f64)
+                    }),
+                    size,
+                    elements: self.elements,
+                    subdomains: self.subdomains,
+                },
+                map: self.map.clone(),
+                rho: self.rho.over(self.bodies),
+                poisson: self.poisson.over(self.bodies),
+                load: self.load.clone(),
+                surface: self
+                    .surface
+                    .iter()
+                    .filter(|l| outer(l.side))
+                    .cloned()
+                    .collect(),
+                springs: self
+                    .springs
+                    .iter()
+                    .filter(|(side, _)| outer(*side))
+                    .cloned()
+                    .collect(),
+                ramp: self.ramp.clone(),
+                dirichlet,
+                place,
+                written: self.written.clone(),
+            }
+        };
+        places(self.bodies).map(body).collect()
+    }
+}
+
+/// Which pairs of bodies an entry speaks of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Pair {
+    /// All pairs that touch.
+    All,
+    /// Two bodies by name.
+    Named(String, String),
+}
+
+/// Which nodes of a common face (or of a side) an entry speaks of. The parameters run from 0 to 1 along the common face, in the
+/// directions of increasing x, y or z: one (t) in the plane, two in three dimensions.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Extent {
+    /// All nodes, and corners at which bodies only meet in a point.
+    All,
+    /// None.
+    None,
+    /// Nodes with t0 ≤ t ≤ t1, for each parameter.
+    Range([[f64; 2]; 2]),
+    /// The nodes at these parameters (the second is 0 in the plane).
+    Points(Vec<[f64; 2]>),
+    /// The nodes with these numbers, counted from 0 along the common face.
+    Nodes(Vec<usize>),
+}
+
+/// A tie: u is continuous across (part of) a common face.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TieSpec {
+    /// The bodies.
+    pub pair: Pair,
+    /// The part of their common face.
+    pub extent: Extent,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the first; in
+/// elasticity n·(u_first − u_second) ≤ g with the normal n that points out of the first body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSpec {
+    /// The bodies; the order of the names is that of the inequality, the lower number is first where none are named.
+    pub pair: Pair,
+    /// The sides that face each other, in the order of the names, where the bodies do not touch; `None`: their common faces.
+    pub sides: Option<[usize; 2]>,
+    /// The part of their common face.
+    pub extent: Extent,
+    /// The gap g, of either sign; it adds to the distance of the sides.
+    pub gap: Profile,
+    /// Factor of the gap over the load steps; `None`: that of all gaps.
+    pub ramp: Option<Ramp>,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// Rigid obstacles beside a body: below ≤ u ≤ above on (part of) its sides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObstacleSpec {
+    /// Name of the body; `None`: all bodies.
+    pub body: Option<String>,
+    /// Indices into [`SIDES`].
+    pub sides: Vec<usize>,
+    /// The part of each side; t runs from 0 to 1 along it in the direction of increasing x or y.
+    pub extent: Extent,
+    /// The lower bound, if there is one.
+    pub below: Option<Profile>,
+    /// The upper bound, if there is one.
+    pub above: Option<Profile>,
+    /// In elasticity, the rigid body that the sides cannot enter.
+    pub rigid: Option<Rigid>,
+    /// What is added to the distance from the rigid body.
+    pub gap: Profile,
+    /// Factor of the bounds over the load steps; `None`: that of all gaps.
+    pub ramp: Option<Ramp>,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// What becomes of bodies that touch and that no entry speaks of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ByDefault {
+    /// They are tied, in corners too.
+    #[default]
+    Tied,
+    /// Nothing joins them.
+    Free,
+    /// Their faces are in contact with gap 0.
+    Contact,
+}
+
+/// A whole scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneSpec {
+    /// A title for reports.
+    pub title: String,
+    /// What is solved, and by which elements.
+    pub form: Form,
+    /// The bodies, in the order of their numbers.
+    pub bodies: Vec<BodySpec>,
+    /// Bodies that touch and that no entry of `ties` or `contacts` speaks of.
+    pub default: ByDefault,
+    /// Entries for single pairs; entries for the same pair add up, and together they replace the default.
+    pub ties: Vec<TieSpec>,
+    /// Unilateral contacts. An entry that names a pair beats the contacts of all pairs, and a contact that names it beats
+    /// the ties of all pairs.
+    pub contacts: Vec<ContactSpec>,
+    /// Rigid obstacles.
+    pub obstacles: Vec<ObstacleSpec>,
+    /// Load steps; `None`: everything is applied at once.
+    pub steps: Option<StepsSpec>,
+    /// The exact solution by components, if it is known.
+    pub exact: Option<Vec<Expr>>,
+    /// PETSc options (without the dash) that hold unless the command line says otherwise.
+    pub options: Vec<(String, String)>,
+}
+
+impl SceneSpec {
+    /// Bodies that are tied wherever they touch.
+    pub fn tied(title: impl Into<String>, bodies: Vec<BodySpec>) -> SceneSpec {
+        SceneSpec {
+            title: title.into(),
+            form: Form::default(),
+            bodies,
+            default: ByDefault::Tied,
+            ties: Vec::new(),
+            contacts: Vec::new(),
+            obstacles: Vec::new(),
+            steps: None,
+            exact: None,
+            options: Vec::new(),
+        }
+    }
+}
+
+/// The two columns of Table 1 of \[Lee\].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Faces {
+    /// Column (I): bodies are tied along their whole interface, cross points with all six rows.
+    Whole,
+    /// Column (II): bodies are tied where 1/3 ≤ t ≤ 2/3, cross points excluded.
+    MiddleThird,
+}
+
+/// The experiment of Table 1 of \[Lee\]: the unit square, held all round, of `bodies`² bodies of `subdomains`² subdomains of
+/// `elements`² elements, with the load of (3.3) rescaled: −3 on x < 1/2, y > 3/4; −1 on x > 1/2, y < 1/4.
+pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> SceneSpec {
+    let mut grid = GridSpec::unit_square([bodies; 2], [subdomains; 2], [subdomains * elements; 2]);
+    let region = |x, y, value| Region {
+        x: Some(x),
+        y: Some(y),
+        z: None,
+        value: Expr::constant(value),
+    };
+    grid.load = Load {
+        fields: vec![Field::Regions {
+            list: vec![
+                region([0.0, 0.5], [0.75, 1.0], -3.0),
+                region([0.5, 1.0], [0.0, 0.25], -1.0),
+            ],
+            otherwise: Expr::constant(0.0),
+        }],
+        quadrature: Quadrature::Midpoint,
+    };
+    let column = match faces {
+        Faces::Whole => "I",
+        Faces::MiddleThird => "II",
+    };
+    let title = format!("Lee, Table 1 ({column}): {bodies}, {subdomains}, {elements}");
+    let mut spec = SceneSpec::tied(title, grid.expand());
+    if faces == Faces::MiddleThird {
+        spec.default = ByDefault::Free;
+        // With a single body there is no pair to tie, and nothing to select from.
+        if bodies > 1 {
+            spec.ties.push(TieSpec {
+                pair: Pair::All,
+                extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0], [0.0, 1.0]]),
+                written: String::new(),
+            });
+        }
+    }
+    spec
+}

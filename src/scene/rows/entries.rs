@@ -1,0 +1,314 @@
+//! How the nodes where bodies touch are joined: the default, and the entries of [[tie]] and [[contact]].
+
+use super::links::Links;
+use crate::error::{Error, Result};
+use crate::scene::geometry::interface::{touching, Interface, Link, Shape};
+use crate::scene::geometry::normals::opposite;
+use crate::scene::model::profile::Profile;
+use crate::scene::model::spec::{ByDefault, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
+use crate::scene::model::steps::{Factors, Steps};
+use crate::scene::Body;
+use std::collections::{HashMap, HashSet};
+
+/// All pairs that touch, with their ties and contacts.
+pub(crate) fn find(
+    bodies: &[Body],
+    spec: &SceneSpec,
+    steps: &Option<Steps>,
+) -> Result<Vec<Interface>> {
+    let mut interfaces = touching(bodies)?;
+    facing(bodies, &spec.contacts, &mut interfaces)?;
+    let (ties, contacts) = (&spec.ties, &spec.contacts);
+    let mut entries = Entries::new(bodies, ties, contacts)?;
+    let zero = Profile::constant(0.0);
+    let default = Entry {
+        pair: &Pair::All,
+        extent: &Extent::All,
+        written: "",
+        contact: (spec.default == ByDefault::Contact).then_some(Contact {
+            gap: &zero,
+            number: None,
+        }),
+    };
+    let default = (spec.default != ByDefault::Free).then_some(default);
+    let mut weak = Vec::new();
+    for (k, interface) in interfaces.iter_mut().enumerate() {
+        entries.apply(bodies, interface, default.as_ref(), Factors::last(steps))?;
+        if interface.shape == Shape::Corner && !entries.tie_names(interface.bodies) {
+            weak.push(k);
+        }
+    }
+    entries.check_used(&interfaces)?;
+    release_corners(&mut interfaces, &weak);
+    Ok(interfaces)
+}
+
+/// Pairs of which a contact names the sides that face each other: these sides take the place of what touches.
+fn facing(
+    bodies: &[Body],
+    contacts: &[ContactSpec],
+    interfaces: &mut Vec<Interface>,
+) -> Result<()> {
+    for spec in contacts {
+        let (Some(sides), Pair::Named(first, second)) = (spec.sides, &spec.pair) else {
+            continue;
+        };
+        let find = |name: &String| bodies.iter().position(|b| b.spec.name == *name);
+        let (Some(a), Some(b)) = (find(first), find(second)) else {
+            // Reported with the entries that name bodies.
+            continue;
+        };
+        let (pair, sides) = match a < b {
+            true => ([a, b], sides),
+            false => ([b, a], [sides[1], sides[0]]),
+        };
+        let Some(interface) = opposite(bodies, pair, sides) else {
+            return Err(Error::Input(format!(
+                "{}the sides of bodies `{first}` and `{second}` have different numbers of nodes (equal numbers were expected, so that \
+                 each node has one opposite)",
+                spec.written
+            )));
+        };
+        interfaces.retain(|i| i.bodies != pair || i.apart);
+        interfaces.push(Interface {
+            apart: true,
+            ..interface
+        });
+    }
+    interfaces.sort_by_key(|i| i.bodies);
+    Ok(())
+}
+
+/// Corner pairs in `weak` are tied only because all pairs are. Where one of the two is in contact there, this is not what
+/// was meant: it would tie together what lies on both sides of the contact.
+fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
+    let mut in_contact: HashSet<(usize, usize)> = HashSet::new();
+    for i in interfaces.iter() {
+        for s in i.shared.iter().filter(|s| s.link.is_contact()) {
+            in_contact.extend([0, 1].map(|k| (i.bodies[k], s.nodes[k])));
+        }
+    }
+    for &k in weak {
+        let Interface { bodies, shared, .. } = &mut interfaces[k];
+        for s in shared.iter_mut().filter(|s| s.link == Link::Tied) {
+            if [0, 1]
+                .iter()
+                .any(|&m| in_contact.contains(&(bodies[m], s.nodes[m])))
+            {
+                s.link = Link::Free;
+            }
+        }
+    }
+}
+
+/// One entry, of either kind.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry<'a> {
+    pub pair: &'a Pair,
+    pub extent: &'a Extent,
+    pub written: &'a str,
+    /// `None`: a tie.
+    pub contact: Option<Contact<'a>>,
+}
+
+/// What a contact says beyond its nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct Contact<'a> {
+    pub gap: &'a Profile,
+    /// Number of the entry, `None` for the default.
+    pub number: Option<usize>,
+}
+
+impl<'a> Entry<'a> {
+    fn tie(spec: &'a TieSpec) -> Entry<'a> {
+        Entry {
+            pair: &spec.pair,
+            extent: &spec.extent,
+            written: &spec.written,
+            contact: None,
+        }
+    }
+
+    fn contact(number: usize, spec: &'a ContactSpec) -> Entry<'a> {
+        Entry {
+            pair: &spec.pair,
+            extent: &spec.extent,
+            written: &spec.written,
+            contact: Some(Contact {
+                gap: &spec.gap,
+                number: Some(number),
+            }),
+        }
+    }
+
+    /// "tie" or "contact".
+    pub fn what(&self) -> &'static str {
+        match self.contact {
+            None => "tie",
+            Some(_) => "contact",
+        }
+    }
+
+    /// Where it was written, for the middle of a sentence.
+    pub fn line(&self) -> &str {
+        match self.written.trim_end_matches(": ") {
+            "" => "another entry",
+            place => place,
+        }
+    }
+}
+
+/// The entries by pair.
+struct Entries<'a> {
+    /// Those of all pairs, each with whether it has selected a node or was beaten.
+    all: Vec<(Entry<'a>, bool)>,
+    /// Those of single pairs, each with the pair's order in the file.
+    named: HashMap<[usize; 2], Vec<(Entry<'a>, [usize; 2])>>,
+}
+
+impl<'a> Entries<'a> {
+    fn new(
+        bodies: &[Body],
+        ties: &'a [TieSpec],
+        contacts: &'a [ContactSpec],
+    ) -> Result<Entries<'a>> {
+        let index: HashMap<&str, usize> = bodies
+            .iter()
+            .enumerate()
+            .map(|(k, b)| (b.spec.name.as_str(), k))
+            .collect();
+        let mut entries = Entries {
+            all: Vec::new(),
+            named: HashMap::new(),
+        };
+        let contacts = contacts.iter().enumerate();
+        let contacts = contacts.map(|(number, spec)| Entry::contact(number, spec));
+        for entry in ties.iter().map(Entry::tie).chain(contacts) {
+            let (first, second) = match entry.pair {
+                Pair::All => {
+                    entries.all.push((entry, false));
+                    continue;
+                }
+                Pair::Named(first, second) => (first, second),
+            };
+            let find = |name: &String| {
+                index.get(name.as_str()).copied().ok_or_else(|| {
+                    Error::Input(format!(
+                        "{}a {} names body `{name}`, which the scene does not have (bodies are {})",
+                        entry.written,
+                        entry.what(),
+                        some_names(bodies)
+                    ))
+                })
+            };
+            let (a, b) = (find(first)?, find(second)?);
+            if a == b {
+                return Err(Error::Input(format!(
+                    "{}a {} names body `{first}` twice where two bodies were expected",
+                    entry.written,
+                    entry.what()
+                )));
+            }
+            let pair = [a.min(b), a.max(b)];
+            let list: &mut Vec<_> = entries.named.entry(pair).or_default();
+            list.push((entry, [a, b]));
+        }
+        Ok(entries)
+    }
+
+    /// Whether a tie names the pair.
+    fn tie_names(&self, pair: [usize; 2]) -> bool {
+        let named = self.named.get(&pair).into_iter().flatten();
+        named.into_iter().any(|(e, _)| e.contact.is_none())
+    }
+
+    /// Sets the links of one interface. Entries replace the default and add up; those that name the pair beat contacts of all
+    /// pairs, and a contact that names it beats ties of all pairs.
+    fn apply(
+        &mut self,
+        bodies: &[Body],
+        interface: &mut Interface,
+        default: Option<&Entry<'a>>,
+        last: Factors<'_>,
+    ) -> Result<()> {
+        let named = self.named.get(&interface.bodies);
+        let named: &[(Entry<'_>, [usize; 2])] = named.map_or(&[], Vec::as_slice);
+        let contact_named = named.iter().any(|(e, _)| e.contact.is_some());
+        let mut links = Links::new(bodies, interface);
+        let speaks = |e: &Entry<'_>| match e.contact {
+            None => !contact_named,
+            Some(_) => named.is_empty(),
+        };
+        // Ties first: contacts find out what is tied already.
+        for contact in [false, true] {
+            for (entry, used) in &mut self.all {
+                if entry.contact.is_some() == contact {
+                    // An entry that is beaten everywhere is no mistake.
+                    *used |= !speaks(entry) || links.add(*entry, None)? > 0;
+                }
+            }
+            for (entry, order) in named {
+                if entry.contact.is_some() == contact {
+                    let selected = links.add(*entry, Some(*order))?;
+                    if selected == 0 && *entry.extent != Extent::None {
+                        let [a, b] = links.names();
+                        return Err(Error::Input(format!(
+                            "{}the {} of bodies `{a}` and `{b}` selects no node of their common face",
+                            entry.written,
+                            entry.what()
+                        )));
+                    }
+                }
+            }
+        }
+        if let (0, Some(default)) = (links.entries, default) {
+            links.add(*default, None)?;
+        }
+        links.finish(last)
+    }
+
+    /// Every entry must have found a pair that touches, and an entry for all pairs at least one node.
+    fn check_used(&self, interfaces: &[Interface]) -> Result<()> {
+        let touching: HashSet<[usize; 2]> = interfaces.iter().map(|i| i.bodies).collect();
+        let mut apart: Vec<&Entry<'_>> = self
+            .named
+            .iter()
+            .filter(|(pair, _)| !touching.contains(*pair))
+            .flat_map(|(_, list)| list.iter().map(|(entry, _)| entry))
+            .collect();
+        apart.sort_by(|a, b| a.written.cmp(b.written));
+        if let Some(entry) = apart.first() {
+            let Pair::Named(a, b) = entry.pair else {
+                unreachable!("only named pairs are in the map")
+            };
+            return Err(Error::Input(format!(
+                "{}a {} joins bodies `{a}` and `{b}`, which do not touch",
+                entry.written,
+                entry.what()
+            )));
+        }
+        for (entry, used) in &self.all {
+            if *entry.extent != Extent::None && !used {
+                return Err(Error::Input(format!(
+                    "{}the {} of all bodies selects no node of any common face",
+                    entry.written,
+                    entry.what()
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first few names, for messages.
+pub(crate) fn some_names(bodies: &[Body]) -> String {
+    let mut names: Vec<String> = bodies
+        .iter()
+        .take(6)
+        .map(|b| format!("`{}`", b.spec.name))
+        .collect();
+    if bodies.len() > 6 {
+        names.push("…".into());
+    }
+    names.join(", ")
+}

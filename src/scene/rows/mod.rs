@@ -1,0 +1,9 @@
+//! From where bodies touch to the rows of B_gl.
+
+pub mod bounds;
+pub mod entries;
+pub mod links;
+pub mod obstacles;
+pub mod points;
+pub mod table;
+pub mod union_find;

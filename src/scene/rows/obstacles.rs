@@ -1,0 +1,166 @@
+//! Rigid obstacles: one-sided bounds on u at the boundary of a body.
+
+use super::entries::some_names;
+use crate::error::{Error, Result};
+use crate::scene::geometry::normals::parameters;
+use crate::scene::geometry::select::pick;
+use crate::scene::model::profile::{Limit, Limits};
+use crate::scene::model::rigid::Rigid;
+use crate::scene::model::spec::{Extent, ObstacleSpec, SIDES};
+use crate::scene::{Body, Variables};
+use std::collections::BTreeMap;
+
+/// One bound beside one side of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    /// The body.
+    pub body: usize,
+    /// The side, an index into [`SIDES`].
+    pub side: usize,
+    /// u ≤ above; otherwise u ≥ below.
+    pub upper: bool,
+    /// Its name in reports, such as "left.top above".
+    pub name: String,
+    /// Right-hand sides of the rows u ≤ above and −u ≤ −below, by node of the body.
+    pub limits: Limits,
+    /// In elasticity the body that cannot be entered: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
+    pub rigid: Option<Rigid>,
+}
+
+impl Obstacle {
+    /// Parameters of a node of the body along the side, 0 ≤ t ≤ 1.
+    pub fn t(&self, body: &Body, node: usize) -> [f64; 2] {
+        parameters(&body.spec, self.side, body.mesh().place(node))
+    }
+
+    /// The distance of a node from the rigid body and the direction in which the body must not move further; `None` where
+    /// the obstacle bounds u itself.
+    pub fn ahead(&self, body: &Body, node: usize) -> Option<(f64, [f64; 3])> {
+        let rigid = self.rigid?;
+        let found = rigid.distance(body.spec.position(body.mesh().place(node)));
+        // Nodes without a nearest point were refused.
+        found.map(|(distance, normal)| (distance, normal.map(|v| 0.0 - v)))
+    }
+}
+
+/// The obstacles of a scene, by body, side and bound; `first` is the number of the first entry.
+pub(crate) fn find(
+    bodies: &[Body],
+    entries: &[ObstacleSpec],
+    first: usize,
+) -> Result<Vec<Obstacle>> {
+    // Bounds on u from several entries add up; every rigid body stands for itself.
+    let mut found: BTreeMap<(usize, usize, usize, bool), Vec<Limit>> = BTreeMap::new();
+    for (k, entry) in entries.iter().enumerate() {
+        let fail = |message: String| Err(Error::Input(format!("{}{message}", entry.written)));
+        if entry.below.is_none() && entry.above.is_none() && entry.rigid.is_none() {
+            return fail(
+                "an obstacle without a bound (`below`, `above` or both were expected)".into(),
+            );
+        }
+        let bounds = match entry.rigid {
+            None => [(false, entry.below.as_ref()), (true, entry.above.as_ref())],
+            Some(_) => [(false, None), (true, Some(&entry.gap))],
+        };
+        let chosen = match &entry.body {
+            None => 0..bodies.len(),
+            Some(name) => match bodies.iter().position(|b| b.spec.name == *name) {
+                Some(b) => b..b + 1,
+                None => {
+                    return fail(format!(
+                        "an obstacle names body `{name}`, which the scene does not have (bodies are {})",
+                        some_names(bodies)
+                    ))
+                }
+            },
+        };
+        for b in chosen {
+            for &side in &entry.sides {
+                let selected = select(&bodies[b], side, entry)?;
+                let number = if entry.rigid.is_some() { k + 1 } else { 0 };
+                for (upper, bound) in bounds {
+                    let Some(bound) = bound else { continue };
+                    let list = found.entry((b, side, number, upper)).or_default();
+                    for &(node, t) in &selected {
+                        let spec = &bodies[b].spec;
+                        let place = spec.mesh.place(node);
+                        let at = Variables {
+                            point: spec.position(place),
+                            body: spec.place,
+                            subdomain: [0; 3],
+                        };
+                        if let Some(rigid) = &entry.rigid {
+                            if rigid.distance(at.point).is_none() {
+                                return fail(format!(
+                                    "no point of the obstacle is nearest to the node {} of body `{}` (on its axis or in its centre)",
+                                    spec.spot(place),
+                                    spec.name
+                                ));
+                            }
+                        }
+                        let value = bound.eval(t[0], &at);
+                        if !value.is_finite() {
+                            let key = match entry.rigid {
+                                Some(_) => "gap",
+                                None => ["below", "above"][usize::from(upper)],
+                            };
+                            let (at, name) = (spec.spot(place), &spec.name);
+                            return fail(format!(
+                                "the bound `{key}` of body `{name}` is {value} at {at} where a finite number was expected"
+                            ));
+                        }
+                        list.push(Limit {
+                            node,
+                            value: if upper { value } else { 0.0 - value },
+                            entry: Some(first + k),
+                        });
+                    }
+                }
+            }
+        }
+    }
+    let named = |(key, list): ((usize, usize, usize, bool), Vec<Limit>)| {
+        let (body, side, number, upper) = key;
+        let what = match (number, upper) {
+            (0, false) => "below".to_string(),
+            (0, true) => "above".to_string(),
+            (k, _) => format!("obstacle {k}"),
+        };
+        Obstacle {
+            body,
+            side,
+            upper,
+            name: format!("{}.{} {what}", bodies[body].spec.name, SIDES[side]),
+            limits: Limits::new(list),
+            rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
+        }
+    };
+    Ok(found.into_iter().map(named).collect())
+}
+
+/// The nodes that `entry` selects on a side, with their t.
+fn select(body: &Body, side: usize, entry: &ObstacleSpec) -> Result<Vec<(usize, [f64; 2])>> {
+    let mesh = body.mesh();
+    let places: Vec<[usize; 3]> = mesh.side_nodes(side).collect();
+    let nodes: Vec<usize> = places.iter().map(|&p| mesh.node(p)).collect();
+    let t: Vec<[f64; 2]> = places
+        .iter()
+        .map(|&p| parameters(&body.spec, side, p))
+        .collect();
+    let (name, side) = (&body.spec.name, SIDES[side]);
+    let picked = pick(&entry.extent, &t).map_err(|missing| {
+        Error::Input(format!(
+            "{}the obstacle of body `{name}` names the node with {missing}, but its side {side} has {} nodes and none \
+             like that",
+            entry.written,
+            nodes.len()
+        ))
+    })?;
+    if picked.is_empty() && entry.extent != Extent::None {
+        return Err(Error::Input(format!(
+            "{}the obstacle of body `{name}` selects no node of its side {side}",
+            entry.written
+        )));
+    }
+    Ok(picked.into_iter().map(|k| (nodes[k], t[k])).collect())
+}
