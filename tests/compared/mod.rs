@@ -2,7 +2,28 @@
 #![allow(dead_code)] // every test file uses its own part
 
 use crate::mpi::{fetifeti, Output, Scratch};
-use fetifeti::report::json::CompareReport;
+use fetifeti::report::json::{CompareReport, CompareRow};
+
+/// Whether a row holds a solution. Ours must; a row of another method may say instead why it holds none, for whether PETSc's solvers
+/// get there is not ours to promise and differs from processor to processor.
+pub fn solved(row: &CompareRow) -> bool {
+    let what = format!("{} on {} ranks: {row:?}", row.method, row.ranks);
+    let Some(message) = &row.message else {
+        assert!(row.converged, "{what}");
+        assert!(row.converged_reason.starts_with("CONVERGED"), "{what}");
+        return true;
+    };
+    assert_ne!(row.method, "fetifeti", "{what}");
+    assert!(!message.trim().is_empty() && !row.converged, "{what}");
+    // A method that broke down has left nothing that could be measured; one that stopped has what the judge found.
+    let left = row.converged_reason.is_empty();
+    assert!(
+        !left || (row.error, row.iterations, row.kappa) == (None, None, None),
+        "{what}"
+    );
+    println!("{}: {message}", row.method);
+    false
+}
 
 /// A scene file that goes away with the value.
 pub struct SceneFile {
