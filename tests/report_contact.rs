@@ -1,13 +1,15 @@
 //! The files about contact, written as for a run with 2 and with 180 interfaces and read back: pictures, profiles, and a time
 //! series as ParaView reads it. They stay in target/tmp/report_contact to be looked at.
 
-use fetifeti::report::contact::LoadStep;
-use fetifeti::report::contact_fields::ContactFields;
-use fetifeti::report::field::{self, ContactMark, Mesh};
-use fetifeti::report::load_steps;
-use fetifeti::report::profile::{self, Profile};
-use fetifeti::report::pvd::Pvd;
-use fetifeti::report::vtu::{Shape, Vtu};
+use fetifeti::report::json::contact::LoadStep;
+use fetifeti::report::paraview::contact_fields::ContactFields;
+use fetifeti::report::paraview::pvd::Pvd;
+use fetifeti::report::paraview::vtu::{Shape, Vtu};
+use fetifeti::report::pictures::field;
+use fetifeti::report::pictures::field::{ContactMark, Mesh};
+use fetifeti::report::plots::load_steps;
+use fetifeti::report::plots::profile;
+use fetifeti::report::plots::profile::Profile;
 use std::path::PathBuf;
 
 /// A clean directory.

@@ -14,7 +14,8 @@ use crate::cli::args::Compare;
 use crate::cli::problem;
 use crate::petsc::{Options, Session};
 use crate::report::json::{self, CompareReport, CompareRow};
-use crate::report::{compare, output};
+use crate::report::output;
+use crate::report::tables::compare;
 use crate::scene::{Numbering, Scene};
 use crate::{Error, Result};
 

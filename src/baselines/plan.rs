@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::job::Task;
 use super::table::{Baseline, Format};
 use crate::petsc::{Options, Session};
-use crate::report::summary::ranks;
+use crate::report::tables::summary::ranks;
 use crate::scene::Scene;
 use crate::{Error, Result};
 

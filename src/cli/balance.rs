@@ -5,7 +5,7 @@ use crate::feti::FetiFeti;
 use crate::linalg::vec3::{cross, minus, norm};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::Session;
-use crate::report::contact::{Amount, BodyBalance};
+use crate::report::json::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Scene};
 use crate::Result;
 

@@ -13,7 +13,7 @@ use crate::contact::State;
 use crate::feti::FetiFeti;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
-use crate::report::contact::{LoadStep, OuterStep};
+use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::{checkpoint, output};
 use crate::scene::Scene;
 use crate::{Error, Result};

@@ -7,9 +7,9 @@ use crate::contact::Step;
 use crate::feti::{FetiFeti, Solution};
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
-use crate::report::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::json;
-use crate::report::profile::Profile;
+use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
+use crate::report::plots::profile::Profile;
 use crate::scene::{Member, RowSource, Scene, Shape};
 use crate::Result;
 

@@ -10,9 +10,9 @@ use super::problem;
 use crate::contact::State;
 use crate::feti::{FetiFeti, Solution};
 use crate::petsc::Session;
-use crate::report::contact::{LoadStep, OuterStep};
+use crate::report::json::contact::{LoadStep, OuterStep};
+use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
-use crate::report::pvd::Pvd;
 use crate::scene::Scene;
 use crate::Result;
 

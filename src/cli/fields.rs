@@ -9,8 +9,8 @@ use crate::feti::{FetiFeti, Solution};
 use crate::mesh::SubdomainMesh;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
-use crate::report::contact_fields::ContactFields;
-use crate::report::vtu::{Shape, Vtu};
+use crate::report::paraview::contact_fields::ContactFields;
+use crate::report::paraview::vtu::{Shape, Vtu};
 use crate::scene::Scene;
 use crate::Result;
 

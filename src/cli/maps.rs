@@ -1,10 +1,10 @@
-//! Contact on the faces of solids, for [`crate::report::contact_map`].
+//! Contact on the faces of solids, for [`crate::report::pictures::contact_map`].
 
 use std::collections::HashMap;
 
 use super::areas::side;
 use super::contact::{by_source, name, ContactRow};
-use crate::report::contact_map::ContactMap;
+use crate::report::pictures::contact_map::ContactMap;
 use crate::scene::Scene;
 
 /// A side is drawn in two of its coordinates where no normal is further from the third than the angle of this cosine, else in its

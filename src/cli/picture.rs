@@ -9,9 +9,11 @@ use super::contact::{by_source, ContactRow};
 use super::fields::Gathered;
 use crate::fem::cell::CellStress;
 use crate::linalg::vec3::{minus, norm};
-use crate::report::field::{self, ContactMark, Field, Mesh, Values};
-use crate::report::solid::{self, FaceMark, Solid};
-use crate::report::ticks::{number, Scale};
+use crate::report::drawing::ticks::{number, Scale};
+use crate::report::pictures::field;
+use crate::report::pictures::field::{ContactMark, Field, Mesh, Values};
+use crate::report::pictures::solid;
+use crate::report::pictures::solid::{FaceMark, Solid};
 use crate::scene::Scene;
 use crate::Result;
 

@@ -13,7 +13,7 @@ use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, PcType, Settings};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
-use crate::report::table::{Align, Table};
+use crate::report::tables::table::{Align, Table};
 use crate::scene::{Plan, Scene};
 use crate::substructures::Substructures;
 use crate::Result;

@@ -16,10 +16,13 @@ use crate::feti::subdomain::problem::factorisations;
 use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
-use crate::report::adaptive::{Adaptive, Deflation};
-use crate::report::contact::ContactReport;
+use crate::report::json::adaptive::{Adaptive, Deflation};
+use crate::report::json::contact::ContactReport;
 use crate::report::json::{self, Operators, SolveReport};
-use crate::report::{contact_map, load_steps, output, profile, summary};
+use crate::report::output;
+use crate::report::pictures::contact_map;
+use crate::report::plots::{load_steps, profile};
+use crate::report::tables::summary;
 use crate::scene::Scene;
 use crate::Result;
 

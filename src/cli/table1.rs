@@ -6,7 +6,9 @@ use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
 use crate::petsc::Session;
 use crate::report::json::{self, CoarseCorrected, PaperSide, Table1Row, Table1Side};
-use crate::report::{figure3, output, paper, summary};
+use crate::report::output;
+use crate::report::plots::figure3;
+use crate::report::tables::{paper, summary};
 use crate::scene::{Faces, Scene};
 use crate::{Error, Result};
 

@@ -3,52 +3,23 @@
 //! Nothing here knows PETSc, MPI or the method: every function takes plain arrays or the structs of [`json`]. All files are
 //! written to a temporary name first and then renamed, so that a reader never sees half a file.
 //!
-//! | module | what it writes |
+//! | room | what it holds |
 //! |---|---|
-//! | [`json`] | the records of `solve`, `table1` and `compare` ([`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`]) |
-//! | [`table`], [`summary`], [`compare`] | aligned text for terminals, CSV, and the tables of the three commands |
-//! | [`mod@bench`] | medians over rounds: table, CSV, error over seconds ([`json::BenchReport`]) |
-//! | [`paper`] | Table 1 of Lee (2010) as printed |
-//! | [`plot`], [`figure3`] | line and scatter plots; Figure 3 of Lee (2010) redrawn |
-//! | [`field`] | pictures of u and ρ on quadrilaterals, with the contact zone |
-//! | [`solid`] | pictures of fields on the surface of solids, with the contact zone |
-//! | [`contact`], [`contact_summary`] | the record of a contact solve, and what the terminal shows of it |
-//! | [`profile`], [`contact_map`], [`load_steps`] | multiplier and gap along interfaces, pressure on faces of solids; energy and force over load steps; all as CSV, too |
+//! | [`output`] | files that are written as a whole or not at all; standard output |
+//! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`], [`json::BenchReport`] |
+//! | [`drawing`] | pixels, vectors, text, colours, ticks |
+//! | [`tables`] | aligned text for terminals, CSV, and the tables of the commands; Table 1 of Lee (2010) as printed |
+//! | [`plots`] | line and scatter plots: Figure 3 of Lee (2010), contact along interfaces, energy and force over load steps |
+//! | [`pictures`] | fields on quadrilaterals and on the surface of solids, with the contact zone; pressure on faces of contact |
+//! | [`paraview`] | VTU files, contact as point data, time series |
 //! | [`progress`] | the line that tells how far a contact solve is |
-//! | [`vtu`], [`contact_fields`], [`pvd`] | ParaView files, contact as point data, time series |
 
-pub mod adaptive;
-pub mod bench;
-pub mod canvas;
 pub mod checkpoint;
-pub mod colormap;
-pub mod compare;
-pub mod contact;
-pub mod contact_fields;
-pub mod contact_map;
-pub mod contact_summary;
-pub mod field;
-pub mod figure3;
+pub mod drawing;
 pub mod json;
-pub mod load_steps;
-mod marks;
-mod outline;
 pub mod output;
-mod paint;
-mod panel;
-pub mod paper;
-pub mod plot;
-pub mod profile;
+pub mod paraview;
+pub mod pictures;
+pub mod plots;
 pub mod progress;
-pub mod pvd;
-pub mod raster;
-mod series;
-pub mod solid;
-mod space;
-mod stage;
-pub mod summary;
-mod surface;
-pub mod svg;
-pub mod table;
-pub mod ticks;
-pub mod vtu;
+pub mod tables;

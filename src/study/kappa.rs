@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, PcType, Settings};
 use crate::petsc::Session;
-use crate::report::table::{Align, Table};
+use crate::report::tables::table::{Align, Table};
 use crate::scene::Scene;
 use crate::{Error, Result};
 

@@ -2,15 +2,17 @@
 //!
 //! A number that is not known or not finite is written as `null`, never as NaN, and read back as `None` or NaN.
 
+pub mod adaptive;
 mod bench;
 mod compare;
+pub mod contact;
 mod table1;
 
 pub use bench::{BenchCase, BenchReport, BenchRow, BenchSample, BenchSeconds, Spread};
 pub use compare::{CompareContact, CompareInequalities, CompareReport, CompareRow, CompareSeconds};
 pub use table1::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
 
-use super::contact::ContactReport;
+use contact::ContactReport;
 use super::output;
 use crate::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -87,7 +89,7 @@ pub struct SolveReport {
     pub condition: Condition,
     /// What was deflated; absent where nothing was searched for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub adaptive: Option<super::adaptive::Adaptive>,
+    pub adaptive: Option<adaptive::Adaptive>,
     /// Residuals of the Karush-Kuhn-Tucker conditions.
     pub kkt: Kkt,
     /// ½ uᵀKu − fᵀu.

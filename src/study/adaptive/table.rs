@@ -1,7 +1,7 @@
 //! The tables.
 
 use super::{Bddc, Record, Report, USUAL};
-use crate::report::table::{count, fixed, scientific, Align, Table};
+use crate::report::tables::table::{count, fixed, scientific, Align, Table};
 
 /// All runs, one row for each τ.
 pub fn table(report: &Report) -> Table {

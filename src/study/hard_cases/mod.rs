@@ -15,7 +15,7 @@ use crate::feti::Settings;
 use crate::parallel::exchange::gather_all;
 use crate::petsc::Session;
 use crate::report::json;
-use crate::report::table::{count, fixed, scientific, Align, Table};
+use crate::report::tables::table::{count, fixed, scientific, Align, Table};
 use crate::{Error, Result};
 
 /// Relative residual that is asked of the method.

@@ -1,10 +1,10 @@
 //! What the study shows: the table, the nodal pressures as CSV, and their picture against the theory.
 
 use super::{CaseReport, Contact, Quantity, Report};
-use crate::report::canvas::Colour;
-use crate::report::plot::{Axis, Figure, Line, Marker, Panel, Series};
-use crate::report::table::{Align, Table};
-use crate::report::ticks::Scale;
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::ticks::Scale;
+use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use crate::report::tables::table::{Align, Table};
 
 /// All meshes of all problems.
 pub fn table(report: &Report) -> Table {

@@ -2,7 +2,7 @@
 
 use super::{Report, Row, WORTH_CHANGING};
 use crate::cholesky::interior::{Ordering, Solver};
-use crate::report::table::{Align, Table};
+use crate::report::tables::table::{Align, Table};
 
 /// A column of seconds.
 struct Kernel {

@@ -1,9 +1,9 @@
 //! Curves of the study: runs over ranks and bodies, and the model by phase.
 
 use super::{IterationSeconds, Point, Problem, Report, Series as Runs, SetupSeconds};
-use crate::report::canvas::Colour;
-use crate::report::plot::{Axis, Figure, Line, Marker, Panel, Series};
-use crate::report::ticks::Scale;
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::ticks::Scale;
+use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
 
 /// Ranks of the runs.
 const RANKS: [f64; 3] = [1.0, 2.0, 4.0];

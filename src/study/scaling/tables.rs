@@ -1,7 +1,7 @@
 //! Tables of the study, and what they come to in words.
 
 use super::{IterationSeconds, Limit, Point, Prediction, Report, Row, SetupSeconds, Work};
-use crate::report::table::{fixed, scientific, value, Align, Table};
+use crate::report::tables::table::{fixed, scientific, value, Align, Table};
 
 /// Three digits; a dash for nothing.
 fn short(x: f64) -> String {

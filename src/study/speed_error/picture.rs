@@ -1,10 +1,10 @@
 //! Work-precision plots: error over seconds, a curve per method.
 
 use super::{CaseReport, Report, Run};
-use crate::report::canvas::Colour;
-use crate::report::plot::{Axis, Figure, Line, Marker, Panel, Series};
-use crate::report::table::{count, scientific, Align, Table};
-use crate::report::ticks::Scale;
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::ticks::Scale;
+use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
+use crate::report::tables::table::{count, scientific, Align, Table};
 
 /// All runs.
 pub fn table(report: &Report) -> Table {

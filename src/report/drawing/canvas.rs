@@ -1,0 +1,237 @@
+//! What a plot may draw, and the one font that all pictures use. Two canvases exist: [`super::raster::Raster`] (PNG) and
+//! [`super::svg::Svg`].
+//!
+//! The font is DejaVu Sans, carried inside the program: a picture looks the same on every machine.
+
+use ab_glyph::{Font, FontRef, ScaleFont};
+use std::sync::OnceLock;
+
+/// A position in logical pixels, y downwards.
+pub type Point = (f64, f64);
+
+/// An opaque colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Colour(pub u8, pub u8, pub u8);
+
+impl Colour {
+    /// Text and axes.
+    pub const INK: Colour = Colour(0x22, 0x22, 0x22);
+    /// Grid lines.
+    pub const GRID: Colour = Colour(0xe4, 0xe4, 0xe4);
+    /// The ground.
+    pub const WHITE: Colour = Colour(0xff, 0xff, 0xff);
+    /// Eight colours that colour-blind readers can tell apart (Okabe and Ito).
+    pub const CYCLE: [Colour; 8] = [
+        Colour(0x00, 0x72, 0xb2),
+        Colour(0xd5, 0x5e, 0x00),
+        Colour(0x00, 0x9e, 0x73),
+        Colour(0xcc, 0x79, 0xa7),
+        Colour(0xe6, 0x9f, 0x00),
+        Colour(0x56, 0xb4, 0xe9),
+        Colour(0x80, 0x5a, 0x3c),
+        Colour(0x66, 0x66, 0x66),
+    ];
+}
+
+/// Where a text's position is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anchor {
+    /// At its left end.
+    Start,
+    /// At its middle.
+    Middle,
+    /// At its right end.
+    End,
+}
+
+/// How a text is set. In the text `_{...}` is a subscript and `^{...}` a superscript.
+#[derive(Debug, Clone, Copy)]
+pub struct TextStyle {
+    /// Size in logical pixels.
+    pub size: f64,
+    /// Colour.
+    pub colour: Colour,
+    /// Horizontal anchor; the vertical one is the middle of the capital letters.
+    pub anchor: Anchor,
+    /// Bold instead of regular.
+    pub bold: bool,
+    /// Reading upwards instead of to the right.
+    pub upwards: bool,
+}
+
+impl TextStyle {
+    /// Regular ink-coloured text that reads to the right.
+    pub fn new(size: f64, anchor: Anchor) -> Self {
+        TextStyle {
+            size,
+            colour: Colour::INK,
+            anchor,
+            bold: false,
+            upwards: false,
+        }
+    }
+}
+
+/// Something to draw on.
+pub trait Canvas {
+    /// Fills a polygon.
+    fn polygon(&mut self, points: &[Point], fill: Colour);
+    /// Draws a polyline of a width; `dash` holds lengths of strokes and gaps in turn, empty for a full line.
+    fn line(&mut self, points: &[Point], width: f64, colour: Colour, dash: &[f64]);
+    /// Draws a text with its anchor at a point.
+    fn text(&mut self, at: Point, text: &str, style: &TextStyle);
+}
+
+/// The font, regular or bold.
+pub(super) fn font(bold: bool) -> &'static FontRef<'static> {
+    static REGULAR: OnceLock<FontRef<'static>> = OnceLock::new();
+    static BOLD: OnceLock<FontRef<'static>> = OnceLock::new();
+    let load = |bytes: &'static [u8]| {
+        FontRef::try_from_slice(bytes).expect("the font inside the program is sound")
+    };
+    if bold {
+        BOLD.get_or_init(|| load(dejavu::sans::bold()))
+    } else {
+        REGULAR.get_or_init(|| load(dejavu::sans::regular()))
+    }
+}
+
+/// Height of the capital letters of DejaVu Sans over its em (1493 of 2048 font units).
+pub(super) const CAP_HEIGHT: f64 = 0.729;
+
+/// ab_glyph scales by ascent plus descent, everybody else by the em.
+pub(super) fn px_scale(size: f64, bold: bool) -> f32 {
+    let font = font(bold);
+    let em = font.units_per_em().unwrap_or(2048.0);
+    (size as f32) * font.height_unscaled() / em
+}
+
+/// A piece of a text in one size: its characters, its size and how far its baseline is raised.
+pub(super) struct Run {
+    pub text: String,
+    pub size: f64,
+    pub raise: f64,
+}
+
+/// Splits a text at its sub- and superscripts.
+pub(super) fn runs(text: &str, size: f64) -> Vec<Run> {
+    let mut out: Vec<Run> = Vec::new();
+    let mut push = |text: &str, size: f64, raise: f64| {
+        if !text.is_empty() {
+            out.push(Run {
+                text: text.to_string(),
+                size,
+                raise,
+            });
+        }
+    };
+    let mut rest = text;
+    while let Some(start) = rest.find("_{").into_iter().chain(rest.find("^{")).min() {
+        let Some(length) = rest[start..].find('}') else {
+            break;
+        };
+        push(&rest[..start], size, 0.0);
+        let raise = if rest[start..].starts_with('_') {
+            -0.18
+        } else {
+            0.36
+        };
+        push(&rest[start + 2..start + length], 0.7 * size, raise * size);
+        rest = &rest[start + length + 1..];
+    }
+    push(rest, size, 0.0);
+    out
+}
+
+/// Width of a run in logical pixels.
+pub(super) fn run_width(run: &Run, bold: bool) -> f64 {
+    let font = font(bold).as_scaled(px_scale(run.size, bold));
+    let mut width = 0.0;
+    let mut last = None;
+    for c in run.text.chars() {
+        let id = font.glyph_id(c);
+        if let Some(last) = last {
+            width += font.kern(last, id);
+        }
+        width += font.h_advance(id);
+        last = Some(id);
+    }
+    f64::from(width)
+}
+
+/// Width of a text in logical pixels.
+pub fn text_width(text: &str, size: f64, bold: bool) -> f64 {
+    runs(text, size)
+        .iter()
+        .map(|run| run_width(run, bold))
+        .sum()
+}
+
+/// The text, or as much of its start and its end as fits into a width, with an ellipsis between: of the name of an interface
+/// both bodies are seen.
+pub fn shortened(text: &str, size: f64, bold: bool, width: f64) -> String {
+    if text_width(text, size, bold) <= width {
+        return text.to_string();
+    }
+    let letters: Vec<char> = text.chars().collect();
+    let cut = |kept: usize| -> String {
+        let start: String = letters[..kept.div_ceil(2)].iter().collect();
+        let end: String = letters[letters.len() - kept / 2..].iter().collect();
+        format!("{}…{}", start.trim_end(), end.trim_start())
+    };
+    let fits = |kept: &usize| text_width(&cut(*kept), size, bold) <= width;
+    cut((1..letters.len()).rev().find(fits).unwrap_or(0))
+}
+
+/// Points of a circle as a polygon, fine enough for markers.
+pub fn circle(centre: Point, radius: f64) -> Vec<Point> {
+    (0..24)
+        .map(|k| {
+            let angle = std::f64::consts::TAU * f64::from(k) / 24.0;
+            (
+                centre.0 + radius * angle.cos(),
+                centre.1 + radius * angle.sin(),
+            )
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_are_those_of_the_font() {
+        // DejaVu Sans: the digit zero is 1303 of 2048 units wide, the capital M 1767.
+        assert!((text_width("0", 2048.0, false) - 1303.0).abs() < 1.0);
+        assert!((text_width("0M", 1024.0, false) - (1303.0 + 1767.0) / 2.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn long_texts_are_shortened() {
+        assert_eq!(shortened("left|right", 10.0, true, 200.0), "left|right");
+        let short = shortened("a long name of a body | another one", 10.0, true, 80.0);
+        assert!(
+            short.starts_with("a long…") && short.ends_with("one"),
+            "{short}"
+        );
+        let width = text_width(&short, 10.0, true);
+        assert!(width <= 80.0 && width > 65.0, "{width}");
+    }
+
+    #[test]
+    fn scripts_are_smaller_runs() {
+        let parts = runs("H_{b}/H_{s} 10^{-3}", 10.0);
+        let texts: Vec<&str> = parts.iter().map(|r| r.text.as_str()).collect();
+        assert_eq!(texts, ["H", "b", "/H", "s", " 10", "-3"]);
+        assert!(parts[1].raise < 0.0 && parts[5].raise > 0.0 && parts[5].size < 10.0);
+        // A plain underscore, as in file names, stays.
+        assert_eq!(
+            runs("poisson_2x2_{", 10.0)
+                .iter()
+                .map(|r| r.text.as_str())
+                .collect::<String>(),
+            "poisson_2x2_{"
+        );
+    }
+}

@@ -1,0 +1,102 @@
+//! What adaptivity added, in words and as JSON.
+
+use serde::{Deserialize, Serialize};
+
+use super::Spectrum;
+
+/// Constraints inside bodies, and deflation of eigenvalues above τ between them; key `adaptive` of a report.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Adaptive {
+    /// Primal constraints that were added in every body, by its number; empty where none was looked for.
+    pub constraints: Vec<usize>,
+    /// Seconds of finding them; part of `seconds.setup`.
+    pub constraint_seconds: f64,
+    /// The deflation; absent where nothing was searched for.
+    pub deflation: Option<Deflation>,
+}
+
+/// Deflation of eigenvalues above τ.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Deflation {
+    /// τ.
+    pub tau: f64,
+    /// Vectors of all bodies.
+    pub vectors: usize,
+    /// Vectors of every body, by its number.
+    pub by_body: Vec<usize>,
+    /// Vectors beside those that bodies share.
+    pub shared: usize,
+    /// Vectors that depend on those of neighbours.
+    pub dependent: usize,
+    /// Whether the iteration broke down with the vectors, and was started anew without them.
+    pub given_up: bool,
+    /// The largest eigenvalue of a body's pencil that is deflated; 0 without vectors.
+    pub largest: f64,
+    /// Bodies with more vectors than `-fetifeti_adaptive_max` allows.
+    pub capped: Vec<String>,
+    /// Seconds of the search and of the matrices; part of `seconds.solve` where the iteration asked for it.
+    pub seconds: f64,
+    /// The spectrum without deflation: exact, where that was asked for and converged.
+    pub exact_without: Option<Spectrum>,
+    /// The same as the iterations before the search saw it.
+    pub estimate_without: Option<Spectrum>,
+}
+
+impl Adaptive {
+    /// How many constraints were added and where.
+    pub fn constraints_text(&self) -> String {
+        let bodies = self.constraints.iter().filter(|n| **n > 0).count();
+        let count = |n: usize, one: &str, many: &str| match n {
+            1 => format!("1 {one}"),
+            n => format!("{n} {many}"),
+        };
+        format!(
+            "{} added in {}, {:.3} s",
+            count(self.constraints.iter().sum(), "constraint", "constraints"),
+            count(bodies, "body", "bodies"),
+            self.constraint_seconds
+        )
+    }
+}
+
+impl Deflation {
+    /// One line of a summary, and one more where a body needs more vectors than it may have.
+    pub fn text(&self) -> String {
+        let bodies = self.by_body.iter().filter(|n| **n > 0).count();
+        let most = self.by_body.iter().max().copied().unwrap_or(0);
+        let found = match self.vectors {
+            0 => format!("no eigenvalue above {} in any body", self.tau),
+            n => format!(
+                "{n} vector{} above {} in {bodies} of {} bodies (at most {most} in one)",
+                if n == 1 { "" } else { "s" },
+                self.tau,
+                self.by_body.len()
+            ),
+        };
+        let without = match (self.exact_without, self.estimate_without) {
+            (Some(s), _) => format!("; κ without {:.4e}", s.kappa),
+            (None, Some(s)) => format!("; κ without at least {:.1e}", s.kappa),
+            _ => String::new(),
+        };
+        let found = match self.shared {
+            0 => found,
+            n => format!("{found} and {n} that bodies share"),
+        };
+        let found = match self.given_up {
+            true => format!("{found}, given up: the iteration broke down with them"),
+            false => found,
+        };
+        let mut out = format!("{found}, {:.3} s{without}", self.seconds);
+        if let Some(first) = self.capped.first() {
+            let more = match self.capped.len() {
+                1 => String::new(),
+                n => format!(" and {} more", n - 1),
+            };
+            out += &format!(
+                "; body \"{first}\"{more} has eigenvalues above {} that are left, for want of vectors (-fetifeti_adaptive_max)",
+                self.tau
+            );
+        }
+        out
+    }
+}

@@ -1,0 +1,293 @@
+//! The record of a contact solve: key `contact` of [`super::SolveReport`].
+//!
+//! Forces are sums of multipliers, in the units of the loads; a multiplier of an inequality is positive where the bodies press
+//! against each other. In elasticity forces have directions: `force` is still the sum of the multipliers, `resultant` their vector
+//! sum. As in [`crate::report::json`], a number that is not known or not finite is `null` and never NaN.
+
+use super::{number, Spectrum};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// How the contact was found, and what holds it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactReport {
+    /// The methods that made the steps, in the order in which they came: `active_set`, or `active_set, then smalbe` where the first
+    /// gave up, or `smalbe, then active_set`, whose steps close what SMALBE has found.
+    pub method: String,
+    /// Inequalities: pairs of nodes, or nodes at an obstacle, that may touch.
+    pub candidates: usize,
+    /// Those that touch.
+    pub active: usize,
+    /// Numerical factorisations of subdomain matrices over the whole run.
+    pub factorisations: usize,
+    /// Subdomains with different matrices: what `factorisations` has to be.
+    pub distinct_subdomains: usize,
+    /// The outer iteration, over all load steps.
+    pub steps: Vec<OuterStep>,
+    /// Where bodies meet each other or an obstacle.
+    pub interfaces: Vec<InterfaceForce>,
+    /// Equilibrium, body by body.
+    pub bodies: Vec<BodyBalance>,
+    /// One record per load step; empty without load steps.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub load_steps: Vec<LoadStep>,
+}
+
+/// One step of the outer iteration.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct OuterStep {
+    /// Load step that it belongs to, from 1; 0 without load steps.
+    pub load_step: usize,
+    /// Number of the step, from 1 in every load step.
+    pub step: usize,
+    /// `active_set` or `smalbe`.
+    pub method: String,
+    /// Active inequalities in this step.
+    pub active: usize,
+    /// Inequalities that were not active in the step before.
+    pub entered: usize,
+    /// Inequalities that were active in the step before and no longer are.
+    pub left: usize,
+    /// Inner iterations.
+    pub iterations: usize,
+    /// Spectrum as the inner iteration estimates it; `null` where it gives none.
+    pub estimate: Option<Spectrum>,
+    /// Spectrum with these rows by the eigenvalue solver; `null` where it was not asked for.
+    pub exact: Option<Spectrum>,
+    /// Rows on the wrong side at the end of the step: violated, or pulling.
+    pub wrong: usize,
+    /// Residual at the end of the step, relative to the start of the first step.
+    #[serde(with = "number")]
+    pub residual: f64,
+    /// Relative tolerance of the inner iteration.
+    #[serde(with = "number")]
+    pub tolerance: f64,
+    /// Wall-clock time.
+    #[serde(with = "number")]
+    pub seconds: f64,
+}
+
+/// What holds the two sides of an interface together.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum InterfaceKind {
+    /// Inequalities between two bodies.
+    #[default]
+    Contact,
+    /// Equations between two bodies.
+    Tied,
+    /// Inequalities between a body and something rigid.
+    Obstacle,
+    /// Equations and inequalities on one face.
+    Mixed,
+}
+
+impl InterfaceKind {
+    /// The word that JSON has.
+    pub fn name(self) -> &'static str {
+        match self {
+            InterfaceKind::Contact => "contact",
+            InterfaceKind::Tied => "tied",
+            InterfaceKind::Obstacle => "obstacle",
+            InterfaceKind::Mixed => "mixed",
+        }
+    }
+}
+
+/// Force through one interface.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct InterfaceForce {
+    /// `left|right` for two bodies, `left.top above` for an obstacle.
+    pub name: String,
+    /// What kind of rows it has.
+    pub kind: InterfaceKind,
+    /// Rows, equations included.
+    pub candidates: usize,
+    /// Rows that hold.
+    pub active: usize,
+    /// Sum of the multipliers.
+    #[serde(with = "number")]
+    pub force: f64,
+    /// Largest distance that is left; 0 for equations.
+    #[serde(with = "number")]
+    pub largest_gap: f64,
+    /// Smallest distance that is left; negative where the sides overlap.
+    #[serde(with = "number")]
+    pub smallest_gap: f64,
+    /// Smallest multiplier.
+    #[serde(with = "number")]
+    pub min_multiplier: f64,
+    /// Largest multiplier.
+    #[serde(with = "number")]
+    pub max_multiplier: f64,
+    /// Elasticity: Σ λ n by components, the force with which the first body presses on the second, or on the obstacle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resultant: Option<Vec<f64>>,
+    /// Elasticity and solids, where sides may touch: the largest multiplier over its nodal area.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_pressure: Option<f64>,
+    /// Elasticity and solids, where sides may touch: sum of the nodal areas of the rows that hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area: Option<f64>,
+}
+
+/// A force: a number in scalar problems, a list of components in elasticity.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Amount(pub Vec<f64>);
+
+impl From<f64> for Amount {
+    fn from(x: f64) -> Amount {
+        Amount(vec![x])
+    }
+}
+
+/// An [`Amount`] as JSON has it.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Number(Option<f64>),
+    List(Vec<Option<f64>>),
+}
+
+impl Serialize for Amount {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        let finite = |x: &f64| x.is_finite().then_some(*x);
+        match &self.0[..] {
+            [] => Written::Number(Some(0.0)),
+            [x] => Written::Number(finite(x)),
+            list => Written::List(list.iter().map(finite).collect()),
+        }
+        .serialize(s)
+    }
+}
+
+impl<'de> Deserialize<'de> for Amount {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
+        Ok(match Written::deserialize(d)? {
+            Written::Number(x) => number(x).into(),
+            Written::List(list) => Amount(list.into_iter().map(number).collect()),
+        })
+    }
+}
+
+/// Equilibrium of one body.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct BodyBalance {
+    /// The body.
+    pub name: String,
+    /// Whether nothing but its neighbours holds it.
+    pub floating: bool,
+    /// Resultant of its loads.
+    pub load: Amount,
+    /// Resultant of the forces on its interfaces and at its obstacles.
+    pub contact: Amount,
+    /// Resultant of the reactions at given displacements; `null` for a body without any.
+    pub reaction: Option<Amount>,
+    /// What is missing to equilibrium, relative to the forces; in elasticity in the components that are given nowhere.
+    #[serde(with = "number")]
+    pub imbalance: f64,
+    /// Elasticity, bodies without given displacements: what is missing to equilibrium of the moments about the body's centre, relative to
+    /// the moments of the single forces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moment_imbalance: Option<f64>,
+}
+
+/// One load step.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct LoadStep {
+    /// Time, or load parameter.
+    #[serde(with = "number")]
+    pub t: f64,
+    /// Outer steps.
+    pub outer_iterations: usize,
+    /// Inner iterations.
+    pub iterations: usize,
+    /// Active inequalities at its end.
+    pub active: usize,
+    /// ½ uᵀKu − fᵀu.
+    #[serde(with = "number")]
+    pub energy: f64,
+    /// Sum of the multipliers of all inequalities.
+    #[serde(with = "number")]
+    pub contact_force: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{json, Value};
+
+    #[test]
+    fn keys_are_those_that_programs_read() {
+        let report = ContactReport {
+            method: "active_set".into(),
+            steps: vec![OuterStep::default()],
+            interfaces: vec![InterfaceForce {
+                kind: InterfaceKind::Obstacle,
+                ..InterfaceForce::default()
+            }],
+            bodies: vec![BodyBalance::default()],
+            ..ContactReport::default()
+        };
+        let value = serde_json::to_value(&report).unwrap();
+        let step = json!({
+            "load_step": 0, "step": 0, "method": "", "active": 0, "entered": 0, "left": 0, "iterations": 0,
+            "estimate": null, "exact": null, "wrong": 0, "residual": 0.0, "tolerance": 0.0, "seconds": 0.0,
+        });
+        let interface = json!({
+            "name": "", "kind": "obstacle", "candidates": 0, "active": 0, "force": 0.0, "largest_gap": 0.0,
+            "smallest_gap": 0.0, "min_multiplier": 0.0, "max_multiplier": 0.0,
+        });
+        let body = json!({
+            "name": "", "floating": false, "load": 0.0, "contact": 0.0, "reaction": null, "imbalance": 0.0,
+        });
+        let expected = json!({
+            "method": "active_set", "candidates": 0, "active": 0, "factorisations": 0, "distinct_subdomains": 0,
+            "steps": [step], "interfaces": [interface], "bodies": [body],
+        });
+        assert_eq!(value, expected, "no key load_steps without load steps");
+        let words: Vec<Value> = [
+            InterfaceKind::Contact,
+            InterfaceKind::Tied,
+            InterfaceKind::Mixed,
+        ]
+        .map(|k| {
+            let word = serde_json::to_value(k).unwrap();
+            assert_eq!(word, k.name());
+            word
+        })
+        .to_vec();
+        assert_eq!(words, ["contact", "tied", "mixed"]);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_null_and_comes_back() {
+        let report = ContactReport {
+            steps: vec![OuterStep {
+                residual: f64::NAN,
+                tolerance: f64::INFINITY,
+                ..OuterStep::default()
+            }],
+            bodies: vec![BodyBalance {
+                reaction: Some(f64::NAN.into()),
+                load: Amount(vec![1.5, f64::NAN]),
+                imbalance: f64::NAN,
+                ..BodyBalance::default()
+            }],
+            load_steps: vec![LoadStep {
+                t: 0.5,
+                energy: f64::NEG_INFINITY,
+                ..LoadStep::default()
+            }],
+            ..ContactReport::default()
+        };
+        let text = crate::report::json::to_string(&report).unwrap();
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+        let back: ContactReport = serde_json::from_str(&text).unwrap();
+        assert!(back.steps[0].residual.is_nan() && back.steps[0].tolerance.is_nan());
+        let load = &back.bodies[0].load.0;
+        assert!(load[0] == 1.5 && load[1].is_nan() && load.len() == 2);
+        assert!(back.bodies[0].reaction.is_none() && back.bodies[0].imbalance.is_nan());
+        assert!(back.load_steps[0].energy.is_nan() && back.load_steps[0].t == 0.5);
+    }
+}

@@ -1,0 +1,5 @@
+//! Files for ParaView: VTU with point and cell data, contact as point data, time series.
+
+pub mod contact_fields;
+pub mod pvd;
+pub mod vtu;

@@ -1,0 +1,461 @@
+//! ParaView's unstructured grids (`.vtu`): XML with arrays as base64 of little-endian numbers behind a UInt64 length.
+
+use crate::report::output;
+use crate::{Error, Result};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Shape of all cells of a grid; corners in VTK's order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// Two points.
+    Line,
+    /// Three points, counterclockwise.
+    Triangle,
+    /// Four points, counterclockwise.
+    Quad,
+    /// Four points.
+    Tetrahedron,
+    /// Eight points: bottom counterclockwise, then top.
+    Hexahedron,
+}
+
+impl Shape {
+    /// Corners per cell.
+    pub fn corners(self) -> usize {
+        match self {
+            Shape::Line => 2,
+            Shape::Triangle => 3,
+            Shape::Quad | Shape::Tetrahedron => 4,
+            Shape::Hexahedron => 8,
+        }
+    }
+
+    /// VTK's number for the shape.
+    fn vtk(self) -> u8 {
+        match self {
+            Shape::Line => 3,
+            Shape::Triangle => 5,
+            Shape::Quad => 9,
+            Shape::Tetrahedron => 10,
+            Shape::Hexahedron => 12,
+        }
+    }
+}
+
+/// Numbers of a data array.
+#[derive(Debug, Clone, Copy)]
+pub enum Values<'a> {
+    /// Written as Float64.
+    Float(&'a [f64]),
+    /// Written as Int32.
+    Int(&'a [i32]),
+}
+
+impl Values<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Values::Float(v) => v.len(),
+            Values::Int(v) => v.len(),
+        }
+    }
+}
+
+impl<'a> From<&'a [f64]> for Values<'a> {
+    fn from(v: &'a [f64]) -> Self {
+        Values::Float(v)
+    }
+}
+
+impl<'a> From<&'a [i32]> for Values<'a> {
+    fn from(v: &'a [i32]) -> Self {
+        Values::Int(v)
+    }
+}
+
+struct Array<'a> {
+    name: String,
+    components: usize,
+    values: Values<'a>,
+}
+
+/// A grid with its data, ready to be written.
+pub struct Vtu<'a> {
+    points: &'a [[f64; 3]],
+    shape: Shape,
+    cells: &'a [u32],
+    point_data: Vec<Array<'a>>,
+    cell_data: Vec<Array<'a>>,
+}
+
+impl<'a> Vtu<'a> {
+    /// A grid of n points and of cells of one shape; `cells` lists the corners of one cell after the other.
+    pub fn new(points: &'a [[f64; 3]], shape: Shape, cells: &'a [u32]) -> Self {
+        Vtu {
+            points,
+            shape,
+            cells,
+            point_data: Vec::new(),
+            cell_data: Vec::new(),
+        }
+    }
+
+    /// Adds an array with `components` numbers per point (1 for a scalar, 3 for a vector), point by point.
+    #[must_use]
+    pub fn point_data(
+        mut self,
+        name: &str,
+        components: usize,
+        values: impl Into<Values<'a>>,
+    ) -> Self {
+        self.point_data.push(Array {
+            name: name.to_string(),
+            components,
+            values: values.into(),
+        });
+        self
+    }
+
+    /// Adds an array with `components` numbers per cell, cell by cell.
+    #[must_use]
+    pub fn cell_data(
+        mut self,
+        name: &str,
+        components: usize,
+        values: impl Into<Values<'a>>,
+    ) -> Self {
+        self.cell_data.push(Array {
+            name: name.to_string(),
+            components,
+            values: values.into(),
+        });
+        self
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when an array does not fit the grid; [`Error::Environment`] with the path.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        self.check()?;
+        output::write_file(path, |out| self.fill(out))
+    }
+
+    fn n_cells(&self) -> usize {
+        self.cells.len() / self.shape.corners()
+    }
+
+    fn check(&self) -> Result<()> {
+        if self.cells.len() % self.shape.corners() != 0 {
+            return Err(Error::input(format!(
+                "the grid lists {} corners, expected a multiple of {}",
+                self.cells.len(),
+                self.shape.corners()
+            )));
+        }
+        if let Some(bad) = self
+            .cells
+            .iter()
+            .find(|&&c| c as usize >= self.points.len())
+        {
+            return Err(Error::input(format!(
+                "a cell names point {bad}, but the grid has {} points",
+                self.points.len()
+            )));
+        }
+        for (arrays, count, what) in [
+            (&self.point_data, self.points.len(), "points"),
+            (&self.cell_data, self.n_cells(), "cells"),
+        ] {
+            for a in arrays {
+                if a.values.len() != count * a.components {
+                    return Err(Error::input(format!(
+                        "the array '{}' has {} numbers, expected {} for each of {count} {what}",
+                        a.name,
+                        a.values.len(),
+                        a.components
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn fill(&self, out: &mut dyn Write) -> io::Result<()> {
+        let n_cells = self.n_cells();
+        writeln!(out, "<?xml version=\"1.0\"?>")?;
+        writeln!(
+            out,
+            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
+        )?;
+        writeln!(out, "<UnstructuredGrid>")?;
+        writeln!(
+            out,
+            "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{n_cells}\">",
+            self.points.len()
+        )?;
+        for (tag, arrays) in [
+            ("PointData", &self.point_data),
+            ("CellData", &self.cell_data),
+        ] {
+            writeln!(out, "<{tag}>")?;
+            for a in arrays {
+                match a.values {
+                    Values::Float(v) => {
+                        array(
+                            out,
+                            &a.name,
+                            "Float64",
+                            a.components,
+                            v.len(),
+                            v.iter().map(|x| x.to_le_bytes()),
+                        )?;
+                    }
+                    Values::Int(v) => {
+                        array(
+                            out,
+                            &a.name,
+                            "Int32",
+                            a.components,
+                            v.len(),
+                            v.iter().map(|x| x.to_le_bytes()),
+                        )?;
+                    }
+                }
+            }
+            writeln!(out, "</{tag}>")?;
+        }
+        writeln!(out, "<Points>")?;
+        let coordinates = self.points.iter().flatten().map(|x| x.to_le_bytes());
+        array(
+            out,
+            "Points",
+            "Float64",
+            3,
+            3 * self.points.len(),
+            coordinates,
+        )?;
+        writeln!(out, "</Points>\n<Cells>")?;
+        let corners = self.shape.corners() as i64;
+        let connectivity = self.cells.iter().map(|&c| i64::from(c).to_le_bytes());
+        array(
+            out,
+            "connectivity",
+            "Int64",
+            1,
+            self.cells.len(),
+            connectivity,
+        )?;
+        let offsets = (1..=n_cells as i64).map(|k| (k * corners).to_le_bytes());
+        array(out, "offsets", "Int64", 1, n_cells, offsets)?;
+        array(
+            out,
+            "types",
+            "UInt8",
+            1,
+            n_cells,
+            (0..n_cells).map(|_| [self.shape.vtk()]),
+        )?;
+        writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
+    }
+}
+
+/// One DataArray element of `count` numbers of N bytes.
+fn array<const N: usize>(
+    out: &mut dyn Write,
+    name: &str,
+    kind: &str,
+    components: usize,
+    count: usize,
+    numbers: impl Iterator<Item = [u8; N]>,
+) -> io::Result<()> {
+    let name = name
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('"', "&quot;");
+    let components = if components == 1 {
+        String::new()
+    } else {
+        format!(" NumberOfComponents=\"{components}\"")
+    };
+    writeln!(
+        out,
+        "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"binary\">"
+    )?;
+    let mut base64 = Base64 {
+        out: &mut *out,
+        held: [0; 3],
+        n: 0,
+    };
+    base64.put(&((count * N) as u64).to_le_bytes())?;
+    for number in numbers {
+        base64.put(&number)?;
+    }
+    base64.finish()?;
+    writeln!(out, "\n</DataArray>")
+}
+
+/// Base64 (RFC 4648) as a stream: arrays of any length need no second copy.
+struct Base64<'a> {
+    out: &'a mut dyn Write,
+    held: [u8; 3],
+    n: usize,
+}
+
+impl Base64<'_> {
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+        for &b in bytes {
+            self.held[self.n] = b;
+            self.n += 1;
+            if self.n == 3 {
+                self.out.write_all(&group(self.held))?;
+                self.n = 0;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> io::Result<()> {
+        if self.n > 0 {
+            self.held[self.n..].fill(0);
+            let mut text = group(self.held);
+            text[self.n + 1..].fill(b'=');
+            self.out.write_all(&text)?;
+        }
+        self.n = 0;
+        Ok(())
+    }
+}
+
+fn group([a, b, c]: [u8; 3]) -> [u8; 4] {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let bits = (u32::from(a) << 16) | (u32::from(b) << 8) | u32::from(c);
+    [18, 12, 6, 0].map(|shift| DIGITS[(bits >> shift) as usize & 63])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An independent decoder: digit by digit into a string of bits.
+    fn decode(text: &str) -> Vec<u8> {
+        let mut bits = String::new();
+        for c in text.trim().trim_end_matches('=').bytes() {
+            let value = match c {
+                b'A'..=b'Z' => c - b'A',
+                b'a'..=b'z' => c - b'a' + 26,
+                b'0'..=b'9' => c - b'0' + 52,
+                b'+' => 62,
+                b'/' => 63,
+                other => panic!("{other} is no base64 digit"),
+            };
+            bits.push_str(&format!("{value:06b}"));
+        }
+        (0..bits.len() / 8)
+            .map(|k| u8::from_str_radix(&bits[8 * k..8 * k + 8], 2).unwrap())
+            .collect()
+    }
+
+    /// The bytes of a named array behind their length.
+    fn bytes_of(file: &str, name: &str) -> Vec<u8> {
+        let after = file.split(&format!("Name=\"{name}\"")).nth(1).unwrap();
+        let content = after.split_once('>').unwrap().1.split_once('<').unwrap().0;
+        let bytes = decode(content);
+        let (length, data) = bytes.split_at(8);
+        assert_eq!(
+            u64::from_le_bytes(length.try_into().unwrap()) as usize,
+            data.len()
+        );
+        data.to_vec()
+    }
+
+    fn floats(bytes: &[u8]) -> Vec<f64> {
+        bytes
+            .chunks(8)
+            .map(|b| f64::from_le_bytes(b.try_into().unwrap()))
+            .collect()
+    }
+
+    const POINTS: [[f64; 3]; 6] = [
+        [0., 0., 0.],
+        [1., 0., 0.],
+        [2., 0., 0.],
+        [0., 1., 0.],
+        [1., 1., 0.],
+        [2., 1.5, 0.],
+    ];
+    const QUADS: [u32; 8] = [0, 1, 4, 3, 1, 2, 5, 4];
+
+    fn text(vtu: &Vtu) -> String {
+        let mut out = Vec::new();
+        vtu.fill(&mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn base64_by_the_rfc() {
+        for (plain, coded) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+        ] {
+            let mut out = Vec::new();
+            let mut base64 = Base64 {
+                out: &mut out,
+                held: [0; 3],
+                n: 0,
+            };
+            base64.put(plain.as_bytes()).unwrap();
+            base64.finish().unwrap();
+            assert_eq!(String::from_utf8(out).unwrap(), coded);
+        }
+    }
+
+    #[test]
+    fn arrays_read_back() {
+        let u = [0.0, 0.1, -2.5, 1e-300, f64::MAX, 6.0];
+        let body = [0, -1];
+        let velocity: Vec<f64> = (0..6).map(f64::from).collect();
+        let vtu = Vtu::new(&POINTS, Shape::Quad, &QUADS)
+            .point_data("u", 1, &u[..])
+            .cell_data("v", 3, &velocity[..])
+            .cell_data("body", 1, &body[..]);
+        vtu.check().unwrap();
+        let file = text(&vtu);
+        assert!(file.contains("NumberOfPoints=\"6\" NumberOfCells=\"2\""));
+        assert_eq!(floats(&bytes_of(&file, "u")), u);
+        assert_eq!(floats(&bytes_of(&file, "v")), velocity);
+        assert_eq!(bytes_of(&file, "body"), [0, 0, 0, 0, 255, 255, 255, 255]);
+        assert_eq!(floats(&bytes_of(&file, "Points")), POINTS.concat());
+        let integers = |name| -> Vec<i64> {
+            bytes_of(&file, name)
+                .chunks(8)
+                .map(|b| i64::from_le_bytes(b.try_into().unwrap()))
+                .collect()
+        };
+        assert_eq!(integers("connectivity"), QUADS.map(i64::from));
+        assert_eq!(integers("offsets"), [4, 8]);
+        assert_eq!(bytes_of(&file, "types"), [9, 9]);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let short = [1.0; 5];
+        let path = Path::new("/dev/null");
+        let cases = [
+            (
+                Vtu::new(&POINTS, Shape::Quad, &QUADS).point_data("u", 1, &short[..]),
+                "'u' has 5 numbers",
+            ),
+            (Vtu::new(&POINTS, Shape::Quad, &QUADS[..7]), "multiple of 4"),
+            (Vtu::new(&POINTS[..5], Shape::Quad, &QUADS), "point 5"),
+        ];
+        for (vtu, part) in cases {
+            let message = vtu.write(path).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+    }
+}

@@ -1,0 +1,386 @@
+//! Pictures of fields on meshes of quadrilaterals: u and ρ side by side with colour bars, bodies outlined.
+//!
+//! Cells are painted pixel by pixel, so that a million of them cost a fraction of a second. Points may be listed once per body
+//! or once per subdomain: lines between bodies and subdomains are found from the coordinates.
+
+use super::marks;
+use super::outline::Lines;
+use super::paint::{axes, colour_bar, colour_range, paint, View, BAR};
+use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use crate::report::drawing::raster::Raster;
+use crate::report::drawing::ticks::Scale;
+use crate::{Error, Result};
+use std::path::Path;
+
+pub use super::marks::ContactMark;
+pub use super::outline::Mesh;
+
+/// Numbers to show.
+#[derive(Debug, Clone, Copy)]
+pub enum Values<'a> {
+    /// One per point, interpolated in the cells.
+    Nodal(&'a [f64]),
+    /// One per cell.
+    Cell(&'a [f64]),
+}
+
+impl<'a> Values<'a> {
+    pub(super) fn numbers(self) -> &'a [f64] {
+        match self {
+            Values::Nodal(v) | Values::Cell(v) => v,
+        }
+    }
+}
+
+/// One picture: what it is called and what it shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Field<'a> {
+    /// Written above it.
+    pub title: &'a str,
+    /// What it shows.
+    pub values: Values<'a>,
+    /// Scale of the colours.
+    pub scale: Scale,
+}
+
+/// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100. Where
+/// sides may touch, between bodies or at obstacles, `contact` says so: its marks are drawn on u. Empty without contact.
+///
+/// # Errors
+/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
+pub fn write_solution(
+    mesh: &Mesh,
+    u: &[f64],
+    rho: &[f64],
+    contact: &[ContactMark],
+    title: &str,
+    path: &Path,
+) -> Result<()> {
+    let fields = [
+        Field {
+            title: "solution u",
+            values: Values::Nodal(u),
+            scale: Scale::Linear,
+        },
+        Field {
+            title: "coefficient ρ",
+            values: Values::Cell(rho),
+            scale: coefficient_scale(rho),
+        },
+    ];
+    check(mesh, &fields)?;
+    draw(mesh, &fields, contact, title).write_png(path)
+}
+
+/// The scale that shows a coefficient: logarithmic where it varies by more than 100.
+pub fn coefficient_scale(values: &[f64]) -> Scale {
+    let (low, high) = extremes(values);
+    if low > 0.0 && high > 100.0 * low {
+        Scale::Log
+    } else {
+        Scale::Linear
+    }
+}
+
+/// Writes any fields of one mesh as PNG: side by side, or under each other where the mesh is wide.
+///
+/// # Errors
+/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
+pub fn write(mesh: &Mesh, fields: &[Field], title: &str, path: &Path) -> Result<()> {
+    check(mesh, fields)?;
+    draw(mesh, fields, &[], title).write_png(path)
+}
+
+/// As [`write()`] for bodies that have been displaced: `mesh` as it was, `shown` where its points are drawn; bodies are outlined each for
+/// itself, and thinly as they were. `contact` is marked where it is drawn.
+///
+/// # Errors
+/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
+pub fn write_displaced(
+    mesh: &Mesh,
+    shown: &[[f64; 2]],
+    fields: &[Field],
+    contact: &[ContactMark],
+    title: &str,
+    path: &Path,
+) -> Result<()> {
+    check(mesh, fields)?;
+    if shown.len() != mesh.points.len() {
+        return Err(Error::input(format!(
+            "the picture's mesh lists {} displaced points, expected {}",
+            shown.len(),
+            mesh.points.len()
+        )));
+    }
+    let moved = Mesh {
+        points: shown,
+        ..*mesh
+    };
+    let before = mesh.lines_at(mesh.points, true).bodies;
+    let lines = mesh.lines_at(shown, true);
+    draw_lines(&moved, fields, contact, title, &lines, &before).write_png(path)
+}
+
+fn check(mesh: &Mesh, fields: &[Field]) -> Result<()> {
+    mesh.check()?;
+    for field in fields {
+        let (expected, what) = match field.values {
+            Values::Nodal(_) => (mesh.points.len(), "points"),
+            Values::Cell(_) => (mesh.quads.len(), "cells"),
+        };
+        let found = field.values.numbers().len();
+        if found != expected {
+            return Err(Error::input(format!(
+                "the field '{}' has {found} numbers, expected one for each of {expected} {what}",
+                field.title
+            )));
+        }
+    }
+    Ok(())
+}
+
+const TEXT: f64 = 13.0;
+const TITLE_TEXT: f64 = 15.0;
+const LEFT: f64 = 52.0;
+const BAR_GAP: f64 = 12.0;
+const LABELS: f64 = 74.0;
+/// Outlines of bodies before they moved.
+const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
+
+fn draw(mesh: &Mesh, fields: &[Field], contact: &[ContactMark], title: &str) -> Raster {
+    draw_lines(mesh, fields, contact, title, &mesh.lines(), &[])
+}
+
+/// Draws the fields with `lines` on them and `before`, the outlines of bodies before they moved, below.
+fn draw_lines(
+    mesh: &Mesh,
+    fields: &[Field],
+    contact: &[ContactMark],
+    title: &str,
+    lines: &Lines,
+    before: &[Vec<[f64; 2]>],
+) -> Raster {
+    let (mut low, mut high) = mesh.bounds();
+    for p in before.iter().flatten() {
+        for d in 0..2 {
+            low[d] = low[d].min(p[d]);
+            high[d] = high[d].max(p[d]);
+        }
+    }
+    let size = [
+        (high[0] - low[0]).max(1e-300),
+        (high[1] - low[1]).max(1e-300),
+    ];
+    let aspect = size[0] / size[1];
+    let wide = aspect > 1.7;
+    let scale = if wide {
+        860.0 / size[0]
+    } else {
+        (400.0 / size[0]).min(520.0 / size[1])
+    };
+    let (w, h) = (scale * size[0], scale * size[1]);
+    // A colour bar needs some height, a title some width, whatever the shape of the mesh.
+    let cell = (
+        LEFT + w.max(120.0) + BAR_GAP + BAR + LABELS,
+        h.max(90.0) + 2.4 * TEXT + 34.0,
+    );
+    let n = fields.len().max(1) as f64;
+    let (columns, rows) = if wide { (1.0, n) } else { (n, 1.0) };
+    let top = if title.is_empty() {
+        6.0
+    } else {
+        2.3 * TITLE_TEXT
+    };
+    let width = (columns * cell.0).max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
+    let below = marks::legend_height(contact);
+    let mut raster = Raster::new(width, top + rows * cell.1 + below, 2.0);
+    if !title.is_empty() {
+        let style = TextStyle {
+            bold: true,
+            ..TextStyle::new(TITLE_TEXT, Anchor::Middle)
+        };
+        raster.text((0.5 * width, 1.25 * TITLE_TEXT), title, &style);
+    }
+    for (k, field) in fields.iter().enumerate() {
+        let at = if wide {
+            (0.0, top + k as f64 * cell.1)
+        } else {
+            (k as f64 * cell.0, top)
+        };
+        let view = View {
+            low,
+            scale,
+            origin: (at.0 + LEFT, at.1 + 2.4 * TEXT + h),
+        };
+        let style = TextStyle {
+            bold: true,
+            ..TextStyle::new(TEXT, Anchor::Middle)
+        };
+        raster.text(
+            (view.origin.0 + 0.5 * w.max(60.0), at.1 + 1.2 * TEXT),
+            field.title,
+            &style,
+        );
+
+        let range = colour_range(field);
+        for line in before {
+            let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
+            raster.line(&line, 0.7, BEFORE, &[]);
+        }
+        paint(&mut raster, mesh, field, range, &view);
+
+        // Where subdomains are only a few pixels wide their lines would hide the field.
+        let spacing = |count: usize| (w * h / count.max(1) as f64).sqrt();
+        let between_subdomains = spacing(mesh.count(mesh.subdomain));
+        if between_subdomains > 7.0 {
+            for line in &lines.subdomains {
+                let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
+                raster.line(
+                    &line,
+                    (0.02 * between_subdomains).clamp(0.35, 0.7),
+                    Colour::WHITE,
+                    &[],
+                );
+            }
+        }
+        let body_line = (0.02 * spacing(mesh.count(mesh.body))).clamp(0.4, 1.5);
+        for line in &lines.bodies {
+            let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
+            raster.line(&line, body_line, Colour(0, 0, 0), &[]);
+        }
+        if k == 0 {
+            let spacing = spacing(mesh.count(mesh.body));
+            marks::draw(&mut raster, contact, &view, spacing);
+        }
+        axes(&mut raster, &view, low, high);
+        colour_bar(
+            &mut raster,
+            (view.origin.0 + w + BAR_GAP, view.origin.1),
+            h.max(90.0),
+            range,
+            field.scale,
+        );
+    }
+    let middle = top + rows * cell.1 + 0.5 * below - 4.0;
+    marks::legend(&mut raster, contact, (0.5 * width, middle));
+    raster
+}
+
+/// Smallest and largest finite number; (∞, −∞) without any.
+pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
+    let finite = values.iter().filter(|v| v.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |m, &v| {
+        (m.0.min(v), m.1.max(v))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::drawing::colormap::viridis;
+    use crate::report::pictures::outline::tests::grid;
+
+    #[test]
+    fn colours_stand_for_values() {
+        // u = x on the unit square: the left end is dark violet, the right end yellow, the middle teal.
+        let mesh = grid(2, 2, 4, false);
+        let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
+        let picture = draw(
+            &mesh.view(),
+            &[Field {
+                title: "u",
+                values: Values::Nodal(&u),
+                scale: Scale::Linear,
+            }],
+            &[],
+            "",
+        );
+        let (_, origin) = (0, (LEFT, 6.0 + 2.4 * TEXT + 400.0));
+        let at = |x: f64, y: f64| {
+            let p = ((origin.0 + 400.0 * x) * 2.0, (origin.1 - 400.0 * y) * 2.0);
+            picture.get(p.0 as usize, p.1 as usize)
+        };
+        let near = |a: Colour, b: Colour| {
+            [(a.0, b.0), (a.1, b.1), (a.2, b.2)]
+                .iter()
+                .all(|(x, y)| x.abs_diff(*y) <= 3)
+        };
+        for (x, y) in [(0.06, 0.3), (0.31, 0.8), (0.45, 0.45), (0.9, 0.1)] {
+            assert!(
+                near(at(x, y), viridis(x)),
+                "{:?} at {x}, {y}, expected {:?}",
+                at(x, y),
+                viridis(x)
+            );
+        }
+        // The line between the bodies.
+        assert_eq!(at(0.5, 0.3), Colour(0, 0, 0));
+    }
+
+    #[test]
+    fn the_contact_zone_is_marked_on_u() {
+        // Two bodies that touch along x = 1/2 in its lower half; the upper half is open.
+        let mesh = grid(2, 2, 4, false);
+        let u = vec![0.5; mesh.points.len()];
+        let field = [Field {
+            title: "u",
+            values: Values::Nodal(&u),
+            scale: Scale::Linear,
+        }; 2];
+        let marks: Vec<ContactMark> = (0..16)
+            .map(|k| ContactMark {
+                from: [0.5, f64::from(k) / 16.0],
+                to: [0.5, f64::from(k + 1) / 16.0],
+                closed: k < 8,
+            })
+            .collect();
+        let plain = draw(&mesh.view(), &field, &[], "");
+        let marked = draw(&mesh.view(), &field, &marks, "");
+        let (w, h) = plain.size();
+        assert_eq!(marked.size().0, w);
+        assert!(marked.size().1 > h, "room for the legend");
+        let red = |x: usize, y: usize| {
+            let c = marked.get(x, y);
+            c.0 > 200 && c.1 < 60
+        };
+        let rows =
+            |xs: std::ops::Range<usize>| (0..h).filter(move |&y| xs.clone().any(|x| red(x, y)));
+        // The lower half of the first picture, 400 logical pixels high, and nothing on the second.
+        let count = rows(0..w / 2).count();
+        assert!(count.abs_diff(400) < 12, "{count}");
+        assert_eq!(rows(w / 2..w).count(), 0);
+        // Dashes: black and white in turn, in the upper half.
+        let x = ((LEFT + 200.0) * 2.0) as usize;
+        let y0 = ((6.0 + 2.4 * TEXT) * 2.0) as usize;
+        let dark: Vec<bool> = (y0 + 8..y0 + 380)
+            .map(|y| marked.get(x, y).0 < 100)
+            .collect();
+        let changes = dark.windows(2).filter(|p| p[0] != p[1]).count();
+        assert!((30..80).contains(&changes), "{changes}");
+    }
+
+    #[test]
+    fn arrays_of_the_wrong_length_are_refused() {
+        let mesh = grid(1, 1, 2, false);
+        let (u, rho) = (
+            vec![0.0; mesh.points.len()],
+            vec![1.0; mesh.quads.len() + 1],
+        );
+        let message = write_solution(&mesh.view(), &u, &rho, &[], "", Path::new("/dev/null"))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("'coefficient ρ' has 5 numbers"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn a_million_cells_are_painted() {
+        let mesh = grid(2, 2, 256, false); // 2×2 bodies of 2×2 subdomains of 256²: 1024² cells
+        let u: Vec<f64> = mesh.points.iter().map(|p| p[0] * p[1]).collect();
+        let rho = vec![1.0; mesh.quads.len()];
+        let dir = crate::report::output::tests::Scratch::new("field");
+        write_solution(&mesh.view(), &u, &rho, &[], "", &dir.0.join("u.png")).unwrap();
+    }
+}

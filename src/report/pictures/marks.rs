@@ -1,0 +1,87 @@
+//! The contact zone on a picture: closed parts as strong lines, open ones dashed, with their legend.
+
+use super::outline;
+use super::paint::View;
+use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, TextStyle};
+use crate::report::drawing::raster::Raster;
+
+/// A part of a side that may touch another body or an obstacle: usually the face of one element. A mark whose ends coincide
+/// is a single node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactMark {
+    /// One end.
+    pub from: [f64; 2],
+    /// The other end.
+    pub to: [f64; 2],
+    /// Whether it touches.
+    pub closed: bool,
+}
+
+const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
+const TEXT: f64 = 13.0;
+const SAMPLE: f64 = 34.0;
+const GAP: f64 = 26.0;
+const DASH: [f64; 2] = [4.0, 3.0];
+const LABELS: [(bool, &str); 2] = [(true, "in contact"), (false, "may touch, open")];
+
+/// Height of the legend in logical pixels; nothing without marks.
+pub(super) fn legend_height(marks: &[ContactMark]) -> f64 {
+    if marks.is_empty() {
+        0.0
+    } else {
+        24.0
+    }
+}
+
+/// Draws the marks; `spacing` is the width of a typical body in logical pixels.
+pub(super) fn draw(raster: &mut Raster, marks: &[ContactMark], view: &View, spacing: f64) {
+    let strong = (0.012 * spacing).clamp(1.8, 3.4);
+    // Open ones first: closed ones must not disappear where both meet.
+    for closed in [false, true] {
+        let these = || marks.iter().filter(move |m| m.closed == closed);
+        let lines = these().filter(|m| m.from != m.to).map(|m| (m.from, m.to));
+        for line in outline::joined(lines) {
+            let line: Vec<_> = line.into_iter().map(|p| view.place(p)).collect();
+            stroke(raster, &line, closed, strong);
+        }
+        for node in these().filter(|m| m.from == m.to) {
+            let at = view.place(node.from);
+            let radius = 1.2 * strong;
+            raster.polygon(&canvas::circle(at, radius + 0.7), Colour::WHITE);
+            let ink = if closed { CLOSED } else { Colour(0, 0, 0) };
+            raster.polygon(&canvas::circle(at, radius), ink);
+            if !closed {
+                raster.polygon(&canvas::circle(at, 0.6 * radius), Colour::WHITE);
+            }
+        }
+    }
+}
+
+/// The two kinds of line around the middle of a picture.
+pub(super) fn legend(raster: &mut Raster, marks: &[ContactMark], middle: (f64, f64)) {
+    let shown: Vec<_> = LABELS
+        .iter()
+        .filter(|l| marks.iter().any(|m| m.closed == l.0))
+        .collect();
+    let width = |label: &str| SAMPLE + 8.0 + canvas::text_width(label, TEXT, false);
+    let total: f64 = shown.iter().map(|l| width(l.1)).sum();
+    let mut x = middle.0 - 0.5 * (total + GAP * shown.len().saturating_sub(1) as f64);
+    for &&(closed, label) in &shown {
+        let y = middle.1;
+        stroke(raster, &[(x, y), (x + SAMPLE, y)], closed, 3.4);
+        let style = TextStyle::new(TEXT, Anchor::Start);
+        raster.text((x + SAMPLE + 8.0, y), label, &style);
+        x += width(label) + GAP;
+    }
+}
+
+/// White under both kinds: they are seen on every colour of a field and on the line around a body.
+fn stroke(raster: &mut Raster, line: &[(f64, f64)], closed: bool, strong: f64) {
+    if closed {
+        raster.line(line, strong + 1.4, Colour::WHITE, &[]);
+        raster.line(line, strong, CLOSED, &[]);
+    } else {
+        raster.line(line, 0.3 * strong + 1.4, Colour::WHITE, &[]);
+        raster.line(line, 0.3 * strong + 0.5, Colour(0, 0, 0), &DASH);
+    }
+}

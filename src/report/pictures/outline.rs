@@ -1,0 +1,347 @@
+//! A mesh of quadrilaterals as pictures see it, and the lines between its bodies and subdomains.
+
+use crate::{Error, Result};
+use rayon::slice::ParallelSliceMut;
+use std::collections::HashMap;
+
+/// Quadrilaterals with the body and the subdomain of each.
+#[derive(Debug, Clone, Copy)]
+pub struct Mesh<'a> {
+    /// Positions. A position may be listed several times: once per body, or once per subdomain.
+    pub points: &'a [[f64; 2]],
+    /// Corners of every cell, in order around it.
+    pub quads: &'a [[u32; 4]],
+    /// Body of every cell.
+    pub body: &'a [u32],
+    /// Subdomain of every cell, numbered through over all bodies.
+    pub subdomain: &'a [u32],
+}
+
+/// Polylines.
+pub(super) struct Lines {
+    /// Around the bodies.
+    pub bodies: Vec<Vec<[f64; 2]>>,
+    /// Between subdomains of one body.
+    pub subdomains: Vec<Vec<[f64; 2]>>,
+}
+
+/// A position rounded to a millionth of the mesh: equal for copies of one point.
+type Key = (i64, i64);
+
+impl Mesh<'_> {
+    /// Refuses arrays that do not fit each other.
+    pub(super) fn check(&self) -> Result<()> {
+        for (found, what) in [
+            (self.body.len(), "bodies"),
+            (self.subdomain.len(), "subdomains"),
+        ] {
+            if found != self.quads.len() {
+                let expected = self.quads.len();
+                return Err(Error::input(format!(
+                    "the picture's mesh lists {found} {what} of cells, expected one for each of {expected} cells"
+                )));
+            }
+        }
+        match self
+            .quads
+            .iter()
+            .flatten()
+            .find(|&&p| p as usize >= self.points.len())
+        {
+            Some(bad) => Err(Error::input(format!(
+                "a cell names point {bad}, but the picture's mesh has {} points",
+                self.points.len()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Smallest and largest coordinates; the unit square without points.
+    pub(super) fn bounds(&self) -> ([f64; 2], [f64; 2]) {
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for p in self.points {
+            for d in 0..2 {
+                low[d] = low[d].min(p[d]);
+                high[d] = high[d].max(p[d]);
+            }
+        }
+        if low[0] <= high[0] && low[1] <= high[1] {
+            (low, high)
+        } else {
+            ([0.0; 2], [1.0; 2])
+        }
+    }
+
+    /// How many different numbers a list of cells' bodies or subdomains holds, if they are numbered through.
+    pub(super) fn count(&self, numbers: &[u32]) -> usize {
+        numbers.iter().max().map_or(0, |&m| m as usize + 1)
+    }
+
+    /// The lines around bodies and between subdomains.
+    pub(super) fn lines(&self) -> Lines {
+        self.lines_at(self.points, false)
+    }
+
+    /// The lines where the points have moved to `shown`; with `apart` around every body for itself, because bodies that touched
+    /// need not do so any more.
+    pub(super) fn lines_at(&self, shown: &[[f64; 2]], apart: bool) -> Lines {
+        // Edges by point numbers: those that one subdomain has twice lie inside it and are most of all.
+        let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.quads.len());
+        for (cell, quad) in self.quads.iter().enumerate() {
+            for k in 0..4 {
+                let (a, b) = (quad[k], quad[(k + 1) % 4]);
+                edges.push((
+                    (u64::from(a.min(b)) << 32) | u64::from(a.max(b)),
+                    cell as u32,
+                ));
+            }
+        }
+        edges.par_sort_unstable();
+        // The rest by position: copies of one edge meet again.
+        let (low, high) = self.bounds();
+        let grid = f64::from(1 << 20) / (high[0] - low[0]).max(high[1] - low[1]).max(1e-300);
+        let key_in = |p: u32, body: u32| -> Key {
+            let q = self.points[p as usize];
+            // Bodies that are kept apart have keys far from each other; inside one differences are as they were.
+            let far = if apart { i64::from(body) << 24 } else { 0 };
+            (
+                ((q[0] - low[0]) * grid).round() as i64 + far,
+                ((q[1] - low[1]) * grid).round() as i64,
+            )
+        };
+        let mut at: HashMap<(Key, Key), (bool, u32, usize)> = HashMap::new(); // all of one body?, which, how many
+        let mut position: HashMap<Key, [f64; 2]> = HashMap::new();
+        for group in edges.chunk_by(|a, b| a.0 == b.0) {
+            let subdomain = |e: &(u64, u32)| self.subdomain[e.1 as usize];
+            if group.len() == 2 && subdomain(&group[0]) == subdomain(&group[1]) {
+                continue;
+            }
+            let (a, b) = ((group[0].0 >> 32) as u32, group[0].0 as u32);
+            let key = |p: u32| key_in(p, self.body[group[0].1 as usize]);
+            let ends = (key(a).min(key(b)), key(a).max(key(b)));
+            position.insert(key(a), shown[a as usize]);
+            position.insert(key(b), shown[b as usize]);
+            for e in group {
+                let body = self.body[e.1 as usize];
+                let entry = at.entry(ends).or_insert((true, body, 0));
+                entry.0 &= entry.1 == body;
+                entry.2 += 1;
+            }
+        }
+        let mut bodies = Vec::new();
+        let mut subdomains = Vec::new();
+        for (ends, (same, _, count)) in at {
+            if same && count > 1 {
+                subdomains.push(ends);
+            } else {
+                bodies.push(ends);
+            }
+        }
+        Lines {
+            bodies: chains(bodies, &position),
+            subdomains: chains(subdomains, &position),
+        }
+    }
+}
+
+/// Joins segments to polylines; a segment that is listed twice, once for either side of an interface, counts once.
+pub(super) fn joined(segments: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Vec<Vec<[f64; 2]>> {
+    let segments: Vec<_> = segments.collect();
+    let ends = || segments.iter().flat_map(|s| [s.0, s.1]);
+    let (low, high) = ends().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(l, h), p| {
+        let low = [l[0].min(p[0]), l[1].min(p[1])];
+        (low, [h[0].max(p[0]), h[1].max(p[1])])
+    });
+    let grid = f64::from(1 << 20) / (high[0] - low[0]).max(high[1] - low[1]).max(1e-300);
+    let key = |p: [f64; 2]| -> Key {
+        (
+            ((p[0] - low[0]) * grid).round() as i64,
+            ((p[1] - low[1]) * grid).round() as i64,
+        )
+    };
+    let position: HashMap<Key, [f64; 2]> = ends().map(|p| (key(p), p)).collect();
+    let mut edges: Vec<(Key, Key)> = segments
+        .iter()
+        .map(|&(a, b)| (key(a).min(key(b)), key(a).max(key(b))))
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    chains(edges, &position)
+}
+
+/// Joins edges to polylines: straight ahead where that is possible, so that grids become long straight lines.
+fn chains(mut edges: Vec<(Key, Key)>, position: &HashMap<Key, [f64; 2]>) -> Vec<Vec<[f64; 2]>> {
+    edges.sort_unstable();
+    let mut touching: HashMap<Key, Vec<usize>> = HashMap::new();
+    for (k, e) in edges.iter().enumerate() {
+        touching.entry(e.0).or_default().push(k);
+        touching.entry(e.1).or_default().push(k);
+    }
+    let mut used = vec![false; edges.len()];
+    let mut out = Vec::new();
+    for start in 0..edges.len() {
+        if used[start] {
+            continue;
+        }
+        used[start] = true;
+        let mut chain = vec![edges[start].0, edges[start].1];
+        for _ in 0..2 {
+            loop {
+                let (before, end) = (chain[chain.len() - 2], chain[chain.len() - 1]);
+                let there = &touching[&end];
+                let ahead = (end.0 - before.0, end.1 - before.1);
+                let next = there.iter().copied().filter(|&k| !used[k]).find_map(|k| {
+                    let far = if edges[k].0 == end {
+                        edges[k].1
+                    } else {
+                        edges[k].0
+                    };
+                    let step = (far.0 - end.0, far.1 - end.1);
+                    let cross = (ahead.0 * step.1 - ahead.1 * step.0).abs() as f64;
+                    let dot = (ahead.0 * step.0 + ahead.1 * step.1) as f64;
+                    // Rounded positions: straight to within a few degrees; around a bend only where nothing else ends.
+                    (dot > 0.0 && (cross < 0.1 * dot || there.len() == 2)).then_some((k, far))
+                });
+                let Some((k, far)) = next else { break };
+                used[k] = true;
+                chain.push(far);
+            }
+            chain.reverse();
+        }
+        out.push(chain.iter().map(|key| position[key]).collect());
+    }
+    out
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Owned arrays of a mesh.
+    pub(crate) struct Grid {
+        pub points: Vec<[f64; 2]>,
+        pub quads: Vec<[u32; 4]>,
+        pub body: Vec<u32>,
+        pub subdomain: Vec<u32>,
+    }
+
+    impl Grid {
+        pub(crate) fn view(&self) -> Mesh<'_> {
+            Mesh {
+                points: &self.points,
+                quads: &self.quads,
+                body: &self.body,
+                subdomain: &self.subdomain,
+            }
+        }
+    }
+
+    /// bodies² bodies of subdomains² subdomains of elements² cells on the unit square; points listed once per body, or
+    /// once per subdomain.
+    pub(crate) fn grid(
+        bodies: usize,
+        subdomains: usize,
+        elements: usize,
+        per_subdomain: bool,
+    ) -> Grid {
+        let mut out = Grid {
+            points: vec![],
+            quads: vec![],
+            body: vec![],
+            subdomain: vec![],
+        };
+        let (patches, cells) = if per_subdomain {
+            (bodies * subdomains, elements)
+        } else {
+            (bodies, subdomains * elements)
+        };
+        let total = patches * cells;
+        for patch in 0..patches * patches {
+            let (px, py) = (patch % patches, patch / patches);
+            let first = out.points.len() as u32;
+            let row = cells as u32 + 1;
+            for j in 0..=cells {
+                for i in 0..=cells {
+                    let at = |p: usize, k: usize| (p * cells + k) as f64 / total as f64;
+                    out.points.push([at(px, i), at(py, j)]);
+                }
+            }
+            for j in 0..cells {
+                for i in 0..cells {
+                    let a = first + j as u32 * row + i as u32;
+                    out.quads.push([a, a + 1, a + row + 1, a + row]);
+                    let (x, y) = (px * cells + i, py * cells + j);
+                    let per_body = subdomains * elements;
+                    out.body.push((y / per_body * bodies + x / per_body) as u32);
+                    out.subdomain
+                        .push((y / elements * bodies * subdomains + x / elements) as u32);
+                }
+            }
+        }
+        out
+    }
+
+    fn length(lines: &[Vec<[f64; 2]>]) -> f64 {
+        lines
+            .iter()
+            .flat_map(|l| l.windows(2))
+            .map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]))
+            .sum()
+    }
+
+    #[test]
+    fn lines_have_the_right_length_however_points_are_listed() {
+        for per_subdomain in [false, true] {
+            let mesh = grid(3, 2, 5, per_subdomain);
+            let lines = mesh.view().lines();
+            // 4 + 4 lines of length 1 around 3×3 bodies; 3 + 3 between their subdomains.
+            assert!((length(&lines.bodies) - 8.0).abs() < 1e-12);
+            assert!((length(&lines.subdomains) - 6.0).abs() < 1e-12);
+            // Straight lines are joined across crossings.
+            assert!(
+                lines.bodies.len() <= 8 && lines.subdomains.len() == 6,
+                "{}",
+                lines.bodies.len()
+            );
+        }
+    }
+
+    #[test]
+    fn segments_become_long_lines() {
+        let at = |k: i32| [1.0, 0.1 * f64::from(k)];
+        // Ten segments in any direction, the fourth missing, the sixth twice.
+        let segments = (0..10).filter(|&k| k != 3).map(|k| {
+            if k % 2 == 0 {
+                (at(k), at(k + 1))
+            } else {
+                (at(k + 1), at(k))
+            }
+        });
+        let mut lines = joined(segments.chain([(at(5), at(6))]));
+        lines.sort_by_key(Vec::len);
+        let ends = |line: &[[f64; 2]]| {
+            let (a, b) = (line[0][1], line[line.len() - 1][1]);
+            (a.min(b), a.max(b))
+        };
+        assert_eq!(lines.iter().map(Vec::len).collect::<Vec<_>>(), [4, 7]);
+        assert_eq!(ends(&lines[0]), (at(0)[1], at(3)[1]));
+        assert_eq!(ends(&lines[1]), (at(4)[1], at(10)[1]));
+        assert!(joined(std::iter::empty()).is_empty());
+    }
+
+    #[test]
+    fn misfits_are_refused() {
+        let mesh = grid(1, 1, 2, false);
+        let short = Mesh {
+            body: &mesh.body[..3],
+            ..mesh.view()
+        };
+        assert!(short.check().unwrap_err().to_string().contains("3 bodies"));
+        let far = Mesh {
+            points: &mesh.points[..8],
+            ..mesh.view()
+        };
+        assert!(far.check().unwrap_err().to_string().contains("point 8"));
+    }
+}

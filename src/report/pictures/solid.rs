@@ -1,0 +1,327 @@
+//! Pictures of fields on solids: the surface from two sides, bodies moved apart in the second picture, so that it shows where they touch.
+//!
+//! The projection is parallel and from a fixed direction, y upwards, so that pictures of different scenes and meshes compare. Hidden
+//! parts are found pixel by pixel.
+
+use super::field::{Field, Values};
+use super::paint::{colour_bar, colour_range, BAR};
+use super::space::Camera;
+use super::stage::{diagonals, pale, Stage, CLOSED};
+use super::surface::Surface;
+use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, TextStyle};
+use crate::report::drawing::colormap::viridis;
+use crate::report::drawing::raster::Raster;
+use crate::{Error, Result};
+use std::path::Path;
+
+pub use super::surface::{FaceMark, Solid};
+
+const TEXT: f64 = 13.0;
+const TITLE_TEXT: f64 = 15.0;
+const SMALL_TEXT: f64 = 11.5;
+const MARGIN: f64 = 16.0;
+const LABELS: f64 = 74.0;
+/// Room for the axes below a picture.
+const AXES: f64 = 62.0;
+/// So far two or three bodies are moved apart, and more, relative to the distances of their centres from the middle.
+const APART: [f64; 2] = [0.75, 0.5];
+
+/// So much more of the marked area another place has to show before it is taken.
+const BETTER: f64 = 1.6;
+
+/// Writes fields as PNG, side by side: the first on the bodies as they are, the others on bodies moved apart, or on the other side of a
+/// single one, seen from where most of the faces in `marks` are seen.
+///
+/// # Errors
+/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
+pub fn write_solution(
+    solid: &Solid,
+    fields: &[Field],
+    marks: &[FaceMark],
+    title: &str,
+    path: &Path,
+) -> Result<()> {
+    draw(solid, fields, marks, title)?.write_png(path)
+}
+
+fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Result<Raster> {
+    solid.check()?;
+    for field in fields {
+        let (expected, what) = match field.values {
+            Values::Nodal(_) => (solid.points.len(), "points"),
+            Values::Cell(_) => (solid.hexahedra.len(), "cells"),
+        };
+        let found = field.values.numbers().len();
+        if found != expected {
+            return Err(Error::input(format!(
+                "the field '{}' has {found} numbers, expected one for each of {expected} {what}",
+                field.title
+            )));
+        }
+    }
+    let surface = solid.surface(marks);
+    let shifts = shifts(solid);
+    let several = shifts.len() > 1;
+    let none = vec![[0.0; 3]; shifts.len()];
+    let second = second_camera(solid, &surface, several);
+    let stage = |k: usize| match k {
+        0 => Stage::new(solid, &surface, Camera::new(false, false), &none),
+        _ => Stage::new(solid, &surface, second, &shifts),
+    };
+    let scenes: Vec<Stage> = (0..fields.len()).map(stage).collect();
+    let note = |k: usize| match (several, second.towards[1] < 0.0) {
+        _ if k == 0 => "",
+        (true, false) => "bodies moved apart",
+        (true, true) => "bodies moved apart, from below",
+        (false, _) if second.towards[2] < 0.0 => "from behind, below",
+        (false, true) => "from below",
+        (false, false) => "",
+    };
+    let panel_height = scenes.iter().map(|s| s.size().1).fold(90.0, f64::max);
+    let width = |s: &Stage| MARGIN + s.size().0.max(150.0) + MARGIN + BAR + LABELS;
+    let total: f64 = scenes.iter().map(width).sum();
+    let total = total.max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
+    let top = if title.is_empty() {
+        6.0
+    } else {
+        2.3 * TITLE_TEXT
+    };
+    let legend = if marks.is_empty() { 0.0 } else { 26.0 };
+    let height = top + 2.4 * TEXT + panel_height + AXES + legend;
+    let mut raster = Raster::new(total, height, 2.0);
+    let bold = |size: f64| TextStyle {
+        bold: true,
+        ..TextStyle::new(size, Anchor::Middle)
+    };
+    if !title.is_empty() {
+        raster.text((0.5 * total, 1.25 * TITLE_TEXT), title, &bold(TITLE_TEXT));
+    }
+    let mut left = 0.0;
+    for (k, (scene, field)) in scenes.iter().zip(fields).enumerate() {
+        let (w, h) = scene.size();
+        let at = (left + MARGIN, top + 2.4 * TEXT + 0.5 * (panel_height - h));
+        let heading = match note(k) {
+            "" => field.title.to_string(),
+            note => format!("{} ({note})", field.title),
+        };
+        let middle = at.0 + 0.5 * w.max(150.0);
+        raster.text((middle, top + 1.0 * TEXT), &heading, &bold(TEXT));
+        let range = colour_range(field);
+        scene.paint(&mut raster, field, range, at);
+        let bar = panel_height.min(300.0);
+        colour_bar(
+            &mut raster,
+            (
+                at.0 + w.max(150.0) + MARGIN,
+                top + 2.4 * TEXT + 0.5 * (panel_height + bar),
+            ),
+            bar,
+            range,
+            field.scale,
+        );
+        let below = top + 2.4 * TEXT + panel_height + 0.62 * AXES;
+        triad(&mut raster, (left + MARGIN + 26.0, below), &scene.camera);
+        left += width(scene);
+    }
+    extent(&mut raster, solid, (MARGIN + 78.0, height - legend - 14.0));
+    if !marks.is_empty() {
+        key(&mut raster, marks, (0.5 * total, height - 14.0));
+    }
+    Ok(raster)
+}
+
+/// How far each body is moved away from the middle of all.
+fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
+    let n = solid.body.iter().max().map_or(0, |&b| b as usize + 1);
+    let mut bounds = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; n];
+    for (cell, &body) in solid.hexahedra.iter().zip(solid.body) {
+        let [low, high] = &mut bounds[body as usize];
+        for p in cell.map(|p| solid.points[p as usize]) {
+            for d in 0..3 {
+                low[d] = low[d].min(p[d]);
+                high[d] = high[d].max(p[d]);
+            }
+        }
+    }
+    let [low, high] = Solid::bounds(solid.points);
+    let apart = APART[usize::from(n > 3)];
+    let shift = |[a, b]: [[f64; 3]; 2]| {
+        [0, 1, 2].map(|d| {
+            let away = 0.5 * (a[d] + b[d]) - 0.5 * (low[d] + high[d]);
+            // A body number without cells.
+            if away.is_finite() {
+                apart * away
+            } else {
+                0.0
+            }
+        })
+    };
+    bounds.into_iter().map(shift).collect()
+}
+
+/// From where most of the marked area is seen; from the first picture's place if that does as well.
+fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
+    let seen = |camera: &Camera| -> f64 {
+        let marked = surface.faces.iter().filter(|f| f.mark.is_some());
+        marked
+            .map(|f| {
+                let ([u, v], _) = diagonals(f.corners.map(|p| solid.points[p as usize]));
+                let n = [0, 1, 2].map(|d| {
+                    let (e, g) = ((d + 1) % 3, (d + 2) % 3);
+                    u[e] * v[g] - u[g] * v[e]
+                });
+                let facing: f64 = (0..3).map(|d| n[d] * camera.towards[d]).sum();
+                facing.max(0.0) * if f.mark == Some(true) { 1.0 } else { 0.5 }
+            })
+            .sum()
+    };
+    let places = [(false, false), (false, true), (true, false), (true, true)];
+    let cameras = places.map(|(behind, below)| Camera::new(behind, below));
+    let mut best = cameras[0];
+    if !several && surface.faces.iter().all(|f| f.mark.is_none()) {
+        return cameras[3];
+    }
+    for camera in &cameras[1..] {
+        if seen(camera) > BETTER * seen(&best) {
+            best = *camera;
+        }
+    }
+    best
+}
+
+/// The directions of the axes.
+fn triad(raster: &mut Raster, at: (f64, f64), camera: &Camera) {
+    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+        let mut along = [0.0; 3];
+        along[axis] = 1.0;
+        let [x, y, _] = camera.project(along);
+        let end = (at.0 + 24.0 * x, at.1 - 24.0 * y);
+        raster.line(&[at, end], 1.2, Colour::INK, &[]);
+        let beyond = (at.0 + 33.0 * x, at.1 - 33.0 * y);
+        raster.text(beyond, name, &TextStyle::new(SMALL_TEXT, Anchor::Middle));
+    }
+}
+
+/// The lengths of the undeformed scene.
+fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
+    let [low, high] = Solid::bounds(solid.points);
+    let size = (0..3).fold(0.0_f64, |a, d| a.max(high[d] - low[d]));
+    let range = |d: usize| {
+        // The ends of curved bodies come with rounding.
+        let round = |x: f64| if x.abs() < 1e-9 * size { 0.0 } else { x };
+        let number = |x: f64| crate::report::drawing::ticks::number(round(x));
+        format!(
+            "{} {} … {}",
+            ["x", "y", "z"][d],
+            number(low[d]),
+            number(high[d])
+        )
+    };
+    let text = [0, 1, 2].map(range).join("    ");
+    raster.text(at, &text, &TextStyle::new(SMALL_TEXT, Anchor::Start));
+}
+
+/// What the colours of marked faces mean.
+fn key(raster: &mut Raster, marks: &[FaceMark], middle: (f64, f64)) {
+    const SAMPLE: f64 = 18.0;
+    let open = pale(viridis(0.25));
+    let shown: Vec<(Colour, &str)> = [
+        (true, CLOSED, "in contact"),
+        (false, open, "may touch, open (pale)"),
+    ]
+    .into_iter()
+    .filter(|l| marks.iter().any(|m| m.closed == l.0))
+    .map(|l| (l.1, l.2))
+    .collect();
+    let width = |label: &str| SAMPLE + 8.0 + canvas::text_width(label, TEXT, false);
+    let total: f64 = shown.iter().map(|l| width(l.1)).sum();
+    let mut x = middle.0 - 0.5 * (total + 26.0 * (shown.len() as f64 - 1.0));
+    for (colour, label) in shown {
+        let (top, bottom) = (middle.1 - 6.0, middle.1 + 6.0);
+        let square = [
+            (x, top),
+            (x + SAMPLE, top),
+            (x + SAMPLE, bottom),
+            (x, bottom),
+        ];
+        raster.polygon(&square, colour);
+        let style = TextStyle::new(TEXT, Anchor::Start);
+        raster.text((x + SAMPLE + 8.0, middle.1), label, &style);
+        x += width(label) + 26.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::drawing::ticks::Scale;
+    use crate::report::pictures::surface::tests::Blocks;
+
+    fn count(raster: &Raster, is: impl Fn(Colour) -> bool) -> [usize; 2] {
+        let (w, h) = raster.size();
+        let half = |range: std::ops::Range<usize>| {
+            let pixels = range.flat_map(|x| (0..h).map(move |y| (x, y)));
+            pixels.filter(|&(x, y)| is(raster.get(x, y))).count()
+        };
+        [half(0..w / 2), half(w / 2..w)]
+    }
+
+    #[test]
+    fn a_contact_zone_between_bodies_is_seen_where_they_are_moved_apart() {
+        let blocks = Blocks::new(2, 4);
+        let u: Vec<f64> = blocks.points.iter().map(|p| p[1]).collect();
+        let field = Field {
+            title: "u",
+            values: Values::Nodal(&u),
+            scale: Scale::Linear,
+        };
+        let marks: Vec<FaceMark> = (0..16)
+            .flat_map(|k| {
+                let at = |i: usize, j: usize| {
+                    [0.25 * (k % 4 + i) as f64, 1.0, 0.25 * (k / 4 + j) as f64]
+                };
+                let corners = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
+                [0, 1].map(|body| FaceMark {
+                    body,
+                    corners,
+                    closed: k < 8,
+                })
+            })
+            .collect();
+        let red = |c: Colour| c.0 > 150 && c.1 < 40 && c.2 < 90;
+        let plain = draw(&blocks.view(), &[field; 2], &[], "two").unwrap();
+        assert_eq!(count(&plain, red), [0, 0]);
+        let marked = draw(&blocks.view(), &[field; 2], &marks, "two").unwrap();
+        let [left, right] = count(&marked, red);
+        // The sample in the legend may lie in the left half.
+        assert!(left < 1200 && right > 8000, "{left} {right}");
+    }
+
+    #[test]
+    fn the_lower_side_is_shown_where_it_touches() {
+        let blocks = Blocks::new(1, 2);
+        let corners = [[0.0; 3], [0.5, 0.0, 0.0], [0.5, 0.0, 0.5], [0.0, 0.0, 0.5]];
+        let mark = FaceMark {
+            body: 0,
+            corners,
+            closed: true,
+        };
+        let solid = blocks.view();
+        let camera = second_camera(&solid, &solid.surface(&[mark]), false);
+        assert_eq!(camera, Camera::new(false, true));
+        let nothing = second_camera(&solid, &solid.surface(&[]), false);
+        assert_eq!(nothing, Camera::new(true, true));
+    }
+
+    #[test]
+    fn fields_of_the_wrong_length_are_refused() {
+        let blocks = Blocks::new(1, 2);
+        let field = Field {
+            title: "u",
+            values: Values::Cell(&[1.0; 5]),
+            scale: Scale::Linear,
+        };
+        let error = draw(&blocks.view(), &[field; 2], &[], "").err().unwrap();
+        assert!(error.to_string().contains("'u' has 5 numbers"), "{error}");
+    }
+}

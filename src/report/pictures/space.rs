@@ -1,0 +1,193 @@
+//! Drawing in space: a parallel projection and a buffer of pixels with depths.
+
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::raster::Raster;
+
+/// Where the picture is looked at from, y upwards and z towards the viewer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Camera {
+    right: [f64; 3],
+    up: [f64; 3],
+    /// Towards the viewer.
+    pub towards: [f64; 3],
+}
+
+impl Camera {
+    /// From the front and the right (`behind`: from the back and the left), from above or below.
+    pub fn new(behind: bool, below: bool) -> Camera {
+        let turn = 34_f64.to_radians() + if behind { std::f64::consts::PI } else { 0.0 };
+        let tilt = if below { -38_f64 } else { 27.0 }.to_radians();
+        let ((s, c), (t, d)) = (turn.sin_cos(), tilt.sin_cos());
+        Camera {
+            right: [c, 0.0, -s],
+            up: [-s * t, d, -c * t],
+            towards: [s * d, t, c * d],
+        }
+    }
+
+    /// Right, up, and how near.
+    pub fn project(&self, p: [f64; 3]) -> [f64; 3] {
+        [self.right, self.up, self.towards].map(|e| e[0] * p[0] + e[1] * p[1] + e[2] * p[2])
+    }
+}
+
+/// A rectangle of pixels with depths, finer than those of the picture that it goes into.
+pub(super) struct Buffer {
+    width: usize,
+    height: usize,
+    depth: Vec<f64>,
+    colour: Vec<Colour>,
+}
+
+/// Fine pixels across a pixel of the picture.
+const FINE: usize = 2;
+
+impl Buffer {
+    /// An empty buffer of width × height logical pixels, and fine pixels per logical one.
+    pub fn new(width: f64, height: f64, raster: &Raster) -> (Buffer, f64) {
+        let scale = raster.scale() * FINE as f64;
+        let whole = |x: f64| (x * raster.scale()).ceil() as usize * FINE;
+        let (width, height) = (whole(width), whole(height));
+        let buffer = Buffer {
+            width,
+            height,
+            depth: vec![f64::NEG_INFINITY; width * height],
+            colour: vec![Colour::WHITE; width * height],
+        };
+        (buffer, scale)
+    }
+
+    /// Paints the pixels of a triangle (x to the right, y downwards, depth towards the viewer) that nothing nearer covers; `shade`
+    /// gets the value there.
+    pub fn triangle(&mut self, p: [[f64; 3]; 3], v: [f64; 3], shade: &impl Fn(f64) -> Colour) {
+        let edge = |k: usize, d: usize| p[k][d] - p[0][d];
+        let det = edge(1, 0) * edge(2, 1) - edge(2, 0) * edge(1, 1);
+        if det == 0.0 || !det.is_finite() {
+            return;
+        }
+        let bound = |d: usize, limit: usize| {
+            let low = p[0][d].min(p[1][d]).min(p[2][d]) - 0.5;
+            let high = p[0][d].max(p[1][d]).max(p[2][d]) - 0.5;
+            let end = (high.floor().max(-1.0) + 1.0).min(limit as f64);
+            (low.ceil().max(0.0) as usize, end as usize)
+        };
+        let ((x0, x1), (y0, y1)) = (bound(0, self.width), bound(1, self.height));
+        for y in y0..y1 {
+            for x in x0..x1 {
+                let (dx, dy) = (x as f64 + 0.5 - p[0][0], y as f64 + 0.5 - p[0][1]);
+                let a = (dx * edge(2, 1) - dy * edge(2, 0)) / det;
+                let b = (dy * edge(1, 0) - dx * edge(1, 1)) / det;
+                // The slack closes the seams between triangles.
+                if a < -1e-9 || b < -1e-9 || a + b > 1.0 + 1e-9 {
+                    continue;
+                }
+                let depth = p[0][2] + a * edge(1, 2) + b * edge(2, 2);
+                let at = y * self.width + x;
+                if depth > self.depth[at] {
+                    self.depth[at] = depth;
+                    self.colour[at] = shade(v[0] + a * (v[1] - v[0]) + b * (v[2] - v[0]));
+                }
+            }
+        }
+    }
+
+    /// Draws a line of a width in fine pixels where nothing is nearer than it by more than `slack`; its ends are round.
+    pub fn line(&mut self, ends: [[f64; 3]; 2], width: f64, slack: f64, colour: Colour) {
+        let [a, b] = ends;
+        let half = 0.5 * width;
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let square = along[0] * along[0] + along[1] * along[1];
+        let bound = |d: usize, limit: usize| {
+            let low = a[d].min(b[d]) - half;
+            let high = (a[d].max(b[d]) + half + 1.0).min(limit as f64);
+            (low.max(0.0) as usize, high.max(0.0) as usize)
+        };
+        let ((x0, x1), (y0, y1)) = (bound(0, self.width), bound(1, self.height));
+        for y in y0..y1 {
+            for x in x0..x1 {
+                let (dx, dy) = (x as f64 + 0.5 - a[0], y as f64 + 0.5 - a[1]);
+                let t = if square > 0.0 {
+                    ((dx * along[0] + dy * along[1]) / square).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                let (ex, ey) = (dx - t * along[0], dy - t * along[1]);
+                if ex * ex + ey * ey > half * half {
+                    continue;
+                }
+                let at = y * self.width + x;
+                if a[2] + t * (b[2] - a[2]) + slack > self.depth[at] {
+                    self.colour[at] = colour;
+                }
+            }
+        }
+    }
+
+    /// Copies it into a picture, its upper left corner at a logical position.
+    pub fn copy(&self, raster: &mut Raster, at: (f64, f64)) {
+        let corner = [at.0, at.1].map(|v| (v * raster.scale()).round().max(0.0) as usize);
+        for y in 0..self.height / FINE {
+            for x in 0..self.width / FINE {
+                let mut sum = [0_u32; 3];
+                for k in 0..FINE * FINE {
+                    let fine = (y * FINE + k / FINE) * self.width + x * FINE + k % FINE;
+                    let Colour(r, g, b) = self.colour[fine];
+                    sum[0] += u32::from(r);
+                    sum[1] += u32::from(g);
+                    sum[2] += u32::from(b);
+                }
+                let [r, g, b] = sum.map(|s| (s / (FINE * FINE) as u32) as u8);
+                raster.set(corner[0] + x, corner[1] + y, Colour(r, g, b));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_are_orthonormal_and_see_the_front() {
+        for (behind, below) in [(false, false), (false, true), (true, false), (true, true)] {
+            let c = Camera::new(behind, below);
+            let axes = [c.right, c.up, c.towards];
+            for (i, a) in axes.iter().enumerate() {
+                for (j, b) in axes.iter().enumerate() {
+                    let dot: f64 = (0..3).map(|d| a[d] * b[d]).sum();
+                    assert!((dot - f64::from(u8::from(i == j))).abs() < 1e-15);
+                }
+            }
+            // Right-handed: what is seen is not mirrored.
+            let [r, u] = [c.right, c.up];
+            let z = r[0] * u[1] - r[1] * u[0];
+            assert!((z - c.towards[2]).abs() < 1e-15);
+            assert_eq!(c.towards[1] < 0.0, below);
+            assert_eq!(c.towards[2] < 0.0, behind);
+        }
+    }
+
+    #[test]
+    fn what_is_nearer_hides_what_is_behind_in_any_order() {
+        let raster = Raster::new(10.0, 10.0, 1.0);
+        let (red, blue) = (Colour(255, 0, 0), Colour(0, 0, 255));
+        let triangle = |depth: f64| [[0.0, 0.0, depth], [40.0, 0.0, depth], [0.0, 40.0, depth]];
+        for nearer_first in [true, false] {
+            let (mut buffer, scale) = Buffer::new(10.0, 10.0, &raster);
+            assert_eq!(scale, 2.0);
+            for near in [nearer_first, !nearer_first] {
+                let colour = if near { red } else { blue };
+                let depth = f64::from(u8::from(near));
+                buffer.triangle(triangle(depth), [0.0; 3], &|_| colour);
+            }
+            // A line behind the first triangle is hidden, one just below its surface is not.
+            buffer.line([[0.0, 3.0, 0.5], [20.0, 3.0, 0.5]], 2.0, 0.1, blue);
+            buffer.line([[0.0, 9.0, 0.95], [20.0, 9.0, 0.95]], 2.0, 0.1, blue);
+            let mut out = Raster::new(10.0, 10.0, 1.0);
+            buffer.copy(&mut out, (0.0, 0.0));
+            assert_eq!(out.get(2, 1), red);
+            assert_eq!(out.get(2, 4), blue);
+            assert_eq!(out.get(2, 7), red);
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! A solid seen from one place: its surface in the colours of a field, lit, with lines around bodies and between subdomains.
+
+use super::field::{Field, Values};
+use super::space::{Buffer, Camera};
+use super::surface::{unit_cross, Solid, Surface};
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::colormap::viridis;
+use crate::report::drawing::raster::Raster;
+
+/// Largest size of one picture.
+const PANEL: (f64, f64) = (470.0, 440.0);
+/// Faces in contact.
+pub(super) const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
+/// How much of the white ground shines through faces that may touch and do not.
+const PALE: f64 = 0.45;
+
+/// The diagonals of a quadrilateral, and its middle.
+pub(super) fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]) {
+    let across = [
+        [0, 1, 2].map(|i| c[i] - a[i]),
+        [0, 1, 2].map(|i| d[i] - b[i]),
+    ];
+    let middle = [0, 1, 2].map(|i| 0.25 * (a[i] + b[i] + c[i] + d[i]));
+    (across, middle)
+}
+
+/// A solid seen from one place, its bodies shifted.
+pub(super) struct Stage<'a> {
+    solid: &'a Solid<'a>,
+    surface: &'a Surface,
+    pub camera: Camera,
+    shifts: &'a [[f64; 3]],
+    low: [f64; 2],
+    high: [f64; 2],
+    /// Logical pixels per unit of length.
+    scale: f64,
+}
+
+impl<'a> Stage<'a> {
+    pub fn new(
+        solid: &'a Solid<'a>,
+        surface: &'a Surface,
+        camera: Camera,
+        shifts: &'a [[f64; 3]],
+    ) -> Stage<'a> {
+        let mut stage = Stage {
+            solid,
+            surface,
+            camera,
+            shifts,
+            low: [f64::INFINITY; 2],
+            high: [f64::NEG_INFINITY; 2],
+            scale: 1.0,
+        };
+        for face in &surface.faces {
+            for p in face.corners {
+                let at = stage.projected(p, solid.body[face.cell as usize]);
+                stage.low = [0, 1].map(|d| stage.low[d].min(at[d]));
+                stage.high = [0, 1].map(|d| stage.high[d].max(at[d]));
+            }
+        }
+        if stage.low[0] > stage.high[0] {
+            (stage.low, stage.high) = ([0.0; 2], [1.0; 2]);
+        }
+        let size = [0, 1].map(|d| (stage.high[d] - stage.low[d]).max(1e-300));
+        stage.scale = (PANEL.0 / size[0]).min(PANEL.1 / size[1]);
+        stage
+    }
+
+    fn projected(&self, p: u32, body: u32) -> [f64; 3] {
+        let (at, shift) = (self.solid.shown[p as usize], self.shifts[body as usize]);
+        self.camera.project([0, 1, 2].map(|d| at[d] + shift[d]))
+    }
+
+    /// Logical pixels, with room for the lines around.
+    pub fn size(&self) -> (f64, f64) {
+        let [w, h] = [0, 1].map(|d| self.scale * (self.high[d] - self.low[d]) + 6.0);
+        (w, h)
+    }
+
+    pub fn paint(&self, raster: &mut Raster, field: &Field, range: (f64, f64), at: (f64, f64)) {
+        let (w, h) = self.size();
+        let (mut buffer, fine) = Buffer::new(w, h, raster);
+        let unit = fine * self.scale;
+        let place = |p: u32, body: u32| {
+            let [x, y, near] = self.projected(p, body);
+            [
+                fine * 3.0 + unit * (x - self.low[0]),
+                fine * 3.0 + unit * (self.high[1] - y),
+                unit * near,
+            ]
+        };
+        let (low, high) = (field.scale.forward(range.0), field.scale.forward(range.1));
+        let colour = |v: f64| {
+            if field.scale.shows(v) {
+                viridis((field.scale.forward(v) - low) / (high - low))
+            } else {
+                viridis(f64::NAN)
+            }
+        };
+        for face in &self.surface.faces {
+            let body = self.solid.body[face.cell as usize];
+            let positions = face.corners.map(|p| self.solid.shown[p as usize]);
+            let ([u, v], _) = diagonals(positions);
+            let normal = unit_cross(u, v);
+            let facing: f64 = (0..3).map(|d| normal[d] * self.camera.towards[d]).sum();
+            if facing <= 0.0 {
+                continue;
+            }
+            let light = light(normal, &self.camera);
+            let values = match field.values {
+                Values::Nodal(v) => face.corners.map(|p| v[p as usize]),
+                Values::Cell(v) => [v[face.cell as usize]; 4],
+            };
+            let corners = face.corners.map(|p| place(p, body));
+            let (_, centre) = diagonals(corners);
+            let mean = values.iter().sum::<f64>() / 4.0;
+            let shade = |v: f64| {
+                let ink = match face.mark {
+                    Some(true) => CLOSED,
+                    Some(false) => pale(colour(v)),
+                    None => colour(v),
+                };
+                let dim = |c: u8| (f64::from(c) * light).round() as u8;
+                Colour(dim(ink.0), dim(ink.1), dim(ink.2))
+            };
+            for k in 0..4 {
+                let l = (k + 1) % 4;
+                let triangle = [corners[k], corners[l], centre];
+                buffer.triangle(triangle, [values[k], values[l], mean], &shade);
+            }
+        }
+        // Where bodies or subdomains are only a few pixels wide their lines would hide the field.
+        let spacing = |numbers: &[u32]| {
+            let n = numbers.iter().max().map_or(1, |&m| m + 1);
+            (w * h * (w * h).sqrt() / f64::from(n)).cbrt()
+        };
+        let subdomains = spacing(self.solid.subdomain);
+        let bodies = (0.012 * spacing(self.solid.body)).clamp(0.5, 1.3);
+        for edge in &self.surface.edges {
+            let ends = edge.ends.map(|p| place(p, edge.body));
+            if edge.crease {
+                buffer.line(ends, fine * bodies, 2.0 * fine, Colour(0, 0, 0));
+            } else if subdomains > 12.0 {
+                buffer.line(ends, fine * 0.55, 1.5 * fine, Colour::WHITE);
+            }
+        }
+        buffer.copy(raster, at);
+    }
+}
+
+/// The colour of a face that may touch and does not.
+pub(super) fn pale(Colour(r, g, b): Colour) -> Colour {
+    let mix = |c: u8| (f64::from(c) * (1.0 - PALE) + 255.0 * PALE).round() as u8;
+    Colour(mix(r), mix(g), mix(b))
+}
+
+/// How light a face is: the light comes from above the viewer's left shoulder and leaves no side dark, because colours have to be read.
+fn light(normal: [f64; 3], camera: &Camera) -> f64 {
+    let seen = camera.project(normal);
+    let from = [-0.35, 0.65, 0.67];
+    let facing: f64 = (0..3).map(|d| seen[d] * from[d]).sum();
+    0.82 + 0.18 * facing.clamp(0.0, 1.0)
+}

@@ -1,0 +1,135 @@
+//! Load steps: a figure of energy, contact force and active rows over time, and all of it as CSV.
+
+use super::plot::{Axis, Figure, Marker, Panel, Series};
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::ticks::Scale;
+use crate::report::json::contact::LoadStep;
+use crate::report::tables::summary::exactly;
+use crate::report::tables::table::Table;
+use crate::Result;
+use std::path::{Path, PathBuf};
+
+/// Steps up to which each gets a marker.
+const MARKED: usize = 60;
+
+/// The figure.
+pub fn figure(steps: &[LoadStep], title: &str) -> Figure {
+    let panel = |label: &str, colour: usize, value: fn(&LoadStep) -> f64| {
+        let points = steps.iter().map(|s| (s.t, value(s))).collect();
+        let marker = if steps.len() <= MARKED {
+            Marker::Circle
+        } else {
+            Marker::None
+        };
+        Panel {
+            title: label.to_string(),
+            x: Axis::new("t", Scale::Linear),
+            y: Axis::new("", Scale::Linear),
+            series: vec![Series::new("", points, Colour::CYCLE[colour]).marker(marker, true, 3.0)],
+            bands: Vec::new(),
+        }
+    };
+    let mut figure = Figure::new(
+        title,
+        vec![
+            panel("energy", 0, |s| s.energy),
+            panel("contact force", 1, |s| s.contact_force),
+            panel("active inequalities", 2, |s| s.active as f64),
+        ],
+    );
+    // A count starts at zero and has no fractions.
+    let most = steps.iter().map(|s| s.active).max().unwrap_or(0).max(1);
+    let count = &mut figure.panels[2].y;
+    count.range = Some((0.0, 1.08 * most as f64));
+    count.ticks = counts(most);
+    figure.panel_size = (330.0, 270.0);
+    figure
+}
+
+/// Round whole numbers from 0 to `most`, seven at most.
+fn counts(most: usize) -> Vec<f64> {
+    let decades = (0..).map(|k| 10_usize.pow(k));
+    let step = decades
+        .flat_map(|d| [d, 2 * d, 5 * d])
+        .find(|step| most / step <= 6)
+        .unwrap_or(most);
+    (0..=most / step).map(|k| (k * step) as f64).collect()
+}
+
+/// The table for programs: full precision, empty cells where nothing is known.
+pub fn csv(steps: &[LoadStep]) -> Table {
+    let mut table = Table::new([
+        "t",
+        "outer_iterations",
+        "iterations",
+        "active",
+        "energy",
+        "contact_force",
+    ]);
+    for s in steps {
+        table.row([
+            exactly(Some(s.t)),
+            s.outer_iterations.to_string(),
+            s.iterations.to_string(),
+            s.active.to_string(),
+            exactly(Some(s.energy)),
+            exactly(Some(s.contact_force)),
+        ]);
+    }
+    table
+}
+
+/// Writes `steps.png`, `steps.svg` and `steps.csv` into a directory; returns their paths.
+///
+/// # Errors
+/// [`crate::Error::Environment`] with the path.
+pub fn write(steps: &[LoadStep], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
+    let mut paths = figure(steps, title).save(&dir.join("steps"))?;
+    let table = dir.join("steps.csv");
+    csv(steps).write_csv(&table)?;
+    paths.push(table);
+    Ok(paths)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::output::tests::Scratch;
+
+    #[test]
+    fn counts_are_round() {
+        assert_eq!(counts(1), [0.0, 1.0]);
+        assert_eq!(counts(11), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+        assert_eq!(counts(3_000_000).last(), Some(&3e6));
+        for most in 1..3000 {
+            assert!((2..=7).contains(&counts(most).len()), "{most}");
+        }
+    }
+
+    #[test]
+    fn the_files_hold_the_steps() {
+        let steps: Vec<LoadStep> = (1..=4)
+            .map(|k| LoadStep {
+                t: 0.25 * f64::from(k),
+                outer_iterations: 3,
+                iterations: 20 + k as usize,
+                active: 10 * k as usize,
+                energy: if k == 2 { f64::NAN } else { -f64::from(k * k) },
+                contact_force: 0.1 * f64::from(k),
+            })
+            .collect();
+        let panels = figure(&steps, "").panels;
+        let last = |k: usize| panels[k].series[0].points[3];
+        assert_eq!(
+            [last(0), last(1), last(2)],
+            [(1.0, -16.0), (1.0, 0.4), (1.0, 40.0)]
+        );
+        let dir = Scratch::new("load-steps");
+        let paths = write(&steps, "ramp", &dir.0).unwrap();
+        assert!(paths.iter().all(|p| p.exists()));
+        let text = std::fs::read_to_string(dir.0.join("steps.csv")).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[2], "0.5,3,22,20,,0.2");
+        assert_eq!(lines.len(), 5);
+    }
+}

@@ -1,0 +1,433 @@
+//! Multiplier and gap along the interfaces: a figure of the ones with the largest forces, and all of them as CSV.
+
+use super::plot::{Axis, Band, Figure, Line, Marker, Panel, Series};
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::ticks::{self, Scale};
+use crate::report::output;
+use crate::report::pictures::field::extremes;
+use crate::report::tables::summary::exactly;
+use crate::report::tables::table::quoted;
+use crate::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// Interfaces in the figure.
+const SHOWN: usize = 12;
+/// Points up to which each gets a marker.
+const MARKED: usize = 40;
+/// A gap below this part of an interface's length is rounding.
+const CLOSED: f64 = 1e-11;
+/// The same for displacements in space: their scale is not that of the interface, and iterations end at a tolerance.
+const CLOSED_IN_SPACE: f64 = 1e-6;
+/// Ground of the contact zone.
+const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
+
+/// What is known along one interface, node by node.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Profile {
+    /// `left|right` for two bodies, `left.top above` for an obstacle.
+    pub name: String,
+    /// What `t` measures, such as `y`.
+    pub label: String,
+    /// Position along the interface.
+    pub t: Vec<f64>,
+    /// Position in the plane.
+    pub points: Vec<[f64; 2]>,
+    /// Distance that is left between the sides.
+    pub gap: Vec<f64>,
+    /// Force at the node; positive where the sides press against each other.
+    pub multiplier: Vec<f64>,
+    /// Whether the sides touch.
+    pub active: Vec<bool>,
+    /// The area (in the plane a length) of the side that belongs to the node; empty: forces are not reported as pressures.
+    pub area: Vec<f64>,
+}
+
+impl Profile {
+    fn check(&self) -> Result<()> {
+        let n = self.t.len();
+        for (found, what) in [
+            (self.points.len(), "points"),
+            (self.gap.len(), "gaps"),
+            (self.multiplier.len(), "multipliers"),
+            (self.active.len(), "states"),
+            (
+                if self.has_pressure() {
+                    self.area.len()
+                } else {
+                    n
+                },
+                "areas",
+            ),
+        ] {
+            if found != n {
+                return Err(Error::input(format!(
+                    "the interface '{}' lists {found} {what}, expected one for each of {n} positions",
+                    self.name
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether there are areas.
+    fn has_pressure(&self) -> bool {
+        !self.area.is_empty()
+    }
+
+    /// Force per area, node by node; NaN where a node has no area.
+    pub fn pressure(&self) -> Vec<f64> {
+        let each = self.multiplier.iter().zip(&self.area);
+        each.map(|(&force, &area)| if area > 0.0 { force / area } else { f64::NAN })
+            .collect()
+    }
+
+    /// Sum of the multipliers.
+    pub fn force(&self) -> f64 {
+        self.multiplier.iter().sum()
+    }
+
+    /// The nodes in order of their position.
+    fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.t.len()).collect();
+        order.sort_by(|&a, &b| self.t[a].total_cmp(&self.t[b]));
+        order
+    }
+
+    /// Smallest and largest position, with some air.
+    fn range(&self) -> (f64, f64) {
+        let (low, high) = extremes(&self.t);
+        let air = if high > low {
+            0.02 * (high - low)
+        } else {
+            0.5 * low.abs().max(1.0)
+        };
+        if low <= high {
+            (low - air, high + air)
+        } else {
+            (0.0, 1.0)
+        }
+    }
+
+    /// The zone: from half-way to the last open node to half-way to the next one.
+    fn zone(&self) -> Vec<Band> {
+        let order = self.order();
+        let t = |k: usize| self.t[order[k]];
+        let mut out = Vec::new();
+        let mut k = 0;
+        while k < order.len() {
+            let first = k;
+            while k < order.len() && self.active[order[k]] {
+                k += 1;
+            }
+            if k > first {
+                let from = if first > 0 {
+                    0.5 * (t(first - 1) + t(first))
+                } else {
+                    t(0)
+                };
+                let to = if k < order.len() {
+                    0.5 * (t(k - 1) + t(k))
+                } else {
+                    t(k - 1)
+                };
+                out.push(Band {
+                    label: "in contact".into(),
+                    range: (from, to),
+                    colour: ZONE,
+                });
+            }
+            k += 1;
+        }
+        out
+    }
+
+    /// Multiplier and gap under each other; `largest_gap` is that of the whole figure.
+    fn panels(&self, largest_gap: f64) -> [Panel; 2] {
+        let order = self.order();
+        let marker = if order.len() <= MARKED {
+            Marker::Circle
+        } else {
+            Marker::None
+        };
+        let curve = |name: &str, values: &[f64], colour: Colour| {
+            let points = order.iter().map(|&k| (self.t[k], values[k])).collect();
+            Series::new(name, points, colour).marker(marker, true, 2.6)
+        };
+        let zero = |x: (f64, f64)| {
+            Series::new("", vec![(x.0, 0.0), (x.1, 0.0)], Colour::CYCLE[7])
+                .marker(Marker::None, true, 0.0)
+                .line(Line::Dotted)
+        };
+        let x = self.range();
+        let axis = |label: &str| Axis {
+            range: Some(x),
+            ..Axis::new(label, Scale::Linear)
+        };
+        // Rounding is not blown up to the size of the panel, and zero is always shown: touching means zero.
+        let (low, high) = extremes(&self.gap);
+        let length = x.1 - x.0;
+        let closed = match self.has_pressure() {
+            true => CLOSED_IN_SPACE * length,
+            false => CLOSED * length,
+        };
+        let y = if low > high || low.abs().max(high.abs()) <= closed {
+            let top = if largest_gap > closed {
+                largest_gap
+            } else {
+                length
+            };
+            (-0.05 * top, top)
+        } else {
+            let (low, high) = ticks::range([0.0, low, high].into_iter(), Scale::Linear);
+            (low.min(-0.05 * (high - low)), high)
+        };
+        let (what, force) = if self.has_pressure() {
+            ("pressure", &self.pressure())
+        } else {
+            ("multiplier", &self.multiplier)
+        };
+        let (least, most) = extremes(force);
+        let (least, most) = (least.min(0.0), most.max(0.0));
+        let shown = if most > least {
+            let air = 0.06 * (most - least);
+            (least - air, most + air)
+        } else {
+            (-0.05, 1.0)
+        };
+        [
+            Panel {
+                title: self.name.clone(),
+                x: axis(""),
+                y: Axis {
+                    range: Some(shown),
+                    ..Axis::new(what, Scale::Linear)
+                },
+                series: vec![zero(x), curve(what, force, Colour::CYCLE[0])],
+                bands: self.zone(),
+            },
+            Panel {
+                title: String::new(),
+                x: axis(&self.label),
+                y: Axis {
+                    range: Some(y),
+                    ..Axis::new("gap", Scale::Linear)
+                },
+                series: vec![zero(x), curve("gap", &self.gap, Colour::CYCLE[1])],
+                bands: self.zone(),
+            },
+        ]
+    }
+}
+
+/// The figure: the interfaces with the largest forces, each with its multiplier above its gap.
+///
+/// # Errors
+/// [`Error::Input`] when the arrays of an interface differ in length.
+pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
+    profiles.iter().try_for_each(Profile::check)?;
+    let mut order: Vec<&Profile> = profiles.iter().filter(|p| !p.t.is_empty()).collect();
+    // What is not a number comes first: it must be seen.
+    let size = |p: &Profile| match p.force() {
+        force if force.is_nan() => f64::INFINITY,
+        force => force.abs(),
+    };
+    order.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let hidden = order.len().saturating_sub(SHOWN);
+    order.truncate(SHOWN);
+    let columns = match order.len() {
+        0 | 1 => 1,
+        2 | 4 => 2,
+        10.. => 4,
+        _ => 3,
+    };
+    let largest_gap = order.iter().map(|p| extremes(&p.gap).1).fold(0.0, f64::max);
+    let mut panels = Vec::new();
+    for row in order.chunks(columns) {
+        let pairs: Vec<[Panel; 2]> = row.iter().map(|p| p.panels(largest_gap)).collect();
+        for half in 0..2 {
+            panels.extend(pairs.iter().map(|pair| pair[half].clone()));
+            panels.extend((row.len()..columns).map(|_| Panel::blank()));
+        }
+    }
+    let note = format!(
+        "the {SHOWN} of {} interfaces with the largest forces",
+        hidden + SHOWN
+    );
+    let title = match (title, hidden) {
+        (_, 0) => title.to_string(),
+        ("", _) => note,
+        _ => format!("{title}: {note}"),
+    };
+    Ok(Figure {
+        title,
+        panels,
+        columns,
+        panel_size: match columns {
+            1 => (620.0, 220.0),
+            2 => (430.0, 190.0),
+            _ => (330.0, 176.0),
+        },
+    })
+}
+
+/// Writes `interfaces.png`, `interfaces.svg` and `interfaces.csv` into a directory; returns their paths. The CSV has all
+/// interfaces: name, t, x, y, gap, multiplier, active (0 or 1), and with areas pressure and area.
+///
+/// # Errors
+/// [`Error::Input`] when the arrays of an interface differ in length; [`Error::Environment`] with the path.
+pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
+    let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
+    let csv = dir.join("interfaces.csv");
+    output::write_file(&csv, |out| {
+        let pressures = profiles.iter().any(Profile::has_pressure);
+        let more = if pressures { ",pressure,area" } else { "" };
+        writeln!(out, "name,t,x,y,gap,multiplier,active{more}")?;
+        for p in profiles {
+            let pressure = p.pressure();
+            let name = quoted(&p.name);
+            for k in 0..p.t.len() {
+                let [x, y] = p.points[k];
+                let numbers = [p.t[k], x, y, p.gap[k], p.multiplier[k]].map(|v| exactly(Some(v)));
+                let active = u8::from(p.active[k]);
+                write!(out, "{name},{},{active}", numbers.join(","))?;
+                if pressures {
+                    let number = |list: &[f64]| exactly(list.get(k).copied());
+                    write!(out, ",{},{}", number(&pressure), number(&p.area))?;
+                }
+                writeln!(out)?;
+            }
+        }
+        Ok(())
+    })?;
+    paths.push(csv);
+    Ok(paths)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::output::tests::Scratch;
+
+    /// An interface of n nodes on 0..1 that touches in the middle half, with a force that grows with `size`.
+    fn sample(name: &str, n: usize, size: f64) -> Profile {
+        let t: Vec<f64> = (0..n).map(|k| k as f64 / (n - 1) as f64).collect();
+        let pressure = |t: f64| size * (0.0625 - (t - 0.5).powi(2)).max(0.0);
+        let gap = |t: f64| 0.01 * ((t - 0.5).powi(2) - 0.0625).max(0.0);
+        Profile {
+            name: name.into(),
+            label: "y".into(),
+            points: t.iter().map(|&t| [1.0, t]).collect(),
+            gap: t.iter().map(|&t| gap(t)).collect(),
+            multiplier: t.iter().map(|&t| pressure(t)).collect(),
+            active: t.iter().map(|&t| pressure(t) > 0.0).collect(),
+            area: Vec::new(),
+            t,
+        }
+    }
+
+    #[test]
+    fn the_zone_reaches_half_way_to_its_neighbours() {
+        let p = sample("a|b", 17, 1.0);
+        let zone = p.zone();
+        assert_eq!(zone.len(), 1);
+        assert_eq!(zone[0].range, (4.5 / 16.0, 11.5 / 16.0));
+        // Whatever the order of the nodes; a node alone; nodes at the ends.
+        let mut q = Profile {
+            t: vec![1.0, 0.0, 0.5, 0.25, 0.75],
+            points: vec![[0.0; 2]; 5],
+            gap: vec![0.0; 5],
+            multiplier: vec![1.0; 5],
+            active: vec![true, false, true, false, false],
+            ..p
+        };
+        let ranges = |p: &Profile| p.zone().iter().map(|b| b.range).collect::<Vec<_>>();
+        assert_eq!(ranges(&q), [(0.375, 0.625), (0.875, 1.0)]);
+        q.active = vec![true; 5];
+        assert_eq!(ranges(&q), [(0.0, 1.0)]);
+        q.active = vec![false; 5];
+        assert!(ranges(&q).is_empty());
+    }
+
+    #[test]
+    fn the_largest_forces_are_shown() {
+        let profiles: Vec<Profile> = (0..180)
+            .map(|k| sample(&format!("i{k}"), 9, 1.0 + ((k * 77) % 180) as f64))
+            .collect();
+        let figure = figure(&profiles, "grid").unwrap();
+        assert_eq!((figure.panels.len(), figure.columns), (24, 4));
+        assert!(figure.title.contains("12 of 180"), "{}", figure.title);
+        let mut forces: Vec<f64> = profiles.iter().map(Profile::force).collect();
+        forces.sort_by(|a, b| b.total_cmp(a));
+        let shown: Vec<f64> = figure
+            .panels
+            .iter()
+            .filter(|p| !p.title.is_empty())
+            .map(|p| profiles.iter().find(|q| q.name == p.title).unwrap().force())
+            .collect();
+        assert_eq!(shown, forces[..12]);
+        // A multiplier's panel stands above its gap's.
+        for row in figure.panels.chunks(8) {
+            for c in 0..4 {
+                assert_eq!(row[c].x.range, row[4 + c].x.range);
+                assert_eq!(
+                    (&row[c].y.label[..], &row[4 + c].y.label[..]),
+                    ("multiplier", "gap")
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn rounding_is_not_blown_up() {
+        let mut closed = sample("closed", 9, 1.0);
+        closed.gap = (0..9).map(|k| 1e-17 * f64::from(k - 4)).collect();
+        let open = sample("open", 9, 0.5);
+        let panels = figure(&[closed.clone(), open.clone()], "").unwrap().panels;
+        let top = panels[2].y.range.unwrap().1;
+        let largest = open.gap.iter().copied().fold(0.0, f64::max);
+        assert_eq!(top, largest, "on the scale of the other interface");
+        let alone = figure(&[closed], "").unwrap().panels;
+        assert!(alone[1].y.range.unwrap().1 > 0.9);
+    }
+
+    #[test]
+    fn files_hold_everything() {
+        let dir = Scratch::new("profile");
+        let mut second = sample("a, \"b\"", 3, 2.0);
+        second.gap[0] = f64::NAN;
+        second.multiplier = vec![0.0, 1e-7, 0.1 + 0.2];
+        let paths = write(&[sample("a|b", 5, 1.0), second], "two", &dir.0).unwrap();
+        let names: Vec<_> = paths
+            .iter()
+            .map(|p| p.file_name().unwrap().to_str().unwrap())
+            .collect();
+        assert_eq!(
+            names,
+            ["interfaces.png", "interfaces.svg", "interfaces.csv"]
+        );
+        let csv = std::fs::read_to_string(&paths[2]).unwrap();
+        let lines: Vec<&str> = csv.lines().collect();
+        assert_eq!(lines.len(), 1 + 5 + 3);
+        assert_eq!(lines[3], "a|b,0.5,1,0.5,0,0.0625,1");
+        assert_eq!(lines[6], "\"a, \"\"b\"\"\",0,1,0,,0,0");
+        assert!(lines[8].ends_with(",0.30000000000000004,0"), "{}", lines[8]);
+    }
+
+    #[test]
+    fn nothing_and_one_node_are_shown_and_misfits_refused() {
+        let dir = Scratch::new("profile-odd");
+        write(&[], "", &dir.0).unwrap();
+        let mut corner = sample("corner", 2, 1.0);
+        corner.t.truncate(1);
+        let message = figure(&[corner.clone()], "").unwrap_err().to_string();
+        assert!(message.contains("'corner' lists 2 points"), "{message}");
+        corner.points.truncate(1);
+        corner.gap.truncate(1);
+        corner.multiplier = vec![1.0];
+        corner.active = vec![true];
+        let panels = figure(&[corner.clone()], "").unwrap().panels;
+        let (low, high) = panels[0].x.range.unwrap();
+        assert!(low < 0.0 && high > 0.0 && panels[0].bands.len() == 1);
+        write(&[corner], "", &dir.0).unwrap();
+    }
+}

@@ -1,0 +1,343 @@
+//! The benchmark as tables and as a picture.
+
+use super::summary::exactly;
+use super::table::{count, fixed, scientific, Align, Table};
+use crate::report::drawing::canvas::Colour;
+use crate::report::drawing::ticks::Scale;
+use crate::report::json::{BenchCase, BenchReport, BenchRow, Spread};
+use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
+
+/// All cases for terminals.
+pub fn text(report: &BenchReport) -> String {
+    let cases: Vec<String> = report.cases.iter().map(case_text).collect();
+    format!(
+        "{}\n{} rounds were asked for; in each of them every method ran once, in the order of the rows, each run in processes of its own, on {} cores.\n\
+         Seconds are medians over the rounds; assembly is not in them. recover: the part of the solve for the way from multipliers to u;\n\
+         total: set-up and solve, with its smallest and largest value; ratio: the total over that of the fastest of ours;\n\
+         again: the solve for a second load, with what was set up for the first{}.\n\
+         parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); MB: largest resident memory, summed over the ranks;\n\
+         net: without what each rank holds before it has read the problem; error: in the energy norm, against a refined direct solution.\n{}",
+        cases.join("\n"),
+        report.rounds,
+        report.cores,
+        match report.cases.iter().any(|c| c.contact.is_some()) {
+            true => " (with contact the whole loop; last set: only the equations of our last active set)",
+            false => "",
+        },
+        match &report.blas {
+            Some(file) => format!("BLAS of all methods: {file}\n"),
+            None => String::new(),
+        }
+    )
+}
+
+fn median(spread: Option<Spread>) -> Option<f64> {
+    spread.map(|s| s.median)
+}
+
+/// One case with its caption.
+fn case_text(case: &BenchCase) -> String {
+    let contact = case.contact.is_some();
+    let header = [
+        "method", "parts", "ranks", "outer", "it", "set-up s", "solve s", "recover", "total s",
+        "min", "max", "ratio", "again s", "MB", "MB net", "error", "residual", "outcome",
+    ];
+    let kept = |k: &usize| contact || *k != 3;
+    let names = (0..).zip(header).filter(|(k, _)| kept(k)).map(|h| h.1);
+    let last = if contact { 17 } else { 16 };
+    let mut table = Table::new(names)
+        .align(0, Align::Left)
+        .align(last, Align::Left);
+    let mut notes = String::new();
+    for r in &case.methods {
+        let mut note = |text: String| notes += &format!("{}: {text}\n", label(r));
+        if let Some(options) = &r.rescue {
+            note(format!("second try, with {options}"));
+        }
+        let outcome = match &r.message {
+            None => r.converged_reason.clone(),
+            Some(message) => {
+                note(message.clone());
+                "see below".to_string()
+            }
+        };
+        let net = r
+            .memory_mb
+            .zip(r.memory_at_start_mb)
+            .map(|(all, start)| all.median - start.median);
+        let total = r.seconds.total;
+        let cells = [
+            r.method.clone(),
+            count(r.subdomains),
+            match r.threads {
+                0 | 1 => r.ranks.to_string(),
+                n => format!("{} x {n}", r.ranks),
+            },
+            match r.set_given() {
+                true => "last set".to_string(),
+                false => count(r.contact.and_then(|c| c.outer)),
+            },
+            count(r.iterations),
+            fixed(median(r.seconds.setup), 3),
+            fixed(median(r.seconds.solve), 3),
+            fixed(median(r.seconds.recover), 3),
+            fixed(median(total), 3),
+            fixed(total.map(|t| t.min), 3),
+            fixed(total.map(|t| t.max), 3),
+            fixed(r.ratio, 2),
+            fixed(median(r.seconds.again), 3),
+            fixed(median(r.memory_mb), 0),
+            fixed(net, 0),
+            scientific(r.error),
+            scientific(r.residual),
+            outcome,
+        ];
+        let cells = (0..).zip(cells).filter(|(k, _)| kept(k)).map(|c| c.1);
+        table.row(cells);
+    }
+    format!(
+        "{}: {}, {} bodies, {} subdomains, {} unknowns, ‖b − Au‖ ≤ {} ‖b‖, {} rounds\n\n{table}{notes}{}\n",
+        case.case,
+        case.scene,
+        case.bodies,
+        case.subdomains,
+        case.dofs,
+        scientific(Some(case.rtol)),
+        case.rounds,
+        sum(case)
+    )
+}
+
+/// The fastest of both sides in one line.
+fn sum(case: &BenchCase) -> String {
+    let [Some(ours), Some(other)] = [true, false].map(|ours| case.fastest(ours)) else {
+        return String::new();
+    };
+    let seconds = |r: &BenchRow| fixed(median(r.seconds.total), 3);
+    format!(
+        "Fastest of ours: {} s ({}); fastest other: {} s ({}), {} times as long.\n",
+        seconds(ours),
+        label(ours),
+        seconds(other),
+        label(other),
+        fixed(other.ratio, 2)
+    )
+}
+
+/// A method with its layout, the same in every case.
+fn label(row: &BenchRow) -> String {
+    match (row.layout.as_str(), row.subdomains) {
+        (layout @ ("threads" | "ranks"), _) => format!("{}, {layout}", row.method),
+        (layout, Some(_)) => format!("{}, a part per {layout}", row.method),
+        (_, None) => row.method.clone(),
+    }
+}
+
+/// All rows for programs: full precision, empty cells where nothing is known.
+pub fn csv(report: &BenchReport) -> Table {
+    let phases = ["setup", "solve", "recover", "total", "again"];
+    let mut header: Vec<String> = ["case", "method", "layout", "subdomains", "ranks", "threads"]
+        .map(String::from)
+        .to_vec();
+    for phase in phases {
+        header.extend(["median", "min", "max"].map(|of| format!("{phase}_{of}")));
+    }
+    let tail = [
+        "ratio",
+        "memory_mb",
+        "memory_at_start_mb",
+        "kappa",
+        "iterations",
+        "outer_steps",
+        "error",
+        "residual",
+        "rounds",
+        "converged",
+        "converged_reason",
+        "rescue",
+        "message",
+    ];
+    header.extend(tail.map(String::from));
+    let mut table = Table::new(header);
+    let counted = |n: Option<usize>| n.map(|n| n.to_string()).unwrap_or_default();
+    for case in &report.cases {
+        for r in &case.methods {
+            let s = &r.seconds;
+            let mut cells = vec![
+                case.case.clone(),
+                r.method.clone(),
+                r.layout.clone(),
+                counted(r.subdomains),
+                r.ranks.to_string(),
+                r.threads.to_string(),
+            ];
+            for spread in [s.setup, s.solve, s.recover, s.total, s.again] {
+                let of = |pick: fn(Spread) -> f64| exactly(spread.map(pick));
+                cells.extend([of(|s| s.median), of(|s| s.min), of(|s| s.max)]);
+            }
+            cells.extend([
+                exactly(r.ratio),
+                exactly(median(r.memory_mb)),
+                exactly(median(r.memory_at_start_mb)),
+                exactly(r.kappa),
+                counted(r.iterations),
+                counted(r.contact.and_then(|c| c.outer)),
+                exactly(r.error),
+                exactly(r.residual),
+                r.samples.iter().filter(|s| s.converged).count().to_string(),
+                r.converged.to_string(),
+                r.converged_reason.clone(),
+                r.rescue.clone().unwrap_or_default(),
+                r.message.clone().unwrap_or_default(),
+            ]);
+            table.row(cells);
+        }
+    }
+    table
+}
+
+/// Error over seconds of set-up and solve: a panel for each case, a marker for each method at its median, a bar from its smallest to its
+/// largest total.
+pub fn figure(report: &BenchReport) -> Figure {
+    // One colour for a method in all panels, one shape for a layout.
+    let mut methods: Vec<&str> = Vec::new();
+    for row in report.cases.iter().flat_map(|c| &c.methods) {
+        if !methods.contains(&row.method.as_str()) {
+            methods.push(&row.method);
+        }
+    }
+    let colour = |row: &BenchRow| {
+        let k = methods.iter().position(|m| *m == row.method).unwrap_or(0);
+        Colour::CYCLE[k % Colour::CYCLE.len()]
+    };
+    let marker = |row: &BenchRow| match row.layout.as_str() {
+        "ranks" | "subdomain" => Marker::Square,
+        "body" => Marker::Diamond,
+        "core" if row.subdomains.is_some() => Marker::Triangle,
+        _ => Marker::Circle,
+    };
+    let panel = |case: &BenchCase| {
+        let mut series = Vec::new();
+        for row in case.methods.iter().filter(|r| r.converged) {
+            let (Some(total), Some(error)) = (row.seconds.total, row.error) else {
+                continue;
+            };
+            let ends = vec![(total.min, error), (total.max, error)];
+            series.push(Series::new("", ends, colour(row)).marker(Marker::None, false, 0.0));
+            let name = match row.set_given() {
+                true => format!("{} (set given)", label(row)),
+                false => label(row),
+            };
+            series.push(
+                Series::new(name, vec![(total.median, error)], colour(row))
+                    .marker(marker(row), !row.set_given(), 4.5)
+                    .line(Line::None),
+            );
+        }
+        Panel {
+            title: case.case.clone(),
+            x: Axis::new("seconds, set-up and solve", Scale::Log),
+            y: Axis::new("relative error, energy norm", Scale::Log),
+            series,
+            bands: Vec::new(),
+        }
+    };
+    let panels: Vec<Panel> = report.cases.iter().map(panel).collect();
+    Figure::new(
+        "Error against seconds: medians, smallest and largest",
+        panels,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::json::{BenchSample, BenchSeconds};
+
+    fn report() -> BenchReport {
+        let row = |method: &str, layout: &str, seconds: &[f64]| BenchRow {
+            method: method.into(),
+            layout: layout.into(),
+            ranks: 2,
+            threads: 1,
+            error: Some(1e-8),
+            converged: true,
+            converged_reason: "CONVERGED_RTOL".into(),
+            seconds: BenchSeconds::default(),
+            samples: seconds
+                .iter()
+                .map(|&s| BenchSample {
+                    setup: Some(0.5 * s),
+                    solve: Some(0.5 * s),
+                    total: Some(s),
+                    converged: true,
+                    ..BenchSample::default()
+                })
+                .collect(),
+            ..BenchRow::default()
+        };
+        let mut failed = row("mumps", "core", &[]);
+        failed.converged = false;
+        failed.message = Some("round 1: out of memory".into());
+        let mut case = BenchCase {
+            case: "square".into(),
+            scene: "A square".into(),
+            bodies: 4,
+            subdomains: 16,
+            dofs: 225,
+            rtol: 1e-6,
+            rounds: 3,
+            reference_residual: None,
+            contact: None,
+            methods: vec![
+                row("fetifeti", "threads", &[0.25, 0.5, 1.0]),
+                row("gamg", "core", &[2.0, 4.0, 1.5]),
+                failed,
+            ],
+        };
+        case.sum_up();
+        BenchReport {
+            schema: BenchReport::SCHEMA.into(),
+            version: "0".into(),
+            blas: Some("/lib/libblas.so".into()),
+            cores: 2,
+            rounds: 3,
+            quick: false,
+            cases: vec![case],
+        }
+    }
+
+    #[test]
+    fn the_table_has_medians_ranges_and_the_last_word() {
+        let text = text(&report());
+        let line = text.lines().find(|l| l.starts_with("gamg")).unwrap();
+        let words: Vec<&str> = line.split_whitespace().collect();
+        assert_eq!(words[3..10].join(" "), "– 1.000 1.000 – 2.000 1.500 4.000");
+        assert_eq!(words[10], "4.00");
+        assert!(text.contains("mumps: round 1: out of memory"), "{text}");
+        assert!(text.contains("fastest other: 2.000 s (gamg), 4.00 times as long"));
+        assert!(text.contains("/lib/libblas.so"));
+    }
+
+    #[test]
+    fn csv_and_picture_have_what_there_is() {
+        let report = report();
+        let csv = csv(&report).to_csv();
+        let line = csv
+            .lines()
+            .find(|l| l.starts_with("square,mumps"))
+            .expect("a row");
+        assert!(
+            line.ends_with("0,false,CONVERGED_RTOL,,round 1: out of memory"),
+            "{line}"
+        );
+        let columns = csv.lines().next().expect("a header").split(',').count();
+        assert!(
+            csv.lines().all(|l| l.split(',').count() == columns),
+            "{csv}"
+        );
+        let figure = figure(&report);
+        // Two methods with an error, each with its marker and its bar.
+        assert_eq!(figure.panels[0].series.len(), 4);
+    }
+}

@@ -1,0 +1,291 @@
+//! The comparison of methods as a table.
+
+use super::summary::{exactly, ranks};
+use super::table::{count, fixed, scientific, Align, Table};
+use crate::report::json::{CompareContact, CompareInequalities, CompareReport, CompareRow};
+
+/// Columns that only inequalities fill.
+const OUTER: usize = 4;
+const SET: usize = 13;
+
+/// The comparison for terminals, with a caption.
+pub fn text(report: &CompareReport) -> String {
+    // Outer steps and the set only where there are inequalities.
+    let contact = report.contact.is_some();
+    let drop = |k: usize| !contact && (k == OUTER || k == SET);
+    let header = [
+        "method", "parts", "ranks", "κ", "outer", "it", "set-up s", "solve s", "total s", "MB",
+        "MB net", "error", "residual", "set", "outcome",
+    ];
+    let header = (0..).zip(header).filter(|(k, _)| !drop(*k)).map(|h| h.1);
+    let mut table = Table::new(header).align(0, Align::Left);
+    table = table.align(if contact { 14 } else { 12 }, Align::Left);
+    let mut notes = String::new();
+    for r in &report.rows {
+        let net = r
+            .memory_mb
+            .zip(r.memory_at_start_mb)
+            .map(|(all, start)| all - start);
+        let mut note = |text: String| {
+            notes += if notes.is_empty() { "\n" } else { "" };
+            notes += &format!("{} on {}: {text}\n", r.method, ranks(r.ranks));
+        };
+        if let Some(options) = &r.rescue {
+            note(format!("second try, with {options}"));
+        }
+        let outcome = match &r.message {
+            None => r.converged_reason.clone(),
+            Some(message) => {
+                note(message.clone());
+                "see below".to_string()
+            }
+        };
+        let cells = [
+            r.method.clone(),
+            count(r.subdomains),
+            match r.threads {
+                0 | 1 => r.ranks.to_string(),
+                n => format!("{} x {n}", r.ranks),
+            },
+            fixed(r.kappa, 3),
+            match r.contact {
+                Some(CompareContact { outer: None, .. }) => "last set".to_string(),
+                contact => count(contact.and_then(|c| c.outer)),
+            },
+            count(r.iterations),
+            fixed(r.seconds.setup, 3),
+            fixed(r.seconds.solve, 3),
+            fixed(r.seconds.total, 3),
+            fixed(r.memory_mb, 0),
+            fixed(net, 0),
+            scientific(r.error),
+            scientific(r.residual),
+            match r.contact.and_then(|c| c.differ) {
+                None => "–".to_string(),
+                Some(0) => "same".to_string(),
+                Some(n) => format!("{n} differ"),
+            },
+            outcome,
+        ];
+        let cells = (0..).zip(cells).filter(|(k, _)| !drop(*k)).map(|c| c.1);
+        table.row(cells);
+    }
+    format!(
+        "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n\
+         All methods were driven to ‖b − Au‖ ≤ {} ‖b‖ of the assembled problem; its assembly is not in the times.\n\
+         parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); error: in the energy norm,\n\
+         against a refined direct solution{}; MB: largest resident memory, summed over the ranks;\n\
+         net: without what each rank holds before it has read the problem.\n{}{}",
+        report.scene,
+        report.bodies,
+        report.subdomains,
+        report.dofs,
+        report.cores,
+        scientific(Some(report.rtol)),
+        match report.reference_residual {
+            Some(r) => format!(" (residual {})", scientific(Some(r))),
+            None => " (not available)".to_string(),
+        },
+        match report.supports {
+            0 => String::new(),
+            n => format!(
+                "Nothing holds {n} rigid motion{}: the assembled problem has as many unknowns set to zero, which bear no force.\n",
+                if n == 1 { "" } else { "s" }
+            ),
+        },
+        report.contact.map(|c| inequalities(&c)).unwrap_or_default(),
+    )
+}
+
+/// What is to be said of inequalities below the table.
+fn inequalities(c: &CompareInequalities) -> String {
+    let mut text = format!(
+        "Of {} inequalities {} hold with equality in the direct solution, found in {} steps of an active-set loop \
+         (violation {}, smallest multiplier {}).\n\
+         outer: active sets that were solved for; it: inner iterations of all of them; last set: the equations of our last active set only;\n\
+         set: rows that hold here and not in the direct solution, or the other way round.\n",
+        c.rows,
+        count(c.active),
+        count(c.outer),
+        scientific(c.feasibility),
+        scientific(c.min_multiplier),
+    );
+    if c.load_steps > 1 {
+        text += &format!(
+            "Of {} load steps the last one is solved, alone.\n",
+            c.load_steps
+        );
+    }
+    text
+}
+
+/// The comparison for programs: full precision, empty cells where nothing is known.
+pub fn csv(rows: &[CompareRow]) -> Table {
+    let mut table = Table::new([
+        "method",
+        "subdomains",
+        "ranks",
+        "threads",
+        "kappa",
+        "iterations",
+        "assemble_seconds",
+        "setup_seconds",
+        "solve_seconds",
+        "total_seconds",
+        "memory_mb",
+        "memory_at_start_mb",
+        "error",
+        "residual",
+        "outer_steps",
+        "active_rows",
+        "active_differ",
+        "feasibility",
+        "min_multiplier",
+        "rtol",
+        "converged",
+        "converged_reason",
+        "rescue",
+        "message",
+    ]);
+    let counted = |n: Option<usize>| n.map(|n| n.to_string()).unwrap_or_default();
+    for r in rows {
+        table.row([
+            r.method.clone(),
+            counted(r.subdomains),
+            r.ranks.to_string(),
+            r.threads.to_string(),
+            exactly(r.kappa),
+            counted(r.iterations),
+            exactly(r.seconds.assemble),
+            exactly(r.seconds.setup),
+            exactly(r.seconds.solve),
+            exactly(r.seconds.total),
+            exactly(r.memory_mb),
+            exactly(r.memory_at_start_mb),
+            exactly(r.error),
+            exactly(r.residual),
+            counted(r.contact.and_then(|c| c.outer)),
+            counted(r.contact.map(|c| c.active)),
+            counted(r.contact.and_then(|c| c.differ)),
+            exactly(r.contact.and_then(|c| c.feasibility)),
+            exactly(r.contact.and_then(|c| c.min_multiplier)),
+            exactly(r.rtol),
+            r.converged.to_string(),
+            r.converged_reason.clone(),
+            r.rescue.clone().unwrap_or_default(),
+            r.message.clone().unwrap_or_default(),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::json::CompareSeconds;
+
+    #[test]
+    fn compare_names_the_outcome() {
+        let row = CompareRow {
+            method: "hypre".into(),
+            ranks: 2,
+            threads: 1,
+            kappa: Some(1.25),
+            iterations: Some(8),
+            seconds: CompareSeconds {
+                assemble: Some(0.125),
+                setup: Some(0.5),
+                solve: Some(0.25),
+                total: Some(0.75),
+            },
+            memory_mb: Some(99.6),
+            memory_at_start_mb: Some(50.0),
+            error: Some(1.24e-9),
+            converged: true,
+            converged_reason: "CONVERGED_RTOL".into(),
+            ..CompareRow::default()
+        };
+        let mut failed = row.clone();
+        failed.converged = false;
+        failed.message = Some("PETSc was built without hypre".into());
+        let report = CompareReport {
+            scene: "four bodies".into(),
+            bodies: 4,
+            subdomains: 16,
+            dofs: 225,
+            rtol: 1e-6,
+            cores: 2,
+            supports: 0,
+            reference_residual: None,
+            contact: None,
+            rows: vec![row.clone(), failed.clone()],
+        };
+        let text = text(&report);
+        let line = text.lines().find(|l| l.starts_with("hypre")).unwrap();
+        assert_eq!(
+            line.split_whitespace().collect::<Vec<_>>(),
+            "hypre – 2 1.250 8 0.500 0.250 0.750 100 50 1.2e-9 – CONVERGED_RTOL"
+                .split(' ')
+                .collect::<Vec<_>>()
+        );
+        assert!(text.contains("PETSc was built without hypre"));
+        assert!(text.contains("1e-6") || text.contains("1.0e-6"), "{text}");
+        let csv = csv(&[failed]).to_csv();
+        let end = "hypre,,2,1,1.25,8,0.125,0.5,0.25,0.75,99.6,50,1.24e-9,,,,,,,,false,CONVERGED_RTOL,,PETSc was built without hypre\n";
+        assert!(csv.ends_with(end), "{csv}");
+    }
+
+    #[test]
+    fn contact_has_columns_of_its_own() {
+        let row = |outer: Option<usize>, differ: Option<usize>| CompareRow {
+            method: "mumps".into(),
+            ranks: 2,
+            contact: Some(CompareContact {
+                outer,
+                active: 9,
+                differ,
+                feasibility: Some(0.5),
+                min_multiplier: Some(-0.25),
+            }),
+            converged: true,
+            converged_reason: "CONVERGED_ITS".into(),
+            ..CompareRow::default()
+        };
+        let rows = vec![
+            row(Some(5), Some(0)),
+            row(None, Some(3)),
+            row(Some(5), None),
+        ];
+        let report = CompareReport {
+            scene: "model".into(),
+            bodies: 2,
+            subdomains: 2,
+            dofs: 10,
+            rtol: 1e-6,
+            cores: 2,
+            supports: 2,
+            reference_residual: None,
+            contact: Some(CompareInequalities {
+                rows: 33,
+                active: Some(9),
+                outer: Some(6),
+                load_steps: 4,
+                ..CompareInequalities::default()
+            }),
+            rows,
+        };
+        let text = text(&report);
+        let lines: Vec<&str> = text.lines().filter(|l| l.starts_with("mumps")).collect();
+        assert!(
+            lines[0].contains(" 5 ") && lines[0].contains("same"),
+            "{text}"
+        );
+        assert!(lines[1].contains("last set") && lines[1].contains("3 differ"));
+        assert!(!lines[2].contains("same") && !lines[2].contains("differ"));
+        assert!(text.contains("Of 33 inequalities 9 hold") && text.contains("in 6 steps"));
+        assert!(text.contains("Of 4 load steps the last one"));
+        assert!(text.contains("Nothing holds 2 rigid motions:"));
+        let csv = csv(&report.rows[1..2]).to_csv();
+        assert!(csv.contains(",,9,3,0.5,-0.25,,true,"), "{csv}");
+    }
+}

@@ -1,0 +1,8 @@
+//! Aligned text for terminals and CSV: the tables of the commands.
+
+pub mod bench;
+pub mod compare;
+pub mod contact;
+pub mod paper;
+pub mod summary;
+pub mod table;
