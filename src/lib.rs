@@ -108,6 +108,13 @@ pub mod scene;
 pub mod study;
 pub mod substructures;
 
+// Tests say `fetifeti` inside the crate as they do outside.
+#[cfg(test)]
+extern crate self as fetifeti;
+#[cfg(test)]
+#[path = "../tests/inside/mod.rs"]
+mod inside;
+
 pub use error::{Error, Result};
 pub use feti::{FetiFeti, PcType, Primal, ProjectorKind, Scaling, Settings, Solution, Spectrum};
 pub use linalg::csr::Csr;

@@ -1,0 +1,386 @@
+//! `fetifeti solve` and `plan` as programs and people use them: report, files, exit codes, options.
+
+use crate::support::{mpi, program};
+use mpi::{Output, Scratch};
+use program::fetifeti;
+use serde_json::Value;
+
+const EXAMPLE: &str = "examples/scenes/poisson_2x2.toml";
+
+fn number(v: &Value) -> f64 {
+    v.as_f64()
+        .unwrap_or_else(|| panic!("{v} is no plain number"))
+}
+
+/// `solve` with the report on standard output.
+fn solve(scene: &str, more: &[&str]) -> (Output, Value) {
+    let out = fetifeti(&[&["solve", scene, "--json", "-"], more].concat());
+    let report = serde_json::from_str(&out.stdout).unwrap_or_else(|e| panic!("{e}: {}", out.all()));
+    (out, report)
+}
+
+#[test]
+fn the_report_has_every_key_of_the_contract() {
+    let (out, r) = solve(
+        "examples/scenes/exact_sine.toml",
+        &["-fetifeti_spectrum", "-fetifeti_check"],
+    );
+    assert_eq!(out.code, 0, "{}", out.all());
+    assert_eq!(out.stderr, "", "{}", out.all());
+    for (key, value) in [
+        ("ranks", 1),
+        ("bodies", 4),
+        ("floating_bodies", 0),
+        ("subdomains", 16),
+        ("outer_iterations", 1),
+    ] {
+        assert_eq!(r[key], value, "{key}");
+    }
+    // (2 · 2 · 8 + 1)² nodes, those between bodies twice, the boundary held.
+    assert_eq!(r["dofs"], 4 * 16 * 16);
+    // Between two bodies 15 nodes, four times, and the cross point; inside a body 2 lines of 2 halves of 7 nodes.
+    assert_eq!(r["multipliers"]["global"], 4 * 15 + 6);
+    assert_eq!(r["multipliers"]["active"], r["multipliers"]["global"]);
+    assert_eq!(r["multipliers"]["local"], 4 * 4 * 7);
+    assert_eq!(
+        r["iterations"]["inner"].as_array().expect("a list").len(),
+        1
+    );
+    assert_eq!(r["iterations"]["inner"][0], r["iterations"]["total"]);
+    assert!(r["scene"].is_string() && r["converged_reason"] == "CONVERGED_RTOL");
+    for kind in ["exact", "estimate"] {
+        let s = &r["condition"][kind];
+        let (low, high, kappa) = (
+            number(&s["lambda_min"]),
+            number(&s["lambda_max"]),
+            number(&s["kappa"]),
+        );
+        assert!(
+            low >= 1.0 - 1e-8 && (high / low / kappa - 1.0).abs() < 1e-12,
+            "{s}"
+        );
+    }
+    assert!(number(&r["kkt"]["stationarity"]) < 1e-6 && number(&r["kkt"]["feasibility"]) < 1e-6);
+    assert_eq!(number(&r["kkt"]["complementarity"]), 0.0);
+    assert!(r["kkt"]
+        .as_object()
+        .expect("an object")
+        .contains_key("min_multiplier"));
+    // −½ ∫ |∇u|² = −π²/4 up to the energy of the error.
+    let energy = std::f64::consts::PI.powi(2) / -4.0;
+    let error = number(&r["error"]["energy"]);
+    assert!(
+        (number(&r["energy"]) - energy - 0.5 * error * error).abs() < 1e-5,
+        "{}",
+        r["energy"]
+    );
+    assert!(number(&r["error"]["l2"]) < 1e-3 && number(&r["error"]["h1"]) == error);
+    for phase in ["assemble", "setup", "solve", "recover", "total"] {
+        let seconds = number(&r["seconds"][phase]);
+        assert!(seconds >= 0.0, "{phase}: {seconds}");
+    }
+    assert!(
+        (1.0..2000.0).contains(&number(&r["memory_mb"])),
+        "{}",
+        r["memory_mb"]
+    );
+    // No exact solution: no error.
+    assert!(solve(EXAMPLE, &[]).1.get("error").is_none());
+    assert!(solve(EXAMPLE, &[]).1["condition"]["exact"].is_null());
+}
+
+#[test]
+fn a_run_that_stops_early_writes_what_it_has() {
+    let scratch = Scratch::new("early");
+    let (dir, json) = (scratch.path("out"), scratch.path("r.json"));
+    let out = fetifeti(&[
+        "solve",
+        EXAMPLE,
+        "--out",
+        &dir,
+        "--json",
+        &json,
+        "-fetifeti_ksp_max_it",
+        "2",
+    ]);
+    assert_eq!(out.code, 1, "{}", out.all());
+    assert_eq!(out.stderr.lines().count(), 1, "{}", out.all());
+    assert!(
+        out.stderr.starts_with("Error: ") && out.stderr.contains("did not converge"),
+        "{}",
+        out.all()
+    );
+    assert!(
+        out.stderr.contains("2 iterations") && out.stderr.contains("partial"),
+        "{}",
+        out.all()
+    );
+    let report: Value =
+        serde_json::from_str(&std::fs::read_to_string(&json).expect("the report")).expect("JSON");
+    assert_eq!(report["converged_reason"], "DIVERGED_ITS");
+    assert_eq!(report["iterations"]["total"], 2);
+    assert_eq!(scratch.files().len(), 4, "{:?}", scratch.files());
+}
+
+#[test]
+fn results_are_written_where_they_were_asked_for() {
+    let scratch = Scratch::new("files");
+    let dir = scratch.path("deep/er");
+    let out = fetifeti(&[
+        "solve",
+        "examples/scenes/unequal_bodies.toml",
+        "--out",
+        &dir,
+    ]);
+    assert_eq!(out.code, 0, "{}", out.all());
+    let vtu = std::fs::read(format!("{dir}/solution.vtu")).expect("the mesh");
+    let vtu = String::from_utf8_lossy(&vtu);
+    for part in [
+        "UnstructuredGrid",
+        "\"u\"",
+        "\"rho\"",
+        "\"body\"",
+        "\"subdomain\"",
+    ] {
+        assert!(vtu.contains(part), "{part}");
+    }
+    let png = std::fs::read(format!("{dir}/solution.png")).expect("the picture");
+    assert_eq!(&png[1..4], b"PNG");
+    let report = std::fs::read_to_string(format!("{dir}/report.json")).expect("the report");
+    let report: Value = serde_json::from_str(&report).expect("JSON");
+    assert_eq!(report["bodies"], 3);
+    // --quiet says nothing, and neither writes nor prints what was not asked for.
+    let out = fetifeti(&["solve", EXAMPLE, "--quiet"]);
+    assert_eq!(
+        (out.code, out.stdout.as_str(), out.stderr.as_str()),
+        (0, "", "")
+    );
+}
+
+#[test]
+fn identities_are_printed_and_vanish() {
+    for scene in [
+        "partly_tied",
+        "jump_1e6",
+        "one_body",
+        "one_subdomain",
+        "lee_column_2",
+    ] {
+        let path = format!("examples/scenes/{scene}.toml");
+        let (out, report) = solve(&path, &["-fetifeti_check"]);
+        assert_eq!(out.code, 0, "{}", out.all());
+        let identities = report["check"].as_object().expect("identities");
+        assert!(identities.len() >= 5, "{identities:?}");
+        for (name, defect) in identities {
+            assert!(number(defect) < 1e-10, "{scene}: {name} {defect}");
+        }
+        let printed = fetifeti(&["solve", &path, "-fetifeti_check"]).stdout;
+        for name in identities.keys() {
+            assert!(printed.contains(name.as_str()), "{name}: {printed}");
+        }
+    }
+}
+
+#[test]
+fn options_come_from_the_scene_and_the_command_line_wins() {
+    let scratch = Scratch::new("options");
+    let text = std::fs::read_to_string(EXAMPLE).expect("the example");
+    let options = "[options]\nfetifeti_pc_type = \"lumped\"\nfetifeti_ksp_type = \"gmres\"\nfetifeti_ksp_rtol = 1e-9\n";
+    let scene = scratch.file("s.toml", &format!("{text}\n{options}"));
+    let (_, report) = solve(&scene, &[]);
+    assert_eq!(
+        (&report["preconditioner"], &report["ksp_type"]),
+        (&"lumped".into(), &"gmres".into())
+    );
+    assert_eq!(number(&report["rtol"]), 1e-9);
+    let (_, report) = solve(&scene, &["-fetifeti_pc_type", "dirichlet"]);
+    assert_eq!(
+        (&report["preconditioner"], &report["ksp_type"]),
+        (&"dirichlet".into(), &"gmres".into())
+    );
+    // The same from a file of options.
+    let file = scratch.file("opts", "-fetifeti_ksp_type fcg\n-fetifeti_pc_type none\n");
+    let (_, report) = solve(EXAMPLE, &["-options_file", &file]);
+    assert_eq!(
+        (&report["preconditioner"], &report["ksp_type"]),
+        (&"none".into(), &"fcg".into())
+    );
+}
+
+#[test]
+fn typos_show_up_as_options_left() {
+    let out = fetifeti(&[
+        "solve",
+        EXAMPLE,
+        "-fetifeti_scaling_gama",
+        "1",
+        "-fetifeti_gtg_ksp_typ",
+        "cg",
+        "-options_left",
+    ]);
+    assert_eq!(out.code, 0, "{}", out.all());
+    for typo in ["-fetifeti_scaling_gama", "-fetifeti_gtg_ksp_typ"] {
+        let left = out
+            .stdout
+            .lines()
+            .chain(out.stderr.lines())
+            .filter(|l| l.contains("left") && l.contains(typo));
+        assert_eq!(left.count(), 1, "{}", out.all());
+    }
+    // Options that are used are not left.
+    let used = [
+        "-fetifeti_scaling",
+        "rho",
+        "-fetifeti_ksp_rtol",
+        "1e-8",
+        "-fetifeti_coarse_ksp_type",
+        "preonly",
+    ];
+    let out = fetifeti(&[&["solve", EXAMPLE, "-options_left"], &used[..]].concat());
+    assert!(
+        out.stdout.contains("no unused") || !out.all().contains("Option left"),
+        "{}",
+        out.all()
+    );
+}
+
+#[test]
+fn solvers_are_seen_by_their_prefixes() {
+    let scene = "examples/scenes/lee_column_1.toml";
+    let options = [
+        "-fetifeti_gtg_ksp_type",
+        "cg",
+        "-fetifeti_gtg_pc_type",
+        "jacobi",
+        "-fetifeti_gtg_ksp_rtol",
+        "1e-14",
+        "-fetifeti_coarse_ksp_type",
+        "cg",
+        "-fetifeti_coarse_pc_type",
+        "jacobi",
+        "-fetifeti_coarse_ksp_rtol",
+        "1e-13",
+        "-fetifeti_ksp_rtol",
+        "1e-10",
+    ];
+    let (out, report) = solve(scene, &options);
+    assert_eq!(out.code, 0, "{}", out.all());
+    let (_, usual) = solve(scene, &["-fetifeti_ksp_rtol", "1e-10"]);
+    assert!((number(&report["energy"]) / number(&usual["energy"]) - 1.0).abs() < 1e-10);
+    let viewed = fetifeti(&[
+        "solve",
+        scene,
+        "--quiet",
+        "-fetifeti_ksp_view",
+        "-fetifeti_ksp_monitor",
+        "-fetifeti_gtg_ksp_view",
+    ]);
+    assert!(viewed.stdout.contains("(fetifeti_)"), "{}", viewed.all());
+    assert!(
+        viewed.stdout.contains("(fetifeti_gtg_)"),
+        "{}",
+        viewed.all()
+    );
+    assert!(
+        viewed.stdout.contains("KSP Residual norm"),
+        "{}",
+        viewed.all()
+    );
+    let viewed = fetifeti(&["solve", scene, "--quiet", "-fetifeti_coarse_ksp_view"]);
+    assert!(
+        viewed.stdout.contains("(fetifeti_coarse_)"),
+        "{}",
+        viewed.all()
+    );
+}
+
+#[test]
+fn a_coarse_solver_that_fails_is_said() {
+    let scene = "examples/scenes/lee_column_1.toml";
+    let options = [
+        "-fetifeti_coarse_ksp_type",
+        "cg",
+        "-fetifeti_coarse_pc_type",
+        "jacobi",
+        "-fetifeti_coarse_ksp_max_it",
+        "1",
+    ];
+    let out = fetifeti(&[&["solve", scene, "--quiet"], &options[..]].concat());
+    assert_eq!(out.code, 1, "{}", out.all());
+    assert!(
+        out.stderr.starts_with("Error: ") && out.stderr.contains("coarse"),
+        "{}",
+        out.all()
+    );
+    assert!(!out.stderr.contains("() at "), "{}", out.all());
+}
+
+#[test]
+fn the_plan_names_bodies_and_sizes() {
+    let out = fetifeti(&["plan", "examples/scenes/partly_tied.toml"]);
+    assert_eq!(out.code, 0, "{}", out.all());
+    for word in ["left", "middle", "right", "16", "multipliers"] {
+        assert!(out.stdout.contains(word), "{word}: {}", out.all());
+    }
+    for example in std::fs::read_dir("examples/scenes").expect("the examples") {
+        let path = example.expect("an entry").path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let out = fetifeti(&["plan", path.to_str().expect("UTF-8")]);
+            assert_eq!((out.code, out.stderr.as_str()), (0, ""), "{}", out.all());
+        }
+    }
+}
+
+#[test]
+fn help_lists_our_options() {
+    let out = fetifeti(&["-help"]);
+    assert_eq!(out.code, 0, "{}", out.all());
+    for option in [
+        "-fetifeti_pc_type",
+        "-fetifeti_scaling",
+        "-fetifeti_projector",
+        "-fetifeti_spectrum",
+        "-fetifeti_ksp_rtol",
+    ] {
+        assert!(out.stdout.contains(option), "{option}");
+    }
+    for args in [&["--help"][..], &[]] {
+        assert!(fetifeti(args).stdout.contains("fetifeti solve SCENE"));
+    }
+}
+
+#[test]
+fn a_million_unknowns_are_solved() {
+    let (out, report) = solve("examples/scenes/speed_1024.toml", &[]);
+    assert_eq!(out.code, 0, "{}", out.all());
+    let [setup, solve, recover] =
+        ["setup", "solve", "recover"].map(|p| number(&report["seconds"][p]));
+    println!("set-up {setup:.2} s, solve {solve:.2} s, recover {recover:.2} s");
+    assert!(number(&report["kkt"]["stationarity"]) < 1e-4);
+}
+
+#[test]
+fn the_plan_counts_inequalities_and_load_steps() {
+    for (name, expected) in [
+        (
+            "model_contact",
+            "outer loop            active set: 33 inequalities (33 candidate nodes in 1 contact pair)",
+        ),
+        (
+            "obstacle",
+            "outer loop            active set: 79 inequalities (17 candidate nodes in 1 contact pair, 62 nodes beside 4 \
+             obstacles)",
+        ),
+        (
+            "press_ramp",
+            "load steps            10, each starts from the solution of the last",
+        ),
+        ("model_tied", "outer loop            none: no inequality"),
+    ] {
+        let out = fetifeti(&["plan", &format!("examples/scenes/{name}.toml")]);
+        assert_eq!(out.code, 0, "{}", out.all());
+        assert!(out.stdout.lines().any(|l| l == expected), "{}", out.stdout);
+        let steps = out.stdout.contains("load steps");
+        assert_eq!(steps, name == "press_ramp", "{}", out.stdout);
+    }
+}

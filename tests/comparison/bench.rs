@@ -1,0 +1,318 @@
+//! `fetifeti bench` from the outside: every method in every round, and what is made of the samples. Nothing here looks at how long something took.
+
+use crate::support::{mpi, program};
+use fetifeti::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, Spread};
+use mpi::Scratch;
+use program::fetifeti;
+
+/// Four bodies of two subdomains, tied, no symmetry.
+const TIED: &str = "title = \"four bodies\"\n[grid]\nbodies = 2\nsubdomains = [2, 1]\nelements_per_subdomain = 4\n\
+                    load = \"1 + x\"\ndirichlet = [\"left\"]\n";
+
+/// The model contact problem on few elements.
+const CONTACT: &str = "title = \"model\"\n\
+    [[body]]\nname = \"left\"\nsize = [1, 1]\nelements = 8\nsubdomains = 2\ndirichlet = [\"left\"]\nload = [{ y = [0.75, 1], value = -3 }]\n\
+    [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\nelements = 8\nsubdomains = 2\nload = [{ y = [0, 0.25], value = -1 }]\n\
+    [[contact]]\nbodies = [\"left\", \"right\"]\n";
+
+fn bench(args: &[&str]) -> BenchReport {
+    let all = [&["bench"], args, &["--json", "-", "-compare_cores", "2"]].concat();
+    let run = fetifeti(&all);
+    assert_eq!(run.code, 0, "{}", run.all());
+    let report: BenchReport = serde_json::from_str(&run.stdout).expect("a report");
+    assert_eq!(report.schema, "fetifeti.bench/1");
+    report
+}
+
+/// Whether a row holds a solution. Ours must; another method may say instead why it holds none, and then has no seconds to be
+/// compared by.
+fn solved(row: &BenchRow) -> bool {
+    let what = format!("{} {}: {row:?}", row.method, row.layout);
+    let Some(message) = &row.message else {
+        assert!(row.converged, "{what}");
+        return true;
+    };
+    assert!(!row.is_ours() && !row.converged, "{what}");
+    assert!(!message.trim().is_empty(), "{what}");
+    assert!(row.ratio.is_none(), "{what}");
+    println!("{}: {message}", row.method);
+    false
+}
+
+/// What must hold of every case.
+fn check(case: &BenchCase, rounds: usize) {
+    assert_eq!(case.rounds, rounds);
+    assert!(case.reference_residual.expect("a direct solution") < 1e-10);
+    for row in case.methods.iter().filter(|r| solved(r)) {
+        let what = format!("{} {}: {row:?}", row.method, row.layout);
+        assert!(row.error.expect("an error") < 1e-4, "{what}");
+        assert!(row.residual.expect("a residual") <= case.rtol, "{what}");
+        assert_eq!(row.samples.len(), rounds, "{what}");
+        for (round, sample) in (1..).zip(&row.samples) {
+            assert!(sample.converged && sample.round == round, "{what}");
+            let [setup, solve, total] =
+                [sample.setup, sample.solve, sample.total].map(|s| s.expect("seconds"));
+            // Reading JSON may change the last digit.
+            assert!((setup + solve - total).abs() <= 1e-14 * total);
+            assert!(sample.recover.is_none_or(|r| r <= solve), "{what}");
+            assert_eq!(sample.recover.is_some(), row.is_ours(), "{what}");
+        }
+        let seconds = [
+            (row.seconds.setup, (|s| s.setup) as fn(&BenchSample) -> _),
+            (row.seconds.solve, |s| s.solve),
+            (row.seconds.total, |s| s.total),
+            (row.seconds.again, |s| s.again),
+            (row.memory_mb, |s| s.memory_mb),
+        ];
+        for (spread, of) in seconds {
+            let spread = spread.unwrap_or_else(|| panic!("a spread: {what}"));
+            between(spread, row.samples.iter().filter_map(of).collect(), rounds);
+        }
+    }
+    interleaved(case, rounds);
+    let ours = case.fastest(true).expect("one of ours");
+    assert_eq!(ours.ratio, Some(1.0));
+}
+
+/// Smallest and largest are samples, and half of all samples are on either side of the median.
+fn between(spread: Spread, samples: Vec<f64>, rounds: usize) {
+    let Spread { median, min, max } = spread;
+    assert_eq!(samples.len(), rounds);
+    assert!(min <= median && median <= max, "{spread:?}");
+    assert!(samples.contains(&min) && samples.contains(&max));
+    let below = samples.iter().filter(|s| **s <= median).count();
+    let above = samples.iter().filter(|s| **s >= median).count();
+    assert!(
+        2 * below >= rounds && 2 * above >= rounds,
+        "{spread:?} {samples:?}"
+    );
+}
+
+/// The runs took turns: sorted by their place, rounds follow each other and each has the methods in order, but for those that have
+/// failed before. A run that was left out has no place.
+fn interleaved(case: &BenchCase, rounds: usize) {
+    let mut runs: Vec<(usize, usize, usize)> = Vec::new();
+    for (k, row) in case.methods.iter().enumerate() {
+        runs.extend(row.samples.iter().map(|s| (s.sequence, s.round, k)));
+    }
+    runs.sort_unstable();
+    let mut expected = Vec::new();
+    for round in 1..=rounds {
+        for (k, row) in case.methods.iter().enumerate() {
+            if row.samples[..round - 1].iter().all(|s| s.converged) {
+                expected.push((expected.len() + 1, round, k));
+            }
+        }
+    }
+    assert_eq!(runs, expected);
+}
+
+fn names(rows: &[BenchRow]) -> Vec<(&str, &str, usize)> {
+    rows.iter()
+        .map(|r| (r.method.as_str(), r.layout.as_str(), r.ranks))
+        .collect()
+}
+
+#[test]
+fn every_method_runs_in_every_round() {
+    let dir = Scratch::new("bench-tied");
+    let scene = dir.file("four.toml", TIED);
+    let out = dir.path("out");
+    let report = bench(&[&scene, "--rounds", "2", "--out", &out, "--quiet"]);
+    assert_eq!((report.cores, report.rounds, report.quick), (2, 2, false));
+    let [case] = &report.cases[..] else {
+        panic!("one case")
+    };
+    assert_eq!(
+        (case.case.as_str(), case.scene.as_str()),
+        ("four", "four bodies")
+    );
+    assert_eq!((case.bodies, case.subdomains, case.dofs), (4, 8, 16 * 9));
+    assert_eq!(
+        names(&case.methods),
+        [
+            ("fetifeti", "threads", 1),
+            ("fetifeti", "ranks", 2),
+            ("bddc", "subdomain", 8),
+            ("bddc", "body", 4),
+            ("bddc", "core", 2),
+            ("fetidp", "subdomain", 8),
+            ("fetidp", "body", 4),
+            ("fetidp", "core", 2),
+            ("gamg", "core", 2),
+            ("hypre", "core", 2),
+            ("mumps", "core", 2),
+        ]
+    );
+    check(case, 2);
+    // The file is what was printed; the table has a line per method, the picture both forms.
+    let text = std::fs::read_to_string(format!("{out}/bench.json")).expect("a report");
+    assert_eq!(
+        serde_json::from_str::<BenchReport>(&text).expect("a report"),
+        report
+    );
+    let csv = std::fs::read_to_string(format!("{out}/bench.csv")).expect("a table");
+    assert_eq!(csv.lines().count(), 1 + case.methods.len());
+    for end in ["png", "svg"] {
+        let file = format!("{out}/bench.{end}");
+        assert!(
+            std::fs::metadata(&file).is_ok_and(|m| m.len() > 1000),
+            "{file}"
+        );
+    }
+}
+
+#[test]
+fn contact_cases_have_their_steps() {
+    let dir = Scratch::new("bench-contact");
+    let scene = dir.file("model.toml", CONTACT);
+    let report = bench(&[
+        &scene,
+        "--rounds",
+        "2",
+        "--with",
+        "bddc,gamg,mumps",
+        "--quiet",
+    ]);
+    let case = &report.cases[0];
+    check(case, 2);
+    let contact = case.contact.expect("inequalities");
+    assert_eq!(contact.rows, 9);
+    for row in case.methods.iter().filter(|r| solved(r)) {
+        let found = row.contact.expect("a set");
+        assert_eq!(found.differ, Some(0), "{row:?}");
+        assert_eq!(row.set_given(), row.method == "bddc");
+        match row.seconds.step {
+            None => assert!(row.set_given()),
+            Some(step) => {
+                let steps = found.outer.expect("steps") as f64;
+                let total = row.seconds.total.expect("seconds");
+                assert!((step.median * steps / total.median - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_fails_is_said_and_not_run_again() {
+    let dir = Scratch::new("bench-fails");
+    // The options of one scene are not those of the next one.
+    let tight = format!("[options]\nfetifeti_ksp_rtol = 1e-9\n{TIED}");
+    let [one, two] = [dir.file("one.toml", &tight), dir.file("two.toml", TIED)];
+    let run = fetifeti(&[
+        "bench",
+        &one,
+        &two,
+        "--rounds",
+        "2",
+        "--with",
+        "gamg,mumps",
+        "-gamg_ksp_max_it",
+        "2",
+        "--json",
+        &dir.path("b.json"),
+    ]);
+    assert_eq!(run.code, 0, "{}", run.all());
+    let text = std::fs::read_to_string(dir.path("b.json")).expect("a report");
+    let report: BenchReport = serde_json::from_str(&text).expect("a report");
+    let rtol: Vec<f64> = report.cases.iter().map(|c| c.rtol).collect();
+    assert_eq!(rtol, [1e-9, 1e-6]);
+    for case in &report.cases {
+        let gamg = case
+            .methods
+            .iter()
+            .find(|r| r.method == "gamg")
+            .expect("gamg");
+        let message = gamg.message.as_deref().expect("a message");
+        assert!(
+            message.contains("round 1") && message.contains("DIVERGED_ITS"),
+            "{message}"
+        );
+        assert_eq!((gamg.samples.len(), gamg.converged), (1, false));
+        assert!(!solved(gamg) && gamg.seconds.total.is_none());
+        for row in case.methods.iter().filter(|r| solved(r)) {
+            assert_eq!(row.samples.len(), 2, "{row:?}");
+        }
+        interleaved(case, 2);
+    }
+    assert!(
+        run.stdout.contains("gamg: round 1: did not converge"),
+        "{}",
+        run.all()
+    );
+    assert!(
+        run.stderr.contains("two, round 2 of 2, mumps on 2 ranks"),
+        "{}",
+        run.all()
+    );
+}
+
+#[test]
+fn named_cases_are_listed_and_run_small() {
+    let list = fetifeti(&["bench", "--list"]);
+    assert_eq!(list.code, 0, "{}", list.all());
+    let names: Vec<&str> = list
+        .stdout
+        .lines()
+        .filter_map(|l| l.split_whitespace().next())
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "poisson-1024",
+            "poisson-1024-random",
+            "contact-512",
+            "cube-24",
+            "cube-40",
+            "cube-contact-24"
+        ]
+    );
+    let dir = Scratch::new("bench-named");
+    let out = dir.path("out");
+    let quick = [
+        "poisson-1024-random",
+        "--quick",
+        "--rounds",
+        "1",
+        "--with",
+        "mumps",
+        "--quiet",
+        "--out",
+        &out,
+    ];
+    let report = bench(&quick);
+    assert!(report.quick);
+    check(&report.cases[0], 1);
+    let scene =
+        std::fs::read_to_string(format!("{out}/poisson-1024-random.toml")).expect("the scene");
+    let plan = fetifeti(&["plan", &format!("{out}/poisson-1024-random.toml")]);
+    assert!(plan.code == 0 && scene.contains("rho = "), "{}", plan.all());
+}
+
+#[test]
+fn mistakes_are_one_sentence() {
+    let dir = Scratch::new("bench-mistakes");
+    let scene = dir.file("four.toml", TIED);
+    let floating = dir.file(
+        "floating.toml",
+        &TIED.replace("dirichlet = [\"left\"]\n", ""),
+    );
+    let cases: [(&[&str], i32, &str); 7] = [
+        (&["poisson-1023"], 2, "poisson-1024-random"),
+        (&["nothing.toml"], 2, "nothing.toml"),
+        (&[&scene, "--rounds", "0"], 2, "--rounds"),
+        (&[&scene, "--rounds", "three"], 2, "three"),
+        (&[&scene, "--with", "bdcc"], 2, "bdcc"),
+        (&[&scene, "--json", "/dev/null/x.json"], 3, "/dev/null"),
+        (&[&floating, "--with", "mumps", "--quiet"], 2, "b0_0"),
+    ];
+    for (args, code, part) in cases {
+        let run = fetifeti(&[&["bench"], args].concat());
+        assert_eq!(run.code, code, "{args:?}: {}", run.all());
+        let err = &run.stderr;
+        assert!(
+            err.contains(part) && err.trim().lines().count() == 1,
+            "{args:?}: {err}"
+        );
+    }
+}

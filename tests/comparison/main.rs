@@ -1,0 +1,9 @@
+//! `fetifeti compare` and `fetifeti bench`: methods that know nothing of each other.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bench;
+mod contact;
+mod elastic;
+mod scalar;

@@ -1,0 +1,58 @@
+//! Many bodies, most of them floating, with tied, unilateral and gap interfaces: both methods against the assembled reference, on one
+//! and several ranks.
+
+use crate::support::{assembled, contact_judge, mpi};
+use assembled::{Assembled, Reference};
+use fetifeti::contact::ContactType;
+use fetifeti::petsc::testing::with_session;
+use fetifeti::petsc::Session;
+use fetifeti::scene::Scene;
+use fetifeti::Error;
+
+const SCENES: [&str; 5] = [
+    "contact_row_16",
+    "contact_grid_100",
+    "contact_gap_table",
+    "obstacle",
+    "press_ramp",
+];
+
+/// The reference is certified to 1e-10 by itself; energies to 1e-8, KKT residuals to 1e-8, rows with force closed in both.
+fn agree(session: &Session, name: &str) -> Result<(), String> {
+    let path = format!("{}/examples/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let scene = Scene::load(path).map_err(|e| e.to_string())?;
+    let problem = Assembled::of_scene(&scene);
+    let reference: Reference = problem.solve();
+    for kind in [ContactType::ActiveSet, ContactType::Smalbe] {
+        let what = (&scene, &problem, &reference);
+        let agreement = contact_judge::judge(session, what, false, kind)
+            .map_err(|why| format!("{name}, {}: {why}", kind.name()))?;
+        if session.rank() == 0 {
+            println!("{name}, {}: {agreement:?}", kind.name());
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn on_one_rank() {
+    with_session(|session| {
+        for name in SCENES {
+            agree(session, name).unwrap();
+        }
+    });
+}
+
+#[test]
+fn on_two_and_four_ranks() {
+    let started = mpi::as_rank(|session, _| {
+        for name in SCENES {
+            agree(session, name).map_err(Error::input)?;
+        }
+        Ok(())
+    });
+    for ranks in [2, 4] {
+        let out = started.run(ranks, "scenes");
+        assert_eq!(out.code, 0, "{ranks} ranks: {}", out.all());
+    }
+}

@@ -1,0 +1,126 @@
+//! Random contact scenes by the method, with both contact loops and on several ranks, against the assembled reference.
+
+use crate::support::{assembled, contact_judge, mpi, random_scene};
+use assembled::compare::Agreement;
+use fetifeti::contact::ContactType;
+use fetifeti::petsc::testing::with_session;
+use fetifeti::petsc::Session;
+use fetifeti::Error;
+use random_scene::{Case, Collection, Fate};
+
+const KINDS: [ContactType; 2] = [ContactType::ActiveSet, ContactType::Smalbe];
+
+fn judge(
+    session: &Session,
+    case: &Case,
+    kind: ContactType,
+) -> std::result::Result<Agreement, String> {
+    let Fate::Solvable(reference) = &case.fate else {
+        panic!("seed {} has no solution", case.seed)
+    };
+    let cards = case.seed % 2 == 1;
+    contact_judge::judge(
+        session,
+        (&case.scene, &case.problem, reference),
+        cards,
+        kind,
+    )
+}
+
+/// Solves all cases and says which fail, and the worst that was let pass.
+fn all_agree(
+    session: &Session,
+    cases: &[Case],
+    kind: ContactType,
+) -> std::result::Result<(), String> {
+    let mut wrong = Vec::new();
+    let (mut energy, mut u, mut kkt, mut degenerate) = (0.0f64, 0.0f64, 0.0f64, 0);
+    for case in cases {
+        match judge(session, case, kind) {
+            Ok(a) => {
+                energy = energy.max(a.energy);
+                u = u.max(a.u);
+                kkt = kkt.max(a.kkt.largest());
+                degenerate += usize::from(a.degenerate > 0);
+            }
+            Err(why) => wrong.push(format!("seed {}: {why}", case.seed)),
+        }
+    }
+    if session.rank() == 0 {
+        println!(
+            "{kind:?}: {} of {} agree; energy within {energy:.1e}, u {u:.1e}, KKT {kkt:.1e}; {degenerate} with degenerate rows",
+            cases.len() - wrong.len(),
+            cases.len()
+        );
+    }
+    if wrong.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("{} scenes:\n{}", wrong.len(), wrong.join("\n")))
+    }
+}
+
+fn on_one_rank(kind: ContactType) {
+    with_session(move |session| {
+        let cases = Collection::new(0, 500).solvable;
+        if let Err(why) = all_agree(session, &cases, kind) {
+            panic!("{why}");
+        }
+    });
+}
+
+#[test]
+fn five_hundred_random_scenes_by_active_sets() {
+    on_one_rank(ContactType::ActiveSet);
+}
+
+#[test]
+fn five_hundred_random_scenes_by_smalbe() {
+    on_one_rank(ContactType::Smalbe);
+}
+
+#[test]
+fn scenes_without_a_solution_are_refused() {
+    with_session(|session| {
+        let cases = Collection::new(0, 500);
+        let mut wrong = Vec::new();
+        for kind in KINDS {
+            for case in cases.unbounded.iter().chain(&cases.infeasible) {
+                // The message names a body: one that moves for ever, or one whose rows contradict each other.
+                let moves = |b: usize| match &case.fate {
+                    Fate::Unbounded(z) => {
+                        let of_body = z.iter().zip(&case.problem.body);
+                        of_body.into_iter().any(|(z, &body)| body == b && *z != 0.0)
+                    }
+                    _ => true,
+                };
+                let named = |why: &str| {
+                    let bodies = case.scene.bodies.iter().enumerate();
+                    let mut blamed = bodies.filter(|(b, _)| moves(*b));
+                    blamed.any(|(_, body)| why.contains(&body.spec.name))
+                };
+                match contact_judge::answer(session, &case.scene, &case.problem, false, kind) {
+                    Err(Error::Input(why)) if named(&why) => {}
+                    Err(why) => wrong.push(format!("seed {}, {kind:?}: {why}", case.seed)),
+                    Ok(_) => wrong.push(format!("seed {}, {kind:?}: solved", case.seed)),
+                }
+            }
+        }
+        assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
+    });
+}
+
+#[test]
+fn random_scenes_on_two_and_four_ranks() {
+    let started = mpi::as_rank(|session, _| {
+        let cases = Collection::new(10_000, 40).solvable;
+        for kind in KINDS {
+            all_agree(session, &cases, kind).map_err(Error::input)?;
+        }
+        Ok(())
+    });
+    for ranks in [2, 4] {
+        let out = started.run(ranks, "scenes");
+        assert_eq!(out.code, 0, "{ranks} ranks: {}", out.all());
+    }
+}

@@ -1,0 +1,145 @@
+//! Exact condition numbers in 3D and of elasticity, against values measured with dense algebra.
+
+use crate::support::solid;
+use fetifeti::feti::{FetiFeti, PcType, Primal, Settings};
+use fetifeti::petsc::testing::with_session;
+use fetifeti::petsc::Session;
+use solid::{Physics, Rows, Solid};
+
+const SCALAR: Physics = Physics::Scalar;
+const CORRECTED: PcType = PcType::CoarseCorrected;
+
+/// Runs a test in a process of its own: PETSc lives on one thread of a process, and these take a minute each.
+fn alone(name: &str, test: fn()) {
+    const INSIDE: &str = "FETIFETI_TEST_ALONE";
+    if std::env::var_os(INSIDE).is_some() {
+        return test();
+    }
+    let me = std::env::current_exe().expect("this program");
+    let out = std::process::Command::new(me)
+        .args([name, "--exact", "--nocapture"])
+        .env(INSIDE, "1")
+        .output()
+        .expect("it runs again");
+    let text = String::from_utf8_lossy(&out.stdout);
+    println!("{text}{}", String::from_utf8_lossy(&out.stderr));
+    assert!(out.status.success() && text.contains("1 passed"), "{name}");
+}
+
+fn elastic(nu: f64) -> Physics {
+    Physics::Elastic { nu }
+}
+
+fn kappa_with(session: &Session, solid: &Solid, settings: Settings) -> f64 {
+    let solver = FetiFeti::new(session, solid.substructures(|_| true), settings).expect("set up");
+    for (name, defect) in solver.check().expect("checks run") {
+        assert!(defect < 1e-10, "{name}: {defect:.1e}");
+    }
+    let s = solver.spectrum().expect("eigenvalues");
+    let s = s.expect("multipliers");
+    println!(
+        "{}D {:?}: {s:?}",
+        solid.dim,
+        [solid.bodies, solid.subdomains, solid.elements]
+    );
+    assert!(s.lambda_min > 1.0 - 1e-6, "{s:?}");
+    s.kappa()
+}
+
+fn kappa(session: &Session, solid: &Solid, pc: PcType) -> f64 {
+    let settings = Settings {
+        pc_type: Some(pc),
+        ..Settings::default()
+    };
+    kappa_with(session, solid, settings)
+}
+
+/// `found` is `wanted` up to `percent` of it.
+fn near(found: f64, wanted: f64, percent: f64) {
+    assert!(
+        (found / wanted - 1.0).abs() < percent / 100.0,
+        "{found}, expected {wanted}"
+    );
+}
+
+#[test]
+fn scalar_in_3d() {
+    alone("scalar_in_3d", || {
+        with_session(|session| {
+            let solid = |sizes| Solid::new(3, sizes, SCALAR, Rows::Tied);
+            near(kappa(session, &solid([2, 2, 4]), CORRECTED), 2.74, 2.0);
+            near(kappa(session, &solid([2, 3, 3]), CORRECTED), 2.92, 2.0);
+            let plain = kappa(session, &solid([2, 3, 3]), PcType::Dirichlet);
+            near(plain, 5.39, 1.0);
+            // Without edge averages, vertices alone are no good in 3D; faces on top do no harm.
+            let with = |text| {
+                let settings = Settings {
+                    primal: Primal::parse(text).expect("constraints"),
+                    ..Settings::default()
+                };
+                kappa_with(session, &solid([2, 2, 3]), settings)
+            };
+            let usual = with("vertices,edges");
+            assert!(with("vertices") > 1.5 * usual);
+            assert!(with("edges") < 1.2 * usual);
+            assert!(with("vertices,edges,faces") < 1.05 * usual);
+        })
+    });
+}
+
+#[test]
+fn plane_strain() {
+    alone("plane_strain", || {
+        with_session(|session| {
+            let solid = |nu, rows| Solid::new(2, [2, 8, 4], elastic(nu), rows);
+            let tied = kappa(session, &solid(0.3, Rows::Tied), CORRECTED);
+            assert!(tied <= 24.0, "{tied}");
+            let stiff = kappa(session, &solid(0.49, Rows::Tied), CORRECTED);
+            near(stiff, 25.3, 1.0);
+            let plain = kappa(session, &solid(0.49, Rows::Tied), PcType::Dirichlet);
+            near(plain, 278.0, 2.0);
+            // The figures of reference count whole nodes as candidates and have no rows at cross points.
+            let by_node = |pc| kappa(session, &solid(0.3, Rows::NormalsByNode), pc);
+            near(by_node(CORRECTED), 14.5, 1.0);
+            near(by_node(PcType::Dirichlet), 67.3, 1.0);
+            // Ours: tangential values on the faces stay in Z_c.
+            let normals = kappa(session, &solid(0.3, Rows::Normals), CORRECTED);
+            assert!(normals < 14.5, "{normals}");
+            // Edge averages are constraints in 2D too where the substructures list them.
+            let edges = Solid {
+                plane_edges: true,
+                ..solid(0.49, Rows::Tied)
+            };
+            let edges = kappa(session, &edges, CORRECTED);
+            assert!(edges < 0.8 * stiff, "{edges}");
+        })
+    });
+}
+
+fn elastic_cubes(rows: Rows) -> Solid {
+    Solid::new(3, [2, 3, 2], elastic(0.3), rows)
+}
+
+#[test]
+fn elasticity_in_3d() {
+    alone("elasticity_in_3d", || {
+        with_session(|session| {
+            let tied = elastic_cubes(Rows::Tied);
+            near(kappa(session, &tied, CORRECTED), 4.68, 1.0);
+            near(kappa(session, &tied, PcType::Dirichlet), 6.78, 1.0);
+        })
+    });
+}
+
+#[test]
+fn elasticity_in_3d_along_normals() {
+    alone("elasticity_in_3d_along_normals", || {
+        with_session(|session| {
+            let solid = elastic_cubes;
+            let by_node = kappa(session, &solid(Rows::NormalsByNode), CORRECTED);
+            near(by_node, 2.47, 1.0);
+            let normals = kappa(session, &solid(Rows::Normals), CORRECTED);
+            assert!(normals < 2.47, "{normals}");
+        })
+    });
+}

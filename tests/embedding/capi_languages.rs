@@ -1,0 +1,65 @@
+//! The functions of wrappers/fetifeti.h from Fortran (wrappers/fetifeti.f90) on bars whose solution is known, and from Python by ctypes on blocks, beside the same in C.
+
+use crate::support::{mpi, plugin};
+use mpi::{mpirun, Scratch};
+use plugin::{library, number_after, Program};
+use std::path::Path;
+
+#[test]
+fn bars_in_fortran() {
+    let scratch = Scratch::new("capi-fortran");
+    let program = Program::fortran_with_module(&scratch, "examples/embedding/bars.F90");
+    for ranks in [1, 2, 4] {
+        let out = program.run(ranks, "-fetifeti_ksp_rtol 1e-10");
+        assert_eq!(out.code, 0, "{}", out.all());
+        assert!(number_after(&out, "reason") > 0.0, "{}", out.all());
+        let (force, exact) = (number_after(&out, "force"), number_after(&out, "exact"));
+        assert!((force - exact).abs() < 1e-7, "{}", out.all());
+        // Of the second row, which was given after the first.
+        assert!(number_after(&out, "obstacle").abs() < 1e-9);
+    }
+}
+
+#[test]
+fn contact_from_petsc4py() {
+    // Debian keeps petsc4py beside the PETSc that it was built for.
+    let modules = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
+    let path = std::env::var("PYTHONPATH").unwrap_or_default();
+    let path = format!("{modules}:{path}");
+    let library = library();
+    let dir = Path::new(&library)
+        .parent()
+        .expect("it lies in a directory");
+    let others = std::env::var("LD_LIBRARY_PATH").unwrap_or_default();
+    let places = format!("{}:{others}", dir.display());
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/embedding/contact.py");
+    let script = script.to_str().expect("the path is UTF-8");
+    let python = |ranks: usize, options: &str| {
+        let args: Vec<&str> = [script].into_iter().chain(options.split(' ')).collect();
+        let env = [("PYTHONPATH", &path[..]), ("LD_LIBRARY_PATH", &places)];
+        let out = mpirun(ranks, "/usr/bin/python3", &args, &env);
+        assert_eq!(out.code, 0, "{}", out.all());
+        out
+    };
+    let scratch = Scratch::new("capi-python");
+    let program = Program::linked("mpicc", &scratch, "examples/embedding/contact.c");
+    let options = "-contact -m 13 -fetifeti_ksp_rtol 1e-10";
+    let theirs = program.run(2, options);
+    assert_eq!(theirs.code, 0, "{}", theirs.all());
+    for ranks in [1, 2, 4] {
+        let out = python(ranks, options);
+        assert!(number_after(&out, "reason") > 0.0, "{}", out.all());
+        for what in ["work", "force"] {
+            let (ours, theirs) = (number_after(&out, what), number_after(&theirs, what));
+            assert!((ours - theirs).abs() < 1e-7, "{what}: {}", out.all());
+        }
+        let touching = theirs.stdout.lines().find(|l| l.contains("nodes touch"));
+        let touching = touching.and_then(|l| l.split(',').next()).expect("a line");
+        assert!(out.stdout.contains(touching), "{touching}: {}", out.all());
+    }
+    // And as it was: one block, any KSP.
+    let direct = program.run(1, "-m 13 -ksp_rtol 1e-10 -pc_type none");
+    let ours = python(4, "-m 13 -ksp_rtol 1e-8 -ksp_type fetifeti");
+    let energy = |out| number_after(out, "energy");
+    assert!((energy(&direct) - energy(&ours)).abs() < 1e-8);
+}

@@ -1,0 +1,121 @@
+//! KSPFETIFETI as a KSP like others: used again, changed, reset, watched, and refusing what it cannot solve.
+
+use crate::support::{mpi, plugin};
+use mpi::Scratch;
+use plugin::{number_after, Program};
+
+#[test]
+fn every_way_of_using_a_ksp() {
+    let scratch = Scratch::new("embed-host");
+    let program = Program::own("mpicc", &scratch, "host.c");
+    for (ranks, options) in [
+        (1, "-do once"),
+        (4, "-do once -ksp_rtol 1e-10"),
+        (4, "-do once -idle 2"),
+        (4, "-do once -fixed 0"),
+        (1, "-do again"),
+        (4, "-do again"),
+        (4, "-do again -fixed 0 -fetifeti_bodies 2"),
+        (
+            2,
+            "-do two -one_ksp_type fetifeti -two_ksp_type fetifeti -two_fetifeti_bodies 2",
+        ),
+        (4, "-do bodies"),
+        (4, "-do bodies -fixed 0"),
+        (2, "-do unfit"),
+        (4, "-do split"),
+    ] {
+        let out = program.with_plugin(ranks, &format!("{options} -ksp_type fetifeti"));
+        assert_eq!(out.code, 0, "{options}: {}", out.all());
+        assert!(
+            out.stdout.lines().any(|line| line.trim() == "ok"),
+            "{options}: {}",
+            out.all()
+        );
+    }
+}
+
+#[test]
+fn cycles_leave_nothing_behind() {
+    let scratch = Scratch::new("embed-cycles");
+    let program = Program::own("mpicc", &scratch, "host.c");
+    let out = program.with_plugin(
+        2,
+        "-do cycles -cycles 1000 -n 6 -ksp_type fetifeti -malloc_debug -malloc_dump",
+    );
+    assert_eq!(out.code, 0, "{}", out.all());
+    // -malloc_dump prints what PETSc has not got back.
+    assert!(!out.all().contains("bytes in"), "{}", out.all());
+    let bytes = number_after(&out, "bytes per cycle:");
+    assert!(bytes < 1500.0, "{bytes} bytes per cycle");
+}
+
+#[test]
+fn what_a_user_may_watch() {
+    let scratch = Scratch::new("embed-watch");
+    let program = Program::own("mpicc", &scratch, "host.c");
+    let watch = "-ksp_monitor_true_residual -ksp_converged_reason -ksp_view -ksp_view_singularvalues -ksp_view_eigenvalues";
+    let more = "-options_left -log_view -citations";
+    let out = program.with_plugin(
+        4,
+        &format!("-ksp_type fetifeti -fetifeti_bodies 2 {watch} {more}"),
+    );
+    assert_eq!(out.code, 0, "{}", out.all());
+    for part in [
+        "true resid norm",
+        "bodies: 2",
+        "multipliers: ",
+        "primal dofs: ",
+        "Inner KSP solver details",
+        "Iteratively computed extreme singular values",
+        "Iteratively computed eigenvalues",
+        "There are no unused options.",
+        "FetiFetiF",
+        "Lee2010",
+    ] {
+        assert!(out.stdout.contains(part), "no \"{part}\" in {}", out.all());
+    }
+    // The last true residual that the monitor showed is below the tolerance.
+    let last = out.stdout.lines().rfind(|l| l.contains("||r(i)||/||b||"));
+    let ratio: f64 = last
+        .and_then(|l| l.split_whitespace().next_back()?.parse().ok())
+        .expect("a number");
+    assert!(ratio < 1e-5, "{ratio:e}");
+
+    let out = program.with_plugin(
+        2,
+        "-ksp_type fetifeti -fetifeti_ksp_rtol 1e-2 -fetifeti_true_residual 0 -ksp_view",
+    );
+    assert!(out.all().contains("relative=0.01"), "{}", out.all());
+    let out = program.with_plugin(1, "-ksp_type fetifeti -help");
+    for option in [
+        "-fetifeti_bodies",
+        "-fetifeti_true_residual",
+        "-fetifeti_pc_type",
+    ] {
+        assert!(out.stdout.contains(option), "{option}: {}", out.all());
+    }
+}
+
+#[test]
+fn what_it_refuses_and_what_diverges() {
+    let scratch = Scratch::new("embed-refuses");
+    let program = Program::own("mpicc", &scratch, "host.c");
+    for (options, part) in [
+        ("-skew 0.1", "the operator is not symmetric"),
+        ("-fetifeti_bodies x", "expected"),
+        (
+            "-fetifeti_primal corners",
+            "expected some of vertices, edges, faces",
+        ),
+        ("-ksp_max_it 1 -ksp_error_if_not_converged", "DIVERGED_ITS"),
+        (
+            "-do unfit -ksp_error_if_not_converged",
+            "expected a positive number",
+        ),
+    ] {
+        let out = program.with_plugin(2, &format!("-ksp_type fetifeti {options}"));
+        assert_ne!(out.code, 0, "{options}");
+        assert!(out.all().contains(part), "{options}: {}", out.all());
+    }
+}

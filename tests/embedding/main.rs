@@ -1,0 +1,13 @@
+//! The method in other programs: the plug-in, the C API, and the examples of the crate.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bodies;
+mod capi_c;
+mod capi_languages;
+mod examples;
+mod ksp;
+mod languages;
+mod petsc_examples;
+mod wrong_petsc;

@@ -1,0 +1,215 @@
+//! KSPFETIFETI in PETSc's own example programs, unmodified: the same answers as CG on the same matrix.
+
+use crate::support::{mpi, plugin};
+use mpi::Scratch;
+use plugin::{number_after, vector, Program};
+
+/// ‖x − y‖ / ‖y‖.
+fn distance(x: &[f64], y: &[f64]) -> f64 {
+    assert_eq!(x.len(), y.len());
+    let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|v| v * v).sum::<f64>().sqrt();
+    norm(&mut x.iter().zip(y).map(|(x, y)| x - y)) / norm(&mut y.iter().copied())
+}
+
+/// Solves by FETI-FETI and by CG; the solutions agree, the residual is below the tolerance. Returns the iterations.
+fn agrees(
+    program: &Program,
+    scratch: &Scratch,
+    ranks: usize,
+    prefix: &str,
+    options: &str,
+    ours: &str,
+) -> usize {
+    let (mine, theirs) = (scratch.path("mine"), scratch.path("theirs"));
+    let common = |path: &str| {
+        format!("{options} -{prefix}ksp_view_solution binary:{path} -{prefix}ksp_converged_reason")
+    };
+    let out = program.with_plugin(
+        ranks,
+        &format!(
+            "{} -{prefix}ksp_type fetifeti -{prefix}ksp_rtol 1e-9 {ours}",
+            common(&mine)
+        ),
+    );
+    assert_eq!(out.code, 0, "{options} {ours}: {}", out.all());
+    assert!(out.stdout.contains("CONVERGED_RTOL"), "{}", out.all());
+    let other = program.run(
+        ranks,
+        &format!(
+            "{} -{prefix}ksp_type cg -{prefix}pc_type jacobi -{prefix}ksp_rtol 1e-13",
+            common(&theirs)
+        ),
+    );
+    assert_eq!(other.code, 0, "{options}: {}", other.all());
+    let error = distance(&vector(&mine), &vector(&theirs));
+    assert!(error < 1e-7, "{ranks} ranks, {options} {ours}: {error:e}");
+    number_after(&out, "iterations") as usize
+}
+
+#[test]
+fn ex71_with_a_dirichlet_side() {
+    let scratch = Scratch::new("embed-ex71");
+    let program = Program::tutorial(&scratch, "ex71");
+    for (ranks, options, ours, most) in [
+        (1, "-dim 2 -cells 12,12", "", 0),
+        (2, "-dim 2 -cells 12,12", "", 6),
+        (4, "-dim 1 -cells 16", "", 2),
+        (4, "-dim 2 -cells 24,24", "", 9),
+        (9, "-dim 2 -cells 24,24", "-fetifeti_bodies 1", 10),
+        (9, "-dim 2 -cells 24,24", "-fetifeti_bodies 2", 16),
+        (9, "-dim 2 -cells 24,24", "-fetifeti_bodies 9", 18),
+        (8, "-dim 3 -cells 8,8,8", "-fetifeti_bodies 2", 16),
+        (4, "-dim 2 -cells 16,16 -pde_type Elasticity", "", 18),
+        (
+            9,
+            "-dim 2 -cells 18,18 -pde_type Elasticity",
+            "-fetifeti_bodies 3",
+            40,
+        ),
+        (
+            8,
+            "-dim 3 -cells 6,6,6 -pde_type Elasticity",
+            "-fetifeti_bodies 2",
+            40,
+        ),
+        // Slabs: faces without edges.
+        (
+            3,
+            "-dim 3 -cells 4,4,9 -pde_type Elasticity -da_processors_x 1 -da_processors_y 1",
+            "",
+            40,
+        ),
+    ] {
+        let its = agrees(&program, &scratch, ranks, "", options, ours);
+        assert!(
+            its <= most,
+            "{ranks} ranks, {options} {ours}: {its} iterations"
+        );
+    }
+}
+
+#[test]
+fn ex71_with_a_null_space() {
+    let scratch = Scratch::new("embed-null");
+    let program = Program::tutorial(&scratch, "ex71");
+    for (ranks, options) in [
+        (4, "-dim 2 -cells 16,16 -dirichlet 0"),
+        (9, "-dim 2 -cells 18,18 -dirichlet 0 -fetifeti_bodies 3"),
+        (4, "-dim 2 -cells 16,16 -periodicity 1,0"),
+        (4, "-dim 2 -cells 16,16 -periodicity 1,1 -fetifeti_bodies 2"),
+        (1, "-dim 2 -cells 8,8 -periodicity 1,1"),
+        (8, "-dim 3 -cells 8,8,8 -dirichlet 0 -fetifeti_bodies 2"),
+        (4, "-dim 2 -cells 12,12 -pde_type Elasticity -dirichlet 0"),
+        (
+            8,
+            "-dim 3 -cells 6,6,6 -pde_type Elasticity -dirichlet 0 -fetifeti_bodies 4",
+        ),
+        (
+            4,
+            "-dim 2 -cells 12,12 -pde_type Elasticity -periodicity 1,0",
+        ),
+    ] {
+        let more =
+            "-ksp_type fetifeti -ksp_rtol 1e-8 -ksp_converged_reason -ksp_view_final_residual";
+        let out = program.with_plugin(ranks, &format!("{options} {more}"));
+        assert_eq!(out.code, 0, "{options}: {}", out.all());
+        assert!(
+            out.stdout.contains("CONVERGED_RTOL"),
+            "{options}: {}",
+            out.all()
+        );
+        // Entries of b lie between 0 and 1: ‖b‖ is at most the root of the number of unknowns.
+        let residual = number_after(&out, "KSP final norm of residual");
+        assert!(residual < 1e-8 * 40.0, "{options}: {residual:e}");
+    }
+}
+
+#[test]
+fn ex49_elasticity_with_jumps() {
+    let scratch = Scratch::new("embed-ex49");
+    let program = Program::tutorial(&scratch, "ex49");
+    let bricks = "-c_str 2 -brick_E 1,1000 -brick_nu 0.4,0.2 -brick_span 10";
+    let sponge = "-c_str 3 -sponge_E0 1 -sponge_E1 1000 -sponge_nu0 0.4 -sponge_nu1 0.2 -sponge_t 1 -sponge_w 4";
+    for (ranks, options, ours) in [
+        (1, "", ""),
+        (4, "", ""),
+        (9, "", "-elas_fetifeti_bodies 3"),
+        (4, bricks, "-elas_fetifeti_bodies 2"),
+        (4, sponge, ""),
+        // MatZeroRows: rows only, an operator that is not symmetric as it stands.
+        (4, "-use_nonsymbc", ""),
+    ] {
+        let options = format!("-mx 20 -my 20 -dm_mat_type is -no_view {options}");
+        if options.contains("nonsymbc") {
+            let more =
+                "-elas_ksp_type fetifeti -elas_ksp_converged_reason -elas_ksp_view_final_residual";
+            let out = program.with_plugin(ranks, &format!("{options} {more}"));
+            assert!(out.stdout.contains("CONVERGED_RTOL"), "{}", out.all());
+            assert!(number_after(&out, "KSP final norm of residual") < 1e-4);
+        } else {
+            agrees(&program, &scratch, ranks, "elas_", &options, ours);
+        }
+    }
+}
+
+#[test]
+fn ex59_with_its_own_matis() {
+    let scratch = Scratch::new("embed-ex59");
+    let program = Program::tutorial(&scratch, "ex59");
+    for (ranks, options) in [
+        (4, "-npx 2 -npy 2 -nex 6 -ney 6"),
+        (8, "-npx 2 -npy 2 -npz 2 -nex 6 -ney 5 -nez 4 -p 2"),
+        (4, "-npx 2 -npy 2 -nex 6 -ney 6 -pureneumann"),
+    ] {
+        let more = "-physical_ksp_type fetifeti -physical_ksp_converged_reason -physical_ksp_rtol 1e-8 -testfetidp 0";
+        let out = program.with_plugin(ranks, &format!("{options} {more}"));
+        assert_eq!(out.code, 0, "{options}: {}", out.all());
+        assert!(
+            out.stdout.contains("CONVERGED_RTOL"),
+            "{options}: {}",
+            out.all()
+        );
+        assert!(!out.stdout.contains("Error"), "{options}: {}", out.all());
+    }
+}
+
+#[test]
+fn an_assembled_matrix_is_refused_in_one_sentence() {
+    let scratch = Scratch::new("embed-ex2");
+    let program = Program::tutorial(&scratch, "ex2");
+    for ranks in [1, 3] {
+        let out = program.with_plugin(ranks, "-m 8 -n 8 -ksp_type fetifeti");
+        assert_ne!(out.code, 0);
+        let said = out.all();
+        for part in [
+            "FETI-FETI: the operator is of type",
+            "expected is (MATIS)",
+            "-dm_mat_type is",
+        ] {
+            assert!(said.contains(part), "{said}");
+        }
+        assert!(!said.contains("Segmentation"), "{said}");
+    }
+}
+
+/// Every element a subdomain, many of them on a rank: MatISSetAllowRepeated, which PETSc has from 3.21 on (`make test-newer`).
+#[test]
+fn ex71_with_many_subdomains_on_a_rank() {
+    if plugin::petsc_version() < (3, 21) {
+        println!("this PETSc has no MatISSetAllowRepeated");
+        return;
+    }
+    let scratch = Scratch::new("embed-multi-element");
+    let program = Program::tutorial(&scratch, "ex71");
+    for (ranks, options, ours) in [
+        (1, "-dim 2 -cells 6,6", ""),
+        (4, "-dim 2 -cells 6,6", "-fetifeti_bodies 3"),
+        (4, "-dim 3 -cells 3,3,3", ""),
+        (2, "-dim 2 -cells 6,6 -pde_type Elasticity", ""),
+        (4, "-dim 3 -cells 3,3,3 -pde_type Elasticity", ""),
+    ] {
+        let options = format!("{options} -multi_element");
+        let iterations = agrees(&program, &scratch, ranks, "", &options, ours);
+        assert!(iterations > 0, "{options}: there was one subdomain only");
+    }
+}

@@ -1,0 +1,483 @@
+//! The PETSc layer on one rank, in one process.
+
+use crate::inside::support::mpi;
+use fetifeti::linalg::csr::Csr;
+use fetifeti::petsc::testing::with_session;
+use fetifeti::petsc::{
+    cite, max_memory, Comm, Event, Is, Ksp, Mat, MatFlag, NormType, Options, Scatter, Session,
+    ShellMat, ShellPc, Stage, Vec as PVec,
+};
+use fetifeti::{Error, Result};
+use std::cell::Cell;
+use std::rc::Rc;
+
+fn laplacian(session: &Session, n: usize) -> Mat {
+    let mut entries = vec![];
+    for i in 0..n as u32 {
+        entries.push((i, i, 2.0));
+        if i > 0 {
+            entries.push((i, i - 1, -1.0));
+            entries.push((i - 1, i, -1.0));
+        }
+    }
+    let mat = Mat::from_csr(session, &Csr::from_triplets(n, &entries)).unwrap();
+    mat.set_flag(MatFlag::Spd).unwrap();
+    mat
+}
+
+#[test]
+fn vectors() {
+    with_session(|session| {
+        let x = PVec::from_slice(session, &[3.0, -4.0, 0.0]).unwrap();
+        let y = x.duplicate().unwrap();
+        assert_eq!(
+            (x.local_len(), x.global_len(), x.ownership_range()),
+            (3, 3, 0..3)
+        );
+        assert_eq!(x.norm2().unwrap(), 5.0);
+        assert_eq!(x.norm_inf().unwrap(), 4.0);
+        y.set(1.0).unwrap();
+        y.axpy(2.0, &x).unwrap();
+        assert_eq!(y.to_vec().unwrap(), [7.0, -7.0, 1.0]);
+        y.aypx(-1.0, &x).unwrap();
+        assert_eq!(y.to_vec().unwrap(), [-4.0, 3.0, -1.0]);
+        assert_eq!(y.dot(&x).unwrap(), -24.0);
+        y.scale(0.5).unwrap();
+        assert_eq!(y.sum().unwrap(), -1.0);
+        let z = x.duplicate().unwrap();
+        z.pointwise_mult(&x, &y).unwrap();
+        assert_eq!(z.to_vec().unwrap(), [-6.0, -6.0, 0.0]);
+        z.pointwise_divide(&z.clone(), &x).unwrap();
+        assert_eq!(z.to_vec().unwrap()[..2], [-2.0, 1.5]);
+        assert_eq!(PVec::with_global_len(session, 7).unwrap().global_len(), 7);
+        assert_eq!(PVec::mpi(session, 0).unwrap().array().unwrap().len(), 0);
+    });
+}
+
+#[test]
+fn lent_entries_cannot_be_used_twice() {
+    with_session(|session| {
+        let x = PVec::from_slice(session, &[1.0, 2.0]).unwrap();
+        let alias = x.clone();
+        {
+            let a = x.array().unwrap();
+            assert_eq!(*alias.array().unwrap(), [1.0, 2.0]);
+            assert!(alias.array_mut().is_err() && alias.set(0.0).is_err());
+            assert!(alias.norm2().is_ok());
+            assert_eq!(a[1], 2.0);
+        }
+        let mut a = x.array_mut().unwrap();
+        a[0] = 5.0;
+        assert!(alias.array().is_err() && alias.norm2().is_err() && alias.scale(2.0).is_err());
+        drop(a);
+        assert_eq!(alias.sum().unwrap(), 7.0);
+    });
+}
+
+#[test]
+fn vectors_in_files() {
+    with_session(|session| {
+        let path = std::env::temp_dir().join(format!("fetifeti-vec-{}", std::process::id()));
+        let x = PVec::from_slice(session, &[1.0, 1e-300, -2.5]).unwrap();
+        x.save(&path).unwrap();
+        let y = x.duplicate().unwrap();
+        y.load(&path).unwrap();
+        assert_eq!(x.to_vec().unwrap(), y.to_vec().unwrap());
+        let short = PVec::seq(session, 2).unwrap();
+        assert!(short.load(&path).is_err());
+        std::fs::remove_file(&path).unwrap();
+        match y.load(&path).unwrap_err() {
+            Error::Petsc { trace, .. } => assert!(
+                trace[0].contains("fetifeti-vec")
+                    || trace.iter().any(|t| t.contains("PetscViewer")),
+                "{trace:?}"
+            ),
+            other => panic!("{other}"),
+        }
+    });
+}
+
+#[test]
+fn scatter_and_index_sets() {
+    with_session(|session| {
+        let x = PVec::from_slice(session, &[10.0, 11.0, 12.0]).unwrap();
+        let to = PVec::seq(session, 4).unwrap();
+        let scatter = Scatter::new(&x, &[2, 0, 2], &to).unwrap();
+        scatter.forward(&x, &to).unwrap();
+        assert_eq!(to.to_vec().unwrap(), [12.0, 10.0, 12.0, 0.0]);
+        scatter.reverse_add(&to, &x).unwrap();
+        assert_eq!(x.to_vec().unwrap(), [20.0, 11.0, 36.0]);
+        let is = Is::general(session, Comm::Own, &[4, 1]).unwrap();
+        assert_eq!(is.indices().unwrap(), [4, 1]);
+    });
+}
+
+#[test]
+fn direct_and_iterative_solution() {
+    with_session(|session| {
+        let n = 20;
+        let a = laplacian(session, n);
+        assert_eq!(a.row(1).unwrap(), (vec![0, 1, 2], vec![-1.0, 2.0, -1.0]));
+        let (b, x) = (a.left_vec().unwrap(), a.right_vec().unwrap());
+        b.set(1.0).unwrap();
+        let direct = Ksp::new(session, Comm::Own).unwrap();
+        direct.set_operators(&a, &a).unwrap();
+        direct.set_type("preonly").unwrap();
+        direct.pc().unwrap().set_type("cholesky").unwrap();
+        direct.pc().unwrap().set_solver_type("mumps").unwrap();
+        direct.solve(&b, &x).unwrap();
+        // -u'' = 1 by second differences: u_i = (i + 1)(n - i) / 2.
+        for (i, u) in x.array().unwrap().iter().enumerate() {
+            assert!((u - ((i + 1) * (n - i)) as f64 / 2.0).abs() < 1e-10);
+        }
+        // A load without symmetry: with one, the tenth residual of CG is zero or not as products are rounded.
+        for (i, b) in b.array_mut().unwrap().iter_mut().enumerate() {
+            *b = (1 + i * i) as f64;
+        }
+        direct.solve(&b, &x).unwrap();
+        let cg = Ksp::new(session, Comm::Own).unwrap();
+        cg.set_operators(&a, &a).unwrap();
+        cg.set_type("cg").unwrap();
+        cg.pc().unwrap().set_type("none").unwrap();
+        cg.set_norm_type(NormType::Unpreconditioned).unwrap();
+        cg.set_tolerances(Some(1e-10), None, None, Some(100))
+            .unwrap();
+        cg.set_compute_eigenvalues(true).unwrap();
+        cg.record_residuals(100).unwrap();
+        let y = x.duplicate().unwrap();
+        cg.solve(&b, &y).unwrap();
+        let reason = cg.converged_reason().unwrap();
+        assert!(
+            reason.converged() && reason.name == "CONVERGED_RTOL",
+            "{reason:?}"
+        );
+        let history = cg.residual_history().unwrap();
+        assert_eq!(history.len(), cg.iterations().unwrap() + 1);
+        let size = b.norm2().unwrap();
+        assert!((history[0] - size).abs() < 1e-12 * size);
+        assert_eq!(*history.last().unwrap(), cg.residual_norm().unwrap());
+        assert_eq!(cg.eigenvalues().unwrap().len(), cg.iterations().unwrap());
+        assert_eq!(cg.type_name().unwrap(), "cg");
+        assert_eq!(cg.tolerances().unwrap().3, 100);
+        y.axpy(-1.0, &x).unwrap();
+        assert!(y.norm_inf().unwrap() < 1e-8 * x.norm_inf().unwrap());
+        // Too few iterations are a reason, not an error.
+        cg.set_tolerances(None, None, None, Some(2)).unwrap();
+        cg.solve(&b, &y).unwrap();
+        assert_eq!(cg.converged_reason().unwrap().name, "DIVERGED_ITS");
+    });
+}
+
+/// y = factor · x; counts its life.
+struct Scaled {
+    factor: f64,
+    drops: Rc<Cell<usize>>,
+    error: Cell<u8>,
+}
+
+impl Scaled {
+    fn boxed(drops: &Rc<Cell<usize>>, error: u8) -> Box<Scaled> {
+        Box::new(Scaled {
+            factor: 2.0,
+            drops: drops.clone(),
+            error: Cell::new(error),
+        })
+    }
+
+    fn act(&self, x: &PVec, y: &PVec) -> Result<()> {
+        match self.error.get() {
+            1 => return Err(Error::input("The load of body 3 is not a number.")),
+            2 => panic!("the callback panics"),
+            _ => {}
+        }
+        y.copy_from(x)?;
+        y.scale(self.factor)
+    }
+}
+
+impl ShellMat for Scaled {
+    fn mult(&self, x: &PVec, y: &PVec) -> Result<()> {
+        self.act(x, y)
+    }
+    fn diagonal(&self, d: &PVec) -> Result<()> {
+        d.set(self.factor)
+    }
+}
+
+impl ShellPc for Scaled {
+    fn apply(&self, x: &PVec, y: &PVec) -> Result<()> {
+        self.act(x, y)
+    }
+}
+
+impl Drop for Scaled {
+    fn drop(&mut self) {
+        self.drops.set(self.drops.get() + 1);
+    }
+}
+
+#[test]
+fn shells_work_and_are_dropped_by_petsc() {
+    with_session(|session| {
+        let drops = Rc::new(Cell::new(0));
+        let mat = Mat::shell(session, 3, 3, Scaled::boxed(&drops, 0)).unwrap();
+        let (x, y) = (mat.right_vec().unwrap(), mat.left_vec().unwrap());
+        x.set(3.0).unwrap();
+        mat.mult(&x, &y).unwrap();
+        assert_eq!(y.to_vec().unwrap(), [6.0; 3]);
+        mat.diagonal(&y).unwrap();
+        assert_eq!(y.to_vec().unwrap(), [2.0; 3]);
+        let refused = mat.mult_transpose(&x, &y).unwrap_err();
+        assert!(refused.to_string().contains("transposed"), "{refused}");
+
+        let ksp = Ksp::new(session, Comm::World).unwrap();
+        ksp.set_operators(&mat, &mat).unwrap();
+        ksp.set_type("cg").unwrap();
+        let pc = ksp.pc().unwrap();
+        pc.set_shell("first", Scaled::boxed(&drops, 0)).unwrap();
+        pc.set_shell("second", Scaled::boxed(&drops, 0)).unwrap();
+        assert_eq!(drops.get(), 1, "a second shell replaces the first");
+        let u = x.duplicate().unwrap();
+        ksp.solve(&x, &u).unwrap();
+        assert!((u.sum().unwrap() - 4.5).abs() < 1e-12);
+        drop(mat);
+        assert_eq!(drops.get(), 1, "the solver still holds the matrix");
+        drop(pc);
+        drop(ksp);
+        assert_eq!(drops.get(), 3);
+    });
+}
+
+#[test]
+fn errors_and_panics_of_callbacks_come_back() {
+    with_session(|session| {
+        for (error, in_pc) in [(1, false), (2, false), (1, true), (2, true)] {
+            let drops = Rc::new(Cell::new(0));
+            let of = |here: bool| Scaled::boxed(&drops, if here { error } else { 0 });
+            let mat = Mat::shell(session, 3, 3, of(!in_pc)).unwrap();
+            let ksp = Ksp::new(session, Comm::World).unwrap();
+            ksp.set_operators(&mat, &mat).unwrap();
+            ksp.pc().unwrap().set_shell("shell", of(in_pc)).unwrap();
+            let (x, b) = (mat.right_vec().unwrap(), mat.left_vec().unwrap());
+            b.set(1.0).unwrap();
+            match (error, ksp.solve(&b, &x).unwrap_err()) {
+                (1, Error::Input(m)) => assert_eq!(m, "The load of body 3 is not a number."),
+                (2, Error::Environment(m)) => assert!(m.contains("the callback panics"), "{m}"),
+                (_, other) => panic!("{other:?}"),
+            }
+            drop((mat, ksp));
+            assert_eq!(drops.get(), 2);
+        }
+        // The slot is empty again: PETSc's own next error is PETSc's.
+        let a = laplacian(session, 3);
+        let wrong = PVec::seq(session, 4).unwrap();
+        match a.mult(&wrong, &a.left_vec().unwrap()).unwrap_err() {
+            Error::Petsc { call, trace, .. } => {
+                assert_eq!(call, "MatMult");
+                assert!(
+                    trace.len() >= 2 && trace[1].starts_with("MatMult()"),
+                    "{trace:?}"
+                );
+            }
+            other => panic!("{other}"),
+        }
+    });
+}
+
+/// A failure two callbacks deep keeps its identity.
+#[test]
+fn nested_failures_come_back() {
+    struct Outer(Ksp);
+    impl ShellMat for Outer {
+        fn mult(&self, x: &PVec, y: &PVec) -> Result<()> {
+            self.0.solve(x, y)
+        }
+    }
+    with_session(|session| {
+        let drops = Rc::new(Cell::new(0));
+        let inner = Mat::shell(session, 2, 2, Scaled::boxed(&drops, 1)).unwrap();
+        let ksp = Ksp::new(session, Comm::World).unwrap();
+        ksp.set_operators(&inner, &inner).unwrap();
+        ksp.pc().unwrap().set_type("none").unwrap();
+        let outer = Mat::shell(session, 2, 2, Box::new(Outer(ksp))).unwrap();
+        let (x, y) = (outer.right_vec().unwrap(), outer.left_vec().unwrap());
+        x.set(1.0).unwrap();
+        let error = outer.mult(&x, &y).unwrap_err();
+        assert_eq!(error.to_string(), "The load of body 3 is not a number.");
+    });
+}
+
+#[test]
+fn options_are_read_set_and_checked() {
+    with_session(|session| {
+        let options = Options::new(session, "opt_");
+        for (name, value) in [
+            ("real", Some("1e-3")),
+            ("count", Some("12")),
+            ("on", None),
+            ("off", Some("no")),
+            ("kind", Some("Diagonal")),
+            ("bad", Some("abc")),
+            ("typo", Some("7")),
+        ] {
+            options.set_value(name, value).unwrap();
+        }
+        assert_eq!(options.get_f64("real").unwrap(), Some(1e-3));
+        assert_eq!(options.get_usize("count").unwrap(), Some(12));
+        assert_eq!(options.get_i64("absent").unwrap(), None);
+        assert_eq!(options.get_bool("on").unwrap(), Some(true));
+        assert_eq!(options.get_bool("off").unwrap(), Some(false));
+        let names = ["identity", "diagonal"];
+        assert_eq!(options.get_enum("kind", &names).unwrap(), Some(1));
+        assert_eq!(options.f64("absent", 0.5, "").unwrap(), 0.5);
+        for error in [
+            options.get_f64("bad").unwrap_err(),
+            options.get_usize("bad").unwrap_err(),
+            options.get_bool("bad").unwrap_err(),
+        ] {
+            assert!(
+                matches!(&error, Error::Input(m) if m.contains("-opt_bad") && m.contains("abc"))
+            );
+        }
+        let error = options.get_enum("bad", &names).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "Option -opt_bad is \"abc\"; expected one of identity, diagonal."
+        );
+        // The typo is the one that nobody asked for.
+        assert_eq!(
+            options.left().unwrap(),
+            [("-opt_typo".to_string(), "7".to_string())]
+        );
+        options.set_default("count", "99").unwrap();
+        options.set_default("fresh", "5").unwrap();
+        assert_eq!(options.get_usize("count").unwrap(), Some(12));
+        assert_eq!(options.get_usize("fresh").unwrap(), Some(5));
+        options.clear_value("count").unwrap();
+        assert_eq!(options.get_usize("count").unwrap(), None);
+        for name in ["real", "on", "off", "kind", "bad", "typo", "fresh"] {
+            options.clear_value(name).unwrap();
+        }
+    });
+}
+
+#[test]
+fn a_solver_takes_its_prefixed_options() {
+    with_session(|session| {
+        let options = Options::new(session, "pre_fix_");
+        options.set_value("ksp_type", Some("gmres")).unwrap();
+        let ksp = Ksp::new(session, Comm::Own).unwrap();
+        ksp.set_options_prefix("pre_").unwrap();
+        ksp.append_options_prefix("fix_").unwrap();
+        ksp.set_from_options().unwrap();
+        assert_eq!(ksp.type_name().unwrap(), "gmres");
+        assert!(options.left().unwrap().is_empty());
+        options.clear_value("ksp_type").unwrap();
+    });
+}
+
+#[test]
+fn memory_is_plausible() {
+    with_session(|_| assert!((1e6..1e12).contains(&max_memory())));
+}
+
+/// What a second process does, started by the tests below with its own PETSc options; returns its exit code.
+fn with_options(options: &str, help: &str) -> i32 {
+    let args: Vec<String> = options.split(' ').map(String::from).collect();
+    let session = match Session::new(&args, help) {
+        Ok(session) => session,
+        Err(error) => {
+            println!("refused: {error}");
+            return error.exit_code();
+        }
+    };
+    session.run(|session| {
+        let event = Event::register(session, "OurEvent")?;
+        let stage = Stage::register(session, "Our stage")?;
+        {
+            let _stage = stage.scope()?;
+            let _event = event.scope()?;
+            let a = laplacian(session, 50);
+            let ksp = Ksp::new(session, Comm::Own)?;
+            ksp.set_operators(&a, &a)?;
+            ksp.set_from_options()?;
+            let (x, b) = (a.right_vec()?, a.left_vec()?);
+            b.set(1.0)?;
+            ksp.pc()?
+                .set_shell("our preconditioner", Box::new(Described))?;
+            ksp.solve(&b, &x)?;
+        }
+        let options = Options::new(session, "fetifeti_");
+        options.heading("FETI-FETI options")?;
+        options.f64(
+            "tau",
+            10.0,
+            "threshold of the eigenvalues that are deflated",
+        )?;
+        cite(session, "@article{ours, title={Ours}}\n")?;
+        for (name, value) in Options::new(session, "").left()? {
+            println!("unused {name} {value}");
+        }
+        Ok(())
+    })
+}
+
+struct Described;
+
+impl ShellPc for Described {
+    fn apply(&self, x: &PVec, y: &PVec) -> Result<()> {
+        y.copy_from(x)
+    }
+    fn view(&self) -> String {
+        "scaling: stiffness".into()
+    }
+}
+
+#[test]
+fn log_view_shows_our_event_and_stage() {
+    let started = mpi::as_process(|options| with_options(options, "Solves things.\n"));
+    let out = started.run(1, "-log_view -ksp_view");
+    assert_eq!(out.code, 0, "{}", out.all());
+    for text in [
+        "OurEvent",
+        "Our stage",
+        "our preconditioner",
+        "scaling: stiffness",
+    ] {
+        assert!(out.stdout.contains(text), "{text}: {}", out.all());
+    }
+}
+
+#[test]
+fn help_lists_our_options_and_left_finds_typos() {
+    let started = mpi::as_process(|options| with_options(options, "Solves things.\n"));
+    let out = started.run(1, "-help -ksp_tpye cg -citations");
+    assert_eq!(out.code, 0, "{}", out.all());
+    for text in [
+        "Solves things.",
+        "FETI-FETI options",
+        "-fetifeti_tau: <10> threshold",
+        "-ksp_rtol",
+        "unused -ksp_tpye cg",
+        "@article{ours",
+    ] {
+        assert!(out.stdout.contains(text), "{text}: {}", out.all());
+    }
+}
+
+#[test]
+fn a_missing_options_file_is_one_sentence() {
+    let started = mpi::as_process(|options| with_options(options, "Solves things.\n"));
+    let sentence = "PETSc does not start: Unable to open options file /does/not/exist.";
+    for (ranks, before) in [(1, "refused: "), (2, "Error on rank 0: ")] {
+        let out = started.run(ranks, "-options_file /does/not/exist");
+        assert_eq!(out.code, 3, "{}", out.all());
+        assert_eq!(
+            out.all().matches(&format!("{before}{sentence}")).count(),
+            1,
+            "{}",
+            out.all()
+        );
+        assert!(!out.all().contains("PETSC ERROR"), "{}", out.all());
+    }
+}

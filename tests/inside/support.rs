@@ -1,0 +1,7 @@
+//! What these tests share with the test programs.
+#![allow(dead_code)]
+
+#[path = "../support/direct.rs"]
+pub mod direct;
+#[path = "../support/mpi.rs"]
+pub mod mpi;

@@ -1,0 +1,193 @@
+//! Dense or sparse operators, what equal subdomains share, and what is kept from load to load: the answer stays the same.
+
+use crate::support::{mpi, program};
+use fetifeti::feti::settings::Operators;
+use fetifeti::feti::{FetiFeti, PcType, Settings, Solution};
+use fetifeti::petsc::testing::with_session;
+use fetifeti::petsc::Session;
+use fetifeti::scene::Scene;
+use mpi::Scratch;
+use program::run_fetifeti;
+use serde_json::Value;
+
+/// Two blocks of eight subdomains each, one on the other, pushed askew.
+const SOLID: &str = "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 2, 1]\nsubdomains = [2, 2, 2]\n\
+                     elements_per_subdomain = 4\nyoung = [[[1], [5]]]\npoisson = 0.3\nload = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n";
+
+fn solver(session: &Session, text: &str, settings: Settings) -> FetiFeti {
+    let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let problem = scene.substructures(&|_| true).expect("substructures");
+    let settings = Settings {
+        rtol: 1e-10,
+        ..settings
+    };
+    FetiFeti::new(session, problem, settings).expect("set up")
+}
+
+/// The largest difference relative to the largest displacement.
+fn far(a: &Solution, b: &Solution) -> f64 {
+    let pairs = a.u.iter().flatten().zip(b.u.iter().flatten());
+    let size = a.u.iter().flatten().fold(0.0f64, |s, u| s.max(u.abs()));
+    pairs.fold(0.0f64, |d, (a, b)| d.max((a - b).abs())) / size
+}
+
+#[test]
+fn sparse_solves_give_what_dense_operators_give() {
+    with_session(|session| {
+        for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
+            let make = |operators| {
+                let settings = Settings {
+                    operators,
+                    pc_type: Some(pc),
+                    ..Settings::default()
+                };
+                solver(session, SOLID, settings)
+            };
+            let (dense, sparse) = (make(Operators::Explicit), make(Operators::Implicit));
+            assert_eq!(dense.facts().implicit_kinds, 0);
+            assert_eq!(sparse.facts().implicit_kinds, sparse.facts().kinds);
+            for (name, defect) in sparse.check().expect("checks run") {
+                assert!(defect < 1e-10, "{pc:?}, {name}: {defect:.1e}");
+            }
+            let (a, b) = (
+                dense.solve().expect("solved"),
+                sparse.solve().expect("solved"),
+            );
+            assert!(a.converged && b.converged);
+            assert!(a.iterations.abs_diff(b.iterations) <= 1);
+            assert!(far(&a, &b) < 1e-8, "{pc:?}: {:.1e}", far(&a, &b));
+        }
+    });
+}
+
+#[test]
+fn memory_bounds_dense_operators() {
+    with_session(|session| {
+        let bounded = |memory| {
+            let settings = Settings {
+                memory: Some(memory),
+                pc_type: Some(PcType::Dirichlet),
+                ..Settings::default()
+            };
+            solver(session, SOLID, settings)
+        };
+        let (all, few) = (bounded(1000), bounded(1));
+        assert!(few.facts().implicit_kinds > all.facts().implicit_kinds);
+        assert!(few.facts().dense_bytes < all.facts().dense_bytes);
+        let (a, b) = (all.solve().expect("solved"), few.solve().expect("solved"));
+        assert!(far(&a, &b) < 1e-8);
+    });
+}
+
+#[test]
+fn subdomains_that_are_multiples_of_each_other_share_their_factors() {
+    with_session(|session| {
+        let text = |rho: &str| {
+            format!("[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 5\nload = \"1 + x\"\ndirichlet = \"all\"\n{rho}")
+        };
+        let plain = solver(session, &text(""), Settings::default());
+        // Checkerboards of 1/3 by body.
+        let rho = "rho = [[1, 0.3333333333333333, 1], [1e4, 7, 1e4], [1, 0.3333333333333333, 1]]\n";
+        let jumps = solver(session, &text(rho), Settings::default());
+        assert_eq!(plain.facts().kinds, jumps.facts().kinds);
+        // The certificate multiplies with the matrices themselves.
+        let solution = jumps.solve().expect("solved");
+        assert!(solution.converged);
+        assert!(solution.kkt.stationarity < 1e-8, "{:?}", solution.kkt);
+    });
+}
+
+#[test]
+fn directions_are_kept_from_load_to_load() {
+    with_session(|session| {
+        let text = "[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 6\nload = \"1 + x\"\ndirichlet = [\"left\"]\n";
+        let make = |recycle| {
+            let settings = Settings {
+                recycle,
+                ..Settings::default()
+            };
+            solver(session, text, settings)
+        };
+        let (mut kept, mut fresh) = (make(60), make(0));
+        let first = kept.solve().expect("solved");
+        let plain = fresh.solve().expect("solved");
+        // The few further iterations to the last digits begin at what the first ones have left.
+        assert!(first.iterations.abs_diff(plain.iterations) <= 2);
+        let loads = |factor: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
+            let local = fresh.problem().local.iter();
+            let of = |s: &fetifeti::substructures::Subdomain| {
+                let terms = s.f.iter().zip(&s.dofs);
+                terms.map(|(f, &dof)| f * factor(dof as usize)).collect()
+            };
+            local.map(of).collect()
+        };
+        let (twice, other) = (loads(&|_| 2.0), loads(&|dof| 1.0 + 0.1 * (dof % 7) as f64));
+        kept.set_loads(twice, &vec![0.0; kept.problem().rows.len()]);
+        let second = kept.solve().expect("solved");
+        assert!(second.iterations <= 3, "{} iterations", second.iterations);
+        kept.set_loads(other.clone(), &vec![0.0; kept.problem().rows.len()]);
+        fresh.set_loads(other, &vec![0.0; fresh.problem().rows.len()]);
+        let (a, b) = (
+            kept.solve().expect("solved"),
+            fresh.solve().expect("solved"),
+        );
+        assert!(
+            a.converged && a.iterations <= b.iterations,
+            "{} {}",
+            a.iterations,
+            b.iterations
+        );
+        assert!(far(&a, &b) < 1e-8, "{:.1e}", far(&a, &b));
+    });
+}
+
+#[test]
+fn sparse_solves_on_ranks() {
+    let scratch = Scratch::new("operators_forms");
+    let scene = scratch.file("solid.toml", SOLID);
+    let solve = |ranks: usize, more: &[&str]| -> Value {
+        let args = [
+            "solve",
+            &scene,
+            "--json",
+            "-",
+            "-fetifeti_ksp_rtol",
+            "1e-10",
+        ];
+        let out = run_fetifeti(ranks, &[&args[..], more].concat());
+        assert_eq!(out.code, 0, "{ranks} ranks: {}", out.all());
+        serde_json::from_str(&out.stdout).unwrap_or_else(|e| panic!("{e}: {}", out.all()))
+    };
+    let number = |v: &Value| v.as_f64().expect("a number");
+    let dense = solve(1, &["-fetifeti_operators", "explicit"]);
+    assert_eq!(dense["operators"]["sparse"], 0);
+    for ranks in [1, 2, 4] {
+        let sparse = solve(ranks, &["-fetifeti_operators", "implicit"]);
+        assert_eq!(sparse["operators"]["sparse"], sparse["operators"]["kinds"]);
+        let (a, b) = (number(&dense["energy"]), number(&sparse["energy"]));
+        assert!((a - b).abs() < 1e-9 * a.abs(), "{ranks} ranks: {a} {b}");
+    }
+    let mixed = solve(
+        2,
+        &[
+            "-fetifeti_operators",
+            "explicit",
+            "-fetifeti_precision",
+            "mixed",
+        ],
+    );
+    assert_eq!(mixed["operators"]["single"], 16);
+    let (a, b) = (number(&dense["energy"]), number(&mixed["energy"]));
+    assert!((a - b).abs() < 1e-9 * a.abs(), "mixed: {a} {b}");
+    let args = [
+        "solve",
+        &scene,
+        "-fetifeti_operators",
+        "implicit",
+        "-fetifeti_local_solver",
+        "faer",
+    ];
+    let out = run_fetifeti(1, &args);
+    assert_eq!(out.code, 2);
+    assert!(out.all().contains("local_solver is faer"), "{}", out.all());
+}

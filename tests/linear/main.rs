@@ -1,0 +1,11 @@
+//! The linear method from the outside: spectra, solutions, deflation, local solvers.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod deflation;
+mod direct;
+mod forms;
+mod lifting;
+mod local_solvers;
+mod spectra;

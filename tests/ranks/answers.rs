@@ -1,0 +1,240 @@
+//! The program under mpirun: the answer does not depend on the number of ranks or on how subdomains are dealt to them.
+
+use crate::support::{mpi, program};
+use mpi::Scratch;
+use program::run_fetifeti;
+use serde_json::Value;
+
+fn number(v: &Value) -> f64 {
+    v.as_f64().unwrap_or_else(|| panic!("{v} is no number"))
+}
+
+fn near(a: f64, b: f64, tolerance: f64) -> bool {
+    (a - b).abs() <= tolerance * b.abs()
+}
+
+fn solve(ranks: usize, scene: &str, more: &[&str]) -> Value {
+    let args = [
+        &[
+            "solve",
+            scene,
+            "--json",
+            "-",
+            "-fetifeti_spectrum",
+            "-fetifeti_ksp_rtol",
+            "1e-10",
+        ],
+        more,
+    ]
+    .concat();
+    let out = run_fetifeti(ranks, &args);
+    assert_eq!(out.code, 0, "{ranks} ranks, {scene}: {}", out.all());
+    let report: Value =
+        serde_json::from_str(&out.stdout).unwrap_or_else(|e| panic!("{e}: {}", out.all()));
+    assert_eq!(report["ranks"], ranks);
+    report
+}
+
+/// The same report on every number of ranks.
+fn same(scene: &str, runs: &[(usize, &str)]) {
+    let one = solve(1, scene, &[]);
+    for &(n, distribution) in runs {
+        let other = solve(
+            n,
+            scene,
+            &["-fetifeti_distribution", distribution, "-fetifeti_check"],
+        );
+        let what = format!("{scene}, {n} ranks, {distribution}");
+        for key in [
+            "bodies",
+            "floating_bodies",
+            "subdomains",
+            "dofs",
+            "multipliers",
+            "preconditioner",
+            "projector",
+        ] {
+            assert_eq!(one[key], other[key], "{what}: {key}");
+        }
+        let iterations =
+            [&one, &other].map(|r| r["iterations"]["total"].as_i64().expect("a count"));
+        assert!(
+            (iterations[0] - iterations[1]).abs() <= 1,
+            "{what}: {iterations:?}"
+        );
+        let energies = [&one, &other].map(|r| number(&r["energy"]));
+        assert!(
+            near(energies[1], energies[0], 1e-10),
+            "{what}: {energies:?}"
+        );
+        let kappas = [&one, &other].map(|r| number(&r["condition"]["exact"]["kappa"]));
+        assert!(near(kappas[1], kappas[0], 1e-6), "{what}: {kappas:?}");
+        assert!(
+            number(&other["condition"]["exact"]["lambda_min"]) > 1.0 - 1e-8,
+            "{what}"
+        );
+        assert!(number(&other["kkt"]["feasibility"]) < 1e-6, "{what}");
+        let identities = other["check"].as_object().expect("identities");
+        for (name, defect) in identities {
+            assert!(number(defect) < 1e-10, "{what}: {name} {defect}");
+        }
+    }
+}
+
+#[test]
+fn tied_bodies() {
+    same(
+        "examples/scenes/poisson_2x2.toml",
+        &[(2, "block"), (2, "cyclic"), (3, "cyclic"), (4, "block")],
+    );
+}
+
+#[test]
+fn partly_tied_bodies() {
+    same(
+        "examples/scenes/partly_tied.toml",
+        &[(2, "cyclic"), (3, "block"), (4, "cyclic")],
+    );
+}
+
+#[test]
+fn unequal_bodies() {
+    same(
+        "examples/scenes/unequal_bodies.toml",
+        &[(2, "cyclic"), (4, "block")],
+    );
+}
+
+#[test]
+fn floating_bodies_with_jumps() {
+    same(
+        "examples/scenes/jump_1e6.toml",
+        &[(2, "cyclic"), (4, "block")],
+    );
+    same(
+        "examples/scenes/jump_checkerboard.toml",
+        &[(2, "cyclic"), (4, "block")],
+    );
+}
+
+#[test]
+fn one_level_and_dual_primal() {
+    same(
+        "examples/scenes/one_subdomain.toml",
+        &[(2, "cyclic"), (4, "block")],
+    );
+    same(
+        "examples/scenes/one_body.toml",
+        &[(2, "cyclic"), (4, "block")],
+    );
+}
+
+#[test]
+fn more_ranks_than_subdomains() {
+    let scratch = Scratch::new("many");
+    let text = "[grid]\nbodies = 2\nelements = 6\nload = 1\ndirichlet = [\"left\"]\n";
+    same(
+        &scratch.file("four.toml", text),
+        &[(4, "cyclic"), (5, "block")],
+    );
+    let text = "[grid]\nbodies = [2, 1]\nelements = 6\nsubdomains = [1, 2]\nload = 1\ndirichlet = [\"left\"]\n";
+    same(&scratch.file("four_in_two.toml", text), &[(5, "cyclic")]);
+    let text = "[[body]]\nsize = 1\nelements = 6\nload = 1\ndirichlet = [\"left\"]\n";
+    let out = run_fetifeti(
+        3,
+        &["solve", &scratch.file("one.toml", text), "--json", "-"],
+    );
+    assert_eq!(out.code, 0, "{}", out.all());
+}
+
+#[test]
+fn files_are_written_once_for_all_ranks() {
+    let scratch = Scratch::new("files");
+    let mut meshes = Vec::new();
+    for n in [1, 3] {
+        let dir = scratch.path(&format!("out{n}"));
+        let out = run_fetifeti(
+            n,
+            &["solve", "examples/scenes/partly_tied.toml", "--out", &dir],
+        );
+        assert_eq!(out.code, 0, "{}", out.all());
+        assert_eq!(out.stdout.matches("written:").count(), 1, "{}", out.all());
+        let bytes = std::fs::read(format!("{dir}/solution.vtu")).expect("the file is there");
+        meshes.push(bytes.len());
+        assert!(
+            std::fs::metadata(format!("{dir}/solution.png"))
+                .expect("the picture")
+                .len()
+                > 1000
+        );
+        serde_json::from_slice::<Value>(
+            &std::fs::read(format!("{dir}/report.json")).expect("the report"),
+        )
+        .expect("JSON");
+    }
+    assert_eq!(meshes[0], meshes[1]);
+}
+
+#[test]
+fn krylov_methods_on_two_ranks() {
+    let scene = "examples/scenes/lee_column_2.toml";
+    let energy = number(&solve(1, scene, &[])["energy"]);
+    for method in ["fcg", "pipecg", "gmres"] {
+        let report = solve(2, scene, &["-fetifeti_ksp_type", method]);
+        assert_eq!(report["ksp_type"], method);
+        assert!(
+            near(number(&report["energy"]), energy, 1e-9),
+            "{method}: {}",
+            report["energy"]
+        );
+    }
+}
+
+#[test]
+fn spectra_of_table_1_on_1_2_and_4_ranks() {
+    let oracle: Vec<Value> =
+        serde_json::from_str(include_str!("../data/grid2d_spectra.json")).expect("JSON");
+    let key =
+        |r: &Value| ["bodies", "subdomains", "elements"].map(|k| r[k].as_u64().expect("a count"));
+    for ranks in [1, 2, 4] {
+        let rows = [
+            "--rows", "2,4,2", "--rows", "2,2,8", "--rows", "4,2,2", "--rows", "3,3,4",
+        ];
+        let out = run_fetifeti(ranks, &[&["table1", "--json", "-"], &rows[..]].concat());
+        assert_eq!(out.code, 0, "{}", out.all());
+        let table: Vec<Value> = serde_json::from_str(&out.stdout).expect("JSON");
+        assert_eq!(table.len(), 4);
+        for row in &table {
+            let expected = oracle
+                .iter()
+                .find(|o| key(o) == key(row))
+                .expect("the oracle has the row");
+            for side in ["whole_interface", "middle_third"] {
+                let (ours, want) = (&row[side], &expected[side]);
+                let what = format!("{ranks} ranks, {:?} {side}", key(row));
+                for count in ["multipliers", "local_multipliers", "floating_bodies"] {
+                    assert_eq!(ours[count], want[count], "{what}: {count}");
+                }
+                let pairs = [
+                    (&ours["exact"], &want["dirichlet"]["kappa"]),
+                    (
+                        &ours["coarse_corrected"]["exact"],
+                        &want["coarse_corrected"]["kappa"],
+                    ),
+                ];
+                for (ours, want) in pairs {
+                    assert!(
+                        near(number(ours), number(want), 1e-4),
+                        "{what}: {ours} for {want}"
+                    );
+                }
+                let iterations =
+                    [ours, &want["dirichlet"]].map(|s| s["iterations"].as_i64().expect("a count"));
+                assert!(
+                    (iterations[0] - iterations[1]).abs() <= 1,
+                    "{what}: {iterations:?}"
+                );
+            }
+        }
+    }
+}

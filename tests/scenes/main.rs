@@ -1,0 +1,18 @@
+//! Scenes: what is read, what is refused, what is counted, and coefficients from files.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod coefficient_files;
+mod coefficient_mistakes;
+mod coefficient_scenes;
+mod contact;
+mod contact_input;
+mod contact_solution;
+mod counts;
+mod examples;
+mod input;
+mod input_bodies;
+mod solution;
+mod springs;
+mod steps;

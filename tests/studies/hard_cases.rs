@@ -1,0 +1,83 @@
+//! `study hard-cases --quick`: no wrong answer is called a solution, and what the study would say of one.
+
+use crate::support::{mpi, program};
+use fetifeti::study::hard_cases::{Record, Report, Verdict};
+use mpi::Scratch;
+use program::run_fetifeti;
+
+fn quick(ranks: usize, dir: &Scratch) -> Report {
+    let file = dir.path(&format!("hard-{ranks}.json"));
+    let args = ["study", "hard-cases", "--quick", "--quiet", "--json", &file];
+    let run = run_fetifeti(ranks, &args);
+    assert_eq!(run.code, 0, "{}", run.all());
+    serde_json::from_str(&std::fs::read_to_string(&file).expect("a report")).expect("a report")
+}
+
+#[test]
+fn nothing_is_wrong() {
+    let dir = Scratch::new("study-hard");
+    let report = quick(1, &dir);
+    assert!(report.cases.len() >= 25);
+    let find = |name: &str| -> &Record {
+        let found = report.cases.iter().find(|c| c.case == name);
+        found.unwrap_or_else(|| panic!("no case {name}"))
+    };
+    for case in &report.cases {
+        println!("{}: {:?} {:?}", case.case, case.verdict, case.error_max);
+        assert_ne!(case.verdict, Verdict::Wrong, "{}", case.case);
+        // The direct solution is one; without it nothing was held against anything.
+        let certified = case.reference.is_some_and(|r| r < 1e-9);
+        assert_eq!(certified, case.case != "flies-away", "{}", case.case);
+        // Where the solver says no, it says why; where it says yes, it is right.
+        assert_eq!(case.message.is_some(), case.verdict != Verdict::Solved);
+        if case.verdict == Verdict::Solved {
+            assert!(case.error_max.is_some_and(|e| e < report.limit));
+            assert_eq!(case.active[0], case.active[1], "{}", case.case);
+        }
+    }
+    assert_eq!(find("flies-away").verdict, Verdict::Refused);
+    assert_eq!(find("one-node").active[0], Some(1));
+    assert_eq!(find("no-contact").active[0], Some(0));
+    for name in [
+        "jump-bodies-3d",
+        "incompressible-bbar",
+        "interpenetrating",
+        "stiff-on-soft",
+        "many-subdomains",
+    ] {
+        assert_eq!(find(name).verdict, Verdict::Solved, "{name}");
+    }
+    // Most are solved: a solver that always gives up is not what is tested here.
+    let solved = report.cases.iter().filter(|c| c.verdict == Verdict::Solved);
+    assert!(solved.count() >= 25);
+}
+
+#[test]
+fn ranks_do_not_matter() {
+    let dir = Scratch::new("study-hard-ranks");
+    let [one, two] = [1, 2].map(|ranks| quick(ranks, &dir));
+    for (a, b) in one.cases.iter().zip(&two.cases) {
+        // Rounding decides where an iteration that is held up by it stops.
+        if a.case != "flat-elastic" {
+            assert_eq!(a.verdict, b.verdict, "{}", a.case);
+            assert_eq!(a.active, b.active, "{}", a.case);
+        }
+    }
+}
+
+/// One case solved to a tolerance at which its answer is none: the study sees it.
+#[test]
+fn a_wrong_answer_is_seen() {
+    use fetifeti::petsc::testing::with_session;
+    use fetifeti::study::hard_cases::{cases, one};
+    let verdict = with_session(|session| {
+        let mut case = cases(true)
+            .into_iter()
+            .find(|c| c.name == "fine-subdomains")
+            .expect("it is there");
+        case.text += "[options]\nfetifeti_ksp_rtol = 1e-2\n";
+        let record = one(session, &case, 0).expect("it runs");
+        (record.verdict, record.error_energy)
+    });
+    assert_eq!(verdict.0, Verdict::Wrong, "{verdict:?}");
+}

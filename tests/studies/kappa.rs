@@ -1,0 +1,52 @@
+//! `study kappa --quick`: the measured condition numbers, and what a wrong case is told.
+
+use crate::support::{mpi, program};
+use fetifeti::study::kappa::Report;
+use mpi::Scratch;
+use program::run_fetifeti;
+
+#[test]
+fn condition_numbers_are_those_that_were_measured() {
+    let dir = Scratch::new("study-kappa");
+    let file = dir.path("kappa.json");
+    let args = [
+        "study",
+        "kappa",
+        "--quick",
+        "--quiet",
+        "--json",
+        &file,
+        "-fetifeti_spectrum",
+    ];
+    let run = run_fetifeti(1, &args);
+    assert_eq!(run.code, 0, "{}", run.all());
+    let text = std::fs::read_to_string(&file).expect("a report");
+    let report: Report = serde_json::from_str(&text).expect("a report");
+    for row in &report.rows {
+        for found in [&row.dirichlet, &row.coarse_corrected] {
+            let exact = found.exact.expect("asked for");
+            // Lanczos comes from below.
+            assert!(found.kappa <= exact * (1.0 + 1e-6), "{row:?}");
+            assert!(found.kappa > 0.98 * exact, "{row:?}");
+            assert!(found.lambda_min > 1.0 - 1e-6, "{row:?}");
+        }
+        let (d, c) = (row.dirichlet.kappa, row.coarse_corrected.kappa);
+        assert!(c < d, "M_C is never worse than M_D: {row:?}");
+    }
+    // Growth with the subdomains across a body: M_C against M_D, (2,2,4) and (2,4,4).
+    let plane: Vec<_> = report
+        .rows
+        .iter()
+        .filter(|r| r.family == "scalar-2d")
+        .collect();
+    let grows = |f: fn(&fetifeti::study::kappa::Row) -> f64| f(plane[1]) / f(plane[0]);
+    assert!(grows(|r| r.coarse_corrected.kappa) < 1.7);
+    assert!(grows(|r| r.dirichlet.kappa) > 2.0);
+}
+
+#[test]
+fn a_case_that_there_is_not_is_refused() {
+    let run = run_fetifeti(1, &["study", "kappa", "scalar-4d", "--quick"]);
+    assert_eq!(run.code, 2, "{}", run.all());
+    assert!(run.stderr.contains("scalar-4d") && run.stderr.contains("elastic-3d-0.3"));
+}

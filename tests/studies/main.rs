@@ -1,0 +1,12 @@
+//! The studies on their small cases.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod adaptive;
+mod hard_cases;
+mod hertz;
+mod kappa;
+mod kernels;
+mod scaling;
+mod speed_error;

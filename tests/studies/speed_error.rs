@@ -1,0 +1,70 @@
+//! `study speed-error --quick`: errors of meshes and solvers, and the files.
+
+use crate::support::{mpi, program};
+use fetifeti::study::speed_error::Report;
+use mpi::Scratch;
+use program::{fetifeti, run_fetifeti};
+
+#[test]
+fn errors_fall_with_the_mesh() {
+    let dir = Scratch::new("study-speed");
+    let (file, out) = (dir.path("speed.json"), dir.path(""));
+    let run = fetifeti(&[
+        "study",
+        "speed-error",
+        "--quick",
+        "--quiet",
+        "--json",
+        &file,
+        "--out",
+        &out,
+    ]);
+    assert_eq!(run.code, 0, "{}", run.all());
+    let text = std::fs::read_to_string(&file).expect("a report");
+    let report: Report = serde_json::from_str(&text).expect("a report");
+    assert_eq!(report.cases.len(), 3);
+    for case in &report.cases {
+        let [coarse, fine] = case.meshes[..] else {
+            panic!("two meshes")
+        };
+        // Order 1 in the energy norm; a little less where contact ends inside an element, and on meshes this coarse.
+        let ratio = fine.elements as f64 / coarse.elements as f64;
+        let order = (coarse.error / fine.error).ln() / ratio.ln();
+        println!(
+            "{}: {} {} order {order}",
+            case.case, coarse.error, fine.error
+        );
+        assert!(order > 0.8 && order < 1.3, "{}: order {order}", case.case);
+        // A run of MUMPS that fails has no answer to be listed.
+        let mut ours = case.methods();
+        ours.retain(|m| m != "mumps");
+        assert_eq!(ours, ["fetifeti", "fetifeti, mixed"]);
+        for run in &case.runs {
+            let mesh = case.meshes.iter().find(|m| m.elements == run.elements);
+            let mesh = mesh.expect("a run has a mesh").error;
+            assert!((run.error - mesh.hypot(run.solver_error)).abs() <= 1e-12 * run.error);
+            // Ours must; of MUMPS only what it says of itself counts.
+            assert!(run.converged || run.method == "mumps", "{run:?}");
+            assert!(!run.converged || run.solver_error < 1e-3, "{run:?}");
+            assert!(run.setup > 0.0 && run.solve > 0.0);
+        }
+        for method in ours {
+            assert_eq!(case.fastest(&method).len(), 2);
+        }
+        for end in ["png", "svg"] {
+            let file = dir.path(&format!("speed-error_{}.{end}", case.case));
+            assert!(
+                std::fs::metadata(&file).is_ok_and(|m| m.len() > 200),
+                "{file}"
+            );
+        }
+    }
+    assert!(std::fs::metadata(dir.path("speed-error.csv")).is_ok());
+}
+
+#[test]
+fn several_ranks_are_refused() {
+    let run = run_fetifeti(2, &["study", "speed-error", "--quick"]);
+    assert_eq!(run.code, 2, "{}", run.all());
+    assert!(run.stderr.contains("2 ranks"), "{}", run.all());
+}

@@ -1,0 +1,205 @@
+//! Whether an answer is a solution: the same energy, the same closed rows and the same u as the reference, as far as the
+//! problem determines them.
+
+use super::super::qp::certificate::{self, largest, relative, Kkt};
+use super::{Assembled, Place, Reference};
+use faer::prelude::Solve;
+use faer::{Mat, Side};
+
+/// Limits, all relative.
+#[derive(Debug, Clone, Copy)]
+pub struct Tolerances {
+    pub energy: f64,
+    pub kkt: f64,
+    /// u up to free motions, largest entry.
+    pub u: f64,
+    /// From where on a row counts as closed with force, or as open.
+    pub strict: f64,
+}
+
+impl Default for Tolerances {
+    fn default() -> Self {
+        Tolerances {
+            energy: 1e-8,
+            kkt: 1e-8,
+            u: 1e-6,
+            strict: 1e-6,
+        }
+    }
+}
+
+/// What a solver says.
+pub struct Candidate<'a> {
+    /// By unknown, as [`Assembled::dofs`].
+    pub u: &'a [f64],
+    /// By row, as [`Assembled::rows`], with K u + Bᵀ λ = f.
+    pub lambda: &'a [f64],
+    pub energy: f64,
+}
+
+/// How well an answer agrees.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Agreement {
+    pub energy: f64,
+    pub u: f64,
+    pub kkt: Kkt,
+    /// Rows that carry force in the reference or in the answer, rows that are open in either, and rows that are neither:
+    /// closed without force, where either set is right.
+    pub closed: usize,
+    pub open: usize,
+    pub degenerate: usize,
+    /// Dimension of the motions that leave the energy and all rows with force as they are: u is unique where it is 0.
+    pub free_motions: usize,
+}
+
+/// Compares `answer` with the reference; an error says everything that does not fit.
+///
+/// Every multiplier of a convex problem is complementary to every solution. So rows are compared crosswise: a row that
+/// carries force in one answer must be closed in the other. That is equality of the closed sets wherever the problem
+/// determines them, and asks for nothing at rows that touch without force or share their force with dependent rows.
+pub fn compare(
+    problem: &Assembled,
+    reference: &Reference,
+    answer: &Candidate<'_>,
+    tolerances: &Tolerances,
+) -> Result<Agreement, String> {
+    let qp = &problem.qp;
+    assert_eq!(answer.u.len(), problem.dofs.len());
+    assert_eq!(answer.lambda.len(), problem.rows.len());
+    let mut wrong = Vec::new();
+    let mut out = Agreement::default();
+    let mut limit = |what: &str, value: f64, limit: f64| {
+        if value.is_nan() || value > limit {
+            wrong.push(format!("{what} {value:.2e} (at most {limit:.0e})"));
+        }
+    };
+
+    let (mut equal, mut below) = (vec![0.0; qp.equal.len()], vec![0.0; qp.below.len()]);
+    let mut idle = 0.0f64;
+    for (place, &l) in problem.place.iter().zip(answer.lambda) {
+        match *place {
+            Place::Equal(k) => equal[k] = l,
+            Place::Below(k) => below[k] = l,
+            Place::Nowhere => idle = idle.max(l.abs()),
+        }
+    }
+    let scale = energy_scale(problem, reference);
+    out.energy = relative((answer.energy - reference.energy).abs(), scale);
+    limit("energy", out.energy, tolerances.energy);
+    let own = relative((qp.energy(answer.u) - answer.energy).abs(), scale);
+    limit("energy of the answer's own u", own, tolerances.energy);
+
+    limit("multiplier of a row that does not hold", idle, 0.0);
+    let (length, force) = certificate::sizes(qp, answer.u, &equal, &below);
+    out.kkt = certificate::kkt(qp, answer.u, &equal, &below);
+    limit("stationarity", out.kkt.stationarity, tolerances.kkt);
+    limit("feasibility", out.kkt.feasibility, tolerances.kkt);
+    limit("sign", out.kkt.sign, tolerances.kkt);
+    limit("complementarity", out.kkt.complementarity, tolerances.kkt);
+
+    let mut mixed = Vec::new();
+    for (k, row) in qp.below.iter().enumerate() {
+        let gap = |u: &[f64]| (row.rhs - row.times(u)) / row.norm();
+        let opens = [gap(&reference.u), gap(answer.u)].map(|g| g > tolerances.strict * length);
+        let carries = [reference.solved.below[k], below[k]].map(|l| l > tolerances.strict * force);
+        if (carries[0] && opens[1]) || (carries[1] && opens[0]) {
+            mixed.push(k);
+        }
+        match (carries.contains(&true), opens.contains(&true)) {
+            (true, _) => out.closed += 1,
+            (_, true) => out.open += 1,
+            _ => out.degenerate += 1,
+        }
+    }
+
+    let strict = |k: usize| reference.solved.below[k] > tolerances.strict * force;
+    let (motions, distance) = distance(problem, &reference.u, answer.u, &strict);
+    out.free_motions = motions;
+    out.u = relative(distance, length);
+    limit("u", out.u, tolerances.u);
+    if !mixed.is_empty() {
+        wrong.push(format!(
+            "rows closed in one and open in the other: {}",
+            mixed.len()
+        ));
+    }
+    if wrong.is_empty() {
+        Ok(out)
+    } else {
+        Err(format!("{}; {out:?}", wrong.join("; ")))
+    }
+}
+
+/// What errors of the energy are compared with: the energy and the work of the load, and where both vanish what the data could do
+/// on the diagonal of K.
+fn energy_scale(problem: &Assembled, reference: &Reference) -> f64 {
+    let qp = &problem.qp;
+    let stiffness = |i: usize| qp.k.get(i, i);
+    let softest = (0..qp.f.len()).map(stiffness).fold(f64::INFINITY, f64::min);
+    let alone = (0..qp.f.len()).map(|i| qp.f[i] * qp.f[i] / stiffness(i));
+    let rows = qp.equal.iter().chain(&qp.below);
+    let moved = rows.map(|r| (r.rhs / r.norm()).powi(2) * softest);
+    let work = (0..qp.f.len()).map(|i| qp.f[i] * reference.u[i]);
+    let scale = largest(alone.chain(moved).chain(work).chain([reference.energy]));
+    if scale > 0.0 {
+        scale
+    } else {
+        1.0
+    }
+}
+
+/// Number of the motions in the kernel of K that equations and rows with force leave free, and the largest entry of
+/// u − v with its part in them removed.
+fn distance(
+    problem: &Assembled,
+    u: &[f64],
+    v: &[f64],
+    strict: &dyn Fn(usize) -> bool,
+) -> (usize, f64) {
+    let qp = &problem.qp;
+    let mut d: Vec<f64> = u.iter().zip(v).map(|(a, b)| a - b).collect();
+    let r = qp.kernel.len();
+    let mut touching: Vec<Vec<(usize, f64)>> = vec![Vec::new(); d.len()];
+    for (j, z) in qp.kernel.iter().enumerate() {
+        z.iter().for_each(|&(i, v)| touching[i].push((j, v)));
+    }
+    let mut gram = Mat::<f64>::zeros(r, r);
+    let held = (0..qp.below.len()).filter(|&k| strict(k));
+    for row in qp.equal.iter().chain(held.map(|k| &qp.below[k])) {
+        let mut g = vec![0.0; r];
+        for &(i, b) in &row.terms {
+            touching[i].iter().for_each(|&(j, v)| g[j] += b * v);
+        }
+        for a in (0..r).filter(|&a| g[a] != 0.0) {
+            (0..r).for_each(|b| gram[(a, b)] += g[a] * g[b]);
+        }
+    }
+    if r == 0 {
+        return (0, largest(d));
+    }
+    let eigen = gram.self_adjoint_eigen(Side::Lower).expect("eigenvalues");
+    let s = eigen.S().column_vector();
+    let top = (0..r).fold(1.0f64, |m, i| m.max(s[i]));
+    let free: Vec<usize> = (0..r).filter(|&i| s[i] <= 1e-10 * top).collect();
+    if free.is_empty() {
+        return (0, largest(d));
+    }
+    let basis = Mat::from_fn(r, free.len(), |i, j| eigen.U()[(i, free[j])]);
+    // Least squares in the coefficients of the free motions.
+    let mut zz = Mat::<f64>::zeros(r, r);
+    let mut zd = Mat::<f64>::zeros(r, 1);
+    for (pairs, d) in touching.iter().zip(&d) {
+        for &(a, va) in pairs {
+            zd[(a, 0)] += va * d;
+            pairs.iter().for_each(|&(b, vb)| zz[(a, b)] += va * vb);
+        }
+    }
+    let normal = basis.transpose() * &zz * &basis;
+    let right = basis.transpose() * &zd;
+    let beta = normal.full_piv_lu().solve(&right);
+    let alpha = &basis * beta;
+    for (pairs, d) in touching.iter().zip(&mut d) {
+        pairs.iter().for_each(|&(j, v)| *d -= v * alpha[(j, 0)]);
+    }
+    (free.len(), largest(d))
+}

@@ -1,0 +1,62 @@
+//! `fetifeti compare` from the outside: a scene in a file, and what the program says of it.
+
+use super::mpi::{Output, Scratch};
+use super::program::fetifeti;
+use fetifeti::report::json::{CompareReport, CompareRow};
+
+/// Whether a row holds a solution. Ours must; a row of another method may say instead why it holds none, for whether PETSc's solvers
+/// get there is not ours to promise and differs from processor to processor.
+pub fn solved(row: &CompareRow) -> bool {
+    let what = format!("{} on {} ranks: {row:?}", row.method, row.ranks);
+    let Some(message) = &row.message else {
+        assert!(row.converged, "{what}");
+        assert!(row.converged_reason.starts_with("CONVERGED"), "{what}");
+        return true;
+    };
+    assert_ne!(row.method, "fetifeti", "{what}");
+    assert!(!message.trim().is_empty() && !row.converged, "{what}");
+    // A method that broke down has left nothing that could be measured; one that stopped has what the judge found.
+    let left = row.converged_reason.is_empty();
+    assert!(
+        !left || (row.error, row.iterations, row.kappa) == (None, None, None),
+        "{what}"
+    );
+    println!("{}: {message}", row.method);
+    false
+}
+
+/// A scene file that goes away with the value.
+pub struct SceneFile {
+    path: String,
+    /// Where it lies, for more files.
+    pub scratch: Scratch,
+}
+
+impl SceneFile {
+    /// `name` is one that no other scene of the test file has.
+    pub fn new(name: &str, text: &str) -> SceneFile {
+        let scratch = Scratch::new(&format!("compare-{name}"));
+        SceneFile {
+            path: scratch.file("scene.toml", text),
+            scratch,
+        }
+    }
+
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// `fetifeti compare` on two cores with more arguments; it must end well.
+    pub fn run(&self, more: &[&str]) -> Output {
+        let args = [&["compare", self.path(), "-compare_cores", "2"], more].concat();
+        let output = fetifeti(&args);
+        assert_eq!(output.code, 0, "{}", output.all());
+        output
+    }
+
+    /// The same for the report.
+    pub fn compare(&self, more: &[&str]) -> CompareReport {
+        let output = self.run(&[&["--json", "-"], more].concat());
+        serde_json::from_str(&output.stdout).expect("a report")
+    }
+}

@@ -1,0 +1,87 @@
+//! The answer of the method to a scene, judged by the assembled reference.
+
+use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
+use super::assembled::{Assembled, Reference};
+use fetifeti::contact::ContactType;
+use fetifeti::feti::{FetiFeti, Settings};
+use fetifeti::parallel::exchange::gather_all;
+use fetifeti::petsc::Session;
+use fetifeti::scene::Scene;
+use fetifeti::{Error, Result};
+use std::collections::HashMap;
+
+fn settings(kind: ContactType) -> Settings {
+    let mut settings = Settings {
+        rtol: 1e-11,
+        ..Settings::default()
+    };
+    settings.contact.kind = kind;
+    settings
+}
+
+/// The answer of the method, on every rank the whole of it: u by unknown, λ by row of the scene, energy.
+pub fn answer(
+    session: &Session,
+    scene: &Scene,
+    problem: &Assembled,
+    cards: bool,
+    kind: ContactType,
+) -> Result<(Vec<f64>, Vec<f64>, f64)> {
+    let (rank, size) = (session.rank(), session.size());
+    // Runs of subdomains, or dealt like cards.
+    let share = fetifeti::share(session, scene.n_subdomains());
+    let mine = |s: usize| match cards {
+        false => share.contains(&s),
+        true => s % size == rank,
+    };
+    let solver = FetiFeti::new(session, scene.substructures(&mine)?, settings(kind))?;
+    let solution = solver.solve()?;
+    if !solution.converged {
+        let reason = format!("not converged: {}", solution.reason);
+        return Err(Error::input(reason));
+    }
+
+    let comm = session.comm();
+    let all = |values: Vec<u64>| gather_all(comm, &values).concat();
+    let subdomains = &solver.problem().local;
+    let dofs = subdomains.iter().flat_map(|s| s.dofs.iter().copied());
+    let values = solution.u.iter().flatten().map(|u| u.to_bits());
+    let (dofs, values) = (all(dofs.collect()), all(values.collect()));
+    let copies = dofs.iter().zip(values.into_iter().map(f64::from_bits));
+    let u = problem.gather(copies.map(|(&d, u)| (d, u)), 1e-8);
+
+    // The rows that a rank provides are those of the scene at its points, in the same order.
+    let places = scene.points.iter().map(|p| (p.block, p.subdomain));
+    let places: HashMap<u64, usize> = places.collect();
+    let provided: Vec<u64> = (0..problem.rows.len())
+        .filter(|&r| mine(places[&problem.rows[r].block]))
+        .map(|r| r as u64)
+        .collect();
+    let dual = solver.dual();
+    let jump = &dual.stiffness.jump;
+    let contact = &solution.lambda[jump.n_owned_local..];
+    let rows = all(jump.order.iter().map(|&k| provided[k]).collect());
+    let values = all(contact.iter().map(|l| l.to_bits()).collect());
+    let mut lambda = vec![f64::NAN; problem.rows.len()];
+    for (row, value) in rows.into_iter().zip(values) {
+        lambda[row as usize] = f64::from_bits(value);
+    }
+    Ok((u.map_err(Error::input)?, lambda, solution.energy))
+}
+
+/// Compares it with the reference.
+pub fn judge(
+    session: &Session,
+    (scene, problem, reference): (&Scene, &Assembled, &Reference),
+    cards: bool,
+    kind: ContactType,
+) -> std::result::Result<Agreement, String> {
+    let answer = answer(session, scene, problem, cards, kind);
+    let (u, lambda, energy) = answer.map_err(|e| e.to_string())?;
+    let answer = Candidate {
+        u: &u,
+        lambda: &lambda,
+        energy,
+    };
+    compare(problem, reference, &answer, &Tolerances::default())
+}

@@ -1,0 +1,161 @@
+//! The assembled problem solved by a sparse Cholesky factorisation: what every run of the method is measured against.
+
+use std::collections::BTreeMap;
+
+use faer::prelude::Solve;
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{Mat, Side};
+use fetifeti::fem::q1;
+use fetifeti::feti::{FetiFeti, Settings, Solution};
+use fetifeti::mesh::SubdomainMesh;
+use fetifeti::petsc::{Options, Session};
+use fetifeti::scene::{Numbering, Scene};
+
+/// Solution of an assembled scene, torn by subdomain.
+pub struct Direct {
+    pub scene: Scene,
+    meshes: Vec<SubdomainMesh>,
+    /// Nodal values of each subdomain, prescribed ones included.
+    pub nodal: Vec<Vec<f64>>,
+}
+
+impl Direct {
+    pub fn new(scene: Scene) -> Direct {
+        let numbering = Numbering::new(&scene);
+        let n = numbering.len() as usize;
+        let range = 0..scene.n_subdomains();
+        let meshes: Vec<SubdomainMesh> = range.map(|s| scene.subdomain_mesh(s).unwrap()).collect();
+        let mut entries: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let mut f = vec![0.0; n];
+        let mut global = Vec::new();
+        for mesh in &meshes {
+            let s = scene.assemble(mesh).unwrap();
+            let place: Vec<usize> = s
+                .dofs
+                .iter()
+                .map(|&d| numbering.global(d) as usize)
+                .collect();
+            for (i, &gi) in place.iter().enumerate() {
+                f[gi] += s.f[i];
+                let (col, val) = s.k.row(i);
+                for (&j, &v) in col.iter().zip(val) {
+                    *entries.entry((gi, place[j as usize])).or_default() += v;
+                }
+            }
+            global.push(place);
+        }
+        let triplets: Vec<_> = entries
+            .iter()
+            .map(|(&(i, j), &v)| Triplet::new(i, j, v))
+            .collect();
+        let k = SparseColMat::try_new_from_triplets(n, n, &triplets).unwrap();
+        let factor = k.sp_cholesky(Side::Lower).unwrap();
+        let mut u = vec![0.0; n];
+        // Residuals in twice the working precision: refinement then ends at the rounding of u itself, however far apart the
+        // coefficients are.
+        for _ in 0..4 {
+            let mut r: Vec<(f64, f64)> = f.iter().map(|&f| (f, 0.0)).collect();
+            for (&(i, j), &v) in &entries {
+                let product = -v * u[j];
+                let rest = (-v).mul_add(u[j], -product);
+                let sum = r[i].0 + product;
+                let part = sum - r[i].0;
+                r[i].1 += (r[i].0 - (sum - part)) + (product - part) + rest;
+                r[i].0 = sum;
+            }
+            let r = Mat::from_fn(n, 1, |i, _| r[i].0 + r[i].1);
+            let correction = factor.solve(&r);
+            u.iter_mut()
+                .enumerate()
+                .for_each(|(i, u)| *u += correction[(i, 0)]);
+        }
+        let torn = |place: &Vec<usize>| place.iter().map(|&g| u[g]).collect::<Vec<f64>>();
+        let nodal = meshes
+            .iter()
+            .zip(&global)
+            .map(|(m, place)| m.nodal(&torn(place)))
+            .collect();
+        Direct {
+            scene,
+            meshes,
+            nodal,
+        }
+    }
+
+    pub fn example(name: &str) -> Direct {
+        Direct::new(Scene::load(format!("examples/scenes/{name}.toml")).unwrap())
+    }
+
+    /// Square of the energy norm of nodal functions, torn by subdomain, element by element.
+    pub fn energy(&self, nodal: &[Vec<f64>]) -> f64 {
+        let mut sum = 0.0;
+        for (mesh, u) in self.meshes.iter().zip(nodal) {
+            let k = {
+                let [dx, dy, _] = mesh.step.expect("a box");
+                q1::stiffness(dx, dy)
+            };
+            let [nx, ny, _] = mesh.elements;
+            for (e, rho) in mesh.rho.iter().enumerate() {
+                assert!(e < nx * ny);
+                let nodes = mesh.element_nodes([e % nx, e / nx, 0]);
+                for (a, row) in k.iter().enumerate() {
+                    for (b, entry) in row.iter().enumerate() {
+                        // Rows of the element matrix add up to zero: energies of differences lose nothing to a large mean.
+                        sum +=
+                            rho * entry * (u[nodes[a]] - u[nodes[0]]) * (u[nodes[b]] - u[nodes[0]]);
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// ‖u − u_direct‖ / ‖u_direct‖ in the energy norm; `u` by local dof of each subdomain.
+    pub fn distance(&self, u: &[Vec<f64>]) -> f64 {
+        let nodal: Vec<Vec<f64>> = self.meshes.iter().zip(u).map(|(m, u)| m.nodal(u)).collect();
+        let difference =
+            |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        let difference: Vec<Vec<f64>> = nodal.iter().zip(&self.nodal).map(difference).collect();
+        (self.energy(&difference) / self.energy(&self.nodal)).sqrt()
+    }
+
+    /// Sets the method up on the whole scene.
+    pub fn solver(&self, session: &Session, settings: &Settings) -> FetiFeti {
+        let problem = self.scene.substructures(&|_| true).unwrap();
+        FetiFeti::new(session, problem, settings.clone()).expect("set up")
+    }
+
+    /// Solves and measures.
+    pub fn run(&self, session: &Session, settings: &Settings) -> (Solution, f64) {
+        let solution = self.solver(session, settings).solve().expect("solved");
+        let distance = self.distance(&solution.u);
+        (solution, distance)
+    }
+}
+
+/// Settings that stop at 1e-12.
+pub fn tight() -> Settings {
+    Settings {
+        rtol: 1e-12,
+        ..Settings::default()
+    }
+}
+
+/// Runs `work` with PETSc options (names without `-fetifeti_`) that are gone afterwards.
+pub fn with_options<T>(session: &Session, options: &[(&str, &str)], work: impl FnOnce() -> T) -> T {
+    struct Cleared<'a>(Options, &'a [(&'a str, &'a str)]);
+    impl Drop for Cleared<'_> {
+        fn drop(&mut self) {
+            for (name, _) in self.1 {
+                self.0.clear_value(name).expect("the option can be cleared");
+            }
+        }
+    }
+    let set = Cleared(Options::new(session, "fetifeti_"), options);
+    for (name, value) in options {
+        set.0
+            .set_value(name, Some(value))
+            .expect("the option can be set");
+    }
+    work()
+}

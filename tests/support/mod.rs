@@ -1,0 +1,18 @@
+//! What test programs share; every program uses its own part.
+#![allow(dead_code)]
+
+pub mod assembled;
+pub mod cells;
+pub mod common;
+pub mod compared;
+pub mod contact_judge;
+pub mod direct;
+pub mod elastic_scene;
+pub mod mpi;
+pub mod plugin;
+pub mod program;
+pub mod qp;
+pub mod random_scene;
+pub mod rng;
+pub mod scene_message;
+pub mod solid;

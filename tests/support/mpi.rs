@@ -1,0 +1,202 @@
+//! Running things under mpirun, and tests that run on several ranks.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use fetifeti::petsc::Session;
+
+/// What a run left behind.
+pub struct Output {
+    /// Exit code of mpirun; -1 when it was killed after the time limit.
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+    pub seconds: f64,
+}
+
+impl Output {
+    /// Both streams, for messages.
+    pub fn all(&self) -> String {
+        format!("exit code {}\n{}\n{}", self.code, self.stdout, self.stderr)
+    }
+}
+
+/// A run that hangs is a failure, not a wait.
+const LIMIT: Duration = Duration::from_secs(120);
+
+/// A command that may start MPI, without the variables that MPI has left in the environment: a test that has started MPI in its own
+/// process carries some that would lead another one astray.
+pub fn command(program: &str) -> Command {
+    let mut command = Command::new(program);
+    for (name, _) in std::env::vars_os() {
+        let text = name.to_string_lossy();
+        if ["OMPI_", "PMIX_", "PMI_", "ORTE_"]
+            .iter()
+            .any(|p| text.starts_with(p))
+        {
+            command.env_remove(&name);
+        }
+    }
+    command
+        // Containers run as root, and small machines have fewer cores than ranks.
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
+        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+        .env("RUST_BACKTRACE", "0");
+    command
+}
+
+/// `mpirun -n ranks program args` with these extra environment variables.
+pub fn mpirun(ranks: usize, program: &str, args: &[&str], env: &[(&str, &str)]) -> Output {
+    let mut command = command("mpirun");
+    command
+        .arg("-n")
+        .arg(ranks.to_string())
+        .arg(program)
+        .args(args)
+        .envs(env.iter().copied())
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let start = Instant::now();
+    let mut child = command.spawn().expect("mpirun starts");
+    let out = collect(child.stdout.take().expect("stdout is piped"));
+    let err = collect(child.stderr.take().expect("stderr is piped"));
+    let code = loop {
+        if let Some(status) = child.try_wait().expect("mpirun can be waited for") {
+            break status.code().unwrap_or(-2);
+        }
+        if start.elapsed() > LIMIT {
+            child.kill().expect("mpirun can be killed");
+            child.wait().expect("mpirun ends");
+            break -1;
+        }
+        thread::sleep(Duration::from_millis(10));
+    };
+    Output {
+        code,
+        stdout: out.join().expect("the reader does not panic"),
+        stderr: err.join().expect("the reader does not panic"),
+        seconds: start.elapsed().as_secs_f64(),
+    }
+}
+
+fn collect(mut stream: impl Read + Send + 'static) -> thread::JoinHandle<String> {
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        stream
+            .read_to_end(&mut bytes)
+            .expect("the stream can be read");
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}
+
+const CASE: &str = "FETIFETI_TEST_CASE";
+
+/// A test that runs on several ranks: it starts itself once more under mpirun, where it is a rank.
+pub struct Ranks {
+    test: String,
+}
+
+/// What a test does on several ranks. In an ordinary run returns what starts them; in a process that [`Ranks::run`] has started, runs
+/// `work` with PETSc and the name of the case and ends the process with its exit code.
+///
+/// `work` is a closure in the test itself, because its type has the name of the test.
+pub fn as_rank<W>(work: W) -> Ranks
+where
+    W: FnOnce(&Session, &str) -> fetifeti::Result<()>,
+{
+    Ranks::new::<W>(|case| {
+        let session = Session::new(&[], "").expect("PETSc starts");
+        session.run(|session| work(session, case))
+    })
+}
+
+/// The same for a test that starts PETSc itself; `work` returns the exit code.
+pub fn as_process<W: FnOnce(&str) -> i32>(work: W) -> Ranks {
+    Ranks::new::<W>(work)
+}
+
+impl Ranks {
+    fn new<W>(work: impl FnOnce(&str) -> i32) -> Ranks {
+        if let Ok(case) = std::env::var(CASE) {
+            std::process::exit(work(&case));
+        }
+        let path = std::any::type_name::<W>();
+        let test = path.trim_end_matches("::{{closure}}");
+        let (_program, test) = test.split_once("::").expect("a test of a program");
+        Ranks { test: test.into() }
+    }
+
+    /// Runs a case on this many ranks.
+    pub fn run(&self, ranks: usize, case: &str) -> Output {
+        let own = std::env::current_exe().expect("the test knows its own path");
+        let own = own.to_str().expect("the path is UTF-8");
+        let args = ["--exact", &self.test, "--nocapture", "--test-threads=1"];
+        let out = mpirun(ranks, own, &args, &[(CASE, case)]);
+        // A rank ends before the harness sums up: there is a sum only where no test has this name.
+        let ran = !out.stdout.contains("test result:");
+        assert!(ran, "no test {}: {}", self.test, out.all());
+        out
+    }
+}
+
+/// A fresh directory that is removed again when the test ends.
+pub struct Scratch(pub PathBuf);
+
+impl Scratch {
+    pub fn new(name: &str) -> Scratch {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let next = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("fetifeti-test-{name}-{}-{next}", std::process::id());
+        let dir = std::env::temp_dir().join(name);
+        let _ = fs::remove_dir_all(&dir);
+        fs::create_dir_all(&dir).expect("the directory can be made");
+        Scratch(dir)
+    }
+
+    /// The path of `name` in it.
+    pub fn path(&self, name: &str) -> String {
+        self.0
+            .join(name)
+            .to_str()
+            .expect("the path is UTF-8")
+            .to_string()
+    }
+
+    /// Writes a file and returns its path.
+    pub fn file(&self, name: &str, text: &str) -> String {
+        fs::write(self.0.join(name), text).expect("the file can be written");
+        self.path(name)
+    }
+
+    /// Names of all files in it and below.
+    pub fn files(&self) -> Vec<String> {
+        fn walk(dir: &Path, out: &mut Vec<String>) {
+            for entry in fs::read_dir(dir).expect("the directory can be read") {
+                let path = entry.expect("the entry can be read").path();
+                if path.is_dir() {
+                    walk(&path, out);
+                } else {
+                    out.push(path.display().to_string());
+                }
+            }
+        }
+        let mut out = Vec::new();
+        walk(&self.0, &mut out);
+        out
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
