@@ -88,6 +88,7 @@
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
 
+mod assembled;
 pub mod baselines;
 #[allow(unsafe_code)]
 pub mod capi;

@@ -1,6 +1,6 @@
 //! One solve, and the repetitions that it takes to meet a residual which is not the method's own.
 
-use super::job::ContactOutcome;
+use super::task::{ContactOutcome, Outcome};
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -26,6 +26,34 @@ pub struct Attempt {
     pub converged: bool,
     /// PETSc's name for why it ended.
     pub reason: String,
+}
+
+impl Outcome {
+    /// From the solve that counts, its own tolerance, what there is to say if the target was missed, and the seconds of assembly and set-up and
+    /// the memory.
+    pub(super) fn new(
+        attempt: Attempt,
+        rtol: f64,
+        message: Option<String>,
+        [assemble, setup, memory]: [f64; 3],
+    ) -> Outcome {
+        Outcome {
+            kappa: attempt.kappa,
+            iterations: attempt.iterations,
+            assemble,
+            setup: setup + attempt.setup,
+            solve: attempt.seconds,
+            recover: attempt.recover,
+            again: None,
+            memory,
+            memory_at_start: 0.0,
+            rtol: attempt.iterations.is_some().then_some(rtol),
+            residual: Some(attempt.residual),
+            contact: attempt.contact,
+            reason: attempt.reason,
+            message,
+        }
+    }
 }
 
 /// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers measure another

@@ -3,17 +3,18 @@
 use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
-use super::job::{memory, timed, ContactOutcome, Job, Outcome};
-use super::layout::Layout;
 use super::linear::{kappa, solver};
-use super::near::NearKernel;
-use super::outer::{self, Tolerances};
-use super::reduced::Reduced;
-use super::rows::Rows;
 use super::second::SecondLoad;
-use super::system::System;
 use super::table::Baseline;
-use super::unknowns::Unknowns;
+use super::task::{ContactOutcome, Job, Outcome};
+use crate::assembled::layout::Layout;
+use crate::assembled::near::NearKernel;
+use crate::assembled::outer::{self, Tolerances};
+use crate::assembled::reduced::Reduced;
+use crate::assembled::rows::Rows;
+use crate::assembled::system::System;
+use crate::assembled::unknowns::Unknowns;
+use crate::parallel::meter::{memory, timed};
 use crate::petsc::Session;
 use crate::scene::Scene;
 use crate::Result;

@@ -4,15 +4,14 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::groups::{multipliers, Groups};
-use super::layout::Layout;
-use super::near::{Near, NearKernel};
-use super::outer::{self, Found, Tolerances};
-use super::reduced::Reduced;
-use super::rows::Rows;
-use super::system::System;
-use super::table::Format;
-use super::unknowns::{Trace, Unknowns};
+use crate::assembled::groups::{multipliers, Groups};
+use crate::assembled::layout::Layout;
+use crate::assembled::near::{Near, NearKernel};
+use crate::assembled::outer::{self, Found, Tolerances};
+use crate::assembled::reduced::Reduced;
+use crate::assembled::rows::Rows;
+use crate::assembled::system::{Format, System};
+use crate::assembled::unknowns::{Trace, Unknowns};
 use crate::petsc::{Comm, Ksp, Session, Vec as PetscVec};
 use crate::scene::Scene;
 use crate::Result;

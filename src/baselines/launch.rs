@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::job::Job;
+use super::task::Job;
 use crate::report::json;
 use crate::{Error, Result};
 
@@ -190,6 +190,12 @@ impl Launcher {
         });
         Failure { code, message }
     }
+}
+
+/// A record that a job has left.
+pub fn read<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
+    serde_json::from_str(text)
+        .map_err(|e| Error::environment(format!("a job has written an unreadable result: {e}")))
 }
 
 /// The program's own error among what mpirun and other ranks say, or what mpirun says first.

@@ -4,15 +4,16 @@
 use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
-use super::groups::Groups;
-use super::job::{memory, timed, ContactOutcome, Job, Outcome};
-use super::layout::Layout;
-use super::near::NearKernel;
-use super::rows::Rows;
 use super::second::SecondLoad;
-use super::system::System;
-use super::table::{Baseline, Format};
-use super::unknowns::Unknowns;
+use super::table::Baseline;
+use super::task::{ContactOutcome, Job, Outcome};
+use crate::assembled::groups::Groups;
+use crate::assembled::layout::Layout;
+use crate::assembled::near::NearKernel;
+use crate::assembled::rows::Rows;
+use crate::assembled::system::{Format, System};
+use crate::assembled::unknowns::Unknowns;
+use crate::parallel::meter::{memory, timed};
 use crate::petsc::{Comm, Is, Ksp, Mat, Session};
 use crate::scene::Scene;
 use crate::Result;

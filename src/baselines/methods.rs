@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::job::{Job, Outcome, Task};
 use super::judge::{Judgement, Verdict};
-use super::launch::{Failure, Launcher};
-use super::layout::Layout;
+use super::launch::{read, Failure, Launcher};
 use super::plan::{Plan, Run};
-use super::read;
-use super::table::Format;
+use super::task::{Job, Outcome, Task};
+use crate::assembled::layout::Layout;
+use crate::assembled::system::Format;
 use crate::report::json::{CompareContact, CompareInequalities, CompareRow, CompareSeconds};
 use crate::scene::Scene;
 use crate::Result;

@@ -17,36 +17,19 @@ mod attempt;
 mod bench;
 mod compare;
 mod contact;
-mod frame;
-mod groups;
-pub(crate) mod job;
+mod job;
 mod judge;
 pub(crate) mod launch;
-mod layout;
 mod linear;
 mod methods;
-mod motions;
-mod near;
 mod ours;
-mod outer;
 mod plan;
-mod reduced;
-mod rows;
 mod second;
 pub(crate) mod single;
-mod system;
 mod table;
-mod unknowns;
+mod task;
 
 pub use bench::bench;
 pub use compare::compare;
 pub use job::run as run_job;
 pub use table::BASELINES;
-
-use crate::{Error, Result};
-
-/// A record that a job has left.
-fn read<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
-    serde_json::from_str(text)
-        .map_err(|e| Error::environment(format!("a job has written an unreadable result: {e}")))
-}

@@ -3,18 +3,18 @@
 use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
-use super::groups::Groups;
-use super::job::{memory, timed, ContactOutcome, Job, Outcome};
 use super::judge::stationarity;
-use super::layout::Layout;
-use super::rows::Rows;
 use super::second::SecondLoad;
-use super::system::System;
-use super::table::Format;
-use super::unknowns::{Trace, Unknowns};
+use super::task::{ContactOutcome, Job, Outcome};
+use crate::assembled::groups::Groups;
+use crate::assembled::layout::Layout;
+use crate::assembled::rows::Rows;
+use crate::assembled::system::{Format, System};
+use crate::assembled::unknowns::{Trace, Unknowns};
 use crate::cli::problem::{self, Distribution};
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::parallel::exchange::{gather_all, max_all};
+use crate::parallel::meter::{memory, timed};
 use crate::petsc::{Options, Session, Vec as PetscVec};
 use crate::scene::Scene;
 use crate::substructures::Subdomain;

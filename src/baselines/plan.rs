@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use super::job::Task;
-use super::table::{Baseline, Format};
+use super::table::Baseline;
+use super::task::Task;
+use crate::assembled::system::Format;
 use crate::petsc::{Options, Session};
 use crate::report::tables::summary::ranks;
 use crate::scene::Scene;

@@ -1,8 +1,8 @@
 //! A second load for the same matrix, to see what a solve costs when everything is set up: the first one times a factor that
 //! is linear in the coordinates, so that contact zones move.
 
-use super::layout::Layout;
-use super::unknowns::Unknowns;
+use crate::assembled::layout::Layout;
+use crate::assembled::unknowns::Unknowns;
 use crate::linalg::vec3::ball;
 use crate::petsc::Vec as PetscVec;
 use crate::scene::Scene;

@@ -3,14 +3,13 @@
 use std::path::Path;
 use std::time::Duration;
 
-use super::job::{Job, Outcome, Task};
 use super::judge;
-use super::launch::{Launcher, Workspace};
-use super::layout::Layout;
-use super::rows::Rows;
-use super::system::System;
-use super::table::Format;
-use super::unknowns::Unknowns;
+use super::launch::{read, Launcher, Workspace};
+use super::task::{Job, Outcome, Task};
+use crate::assembled::layout::Layout;
+use crate::assembled::rows::Rows;
+use crate::assembled::system::{Format, System};
+use crate::assembled::unknowns::Unknowns;
 use crate::petsc::Session;
 use crate::scene::Scene;
 use crate::substructures::Subdomain;
@@ -102,7 +101,7 @@ pub fn baseline(
         },
     };
     match launcher.run(name, &job, ranks)?.record {
-        Ok(text) => super::read(&text).map(Ok),
+        Ok(text) => read(&text).map(Ok),
         Err(failure) => Ok(Err(failure.message)),
     }
 }

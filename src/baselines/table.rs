@@ -3,19 +3,11 @@
 //! Every row has a prefix of its own, so that a researcher can tune it on the command line of `compare`:
 //! `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_use_deluxe_scaling`, `-fetidp_fetidp_ksp_monitor`. Ours keeps `-fetifeti_`.
 
-use super::near::Near;
+use crate::assembled::near::Near;
+use crate::assembled::system::Format;
 use crate::petsc::{Options, Session};
 use crate::scene::Scene;
 use crate::{Error, Result};
-
-/// The matrix that a method works on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// One assembled matrix (AIJ), rows in equal shares.
-    Assembled,
-    /// One matrix per part of the domain, unassembled (MATIS).
-    Unassembled,
-}
 
 /// One of PETSc's solvers.
 #[derive(Debug, PartialEq)]

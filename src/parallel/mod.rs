@@ -3,5 +3,6 @@
 pub mod clock;
 pub mod exchange;
 pub mod halo;
+pub(crate) mod meter;
 pub mod team;
 pub mod traffic;

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::network::{self, Timing};
 use super::{IterationSeconds, SetupSeconds, Work};
-use crate::baselines::job::{memory, timed};
 use crate::feti::krylov::tally::Communication;
 use crate::feti::{FetiFeti, Settings};
 use crate::parallel::clock;
 use crate::parallel::clock::Phase;
 use crate::parallel::exchange::{max_all, min_all};
+use crate::parallel::meter::{memory, timed};
 use crate::petsc::Session;
 use crate::report::json;
 use crate::scene::Scene;

@@ -12,9 +12,9 @@ use std::collections::HashSet;
 use std::time::Instant;
 
 use super::groups::{multipliers, Groups};
-use super::job::timed;
 use super::reduced::Reduced;
 use super::rows::Rows;
+use crate::parallel::meter::timed;
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::Result;
 

@@ -6,9 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use super::groups::Potentials;
 use super::layout::Layout;
 use super::motions::{Echelon, Form};
+use super::potentials::Potentials;
 use crate::scene::Scene;
 use crate::substructures::RowKind;
 

@@ -10,8 +10,16 @@ use crate::substructures::Subdomain;
 use crate::Result;
 
 use super::layout::Layout;
-use super::table::Format;
 use super::unknowns::Unknowns;
+
+/// The matrix that a method works on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// One assembled matrix (AIJ), rows in equal shares.
+    Assembled,
+    /// One matrix per part of the domain, unassembled (MATIS).
+    Unassembled,
+}
 
 /// The assembled problem on N unknowns.
 pub struct System {

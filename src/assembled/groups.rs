@@ -5,49 +5,10 @@
 //!     Bᵀ λ = f − K u                                  the shortest λ, group by group
 //! ```
 
+use super::potentials::Potentials;
 use super::rows::Rows;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
-
-/// Disjoint sets of 0..n with known differences between the members.
-#[derive(Debug, Clone)]
-pub struct Potentials {
-    parent: Vec<usize>,
-    /// u of the member less u of its parent.
-    above: Vec<f64>,
-}
-
-impl Potentials {
-    /// n sets of one member.
-    pub fn new(n: usize) -> Potentials {
-        Potentials {
-            parent: (0..n).collect(),
-            above: vec![0.0; n],
-        }
-    }
-
-    /// The representative of the set of `k`, and u_k less u there.
-    pub fn find(&mut self, k: usize) -> (usize, f64) {
-        let (mut root, mut sum) = (k, 0.0);
-        while self.parent[root] != root {
-            sum += self.above[root];
-            root = self.parent[root];
-        }
-        (self.parent[k], self.above[k]) = (root, sum);
-        (root, sum)
-    }
-
-    /// Makes u_a − u_b = c. Where both are in one set already: by how much the difference there misses c.
-    pub fn join(&mut self, a: usize, b: usize, c: f64) -> Option<f64> {
-        let ((root_a, u_a), (root_b, u_b)) = (self.find(a), self.find(b));
-        if root_a == root_b {
-            return Some(u_a - u_b - c);
-        }
-        self.parent[root_a] = root_b;
-        self.above[root_a] = c - u_a + u_b;
-        None
-    }
-}
 
 /// Gaps that differ by less, relative to the largest, are meant to be the same.
 const SAME: f64 = 1e-12;

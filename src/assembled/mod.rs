@@ -1,0 +1,18 @@
+//! The assembled problem of a scene: one matrix, one unknown where tied bodies have several copies, inequalities as bounds of differences.
+//!
+//! ```text
+//! Scene ──> Layout (unknowns w, frames, supports) ──> Unknowns ──> System (A, b) ──> Reduced (Tᵀ K T of changing active sets)
+//!      └──> Rows (w_p − w_m ≤ g) ──> Groups (active rows as equations) ──────────────────────┘
+//! ```
+
+pub mod frame;
+pub mod groups;
+pub mod layout;
+pub mod motions;
+pub mod near;
+pub mod outer;
+mod potentials;
+pub mod reduced;
+pub mod rows;
+pub mod system;
+pub mod unknowns;
