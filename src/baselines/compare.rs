@@ -1,23 +1,34 @@
 //! `fetifeti compare`: every method once.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::Duration;
 
-use mpi::point_to_point::{Destination, Source};
+use mpi::point_to_point::{Destination as _, Source as _};
 use mpi::traits::Communicator;
 
 use super::launch::{Failure, Launcher, Workspace};
 use super::methods::{forwarded, inequalities, row, sentence, Methods, Ran};
 use super::plan::{Layouts, Plan};
 use super::table::{self, Case};
-use crate::cli::args::Compare;
-use crate::cli::problem;
 use crate::petsc::{Options, Session};
-use crate::report::json::{self, CompareReport, CompareRow};
-use crate::report::output;
+use crate::report::destination::Destination;
+use crate::report::json::{CompareReport, CompareRow};
 use crate::report::tables::compare;
-use crate::scene::{Numbering, Scene};
+use crate::scene::{distribution, Numbering, Scene};
 use crate::{Error, Result};
+
+/// What is compared, and where the results go.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Comparison {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// Baselines to run beside ours; empty for all.
+    pub with: Vec<String>,
+    /// Where results go; the directory gets CSV and JSON.
+    pub destination: Destination,
+    /// PETSc's arguments, which the jobs get, too.
+    pub petsc: Vec<String>,
+}
 
 /// Runs the comparison. Under mpirun only rank 0 starts jobs, the others wait. Collective.
 ///
@@ -27,9 +38,9 @@ use crate::{Error, Result};
 /// [`Error::Input`] for what can be known before anything runs, and where the first job (ours) finds the problem
 /// unsolvable; [`Error::NotConverged`] when ours does not converge; [`Error::Environment`] without mpirun. A baseline that fails
 /// is no error but a row with a message.
-pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()> {
-    let scene = problem::load(session, &args.scene)?;
-    let baselines = session.agree(table::select(&args.with))?;
+pub fn compare(session: &Session, wanted: &Comparison) -> Result<()> {
+    let scene = distribution::load(session, &wanted.scene)?;
+    let baselines = session.agree(table::select(&wanted.with))?;
     let plan = Plan::new(session, &scene, &baselines, Layouts::Two)?;
     let all = Options::new(session, "");
     if all.has("help")? || all.has("h")? {
@@ -37,24 +48,7 @@ pub fn compare(session: &Session, args: &Compare, petsc: &[String]) -> Result<()
             baseline.set_options(session, plan.rtol, Case::of(&scene))?;
         }
     }
-    let ready = if session.rank() == 0 {
-        prepare(args.out.as_deref(), args.json.as_deref())
-    } else {
-        Ok(())
-    };
-    session.agree(ready)?;
-    on_first_rank(session, || run(args, &scene, &plan, petsc))
-}
-
-/// Finds out before the work whether results can be written.
-///
-/// # Errors
-/// [`Error::Environment`] with the path.
-pub fn prepare(out: Option<&Path>, json: Option<&Path>) -> Result<()> {
-    if let Some(dir) = out {
-        output::prepare_directory(dir)?;
-    }
-    json.map_or(Ok(()), output::prepare_file)
+    on_first_rank(session, || run(wanted, &scene, &plan))
 }
 
 /// Does `work` on rank 0; the others sleep until it is done, for the cores belong to the jobs. Collective.
@@ -79,24 +73,25 @@ pub fn on_first_rank(session: &Session, work: impl FnOnce() -> Result<()>) -> Re
 }
 
 /// On rank 0: all jobs one after the other, then the judge, then the tables.
-fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<()> {
+fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
+    let Comparison { destination, .. } = wanted;
+    destination.prepare()?;
+    let progress = |what: &str| destination.progress(&format!("compare: {what}"));
     let launcher = Launcher {
         workspace: Workspace::new()?,
         limit: plan.limit,
-        petsc: forwarded(petsc),
+        petsc: forwarded(&wanted.petsc),
     };
-    let file = std::fs::canonicalize(&args.scene).unwrap_or_else(|_| args.scene.clone());
-    let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
-    let quiet = args.quiet || to_stdout;
+    let file = std::fs::canonicalize(&wanted.scene).unwrap_or_else(|_| wanted.scene.clone());
     let mut methods = Methods::new(&launcher, plan, scene, file);
     let mut rows = Vec::new();
     // Numbers of the rows that have a solution; the solutions.
     let (mut solved, mut solutions) = (Vec::new(), Vec::new());
     for (k, run) in plan.runs.iter().enumerate() {
-        progress(args, &run.title());
+        progress(&run.title());
         let mut ran = methods.run(k, false)?;
-        if !quiet && !ran.printed.trim().is_empty() {
-            println!("{}:\n{}", run.title(), ran.printed);
+        if !ran.printed.trim().is_empty() {
+            destination.print(&format!("{}:\n{}\n", run.title(), ran.printed))?;
         }
         // What ours cannot solve is a mistake in the scene or here, and the comparison ends.
         if run.baseline.is_none() {
@@ -112,12 +107,12 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         }
         rows.push(row(run, ran));
     }
-    progress(args, "direct solution");
+    progress("direct solution");
     let verdict = methods.judge(solutions)?;
     for (k, judgement) in solved.into_iter().zip(&verdict.solutions) {
         sentence(&mut rows[k], judgement);
     }
-    progress(args, "");
+    destination.progress("");
     let report = CompareReport {
         scene: scene.title.clone(),
         bodies: scene.n_bodies(),
@@ -130,7 +125,10 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         contact: inequalities(scene, &verdict),
         rows,
     };
-    write(args, &report)?;
+    destination.finish("compare", &compare::text(&report), &report, |dir| {
+        compare::csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
+        Ok(vec!["compare.csv".into()])
+    })?;
     // An assembled residual that rounding keeps away from its target is said in the table; the method itself has converged.
     let stopped =
         |r: &&CompareRow| r.method == "fetifeti" && !r.converged_reason.starts_with("CONVERGED");
@@ -138,39 +136,8 @@ fn run(args: &Compare, scene: &Scene, plan: &Plan, petsc: &[String]) -> Result<(
         None => Ok(()),
         Some(row) => Err(Error::NotConverged(format!(
             "fetifeti on {}: {}",
-            args.scene.display(),
+            wanted.scene.display(),
             row.message.as_deref().unwrap_or(&row.converged_reason)
         ))),
     }
-}
-
-/// One line on stderr that overwrites itself, on a terminal only.
-fn progress(args: &Compare, what: &str) {
-    use std::io::IsTerminal;
-    if !args.quiet && std::io::stderr().is_terminal() {
-        let text = if what.is_empty() {
-            String::new()
-        } else {
-            format!("compare: {what}")
-        };
-        eprint!("\r\x1b[K{text}");
-    }
-}
-
-fn write(args: &Compare, report: &CompareReport) -> Result<()> {
-    let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
-    if !args.quiet && !to_stdout {
-        print!("{}", compare::text(report));
-    }
-    if let Some(file) = &args.json {
-        json::write(file, report)?;
-    }
-    if let Some(dir) = &args.out {
-        json::write(&dir.join("compare.json"), report)?;
-        compare::csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
-        if !args.quiet && !to_stdout {
-            println!("written: compare.json, compare.csv in {}", dir.display());
-        }
-    }
-    Ok(())
 }

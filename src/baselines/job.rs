@@ -12,10 +12,10 @@ use super::table::{Baseline, Case};
 use super::task::{Job, Outcome, Task};
 use super::{contact, linear, ours};
 use crate::assembled::system::Format;
-use crate::cli::problem;
 use crate::parallel::meter::memory;
 use crate::petsc::Session;
 use crate::report::json;
+use crate::scene::distribution;
 use crate::{Error, Result};
 
 /// Runs the job that `file` describes. Collective.
@@ -34,7 +34,7 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         ))
     }))?;
     let memory_at_start = memory(session);
-    let scene = problem::load(session, &job.scene)?;
+    let scene = distribution::load(session, &job.scene)?;
     let outcome = match &job.task {
         Task::FetiFeti { threads, solution } => {
             ours::solve(session, &scene, &job, *threads, solution)?

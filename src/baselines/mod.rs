@@ -29,7 +29,7 @@ pub(crate) mod single;
 mod table;
 mod task;
 
-pub use bench::bench;
-pub use compare::compare;
+pub use bench::{bench, cases, Benchmark};
+pub use compare::{compare, Comparison};
 pub use job::run as run_job;
 pub use table::BASELINES;

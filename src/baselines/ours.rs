@@ -11,12 +11,11 @@ use crate::assembled::layout::Layout;
 use crate::assembled::rows::Rows;
 use crate::assembled::system::{Format, System};
 use crate::assembled::unknowns::{Trace, Unknowns};
-use crate::cli::problem::{self, Distribution};
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::parallel::exchange::{gather_all, max_all};
 use crate::parallel::meter::{memory, timed};
 use crate::petsc::{Options, Session, Vec as PetscVec};
-use crate::scene::Scene;
+use crate::scene::{distribution, Scene};
 use crate::substructures::Subdomain;
 use crate::Result;
 
@@ -32,7 +31,7 @@ pub fn solve(
     file: &Path,
 ) -> Result<Outcome> {
     Options::new(session, "fetifeti_").set_default("threads", &threads.to_string())?;
-    let (substructures, assemble) = timed(session, || problem::substructures(session, scene))?;
+    let (substructures, assemble) = timed(session, || distribution::substructures(session, scene))?;
     let settings = Settings {
         rtol: job.rtol,
         // Directions of one attempt would shorten the next one, which is the one that is timed.
@@ -173,9 +172,7 @@ fn active(
     solution: &Solution,
     rows: &Rows,
 ) -> Result<Vec<bool>> {
-    let deal = Distribution::from_options(session)?;
-    let (n, rank, size) = (scene.n_subdomains(), session.rank(), session.size());
-    let provided = rows.provided(&|s| deal.owns(s, n, rank, size));
+    let provided = rows.provided(&distribution::owner(session, scene)?);
     let dual = solver.dual();
     let jump = &dual.stiffness.jump;
     let owned = jump

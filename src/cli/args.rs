@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 pub use super::parse::parse;
 pub use super::usage::USAGE;
+use crate::baselines::{Benchmark, Comparison};
 
 /// A command with its arguments.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,9 +23,11 @@ pub enum Command {
     /// Redo Table 1.
     Table1(Table1),
     /// Run the baselines.
-    Compare(Compare),
+    Compare(Comparison),
     /// Run the baselines in rounds.
-    Bench(Bench),
+    Bench(Benchmark),
+    /// Say which cases `bench` has.
+    BenchList,
     /// Run a study.
     Study(Study),
     /// One method of a comparison, in a process of its own (not for users).
@@ -67,42 +70,6 @@ pub struct Table1 {
     pub json: Option<PathBuf>,
     /// No table.
     pub quiet: bool,
-}
-
-/// Arguments of `compare`.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Compare {
-    /// The scene file.
-    pub scene: PathBuf,
-    /// Baselines to run beside ours; empty for all.
-    pub with: Vec<String>,
-    /// File for the JSON.
-    pub json: Option<PathBuf>,
-    /// Directory for CSV and JSON.
-    pub out: Option<PathBuf>,
-    /// No table.
-    pub quiet: bool,
-}
-
-/// Arguments of `bench`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Bench {
-    /// Names of cases, or scene files; empty for all cases.
-    pub cases: Vec<String>,
-    /// How often every method is run.
-    pub rounds: usize,
-    /// Baselines to run beside ours; empty for all.
-    pub with: Vec<String>,
-    /// File for the JSON.
-    pub json: Option<PathBuf>,
-    /// Directory for tables, picture and scenes.
-    pub out: Option<PathBuf>,
-    /// Smaller cases.
-    pub quick: bool,
-    /// No table and no progress.
-    pub quiet: bool,
-    /// Only say which cases there are.
-    pub list: bool,
 }
 
 /// The studies.

@@ -2,10 +2,8 @@
 
 use crate::parallel::exchange::{max_all, min_all};
 use crate::petsc::Session;
-use crate::scene::{Cells, Field, Scene};
+use crate::scene::{distribution, Cells, Field, Scene};
 use crate::Result;
-
-use super::problem;
 
 /// How far ρ (Young's modulus in elasticity) ranges.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +15,7 @@ pub struct Coefficient {
 impl Coefficient {
     /// Evaluates it in all elements. Collective.
     pub fn of(session: &Session, scene: &Scene) -> Result<Coefficient> {
-        let owns = problem::owner(session, scene)?;
+        let owns = distribution::owner(session, scene)?;
         let mine = session.agree(scene.coefficient_ranges(&owns))?;
         let [mut low, mut high]: [Vec<f64>; 2] =
             [0, 1].map(|k| mine.iter().map(|r| r[k]).collect());

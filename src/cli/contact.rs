@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{areas, problem};
+use super::areas;
 use crate::contact::Step;
 use crate::feti::{FetiFeti, Solution};
 use crate::parallel::exchange::exchange_words;
@@ -10,7 +10,7 @@ use crate::petsc::Session;
 use crate::report::json;
 use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::plots::profile::Profile;
-use crate::scene::{Member, RowSource, Scene, Shape};
+use crate::scene::{distribution, Member, RowSource, Scene, Shape};
 use crate::Result;
 
 /// A row of B_gl with all that is known of it.
@@ -88,7 +88,7 @@ pub fn rows(
     solver: &FetiFeti,
     solution: &Solution,
 ) -> Result<Vec<ContactRow>> {
-    let owns = problem::owner(session, scene)?;
+    let owns = distribution::owner(session, scene)?;
     let labels = scene.row_labels(&owns);
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
     let dual = solver.dual();

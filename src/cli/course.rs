@@ -6,14 +6,13 @@ use super::args::Solve;
 use super::checkpoint::{Checkpoints, Resumed};
 use super::contact::{self, ContactRow};
 use super::fields::Gathered;
-use super::problem;
 use crate::contact::State;
 use crate::feti::{FetiFeti, Solution};
 use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
-use crate::scene::Scene;
+use crate::scene::{distribution, Scene};
 use crate::Result;
 
 /// What happened over the load steps.
@@ -43,7 +42,7 @@ pub(super) fn follow(
 ) -> Result<Course> {
     let n = scene.n_steps();
     let times = scene.steps.as_ref().map(|s| s.times.clone());
-    let owns = problem::owner(session, scene)?;
+    let owns = distribution::owner(session, scene)?;
     let mut progress = Progress::new(session.rank() == 0 && !args.quiet);
     let mut course: Option<Course> = None;
     let mut pvd = args

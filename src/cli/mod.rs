@@ -13,7 +13,6 @@ mod parse;
 mod physics;
 mod picture;
 mod plan;
-pub(crate) mod problem;
 mod solve;
 mod study;
 mod table1;
@@ -21,8 +20,10 @@ mod usage;
 
 use args::{Command, Invocation};
 
+use crate::baselines::{self, Benchmark, Comparison};
 use crate::petsc::{self, Comm, Ksp, Session};
 use crate::report::output;
+use crate::scene::distribution::Distribution;
 use crate::{Error, Result, Settings};
 
 /// Runs the program with the process's arguments and returns its exit code.
@@ -55,9 +56,10 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
         Command::Plan { scene } => plan::run(session, &scene),
         Command::Table1(args) => table1::run(session, &args),
         Command::Study(args) => study::run(session, &args, &petsc),
-        Command::Compare(args) => crate::baselines::compare(session, &args, &petsc),
-        Command::Bench(args) => crate::baselines::bench(session, &args, &petsc),
-        Command::Baseline { job } => crate::baselines::run_job(session, &job),
+        Command::Compare(wanted) => baselines::compare(session, &Comparison { petsc, ..wanted }),
+        Command::Bench(wanted) => baselines::bench(session, &Benchmark { petsc, ..wanted }),
+        Command::BenchList => say(session, &baselines::cases()),
+        Command::Baseline { job } => baselines::run_job(session, &job),
         Command::Measure { task } => crate::study::scaling::run_task(session, &task),
     }
 }
@@ -73,7 +75,7 @@ fn say(session: &Session, text: &str) -> Result<()> {
 /// `fetifeti -help`: our options and those of the solvers behind them, without a scene.
 fn list_options(session: &Session) -> Result<()> {
     let settings = Settings::default().with_options(session)?;
-    problem::Distribution::from_options(session)?;
+    Distribution::from_options(session)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_options_prefix(&settings.prefix)?;
     ksp.set_type("cg")?;

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::args::{Bench, Command, Compare, Invocation, Solve, Study, StudyName, Table1};
+use super::args::{Command, Invocation, Solve, Study, StudyName, Table1};
+use crate::baselines::{Benchmark, Comparison};
+use crate::report::destination::Destination;
 use crate::{Error, Result};
 
 /// Splits the arguments (without the program's name).
@@ -125,6 +127,14 @@ impl Words {
         })
     }
 
+    fn destination(&mut self) -> Destination {
+        Destination {
+            out: self.path("--out"),
+            json: self.path("--json"),
+            quiet: self.flag("--quiet"),
+        }
+    }
+
     fn with(&mut self) -> Vec<String> {
         let list = self.value("--with");
         list.map(|list| list.split(',').map(|s| s.trim().to_string()).collect())
@@ -177,22 +187,20 @@ impl Words {
                 json: self.path("--json"),
                 quiet: self.flag("--quiet"),
             }),
-            "compare" => Command::Compare(Compare {
+            "compare" => Command::Compare(Comparison {
                 scene: self.scene(name)?,
                 with: self.with(),
-                json: self.path("--json"),
-                out: self.path("--out"),
-                quiet: self.flag("--quiet"),
+                destination: self.destination(),
+                petsc: Vec::new(),
             }),
-            "bench" => Command::Bench(Bench {
+            "bench" if self.flag("--list") => Command::BenchList,
+            "bench" => Command::Bench(Benchmark {
                 rounds: self.rounds()?,
                 with: self.with(),
-                json: self.path("--json"),
-                out: self.path("--out"),
+                destination: self.destination(),
                 quick: self.flag("--quick"),
-                quiet: self.flag("--quiet"),
-                list: self.flag("--list"),
                 cases: std::iter::from_fn(|| self.next_plain()).collect(),
+                petsc: Vec::new(),
             }),
             "study" => Command::Study(Study {
                 name: self.study()?,
@@ -306,15 +314,12 @@ mod tests {
     #[test]
     fn bench_takes_any_number_of_cases() {
         let out = read("bench cube-24 --rounds 7 a.toml --with gamg,mumps --quick").expect("fine");
-        let bench = Bench {
+        let bench = Benchmark {
             cases: vec!["cube-24".into(), "a.toml".into()],
             rounds: 7,
             with: vec!["gamg".into(), "mumps".into()],
-            json: None,
-            out: None,
             quick: true,
-            quiet: false,
-            list: false,
+            ..Benchmark::default()
         };
         assert_eq!(out.command, Command::Bench(bench));
         let Command::Bench(all) = read("bench").expect("fine").command else {

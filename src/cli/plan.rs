@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::coefficient::Coefficient;
+use super::physics;
 use super::solve::adaptive;
-use super::{physics, problem};
 use crate::fem::cell::rigid_count;
 use crate::feti::cost::sizes::Sizes;
 use crate::feti::deflation::{watch, JUMPS};
@@ -14,7 +14,7 @@ use crate::feti::{FetiFeti, PcType, Settings};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
 use crate::report::tables::table::{Align, Table};
-use crate::scene::{Plan, Scene};
+use crate::scene::{distribution, Plan, Scene};
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -23,8 +23,8 @@ const LIST: usize = 24;
 
 /// Validates the scene and prints the plan.
 pub fn run(session: &Session, path: &Path) -> Result<()> {
-    let scene = problem::load(session, path)?;
-    let substructures = problem::substructures(session, &scene)?;
+    let scene = distribution::load(session, path)?;
+    let substructures = distribution::substructures(session, &scene)?;
     let settings = Settings::default().with_options(session)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     let team = Team::new(if session.size() == 1 { threads } else { 1 })?;

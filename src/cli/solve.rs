@@ -10,7 +10,7 @@ use super::checkpoint::Checkpoints;
 use super::contact;
 use super::course::{follow, Course};
 use super::fields::Gathered;
-use super::{maps, not_converged, physics, picture, problem};
+use super::{maps, not_converged, physics, picture};
 use crate::feti::solver::Facts;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
@@ -23,7 +23,7 @@ use crate::report::output;
 use crate::report::pictures::contact_map;
 use crate::report::plots::{load_steps, profile};
 use crate::report::tables::summary;
-use crate::scene::Scene;
+use crate::scene::{distribution, Scene};
 use crate::Result;
 
 /// Directions that a load step leaves to the next one.
@@ -32,11 +32,11 @@ const DIRECTIONS: usize = 30;
 /// Solves a scene and writes what was asked for.
 pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let clock = Instant::now();
-    let scene = problem::load(session, &args.scene)?;
+    let scene = distribution::load(session, &args.scene)?;
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
     let checkpoints = Checkpoints::new(session, args, &scene)?;
     let start = Instant::now();
-    let substructures = problem::substructures(session, &scene)?;
+    let substructures = distribution::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
     let settings = Settings {

@@ -1,7 +1,7 @@
 //! `fetifeti table1`: Lee's experiment, his numbers and ours.
 
 use super::args::Table1;
-use super::{not_converged, problem, solve};
+use super::{not_converged, solve};
 use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
 use crate::petsc::Session;
@@ -9,7 +9,7 @@ use crate::report::json::{self, CoarseCorrected, PaperSide, Table1Row, Table1Sid
 use crate::report::output;
 use crate::report::plots::figure3;
 use crate::report::tables::{paper, summary};
-use crate::scene::{Faces, Scene};
+use crate::scene::{distribution, Faces, Scene};
 use crate::{Error, Result};
 
 /// Computes the rows and writes what was asked for.
@@ -61,7 +61,7 @@ fn side(
     stopped: &mut Option<Error>,
 ) -> Result<Table1Side> {
     let mut run = |pc| -> Result<(FetiFeti, Solution, Option<Spectrum>)> {
-        let substructures = problem::substructures(session, scene)?;
+        let substructures = distribution::substructures(session, scene)?;
         let settings = Settings {
             pc_type: Some(pc),
             // The paper's method and nothing else.

@@ -5,6 +5,7 @@
 //!
 //! | room | what it holds |
 //! |---|---|
+//! | [`destination`] | where the results of a command go: terminal, JSON file, directory |
 //! | [`output`] | files that are written as a whole or not at all; standard output |
 //! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`], [`json::BenchReport`] |
 //! | [`drawing`] | pixels, vectors, text, colours, ticks |
@@ -15,6 +16,7 @@
 //! | [`progress`] | the line that tells how far a contact solve is |
 
 pub mod checkpoint;
+pub mod destination;
 pub mod drawing;
 pub mod json;
 pub mod output;

@@ -12,6 +12,7 @@
 //! subdomain by subdomain, on the rank that owns the subdomain. Coefficients from arrays in files are read there, too.
 
 mod coefficient;
+pub(crate) mod distribution;
 pub(crate) mod geometry;
 mod joint;
 pub(crate) mod model;

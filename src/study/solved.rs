@@ -2,11 +2,10 @@
 
 use std::time::Instant;
 
-use crate::cli::problem;
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::parallel::exchange::gather_all;
-use crate::petsc::{Options, Session};
-use crate::scene::{Member, Numbering, RowLabel, RowSource, Scene};
+use crate::petsc::Session;
+use crate::scene::{distribution, Member, Numbering, RowLabel, RowSource, Scene};
 use crate::{Error, Result};
 
 /// A scene and what the method made of it.
@@ -41,28 +40,13 @@ impl Solved {
     /// Those of the scene and of the method; not converging is none.
     pub fn new(session: &Session, name: &str, text: &str, settings: &Settings) -> Result<Solved> {
         let scene = session.agree(Scene::parse(name, text))?;
-        let options = Options::new(session, "");
-        let mut added = Vec::new();
-        for (name, value) in &scene.options {
-            if !options.has(name)? {
-                options.set_value(name, Some(value))?;
-                added.push(name.clone());
-            }
-        }
-        let clock = Instant::now();
-        let run = || -> Result<(FetiFeti, Solution)> {
-            let substructures = problem::substructures(session, &scene)?;
+        let (solver, solution, seconds) = distribution::with_options(session, &scene, || {
+            let clock = Instant::now();
+            let substructures = distribution::substructures(session, &scene)?;
             let solver = FetiFeti::new(session, substructures, settings.clone())?;
             let solution = solver.solve()?;
-            Ok((solver, solution))
-        };
-        let run = run();
-        let seconds = clock.elapsed().as_secs_f64();
-        // The next scene of the study has options of its own.
-        for name in added {
-            options.clear_value(&name)?;
-        }
-        let (solver, solution) = run?;
+            Ok((solver, solution, clock.elapsed().as_secs_f64()))
+        })?;
         Ok(Solved {
             scene,
             solver,
@@ -77,7 +61,7 @@ impl Solved {
     /// Those of the options.
     pub fn rows(&self, session: &Session) -> Result<Vec<Row>> {
         const WORDS: usize = 4;
-        let owns = problem::owner(session, &self.scene)?;
+        let owns = distribution::owner(session, &self.scene)?;
         // Every row by its place in the list of all, which every rank can make.
         let all = self.scene.row_labels(&|_| true);
         let mine = self.scene.row_labels(&owns);

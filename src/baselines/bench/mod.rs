@@ -11,19 +11,36 @@ mod cases;
 
 use std::path::PathBuf;
 
-use super::compare::{on_first_rank, prepare};
+use super::compare::on_first_rank;
 use super::launch::{Launcher, Workspace};
 use super::methods::{forwarded, inequalities, row, sentence, Left, Methods, Ran};
 use super::plan::{Layouts, Plan, Run};
 use super::table::{self, Baseline};
-use crate::cli::args::Bench;
-use crate::petsc::{Options, Session};
-use crate::report::json::{self, BenchCase, BenchReport, BenchRow, BenchSample, CompareRow};
+use crate::petsc::Session;
+use crate::report::destination::Destination;
+use crate::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, CompareRow};
 use crate::report::output;
 use crate::report::tables::bench as tables;
-use crate::scene::{Numbering, Scene};
+use crate::scene::{distribution, Numbering, Scene};
 use crate::{Error, Result};
 use cases::{Named, CASES};
+
+/// What is run, and where the results go.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Benchmark {
+    /// Names of cases, or scene files; empty for all cases.
+    pub cases: Vec<String>,
+    /// How often every method is run.
+    pub rounds: usize,
+    /// Baselines to run beside ours; empty for all.
+    pub with: Vec<String>,
+    /// Smaller cases.
+    pub quick: bool,
+    /// Where results go; the directory gets tables, a picture and scenes. Quiet means no progress either.
+    pub destination: Destination,
+    /// PETSc's arguments, which the jobs get, too.
+    pub petsc: Vec<String>,
+}
 
 /// A case that is to be run.
 struct Case {
@@ -40,34 +57,22 @@ struct Case {
 /// # Errors
 /// [`Error::Input`] for what can be known before anything runs, and for a scene that ours finds unsolvable; [`Error::NotConverged`] at
 /// the end where ours did not converge; [`Error::Environment`] without mpirun or disk. A baseline that fails is no error but a row with a message.
-pub fn bench(session: &Session, args: &Bench, petsc: &[String]) -> Result<()> {
-    if args.list {
-        let said = match session.rank() {
-            0 => output::print(&list()),
-            _ => Ok(()),
-        };
-        return session.agree(said);
-    }
-    let baselines = session.agree(table::select(&args.with))?;
-    let mut names = args.cases.clone();
+pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
+    let baselines = session.agree(table::select(&wanted.with))?;
+    let mut names = wanted.cases.clone();
     if names.is_empty() {
         names.extend(CASES.iter().map(|c| c.name.to_string()));
     }
     let cases: Result<Vec<Case>> = names
         .iter()
-        .map(|name| Case::new(session, name, args.quick, &baselines))
+        .map(|name| Case::new(session, name, wanted.quick, &baselines))
         .collect();
     let cases = cases?;
-    let ready = match session.rank() {
-        0 => prepare(args.out.as_deref(), args.json.as_deref()),
-        _ => Ok(()),
-    };
-    session.agree(ready)?;
-    on_first_rank(session, || run(args, &cases, petsc))
+    on_first_rank(session, || run(wanted, &cases))
 }
 
 /// The cases, a line each.
-fn list() -> String {
+pub fn cases() -> String {
     let width = CASES.iter().map(|c| c.name.len()).max().unwrap_or(0);
     let line = |c: &Named| format!("{:width$}  {}\n", c.name, c.description);
     CASES.iter().map(line).collect()
@@ -102,46 +107,37 @@ impl Case {
             Ok((name, Some(full), String::new(), scene))
         };
         let (name, file, text, scene) = session.agree(read())?;
-        // The options of a scene are for this scene only: the plan sees them, the next case does not.
-        let options = Options::new(session, "");
-        let mut set = Vec::new();
-        for (option, value) in &scene.options {
-            if options.set_default(option, value)? {
-                set.push(option);
-            }
-        }
-        let plan = Plan::new(session, &scene, baselines, Layouts::Three);
-        for option in set {
-            options.clear_value(option)?;
-        }
+        let plan = distribution::with_options(session, &scene, || {
+            Plan::new(session, &scene, baselines, Layouts::Three)
+        })?;
         Ok(Case {
             name,
             file,
             text,
             scene,
-            plan: plan?,
+            plan,
         })
     }
 }
 
 /// On rank 0: case by case, round by round.
-fn run(args: &Bench, cases: &[Case], petsc: &[String]) -> Result<()> {
-    let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
-    let quiet = args.quiet || to_stdout;
+fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
+    let Benchmark { destination, .. } = wanted;
+    destination.prepare()?;
     let mut report = BenchReport {
         schema: BenchReport::SCHEMA.into(),
         version: env!("CARGO_PKG_VERSION").into(),
         blas: blas(),
         cores: cases.first().map_or(1, |c| c.plan.cores),
-        rounds: args.rounds,
-        quick: args.quick,
+        rounds: wanted.rounds,
+        quick: wanted.quick,
         cases: Vec::new(),
     };
     for (k, case) in cases.iter().enumerate() {
         let launcher = Launcher {
             workspace: Workspace::new()?,
             limit: case.plan.limit,
-            petsc: forwarded(petsc),
+            petsc: forwarded(&wanted.petsc),
         };
         let file = match &case.file {
             Some(file) => file.clone(),
@@ -155,11 +151,11 @@ fn run(args: &Bench, cases: &[Case], petsc: &[String]) -> Result<()> {
         methods.again = true;
         report.cases.push(blank(case));
         let mut sequence = 0;
-        for round in 1..=args.rounds {
+        for round in 1..=wanted.rounds {
             let now = &mut report.cases[k];
-            let first = one_round(args, quiet, case, &mut methods, now, (round, &mut sequence))?;
+            let first = one_round(wanted, case, &mut methods, now, (round, &mut sequence))?;
             if round == 1 {
-                progress(args, &format!("{}, direct solution", case.name));
+                progress(wanted, &format!("{}, direct solution", case.name));
                 let (numbers, solutions): (Vec<usize>, Vec<_>) = first.into_iter().unzip();
                 let verdict = methods.judge(solutions)?;
                 now.reference_residual = verdict.reference.and_then(|r| r.residual);
@@ -178,12 +174,12 @@ fn run(args: &Bench, cases: &[Case], petsc: &[String]) -> Result<()> {
             now.rounds = round;
             now.sum_up();
             // A long run that is ended from outside leaves what it has.
-            if !to_stdout {
-                write_json(args, &report)?;
+            if !destination.json_on_stdout() {
+                destination.write_json("bench.json", &report)?;
             }
         }
     }
-    write(args, cases, &report, quiet)?;
+    write(destination, cases, &report)?;
     let stopped = report.cases.iter().flat_map(|c| {
         let rows = c.methods.iter();
         rows.filter(|r| r.is_ours() && !r.converged_reason.starts_with("CONVERGED"))
@@ -202,8 +198,7 @@ fn run(args: &Bench, cases: &[Case], petsc: &[String]) -> Result<()> {
 /// Runs every method that has not failed so far. Returns the numbers of those that have left a solution, with the solutions and their active
 /// sets.
 fn one_round(
-    args: &Bench,
-    quiet: bool,
+    wanted: &Benchmark,
     case: &Case,
     methods: &mut Methods,
     now: &mut BenchCase,
@@ -218,8 +213,10 @@ fn one_round(
         let mut ran = methods.run(k, known.rescue.is_some())?;
         *sequence += 1;
         let title = format!("{} ({})", run.title(), run.layout);
-        if !quiet && !ran.printed.trim().is_empty() {
-            output::print(&format!("{title}:\n{}\n", ran.printed))?;
+        if !ran.printed.trim().is_empty() {
+            wanted
+                .destination
+                .print(&format!("{title}:\n{}\n", ran.printed))?;
         }
         match &ran.outcome {
             // A mistake in the scene is one for every method.
@@ -236,8 +233,8 @@ fn one_round(
             (Some(setup), Some(solve)) => format!("{setup:.3} s + {solve:.3} s"),
             _ => "failed".to_string(),
         };
-        let of = format!("round {round} of {}", args.rounds);
-        progress(args, &format!("{}, {of}, {title}: {seconds}", case.name));
+        let of = format!("round {round} of {}", wanted.rounds);
+        progress(wanted, &format!("{}, {of}, {title}: {seconds}", case.name));
         record(&mut now.methods[k], row(run, ran), sample);
     }
     Ok(solutions)
@@ -322,43 +319,24 @@ fn blas() -> Option<String> {
 }
 
 /// A line on stderr for every run.
-fn progress(args: &Bench, what: &str) {
-    if !args.quiet {
+fn progress(wanted: &Benchmark, what: &str) {
+    if !wanted.destination.quiet {
         eprintln!("bench: {what}");
     }
 }
 
-fn write_json(args: &Bench, report: &BenchReport) -> Result<()> {
-    if let Some(file) = &args.json {
-        json::write(file, report)?;
-    }
-    if let Some(dir) = &args.out {
-        json::write(&dir.join("bench.json"), report)?;
-    }
-    Ok(())
-}
-
-fn write(args: &Bench, cases: &[Case], report: &BenchReport, quiet: bool) -> Result<()> {
-    if !quiet {
-        output::print(&tables::text(report))?;
-    }
-    write_json(args, report)?;
-    let Some(dir) = &args.out else {
-        return Ok(());
-    };
-    tables::csv(report).write_csv(&dir.join("bench.csv"))?;
-    tables::figure(report).save(&dir.join("bench"))?;
-    let mut files = ["json", "csv", "png", "svg"]
-        .map(|end| format!("bench.{end}"))
-        .to_vec();
-    for case in cases.iter().filter(|c| c.file.is_none()) {
-        let name = format!("{}.toml", case.name);
-        output::write_text(&dir.join(&name), &case.text)?;
-        files.push(name);
-    }
-    if !quiet {
-        let list = files.join(", ");
-        output::print(&format!("written: {list} in {}\n", dir.display()))?;
-    }
-    Ok(())
+fn write(destination: &Destination, cases: &[Case], report: &BenchReport) -> Result<()> {
+    destination.finish("bench", &tables::text(report), report, |dir| {
+        tables::csv(report).write_csv(&dir.join("bench.csv"))?;
+        tables::figure(report).save(&dir.join("bench"))?;
+        let mut files = ["csv", "png", "svg"]
+            .map(|end| format!("bench.{end}"))
+            .to_vec();
+        for case in cases.iter().filter(|c| c.file.is_none()) {
+            let name = format!("{}.toml", case.name);
+            output::write_text(&dir.join(&name), &case.text)?;
+            files.push(name);
+        }
+        Ok(files)
+    })
 }

@@ -12,9 +12,9 @@ pub use bench::{BenchCase, BenchReport, BenchRow, BenchSample, BenchSeconds, Spr
 pub use compare::{CompareContact, CompareInequalities, CompareReport, CompareRow, CompareSeconds};
 pub use table1::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
 
-use contact::ContactReport;
 use super::output;
 use crate::{Error, Result};
+use contact::ContactReport;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

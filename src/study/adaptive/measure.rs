@@ -5,12 +5,11 @@ use std::time::Instant;
 
 use super::{Bddc, Case, Effort, Fine, Plain, Record, Run, RTOL, USUAL};
 use crate::baselines::single;
-use crate::cli::problem;
 use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::petsc::Session;
 use crate::report::output;
-use crate::scene::{Numbering, Scene};
+use crate::scene::{distribution, Numbering, Scene};
 use crate::study::direct::Direct;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
@@ -43,8 +42,8 @@ struct Solved {
 /// Those of the scene, of the disk and of PETSc. A method that fails is none.
 pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Record> {
     let file = case.write(dir)?;
-    let scene = problem::load(session, &file)?;
-    let problem = problem::substructures(session, &scene)?;
+    let scene = distribution::load(session, &file)?;
+    let problem = distribution::substructures(session, &scene)?;
     let mut record = Record {
         case: case.name.clone(),
         title: case.title.clone(),
@@ -230,8 +229,8 @@ fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Op
 pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Fine> {
     let dir = dir.join("fine");
     output::prepare_directory(&dir)?;
-    let scene = problem::load(session, &case.write(&dir)?)?;
-    let problem = problem::substructures(session, &scene)?;
+    let scene = distribution::load(session, &case.write(&dir)?)?;
+    let problem = distribution::substructures(session, &scene)?;
     let mut out = Fine {
         dofs: Numbering::new(&scene).len() as usize,
         ..Fine::default()
