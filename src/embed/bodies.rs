@@ -2,6 +2,7 @@
 
 use super::hold::Bond;
 use super::parts::Part;
+use crate::linalg::union_find::UnionFind;
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::{Error, Result};
@@ -88,31 +89,22 @@ pub fn named_groups(named: &[Option<u64>]) -> Result<Option<Vec<u64>>> {
 ///
 /// A group that is not in one piece becomes several bodies: it takes bonds that hold to make one.
 pub fn bodies(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
-    let n = group.len();
-    let mut label = vec![usize::MAX; n];
-    let mut near: Vec<Vec<usize>> = vec![Vec::new(); n];
-    for bond in bonds.iter().filter(|b| b.holds) {
-        near[bond.low].push(bond.high);
-        near[bond.high].push(bond.low);
+    let mut sets = UnionFind::new(group.len());
+    let joins = |b: &&Bond| b.holds && group[b.low] == group[b.high];
+    for bond in bonds.iter().filter(joins) {
+        sets.join(bond.low, bond.high);
     }
-    let mut next = 0;
-    for start in 0..n {
-        if label[start] != usize::MAX {
-            continue;
-        }
-        label[start] = next;
-        let mut stack = vec![start];
-        while let Some(s) = stack.pop() {
-            for &t in &near[s] {
-                if label[t] == usize::MAX && group[t] == group[s] {
-                    label[t] = next;
-                    stack.push(t);
-                }
-            }
-        }
-        next += 1;
+    let mut next = 0..;
+    let mut body_of: Vec<usize> = Vec::with_capacity(group.len());
+    for s in 0..group.len() {
+        // The lowest of a set names it, and stands before the others.
+        let body = match sets.find(s) {
+            lowest if lowest < s => body_of[lowest],
+            _ => next.next().expect("numbers do not end"),
+        };
+        body_of.push(body);
     }
-    label
+    body_of
 }
 
 #[cfg(test)]

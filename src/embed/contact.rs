@@ -5,10 +5,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::parts::Part;
-use super::rows::body_dof;
+use super::parts::{body_dof, Part};
 use super::states::State;
 use super::torn::Torn;
+use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::{exchange_words, gather_all};
 use crate::petsc::Session;
 use crate::substructures::{InterfaceRow, RowKind};
@@ -245,26 +245,18 @@ fn lowest_bodies(
 
 /// The lowest dof of each set of unknowns that rows connect.
 fn blocks(seen: &[Seen], free: impl Fn(&u32) -> bool) -> HashMap<u32, u32> {
-    let mut above: HashMap<u32, u32> = HashMap::new();
-    for row in seen {
-        let mut dofs = row.terms.iter().map(|t| t.0).filter(&free);
-        let Some(first) = dofs.next() else { continue };
-        above.entry(first).or_insert(first);
-        for dof in dofs {
-            above.entry(dof).or_insert(dof);
-            let (a, b) = (root(&above, first), root(&above, dof));
-            above.insert(a.max(b), a.min(b));
+    let unknowns = |row: &Seen| row.terms.iter().map(|t| t.0).filter(&free).collect();
+    let rows: Vec<Vec<u32>> = seen.iter().map(unknowns).collect();
+    let mut dofs: Vec<u32> = rows.concat();
+    dofs.sort_unstable();
+    dofs.dedup();
+    let place = |dof: &u32| dofs.binary_search(dof).expect("every dof is in the list");
+    let mut sets = UnionFind::new(dofs.len());
+    for row in &rows {
+        for dof in row.iter().skip(1) {
+            sets.join(place(&row[0]), place(dof));
         }
     }
-    let dofs: Vec<u32> = above.keys().copied().collect();
-    dofs.into_iter()
-        .map(|dof| (dof, root(&above, dof)))
-        .collect()
-}
-
-fn root(above: &HashMap<u32, u32>, mut dof: u32) -> u32 {
-    while above[&dof] != dof {
-        dof = above[&dof];
-    }
-    dof
+    let lowest = |(k, &dof)| (dof, dofs[sets.find(k)]);
+    dofs.iter().enumerate().map(lowest).collect()
 }

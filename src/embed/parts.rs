@@ -11,6 +11,11 @@ use crate::{Error, Result};
 /// Entries (i, j) and (j, i) may differ by this much of the diagonal.
 const SYMMETRIC: f64 = 1e-9;
 
+/// The number of a global dof as one body sees it.
+pub fn body_dof(n_global: usize, body: usize, dof: u32) -> u64 {
+    body as u64 * n_global as u64 + u64::from(dof)
+}
+
 /// A subdomain to be.
 #[derive(Debug, Clone)]
 pub struct Part {

@@ -1,16 +1,11 @@
 //! Ties: where several bodies hold a global dof, their displacements are equal.
 
 use super::contact::Contact;
-use super::parts::Part;
+use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::{InterfaceRow, RowKind};
-
-/// The number of a global dof as one body sees it.
-pub fn body_dof(n_global: usize, body: usize, dof: u32) -> u64 {
-    body as u64 * n_global as u64 + u64::from(dof)
-}
 
 /// u_a − u_b = 0 for every pair of bodies a < b at every dof; provided by the rank of the dof's lowest subdomain, or, where rows of the host
 /// touch the dof, by the rank that has those. Collective.

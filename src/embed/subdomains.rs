@@ -3,8 +3,7 @@
 use super::classes::Class;
 use super::hold::Shape;
 use super::kernels::Columns;
-use super::parts::Part;
-use super::rows::body_dof;
+use super::parts::{body_dof, Part};
 use crate::substructures::{Entity, EntityKind, Subdomain};
 use std::collections::BTreeSet;
 

@@ -9,4 +9,5 @@ pub mod single;
 pub mod symmetric;
 #[cfg(test)]
 pub(crate) mod testing;
+pub(crate) mod union_find;
 pub(crate) mod vec3;

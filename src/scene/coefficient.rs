@@ -1,8 +1,9 @@
-//! Coefficients by element: their values, the weights that follow from them, how far they range.
+//! Fields at points of a subdomain; coefficients by element, the weights that follow from them, how far they range.
 
-use super::joint::evaluate;
-use super::model::field::Field;
-use super::{Body, Scene};
+use super::body::Body;
+use super::checked::Scene;
+use super::model::expr::Variables;
+use super::model::field::{At, Field};
 use crate::error::Result;
 use crate::mesh::{Block, SubdomainMesh};
 
@@ -86,4 +87,21 @@ pub(super) fn stiffest(mesh: &SubdomainMesh, place: [usize; 3]) -> f64 {
         }
     }
     largest
+}
+
+/// Where fields are evaluated: a point of a subdomain.
+pub(super) fn at(body: &Body, block: &Block, point: [f64; 3]) -> At {
+    At {
+        variables: Variables {
+            point,
+            body: body.spec.place,
+            subdomain: block.place,
+        },
+        subdomains: body.mesh().subdomains,
+    }
+}
+
+/// The value of a field at a point of a subdomain.
+pub(super) fn evaluate(body: &Body, block: &Block, field: &Field, point: [f64; 3]) -> f64 {
+    field.eval(&at(body, block, point))
 }

@@ -6,7 +6,7 @@
 //! Unknowns are numbered by subdomain (the lowest that contains the node), so that a contiguous share of
 //! subdomains is a contiguous range of unknowns.
 
-use super::Scene;
+use super::checked::Scene;
 use crate::mesh::BoxMesh;
 use std::collections::HashMap;
 use std::ops::Range;

@@ -1,8 +1,10 @@
 //! What will be built for a scene, counted without building it.
 
+use super::body::Body;
+use super::checked::Scene;
 use super::geometry::interface::{Link, Shape};
+use super::numbering::Numbering;
 use super::rows::points::PointRow;
-use super::{Body, Scene};
 use crate::error::Result;
 use crate::mesh::{places, BoxMesh};
 use std::collections::HashSet;
@@ -109,7 +111,7 @@ impl Scene {
             subdomains: self.n_subdomains(),
             elements: self.bodies.iter().map(|b| b.mesh().n_elements()).sum(),
             dofs: bodies.iter().map(|b| b.dofs).sum(),
-            assembled: super::Numbering::new(self).len(),
+            assembled: Numbering::new(self).len(),
             primal: bodies.iter().map(|b| b.primal).sum(),
             local_multipliers: bodies.iter().map(|b| b.local_multipliers).sum(),
             global_multipliers: self.rows_that(|r| r.holds) + bounds().filter(|b| b.holds).count(),

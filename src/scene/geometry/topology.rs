@@ -2,7 +2,7 @@
 
 use crate::fem::cell;
 use crate::mesh::{places, SubdomainMesh};
-use crate::scene::Body;
+use crate::scene::body::Body;
 use crate::substructures::{Entity, EntityKind};
 use std::collections::BTreeMap;
 

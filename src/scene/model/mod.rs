@@ -5,6 +5,7 @@ pub mod expr;
 pub mod field;
 pub mod map;
 pub mod profile;
+pub mod ramp;
 pub mod rigid;
 pub mod spec;
 pub mod steps;

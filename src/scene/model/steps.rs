@@ -1,59 +1,9 @@
 //! Quasi-static load steps: the times t and the factors of loads, gaps and given values at each of them.
 
-use super::expr::{Expr, Variables};
 use super::profile::Limit;
+use super::ramp::Ramp;
 use super::spec::SceneSpec;
 use crate::error::{Error, Result};
-use std::fmt;
-
-/// A factor as a function of the time t of a load step.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Ramp(Expr);
-
-impl Ramp {
-    /// The expression in t written as `text`.
-    ///
-    /// # Errors
-    /// As [`Expr::parse`].
-    pub fn parse(text: &str) -> std::result::Result<Ramp, String> {
-        Expr::parse_in(text, &["t"]).map(Ramp)
-    }
-
-    /// The constant `value`.
-    pub fn constant(value: f64) -> Ramp {
-        Ramp(Expr::constant(value))
-    }
-
-    /// The factor at time `t`.
-    pub fn at(&self, t: f64) -> f64 {
-        // The expression was parsed with t as its first variable.
-        self.0.eval(&Variables {
-            point: [t, 0.0, 0.0],
-            ..Variables::default()
-        })
-    }
-}
-
-impl fmt::Display for Ramp {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(out)
-    }
-}
-
-/// Load steps as written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StepsSpec {
-    /// The times, increasing.
-    pub times: Vec<f64>,
-    /// Factor of all loads.
-    pub load: Ramp,
-    /// Factor of all gaps and of the bounds of obstacles.
-    pub gap: Ramp,
-    /// Factor of all given values.
-    pub dirichlet: Ramp,
-    /// Where it was written, or empty.
-    pub written: String,
-}
 
 /// Checked load steps.
 #[derive(Debug, Clone, PartialEq)]

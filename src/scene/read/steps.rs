@@ -4,7 +4,7 @@ use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
 use crate::scene::model::profile::Profile;
-use crate::scene::model::steps::{Ramp, StepsSpec};
+use crate::scene::model::ramp::{Ramp, StepsSpec};
 
 /// Largest number of load steps.
 const MOST_STEPS: usize = 1 << 20;

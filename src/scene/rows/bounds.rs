@@ -3,10 +3,10 @@
 use super::obstacles::Obstacle;
 use super::points::{Member, Point, PointBound, PointRow};
 use crate::error::{Error, Result};
+use crate::scene::body::Body;
 use crate::scene::geometry::interface::Interface;
 use crate::scene::model::spec::SceneSpec;
 use crate::scene::model::steps::{Factors, Steps};
-use crate::scene::Body;
 use std::collections::HashMap;
 
 /// What inequalities are checked against.

@@ -1,13 +1,15 @@
 //! How the nodes where bodies touch are joined: the default, and the entries of [[tie]] and [[contact]].
 
+use super::entry::{some_names, Contact, Entry};
 use super::links::Links;
 use crate::error::{Error, Result};
-use crate::scene::geometry::interface::{touching, Interface, Link, Shape};
-use crate::scene::geometry::normals::opposite;
+use crate::scene::body::Body;
+use crate::scene::geometry::facing::opposite;
+use crate::scene::geometry::interface::{Interface, Link, Shape};
+use crate::scene::geometry::touching::touching;
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{ByDefault, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
 use crate::scene::model::steps::{Factors, Steps};
-use crate::scene::Body;
 use std::collections::{HashMap, HashSet};
 
 /// All pairs that touch, with their ties and contacts.
@@ -97,63 +99,6 @@ fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
             {
                 s.link = Link::Free;
             }
-        }
-    }
-}
-
-/// One entry, of either kind.
-#[derive(Clone, Copy)]
-pub(crate) struct Entry<'a> {
-    pub pair: &'a Pair,
-    pub extent: &'a Extent,
-    pub written: &'a str,
-    /// `None`: a tie.
-    pub contact: Option<Contact<'a>>,
-}
-
-/// What a contact says beyond its nodes.
-#[derive(Clone, Copy)]
-pub(crate) struct Contact<'a> {
-    pub gap: &'a Profile,
-    /// Number of the entry, `None` for the default.
-    pub number: Option<usize>,
-}
-
-impl<'a> Entry<'a> {
-    fn tie(spec: &'a TieSpec) -> Entry<'a> {
-        Entry {
-            pair: &spec.pair,
-            extent: &spec.extent,
-            written: &spec.written,
-            contact: None,
-        }
-    }
-
-    fn contact(number: usize, spec: &'a ContactSpec) -> Entry<'a> {
-        Entry {
-            pair: &spec.pair,
-            extent: &spec.extent,
-            written: &spec.written,
-            contact: Some(Contact {
-                gap: &spec.gap,
-                number: Some(number),
-            }),
-        }
-    }
-
-    /// "tie" or "contact".
-    pub fn what(&self) -> &'static str {
-        match self.contact {
-            None => "tie",
-            Some(_) => "contact",
-        }
-    }
-
-    /// Where it was written, for the middle of a sentence.
-    pub fn line(&self) -> &str {
-        match self.written.trim_end_matches(": ") {
-            "" => "another entry",
-            place => place,
         }
     }
 }
@@ -298,17 +243,4 @@ impl<'a> Entries<'a> {
         }
         Ok(())
     }
-}
-
-/// The first few names, for messages.
-pub(crate) fn some_names(bodies: &[Body]) -> String {
-    let mut names: Vec<String> = bodies
-        .iter()
-        .take(6)
-        .map(|b| format!("`{}`", b.spec.name))
-        .collect();
-    if bodies.len() > 6 {
-        names.push("…".into());
-    }
-    names.join(", ")
 }

@@ -1,13 +1,14 @@
 //! The links of one interface: what its nodes are after every entry has had its say.
 
-use super::entries::{Contact, Entry};
+use super::entry::{Contact, Entry};
+use super::select::{is_end, selected, Parameters};
 use crate::error::{Error, Result};
+use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link};
-use crate::scene::geometry::select::{is_end, selected, Parameters};
+use crate::scene::model::expr::Variables;
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::spec::Extent;
 use crate::scene::model::steps::Factors;
-use crate::scene::{Body, Variables};
 use std::collections::HashMap;
 
 /// The links of one interface as entry after entry sets them.

@@ -2,8 +2,9 @@
 
 pub mod bounds;
 pub mod entries;
+pub mod entry;
 pub mod links;
 pub mod obstacles;
 pub mod points;
+pub mod select;
 pub mod table;
-pub mod union_find;

@@ -1,13 +1,14 @@
 //! Rigid obstacles: one-sided bounds on u at the boundary of a body.
 
-use super::entries::some_names;
+use super::entry::some_names;
+use super::select::pick;
 use crate::error::{Error, Result};
+use crate::scene::body::Body;
 use crate::scene::geometry::normals::parameters;
-use crate::scene::geometry::select::pick;
+use crate::scene::model::expr::Variables;
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::rigid::Rigid;
 use crate::scene::model::spec::{Extent, ObstacleSpec, SIDES};
-use crate::scene::{Body, Variables};
 use std::collections::BTreeMap;
 
 /// One bound beside one side of a body.

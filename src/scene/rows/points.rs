@@ -1,10 +1,10 @@
 //! Points at which bodies meet: which copies of u are one there, which are given, and the rows that follow.
 
-use super::union_find::UnionFind;
 use crate::error::{Error, Result};
+use crate::linalg::union_find::UnionFind;
+use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
 use crate::scene::validate::agree;
-use crate::scene::Body;
 use std::collections::HashMap;
 
 /// A node of one body at a point.
@@ -301,10 +301,7 @@ fn close(point: &mut Point, links: &mut [PairLink], components: usize) {
 
 /// The lowest member that each of `n` members is joined to by links that satisfy `counts`.
 fn joined(n: usize, links: &[PairLink], counts: impl Fn(Link) -> bool) -> Vec<usize> {
-    let mut sets = UnionFind::default();
-    for _ in 0..n {
-        sets.add();
-    }
+    let mut sets = UnionFind::new(n);
     for pair in links.iter().filter(|p| counts(p.link)) {
         sets.join(pair.members[0], pair.members[1]);
     }

@@ -3,8 +3,8 @@
 use super::bounds::{ahead, limits};
 use super::points::{Member, Point, PointBound, PointRow};
 use crate::error::Result;
+use crate::scene::checked::Scene;
 use crate::scene::model::steps::Factors;
-use crate::scene::Scene;
 use crate::substructures::{InterfaceRow, RowKind};
 
 /// What a row comes from.

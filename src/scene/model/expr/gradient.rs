@@ -1,7 +1,7 @@
 //! Numbers that carry their gradient: forward differentiation of what the user writes.
 //!
 //! An exact solution is given as one expression; its gradient, which the error norms need, follows from
-//! evaluating the same expression on [`Dual`] numbers, exact to rounding.
+//! evaluating the same expression on [`WithGradient`] numbers, exact to rounding.
 
 /// What an expression may be evaluated on.
 pub trait Real: Copy {
@@ -32,7 +32,7 @@ impl Real for f64 {
 
 /// A value with its derivatives by x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dual {
+pub struct WithGradient {
     /// The value.
     pub value: f64,
     /// ∂/∂x, ∂/∂y, ∂/∂z.
@@ -48,9 +48,9 @@ fn product(a: f64, b: f64) -> f64 {
     }
 }
 
-impl Real for Dual {
+impl Real for WithGradient {
     fn constant(value: f64) -> Self {
-        Dual {
+        WithGradient {
             value,
             gradient: [0.0; 3],
         }
@@ -59,7 +59,7 @@ impl Real for Dual {
         self.value
     }
     fn chain(self, f: f64, slope: f64) -> Self {
-        Dual {
+        WithGradient {
             value: f,
             gradient: self.gradient.map(|d| product(slope, d)),
         }
@@ -67,7 +67,7 @@ impl Real for Dual {
     fn chain2(self, other: Self, g: f64, by_self: f64, by_other: f64) -> Self {
         let part =
             |k: usize| product(by_self, self.gradient[k]) + product(by_other, other.gradient[k]);
-        Dual {
+        WithGradient {
             value: g,
             gradient: [0, 1, 2].map(part),
         }

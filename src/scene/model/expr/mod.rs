@@ -7,7 +7,7 @@ pub(crate) mod gradient;
 mod parse;
 mod tokens;
 
-use gradient::{Dual, Real};
+use gradient::{Real, WithGradient};
 use std::fmt;
 
 /// Names of the variables, in the order of [`Variables`].
@@ -139,16 +139,16 @@ impl Expr {
     }
 
     /// The value and the gradient by (x, y, z) at `at`.
-    pub fn eval_gradient(&self, at: &Variables) -> Dual {
+    pub fn eval_gradient(&self, at: &Variables) -> WithGradient {
         let along = |d: usize| {
             let mut gradient = [0.0; 3];
             gradient[d] = 1.0;
-            Dual {
+            WithGradient {
                 value: at.point[d],
                 gradient,
             }
         };
-        let constant = |k: usize| Dual::constant(k as f64);
+        let constant = |k: usize| WithGradient::constant(k as f64);
         evaluate(
             &self.root,
             &[

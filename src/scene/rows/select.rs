@@ -1,10 +1,10 @@
 //! Which nodes of a common face, or of a side, an entry selects.
 
-use super::interface::{Interface, Shape, TOLERANCE};
+use super::entry::Entry;
 use crate::error::{Error, Result};
+use crate::scene::body::Body;
+use crate::scene::geometry::interface::{Interface, Shape, TOLERANCE};
 use crate::scene::model::spec::{Extent, Pair};
-use crate::scene::rows::entries::Entry;
-use crate::scene::Body;
 
 /// Tolerance of the parameter t at the ends of a range.
 const T_TOLERANCE: f64 = 1e-9;

@@ -7,6 +7,13 @@ pub(crate) struct UnionFind {
 }
 
 impl UnionFind {
+    /// `n` sets of one member each.
+    pub fn new(n: usize) -> UnionFind {
+        UnionFind {
+            parent: (0..n).collect(),
+        }
+    }
+
     /// A new set of one member, and that member.
     pub fn add(&mut self) -> usize {
         self.parent.push(self.parent.len());

@@ -1,0 +1,59 @@
+//! A body of a checked scene.
+
+use super::model::spec::BodySpec;
+use crate::linalg::vec3::ball;
+use crate::mesh::BoxMesh;
+
+/// A body of a checked scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// What was written about it.
+    pub spec: BodySpec,
+    /// Number C of components of the field.
+    pub components: usize,
+    /// Body dof of its first degree of freedom; component c of its node k has the number `first_dof + C k + c`.
+    pub first_dof: u64,
+    /// Global index of its subdomain 0.
+    pub first_subdomain: usize,
+    /// Degrees of freedom C k + c with a given value, in increasing order: Dirichlet sides, and nodes that are tied to such a node of
+    /// another body. Values are those before any factor of a load step.
+    pub prescribed: Vec<(usize, f64)>,
+    /// Least and greatest coordinates of its nodes.
+    pub bounds: [[f64; 3]; 2],
+}
+
+impl Body {
+    /// Its mesh.
+    pub fn mesh(&self) -> &BoxMesh {
+        &self.spec.mesh
+    }
+
+    /// Centre and radius of the ball around its [`Body::bounds`].
+    pub fn ball(&self) -> ([f64; 3], f64) {
+        ball(self.bounds)
+    }
+
+    /// The given value of degree of freedom `dof` = C k + c, if there is one.
+    pub fn prescribed_at(&self, dof: usize) -> Option<f64> {
+        self.prescribed
+            .binary_search_by_key(&dof, |&(n, _)| n)
+            .ok()
+            .map(|k| self.prescribed[k].1)
+    }
+}
+
+/// Least and greatest coordinates of the nodes of a body.
+pub(super) fn bounds_of(body: &BodySpec) -> [[f64; 3]; 2] {
+    if body.map.is_none() {
+        return [body.mesh.origin, body.mesh.end()];
+    }
+    let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for place in body.mesh.boundary() {
+        let point = body.position(place);
+        for d in 0..3 {
+            out[0][d] = out[0][d].min(point[d]);
+            out[1][d] = out[1][d].max(point[d]);
+        }
+    }
+    out
+}

@@ -1,0 +1,148 @@
+//! A checked scene: what was written, with every default filled in.
+
+use super::body::{bounds_of, Body};
+use super::geometry::interface::Interface;
+use super::model::expr::Expr;
+use super::model::spec::{lee, Faces, GridSpec, SceneSpec};
+use super::model::steps::Steps;
+use super::rows::obstacles::Obstacle;
+use super::rows::points::Point;
+use super::{read, rows, validate};
+use crate::error::{Error, Result};
+use crate::fem::Form;
+use std::path::Path;
+
+/// A checked scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Title for reports.
+    pub title: String,
+    /// What is solved, and by which elements.
+    pub form: Form,
+    /// The bodies.
+    pub bodies: Vec<Body>,
+    /// Pairs of bodies that touch, by increasing numbers, and the nodes at which they meet.
+    pub interfaces: Vec<Interface>,
+    /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`Point::block`].
+    pub points: Vec<Point>,
+    /// Rigid obstacles, by body, side and bound.
+    pub obstacles: Vec<Obstacle>,
+    /// Load steps; `None`: everything is applied at once.
+    pub steps: Option<Steps>,
+    /// The exact solution by components, if it is known.
+    pub exact: Option<Vec<Expr>>,
+    /// PETSc options (without the dash) that hold unless the command line says otherwise.
+    pub options: Vec<(String, String)>,
+    /// Number of subdomains.
+    n_subdomains: usize,
+}
+
+impl Scene {
+    /// Reads and checks the scene in the file `path`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line and what was expected.
+    pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|e| Error::Input(format!("{file}: the scene cannot be read: {e}")))?;
+        Scene::parse(&file, &text)
+    }
+
+    /// Checks the scene in `text`; `file` names it in messages.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn parse(file: &str, text: &str) -> Result<Scene> {
+        Scene::new(read::read(file, text)?)
+    }
+
+    /// Checks a scene that a program has built.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for overlapping bodies, non-matching nodes on tied faces, values out of range, ….
+    pub fn new(mut spec: SceneSpec) -> Result<Scene> {
+        validate::check(&spec)?;
+        let steps = Steps::new(&spec)?;
+        let mut bodies = Vec::with_capacity(spec.bodies.len());
+        let (mut first_dof, mut first_subdomain) = (0, 0);
+        for body in std::mem::take(&mut spec.bodies) {
+            let components = spec.form.components(body.mesh.dim());
+            let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
+            bodies.push(Body {
+                components,
+                prescribed: validate::dirichlet_dofs(&body, components)?,
+                bounds: bounds_of(&body),
+                spec: body,
+                first_dof,
+                first_subdomain,
+            });
+            first_dof += (nodes * components) as u64;
+            first_subdomain += subdomains;
+        }
+        let interfaces = rows::entries::find(&bodies, &spec, &steps)?;
+        let obstacles = rows::obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
+        let mut points = rows::points::collect(&mut bodies, &interfaces)?;
+        rows::bounds::Checks::new(&bodies, &interfaces, &obstacles, &spec, &steps)
+            .apply(&mut points)?;
+        validate::check_unknowns(&bodies)?;
+        Ok(Scene {
+            title: spec.title,
+            form: spec.form,
+            bodies,
+            interfaces,
+            points,
+            obstacles,
+            steps,
+            exact: spec.exact,
+            options: spec.options,
+            n_subdomains: first_subdomain,
+        })
+    }
+
+    /// The experiment of Table 1 of \[Lee\]; see [`lee`].
+    ///
+    /// # Errors
+    /// [`Error::Input`] when a count is zero, or when no node lies in the middle third of any face.
+    pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> Result<Scene> {
+        Scene::new(lee(bodies, subdomains, elements, faces))
+    }
+
+    /// A grid of equal bodies, tied wherever they touch.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn grid(title: impl Into<String>, grid: &GridSpec) -> Result<Scene> {
+        Scene::new(SceneSpec::tied(title, grid.expand()))
+    }
+
+    /// The dimension, 2 or 3.
+    pub fn dim(&self) -> usize {
+        self.bodies[0].mesh().dim()
+    }
+
+    /// Number C of components of the field.
+    pub fn components(&self) -> usize {
+        self.bodies[0].components
+    }
+
+    /// Number of bodies.
+    pub fn n_bodies(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Number of subdomains of all bodies.
+    pub fn n_subdomains(&self) -> usize {
+        self.n_subdomains
+    }
+
+    /// The body that subdomain `index` belongs to, and the subdomain's number inside it.
+    pub fn body_of(&self, index: usize) -> (usize, usize) {
+        let body = self
+            .bodies
+            .partition_point(|b| b.first_subdomain <= index)
+            .saturating_sub(1);
+        (body, index - self.bodies[body].first_subdomain)
+    }
+}

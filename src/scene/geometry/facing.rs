@@ -1,0 +1,219 @@
+//! Where sides of bodies meet node by node, whatever their shapes: those that coincide, and those that face each other.
+
+use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
+use super::normals::{of_side, parameters};
+use crate::linalg::vec3::{dot, minus, norm};
+use crate::scene::body::Body;
+use crate::scene::model::profile::Limits;
+use crate::scene::model::spec::BodySpec;
+use std::collections::HashMap;
+
+/// Where sides of two bodies with different maps meet: interfaces of the nodes that coincide, by pairs of sides; a single node is a
+/// corner.
+pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
+    let [a, b] = pair.map(|k| &bodies[k]);
+    let apart = (0..3).any(|d| {
+        let slack = 1e-6 * (a.bounds[1][d] - a.bounds[0][d]).abs();
+        a.bounds[0][d] > b.bounds[1][d] + slack || b.bounds[0][d] > a.bounds[1][d] + slack
+    });
+    if apart {
+        return Vec::new();
+    }
+    let n_sides = 2 * a.mesh().dim();
+    let near = TOLERANCE * shortest(&a.spec).min(shortest(&b.spec));
+    let mut out = Vec::new();
+    let mut seen = std::collections::HashSet::new();
+    for sb in 0..n_sides {
+        let grid = Grid::new(&b.spec, sb, near);
+        for sa in 0..n_sides {
+            let mut shared = Vec::new();
+            let side = a.mesh().side_nodes(sa);
+            for (place, t) in side.map(|p| (p, parameters(&a.spec, sa, p))) {
+                if let Some(other) = grid.find(a.spec.position(place), near) {
+                    shared.push(SharedNode {
+                        nodes: [a.mesh().node(place), other],
+                        t,
+                        link: Link::Free,
+                    });
+                }
+            }
+            let varies = |k: usize| shared.iter().any(|s: &SharedNode| s.t[k] != shared[0].t[k]);
+            let dim = a.mesh().dim();
+            if shared.is_empty() {
+                continue;
+            }
+            if (0..dim - 1).all(varies) {
+                seen.extend(shared.iter().map(|s| s.nodes));
+                out.push(interface(bodies, pair, [sa, sb], Shape::Face, shared));
+            } else {
+                out.push(interface(bodies, pair, [sa, sb], Shape::Corner, shared));
+            }
+        }
+    }
+    // Corners and edges that also belong to a face say nothing new; nor do they twice.
+    for i in out.iter_mut().filter(|i| i.shape == Shape::Corner) {
+        i.shared.retain(|s| seen.insert(s.nodes));
+        i.normals.truncate(i.shared.len());
+        i.distances.truncate(i.shared.len());
+    }
+    out.retain(|i| !i.shared.is_empty());
+    out
+}
+
+/// Sides of two bodies that face each other, node opposite node; `None` where their nodes cannot be paired.
+pub(crate) fn opposite(bodies: &[Body], pair: [usize; 2], sides: [usize; 2]) -> Option<Interface> {
+    let [a, b] = pair.map(|k| &bodies[k]);
+    let lists = [(a, sides[0]), (b, sides[1])].map(|(body, side)| {
+        let nodes: Vec<[usize; 3]> = body.mesh().side_nodes(side).collect();
+        nodes
+    });
+    let counts = [(a, sides[0]), (b, sides[1])].map(|(body, side)| {
+        let n = body.mesh().nodes();
+        let mut along = (0..3).filter(|&d| d != side / 2);
+        [along.next(), along.next()].map(|d| d.map_or(1, |d| n[d]))
+    });
+    if counts[0] != counts[1] {
+        return None;
+    }
+    let [m, n] = counts[0];
+    let position = |k: usize, i: usize| [a, b][k].spec.position(lists[k][i]);
+    let partner = |i: usize, flip: usize| {
+        let (p, q) = (i % m, i / m);
+        let p = if flip & 1 == 1 { m - 1 - p } else { p };
+        let q = if flip & 2 == 2 { n - 1 - q } else { q };
+        q * m + p
+    };
+    let total = |flip: usize| -> f64 {
+        let square = |i: usize| {
+            let (x, y) = (position(0, i), position(1, partner(i, flip)));
+            let away = minus(x, y);
+            dot(away, away)
+        };
+        (0..m * n).map(square).sum()
+    };
+    let flip = (0..4).min_by(|&x, &y| total(x).total_cmp(&total(y)))?;
+    let shared = (0..m * n)
+        .map(|i| SharedNode {
+            nodes: [
+                a.mesh().node(lists[0][i]),
+                b.mesh().node(lists[1][partner(i, flip)]),
+            ],
+            t: parameters(&a.spec, sides[0], lists[0][i]),
+            link: Link::Free,
+        })
+        .collect();
+    Some(interface(bodies, pair, sides, Shape::Face, shared))
+}
+
+/// The interface of given nodes, with the mean of both bodies' normals and the distance along it.
+fn interface(
+    bodies: &[Body],
+    pair: [usize; 2],
+    sides: [usize; 2],
+    shape: Shape,
+    shared: Vec<SharedNode>,
+) -> Interface {
+    let [first, second] = [0, 1].map(|k| {
+        let nodes = shared.iter().map(|s| s.nodes[k]);
+        of_side(&bodies[pair[k]].spec, sides[k], nodes)
+    });
+    let normals: Vec<[f64; 3]> = first
+        .iter()
+        .zip(&second)
+        .map(|(n, m)| {
+            let sum = minus(*n, *m);
+            let length = norm(sum);
+            // Sides that do not face each other have no common normal: that of the first will do.
+            if length > 1e-3 {
+                sum.map(|v| v / length)
+            } else {
+                *n
+            }
+        })
+        .collect();
+    let distances = shared
+        .iter()
+        .zip(&normals)
+        .map(|(s, n)| {
+            let [x, y] = [0, 1].map(|k| {
+                let spec = &bodies[pair[k]].spec;
+                spec.position(spec.mesh.place(s.nodes[k]))
+            });
+            let distance = dot(minus(y, x), *n);
+            let size = x.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+            if distance.abs() <= 1e-14 * size {
+                0.0
+            } else {
+                distance
+            }
+        })
+        .collect();
+    Interface {
+        bodies: pair,
+        shape,
+        sides,
+        shared,
+        unmatched: Vec::new(),
+        order: [0, 1],
+        normals,
+        apart: false,
+        distances,
+        limits: Limits::default(),
+    }
+}
+
+/// Length of the shortest edge between nodes of a side.
+fn shortest(body: &BodySpec) -> f64 {
+    let mesh = &body.mesh;
+    let mut out = f64::INFINITY;
+    for place in mesh.boundary() {
+        let x = body.position(place);
+        for d in (0..mesh.dim()).filter(|&d| place[d] > 0) {
+            let mut before = place;
+            before[d] -= 1;
+            let y = body.position(before);
+            out = out.min(norm(minus(x, y)));
+        }
+    }
+    out
+}
+
+/// Nodes of a side by position.
+struct Grid<'a> {
+    body: &'a BodySpec,
+    cells: HashMap<[i64; 3], Vec<usize>>,
+    width: f64,
+}
+
+impl<'a> Grid<'a> {
+    fn new(body: &'a BodySpec, side: usize, near: f64) -> Grid<'a> {
+        let mut grid = Grid {
+            body,
+            cells: HashMap::new(),
+            width: 4.0 * near,
+        };
+        for place in body.mesh.side_nodes(side) {
+            let cell = grid.cell(body.position(place));
+            let list: &mut Vec<usize> = grid.cells.entry(cell).or_default();
+            list.push(body.mesh.node(place));
+        }
+        grid
+    }
+
+    fn cell(&self, x: [f64; 3]) -> [i64; 3] {
+        x.map(|v| (v / self.width).floor() as i64)
+    }
+
+    fn find(&self, x: [f64; 3], near: f64) -> Option<usize> {
+        let close = |&node: &usize| {
+            let y = self.body.position(self.body.mesh.place(node));
+            (0..3).all(|d| (x[d] - y[d]).abs() <= near)
+        };
+        let corner =
+            |c: usize| [0, 1, 2].map(|d| x[d] + if c >> d & 1 == 1 { near } else { -near });
+        (0..8).find_map(|c| {
+            let list = self.cells.get(&self.cell(corner(c)))?;
+            list.iter().copied().find(close)
+        })
+    }
+}

@@ -1,0 +1,75 @@
+//! An entry of [[tie]] or [[contact]], and how messages speak of it.
+
+use crate::scene::body::Body;
+use crate::scene::model::profile::Profile;
+use crate::scene::model::spec::{ContactSpec, Extent, Pair, TieSpec};
+
+/// One entry, of either kind.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry<'a> {
+    pub pair: &'a Pair,
+    pub extent: &'a Extent,
+    pub written: &'a str,
+    /// `None`: a tie.
+    pub contact: Option<Contact<'a>>,
+}
+
+/// What a contact says beyond its nodes.
+#[derive(Clone, Copy)]
+pub(crate) struct Contact<'a> {
+    pub gap: &'a Profile,
+    /// Number of the entry, `None` for the default.
+    pub number: Option<usize>,
+}
+
+impl<'a> Entry<'a> {
+    pub fn tie(spec: &'a TieSpec) -> Entry<'a> {
+        Entry {
+            pair: &spec.pair,
+            extent: &spec.extent,
+            written: &spec.written,
+            contact: None,
+        }
+    }
+
+    pub fn contact(number: usize, spec: &'a ContactSpec) -> Entry<'a> {
+        Entry {
+            pair: &spec.pair,
+            extent: &spec.extent,
+            written: &spec.written,
+            contact: Some(Contact {
+                gap: &spec.gap,
+                number: Some(number),
+            }),
+        }
+    }
+
+    /// "tie" or "contact".
+    pub fn what(&self) -> &'static str {
+        match self.contact {
+            None => "tie",
+            Some(_) => "contact",
+        }
+    }
+
+    /// Where it was written, for the middle of a sentence.
+    pub fn line(&self) -> &str {
+        match self.written.trim_end_matches(": ") {
+            "" => "another entry",
+            place => place,
+        }
+    }
+}
+
+/// The first few names, for messages.
+pub(crate) fn some_names(bodies: &[Body]) -> String {
+    let mut names: Vec<String> = bodies
+        .iter()
+        .take(6)
+        .map(|b| format!("`{}`", b.spec.name))
+        .collect();
+    if bodies.len() > 6 {
+        names.push("…".into());
+    }
+    names.join(", ")
+}
