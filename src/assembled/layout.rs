@@ -5,8 +5,8 @@
 //! ```
 //!
 //! A node with some components given keeps a place for them, in which w = 0 with a row of its own (*void*): multigrid for elasticity
-//! needs to know nodes from one another. So do supports that the scene does not have: rigid motions that ties, values and inequalities
-//! together leave free are taken away by as many dofs set to zero, which bear no force where the load is balanced.
+//! needs to know nodes from one another. So do supports that the scene does not have: rigid motions that ties, springs, values and
+//! inequalities together leave free are taken away by as many dofs set to zero, which bear no force where the load is balanced.
 
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ pub struct Layout<'a> {
     frames: BTreeMap<u64, Frame>,
     /// The rigid motions.
     pub motions: Motions,
-    /// What ties and given values hold of them.
+    /// What ties, springs and given values hold of them.
     pub held: Echelon,
     /// The forms of the inequalities.
     pub forms: Vec<Form>,
@@ -212,6 +212,13 @@ impl<'a> Layout<'a> {
     /// Number of rigid motions that nothing in the scene holds.
     pub fn loose(&self) -> usize {
         self.supports.len()
+    }
+
+    /// The places that are set to zero to take them away, increasing.
+    pub fn supports(&self) -> Vec<u64> {
+        let mut places: Vec<u64> = self.supports.iter().map(|s| s.0).collect();
+        places.sort_unstable();
+        places
     }
 
     /// The nodes of a row with the vectors that it takes the products of u with, divided by the length of the first; that length.

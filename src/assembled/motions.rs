@@ -1,4 +1,4 @@
-//! Rigid motions of bodies, and which of them ties, given values and rows leave free.
+//! Rigid motions of bodies, and which of them ties, springs, given values and rows leave free.
 //!
 //! A body moves by α ∈ Rᵐ, m = 1 (scalars), 3 or 6; all bodies by one long vector. A row that holds, a tie or a given value is a linear form
 //! in it that vanishes. Forms are collected in echelon form: whether one more is independent of them tells whether it holds
@@ -168,12 +168,17 @@ impl Motions {
         self.form(body, spec.position(place), inside % self.components)
     }
 
-    /// What ties and given values hold.
+    /// What ties, springs and given values hold.
     pub fn held(&self, scene: &Scene) -> Echelon {
         let mut out = Echelon::default();
         for (b, body) in scene.bodies.iter().enumerate() {
             for &(dof, _) in &body.prescribed {
                 out.insert(&self.at(scene, b, dof), 0.0);
+            }
+            for place in scene.sprung(body) {
+                for c in 0..self.components {
+                    out.insert(&self.form(b, body.spec.position(place), c), 0.0);
+                }
             }
         }
         for point in &scene.points {

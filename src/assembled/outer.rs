@@ -13,6 +13,7 @@ use std::time::Instant;
 
 use super::groups::{multipliers, Groups};
 use super::reduced::Reduced;
+use super::refine::{over, Refiner};
 use super::rows::Rows;
 use crate::parallel::meter::timed;
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
@@ -23,6 +24,9 @@ const ROUNDING: f64 = 1e-14;
 
 /// A row that is kept so that no body comes loose may pull by this much of the largest multiplier: nothing drives the body away.
 const IDLE: f64 = 1e-8;
+
+/// What a refined solution must satisfy.
+const CERTIFIED: f64 = 1e-9;
 
 /// Steps at most.
 const STEPS: usize = 200;
@@ -36,8 +40,17 @@ pub struct Tolerances {
     pub inner: f64,
     /// The preconditioner stays while at most this part of all rows has changed since it was built.
     pub lag: f64,
-    /// Solves per step, of which all but the first refine a direct solution.
-    pub solves: usize,
+}
+
+/// How the equations of one active set are solved.
+#[derive(Clone, Copy)]
+pub enum Solve<'a> {
+    /// By one solve.
+    Once,
+    /// By so many solves, of which all but the first refine a direct solution.
+    Repeated(usize),
+    /// By a direct solution that is refined in twice the working precision.
+    Refined(&'a Refiner<'a>),
 }
 
 /// What the loop has found.
@@ -60,10 +73,36 @@ pub struct Found {
     pub solve: f64,
     /// Residual, relative to the load.
     pub residual: f64,
-    /// Whether the set has settled and the residual was met.
+    /// How well the conditions of optimality hold.
+    pub certificate: Certificate,
+    /// Whether the set has settled and the residual was met, or the certificate where the solution is refined.
     pub converged: bool,
     /// Why it ended.
     pub reason: String,
+}
+
+/// How well the conditions of optimality hold, each relative to the size of its terms.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Certificate {
+    /// The last correction of a refinement over the solution, in the energy norm and by the largest displacement, whichever is larger:
+    /// what residuals of the assembled problem mean for u, also where they are small against the terms that make them up.
+    pub correction: f64,
+    /// Largest violation over the largest |u|.
+    pub feasibility: f64,
+    /// Largest pull, over the largest multiplier.
+    pub pull: f64,
+}
+
+impl Certificate {
+    /// The largest of them.
+    pub fn largest(&self) -> f64 {
+        self.correction.max(self.feasibility).max(self.pull)
+    }
+
+    /// Whether a refined solution is one.
+    pub fn holds(&self) -> bool {
+        self.largest() < CERTIFIED
+    }
 }
 
 /// How carefully the loop goes on.
@@ -88,6 +127,7 @@ pub fn solve(
     reduced: &Reduced,
     solvers: &mut Solvers,
     tolerances: Tolerances,
+    solve: Solve,
     given: Option<&[bool]>,
 ) -> Result<Found> {
     let (whole, mut setup) = (Instant::now(), 0.0);
@@ -137,11 +177,19 @@ pub fn solve(
             _ => target,
         };
         let mut reason = "CONVERGED_NOTHING_TO_DO".to_string();
-        let mut failed = false;
-        for _ in 0..tolerances.solves {
-            if tolerances.solves == 1 && residual <= stop {
-                break;
-            }
+        let (mut failed, mut correction) = (false, 0.0);
+        if let Solve::Refined(refiner) = solve {
+            let refined = refiner.refine(&now, &ksp, &v)?;
+            (residual, correction) = (refined.residual, refined.correction);
+            (reason, failed) = refined.reason;
+            iterations += refined.rounds;
+        }
+        let solves = match solve {
+            Solve::Once => usize::from(residual > stop),
+            Solve::Repeated(solves) => solves,
+            Solve::Refined(_) => 0,
+        };
+        for _ in 0..solves {
             ksp.set_tolerances(Some((stop / residual).min(0.9)), Some(0.0), None, None)?;
             ksp.solve(&r, &d)?;
             v.axpy(1.0, &d)?;
@@ -154,18 +202,14 @@ pub fn solve(
         reduced.spread(&now, &v, &u)?;
 
         let at = reduced.trace.get(session.comm(), &u)?;
-        let judged = Judged::new(
-            rows,
-            &active,
-            multipliers(rows, &active, &reduced.forces(&u)?),
-            rows.gaps(&at),
-            u.norm_inf()?,
-        );
-        let relative = if reference > 0.0 {
-            residual / reference
-        } else {
-            residual
+        let forces = match solve {
+            Solve::Refined(refiner) => refiner.forces(&u)?,
+            _ => reduced.forces(&u)?,
         };
+        let lambda = multipliers(rows, &active, &forces);
+        let judged = Judged::new(rows, &active, lambda, rows.gaps(&at), u.norm_inf()?);
+        let certificate = judged.certificate(correction);
+        let relative = over(residual, reference);
         let mut next = judged.next.clone();
         if caution == Caution::Single {
             judged.keep_worst(&active, &mut next);
@@ -173,14 +217,21 @@ pub fn solve(
         let restored = rows.restore(&mut next, &judged.score);
         let stays = next == active;
         let to_the_end = stop <= target;
+        let refined = matches!(solve, Solve::Refined(_));
+        // Sets that come back differ in rows that rounding moves.
+        let settled = stays || (refined && caution != Caution::Loose && certificate.holds());
+        let met = match refined {
+            true => certificate.holds(),
+            false => relative <= tolerances.rtol,
+        };
         let end = if failed {
             Some((false, reason))
         } else if given.is_some() {
-            Some((true, reason))
-        } else if stays && to_the_end {
+            Some((!refined || met, reason))
+        } else if settled && to_the_end {
             let idle = |r: &usize| judged.lambda[*r] >= -IDLE * judged.largest[0];
             match restored.iter().all(idle) {
-                true => Some((relative <= tolerances.rtol, reason)),
+                true => Some((met, reason)),
                 false => Some((false, "DIVERGED_CONTACT_LOOSE".to_string())),
             }
         } else if steps >= STEPS {
@@ -199,6 +250,7 @@ pub fn solve(
                 setup,
                 solve: whole.elapsed().as_secs_f64() - setup,
                 residual: relative,
+                certificate,
                 converged,
                 reason,
             });
@@ -262,6 +314,16 @@ impl Judged {
             }
         }
         out
+    }
+
+    /// With the last correction of u.
+    fn certificate(&self, correction: f64) -> Certificate {
+        let most = |list: &[f64], sign: f64| list.iter().fold(0.0f64, |a, v| a.max(sign * v));
+        Certificate {
+            correction,
+            feasibility: over(most(&self.gaps, 1.0), self.largest[1]),
+            pull: over(most(&self.lambda, -1.0), self.largest[0]),
+        }
     }
 
     /// Of all changes only the worst stays.

@@ -51,7 +51,7 @@ impl Reduced {
     /// PETSc's.
     pub fn new(
         session: &Session,
-        system: System,
+        system: &System,
         rows: &Rows,
         kernel: NearKernel,
     ) -> Result<Reduced> {
@@ -78,48 +78,11 @@ impl Reduced {
             let own = own.count();
             all.push([own as i32, (cols.len() - own) as i32]);
         }
-        let partners = rows.lower_partners();
-        let room = Room::new(session.comm(), &partners, &trace, &all);
-        let n = system.a.size()?.0;
-        let mut d: Vec<i32> = all.iter().map(|r| r[0]).collect();
-        let mut o: Vec<i32> = all.iter().map(|r| r[1]).collect();
-        for (k, row) in &touched {
-            let i = row.row as usize - range.start;
-            let most = room.of(*k, row.cols.len());
-            d[i] = most.min(range.len()) as i32;
-            o[i] = most.min(n - range.len()) as i32;
-        }
-        let a = Mat::preallocated(session, Comm::World, range.len(), range.len(), &d, &o)?;
-        // The columns in which a row may get entries: those of K, and what leads them.
-        for (k, row) in &touched {
-            let mut cols: Vec<i32> = Vec::new();
-            for &c in &row.cols {
-                match index(c) {
-                    Some(j) => cols.extend(partners[j].iter().map(|&p| unknowns[p])),
-                    None => cols.push(c),
-                }
-            }
-            cols.sort_unstable();
-            cols.dedup();
-            let zeros = vec![0.0; cols.len()];
-            match k {
-                Some(k) => {
-                    for &p in &partners[*k] {
-                        a.add_values(&[unknowns[p]], &cols, &zeros)?;
-                    }
-                }
-                None => a.add_values(&[row.row], &cols, &zeros)?,
-            }
-        }
-        let mut next = touched.iter().map(|(_, row)| row.row).peekable();
-        for row in range {
-            if next.next_if_eq(&(row as i32)).is_none() {
-                let (cols, vals) = system.a.row(row)?;
-                a.add_values(&[row as i32], &cols, &vals)?;
-            }
-        }
-        a.assemble()?;
-        a.set_flag(MatFlag::Spd)?;
+        // Without inequalities there is one set, and K its matrix.
+        let a = match rows.len() {
+            0 => system.a.clone(),
+            _ => pattern(session, system, rows, &trace, &touched, &all)?,
+        };
         let mut near: Vec<i32> = touched.iter().flat_map(|(_, r)| r.cols.clone()).collect();
         near.sort_unstable();
         near.dedup();
@@ -130,7 +93,7 @@ impl Reduced {
             trace,
             reference: system.reference,
             scatter: Scatter::new(&system.b, &near, &near_u)?,
-            f: system.b,
+            f: system.b.clone(),
             unknowns,
             touched,
             near,
@@ -283,6 +246,62 @@ impl Reduced {
             _ => b.norm2(),
         }
     }
+}
+
+/// The matrix with room for all sets: every row of K that no set changes, zeros in the others. Collective.
+fn pattern(
+    session: &Session,
+    system: &System,
+    rows: &Rows,
+    trace: &Trace,
+    touched: &[(Option<usize>, KRow)],
+    lengths: &[[i32; 2]],
+) -> Result<Mat> {
+    let unknowns: Vec<i32> = rows.unknowns.iter().map(|&u| u as i32).collect();
+    let index = |g: i32| unknowns.binary_search(&g).ok();
+    let partners = rows.lower_partners();
+    let room = Room::new(session.comm(), &partners, trace, lengths);
+    let (n, range) = (system.a.size()?.0, system.a.ownership_range()?);
+    let mut d: Vec<i32> = lengths.iter().map(|r| r[0]).collect();
+    let mut o: Vec<i32> = lengths.iter().map(|r| r[1]).collect();
+    for (k, row) in touched {
+        let i = row.row as usize - range.start;
+        let most = room.of(*k, row.cols.len());
+        d[i] = most.min(range.len()) as i32;
+        o[i] = most.min(n - range.len()) as i32;
+    }
+    let a = Mat::preallocated(session, Comm::World, range.len(), range.len(), &d, &o)?;
+    // The columns in which a row may get entries: those of K, and what leads them.
+    for (k, row) in touched {
+        let mut cols: Vec<i32> = Vec::new();
+        for &c in &row.cols {
+            match index(c) {
+                Some(j) => cols.extend(partners[j].iter().map(|&p| unknowns[p])),
+                None => cols.push(c),
+            }
+        }
+        cols.sort_unstable();
+        cols.dedup();
+        let zeros = vec![0.0; cols.len()];
+        match k {
+            Some(k) => {
+                for &p in &partners[*k] {
+                    a.add_values(&[unknowns[p]], &cols, &zeros)?;
+                }
+            }
+            None => a.add_values(&[row.row], &cols, &zeros)?,
+        }
+    }
+    let mut next = touched.iter().map(|(_, row)| row.row).peekable();
+    for row in range {
+        if next.next_if_eq(&(row as i32)).is_none() {
+            let (cols, vals) = system.a.row(row)?;
+            a.add_values(&[row as i32], &cols, &vals)?;
+        }
+    }
+    a.assemble()?;
+    a.set_flag(MatFlag::Spd)?;
+    Ok(a)
 }
 
 /// How many entries a row that changes may get.

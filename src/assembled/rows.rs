@@ -32,7 +32,7 @@ pub struct Rows {
     pub rows: Vec<Row>,
     /// Whether each row holds to begin with.
     pub initial: Vec<bool>,
-    /// What ties and given values hold of the rigid motions.
+    /// What ties, springs and given values hold of the rigid motions.
     pub(super) held: Echelon,
     /// The forms of the rows on them.
     pub(super) forms: Vec<Form>,
@@ -143,7 +143,7 @@ impl Rows {
     }
 
     /// Puts rows into `active` until nothing is loose that the rows together hold: in the order of their scores those that take away
-    /// a rigid motion which ties, given values and the rows before them leave. Returns the rows that were put in.
+    /// a rigid motion which ties, springs, given values and the rows before them leave. Returns the rows that were put in.
     pub fn restore(&self, active: &mut [bool], score: &[f64]) -> Vec<usize> {
         let mut held = self.held.clone();
         let (mut on, mut off): (Vec<usize>, Vec<usize>) = (0..self.len()).partition(|&r| active[r]);

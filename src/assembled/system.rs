@@ -21,6 +21,15 @@ pub enum Format {
     Unassembled,
 }
 
+/// How copies of an unknown that differ are weighted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Copies {
+    /// With ρ, as the method's own scaling has it.
+    ByCoefficient,
+    /// All alike.
+    Alike,
+}
+
 /// The assembled problem on N unknowns.
 pub struct System {
     /// A, N × N, symmetric positive definite unless bodies are held by inequalities only.
@@ -122,7 +131,7 @@ impl System {
     }
 
     /// The assembled form of subdomain vectors whose copies may differ by what the iteration has left: at each unknown of the scene the
-    /// mean of the copies with weight ρ, as the method's own scaling has it, taken to w; and the sum of the weights. Collective.
+    /// mean of the copies, taken to w; and the sum of the weights. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -132,18 +141,21 @@ impl System {
         subdomains: &[Subdomain],
         u: &[Vec<f64>],
         unknowns: &Unknowns,
+        copies: Copies,
     ) -> Result<(PetscVec, PetscVec)> {
         let places = places(subdomains, unknowns.layout);
-        let rho: Vec<f64> = subdomains
-            .iter()
-            .flat_map(|s| s.rho.iter().copied())
-            .collect();
-        let weighted: Vec<f64> = u.iter().flatten().zip(&rho).map(|(u, w)| u * w).collect();
+        let each = subdomains.iter().flat_map(|s| &s.rho);
+        let weights: Vec<f64> = match copies {
+            Copies::ByCoefficient => each.copied().collect(),
+            Copies::Alike => each.map(|_| 1.0).collect(),
+        };
+        let weighted = u.iter().flatten().zip(&weights);
+        let weighted: Vec<f64> = weighted.map(|(u, w)| u * w).collect();
         let (sum, weight) = (self.b.duplicate()?, self.b.duplicate()?);
         let local = PetscVec::from_slice(session, &weighted)?;
         let scatter = Scatter::new(&sum, &places, &local)?;
         scatter.reverse_add(&local, &sum)?;
-        scatter.reverse_add(&PetscVec::from_slice(session, &rho)?, &weight)?;
+        scatter.reverse_add(&PetscVec::from_slice(session, &weights)?, &weight)?;
         let mean = self.b.duplicate()?;
         mean.pointwise_divide(&sum, &weight)?;
         unknowns.layout.settle(session, &mean)?;

@@ -9,7 +9,7 @@ use super::table::Baseline;
 use super::task::{ContactOutcome, Job, Outcome};
 use crate::assembled::layout::Layout;
 use crate::assembled::near::NearKernel;
-use crate::assembled::outer::{self, Tolerances};
+use crate::assembled::outer::{self, Solve, Tolerances};
 use crate::assembled::reduced::Reduced;
 use crate::assembled::rows::Rows;
 use crate::assembled::system::System;
@@ -40,7 +40,7 @@ pub fn baseline(
             true => Some(SecondLoad::new(scene).of(&unknowns, &system.b)?),
             false => None,
         };
-        let reduced = Reduced::new(session, system, &rows, kernel)?;
+        let reduced = Reduced::new(session, &system, &rows, kernel)?;
         Ok((rows, reduced, load))
     })?;
     let (ksp, mut krylov) = solver(session, row, &reduced.a)?;
@@ -53,7 +53,6 @@ pub fn baseline(
             rtol,
             inner: if direct { 0.0 } else { job.inner },
             lag: row.lag,
-            solves: 1,
         };
         // GAMG keeps the rigid motions that it saw first, and they change with the set.
         let mut solvers = || {
@@ -62,7 +61,15 @@ pub fn baseline(
             }
             Ok(last.clone())
         };
-        let found = outer::solve(session, &rows, reduced, &mut solvers, tolerances, None)?;
+        let found = outer::solve(
+            session,
+            &rows,
+            reduced,
+            &mut solvers,
+            tolerances,
+            Solve::Once,
+            None,
+        )?;
         Ok((found, kappa(&krylov)?))
     };
     let (attempt, rtol, message) = solve_to(job.rtol, first, |rtol| {

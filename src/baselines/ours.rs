@@ -3,14 +3,13 @@
 use std::path::Path;
 
 use super::attempt::{solve_to, Attempt};
-use super::judge::stationarity;
 use super::second::SecondLoad;
 use super::task::{ContactOutcome, Job, Outcome};
-use crate::assembled::groups::Groups;
 use crate::assembled::layout::Layout;
+use crate::assembled::problem::Problem;
 use crate::assembled::rows::Rows;
-use crate::assembled::system::{Format, System};
-use crate::assembled::unknowns::{Trace, Unknowns};
+use crate::assembled::system::{Copies, Format};
+use crate::assembled::unknowns::Unknowns;
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::parallel::exchange::{gather_all, max_all};
 use crate::parallel::meter::{memory, timed};
@@ -42,33 +41,37 @@ pub fn solve(
     // The assembled matrix is for the residual only: what it needs does not count.
     let layout = Layout::new(scene);
     let unknowns = Unknowns::all(&layout);
-    let mut system: Option<Assembled> = None;
+    let mut problem: Option<Problem> = None;
     let mut bytes = 0.0;
     let (attempt, rtol, message) = solve_to(job.rtol, job.rtol, |rtol| {
         solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
         let (solution, _) = timed(session, || solver.solve())?;
-        if system.is_none() {
+        if problem.is_none() {
             bytes = memory(session);
-            system = Some(Assembled::new(session, scene, &unknowns)?);
+            let format = Format::Unassembled;
+            problem = Some(Problem::new(session, scene, &unknowns, format)?);
         }
-        let system = system.as_ref().expect("it was built above");
-        let local = &solver.problem().local;
-        let (u, weight) = system.system.mean(session, local, &solution.u, &unknowns)?;
+        let problem = problem.as_ref().expect("it was built above");
+        let (local, copies) = (&solver.problem().local, Copies::ByCoefficient);
+        let mean = problem
+            .system
+            .mean(session, local, &solution.u, &unknowns, copies);
+        let (u, weight) = mean?;
         let (residual, contact) = match scene.has_contact() {
             true => {
-                let active = active(session, scene, &solver, &solution, &system.rows)?;
+                let active = active(session, scene, &solver, &solution, &problem.rows)?;
                 let outcome = ContactOutcome {
                     steps: Some(solution.steps.len()),
-                    active: system.rows.list(&active),
+                    active: problem.rows.list(&active),
                 };
                 let residual = match layout.trouble {
-                    None => system.close(session, active, &u, &weight)?,
+                    None => close(session, problem, active, &u, &weight)?,
                     // There is no assembled problem to have a residual.
                     Some(_) => 0.0,
                 };
                 (residual, Some(outcome))
             }
-            false => (system.system.relative_residual(&u)?, None),
+            false => (problem.system.relative_residual(&u)?, None),
         };
         let recover = solution.recover_seconds;
         let mut seconds = [solution.solve_seconds + recover, recover];
@@ -126,42 +129,20 @@ fn again(
     Ok(seconds[0])
 }
 
-/// K, f and the inequalities.
-struct Assembled {
-    system: System,
-    rows: Rows,
-    trace: Trace,
-}
-
-impl Assembled {
-    fn new(session: &Session, scene: &Scene, unknowns: &Unknowns) -> Result<Assembled> {
-        let system = System::new(session, scene, unknowns, Format::Unassembled)?;
-        let rows = Rows::new(scene, unknowns.layout);
-        let trace = Trace::new(&rows, &system.b);
-        Ok(Assembled {
-            system,
-            rows,
-            trace,
-        })
-    }
-
-    /// Closes what the iteration has left of the jumps on the active rows, as the weighted mean of both sides does on tied faces,
-    /// and returns the residual. Collective.
-    fn close(
-        &self,
-        session: &Session,
-        mut active: Vec<bool>,
-        u: &PetscVec,
-        weight: &PetscVec,
-    ) -> Result<f64> {
-        let in_order: Vec<usize> = (0..self.rows.len()).collect();
-        let groups = Groups::new(&self.rows, &mut active, &in_order);
-        let comm = session.comm();
-        let [at, weight] = [self.trace.get(comm, u)?, self.trace.get(comm, weight)?];
-        self.trace
-            .set(u, &groups.spread(&groups.nearest(&at, &weight)))?;
-        stationarity(session, &self.system, &self.trace, &groups, u)
-    }
+/// Closes what the iteration has left of the jumps on the active rows, as the weighted mean of both sides does on tied faces,
+/// and returns the residual. Collective.
+fn close(
+    session: &Session,
+    problem: &Problem,
+    mut active: Vec<bool>,
+    u: &PetscVec,
+    weight: &PetscVec,
+) -> Result<f64> {
+    let groups = problem.groups(&mut active);
+    let at = |x: &PetscVec| problem.trace.get(session.comm(), x);
+    let nearest = groups.nearest(&at(u)?, &at(weight)?);
+    problem.trace.set(u, &groups.spread(&nearest))?;
+    problem.stationarity(session, &groups, u)
 }
 
 /// Which of the scene's inequalities are active, the same on every rank. Collective.

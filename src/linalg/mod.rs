@@ -9,5 +9,6 @@ pub mod single;
 pub mod symmetric;
 #[cfg(test)]
 pub(crate) mod testing;
+pub(crate) mod twice;
 pub(crate) mod union_find;
 pub(crate) mod vec3;

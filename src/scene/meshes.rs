@@ -77,6 +77,18 @@ impl Scene {
         Ok(mesh)
     }
 
+    /// Nodes of a body that springs hold.
+    pub(crate) fn sprung(&self, body: &Body) -> Vec<[usize; 3]> {
+        let mesh = body.mesh();
+        let held = |stiffness: &Field, place: &[usize; 3]| {
+            let block = mesh.block(mesh.owner(*place));
+            evaluate(body, &block, stiffness, body.spec.position(*place)) > 0.0
+        };
+        let sides = body.spec.springs.iter();
+        let nodes = sides.flat_map(|(side, k)| mesh.side_nodes(*side).filter(move |p| held(k, p)));
+        nodes.collect()
+    }
+
     /// The body of subdomain `index`, and its elements.
     pub(super) fn place(&self, index: usize) -> (&Body, Block) {
         let (body, inside) = self.body_of(index);

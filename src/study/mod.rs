@@ -4,7 +4,6 @@
 //! would write it.
 
 pub mod adaptive;
-mod direct;
 pub mod hard_cases;
 pub mod hertz;
 pub mod kappa;

@@ -4,13 +4,15 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::{Bddc, Case, Effort, Fine, Plain, Record, Run, RTOL, USUAL};
+use crate::assembled::layout::Layout;
+use crate::assembled::reference::{Precision, Reference};
+use crate::assembled::system::Copies;
 use crate::baselines::single;
 use crate::feti::settings::Adaptive;
 use crate::feti::{FetiFeti, Settings, Solution};
 use crate::petsc::Session;
 use crate::report::output;
 use crate::scene::{distribution, Numbering, Scene};
-use crate::study::direct::Direct;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
@@ -52,7 +54,8 @@ pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result
         subdomains: scene.n_subdomains(),
         ..Record::default()
     };
-    let direct = Direct::new(&scene);
+    let layout = Layout::new(&scene);
+    let direct = Reference::certified(session, &scene, &layout);
     if let Err(e) = &direct {
         eprintln!("{}: {e}", case.name);
     }
@@ -61,22 +64,27 @@ pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result
         direct: direct.as_ref(),
         parts: &problem.local,
     };
-    record.reference = direct.as_ref().map(|d| d.certificate.largest());
-    record.last_place = direct.as_ref().map(last_place);
-    let known = direct.as_ref().map(|d| &d.active[..]);
-    let mumps = single::refined(session, &scene, &problem.local, known);
+    if let Some(direct) = &direct {
+        record.reference = Some(direct.found.certificate.largest());
+        record.last_place = Some(last_place(direct, &scene, &problem.local)?);
+    }
+    let known = direct.as_ref().map(|d| &d.found.active[..]);
+    let mumps = mumps(session, &scene, &layout, known);
     if let Err(e) = &mumps {
         eprintln!("{}, MUMPS: {e}", case.name);
     }
-    let mumps = mumps.ok().filter(|m| m.converged);
-    record.mumps = mumps.as_ref().and_then(|m| court.error(&m.u));
+    let mumps = mumps.ok().filter(|m| m.found.converged);
+    if let Some(mumps) = &mumps {
+        record.mumps = court.error(&mumps.values(&problem.local)?)?;
+    }
     ours(session, &problem, &court, effort, &mut record)?;
     // In contact it solves the equations of a set that is known.
     let known = mumps.is_some() || !scene.has_contact();
     if effort.patience > 0 && known {
-        let active = mumps.as_ref().map_or(&[][..], |m| &m.active);
+        let list = |m: &Reference| m.problem.rows.list(&m.found.active);
+        let active = mumps.as_ref().map_or_else(Vec::new, list);
         for run in &mut record.runs {
-            run.bddc = Some(bddc(&file, &scene, case.bodies, run.tau, active, effort)?);
+            run.bddc = Some(bddc(&file, &scene, case.bodies, run.tau, &active, effort)?);
         }
     }
     let (reference, mumps) = (record.reference.is_some(), record.mumps);
@@ -84,6 +92,22 @@ pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result
         run.fails = run.judge(reference, mumps);
     }
     Ok(record)
+}
+
+/// What MUMPS finds with iterative refinement in working precision. Where the active set around it does not settle and `known` is one that
+/// is known to be right, its equations are solved.
+fn mumps<'a>(
+    session: &Session,
+    scene: &Scene,
+    layout: &'a Layout<'a>,
+    known: Option<&[bool]>,
+) -> Result<Reference<'a>> {
+    let solve = |set| Reference::new(session, scene, layout, Precision::Working, set);
+    let found = solve(None)?;
+    match known {
+        Some(known) if !found.found.converged => solve(Some(known)),
+        _ => Ok(found),
+    }
 }
 
 /// Without and with deflation, in turns, so that what else the machine does meets all of them.
@@ -116,7 +140,7 @@ fn ours(
             if round == 0 {
                 match way {
                     Adaptive::Below(tau) => record.runs.push(deflated(tau, &solved, court)?),
-                    _ => plain(&solved, court, effort, record),
+                    _ => plain(&solved, court, effort, record)?,
                 }
             }
         }
@@ -161,7 +185,7 @@ fn refused(way: Adaptive, said: String, record: &mut Record) {
     }
 }
 
-fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) {
+fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) -> Result<()> {
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
     record.multipliers = facts.multipliers_local + facts.multipliers_global;
@@ -176,9 +200,10 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) {
         estimate: solution.estimate.map(|s| s.kappa()),
         iterations: solution.iterations,
         seconds: 0.0,
-        error: court.error(&solution.u),
+        error: court.error(&solution.u)?,
         message: (!solution.converged).then(|| solution.reason.clone()),
     };
+    Ok(())
 }
 
 fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
@@ -197,7 +222,7 @@ fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
         most: vectors.iter().copied().max().unwrap_or(0),
         capped: cost.as_ref().map_or(0, |c| c.capped.len()),
         iterations: solution.iterations,
-        error: court.error(&solution.u),
+        error: court.error(&solution.u)?,
         message: (!solution.converged).then(|| solution.reason.clone()),
         ..Run::default()
     };
@@ -211,7 +236,7 @@ fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Op
     for rtol in TIGHTER {
         solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
         let Ok(tight) = solver.solve() else { break };
-        least = match (least, court.error(&tight.u)) {
+        least = match (least, court.error(&tight.u)?) {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
@@ -304,43 +329,30 @@ fn bddc(
 
 /// Who says how far a solution is from the direct one.
 struct Court<'a> {
-    direct: Option<&'a Direct>,
+    direct: Option<&'a Reference<'a>>,
     parts: &'a [Subdomain],
 }
 
 impl Court<'_> {
     /// The distance in the energy norm, relative. Copies that differ count with the weight of their coefficients, as in `compare`.
-    fn error(&self, u: &[Vec<f64>]) -> Option<f64> {
-        let direct = self.direct?;
-        let n = direct.u.len();
-        let (mut sum, mut weight) = (vec![0.0; n], vec![0.0; n]);
-        for (part, u) in self.parts.iter().zip(u) {
-            for ((&dof, value), rho) in part.dofs.iter().zip(u).zip(&part.rho) {
-                let i = direct.unknown(dof);
-                sum[i] += rho * (value - direct.u[i]);
-                weight[i] += rho;
-            }
-        }
-        let d: Vec<f64> = sum.iter().zip(&weight).map(|(s, w)| s / w).collect();
-        let size = direct.energy(&direct.u).max(0.0).sqrt();
-        let distance = direct.energy(&d).max(0.0).sqrt();
-        Some(if size > 0.0 {
-            distance / size
-        } else {
-            distance
-        })
+    fn error(&self, u: &[Vec<f64>]) -> Result<Option<f64>> {
+        let distance = |d: &Reference| d.distance(self.parts, u, Copies::ByCoefficient);
+        Ok(self.direct.map(distance).transpose()?.map(|d| d[0]))
     }
 }
 
 /// What the last digit of every displacement is worth in the energy norm.
-fn last_place(direct: &Direct) -> f64 {
-    let up_or_down = |(i, u): (usize, &f64)| {
-        let up = i.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 63 == 0;
-        u * f64::EPSILON * if up { 1.0 } else { -1.0 }
-    };
-    let d: Vec<f64> = direct.u.iter().enumerate().map(up_or_down).collect();
-    let size = direct.energy(&direct.u).max(0.0).sqrt();
-    direct.energy(&d).max(0.0).sqrt() / if size > 0.0 { size } else { 1.0 }
+fn last_place(direct: &Reference, scene: &Scene, parts: &[Subdomain]) -> Result<f64> {
+    let numbering = Numbering::new(scene);
+    let mut d = direct.values(parts)?;
+    for (part, d) in parts.iter().zip(&mut d) {
+        for (d, &dof) in d.iter_mut().zip(&part.dofs) {
+            let i = numbering.global(dof) as usize;
+            let up = i.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 63 == 0;
+            *d *= f64::EPSILON * if up { 1.0 } else { -1.0 };
+        }
+    }
+    direct.size(parts, &d, Copies::Alike)
 }
 
 /// The middle one; 0 of none.

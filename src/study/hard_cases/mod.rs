@@ -9,10 +9,11 @@ pub use cases::{cases, Case};
 
 use serde::{Deserialize, Serialize};
 
-use super::direct::Direct;
 use super::solved::Solved;
+use crate::assembled::layout::Layout;
+use crate::assembled::reference::Reference;
+use crate::assembled::system::Copies;
 use crate::feti::Settings;
-use crate::parallel::exchange::gather_all;
 use crate::petsc::Session;
 use crate::report::json;
 use crate::report::tables::table::{count, fixed, scientific, Align, Table};
@@ -170,8 +171,8 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
         // The scene has been read: what is refused now is said not to have a solution.
         Err(e @ (Error::Input(_) | Error::Unfit(_) | Error::NotConverged(_))) => {
             record.message = Some(e.to_string());
-            let exists = on_first(session, || Ok(vec![f64::from(Direct::new(&scene).is_ok())]))?;
-            record.verdict = match (exists[0] > 0.0, &e) {
+            let exists = Reference::certified(session, &scene, &Layout::new(&scene)).is_ok();
+            record.verdict = match (exists, &e) {
                 (true, Error::Input(_) | Error::Unfit(_)) => Verdict::Wrong,
                 (true, _) => Verdict::NotConverged,
                 (false, _) => Verdict::Refused,
@@ -204,39 +205,26 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         complementarity: solution.kkt.complementarity,
         min_multiplier: (facts.inequalities > 0).then_some(solution.kkt.min_multiplier),
     });
-    let mut words = Vec::new();
-    for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
-        words.extend(
-            sub.dofs
-                .iter()
-                .zip(u)
-                .flat_map(|(&dof, u)| [dof, u.to_bits()]),
-        );
-    }
-    let words = gather_all(session.comm(), &words).concat();
     let rows = solved.rows(session)?;
     let active = rows.iter().filter(|r| r.inequality && r.active).count();
-    let found = on_first(session, || {
-        let direct = match Direct::new(&solved.scene) {
-            Ok(direct) => direct,
-            Err(e @ Error::NotConverged(_)) => {
-                eprintln!("{}: {e}", solved.scene.title);
-                return Ok(Vec::new());
-            }
-            Err(e) => return Err(e),
-        };
-        let [energy, largest] = distance(&direct, &words);
-        let certificate = direct.certificate.largest();
-        let active = direct.active.iter().filter(|a| **a).count();
-        Ok(vec![energy, largest, certificate, active as f64])
-    })?;
     let inequalities = facts.inequalities > 0;
     record.active[0] = inequalities.then_some(active);
-    if let [energy, largest, certificate, active] = found[..] {
-        record.error_energy = Some(energy);
-        record.error_max = Some(largest);
-        record.reference = Some(certificate);
-        record.active[1] = inequalities.then_some(active as usize);
+    let layout = Layout::new(&solved.scene);
+    match Reference::certified(session, &solved.scene, &layout) {
+        Ok(direct) => {
+            let local = &solver.problem().local;
+            let [energy, largest] = direct.distance(local, &solution.u, Copies::Alike)?;
+            record.error_energy = Some(energy);
+            record.error_max = Some(largest);
+            record.reference = Some(direct.found.certificate.largest());
+            let active = direct.found.active.iter().filter(|a| **a).count();
+            record.active[1] = inequalities.then_some(active);
+        }
+        Err(e @ Error::NotConverged(_)) if session.rank() == 0 => {
+            eprintln!("{}: {e}", solved.scene.title);
+        }
+        Err(Error::NotConverged(_)) => {}
+        Err(e) => return Err(e),
     }
     let near = |e: Option<f64>| e.is_some_and(|e| e <= LIMIT);
     record.verdict = match solution.converged {
@@ -251,39 +239,6 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         record.message = Some("the direct solver finds no solution".into());
     }
     Ok(())
-}
-
-/// The distance of a torn solution, as pairs of body dof and value, from the direct one: in the energy norm, and the largest.
-fn distance(direct: &Direct, words: &[u64]) -> [f64; 2] {
-    let n = direct.u.len();
-    let (mut sum, mut copies) = (vec![0.0; n], vec![0.0; n]);
-    let mut largest = 0.0_f64;
-    for pair in words.chunks_exact(2) {
-        let (i, value) = (direct.unknown(pair[0]), f64::from_bits(pair[1]));
-        let difference = value - direct.u[i];
-        largest = largest.max(difference.abs());
-        sum[i] += difference;
-        copies[i] += 1.0;
-    }
-    let d: Vec<f64> = sum.iter().zip(&copies).map(|(s, c)| s / c).collect();
-    let size = direct.u.iter().fold(0.0_f64, |a, u| a.max(u.abs()));
-    let energy = direct.energy(&direct.u).max(0.0).sqrt();
-    let over = |x: f64, size: f64| if size > 0.0 { x / size } else { x };
-    [
-        over(direct.energy(&d).max(0.0).sqrt(), energy),
-        over(largest, size),
-    ]
-}
-
-/// Numbers that rank 0 works out, on every rank. Collective.
-fn on_first(session: &Session, work: impl FnOnce() -> Result<Vec<f64>>) -> Result<Vec<f64>> {
-    let numbers = session.agree(match session.rank() {
-        0 => work(),
-        _ => Ok(Vec::new()),
-    })?;
-    let words: Vec<u64> = numbers.iter().map(|v| v.to_bits()).collect();
-    let all = gather_all(session.comm(), &words).concat();
-    Ok(all.into_iter().map(f64::from_bits).collect())
 }
 
 /// All cases.

@@ -1,0 +1,325 @@
+//! The reference: a direct solution that shares nothing with the method but the matrices of the subdomains.
+//!
+//! MUMPS factors the assembled matrix, an active set stands around it where there are inequalities, and every solution is refined, by default
+//! in twice the working precision. On any number of ranks.
+
+use super::layout::Layout;
+use super::near::{Near, NearKernel};
+use super::outer::{self, Found, Solve, Tolerances};
+use super::problem::Problem;
+use super::reduced::Reduced;
+use super::refine::{over, Refiner};
+use super::system::{Copies, Format};
+use super::unknowns::Unknowns;
+use crate::mesh::contiguous_share;
+use crate::parallel::exchange::{max_all, sum_all};
+use crate::petsc::{Comm, Ksp, Scatter, Session, Vec as PetscVec};
+use crate::scene::Scene;
+use crate::substructures::Subdomain;
+use crate::{Error, Result};
+
+/// Residual that a solution in working precision must have; refined, it has what rounding leaves.
+const TARGET: f64 = 1e-8;
+
+/// Solves with one factor in working precision, of which all but the first refine.
+const SOLVES: usize = 3;
+
+/// Supports that the scene does not have may bear this much of the load.
+const BALANCED: f64 = 1e-8;
+
+/// With which precision residuals are summed up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// That of the matrix: what MUMPS with iterative refinement attains.
+    Working,
+    /// Twice that: what errors are measured against.
+    Twice,
+}
+
+/// The direct solution of a scene at its last load step.
+pub struct Reference<'a> {
+    session: Session,
+    layout: &'a Layout<'a>,
+    /// The assembled problem.
+    pub problem: Problem,
+    /// Its solution.
+    pub found: Found,
+}
+
+impl<'a> Reference<'a> {
+    /// Solves `scene`, whose layout this is; where a set is `given`, its equations only. Whether it has found a solution, `found` says.
+    /// Collective.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where the inequalities have no frames; those of the scene, and PETSc's.
+    pub fn new(
+        session: &Session,
+        scene: &Scene,
+        layout: &'a Layout<'a>,
+        precision: Precision,
+        given: Option<&[bool]>,
+    ) -> Result<Reference<'a>> {
+        if let Some(trouble) = &layout.trouble {
+            return Err(Error::input(format!("not for this scene: {trouble}")));
+        }
+        let unknowns = Unknowns::all(layout);
+        let problem = Problem::new(session, scene, &unknowns, Format::Assembled)?;
+        let refiner;
+        let solve = match precision {
+            Precision::Working => Solve::Repeated(SOLVES),
+            Precision::Twice => {
+                refiner = Refiner::new(session, &problem.system, &problem.trace)?;
+                Solve::Refined(&refiner)
+            }
+        };
+        let kernel = NearKernel::new(scene, &unknowns, &problem.system.b, Near::None)?;
+        let reduced = Reduced::new(session, &problem.system, &problem.rows, kernel)?;
+        let ksp = mumps(session)?;
+        let tolerances = Tolerances {
+            rtol: TARGET,
+            inner: 0.0,
+            lag: 0.0,
+        };
+        let mut solver = || Ok(ksp.clone());
+        let rows = &problem.rows;
+        // Without inequalities there is one set, the empty one.
+        let given = given.or((rows.len() == 0).then_some(&[]));
+        let found = outer::solve(
+            session,
+            rows,
+            &reduced,
+            &mut solver,
+            tolerances,
+            solve,
+            given,
+        )?;
+        let mut out = Reference {
+            session: session.clone(),
+            layout,
+            problem,
+            found,
+        };
+        if layout.loose() > 0 && out.found.converged && out.pushed(scene)? > BALANCED {
+            out.found.converged = false;
+            out.found.reason = "DIVERGED_LOAD_NOT_BALANCED".into();
+        }
+        Ok(out)
+    }
+
+    /// The same where nothing but a solution will do, with residuals in twice the working precision. Collective.
+    ///
+    /// # Errors
+    /// As [`Reference::new`]; [`Error::NotConverged`] where no solution satisfies the conditions, such as where nothing holds a body.
+    pub fn certified(
+        session: &Session,
+        scene: &Scene,
+        layout: &'a Layout<'a>,
+    ) -> Result<Reference<'a>> {
+        let out = Reference::new(session, scene, layout, Precision::Twice, None)?;
+        let found = &out.found;
+        if !found.converged {
+            let c = found.certificate;
+            return Err(Error::NotConverged(format!(
+                "the direct solution ends with {}, a correction of {:.1e}, a violation of {:.1e} and a pull of {:.1e}",
+                found.reason, c.correction, c.feasibility, c.pull
+            )));
+        }
+        Ok(out)
+    }
+
+    /// u of these subdomains by local dof. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn values(&self, subdomains: &[Subdomain]) -> Result<Vec<Vec<f64>>> {
+        // Along the frames of contact: u = Σ coefficient · w.
+        let dofs = || subdomains.iter().flat_map(|s| &s.dofs);
+        let terms: Vec<Vec<(u64, f64)>> = dofs()
+            .map(|&dof| self.layout.terms(self.layout.index(dof)))
+            .collect();
+        let places: Vec<i32> = terms.iter().flatten().map(|t| t.0 as i32).collect();
+        let w = PetscVec::seq(&self.session, places.len())?;
+        Scatter::new(&self.found.u, &places, &w)?.forward(&self.found.u, &w)?;
+        let w = w.array()?;
+        let mut w = w.iter();
+        let mut u = terms.iter().map(|list| {
+            let each = list.iter().zip(&mut w);
+            each.map(|((_, c), w)| c * w).sum::<f64>()
+        });
+        let of = |s: &Subdomain| u.by_ref().take(s.dofs.len()).collect();
+        Ok(subdomains.iter().map(of).collect())
+    }
+
+    /// How far u of these subdomains, all of the scene on some rank, is away: in the energy norm, and the largest displacement, each relative to the
+    /// solution. Copies of an unknown count by their mean in the first. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn distance(
+        &self,
+        subdomains: &[Subdomain],
+        u: &[Vec<f64>],
+        copies: Copies,
+    ) -> Result<[f64; 2]> {
+        let mut values = self.values(subdomains)?;
+        let most = |list: &[Vec<f64>]| list.iter().flatten().fold(0.0f64, |a, v| a.max(v.abs()));
+        let size = most(&values);
+        for (values, u) in values.iter_mut().zip(u) {
+            values.iter_mut().zip(u).for_each(|(v, u)| *v = u - *v);
+        }
+        let mut largest = [most(&values), size];
+        max_all(self.session.comm(), &mut largest);
+        let energy = self.size(subdomains, &values, copies)?;
+        Ok([energy, over(largest[0], largest[1])])
+    }
+
+    /// The energy norm of d, over that of the solution. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn size(&self, subdomains: &[Subdomain], d: &[Vec<f64>], copies: Copies) -> Result<f64> {
+        let (system, unknowns) = (&self.problem.system, Unknowns::all(self.layout));
+        let (mean, _) = system.mean(&self.session, subdomains, d, &unknowns, copies)?;
+        Ok(over(
+            system.energy_norm(&mean)?,
+            system.energy_norm(&self.found.u)?,
+        ))
+    }
+
+    /// The largest force on a support that the scene does not have, over the load. Collective.
+    fn pushed(&self, scene: &Scene) -> Result<f64> {
+        let share = contiguous_share(
+            scene.n_subdomains(),
+            self.session.size(),
+            self.session.rank(),
+        );
+        let mine: Result<Vec<Subdomain>> = share.map(|s| scene.subdomain(s)).collect();
+        let mine = self.session.agree(mine)?;
+        let u = self.values(&mine)?;
+        let supports = self.layout.supports();
+        let mut forces = vec![0.0; supports.len()];
+        for (s, u) in mine.iter().zip(&u) {
+            for (i, &dof) in s.dofs.iter().enumerate() {
+                let at = self.layout.index(dof);
+                let Ok(k) = supports.binary_search(&at) else {
+                    continue;
+                };
+                let (cols, vals) = s.k.row(i);
+                let ku: f64 = cols.iter().zip(vals).map(|(&j, v)| v * u[j as usize]).sum();
+                forces[k] += s.f[i] - ku;
+            }
+        }
+        sum_all(self.session.comm(), &mut forces);
+        let largest = forces.iter().fold(0.0f64, |a, f| a.max(f.abs()));
+        Ok(over(largest, self.problem.system.reference))
+    }
+}
+
+/// MUMPS, without options.
+fn mumps(session: &Session) -> Result<Ksp> {
+    let ksp = Ksp::new(session, Comm::World)?;
+    ksp.set_type("preonly")?;
+    let pc = ksp.pc()?;
+    pc.set_type("cholesky")?;
+    pc.set_solver_type("mumps")?;
+    Ok(ksp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::petsc::testing::with_session;
+
+    /// A column of two squares with these keys, the upper one on the lower one.
+    fn column(lower: &str, upper: &str) -> Scene {
+        let body = |name: &str, y: f64, keys: &str| {
+            format!("[[body]]\nname = \"{name}\"\norigin = [0, {y}]\nsize = [1, 1]\nelements = 4\nsubdomains = [2, 1]\n{keys}\n")
+        };
+        let contact = "[[contact]]\nbodies = [\"lower\", \"upper\"]\n";
+        let text = body("lower", 0.0, lower) + &body("upper", 1.0, upper) + contact;
+        Scene::parse("column.toml", &text).expect("a scene")
+    }
+
+    fn subdomains(scene: &Scene) -> Vec<Subdomain> {
+        let all = 0..scene.n_subdomains();
+        all.map(|s| scene.subdomain(s).expect("a subdomain"))
+            .collect()
+    }
+
+    #[test]
+    fn a_pressed_column_has_the_solution_of_the_bar() {
+        with_session(|session| {
+            let scene = column("dirichlet = [\"bottom\"]", "load = -1");
+            let layout = Layout::new(&scene);
+            let parts = subdomains(&scene);
+            let direct = Reference::certified(session, &scene, &layout).expect("a solution");
+            let found = &direct.found;
+            assert!(
+                found.certificate.largest() < 1e-14,
+                "{:?}",
+                found.certificate
+            );
+            assert!(found.active.iter().all(|on| *on) && found.active.len() == 5);
+            assert!((found.lambda.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            // −u'' = −1 above, 0 below; values at nodes are exact.
+            let u = |y: f64| {
+                if y > 1.0 {
+                    -1.0 + ((y - 2.0).powi(2) - 1.0) / 2.0
+                } else {
+                    -y
+                }
+            };
+            let exact = |s: &Subdomain| -> Vec<f64> {
+                let first = scene.bodies[s.body].first_dof;
+                let node = |&dof: &u64| scene.bodies[s.body].mesh().place((dof - first) as usize);
+                let y = |dof: &u64| scene.bodies[s.body].spec.position(node(dof))[1];
+                s.dofs.iter().map(|dof| u(y(dof))).collect()
+            };
+            let exact: Vec<Vec<f64>> = parts.iter().map(exact).collect();
+            for copies in [Copies::Alike, Copies::ByCoefficient] {
+                let away = direct.distance(&parts, &exact, copies).expect("a distance");
+                assert!(away.iter().all(|d| *d < 1e-15), "{away:?}");
+            }
+            // A percent more is a percent away.
+            let more: Vec<Vec<f64>> = exact
+                .iter()
+                .map(|u| u.iter().map(|u| 1.01 * u).collect())
+                .collect();
+            let away = direct
+                .distance(&parts, &more, Copies::Alike)
+                .expect("a distance");
+            assert!(away.iter().all(|d| (d - 0.01).abs() < 1e-14), "{away:?}");
+            let working = Reference::new(session, &scene, &layout, Precision::Working, None);
+            let working = working.expect("a solution");
+            assert_eq!(working.found.active, found.active);
+            let values = working.values(&parts).expect("values");
+            let away = direct
+                .distance(&parts, &values, Copies::Alike)
+                .expect("a distance");
+            assert!(away.iter().all(|d| *d < 1e-13), "{away:?}");
+        });
+    }
+
+    #[test]
+    fn what_nothing_holds_has_no_solution_and_springs_hold() {
+        with_session(|session| {
+            let ends = |upper: &str| {
+                let scene = column("dirichlet = [\"bottom\"]", upper);
+                let layout = Layout::new(&scene);
+                let found = Reference::certified(session, &scene, &layout);
+                found.map(|r| r.found.active.iter().filter(|on| **on).count())
+            };
+            assert!(matches!(ends("load = 1"), Err(Error::NotConverged(_))));
+            assert_eq!(ends("load = 1\nspring = { top = 1e-8 }").ok(), Some(0));
+            let alone = |load: &str| {
+                let body = "[[body]]\nname = \"one\"\norigin = [0, 0]\nsize = [1, 1]\nelements = 4\nsubdomains = [2, 1]\n";
+                let scene = Scene::parse("one.toml", &format!("{body}load = \"{load}\"\n"));
+                let scene = scene.expect("a scene");
+                let layout = Layout::new(&scene);
+                Reference::certified(session, &scene, &layout).map(|_| ())
+            };
+            assert!(matches!(alone("x"), Err(Error::NotConverged(_))));
+            assert!(alone("x - 0.5").is_ok());
+        });
+    }
+}

@@ -1,0 +1,49 @@
+//! Sums in twice the working precision.
+
+/// A sum with the rounding errors of its terms.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Twice {
+    /// The sum as it was rounded.
+    pub high: f64,
+    /// What rounding has taken from it.
+    pub low: f64,
+}
+
+impl Twice {
+    /// Adds a number.
+    pub fn add(&mut self, value: f64) {
+        let sum = self.high + value;
+        let part = sum - self.high;
+        self.low += (self.high - (sum - part)) + (value - part);
+        self.high = sum;
+    }
+
+    /// Adds a·b.
+    pub fn add_product(&mut self, a: f64, b: f64) {
+        let product = a * b;
+        self.add(product);
+        self.low += a.mul_add(b, -product);
+    }
+
+    /// The sum, rounded once.
+    pub fn value(self) -> f64 {
+        self.high + self.low
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cancels_leaves_what_rounding_took() {
+        let mut sum = Twice::default();
+        let third = 1.0 / 3.0;
+        // 3·fl(1/3) − 1 = −2⁻⁵⁴, which the working precision rounds to 0.
+        sum.add_product(3.0, third);
+        sum.add(1e9);
+        sum.add(-1e9);
+        sum.add(-1.0);
+        assert_eq!(sum.value(), -(0.5_f64.powi(54)));
+    }
+}
