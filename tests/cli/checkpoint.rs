@@ -1,6 +1,7 @@
 //! `fetifeti solve --checkpoint FILE` and `--resume FILE`: an interrupted run goes on to the same answer, on any number of ranks
 //! and by either method; files that are no checkpoints of the scene are refused and stay as they are.
 
+use crate::support::checks::number;
 use crate::support::{mpi, program};
 use std::fs;
 use std::path::Path;
@@ -63,10 +64,6 @@ gap = 0.002
 bodies = ["b", "d"]
 gap = 0.001
 "#;
-
-fn number(v: &Value) -> f64 {
-    v.as_f64().unwrap_or_else(|| panic!("{v} is no number"))
-}
 
 fn near(a: &Value, b: &Value) -> bool {
     let (a, b) = (number(a), number(b));

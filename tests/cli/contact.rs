@@ -1,5 +1,6 @@
 //! `fetifeti solve` and `plan` on scenes with contact: report, files, options, exit codes.
 
+use crate::support::checks::number;
 use crate::support::{mpi, program};
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,11 +12,6 @@ use serde_json::Value;
 
 const MODEL: &str = "examples/scenes/model_contact.toml";
 const PRESS: &str = "examples/scenes/press_ramp.toml";
-
-fn number(v: &Value) -> f64 {
-    v.as_f64()
-        .unwrap_or_else(|| panic!("{v} is no plain number"))
-}
 
 fn list(v: &Value) -> &[Value] {
     v.as_array().unwrap_or_else(|| panic!("{v} is no list"))

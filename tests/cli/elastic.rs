@@ -1,16 +1,12 @@
 //! `fetifeti solve` and `plan` on elastic and three-dimensional scenes: report, files, pressures, balances.
 
+use crate::support::checks::number;
 use crate::support::{mpi, program};
 use std::fs;
 
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 use serde_json::Value;
-
-fn number(v: &Value) -> f64 {
-    v.as_f64()
-        .unwrap_or_else(|| panic!("{v} is no plain number"))
-}
 
 fn vector(v: &Value) -> Vec<f64> {
     let list = v.as_array().unwrap_or_else(|| panic!("{v} is no list"));

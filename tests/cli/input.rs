@@ -1,5 +1,6 @@
 //! What the program says to bad input: one sentence, the right exit code, no file. And scenes that are odd, but valid.
 
+use crate::support::checks::identities;
 use crate::support::{direct, mpi, program};
 use direct::{tight, Direct};
 use fetifeti::petsc::testing::with_session;
@@ -324,9 +325,7 @@ fn solves(name: &'static str, text: impl Into<String>, multipliers: usize) {
             multipliers,
             "{name}"
         );
-        for (identity, defect) in solver.check().expect("checks run") {
-            assert!(defect < 1e-10, "{name}, {identity}: {defect:.1e}");
-        }
+        identities(&solver, 1e-10, name);
         let spectrum = solver.spectrum().expect("eigenvalues");
         assert_eq!(spectrum.is_some(), multipliers > 0, "{name}");
         assert!(

@@ -1,16 +1,12 @@
 //! `fetifeti solve` and `plan` as programs and people use them: report, files, exit codes, options.
 
+use crate::support::checks::number;
 use crate::support::{mpi, program};
 use mpi::{Output, Scratch};
 use program::fetifeti;
 use serde_json::Value;
 
 const EXAMPLE: &str = "examples/scenes/poisson_2x2.toml";
-
-fn number(v: &Value) -> f64 {
-    v.as_f64()
-        .unwrap_or_else(|| panic!("{v} is no plain number"))
-}
 
 /// `solve` with the report on standard output.
 fn solve(scene: &str, more: &[&str]) -> (Output, Value) {
@@ -75,10 +71,12 @@ fn the_report_has_every_key_of_the_contract() {
         r["energy"]
     );
     assert!(number(&r["error"]["l2"]) < 1e-3 && number(&r["error"]["h1"]) == error);
-    for phase in ["assemble", "setup", "solve", "recover", "total"] {
-        let seconds = number(&r["seconds"][phase]);
-        assert!(seconds >= 0.0, "{phase}: {seconds}");
-    }
+    let phases = ["assemble", "setup", "solve", "recover"].map(|p| number(&r["seconds"][p]));
+    let total = number(&r["seconds"]["total"]);
+    assert!(phases.iter().all(|s| *s > 0.0), "{phases:?}");
+    let sum: f64 = phases.iter().sum();
+    assert!(sum <= total * (1.0 + 1e-9), "{phases:?} in {total}");
+    assert!(total <= out.seconds, "{total} of {}", out.seconds);
     assert!(
         (1.0..2000.0).contains(&number(&r["memory_mb"])),
         "{}",

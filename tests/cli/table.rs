@@ -1,14 +1,10 @@
 //! `fetifeti table1` against the paper.
 
+use crate::support::checks::number;
 use crate::support::{mpi, program};
 use mpi::{Output, Scratch};
 use program::fetifeti;
 use serde_json::Value;
-
-fn number(v: &Value) -> f64 {
-    v.as_f64()
-        .unwrap_or_else(|| panic!("{v} is no plain number"))
-}
 
 fn table(rows: &[&str]) -> (Output, Vec<Value>) {
     let rows = rows.iter().flat_map(|r| ["--rows", *r]);

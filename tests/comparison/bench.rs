@@ -1,9 +1,36 @@
 //! `fetifeti bench` from the outside: every method in every round, and what is made of the samples. Nothing here looks at how long something took.
 
+use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, Spread};
 use mpi::Scratch;
 use program::fetifeti;
+
+/// What the report must have.
+const KEYS: Keys = &[
+    ("", "schema version blas cores rounds quick cases"),
+    ("cases[]", "case scene bodies subdomains dofs rtol rounds reference_residual methods"),
+    ("cases[].contact", "rows active outer feasibility min_multiplier load_steps"),
+    (
+        "cases[].methods[]",
+        "method layout subdomains ranks threads kappa iterations seconds ratio memory_mb \
+         memory_at_start_mb error residual rtol converged converged_reason samples",
+    ),
+    ("cases[].methods[].contact", "outer active differ feasibility min_multiplier"),
+    ("cases[].methods[].seconds", "assemble setup solve recover total again step"),
+    ("cases[].methods[].seconds.assemble", "median min max"),
+    ("cases[].methods[].seconds.setup", "median min max"),
+    ("cases[].methods[].seconds.solve", "median min max"),
+    ("cases[].methods[].seconds.total", "median min max"),
+    ("cases[].methods[].seconds.again", "median min max"),
+    ("cases[].methods[].memory_mb", "median min max"),
+    ("cases[].methods[].memory_at_start_mb", "median min max"),
+    (
+        "cases[].methods[].samples[]",
+        "round sequence converged assemble setup solve recover total again iterations outer memory_mb \
+         memory_at_start_mb",
+    ),
+];
 
 /// Four bodies of two subdomains, tied, no symmetry.
 const TIED: &str = "title = \"four bodies\"\n[grid]\nbodies = 2\nsubdomains = [2, 1]\nelements_per_subdomain = 4\n\
@@ -19,7 +46,7 @@ fn bench(args: &[&str]) -> BenchReport {
     let all = [&["bench"], args, &["--json", "-", "-compare_cores", "2"]].concat();
     let run = fetifeti(&all);
     assert_eq!(run.code, 0, "{}", run.all());
-    let report: BenchReport = serde_json::from_str(&run.stdout).expect("a report");
+    let report: BenchReport = keys::read(&run.stdout, KEYS);
     assert_eq!(report.schema, "fetifeti.bench/1");
     report
 }
@@ -147,10 +174,7 @@ fn every_method_runs_in_every_round() {
     check(case, 2);
     // The file is what was printed; the table has a line per method, the picture both forms.
     let text = std::fs::read_to_string(format!("{out}/bench.json")).expect("a report");
-    assert_eq!(
-        serde_json::from_str::<BenchReport>(&text).expect("a report"),
-        report
-    );
+    assert_eq!(keys::read::<BenchReport>(&text, KEYS), report);
     let csv = std::fs::read_to_string(format!("{out}/bench.csv")).expect("a table");
     assert_eq!(csv.lines().count(), 1 + case.methods.len());
     for end in ["png", "svg"] {
@@ -214,7 +238,7 @@ fn what_fails_is_said_and_not_run_again() {
     ]);
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(dir.path("b.json")).expect("a report");
-    let report: BenchReport = serde_json::from_str(&text).expect("a report");
+    let report: BenchReport = keys::read(&text, KEYS);
     let rtol: Vec<f64> = report.cases.iter().map(|c| c.rtol).collect();
     assert_eq!(rtol, [1e-9, 1e-6]);
     for case in &report.cases {

@@ -1,5 +1,6 @@
 //! The model problem (3.1)-(3.3) against values of an independent computation (tests/data/model_contact.json).
 
+use crate::support::checks::number;
 use crate::support::{mpi, program};
 use fetifeti::contact::{self, ContactType};
 use fetifeti::petsc::{testing::with_session, Session};
@@ -11,10 +12,6 @@ use serde_json::Value;
 
 fn oracle() -> Vec<Value> {
     serde_json::from_str(include_str!("../data/model_contact.json")).expect("the oracle is JSON")
-}
-
-fn number(v: &Value) -> f64 {
-    v.as_f64().unwrap_or_else(|| panic!("{v} is no number"))
 }
 
 /// Two bodies of `elements`² elements and `subdomains`² subdomains.

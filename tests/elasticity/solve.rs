@@ -1,5 +1,6 @@
 //! 3D and elastic problems against a direct solve, with every kind of constraint, scaling and support, on one and several ranks.
 
+use crate::support::checks::identities;
 use crate::support::{mpi, solid};
 use fetifeti::feti::{FetiFeti, Primal, ProjectorKind, Scaling, Settings};
 use fetifeti::petsc::testing::with_session;
@@ -28,9 +29,7 @@ fn verify(session: &Session, solid: &Solid, settings: Settings, what: &str) -> F
     let problem = solid.substructures(|_| true);
     let direct = assembled::solve(&problem);
     let solver = FetiFeti::new(session, problem, settings).expect("set up");
-    for (name, defect) in solver.check().expect("checks run") {
-        assert!(defect < 1e-10, "{what}: {name} {defect:.1e}");
-    }
+    identities(&solver, 1e-10, what);
     let solution = solver.solve().expect("solved");
     assert!(solution.converged, "{what}: {}", solution.reason);
     let size = direct.iter().flatten().fold(0.0f64, |a, u| a.max(u.abs()));
@@ -241,9 +240,7 @@ fn on_a_rank(session: &Session, scaling: Scaling) {
     let problem = solid.substructures(|s| s % size == rank);
     let settings = Settings { scaling, ..tight() };
     let solver = FetiFeti::new(session, problem, settings).expect("set up");
-    for (name, defect) in solver.check().expect("checks run") {
-        assert!(defect < 1e-10, "{name} {defect:.1e}");
-    }
+    identities(&solver, 1e-10, "on ranks");
     let solution = solver.solve().expect("solved");
     let kappa = solver
         .spectrum()
@@ -271,17 +268,7 @@ fn one_two_and_four_ranks_agree() {
         Ok(())
     });
     for case in ["stiffness", "deluxe"] {
-        let results: Vec<Vec<f64>> = [1, 2, 4]
-            .map(|ranks| {
-                let out = started.run(ranks, case);
-                assert_eq!(out.code, 0, "{}", out.all());
-                let line = out.stdout.lines().find_map(|l| l.split("RESULT ").nth(1));
-                let line = line.unwrap_or_else(|| panic!("{}", out.all()));
-                line.split_whitespace()
-                    .map(|v| v.parse().expect("a number"))
-                    .collect()
-            })
-            .to_vec();
+        let results = [1, 2, 4].map(|ranks| started.numbers(ranks, case));
         let one = &results[0];
         for other in &results[1..] {
             assert!((one[0] - other[0]).abs() <= 1.0, "{case}: {results:?}");

@@ -1,5 +1,7 @@
 //! Exact condition numbers in 3D and of elasticity, against values measured with dense algebra.
 
+use crate::support::checks::identities;
+use crate::support::mpi::alone;
 use crate::support::solid;
 use fetifeti::feti::{FetiFeti, PcType, Primal, Settings};
 use fetifeti::petsc::testing::with_session;
@@ -9,32 +11,13 @@ use solid::{Physics, Rows, Solid};
 const SCALAR: Physics = Physics::Scalar;
 const CORRECTED: PcType = PcType::CoarseCorrected;
 
-/// Runs a test in a process of its own: PETSc lives on one thread of a process, and these take a minute each.
-fn alone(name: &str, test: fn()) {
-    const INSIDE: &str = "FETIFETI_TEST_ALONE";
-    if std::env::var_os(INSIDE).is_some() {
-        return test();
-    }
-    let me = std::env::current_exe().expect("this program");
-    let out = std::process::Command::new(me)
-        .args([name, "--exact", "--nocapture"])
-        .env(INSIDE, "1")
-        .output()
-        .expect("it runs again");
-    let text = String::from_utf8_lossy(&out.stdout);
-    println!("{text}{}", String::from_utf8_lossy(&out.stderr));
-    assert!(out.status.success() && text.contains("1 passed"), "{name}");
-}
-
 fn elastic(nu: f64) -> Physics {
     Physics::Elastic { nu }
 }
 
 fn kappa_with(session: &Session, solid: &Solid, settings: Settings) -> f64 {
     let solver = FetiFeti::new(session, solid.substructures(|_| true), settings).expect("set up");
-    for (name, defect) in solver.check().expect("checks run") {
-        assert!(defect < 1e-10, "{name}: {defect:.1e}");
-    }
+    identities(&solver, 1e-10, "spectra");
     let s = solver.spectrum().expect("eigenvalues");
     let s = s.expect("multipliers");
     println!(
@@ -64,7 +47,7 @@ fn near(found: f64, wanted: f64, percent: f64) {
 
 #[test]
 fn scalar_in_3d() {
-    alone("scalar_in_3d", || {
+    alone(|| {
         with_session(|session| {
             let solid = |sizes| Solid::new(3, sizes, SCALAR, Rows::Tied);
             near(kappa(session, &solid([2, 2, 4]), CORRECTED), 2.74, 2.0);
@@ -89,7 +72,7 @@ fn scalar_in_3d() {
 
 #[test]
 fn plane_strain() {
-    alone("plane_strain", || {
+    alone(|| {
         with_session(|session| {
             let solid = |nu, rows| Solid::new(2, [2, 8, 4], elastic(nu), rows);
             let tied = kappa(session, &solid(0.3, Rows::Tied), CORRECTED);
@@ -122,7 +105,7 @@ fn elastic_cubes(rows: Rows) -> Solid {
 
 #[test]
 fn elasticity_in_3d() {
-    alone("elasticity_in_3d", || {
+    alone(|| {
         with_session(|session| {
             let tied = elastic_cubes(Rows::Tied);
             near(kappa(session, &tied, CORRECTED), 4.68, 1.0);
@@ -133,7 +116,7 @@ fn elasticity_in_3d() {
 
 #[test]
 fn elasticity_in_3d_along_normals() {
-    alone("elasticity_in_3d_along_normals", || {
+    alone(|| {
         with_session(|session| {
             let solid = elastic_cubes;
             let by_node = kappa(session, &solid(Rows::NormalsByNode), CORRECTED);

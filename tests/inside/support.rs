@@ -1,6 +1,8 @@
 //! What these tests share with the test programs.
 #![allow(dead_code)]
 
+#[path = "../support/checks.rs"]
+pub mod checks;
 #[path = "../support/direct.rs"]
 pub mod direct;
 #[path = "../support/mpi.rs"]

@@ -264,17 +264,7 @@ fn on_a_rank(session: &Session) -> fetifeti::Result<()> {
 #[test]
 fn one_two_and_four_ranks_agree() {
     let started = mpi::as_rank(|session, _| on_a_rank(session));
-    let results: Vec<Vec<f64>> = [1, 2, 4]
-        .map(|ranks| {
-            let out = started.run(ranks, "random");
-            assert_eq!(out.code, 0, "{}", out.all());
-            let line = out.stdout.lines().find_map(|l| l.split("RESULT ").nth(1));
-            let line = line.unwrap_or_else(|| panic!("{}", out.all()));
-            line.split_whitespace()
-                .map(|v| v.parse().expect("a number"))
-                .collect()
-        })
-        .to_vec();
+    let results = [1, 2, 4].map(|ranks| started.numbers(ranks, "random"));
     let one = &results[0];
     for other in &results[1..] {
         // Vectors come out of iterations that start with other numbers on other ranks: those near τ may differ.

@@ -1,5 +1,6 @@
 //! M_C with few coarse functions (`-fetifeti_lifting vertices`): fewer columns, nearly the same spectrum, on any number of ranks.
 
+use crate::support::checks::number;
 use crate::support::program;
 use program::run_fetifeti;
 use serde_json::Value;
@@ -19,12 +20,6 @@ fn scene(name: &str, text: &str) -> String {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::write(&path, text).expect("a file");
     path.to_str().expect("a path").into()
-}
-
-fn number(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .unwrap_or_else(|| panic!("a number: {value}"))
 }
 
 #[test]

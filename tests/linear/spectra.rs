@@ -1,14 +1,11 @@
 //! Exact condition numbers against an independent dense computation (tests/data/grid2d_spectra.json).
 
+use crate::support::checks::{identities, number};
 use crate::support::common;
 use common::Grid;
 use fetifeti::feti::{FetiFeti, PcType, Settings};
 use fetifeti::petsc::testing::with_session;
 use serde_json::Value;
-
-fn number(v: &Value) -> f64 {
-    v.as_f64().expect("a number")
-}
 
 #[test]
 fn kappa_multipliers_and_iterations_equal_the_oracle() {
@@ -42,9 +39,7 @@ fn kappa_multipliers_and_iterations_equal_the_oracle() {
                         facts.floating_bodies as u64,
                         expected["floating_bodies"].as_u64().expect("count")
                     );
-                    for (name, defect) in solver.check().expect("checks run") {
-                        assert!(defect < 1e-10, "{name}: {defect:.1e} at {nb} {ns} {ne}");
-                    }
+                    identities(&solver, 1e-10, &format!("{nb} {ns} {ne}"));
                     let s = solver
                         .spectrum()
                         .expect("eigenvalues")

@@ -1,17 +1,10 @@
 //! The program under mpirun: the answer does not depend on the number of ranks or on how subdomains are dealt to them.
 
+use crate::support::checks::{near, number};
 use crate::support::{mpi, program};
 use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
-
-fn number(v: &Value) -> f64 {
-    v.as_f64().unwrap_or_else(|| panic!("{v} is no number"))
-}
-
-fn near(a: f64, b: f64, tolerance: f64) -> bool {
-    (a - b).abs() <= tolerance * b.abs()
-}
 
 fn solve(ranks: usize, scene: &str, more: &[&str]) -> Value {
     let args = [
@@ -75,6 +68,7 @@ fn same(scene: &str, runs: &[(usize, &str)]) {
         );
         assert!(number(&other["kkt"]["feasibility"]) < 1e-6, "{what}");
         let identities = other["check"].as_object().expect("identities");
+        assert!(!identities.is_empty(), "{what}");
         for (name, defect) in identities {
             assert!(number(defect) < 1e-10, "{what}: {name} {defect}");
         }

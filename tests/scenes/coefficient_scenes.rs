@@ -4,6 +4,7 @@
 #[path = "../../examples/make_coefficients.rs"]
 mod make_coefficients;
 
+use crate::support::checks::number;
 use crate::support::{mpi, program};
 use fetifeti::scene::Scene;
 use mpi::Scratch;
@@ -146,10 +147,6 @@ fn weights_are_those_of_the_stiffest_element() {
             }
         }
     }
-}
-
-fn number(v: &Value) -> f64 {
-    v.as_f64().unwrap_or_else(|| panic!("{v} is no number"))
 }
 
 fn solve(ranks: usize, scene: &str, more: &[&str]) -> Value {

@@ -1,16 +1,34 @@
 //! `study hard-cases --quick`: no wrong answer is called a solution, and what the study would say of one.
 
+use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::study::hard_cases::{Record, Report, Verdict};
 use mpi::Scratch;
 use program::run_fetifeti;
+
+/// What the report must have.
+const KEYS: Keys = &[
+    ("", "study limit rtol cases"),
+    (
+        "cases[]",
+        "case title verdict message reference error_max error_energy active condition kkt dofs \
+         multipliers subdomains iterations outer_iterations seconds",
+    ),
+    (
+        "cases[].kkt",
+        "stationarity feasibility complementarity min_multiplier",
+    ),
+    ("cases[].condition", "exact estimate"),
+    ("cases[].condition.exact", "lambda_min lambda_max kappa"),
+    ("cases[].condition.estimate", "lambda_min lambda_max kappa"),
+];
 
 fn quick(ranks: usize, dir: &Scratch) -> Report {
     let file = dir.path(&format!("hard-{ranks}.json"));
     let args = ["study", "hard-cases", "--quick", "--quiet", "--json", &file];
     let run = run_fetifeti(ranks, &args);
     assert_eq!(run.code, 0, "{}", run.all());
-    serde_json::from_str(&std::fs::read_to_string(&file).expect("a report")).expect("a report")
+    keys::read(&std::fs::read_to_string(&file).expect("a report"), KEYS)
 }
 
 #[test]

@@ -1,9 +1,24 @@
 //! `study hertz --quick`: what it measures, and that ranks do not matter.
 
+use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::study::hertz::{CaseReport, Report};
 use mpi::Scratch;
 use program::run_fetifeti;
+
+/// What the report must have.
+const KEYS: Keys = &[
+    ("", "study cases"),
+    ("cases[]", "case title order meshes"),
+    (
+        "cases[].meshes[]",
+        "elements dofs active converged force half_width peak iterations outer_iterations kkt pressure \
+         seconds",
+    ),
+    ("cases[].meshes[].half_width", "fit node theory error"),
+    ("cases[].meshes[].peak", "fit node theory error"),
+    ("cases[].meshes[].pressure[]", "x p theory"),
+];
 
 fn quick(ranks: usize, dir: &Scratch) -> Report {
     let file = dir.path(&format!("hertz-{ranks}.json"));
@@ -13,7 +28,7 @@ fn quick(ranks: usize, dir: &Scratch) -> Report {
     ];
     let run = run_fetifeti(ranks, &args);
     assert_eq!(run.code, 0, "{}", run.all());
-    serde_json::from_str(&std::fs::read_to_string(&file).expect("a report")).expect("a report")
+    keys::read(&std::fs::read_to_string(&file).expect("a report"), KEYS)
 }
 
 #[test]

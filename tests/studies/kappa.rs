@@ -1,9 +1,24 @@
 //! `study kappa --quick`: the measured condition numbers, and what a wrong case is told.
 
+use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::study::kappa::Report;
 use mpi::Scratch;
 use program::run_fetifeti;
+
+/// What the report must have.
+const KEYS: Keys = &[
+    ("", "study rows"),
+    (
+        "rows[]",
+        "family subdomains elements dofs dirichlet coarse_corrected",
+    ),
+    ("rows[].dirichlet", "kappa exact lambda_min iterations"),
+    (
+        "rows[].coarse_corrected",
+        "kappa exact lambda_min iterations",
+    ),
+];
 
 #[test]
 fn condition_numbers_are_those_that_were_measured() {
@@ -21,7 +36,7 @@ fn condition_numbers_are_those_that_were_measured() {
     let run = run_fetifeti(1, &args);
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = serde_json::from_str(&text).expect("a report");
+    let report: Report = keys::read(&text, KEYS);
     for row in &report.rows {
         for found in [&row.dirichlet, &row.coarse_corrected] {
             let exact = found.exact.expect("asked for");

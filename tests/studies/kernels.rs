@@ -1,9 +1,20 @@
 //! `study kernels --quick`: every solver in every order, with errors beside the times.
 
+use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::study::kernels::{faster, summary, Report, CASES, WORTH_CHANGING};
 use mpi::Scratch;
 use program::run_fetifeti;
+
+/// What the report must have.
+const KEYS: Keys = &[
+    ("", "study rows"),
+    (
+        "rows[]",
+        "case solver ordering default elements interior interface rounds analyse factor solve schur bytes \
+         error schur_error",
+    ),
+];
 
 #[test]
 fn every_combination_is_measured_and_solves() {
@@ -17,7 +28,7 @@ fn every_combination_is_measured_and_solves() {
     );
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = serde_json::from_str(&text).expect("a report");
+    let report: Report = keys::read(&text, KEYS);
     assert_eq!(report.rows.len(), CASES.len() * 16);
     for row in &report.rows {
         for seconds in [row.analyse, row.factor, row.solve, row.schur] {

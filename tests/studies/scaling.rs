@@ -1,9 +1,29 @@
 //! `study scaling --quick`: counts, bounded iterations, a model that is finite and positive, residuals, and the files.
 
+use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::study::scaling::{Point, Problem, Report, Series, RANKS};
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
+
+/// What the report must have.
+const KEYS: Keys = &[
+    ("", "study quick cores network points model body iterations iterations_of predictions"),
+    ("network", "messages reductions modelled_reductions network median_deviation largest_deviation"),
+    ("network.network", "alpha beta gamma"),
+    (
+        "points[]",
+        "series problem ranks oversubscribed fitted bodies floating_bodies subdomains elements \
+         multipliers iterations steps kappa setup iteration outside total memory_mb work communication \
+         model setup_deviation iteration_deviation",
+    ),
+    ("points[].communication", "messages_per_iteration bytes_per_iteration reductions_per_iteration"),
+    ("model", "laws cache"),
+    ("model.laws[]", "phase terms seconds points median_deviation largest_deviation misfit residuals"),
+    ("predictions[]", "network_name network rows limits iteration_limits doubles_at full_at"),
+    ("predictions[].rows[]", "ranks kernels unknowns replicated_bytes seconds total without_kernels"),
+    ("predictions[].limits[]", "from phase"),
+];
 
 fn runs(report: &Report, series: Series, problem: Problem) -> Vec<&Point> {
     let of = report.points.iter();
@@ -21,7 +41,7 @@ fn counts_and_model() {
     assert_eq!(run.code, 0, "{}", run.all());
     assert_eq!(run.stdout, "");
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = serde_json::from_str(&text).expect("a report");
+    let report: Report = keys::read(&text, KEYS);
 
     sends(&report);
     grows(&report);

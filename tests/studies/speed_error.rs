@@ -1,9 +1,21 @@
 //! `study speed-error --quick`: errors of meshes and solvers, and the files.
 
+use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::study::speed_error::Report;
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
+
+/// What the report must have.
+const KEYS: Keys = &[
+    ("", "study cores cases"),
+    ("cases[]", "case title meshes runs"),
+    ("cases[].meshes[]", "elements dofs error"),
+    (
+        "cases[].runs[]",
+        "method elements dofs rtol ranks threads iterations setup solve solver_error error converged",
+    ),
+];
 
 #[test]
 fn errors_fall_with_the_mesh() {
@@ -21,7 +33,7 @@ fn errors_fall_with_the_mesh() {
     ]);
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = serde_json::from_str(&text).expect("a report");
+    let report: Report = keys::read(&text, KEYS);
     assert_eq!(report.cases.len(), 3);
     for case in &report.cases {
         let [coarse, fine] = case.meshes[..] else {

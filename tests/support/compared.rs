@@ -1,8 +1,22 @@
 //! `fetifeti compare` from the outside: a scene in a file, and what the program says of it.
 
+use super::keys::{self, Keys};
 use super::mpi::{Output, Scratch};
 use super::program::fetifeti;
 use fetifeti::report::json::{CompareReport, CompareRow};
+
+/// What a report of `compare` must have.
+pub const KEYS: Keys = &[
+    ("", "scene bodies subdomains dofs rtol cores supports reference_residual rows"),
+    ("contact", "rows active outer feasibility min_multiplier load_steps"),
+    (
+        "rows[]",
+        "method subdomains ranks threads kappa iterations seconds memory_mb memory_at_start_mb error \
+         residual rtol converged converged_reason",
+    ),
+    ("rows[].seconds", "assemble setup solve total"),
+    ("rows[].contact", "outer active differ feasibility min_multiplier"),
+];
 
 /// Whether a row holds a solution. Ours must; a row of another method may say instead why it holds none, for whether PETSc's solvers
 /// get there is not ours to promise and differs from processor to processor.
@@ -57,6 +71,6 @@ impl SceneFile {
     /// The same for the report.
     pub fn compare(&self, more: &[&str]) -> CompareReport {
         let output = self.run(&[&["--json", "-"], more].concat());
-        serde_json::from_str(&output.stdout).expect("a report")
+        keys::read(&output.stdout, KEYS)
     }
 }

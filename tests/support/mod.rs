@@ -3,11 +3,13 @@
 
 pub mod assembled;
 pub mod cells;
+pub mod checks;
 pub mod common;
 pub mod compared;
 pub mod contact_judge;
 pub mod direct;
 pub mod elastic_scene;
+pub mod keys;
 pub mod mpi;
 pub mod plugin;
 pub mod program;

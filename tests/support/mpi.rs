@@ -124,15 +124,38 @@ pub fn as_process<W: FnOnce(&str) -> i32>(work: W) -> Ranks {
     Ranks::new::<W>(work)
 }
 
+/// The name of the test in which a closure of this type stands.
+fn test_of<W>() -> &'static str {
+    let path = std::any::type_name::<W>();
+    let test = path.trim_end_matches("::{{closure}}");
+    test.split_once("::").expect("a test of a program").1
+}
+
+/// Runs a test that uses PETSc in a process of its own: PETSc lives on one thread of a process, and long tests would wait for each
+/// other there. `work` is a closure in the test itself.
+pub fn alone<W: FnOnce()>(work: W) {
+    const ALONE: &str = "alone";
+    if std::env::var(CASE).is_ok_and(|case| case == ALONE) {
+        return work();
+    }
+    let own = std::env::current_exe().expect("the test knows its own path");
+    let out = command(own.to_str().expect("the path is UTF-8"))
+        .args(["--exact", test_of::<W>(), "--nocapture"])
+        .env(CASE, ALONE)
+        .output()
+        .expect("it runs again");
+    let text = String::from_utf8_lossy(&out.stdout);
+    println!("{text}{}", String::from_utf8_lossy(&out.stderr));
+    assert!(out.status.success() && text.contains("1 passed"));
+}
+
 impl Ranks {
     fn new<W>(work: impl FnOnce(&str) -> i32) -> Ranks {
         if let Ok(case) = std::env::var(CASE) {
             std::process::exit(work(&case));
         }
-        let path = std::any::type_name::<W>();
-        let test = path.trim_end_matches("::{{closure}}");
-        let (_program, test) = test.split_once("::").expect("a test of a program");
-        Ranks { test: test.into() }
+        let test = test_of::<W>().into();
+        Ranks { test }
     }
 
     /// Runs a case on this many ranks.
@@ -145,6 +168,16 @@ impl Ranks {
         let ran = !out.stdout.contains("test result:");
         assert!(ran, "no test {}: {}", self.test, out.all());
         out
+    }
+
+    /// The same for a case that ends well: the numbers that it prints after `RESULT`.
+    pub fn numbers(&self, ranks: usize, case: &str) -> Vec<f64> {
+        let out = self.run(ranks, case);
+        assert_eq!(out.code, 0, "{}", out.all());
+        let line = out.stdout.lines().find_map(|l| l.split("RESULT ").nth(1));
+        let line = line.unwrap_or_else(|| panic!("{}", out.all()));
+        let words = line.split_whitespace();
+        words.map(|v| v.parse().expect("a number")).collect()
     }
 }
 
