@@ -27,7 +27,7 @@ impl Output {
 }
 
 /// A run that hangs is a failure, not a wait.
-const LIMIT: Duration = Duration::from_secs(120);
+const LIMIT: Duration = Duration::from_secs(300);
 
 /// A command that may start MPI, without the variables that MPI has left in the environment: a test that has started MPI in its own
 /// process carries some that would lead another one astray.
