@@ -12,8 +12,8 @@ use std::process::ExitCode;
 
 use fetifeti::parallel::exchange::max_all;
 use fetifeti::{
-    Csr, Error, FetiFeti, InterfaceRow, Result, RowKind, Session, Settings, Subdomain,
-    Substructures,
+    Csr, Error, FetiFeti, InterfaceRow, Result, RowKind, RowLabel, RowSource, Session, Settings,
+    Subdomain, Substructures,
 };
 
 const BOARDS: usize = 3;
@@ -186,6 +186,8 @@ fn wires() -> Vec<InterfaceRow> {
                 holds: true,
                 // No two wires end in the same node: every row is a block of its own.
                 block: rows.len() as u64,
+                // Which boards the wire joins: solutions give it back with the row.
+                label: RowLabel::new(RowSource::Interface(left), [None; 2]),
             });
         }
     }

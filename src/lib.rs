@@ -121,7 +121,10 @@ pub use feti::{FetiFeti, PcType, Primal, ProjectorKind, Scaling, Settings, Solut
 pub use linalg::csr::Csr;
 pub use petsc::Session;
 pub use scene::Scene;
-pub use substructures::{Entity, EntityKind, InterfaceRow, RowKind, Subdomain, Substructures};
+pub use substructures::{
+    Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow, Subdomain,
+    Substructures,
+};
 
 /// Runs `work` as the whole program: starts PETSc with the process's arguments (so that PETSc options work), ends it
 /// afterwards, prints an error as one sentence and turns it into the exit code of [`Error::exit_code`].

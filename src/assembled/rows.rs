@@ -44,9 +44,10 @@ impl Rows {
     /// The inequalities of `scene`; those of a layout that has no frames for them mean nothing.
     pub fn new(scene: &Scene, layout: &Layout) -> Rows {
         let all = scene.rows(&|_| true);
-        let subdomains = scene.points.iter().flat_map(|point| {
-            std::iter::repeat_n(point.subdomain, point.rows.len() + point.bounds.len())
-        });
+        let subdomains = scene
+            .points
+            .iter()
+            .flat_map(|point| std::iter::repeat_n(point.subdomain, point.rows.len()));
         let mut out = Rows {
             held: layout.held.clone(),
             forms: layout.forms.clone(),

@@ -154,16 +154,9 @@ fn active(
     rows: &Rows,
 ) -> Result<Vec<bool>> {
     let provided = rows.provided(&distribution::owner(session, scene)?);
-    let dual = solver.dual();
-    let jump = &dual.stiffness.jump;
-    let owned = jump
-        .order
-        .iter()
-        .zip(&solution.active[jump.n_owned_local..]);
-    let mine: Vec<u64> = owned
-        .filter(|(_, on)| **on)
-        .filter_map(|(&row, _)| provided[row].map(|k| k as u64))
-        .collect();
+    let solved = solver.rows(solution);
+    let held = provided.into_iter().zip(&solved).filter(|(_, r)| r.holds());
+    let mine: Vec<u64> = held.filter_map(|(k, _)| Some(k? as u64)).collect();
     let all = gather_all(session.comm(), &mine).concat();
     Ok(rows.set(&all.iter().map(|&k| k as usize).collect::<Vec<_>>()))
 }

@@ -1,12 +1,12 @@
 //! Equilibrium of every body: loads, forces on interfaces and obstacles, reactions; in elasticity by components and with moments.
 
-use super::contact::ContactRow;
 use crate::feti::FetiFeti;
 use crate::linalg::vec3::{cross, minus, norm};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::Session;
 use crate::report::json::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Scene};
+use crate::substructures::{BodyNode, SolvedRow};
 use crate::Result;
 
 /// What acts on a body. Moments are about its centre.
@@ -47,7 +47,7 @@ pub(super) fn bodies(
     session: &Session,
     scene: &Scene,
     solver: &FetiFeti,
-    rows: &[ContactRow],
+    rows: &[SolvedRow],
     step: usize,
 ) -> Result<Vec<BodyBalance>> {
     let mut sums = vec![Sums::default(); scene.n_bodies()];
@@ -63,11 +63,12 @@ pub(super) fn bodies(
     }
     // Rank 0 has all rows, those of the others are empty.
     for row in rows {
-        for (sign, &(b, node)) in [-1.0, 1.0].into_iter().zip(row.members.iter().flatten()) {
+        let members = row.label.members.into_iter().flatten();
+        for (sign, BodyNode { body: b, node }) in [-1.0, 1.0].into_iter().zip(members) {
             let body = &scene.bodies[b];
             let n = match body.components {
-                1 => [row.direction.iter().sum(), 0.0, 0.0],
-                _ => row.direction,
+                1 => [row.normal().iter().sum(), 0.0, 0.0],
+                _ => row.normal(),
             };
             let force = n.map(|n| sign * row.multiplier * n);
             let to = &mut sums[b];

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::args::Solve;
 use super::checkpoint::{Checkpoints, Resumed};
-use super::contact::{self, ContactRow};
+use super::contact;
 use super::fields::Gathered;
 use crate::contact::State;
 use crate::feti::{FetiFeti, Solution};
@@ -13,6 +13,7 @@ use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
 use crate::scene::{distribution, Scene};
+use crate::substructures::SolvedRow;
 use crate::Result;
 
 /// What happened over the load steps.
@@ -28,7 +29,7 @@ pub(super) struct Course {
     pub solve_seconds: f64,
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
-    pub rows: Vec<ContactRow>,
+    pub rows: Vec<SolvedRow>,
 }
 
 /// Solves the load steps one after the other, each from where the last one ended, the first from the checkpoint if there is one.
@@ -73,7 +74,7 @@ pub(super) fn follow(
             checkpoints.save(session, step, || records.followed_by(&outer), state)
         })?;
         progress.finish();
-        let rows = contact::rows(session, scene, solver, &solution)?;
+        let rows = contact::rows(session, solver, &solution);
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
         let mut now = Course {
@@ -151,12 +152,12 @@ fn boundary_values(
 
 /// The record of a load step; forces are known on rank 0.
 fn load_step_record(t: f64, course: &Course) -> LoadStep {
-    let inequalities = || course.rows.iter().filter(|r| r.inequality);
+    let inequalities = || course.rows.iter().filter(|r| r.is_inequality());
     LoadStep {
         t,
         outer_iterations: course.iterations.len(),
         iterations: course.iterations.iter().sum(),
-        active: inequalities().filter(|r| r.active).count(),
+        active: inequalities().filter(|r| r.holds()).count(),
         energy: course.solution.energy,
         contact_force: inequalities().map(|r| r.multiplier).sum(),
     }

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::contact::{has_pressure, ContactRow};
 use crate::fem::cell::{centre_stress, CellStress};
 use crate::feti::{FetiFeti, Solution};
 use crate::mesh::SubdomainMesh;
@@ -12,6 +11,7 @@ use crate::petsc::Session;
 use crate::report::paraview::contact_fields::ContactFields;
 use crate::report::paraview::vtu::{Shape, Vtu};
 use crate::scene::Scene;
+use crate::substructures::{BodyNode, SolvedRow};
 use crate::Result;
 
 /// The whole solution, subdomain after subdomain.
@@ -111,16 +111,15 @@ impl Gathered {
     pub(super) fn copies(
         &self,
         scene: &Scene,
-        rows: &[ContactRow],
-    ) -> HashMap<(usize, usize), Vec<usize>> {
+        rows: &[SolvedRow],
+    ) -> HashMap<BodyNode, Vec<usize>> {
         let key = |body: u32, point: [f64; 3]| (body, point.map(f64::to_bits));
         let mut wanted = HashMap::new();
-        for &(body, node) in rows.iter().flat_map(|r| r.members.iter().flatten()) {
-            let spec = &scene.bodies[body].spec;
-            let point = spec.position(spec.mesh.place(node));
-            wanted.insert(key(body as u32, point), (body, node));
+        for &member in rows.iter().flat_map(|r| r.label.members.iter().flatten()) {
+            let point = member.position(&scene.bodies);
+            wanted.insert(key(member.body as u32, point), member);
         }
-        let mut out: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
+        let mut out: HashMap<BodyNode, Vec<usize>> = HashMap::new();
         for (p, (&body, &point)) in self.owner.iter().zip(&self.points).enumerate() {
             if let Some(&member) = wanted.get(&key(body, point)) {
                 out.entry(member).or_default().push(p);
@@ -130,18 +129,18 @@ impl Gathered {
     }
 
     /// Multiplier, gap and contact at the points, on every copy of a node.
-    fn contact_fields(&self, scene: &Scene, rows: &[ContactRow]) -> Result<Option<ContactFields>> {
-        if rows.iter().all(|r| !r.inequality) {
+    fn contact_fields(&self, scene: &Scene, rows: &[SolvedRow]) -> Result<Option<ContactFields>> {
+        if rows.iter().all(|r| !r.is_inequality()) {
             return Ok(None);
         }
         let copies = self.copies(scene, rows);
         let mut fields = ContactFields::new(self.points.len());
-        for row in rows.iter().filter(|r| r.inequality) {
-            for member in row.members.iter().flatten() {
+        for row in rows.iter().filter(|r| r.is_inequality()) {
+            for member in row.label.members.iter().flatten() {
                 for &p in copies.get(member).into_iter().flatten() {
-                    fields.add(p, row.multiplier, row.distance, row.active)?;
-                    if has_pressure(scene) {
-                        fields.add_area(p, row.area)?;
+                    fields.add(p, row.multiplier, row.gap, row.holds())?;
+                    if scene.has_pressure() {
+                        fields.add_area(p, row.label.area)?;
                     }
                 }
             }
@@ -165,7 +164,7 @@ impl Gathered {
     pub fn write_vtu(
         &self,
         scene: &Scene,
-        rows: &[ContactRow],
+        rows: &[SolvedRow],
         dir: &Path,
         name: &str,
     ) -> Result<()> {

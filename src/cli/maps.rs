@@ -2,27 +2,29 @@
 
 use std::collections::HashMap;
 
-use super::areas::side;
-use super::contact::{by_source, name, ContactRow};
+use super::contact::{by_source, name, side};
 use crate::report::pictures::contact_map::ContactMap;
 use crate::scene::Scene;
+use crate::substructures::SolvedRow;
 
 /// A side is drawn in two of its coordinates where no normal is further from the third than the angle of this cosine, else in its
 /// parameters.
 const STEEP: f64 = 0.4;
 
 /// Every interface and obstacle that has inequalities.
-pub(super) fn of(scene: &Scene, rows: &[ContactRow]) -> Vec<ContactMap> {
+pub(super) fn of(scene: &Scene, rows: &[SolvedRow]) -> Vec<ContactMap> {
     by_source(rows)
-        .filter(|rows| rows.iter().any(|r| r.inequality))
+        .filter(|rows| rows.iter().any(|r| r.is_inequality()))
         .map(|rows| map(scene, rows))
         .collect()
 }
 
-fn map(scene: &Scene, rows: &[ContactRow]) -> ContactMap {
+fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
     let along = |d: usize| {
-        let least = |a: f64, r: &ContactRow| a.min(r.direction[d].abs());
-        rows.iter().filter(|r| r.inequality).fold(1.0_f64, least)
+        let least = |a: f64, r: &SolvedRow| a.min(r.normal()[d].abs());
+        rows.iter()
+            .filter(|r| r.is_inequality())
+            .fold(1.0_f64, least)
     };
     let across = (0..3)
         .max_by(|&a, &b| along(a).total_cmp(&along(b)))
@@ -31,12 +33,12 @@ fn map(scene: &Scene, rows: &[ContactRow]) -> ContactMap {
     let shown: Vec<usize> = (0..3).filter(|&d| d != across).collect();
     let (labels, at): (_, Vec<[f64; 2]>) = if flat {
         let labels = [shown[0], shown[1]].map(|d| ["x", "y", "z"][d].to_string());
-        let at = |r: &ContactRow| [r.point[shown[0]], r.point[shown[1]]];
+        let at = |r: &SolvedRow| [r.label.point[shown[0]], r.label.point[shown[1]]];
         (labels, rows.iter().map(at).collect())
     } else {
         (
             ["s", "t"].map(String::from),
-            rows.iter().map(|r| r.t).collect(),
+            rows.iter().map(|r| r.label.t).collect(),
         )
     };
     let mut cells = Vec::new();
@@ -44,7 +46,7 @@ fn map(scene: &Scene, rows: &[ContactRow]) -> ContactMap {
         let spec = &scene.bodies[body].spec;
         let numbered = rows.iter().enumerate();
         let of: HashMap<usize, u32> = numbered
-            .filter_map(|(k, r)| Some((r.members[0]?.1, k as u32)))
+            .filter_map(|(k, r)| Some((r.node()?, k as u32)))
             .collect();
         for cell in spec.side_cells(side) {
             let corner = |a: usize| of.get(&spec.mesh.node(cell[a])).copied();
@@ -54,17 +56,17 @@ fn map(scene: &Scene, rows: &[ContactRow]) -> ContactMap {
             }
         }
     }
-    let column = |f: fn(&ContactRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let column = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     ContactMap {
-        name: name(scene, rows[0].source),
+        name: name(scene, rows[0].label.source),
         labels,
         at,
         cells,
-        t: rows.iter().map(|r| r.t).collect(),
-        points: rows.iter().map(|r| r.point).collect(),
-        gap: column(|r| r.distance),
+        t: rows.iter().map(|r| r.label.t).collect(),
+        points: rows.iter().map(|r| r.label.point).collect(),
+        gap: column(|r| r.gap),
         multiplier: column(|r| r.multiplier),
-        area: column(|r| r.area),
-        active: rows.iter().map(|r| r.active).collect(),
+        area: column(|r| r.label.area),
+        active: rows.iter().map(|r| r.holds()).collect(),
     }
 }

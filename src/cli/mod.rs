@@ -1,6 +1,5 @@
 //! The command-line program: arguments, then run, then an exit code.
 
-mod areas;
 pub mod args;
 mod balance;
 mod checkpoint;

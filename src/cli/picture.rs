@@ -4,8 +4,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::areas::side;
-use super::contact::{by_source, ContactRow};
+use super::contact::{by_source, side};
 use super::fields::Gathered;
 use crate::fem::cell::CellStress;
 use crate::linalg::vec3::{minus, norm};
@@ -15,6 +14,7 @@ use crate::report::pictures::field::{ContactMark, Field, Mesh, Values};
 use crate::report::pictures::solid;
 use crate::report::pictures::solid::{FaceMark, Solid};
 use crate::scene::Scene;
+use crate::substructures::SolvedRow;
 use crate::Result;
 
 /// Displacements are magnified so that the largest is at most this part of the scene's size.
@@ -25,10 +25,10 @@ const VISIBLE: [f64; 2] = [0.03, 0.3];
 const VISIBLE_CONTACT: f64 = 0.01;
 
 /// Writes `solution.png` into `dir`.
-pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[ContactRow], dir: &Path) -> Result<()> {
+pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Path) -> Result<()> {
     let path = dir.join("solution.png");
     let elastic = scene.form.is_elastic();
-    let moved = Moved::new(scene, all, rows.iter().any(|r| r.inequality));
+    let moved = Moved::new(scene, all, rows.iter().any(|r| r.is_inequality()));
     let size = all.u.chunks_exact(scene.components());
     let u: Vec<f64> = size
         .map(|u| match u {
@@ -93,13 +93,13 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[ContactRow], dir: &Pa
         subdomain: &all.subdomain,
     };
     if !elastic {
-        let marks = line_marks(rows, &|r| [r.point[0], r.point[1]]);
+        let marks = line_marks(rows, &|r| [r.label.point[0], r.label.point[1]]);
         return field::write_solution(&mesh, &all.u, &all.rho, &marks, &title, &path);
     }
     let copies = all.copies(scene, rows);
-    let at = |row: &ContactRow| {
-        let copy = row.members[0].and_then(|m| copies.get(&m));
-        let point = copy.map_or(row.point, |c| moved.points[c[0]]);
+    let at = |row: &SolvedRow| {
+        let copy = row.label.members[0].and_then(|m| copies.get(&m));
+        let point = copy.map_or(row.label.point, |c| moved.points[c[0]]);
         [point[0], point[1]]
     };
     let marks = line_marks(rows, &at);
@@ -175,44 +175,42 @@ fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
 }
 
 /// Where bodies may touch and do, from node to node.
-fn line_marks(rows: &[ContactRow], at: &dyn Fn(&ContactRow) -> [f64; 2]) -> Vec<ContactMark> {
+fn line_marks(rows: &[SolvedRow], at: &dyn Fn(&SolvedRow) -> [f64; 2]) -> Vec<ContactMark> {
     let mut out = Vec::new();
     for rows in by_source(rows) {
-        let rows: Vec<&ContactRow> = rows.iter().filter(|r| r.inequality).collect();
+        let rows: Vec<&SolvedRow> = rows.iter().filter(|r| r.is_inequality()).collect();
         if let [only] = rows[..] {
             out.push(ContactMark {
                 from: at(only),
                 to: at(only),
-                closed: only.active,
+                closed: only.holds(),
             });
         }
         out.extend(rows.windows(2).map(|pair| ContactMark {
             from: at(pair[0]),
             to: at(pair[1]),
-            closed: pair[0].active && pair[1].active,
+            closed: pair[0].holds() && pair[1].holds(),
         }));
     }
     out
 }
 
 /// The faces of elements whose nodes all may touch, on both bodies of an interface.
-fn face_marks(scene: &Scene, rows: &[ContactRow]) -> Vec<FaceMark> {
+fn face_marks(scene: &Scene, rows: &[SolvedRow]) -> Vec<FaceMark> {
     let mut out = Vec::new();
     for rows in by_source(rows) {
         let Some((first, one)) = side(scene, rows) else {
             continue;
         };
-        let (kind, k) = rows[0].source;
         let mut sides = vec![(0, first, one)];
-        if let (0, Some((second, _))) = (kind, rows[0].members[1]) {
-            let interface = &scene.interfaces[k];
-            let which = usize::from(interface.bodies[0] != second);
-            sides.push((1, second, interface.sides[which]));
+        if let Some(second) = rows[0].label.members[1] {
+            let other = scene.side_of(rows[0].label.source, second.body);
+            sides.extend(other.map(|side| (1, second.body, side)));
         }
         for (member, body, side) in sides {
-            let contact = rows.iter().filter(|r| r.inequality);
+            let contact = rows.iter().filter(|r| r.is_inequality());
             let active: HashMap<usize, bool> = contact
-                .filter_map(|r| Some((r.members[member]?.1, r.active)))
+                .filter_map(|r| Some((r.label.members[member]?.node, r.holds())))
                 .collect();
             let spec = &scene.bodies[body].spec;
             for cell in spec.side_cells(side) {

@@ -174,8 +174,8 @@ fn report(
     let [l2, h1, energy] = errors.map(f64::sqrt);
     let floating = dual.natural.r > 0;
     let inequalities = facts.inequalities > 0;
-    let held = &solution.active[dual.stiffness.jump.n_owned_local..];
-    let mut active = [held.iter().filter(|on| **on).count() as f64];
+    let rows = solver.rows(solution);
+    let mut active = [rows.iter().filter(|r| r.holds()).count() as f64];
     sum_all(session.comm(), &mut active);
     Ok(SolveReport {
         scene: scene.title.clone(),
@@ -339,11 +339,11 @@ fn contact_report(
     }
     let mut counts = [factorisations() as f64, facts.kinds as f64];
     sum_all(session.comm(), &mut counts);
-    let inequalities = || course.rows.iter().filter(|r| r.inequality);
+    let inequalities = || course.rows.iter().filter(|r| r.is_inequality());
     Ok(Some(ContactReport {
         method: contact::method(&course.outer),
         candidates: facts.inequalities,
-        active: inequalities().filter(|r| r.active).count(),
+        active: inequalities().filter(|r| r.holds()).count(),
         factorisations: counts[0] as usize,
         distinct_subdomains: counts[1] as usize,
         steps: course.outer.clone(),

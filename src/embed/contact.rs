@@ -11,7 +11,7 @@ use super::torn::Torn;
 use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::{exchange_words, gather_all};
 use crate::petsc::Session;
-use crate::substructures::{InterfaceRow, RowKind};
+use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
 use crate::{Error, Result};
 
 /// A row on the rank that takes it.
@@ -106,6 +106,7 @@ impl Contact {
                     kind: row.kind,
                     holds: true,
                     block: root.into(),
+                    label: label(row.from.1, &unknown, &owner),
                 },
                 known,
             });
@@ -161,7 +162,7 @@ impl Contact {
     }
 
     /// What belongs to this rank's rows, brought back to the ranks that gave them; zero for rows without unknowns. Collective.
-    pub fn back(&self, session: &Session, mine: &[f64]) -> Vec<f64> {
+    pub fn back(&self, session: &Session, mine: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
         for (t, v) in self.taken.iter().zip(mine) {
             outgoing[t.from.0].extend([t.from.1 as u64, v.to_bits()]);
@@ -175,6 +176,23 @@ impl Contact {
         }
         out
     }
+}
+
+/// What is known of the row with number `number`: the bodies and the unknowns on its sides.
+fn label(number: usize, unknown: &[(u32, f64)], owner: &HashMap<u32, u64>) -> RowLabel {
+    let nodes = unknown.iter().map(|&(dof, _)| BodyNode {
+        body: owner[&dof] as usize,
+        node: dof as usize,
+    });
+    let first = nodes.clone().next();
+    let second = nodes
+        .clone()
+        .find(|n| Some(n.body) != first.map(|f| f.body));
+    let source = match second {
+        Some(_) => RowSource::Interface(number),
+        None => RowSource::Obstacle(number),
+    };
+    RowLabel::new(source, [first, second])
 }
 
 /// All rows on all ranks.

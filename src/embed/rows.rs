@@ -5,7 +5,7 @@ use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
-use crate::substructures::{InterfaceRow, RowKind};
+use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
 
 /// u_a − u_b = 0 for every pair of bodies a < b at every dof; provided by the rank of the dof's lowest subdomain, or, where rows of the host
 /// touch the dof, by the rank that has those. Collective.
@@ -26,6 +26,15 @@ pub fn rows(
         kind: RowKind::Equality,
         holds: true,
         block: u64::from(contact.block(dof).unwrap_or(dof)),
+        label: RowLabel::new(
+            RowSource::Interface(dof as usize),
+            [a, b].map(|body| {
+                Some(BodyNode {
+                    body: body as usize,
+                    node: dof as usize,
+                })
+            }),
+        ),
     };
     let mut out = Vec::new();
     let mut elsewhere: Vec<Vec<u64>> = vec![Vec::new(); session.size()];

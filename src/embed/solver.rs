@@ -191,7 +191,7 @@ impl Embedded {
             .solver()
             .solve_from(start.as_ref(), &mut |_, _| Ok(()))?;
         self.put_together(&solution.u, x)?;
-        let multipliers = self.of_given_rows(&solution.lambda);
+        let multipliers = self.of_given_rows(&solution);
         self.reached
             .replace(Some((ContactState::warm(&solution), multipliers)));
         Ok(outcome(&solution))
@@ -207,18 +207,11 @@ impl Embedded {
         self.reached.borrow().as_ref().map(|(_, l)| l.clone())
     }
 
-    /// What belongs to the rows of the host, from a vector of this rank's multipliers. Collective.
-    fn of_given_rows(&self, owned: &[f64]) -> Vec<f64> {
-        let solver = self.solver();
-        let dual = solver.dual();
-        let jump = &dual.stiffness.jump;
-        let mut mine = vec![0.0; solver.problem().rows.len() - self.n_ties];
-        for (k, &r) in jump.order.iter().enumerate() {
-            if r >= self.n_ties {
-                mine[r - self.n_ties] = owned[jump.n_owned_local + k];
-            }
-        }
-        self.contact.back(&self.session, &mine)
+    /// The multipliers of the rows of the host, on the ranks that gave them. Collective.
+    fn of_given_rows(&self, solution: &Solution) -> Vec<f64> {
+        let rows = self.solver().rows(solution);
+        let given = rows[self.n_ties..].iter().map(|r| r.multiplier);
+        self.contact.back(&self.session, given)
     }
 
     /// Hands loads and gaps to the solver. Collective.

@@ -10,6 +10,7 @@ pub mod lifting;
 pub mod operators;
 pub mod primal;
 pub mod projector;
+mod rows;
 pub mod settings;
 pub mod solver;
 pub mod subdomain;

@@ -84,8 +84,7 @@ impl Scene {
         let interfaces = rows::entries::find(&bodies, &spec, &steps)?;
         let obstacles = rows::obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
         let mut points = rows::points::collect(&mut bodies, &interfaces)?;
-        rows::bounds::Checks::new(&bodies, &interfaces, &obstacles, &spec, &steps)
-            .apply(&mut points)?;
+        rows::bounds::Checks::new(&bodies, &obstacles, &spec, &steps).apply(&mut points)?;
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             title: spec.title,

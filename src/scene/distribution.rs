@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::Scene;
+use super::checked::Scene;
 use crate::error::{Error, Result};
 use crate::mesh::contiguous_share;
 use crate::petsc::{Options, Session};

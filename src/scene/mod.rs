@@ -45,5 +45,4 @@ pub use model::steps::Steps;
 pub use numbering::Numbering;
 pub use plan::{BodyPlan, InterfacePlan, Plan};
 pub use rows::obstacles::Obstacle;
-pub use rows::points::{Direction, Member, Point, PointBound, PointRow};
-pub use rows::table::{RowLabel, RowSource};
+pub use rows::points::{Inequality, Point, PointRow};

@@ -104,7 +104,6 @@ impl Scene {
                 contact: i.shared.iter().filter(|s| s.link.is_contact()).count(),
             })
             .collect();
-        let bounds = || self.points.iter().flat_map(|p| &p.bounds);
         Plan {
             title: self.title.clone(),
             interfaces,
@@ -114,12 +113,12 @@ impl Scene {
             assembled: Numbering::new(self).len(),
             primal: bodies.iter().map(|b| b.primal).sum(),
             local_multipliers: bodies.iter().map(|b| b.local_multipliers).sum(),
-            global_multipliers: self.rows_that(|r| r.holds) + bounds().filter(|b| b.holds).count(),
-            open_rows: self.rows_that(|r| !r.holds),
+            global_multipliers: self.rows_that(|r| r.holds),
+            open_rows: self.rows_that(|r| !r.holds && r.inequality.is_none()),
             contact_pairs: self.interfaces.iter().filter(|i| i.has_contact()).count(),
-            contact_rows: self.rows_that(|r| r.contact),
+            contact_rows: self.rows_that(|r| r.inequality.is_some() && !r.is_beside_obstacle()),
             obstacles: self.obstacles.len(),
-            obstacle_rows: bounds().count(),
+            obstacle_rows: self.rows_that(PointRow::is_beside_obstacle),
             steps: self.steps.as_ref().map(|s| s.times.len()),
             bodies,
         }
@@ -134,11 +133,7 @@ impl Scene {
     }
 
     fn rows_that(&self, is: impl Fn(&PointRow) -> bool) -> usize {
-        self.points
-            .iter()
-            .flat_map(|p| &p.rows)
-            .filter(|r| is(r))
-            .count()
+        self.each_row(|_| true).filter(|(_, r)| is(r)).count()
     }
 
     fn body_plan(&self, b: usize) -> BodyPlan {

@@ -5,7 +5,7 @@ use crate::support::{mpi, program};
 use fetifeti::contact::{self, ContactType};
 use fetifeti::petsc::{testing::with_session, Session};
 use fetifeti::scene::Scene;
-use fetifeti::{FetiFeti, Settings, Solution};
+use fetifeti::{FetiFeti, RowState, Settings, Solution};
 use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
@@ -133,15 +133,13 @@ fn sets_and_displacements() {
                 let scene = Scene::parse("model.toml", &model(n, s)).expect("a good scene");
                 let (solver, solution) = solve(session, &scene, method, rtol);
                 assert!(solution.converged, "{what}");
-                let labels = scene.row_labels(&|_| true);
-                let dual = solver.dual();
-                let jump = &dual.stiffness.jump;
-                let mut touching = Vec::new();
-                for (k, &r) in jump.order.iter().enumerate() {
-                    if solution.active[jump.n_owned_local + k] {
-                        touching.push((labels[r].t[0] * n as f64).round() as u64);
-                    }
-                }
+                let rows = solver.rows(&solution);
+                let node = |t: f64| (t * n as f64).round() as u64;
+                let mut touching: Vec<u64> = rows
+                    .iter()
+                    .filter(|r| r.state == RowState::Holds)
+                    .map(|r| node(r.label.t[0]))
+                    .collect();
                 touching.sort_unstable();
                 let last = row["last_active"].as_u64().expect("a count");
                 let wanted: Vec<u64> = (0..=last).collect();

@@ -33,11 +33,11 @@ fn the_model_problem_agrees_with_the_oracle() {
         near(s.energy, "energy", 1e-12);
         near(s.contact_force, "contact_force", 1e-12);
         assert!((s.contact_force - 0.25).abs() < 1e-13);
-        let labels = scene.row_labels(&|_| true);
+        let rows = scene.rows(&|_| true);
         let nodes: Vec<f64> = s
             .closed
             .iter()
-            .map(|&r| labels[r].point[1] * n as f64)
+            .map(|&r| rows[r].label.point[1] * n as f64)
             .collect();
         let nodes: Vec<u64> = nodes.iter().map(|y| y.round() as u64).collect();
         assert_eq!(nodes.len() as u64, case["active_nodes"].as_u64().unwrap());

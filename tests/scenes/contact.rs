@@ -1,8 +1,8 @@
 //! Rows of contacts and obstacles: at faces, cross points, given values; labels; load steps.
 
 use fetifeti::mesh::contiguous_share;
-use fetifeti::scene::{Link, RowLabel, RowSource, Scene};
-use fetifeti::substructures::{InterfaceRow, RowKind};
+use fetifeti::scene::{Link, Scene};
+use fetifeti::substructures::{InterfaceRow, RowKind, RowLabel, RowSource};
 
 fn body(name: &str, origin: &str, more: &str) -> String {
     format!("[[body]]\nname = \"{name}\"\norigin = {origin}\nsize = [1, 1]\nelements = 4\n{more}\n")
@@ -16,6 +16,10 @@ fn pair(more: &str) -> Scene {
 
 fn contact(more: &str) -> String {
     format!("[[contact]]\nbodies = [\"a\", \"b\"]\n{more}\n")
+}
+
+fn labels(scene: &Scene) -> Vec<RowLabel> {
+    scene.rows(&|_| true).iter().map(|r| r.label).collect()
 }
 
 fn gaps(scene: &Scene) -> Vec<f64> {
@@ -46,7 +50,7 @@ fn a_row_says_that_the_second_body_stays_above_the_first() {
         assert_eq!(interface.order, if sign > 0.0 { [0, 1] } else { [1, 0] });
         let at_gap = |l: Link| l == Link::Contact { gap: 0.5 };
         assert!(interface.shared.iter().all(|s| at_gap(s.link)));
-        let labels = scene.row_labels(&|_| true);
+        let labels = labels(&scene);
         let first = labels[1].members.map(|m| m.unwrap().body);
         assert_eq!(first, interface.order);
         assert_eq!(
@@ -133,7 +137,7 @@ fn cross(entries: &str) -> Vec<([usize; 2], bool)> {
     let text = format!("[grid]\nbodies = 2\nsize = 2\nelements = 2\n{entries}");
     let scene = Scene::parse("c.toml", &text).unwrap();
     let rows = scene.rows(&|_| true);
-    let labels = scene.row_labels(&|_| true);
+    let labels = labels(&scene);
     let here = labels
         .iter()
         .zip(&rows)
@@ -187,7 +191,7 @@ fn given_values_go_to_the_right_hand_side() {
     assert_eq!(rows.len(), 5);
     assert_eq!(rows[2].terms, [(14, 1.0)]);
     assert_eq!(gaps(&scene), [2.5, 2.75, 3.0, 3.25, 3.5]);
-    let label = scene.row_labels(&|_| true)[2];
+    let label = scene.rows(&|_| true)[2].label;
     assert_eq!(label.members.map(|m| m.unwrap().node), [14, 10]);
     // −u_b ≤ g − v_a
     let scene = two("dirichlet = { right = 3 }", "", "gap = 0.5");
@@ -212,7 +216,7 @@ fn obstacles_bound_the_nodes_of_a_side() {
     );
     assert!(!scene.obstacles[0].upper && scene.obstacles[1].upper);
     let rows = scene.rows(&|_| true);
-    let labels = scene.row_labels(&|_| true);
+    let labels = labels(&scene);
     // Nodes 20, 21, 22 of `a` twice; nine nodes of `b`, the corner once.
     assert_eq!(rows.len(), 6 + 9);
     let of = |dof: u64| -> Vec<(&InterfaceRow, &RowLabel)> {
@@ -228,7 +232,7 @@ fn obstacles_bound_the_nodes_of_a_side() {
     assert_eq!((at[1].1.t, at[1].1.point), ([0.25, 0.0], [0.25, 1.0, 0.0]));
     assert_eq!(at[1].1.members[0].unwrap().node, 21);
     assert_eq!(at[1].1.members[1], None);
-    assert_eq!((at[1].1.block, at[1].0.block), (21, 21));
+    assert_eq!(at[1].0.block, 21);
     assert_eq!(of(25 + 4)[0].0.gap, 1.0);
     // At the corner both sides bound u by 2; at the left end of the top the bound is 1.
     assert_eq!(of(49).len(), 1);
@@ -272,8 +276,6 @@ fn every_row_is_provided_once_and_blocks_stay_together() {
     ] {
         let scene = Scene::load(format!("examples/scenes/{name}.toml")).unwrap();
         let whole = scene.rows(&|_| true);
-        let labels = scene.row_labels(&|_| true);
-        assert_eq!(labels.len(), whole.len());
         assert_eq!(
             scene.gaps(&|_| true, scene.n_steps() - 1).unwrap(),
             gaps(&scene)
@@ -287,21 +289,19 @@ fn every_row_is_provided_once_and_blocks_stay_together() {
                 for rank in 0..ranks {
                     let mine = |s: usize| owns(s, rank);
                     let rows = scene.rows(&mine);
-                    let parts = scene.row_labels(&mine);
                     assert_eq!(scene.gaps(&mine, 0).unwrap().len(), rows.len());
-                    assert_eq!(parts.len(), rows.len());
-                    found.extend(rows.into_iter().zip(parts).map(|(r, l)| (r, l, rank)));
+                    found.extend(rows.into_iter().map(|r| (r, rank)));
                 }
                 assert_eq!(found.len(), whole.len(), "{name}");
                 // Points are visited in the order of their blocks.
-                found.sort_by_key(|(r, _, _)| r.block);
-                for ((row, label, _), (r, l)) in found.iter().zip(whole.iter().zip(&labels)) {
+                found.sort_by_key(|(r, _)| r.block);
+                for ((row, _), r) in found.iter().zip(&whole) {
                     assert_eq!((&row.terms, row.gap, row.block), (&r.terms, r.gap, r.block));
-                    assert_eq!((label, label.block), (l, row.block));
+                    assert_eq!(row.label, r.label);
                 }
                 let split = found
                     .windows(2)
-                    .any(|w| w[0].0.block == w[1].0.block && w[0].2 != w[1].2);
+                    .any(|w| w[0].0.block == w[1].0.block && w[0].1 != w[1].1);
                 assert!(!split, "{name}");
             }
         }

@@ -4,8 +4,8 @@
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::Side;
-use fetifeti::scene::{Numbering, RowLabel, RowSource, Scene};
-use fetifeti::substructures::RowKind;
+use fetifeti::scene::{Numbering, Scene};
+use fetifeti::substructures::{RowKind, RowLabel, RowSource};
 
 /// min ½ uᵀKu − fᵀu over B u ≤ g, on the unknowns of the numbering.
 struct Problem {
@@ -52,7 +52,6 @@ impl Problem {
             }
         }
         let gaps = scene.gaps(&|_| true, step).unwrap();
-        let labels = scene.row_labels(&|_| true);
         let mut out = Problem {
             n,
             k,
@@ -61,7 +60,7 @@ impl Problem {
             g: Vec::new(),
             labels: Vec::new(),
         };
-        for ((row, gap), label) in scene.rows(&|_| true).iter().zip(gaps).zip(labels) {
+        for (row, gap) in scene.rows(&|_| true).iter().zip(gaps) {
             if row.kind == RowKind::Inequality {
                 let terms = row
                     .terms
@@ -69,7 +68,7 @@ impl Problem {
                     .map(|&(d, c)| (numbering.global(d) as usize, c));
                 out.rows.push(terms.collect());
                 out.g.push(gap);
-                out.labels.push(label);
+                out.labels.push(row.label);
             }
         }
         out

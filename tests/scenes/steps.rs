@@ -108,11 +108,11 @@ fn the_last_step_is_that_of_the_subdomains_to_the_bit() {
 #[test]
 fn gaps_follow_their_ramp_and_given_values() {
     let scene = scene(STEPS);
-    let labels = scene.row_labels(&|_| true);
+    let rows = scene.rows(&|_| true);
     for (step, t) in [0.25, 0.5, 0.75].into_iter().enumerate() {
         let gaps = scene.gaps(&|_| true, step).unwrap();
         let (mut contacts, mut given, mut bounds) = (0, 0, 0);
-        for (label, gap) in labels.iter().zip(gaps) {
+        for (label, gap) in rows.iter().map(|r| r.label).zip(gaps) {
             let [x, y, _] = label.point;
             let expected = match label.members[1] {
                 // The obstacle follows its own ramp, the contact the factor of all gaps.

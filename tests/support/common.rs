@@ -4,7 +4,9 @@
 use std::collections::BTreeMap;
 
 use fetifeti::linalg::csr::Csr;
-use fetifeti::substructures::{InterfaceRow, RowKind, Subdomain, Substructures};
+use fetifeti::substructures::{
+    InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures,
+};
 
 /// N_b × N_b bodies of N_s × N_s subdomains of n × n bilinear elements on the unit square, held on its whole boundary.
 #[derive(Clone, Copy)]
@@ -170,6 +172,7 @@ impl Grid {
                             kind: RowKind::Equality,
                             holds,
                             block: (y * (n + 1) + x) as u64,
+                            label: RowLabel::new(RowSource::Interface(0), [None; 2]),
                         });
                     }
                 }

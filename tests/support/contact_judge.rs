@@ -57,11 +57,9 @@ pub fn answer(
         .filter(|&r| mine(places[&problem.rows[r].block]))
         .map(|r| r as u64)
         .collect();
-    let dual = solver.dual();
-    let jump = &dual.stiffness.jump;
-    let contact = &solution.lambda[jump.n_owned_local..];
-    let rows = all(jump.order.iter().map(|&k| provided[k]).collect());
-    let values = all(contact.iter().map(|l| l.to_bits()).collect());
+    let solved = solver.rows(&solution);
+    let rows = all(provided);
+    let values = all(solved.iter().map(|r| r.multiplier.to_bits()).collect());
     let mut lambda = vec![f64::NAN; problem.rows.len()];
     for (row, value) in rows.into_iter().zip(values) {
         lambda[row as usize] = f64::from_bits(value);

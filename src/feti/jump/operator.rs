@@ -219,6 +219,15 @@ impl Jump {
         self.reconcile(|_| true);
     }
 
+    /// What `owned` has for the owned rows of B_gl, in the order in which this rank provides them.
+    pub fn in_given_order<T: Clone + Default>(&self, owned: &[T]) -> Vec<T> {
+        let mut out = vec![T::default(); self.order.len()];
+        for (&r, value) in self.order.iter().zip(&owned[self.n_owned_local..]) {
+            out[r] = value.clone();
+        }
+        out
+    }
+
     /// Whether owned row `i` may hold at all: open rows of faces that are tied in part may not.
     pub fn is_candidate(&self, i: usize) -> bool {
         self.inequality[i] || self.initial[i]

@@ -78,4 +78,12 @@ impl Interface {
     pub fn has_contact(&self) -> bool {
         !self.limits.all().is_empty()
     }
+
+    /// The unit normal at a shared node, out of the first body of the inequality.
+    pub(crate) fn normal_in_order(&self, node: usize) -> [f64; 3] {
+        match self.order {
+            [0, 1] => self.normals[node],
+            _ => self.normals[node].map(|v| 0.0 - v),
+        }
+    }
 }

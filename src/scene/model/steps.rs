@@ -137,6 +137,12 @@ impl<'a> Factors<'a> {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// The tightest of the bounds of an inequality, which has some.
+    pub fn bound(&self, limits: &[Limit]) -> (f64, Option<usize>) {
+        self.tightest(limits)
+            .expect("a row of an inequality has a bound")
+    }
+
     fn gap(&self, entry: Option<usize>) -> f64 {
         self.at.map_or(1.0, |(s, t)| {
             let own = entry.and_then(|e| s.entries.get(e)?.as_ref());

@@ -1,18 +1,18 @@
 //! Inequalities at points: obstacles get their rows, and what is decided by given values or by ties is checked and dropped.
 
 use super::obstacles::Obstacle;
-use super::points::{Member, Point, PointBound, PointRow};
+use super::points::{Inequality, Point, PointRow};
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
-use crate::scene::geometry::interface::Interface;
+use crate::scene::model::profile::Limit;
 use crate::scene::model::spec::SceneSpec;
 use crate::scene::model::steps::{Factors, Steps};
+use crate::substructures::{BodyNode, RowSource};
 use std::collections::HashMap;
 
 /// What inequalities are checked against.
 pub(crate) struct Checks<'a> {
     pub bodies: &'a [Body],
-    pub interfaces: &'a [Interface],
     pub obstacles: &'a [Obstacle],
     /// Where every contact and obstacle was written, by number of the entry.
     pub written: Vec<&'a str>,
@@ -27,7 +27,6 @@ impl<'a> Checks<'a> {
     /// Those of a scene.
     pub fn new(
         bodies: &'a [Body],
-        interfaces: &'a [Interface],
         obstacles: &'a [Obstacle],
         spec: &'a SceneSpec,
         steps: &'a Option<Steps>,
@@ -36,7 +35,6 @@ impl<'a> Checks<'a> {
         let rest = spec.obstacles.iter().map(|o| o.written.as_str());
         Checks {
             bodies,
-            interfaces,
             obstacles,
             written: contacts.chain(rest).collect(),
             factors: Factors::every(steps),
@@ -49,13 +47,14 @@ impl<'a> Checks<'a> {
     /// [`Error::Input`] where they decide against the inequality, or where two bounds leave nothing between them.
     pub fn apply(&self, points: &mut Vec<Point>) -> Result<()> {
         for point in points.iter_mut() {
-            let mut kept = Vec::with_capacity(point.rows.len());
-            for row in &point.rows {
-                if !row.contact || self.contact_matters(point, row)? {
-                    kept.push(*row);
-                }
+            let mut rows = std::mem::take(&mut point.rows);
+            let mut decided = Vec::with_capacity(rows.len());
+            for row in &mut rows {
+                decided.push(self.is_decided(point, row)?);
             }
-            point.rows = kept;
+            let mut decided = decided.into_iter();
+            rows.retain(|_| decided.next() == Some(false));
+            point.rows = rows;
         }
         self.add_bounds(points)?;
         for point in points.iter() {
@@ -64,19 +63,19 @@ impl<'a> Checks<'a> {
         Ok(())
     }
 
-    /// Whether a contact row says something that is not decided already.
-    fn contact_matters(&self, point: &Point, row: &PointRow) -> Result<bool> {
-        let limits = self.interfaces[row.interface].limits.at(row.node);
-        let [a, b] = row.members;
-        let members = row.members.map(|m| point.members[m]);
-        let direction = row.vector(self.interfaces);
-        let sides = members.map(|m| m.along(self.bodies, direction));
+    /// Whether ties or given values decide a row. Notes what is given on both sides of a contact.
+    fn is_decided(&self, point: &Point, row: &mut PointRow) -> Result<bool> {
+        let (Some(inequality), [Some(a), Some(b)]) = (&mut row.inequality, row.members) else {
+            return Ok(false);
+        };
+        let members = [a, b].map(|m| point.members[m]);
+        let sides = members.map(|m| m.along(self.bodies, row.direction));
+        inequality.given = [0, 1].map(|k| sides[k].given);
         let fixed = sides.iter().all(|s| s.terms.is_empty());
-        let distance = self.interfaces[row.interface].distances[row.node];
         let tied = point.tied_to[a] == point.tied_to[b];
         for factors in &self.factors {
-            let (gap, entry) = self.finite(factors, limits, members[0])?;
-            let gap = gap + distance;
+            let (gap, entry) = self.finite(factors, &inequality.limits, members[0])?;
+            let gap = gap + inequality.distance;
             let fail = |why: String| {
                 let [a, b] = members.map(|m| &self.bodies[m.body].spec.name);
                 let at = members[0].spot(self.bodies);
@@ -88,7 +87,7 @@ impl<'a> Checks<'a> {
                 )))
             };
             if fixed {
-                let [v, w] = [0, 1].map(|k| sides[k].given * factors.dirichlet());
+                let [v, w] = inequality.given.map(|given| given * factors.dirichlet());
                 if exceeds(v - w, gap) {
                     return fail(format!("have the given values {v} and {w}"));
                 }
@@ -96,18 +95,17 @@ impl<'a> Checks<'a> {
                 return fail("are tied through others".into());
             }
         }
-        Ok(!tied && !fixed)
+        Ok(tied || fixed)
     }
 
     /// The tightest bound at a step, which must be finite with its factor.
-    fn finite<'l>(
+    fn finite(
         &self,
         factors: &Factors<'_>,
-        limits: impl IntoIterator<Item = &'l crate::scene::model::profile::Limit>,
-        member: Member,
+        limits: &[Limit],
+        member: BodyNode,
     ) -> Result<Tightest> {
-        let found = factors.tightest(limits);
-        let (value, entry) = found.expect("a row of an inequality has a bound");
+        let (value, entry) = factors.bound(limits);
         if value.is_finite() {
             return Ok((value, entry));
         }
@@ -121,7 +119,7 @@ impl<'a> Checks<'a> {
     }
 
     /// Where to look: the entry, or the body where the default made the contact.
-    fn place(&self, entry: Option<usize>, member: Member) -> &str {
+    fn place(&self, entry: Option<usize>, member: BodyNode) -> &str {
         let written = entry.and_then(|e| self.written.get(e).copied());
         written.unwrap_or(&self.bodies[member.body].spec.written)
     }
@@ -131,7 +129,7 @@ impl<'a> Checks<'a> {
         if self.obstacles.is_empty() {
             return Ok(());
         }
-        let mut index: HashMap<Member, (usize, usize)> = HashMap::new();
+        let mut index: HashMap<BodyNode, (usize, usize)> = HashMap::new();
         for (p, point) in points.iter().enumerate() {
             let members = point.members.iter().enumerate();
             index.extend(members.map(|(m, member)| (*member, (p, m))));
@@ -140,54 +138,69 @@ impl<'a> Checks<'a> {
             let body = obstacle.body;
             for same in obstacle.limits.all().chunk_by(|a, b| a.node == b.node) {
                 let node = same[0].node;
-                let member = Member { body, node };
-                let (distance, direction) = self.ahead(obstacle, member);
+                let member = BodyNode { body, node };
+                let (distance, direction) = obstacle.ahead(&self.bodies[body], node);
                 let side = member.along(self.bodies, direction);
                 if side.terms.is_empty() {
                     self.check_given(obstacle, member, side.given, distance)?;
                     continue;
                 }
                 let &mut (p, m) = index.entry(member).or_insert_with(|| {
-                    points.push(Member::point(vec![member], self.bodies));
+                    points.push(member.alone(self.bodies));
                     (points.len() - 1, 0)
                 });
-                let bounds = &mut points[p].bounds;
-                let beside = |b: &&mut PointBound| {
-                    let other = &self.obstacles[b.obstacle];
-                    b.member == m && other.upper == obstacle.upper && other.rigid == obstacle.rigid
-                };
-                match bounds.iter_mut().find(beside) {
-                    Some(bound) => {
-                        let room = bound.others.iter_mut().find(|other| other.is_none());
-                        *room.expect("a node lies on three sides at most") = Some(o);
-                    }
-                    None => bounds.push(PointBound {
-                        member: m,
-                        obstacle: o,
-                        others: [None; 2],
+                let rows = &mut points[p].rows;
+                // At corners and edges the sides of a body have a row in common.
+                let before = rows.iter_mut().find(|row| {
+                    let other = self.obstacle(row);
+                    row.members[0] == Some(m)
+                        && other
+                            .is_some_and(|o| (o.upper, o.rigid) == (obstacle.upper, obstacle.rigid))
+                });
+                match before.and_then(|row| row.inequality.as_mut()) {
+                    Some(inequality) => inequality.limits.extend(same),
+                    None => rows.push(PointRow {
+                        members: [Some(m), None],
+                        direction,
                         holds: true,
+                        inequality: Some(Box::new(Inequality {
+                            limits: same.to_vec(),
+                            distance,
+                            given: [side.given, 0.0],
+                        })),
+                        source: RowSource::Obstacle(o),
+                        node,
                     }),
                 }
             }
         }
         for point in points.iter_mut() {
-            point
-                .bounds
-                .sort_by_key(|b| (b.member, self.obstacles[b.obstacle].upper));
-            for k in 1..point.bounds.len() {
-                let same = point.bounds[k].member == point.bounds[k - 1].member;
-                let rigid = self.obstacles[point.bounds[k].obstacle].rigid.is_some();
-                point.bounds[k].holds = rigid || !same;
+            let first = point.rows.iter().position(PointRow::is_beside_obstacle);
+            let Some(first) = first else { continue };
+            let bounds = &mut point.rows[first..];
+            bounds.sort_by_key(|row| (row.members[0], self.obstacle(row).map(|o| o.upper)));
+            for k in 1..bounds.len() {
+                let same = bounds[k].members[0] == bounds[k - 1].members[0];
+                let rigid = self.obstacle(&bounds[k]).is_some_and(|o| o.rigid.is_some());
+                bounds[k].holds = rigid || !same;
             }
         }
         points.sort_by_key(|p| p.block);
         Ok(())
     }
 
+    /// The obstacle that a row comes from.
+    fn obstacle(&self, row: &PointRow) -> Option<&'a Obstacle> {
+        match row.source {
+            RowSource::Obstacle(o) => Some(&self.obstacles[o]),
+            RowSource::Interface(_) => None,
+        }
+    }
+
     fn check_given(
         &self,
         obstacle: &Obstacle,
-        member: Member,
+        member: BodyNode,
         given: f64,
         distance: f64,
     ) -> Result<()> {
@@ -223,18 +236,18 @@ impl<'a> Checks<'a> {
 
     /// The lower bound of a node must not lie above its upper bound.
     fn check_between(&self, point: &Point) -> Result<()> {
-        for (k, bound) in point.bounds.iter().enumerate() {
-            let member = point.members[bound.member];
-            let partner = point.bounds[..k]
-                .iter()
-                .find(|other| other.member == bound.member);
+        let mut below: Option<&PointRow> = None;
+        for row in &point.rows {
+            let (Some(obstacle), [Some(m), _]) = (self.obstacle(row), row.members) else {
+                continue;
+            };
+            let (member, limits) = (point.members[m], &row.limits());
+            let partner =
+                below.filter(|other| other.members == row.members && obstacle.rigid.is_none());
             for factors in &self.factors {
-                let (above, entry) = self.finite(factors, self.limits(point, bound), member)?;
-                let rigid = self.obstacles[bound.obstacle].rigid.is_some();
-                let Some(partner) = partner.filter(|_| !rigid) else {
-                    continue;
-                };
-                let (below, _) = self.finite(factors, self.limits(point, partner), member)?;
+                let (above, entry) = self.finite(factors, limits, member)?;
+                let Some(partner) = partner else { continue };
+                let (below, _) = self.finite(factors, partner.limits(), member)?;
                 if exceeds(0.0, below + above) {
                     return Err(Error::Input(format!(
                         "{}the obstacles of body `{}` leave nothing at {}{}: below = {} and above = {above} \
@@ -247,44 +260,15 @@ impl<'a> Checks<'a> {
                     )));
                 }
             }
+            if below.is_none_or(|other| other.members != row.members) {
+                below = Some(row);
+            }
         }
         Ok(())
     }
-
-    /// Distance and direction of the row of an obstacle at a member.
-    fn ahead(&self, obstacle: &Obstacle, member: Member) -> (f64, [f64; 3]) {
-        ahead(self.bodies, obstacle, member)
-    }
-
-    fn limits<'l>(
-        &'l self,
-        point: &Point,
-        bound: &PointBound,
-    ) -> impl Iterator<Item = &'l crate::scene::model::profile::Limit> {
-        limits(self.obstacles, point, bound)
-    }
-}
-
-/// All limits that count for a bound at a point.
-pub(crate) fn limits<'l>(
-    obstacles: &'l [Obstacle],
-    point: &Point,
-    bound: &PointBound,
-) -> impl Iterator<Item = &'l crate::scene::model::profile::Limit> {
-    let node = point.members[bound.member].node;
-    let [other, third] = bound.others;
-    let all = [Some(bound.obstacle), other, third].into_iter().flatten();
-    all.flat_map(move |o| obstacles[o].limits.at(node))
 }
 
 /// Whether `value` lies above `bound` by more than rounding.
-/// Distance and direction of the row of an obstacle at a member: u ≤ g and −u ≤ −g are rows along ±1.
-pub(crate) fn ahead(bodies: &[Body], obstacle: &Obstacle, member: Member) -> (f64, [f64; 3]) {
-    let sign = if obstacle.upper { 1.0 } else { -1.0 };
-    let found = obstacle.ahead(&bodies[member.body], member.node);
-    found.unwrap_or((0.0, [sign, 0.0, 0.0]))
-}
-
 fn exceeds(value: f64, bound: f64) -> bool {
     value - bound > 1e-10 * 1.0_f64.max(value.abs()).max(bound.abs())
 }

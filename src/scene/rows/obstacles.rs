@@ -34,13 +34,15 @@ impl Obstacle {
         parameters(&body.spec, self.side, body.mesh().place(node))
     }
 
-    /// The distance of a node from the rigid body and the direction in which the body must not move further; `None` where
-    /// the obstacle bounds u itself.
-    pub fn ahead(&self, body: &Body, node: usize) -> Option<(f64, [f64; 3])> {
-        let rigid = self.rigid?;
-        let found = rigid.distance(body.spec.position(body.mesh().place(node)));
-        // Nodes without a nearest point were refused.
-        found.map(|(distance, normal)| (distance, normal.map(|v| 0.0 - v)))
+    /// The distance of a node from the rigid body and the direction in which the body must not move further. Where the obstacle bounds u
+    /// itself there is no distance: u ≤ g and −u ≤ −g are rows along ±1.
+    pub(crate) fn ahead(&self, body: &Body, node: usize) -> (f64, [f64; 3]) {
+        let nearest = |rigid: Rigid| rigid.distance(body.spec.position(body.mesh().place(node)));
+        match self.rigid.and_then(nearest) {
+            Some((distance, normal)) => (distance, normal.map(|v| 0.0 - v)),
+            // Nodes of rigid bodies without a nearest point were refused.
+            None => (0.0, [if self.upper { 1.0 } else { -1.0 }, 0.0, 0.0]),
+        }
     }
 }
 

@@ -4,17 +4,11 @@ use crate::error::{Error, Result};
 use crate::linalg::union_find::UnionFind;
 use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
+use crate::scene::model::profile::Limit;
+use crate::scene::model::steps::Factors;
 use crate::scene::validate::agree;
+use crate::substructures::{BodyNode, RowSource};
 use std::collections::HashMap;
-
-/// A node of one body at a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Member {
-    /// The body.
-    pub body: usize,
-    /// Its node.
-    pub node: usize,
-}
 
 /// A point at which nodes of several bodies coincide, or a single node beside an obstacle.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,55 +18,45 @@ pub struct Point {
     /// The subdomain of lowest index that contains the point; the rank that owns it provides the rows.
     pub subdomain: usize,
     /// The nodes, by increasing body.
-    pub members: Vec<Member>,
+    pub members: Vec<BodyNode>,
     /// Lowest member (index into `members`) to which each member is tied, itself where it is tied to none lower.
     pub tied_to: Vec<usize>,
-    /// Pairs of members that have a row. No equality where u is given, and no contact where both values are.
+    /// The rows: pairs of members, then members beside obstacles. No equality where u is given, and no inequality where given values or
+    /// ties decide it.
     pub rows: Vec<PointRow>,
-    /// Members with a row for an obstacle; none where u is given.
-    pub bounds: Vec<PointBound>,
 }
 
-/// A pair of members of a point with a row u_a − u_b = 0 or, in contact, u_a − u_b ≤ g.
+/// A row at a point: u_a − u_b = 0, in contact u_a − u_b ≤ g, beside an obstacle u_a ≤ g, each along a direction.
 ///
 /// Pairs that share a face have a row where the face is tied or in contact, or open in a face that is tied elsewhere. Pairs
 /// that only meet in the corner have one where ties join them, so that the rows are fully redundant at cross points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PointRow {
-    /// Indices a, b into [`Point::members`]: the lower first in an equality, in the order of the inequality in contact.
-    pub members: [usize; 2],
-    /// Whether the row holds to begin with; an equality that does not only marks candidate contact nodes.
+    /// Indices a, b into [`Point::members`]: the lower first in an equality, in the order of the inequality in contact; beside an obstacle
+    /// there is no b.
+    pub members: [Option<usize>; 2],
+    /// The unit vector along which the row looks: a component, or the normal out of a.
+    pub direction: [f64; 3],
+    /// Whether the row holds to begin with; an equality that does not only marks candidate contact nodes, and of two bounds at one node
+    /// only the lower one can.
     pub holds: bool,
-    /// Whether it is an inequality.
-    pub contact: bool,
-    /// Of what the row takes the difference.
-    pub direction: Direction,
-    /// The interface that it comes from.
-    pub interface: usize,
-    /// Index into its `shared`.
+    /// What makes it an inequality; `None`: an equality.
+    pub inequality: Option<Box<Inequality>>,
+    /// The interface or obstacle that it comes from.
+    pub source: RowSource,
+    /// Index into the `shared` of that interface, or the node of the body beside the obstacle.
     pub node: usize,
 }
 
-/// What a row looks at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// One component of u.
-    Component(usize),
-    /// n·u with the normal of the interface or obstacle there.
-    Normal,
-}
-
-/// A member of a point with a row u ≤ g (upper bound) or −u ≤ g (lower bound).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PointBound {
-    /// Index into [`Point::members`].
-    pub member: usize,
-    /// The obstacle, an index into [`Scene::obstacles`](crate::scene::Scene::obstacles).
-    pub obstacle: usize,
-    /// At a corner or an edge, the obstacles beside the other sides; the tightest bound counts.
-    pub others: [Option<usize>; 2],
-    /// Whether the row holds to begin with: of two bounds at one node only the lower one can.
-    pub holds: bool,
+/// The right-hand side of an inequality: the tightest of its limits, the distance, and what is given on either side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inequality {
+    /// The bounds of all entries that select the node.
+    pub limits: Vec<Limit>,
+    /// The distance that there is to begin with.
+    pub distance: f64,
+    /// The part of u along the direction that is given at a and at b, before any factor of a load step.
+    pub given: [f64; 2],
 }
 
 /// The points of a scene. Nodes that are tied to a given value are added to the given nodes of their body.
@@ -81,12 +65,12 @@ pub(crate) fn collect(bodies: &mut [Body], interfaces: &[Interface]) -> Result<V
     let mut inherited = Vec::new();
     for (point, links) in &mut points {
         let components = bodies[point.members[0].body].components;
-        close(point, links, components);
+        close(point, links, interfaces, components);
         for c in 0..components {
             prescribe(bodies, point, c, &mut inherited)?;
         }
     }
-    for (Member { body, node }, component, value) in inherited {
+    for (BodyNode { body, node }, component, value) in inherited {
         let body = &mut bodies[body];
         body.prescribed
             .push((node * body.components + component, value));
@@ -95,14 +79,11 @@ pub(crate) fn collect(bodies: &mut [Body], interfaces: &[Interface]) -> Result<V
         body.prescribed.sort_by_key(|&(dof, _)| dof);
     }
     let mut out: Vec<Point> = points.into_iter().map(|(point, _)| point).collect();
-    for point in &mut out {
-        let Point { members, rows, .. } = point;
+    for Point { members, rows, .. } in &mut out {
         rows.retain(|row| {
-            let Direction::Component(c) = row.direction else {
-                return true;
-            };
-            let given = |m: usize| members[m].given(bodies, c).is_some();
-            row.contact || !row.members.into_iter().any(given)
+            let ends = || row.members.iter().flatten().map(|&m| members[m]);
+            let free = |m: BodyNode| !m.along(bodies, row.direction).terms.is_empty();
+            row.inequality.is_some() || ends().all(free)
         });
     }
     Ok(out)
@@ -115,25 +96,41 @@ pub(crate) struct Along {
 }
 
 impl PointRow {
-    /// The unit vector along which the row looks, in the order of the inequality.
-    pub(crate) fn vector(&self, interfaces: &[Interface]) -> [f64; 3] {
-        let interface = &interfaces[self.interface];
-        match self.direction {
-            Direction::Component(c) => unit(c),
-            Direction::Normal if interface.order == [0, 1] => interface.normals[self.node],
-            Direction::Normal => interface.normals[self.node].map(|v| 0.0 - v),
+    /// c at a load step; 0 in an equality.
+    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>) -> f64 {
+        let Some(inequality) = &self.inequality else {
+            return 0.0;
+        };
+        let (mut g, _) = factors.bound(&inequality.limits);
+        g += inequality.distance;
+        // u_a ≤ g + u_b, −u_b ≤ g − u_a
+        let [a, b] = inequality.given.map(|given| given * factors.dirichlet());
+        g -= a;
+        if self.members[1].is_some() {
+            g += b;
         }
+        g
+    }
+
+    /// The bounds of an inequality; none of an equality.
+    pub(crate) fn limits(&self) -> &[Limit] {
+        self.inequality.as_ref().map_or(&[], |i| &i.limits)
+    }
+
+    /// Whether it comes from an obstacle.
+    pub fn is_beside_obstacle(&self) -> bool {
+        matches!(self.source, RowSource::Obstacle(_))
     }
 }
 
 /// The unit vector along component `c`.
-pub(crate) fn unit(c: usize) -> [f64; 3] {
+fn unit(c: usize) -> [f64; 3] {
     let mut out = [0.0; 3];
     out[c] = 1.0;
     out
 }
 
-impl Member {
+impl BodyNode {
     /// u along `direction` at this member.
     pub(crate) fn along(&self, bodies: &[Body], direction: [f64; 3]) -> Along {
         let mut out = Along {
@@ -177,8 +174,13 @@ impl Member {
         spec.spot(spec.mesh.place(self.node))
     }
 
+    /// The point of this node alone.
+    pub(crate) fn alone(self, bodies: &[Body]) -> Point {
+        BodyNode::point(vec![self], bodies)
+    }
+
     /// The point of these members, the lowest body first.
-    pub(crate) fn point(members: Vec<Member>, bodies: &[Body]) -> Point {
+    fn point(members: Vec<BodyNode>, bodies: &[Body]) -> Point {
         let first = members[0];
         let body = &bodies[first.body];
         let place = body.mesh().place(first.node);
@@ -187,33 +189,28 @@ impl Member {
             subdomain: body.first_subdomain + body.mesh().owner(place),
             tied_to: (0..members.len()).collect(),
             rows: Vec::new(),
-            bounds: Vec::new(),
             members,
         }
     }
 }
 
-/// How two members of a point are linked.
-struct PairLink {
+/// Two members of a point that share a node of an interface: the interface, and the index into its `shared`.
+struct Shared {
     members: [usize; 2],
-    link: Link,
-    corner: bool,
-    /// Positions in `members` of the first and second body of an inequality.
-    order: [usize; 2],
-    /// The interface, and the index into its `shared`.
-    from: [usize; 2],
+    interface: usize,
+    node: usize,
 }
 
 /// Groups the shared nodes of all interfaces by position, in order of `block`.
-fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<PairLink>)> {
+fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Shared>)> {
     let mut index: HashMap<u64, usize> = HashMap::new();
-    let mut nodes: Vec<Member> = Vec::new();
+    let mut nodes: Vec<BodyNode> = Vec::new();
     let mut sets = UnionFind::default();
-    let mut pairs: Vec<PairLink> = Vec::new();
+    let mut pairs: Vec<Shared> = Vec::new();
     for (i, interface) in interfaces.iter().enumerate() {
         for (k, shared) in interface.shared.iter().enumerate() {
             let members = [0, 1].map(|k| {
-                let member = Member {
+                let member = BodyNode {
                     body: interface.bodies[k],
                     node: shared.nodes[k],
                 };
@@ -223,25 +220,23 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Pair
                 })
             });
             sets.join(members[0], members[1]);
-            pairs.push(PairLink {
+            pairs.push(Shared {
                 members,
-                link: shared.link,
-                corner: interface.shape == Shape::Corner,
-                order: interface.order,
-                from: [i, k],
+                interface: i,
+                node: k,
             });
         }
     }
-    let mut members: HashMap<usize, Vec<Member>> = HashMap::new();
+    let mut members: HashMap<usize, Vec<BodyNode>> = HashMap::new();
     for (id, member) in nodes.iter().enumerate() {
         members.entry(sets.find(id)).or_default().push(*member);
     }
-    let mut links: HashMap<usize, Vec<PairLink>> = HashMap::new();
+    let mut links: HashMap<usize, Vec<Shared>> = HashMap::new();
     for pair in pairs {
         let root = sets.find(pair.members[0]);
         links.entry(root).or_default().push(pair);
     }
-    let mut out: Vec<(Point, Vec<PairLink>)> = members
+    let mut out: Vec<(Point, Vec<Shared>)> = members
         .into_iter()
         .map(|(root, mut members)| {
             members.sort_by_key(|m| m.body);
@@ -253,7 +248,7 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Pair
                     place.expect("both nodes of a pair are members of its point")
                 });
             }
-            (Member::point(members, bodies), links)
+            (BodyNode::point(members, bodies), links)
         })
         .collect();
     out.sort_by_key(|(point, _)| point.block);
@@ -261,51 +256,52 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Pair
 }
 
 /// Finds what is tied to what, and the pairs that get a row; contacts that say nothing are dropped later.
-fn close(point: &mut Point, links: &mut [PairLink], components: usize) {
-    point.tied_to = joined(point.members.len(), links, |l| l == Link::Tied);
-    let may_join = joined(point.members.len(), links, |l| {
-        matches!(l, Link::Tied | Link::Open)
-    });
-    links.sort_by_key(|p| p.members);
-    for pair in links.iter() {
-        let [a, b] = pair.members;
-        let contact = pair.link.is_contact();
-        let by = |sets: &[usize]| pair.corner && !contact && sets[a] == sets[b];
-        let holds = pair.link == Link::Tied || by(&point.tied_to) || contact;
+fn close(point: &mut Point, pairs: &mut [Shared], interfaces: &[Interface], components: usize) {
+    let link = |p: &Shared| interfaces[p.interface].shared[p.node].link;
+    let joined = |counts: &dyn Fn(Link) -> bool| {
+        let mut sets = UnionFind::new(point.members.len());
+        for pair in pairs.iter().filter(|p| counts(link(p))) {
+            sets.join(pair.members[0], pair.members[1]);
+        }
+        let lowest = |m| sets.find(m);
+        (0..point.members.len()).map(lowest).collect::<Vec<usize>>()
+    };
+    point.tied_to = joined(&|l| l == Link::Tied);
+    let may_join = joined(&|l| matches!(l, Link::Tied | Link::Open));
+    pairs.sort_by_key(|p| p.members);
+    for pair in pairs.iter() {
+        let interface = &interfaces[pair.interface];
+        let (link, [a, b]) = (link(pair), pair.members);
+        let contact = link.is_contact();
+        let corner = interface.shape == Shape::Corner && !contact;
+        let by = |sets: &[usize]| corner && sets[a] == sets[b];
+        let holds = link == Link::Tied || by(&point.tied_to) || contact;
         // Where other faces tie the two anyway, an open row would say nothing.
-        let open =
-            (pair.link == Link::Open || by(&may_join)) && point.tied_to[a] != point.tied_to[b];
-        if holds || open {
-            let members = if contact {
-                pair.order.map(|k| pair.members[k])
-            } else {
-                pair.members
-            };
-            let row = |direction| PointRow {
-                members,
-                holds,
-                contact,
-                direction,
-                interface: pair.from[0],
-                node: pair.from[1],
-            };
-            if contact && components > 1 {
-                point.rows.push(row(Direction::Normal));
-            } else {
-                let each = (0..components).map(Direction::Component);
-                point.rows.extend(each.map(row));
-            }
+        let open = (link == Link::Open || by(&may_join)) && point.tied_to[a] != point.tied_to[b];
+        if !(holds || open) {
+            continue;
+        }
+        let order = if contact { interface.order } else { [0, 1] };
+        let row = |direction| PointRow {
+            members: order.map(|k| Some(pair.members[k])),
+            direction,
+            holds,
+            inequality: contact.then(|| {
+                Box::new(Inequality {
+                    limits: interface.limits.at(pair.node).to_vec(),
+                    distance: interface.distances[pair.node],
+                    given: [0.0; 2],
+                })
+            }),
+            source: RowSource::Interface(pair.interface),
+            node: pair.node,
+        };
+        if contact && components > 1 {
+            point.rows.push(row(interface.normal_in_order(pair.node)));
+        } else {
+            point.rows.extend((0..components).map(|c| row(unit(c))));
         }
     }
-}
-
-/// The lowest member that each of `n` members is joined to by links that satisfy `counts`.
-fn joined(n: usize, links: &[PairLink], counts: impl Fn(Link) -> bool) -> Vec<usize> {
-    let mut sets = UnionFind::new(n);
-    for pair in links.iter().filter(|p| counts(p.link)) {
-        sets.join(pair.members[0], pair.members[1]);
-    }
-    (0..n).map(|m| sets.find(m)).collect()
 }
 
 /// A node that is tied to a given value is given itself: adds it to `inherited`.
@@ -313,13 +309,13 @@ fn prescribe(
     bodies: &[Body],
     point: &Point,
     component: usize,
-    inherited: &mut Vec<(Member, usize, f64)>,
+    inherited: &mut Vec<(BodyNode, usize, f64)>,
 ) -> Result<()> {
     for root in 0..point.members.len() {
         if point.tied_to[root] != root {
             continue;
         }
-        let tied: Vec<Member> = (0..point.members.len())
+        let tied: Vec<BodyNode> = (0..point.members.len())
             .filter(|&m| point.tied_to[m] == root)
             .map(|m| point.members[m])
             .collect();

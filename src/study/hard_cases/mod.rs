@@ -205,8 +205,11 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         complementarity: solution.kkt.complementarity,
         min_multiplier: (facts.inequalities > 0).then_some(solution.kkt.min_multiplier),
     });
-    let rows = solved.rows(session)?;
-    let active = rows.iter().filter(|r| r.inequality && r.active).count();
+    let rows = solved.rows(session);
+    let active = rows
+        .iter()
+        .filter(|r| r.is_inequality() && r.holds())
+        .count();
     let inequalities = facts.inequalities > 0;
     record.active[0] = inequalities.then_some(active);
     let layout = Layout::new(&solved.scene);

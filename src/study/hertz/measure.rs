@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::theory::{Contact, Pair};
 use crate::linalg::vec3::dot;
-use crate::scene::{Member, RowSource, Scene};
-use crate::study::solved::Row;
+use crate::scene::Scene;
+use crate::substructures::{BodyNode, SolvedRow};
 
 /// The pressure at a node that may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,21 +34,21 @@ pub struct Measured {
 }
 
 /// The nodal pressures: rows must be those of one contact between facing sides, or of one plane obstacle, around the origin.
-pub fn pressures(scene: &Scene, rows: &[Row]) -> Vec<Pressure> {
+pub fn pressures(scene: &Scene, rows: &[SolvedRow]) -> Vec<Pressure> {
     let mut normals: HashMap<(usize, usize), HashMap<usize, [f64; 3]>> = HashMap::new();
     // ∫ N_a over the side of the row's first member, projected along the row: Hertz's pressure acts on the tangent plane.
-    let mut projected_area = |row: &Row| {
-        let Member { body, node } = row.label.members[0]?;
-        let side = side_of(scene, row.label.source, body)?;
+    let mut projected_area = |row: &SolvedRow| {
+        let BodyNode { body, node } = row.label.members[0]?;
+        let side = scene.side_of(row.label.source, body)?;
         let normals = normals.entry((body, side)).or_insert_with(|| {
             let spec = &scene.bodies[body].spec;
             spec.side_normals(side, scene.form.element)
         });
-        let along = dot(*normals.get(&node)?, row.label.direction).abs();
+        let along = dot(*normals.get(&node)?, row.normal()).abs();
         (along > 0.0).then_some(along)
     };
     rows.iter()
-        .filter(|row| row.inequality)
+        .filter(|row| row.is_inequality())
         .filter_map(|row| {
             let [x, _, z] = row.label.point;
             let weight = projected_area(row)?;
@@ -56,29 +56,17 @@ pub fn pressures(scene: &Scene, rows: &[Row]) -> Vec<Pressure> {
                 x: if scene.dim() == 2 { x } else { x.hypot(z) },
                 value: row.multiplier / weight,
                 weight,
-                active: row.active,
+                active: row.holds(),
             })
         })
         .collect()
 }
 
-/// The side of a body that rows from `source` lie on.
-fn side_of(scene: &Scene, source: RowSource, body: usize) -> Option<usize> {
-    match source {
-        RowSource::Obstacle(k) => Some(scene.obstacles[k].side),
-        RowSource::Interface(k) => {
-            let interface = &scene.interfaces[k];
-            let which = interface.bodies.iter().position(|&b| b == body)?;
-            Some(interface.sides[which])
-        }
-    }
-}
-
 /// Force, half-width and peak; `None` where fewer than three nodes touch.
-pub fn measure(rows: &[Row], pressures: &[Pressure]) -> Option<Measured> {
+pub fn measure(rows: &[SolvedRow], pressures: &[Pressure]) -> Option<Measured> {
     let force = rows
         .iter()
-        .filter(|r| r.inequality)
+        .filter(|r| r.is_inequality())
         .map(|r| r.multiplier)
         .sum();
     let active: Vec<&Pressure> = pressures.iter().filter(|p| p.active).collect();

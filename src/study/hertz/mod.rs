@@ -159,7 +159,7 @@ pub fn mesh(session: &Session, case: Case, n: usize) -> Result<Mesh> {
     };
     let name = format!("hertz_{}_{n}.toml", case.name());
     let solved = Solved::new(session, &name, &case.scene(n), &settings)?;
-    let rows = solved.rows(session)?;
+    let rows = solved.rows(session);
     let pressures = pressures(&solved.scene, &rows);
     let measured = measure(&rows, &pressures).ok_or_else(|| {
         Error::NotConverged(format!(

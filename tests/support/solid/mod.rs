@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use fetifeti::linalg::csr::Csr;
 use fetifeti::substructures::{
-    Entity, EntityKind, InterfaceRow, RowKind, Subdomain, Substructures,
+    Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures,
 };
 
 /// What the bodies are made of.
@@ -330,6 +330,7 @@ impl Solid {
                         kind: RowKind::Equality,
                         holds,
                         block: (i * self.components() + c) as u64,
+                        label: RowLabel::new(RowSource::Interface(0), [None; 2]),
                     });
                 }
             }

@@ -3,6 +3,10 @@
 //! A scene and a MATIS both end here, and nothing to the right of this module knows where the matrices came
 //! from. Everything is distributed: a rank holds its own subdomains and provides its own rows.
 
+mod rows;
+
+pub use rows::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow};
+
 use crate::linalg::csr::Csr;
 
 /// One subdomain Ω_ij with its Dirichlet degrees of freedom eliminated.
@@ -58,32 +62,6 @@ pub struct Entity {
     pub key: u64,
     /// Local dofs; not empty.
     pub dofs: Vec<u32>,
-}
-
-/// How a row holds: as an equation, or as an inequality that the contact loop may switch off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RowKind {
-    /// (B u)_r = c_r.
-    Equality,
-    /// (B u)_r ≤ c_r.
-    Inequality,
-}
-
-/// One row of B_gl: Σ coefficient · u(body dof), with right-hand side c.
-#[derive(Debug, Clone)]
-pub struct InterfaceRow {
-    /// (body dof, coefficient) pairs; for matching scalar meshes (a, +1), (b, −1).
-    pub terms: Vec<(u64, f64)>,
-    /// Right-hand side c_r (the gap; zero on tied faces).
-    pub gap: f64,
-    /// Equation or inequality.
-    pub kind: RowKind,
-    /// Z⁰: whether the row holds to begin with. A row that does not hold marks candidate contact nodes: the bodies are apart
-    /// there, but preconditioner and interface are prepared for them to meet.
-    pub holds: bool,
-    /// Rows that share a body dof carry the same block number (unique over all ranks) and are provided by the same rank: the
-    /// scaling B D⁻¹ Bᵀ is inverted block by block.
-    pub block: u64,
 }
 
 /// Everything the method needs to know about a problem; each rank holds its own part.

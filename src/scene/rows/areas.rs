@@ -1,0 +1,87 @@
+//! Areas that belong to the nodes of interfaces and obstacles: a nodal force divided by its area is a pressure.
+
+use std::collections::HashMap;
+
+use crate::scene::checked::Scene;
+use crate::scene::geometry::interface::Shape;
+use crate::substructures::{BodyNode, RowSource};
+
+impl Scene {
+    /// Whether multipliers are reported as pressures, too: everywhere but in plane scalar problems.
+    pub fn has_pressure(&self) -> bool {
+        self.dim() == 3 || self.form.is_elastic()
+    }
+
+    /// The side of a body that rows from `source` lie on; none where bodies meet in less than a side.
+    pub fn side_of(&self, source: RowSource, body: usize) -> Option<usize> {
+        match source {
+            RowSource::Obstacle(k) => Some(self.obstacles[k].side),
+            RowSource::Interface(k) => {
+                let interface = &self.interfaces[k];
+                let which = interface.bodies.iter().position(|&b| b == body)?;
+                (interface.shape == Shape::Face).then_some(interface.sides[which])
+            }
+        }
+    }
+}
+
+/// Nodal areas of the sides that have inequalities, each found once.
+pub(super) struct Areas<'a> {
+    scene: &'a Scene,
+    /// By what the rows come from and the body: the area of each node.
+    known: HashMap<(RowSource, usize), HashMap<usize, f64>>,
+}
+
+impl<'a> Areas<'a> {
+    pub fn new(scene: &'a Scene) -> Areas<'a> {
+        Areas {
+            scene,
+            known: HashMap::new(),
+        }
+    }
+
+    /// The area of a node; 0 where nothing may touch, where bodies meet in less than a side, and where pressures are not spoken of.
+    pub fn at(&mut self, source: RowSource, BodyNode { body, node }: BodyNode) -> f64 {
+        let may_touch = match source {
+            RowSource::Interface(k) => self.scene.interfaces[k].has_contact(),
+            RowSource::Obstacle(_) => true,
+        };
+        if !(may_touch && self.scene.has_pressure()) {
+            return 0.0;
+        }
+        let found = self.known.entry((source, body));
+        let areas = found.or_insert_with(|| areas(self.scene, source, body));
+        areas.get(&node).copied().unwrap_or(0.0)
+    }
+}
+
+/// Areas by node, from the cells of the side with nodes on the interface only: where a body reaches beyond its neighbour, the rest of its
+/// side carries nothing.
+fn areas(scene: &Scene, source: RowSource, body: usize) -> HashMap<usize, f64> {
+    let mut areas: HashMap<usize, f64> = HashMap::new();
+    let Some(side) = scene.side_of(source, body) else {
+        return areas;
+    };
+    let spec = &scene.bodies[body].spec;
+    match source {
+        RowSource::Interface(k) => {
+            let interface = &scene.interfaces[k];
+            let which = usize::from(interface.bodies[0] != body);
+            areas.extend(interface.shared.iter().map(|s| (s.nodes[which], 0.0)));
+        }
+        RowSource::Obstacle(_) => {
+            let nodes = spec.mesh.side_nodes(side);
+            areas.extend(nodes.map(|p| (spec.mesh.node(p), 0.0)));
+        }
+    }
+    for cell in spec.side_cells(side) {
+        if !cell.iter().all(|&p| areas.contains_key(&spec.mesh.node(p))) {
+            continue;
+        }
+        let weights = spec.side_weights(side, &cell, scene.form.element);
+        for (&p, area) in cell.iter().zip(weights.area) {
+            *areas.entry(spec.mesh.node(p)).or_default() += area;
+        }
+    }
+    areas
+}

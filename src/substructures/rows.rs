@@ -1,0 +1,276 @@
+//! Rows of B_gl on both sides of the method: as a problem gives them, and as a solution gives them back.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use crate::parallel::exchange::{exchange, gather_all, Record};
+
+/// How a row holds: as an equation, or as an inequality that the contact loop may switch off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowKind {
+    /// (B u)_r = c_r.
+    Equality,
+    /// (B u)_r ≤ c_r.
+    Inequality,
+}
+
+/// One row of B_gl: Σ coefficient · u(body dof), with right-hand side c.
+#[derive(Debug, Clone)]
+pub struct InterfaceRow {
+    /// (body dof, coefficient) pairs; for matching scalar meshes (a, +1), (b, −1).
+    pub terms: Vec<(u64, f64)>,
+    /// Right-hand side c_r (the gap; zero on tied faces).
+    pub gap: f64,
+    /// Equation or inequality.
+    pub kind: RowKind,
+    /// Z⁰: whether the row holds to begin with. A row that does not hold marks candidate contact nodes: the bodies are apart
+    /// there, but preconditioner and interface are prepared for them to meet.
+    pub holds: bool,
+    /// Rows that share a body dof carry the same block number (unique over all ranks) and are provided by the same rank: the
+    /// scaling B D⁻¹ Bᵀ is inverted block by block.
+    pub block: u64,
+    /// What the row is about; the method does not look at it.
+    pub label: RowLabel,
+}
+
+/// A node of a body, by the numbers of whoever made the problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct BodyNode {
+    /// The body.
+    pub body: usize,
+    /// Its node; where a program gives matrices without nodes, its unknown.
+    pub node: usize,
+}
+
+/// What a row comes from, by a number of whoever made the problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum RowSource {
+    /// Two bodies that meet; in a scene the index into [`Scene::interfaces`](crate::scene::Scene::interfaces).
+    Interface(usize),
+    /// A body beside something rigid; in a scene the index into [`Scene::obstacles`](crate::scene::Scene::obstacles).
+    Obstacle(usize),
+}
+
+/// What a row is about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RowLabel {
+    /// What it comes from.
+    pub source: RowSource,
+    /// The nodes in the order of the row, also those whose value is given; an obstacle has one.
+    pub members: [Option<BodyNode>; 2],
+    /// Position of the first; 0 where it is not known.
+    pub point: [f64; 3],
+    /// Parameters along the common face or the side, 0 ≤ t ≤ 1; the second is 0 in the plane.
+    pub t: [f64; 2],
+    /// The unit vector n along which the row takes differences, out of the first body; 0 where it is not known.
+    pub normal: [f64; 3],
+    /// The area of the first body's side that belongs to the node; 0 where it has none or none is known.
+    pub area: f64,
+}
+
+impl RowLabel {
+    /// Of a row of which no more is known.
+    pub fn new(source: RowSource, members: [Option<BodyNode>; 2]) -> RowLabel {
+        RowLabel {
+            source,
+            members,
+            point: [0.0; 3],
+            t: [0.0; 2],
+            normal: [0.0; 3],
+            area: 0.0,
+        }
+    }
+}
+
+/// What has become of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowState {
+    /// An inequality that holds as an equation: the sides touch.
+    Holds,
+    /// The sides are free of each other.
+    Open,
+    /// An equation.
+    Tied,
+}
+
+/// A row of B_gl as a solve has left it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolvedRow {
+    /// What it is about.
+    pub label: RowLabel,
+    /// Equation or inequality.
+    pub kind: RowKind,
+    /// Whether it holds.
+    pub state: RowState,
+    /// λ: the force along the normal with which the first body presses on the other side.
+    pub multiplier: f64,
+    /// c − B u: how far the sides are apart, negative where they overlap.
+    pub gap: f64,
+    /// The block of the row: rows of several ranks, put in order of their blocks, are those of one rank.
+    pub block: u64,
+}
+
+impl SolvedRow {
+    /// The row with this multiplier, B u − c = `excess`, and whether it holds.
+    pub(crate) fn new(row: &InterfaceRow, multiplier: f64, excess: f64, holds: bool) -> SolvedRow {
+        SolvedRow {
+            label: row.label,
+            kind: row.kind,
+            state: match (holds, row.kind) {
+                (false, _) => RowState::Open,
+                (true, RowKind::Inequality) => RowState::Holds,
+                (true, RowKind::Equality) => RowState::Tied,
+            },
+            multiplier,
+            gap: -excess,
+            block: row.block,
+        }
+    }
+
+    /// The first body, if it is known.
+    pub fn body(&self) -> Option<usize> {
+        self.label.members[0].map(|m| m.body)
+    }
+
+    /// Its node, if it is known.
+    pub fn node(&self) -> Option<usize> {
+        self.label.members[0].map(|m| m.node)
+    }
+
+    /// The unit vector along which the row takes differences, out of the first body.
+    pub fn normal(&self) -> [f64; 3] {
+        self.label.normal
+    }
+
+    /// Force per area; `None` where no area is known.
+    pub fn pressure(&self) -> Option<f64> {
+        (self.label.area > 0.0).then(|| self.multiplier / self.label.area)
+    }
+
+    /// Whether it is an inequality.
+    pub fn is_inequality(&self) -> bool {
+        self.kind == RowKind::Inequality
+    }
+
+    /// Whether it holds, as an equation or as an inequality.
+    pub fn holds(&self) -> bool {
+        self.state != RowState::Open
+    }
+
+    /// The rows of all ranks on the first one, by rank; none on the others. Collective.
+    pub fn on_first_rank(comm: &SimpleCommunicator, rows: &[SolvedRow]) -> Vec<SolvedRow> {
+        let mut outgoing = vec![Vec::new(); comm.size() as usize];
+        outgoing[0] = rows.to_vec();
+        exchange(comm, outgoing)
+    }
+
+    /// The rows of all ranks on every one, in order of their blocks. Collective.
+    pub fn on_all_ranks(comm: &SimpleCommunicator, rows: &[SolvedRow]) -> Vec<SolvedRow> {
+        let mut words = Vec::with_capacity(rows.len() * SolvedRow::WORDS);
+        rows.iter().for_each(|row| row.pack(&mut words));
+        let words = gather_all(comm, &words).concat();
+        let rows = words.chunks_exact(SolvedRow::WORDS).map(SolvedRow::unpack);
+        let mut rows: Vec<SolvedRow> = rows.collect();
+        rows.sort_by_key(|row| row.block);
+        rows
+    }
+}
+
+impl Record for SolvedRow {
+    const WORDS: usize = 19;
+
+    fn pack(&self, out: &mut Vec<u64>) {
+        let label = &self.label;
+        let (source, number) = match label.source {
+            RowSource::Interface(k) => (0, k),
+            RowSource::Obstacle(k) => (1, k),
+        };
+        let flags = u64::from(self.is_inequality()) | u64::from(self.holds()) << 1;
+        out.extend([source, number as u64, flags, self.block]);
+        for member in label.members {
+            let [body, node] = member.map_or([usize::MAX; 2], |m| [m.body, m.node]);
+            out.extend([body as u64, node as u64]);
+        }
+        let vectors = label.point.into_iter().chain(label.normal).chain(label.t);
+        let values = vectors.chain([label.area, self.multiplier, self.gap]);
+        out.extend(values.map(f64::to_bits));
+    }
+
+    fn unpack(w: &[u64]) -> SolvedRow {
+        let value = |k: usize| f64::from_bits(w[k]);
+        let member = |k: usize| {
+            (w[k] != u64::MAX).then_some(BodyNode {
+                body: w[k] as usize,
+                node: w[k + 1] as usize,
+            })
+        };
+        let (kind, state) = match (w[2] & 1, w[2] & 2) {
+            (0, 0) => (RowKind::Equality, RowState::Open),
+            (0, _) => (RowKind::Equality, RowState::Tied),
+            (_, 0) => (RowKind::Inequality, RowState::Open),
+            _ => (RowKind::Inequality, RowState::Holds),
+        };
+        SolvedRow {
+            label: RowLabel {
+                source: match w[0] {
+                    0 => RowSource::Interface(w[1] as usize),
+                    _ => RowSource::Obstacle(w[1] as usize),
+                },
+                members: [member(4), member(6)],
+                point: [8, 9, 10].map(value),
+                normal: [11, 12, 13].map(value),
+                t: [14, 15].map(value),
+                area: value(16),
+            },
+            kind,
+            state,
+            multiplier: value(17),
+            gap: value(18),
+            block: w[3],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_travel_unchanged() {
+        let members = [Some(BodyNode { body: 3, node: 70 }), None];
+        let label = RowLabel {
+            point: [0.5, -1.0, 2.0],
+            t: [0.25, 1.0],
+            normal: [0.0, 0.6, -0.8],
+            area: 0.125,
+            ..RowLabel::new(RowSource::Obstacle(7), members)
+        };
+        let given = InterfaceRow {
+            terms: vec![(9, 1.0)],
+            gap: 0.0,
+            kind: RowKind::Inequality,
+            holds: true,
+            block: 9,
+            label,
+        };
+        for (kind, holds, state) in [
+            (RowKind::Inequality, true, RowState::Holds),
+            (RowKind::Inequality, false, RowState::Open),
+            (RowKind::Equality, true, RowState::Tied),
+            (RowKind::Equality, false, RowState::Open),
+        ] {
+            let given = InterfaceRow {
+                kind,
+                ..given.clone()
+            };
+            let row = SolvedRow::new(&given, 2.0, -0.75, holds);
+            let mut words = Vec::new();
+            row.pack(&mut words);
+            assert_eq!(words.len(), SolvedRow::WORDS);
+            assert_eq!(SolvedRow::unpack(&words), row);
+            assert_eq!((row.state, row.holds()), (state, holds));
+            assert_eq!((row.gap, row.pressure()), (0.75, Some(16.0)));
+            assert_eq!((row.body(), row.node()), (Some(3), Some(70)));
+        }
+    }
+}
