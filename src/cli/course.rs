@@ -12,7 +12,7 @@ use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
-use crate::scene::{distribution, Scene};
+use crate::scene::{distribution, Scene, Stepping};
 use crate::substructures::SolvedRow;
 use crate::Result;
 
@@ -60,10 +60,16 @@ pub(super) fn follow(
         session.agree(list_before(session, dir, &times[..first], pvd))?;
     }
     let mut seconds = [0.0; 2];
+    // One step has the loads that the substructures came with.
+    let many = (n > 1).then(|| {
+        let mine = solver.problem().local.iter().map(|s| s.index);
+        session.agree(Stepping::new(scene, mine))
+    });
+    let mut stepping = many.transpose()?;
     for step in first..n {
-        if n > 1 {
-            let (loads, gaps) = session.agree(boundary_values(scene, solver, &owns, step))?;
-            solver.set_loads(loads, &gaps);
+        if let Some(stepping) = &mut stepping {
+            let loads = session.agree(stepping.loads(step))?;
+            solver.set_loads(loads, &scene.gaps(&owns, step)?);
         }
         let load_step = if times.is_some() { step + 1 } else { 0 };
         let mut outer = records.take(load_step);
@@ -136,18 +142,6 @@ fn list_before(session: &Session, dir: &Path, times: &[f64], pvd: &mut Pvd) -> R
 /// Name of the file of load step `step`, without its ending.
 fn step_name(step: usize) -> String {
     format!("step_{:04}", step + 1)
-}
-
-/// Loads of this rank's subdomains and right-hand sides of its rows at a load step.
-fn boundary_values(
-    scene: &Scene,
-    solver: &FetiFeti,
-    owns: &dyn Fn(usize) -> bool,
-    step: usize,
-) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
-    let local = solver.problem().local.iter();
-    let loads: Result<Vec<Vec<f64>>> = local.map(|s| scene.loads(s.index, step)).collect();
-    Ok((loads?, scene.gaps(owns, step)?))
 }
 
 /// The record of a load step; forces are known on rank 0.

@@ -22,13 +22,25 @@ pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
     }
 }
 
-/// The load of [`assemble`] alone, to the last bit.
-pub fn free_load(mesh: &SubdomainMesh, load: &[f64]) -> Vec<f64> {
+/// The columns of K that meet given values other than zero: a row for each free degree of freedom, columns by degree of freedom of the mesh.
+/// They stay the same when given values are scaled.
+pub fn given_columns(mesh: &SubdomainMesh) -> Csr {
     match mesh.components() {
-        1 => loads::<1>(mesh, load),
-        2 => loads::<2>(mesh, load),
-        _ => loads::<3>(mesh, load),
+        1 => columns::<1>(mesh),
+        2 => columns::<2>(mesh),
+        _ => columns::<3>(mesh),
     }
+}
+
+/// The load of [`assemble`] alone, to the last bit: f less the [`given_columns`] times the given values.
+pub fn free_load(mesh: &SubdomainMesh, columns: &Csr, load: &[f64]) -> Vec<f64> {
+    let free = (0..load.len()).filter(|&k| mesh.dof[k] != SubdomainMesh::PRESCRIBED);
+    let rows = free.enumerate().map(|(i, k)| {
+        let (col, val) = columns.row(i);
+        let given = col.iter().map(|&c| mesh.prescribed[c as usize]);
+        val.iter().zip(given).fold(load[k], |f, (v, g)| f - v * g)
+    });
+    rows.collect()
 }
 
 fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
@@ -75,10 +87,14 @@ fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
     (k, f)
 }
 
-fn loads<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> Vec<f64> {
+fn columns<const C: usize>(mesh: &SubdomainMesh) -> Csr {
     let mut cells = None;
     let given = |k: usize| mesh.dof[k] == SubdomainMesh::PRESCRIBED;
-    let mut f = Vec::with_capacity(mesh.n_free());
+    let mut out = Csr {
+        row_ptr: vec![0],
+        col: Vec::new(),
+        val: Vec::new(),
+    };
     let empty = [[[0.0; C]; C]; 27];
     for (node, place) in places(mesh.nodes()).enumerate() {
         // The stencil is wanted beside given values only.
@@ -90,20 +106,18 @@ fn loads<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> Vec<f64> {
             stencil::<C>(mesh, cells, place)
         });
         for c in (0..C).filter(|c| !given(C * node + c)) {
-            let mut load_here = load[C * node + c];
-            if let Some(stencil) = &stencil {
-                for (block, other) in neighbours(mesh, stencil, place) {
-                    for (j, &value) in block[c].iter().enumerate() {
-                        if given(C * other + j) {
-                            load_here -= value * mesh.prescribed[C * other + j];
-                        }
+            for (block, other) in stencil.iter().flat_map(|s| neighbours(mesh, s, place)) {
+                for (j, &value) in block[c].iter().enumerate() {
+                    if given(C * other + j) {
+                        out.col.push((C * other + j) as u32);
+                        out.val.push(value);
                     }
                 }
             }
-            f.push(load_here);
+            out.row_ptr.push(out.col.len());
         }
     }
-    f
+    out
 }
 
 /// The nodes around a node (itself included) in increasing order, each with its block of the stencil.

@@ -8,7 +8,7 @@ mod loads;
 mod norms;
 pub mod q1;
 
-pub use assemble::{assemble, free_load};
+pub use assemble::{assemble, free_load, given_columns};
 pub use form::{Form, Physics};
 pub use loads::{add_side_load, load_vector, Quadrature};
 pub use norms::{error_squares, ErrorNorms};

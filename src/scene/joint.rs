@@ -48,7 +48,7 @@ impl Scene {
     /// [`Error::Input`](crate::Error::Input) for a load that is not finite.
     pub fn assemble(&self, mesh: &SubdomainMesh) -> Result<Subdomain> {
         let (body, block) = self.place(mesh.index);
-        let load = self.nodal_load(body, &block, mesh, Factors::last(&self.steps))?;
+        let load = self.nodal_load(mesh, Factors::last(&self.steps))?;
         let (k, f) = fem::assemble(mesh, &load);
         let whole = body.mesh();
         let n = f.len();

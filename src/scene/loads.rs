@@ -1,6 +1,5 @@
 //! Loads of a subdomain, step by step.
 
-use super::body::Body;
 use super::checked::Scene;
 use super::coefficient::evaluate;
 use super::meshes::reaches;
@@ -10,21 +9,74 @@ use super::model::steps::Factors;
 use super::validate::bad_load;
 use crate::error::Result;
 use crate::fem;
+use crate::linalg::csr::Csr;
 use crate::linalg::vec3::{cross, minus};
-use crate::mesh::{Block, SubdomainMesh};
+use crate::mesh::SubdomainMesh;
 
-impl Scene {
-    /// The load f of subdomain `index` at load step `step` (0 is the only one without `[steps]`), given values eliminated;
-    /// at the last step that of [`Scene::subdomain`] to the last bit.
+/// Subdomains over the load steps. Their meshes, and the entries of K that given values meet, are built once; a step evaluates loads and
+/// scales given values.
+pub struct Stepping<'a> {
+    scene: &'a Scene,
+    subdomains: Vec<Stepped>,
+}
+
+struct Stepped {
+    mesh: SubdomainMesh,
+    /// Given values before any factor.
+    given: Vec<f64>,
+    columns: Csr,
+}
+
+impl<'a> Stepping<'a> {
+    /// Builds the meshes of some subdomains.
+    ///
+    /// # Errors
+    /// As [`Scene::subdomain_mesh`].
+    pub fn new(
+        scene: &'a Scene,
+        subdomains: impl IntoIterator<Item = usize>,
+    ) -> Result<Stepping<'a>> {
+        let build = |index| {
+            let mesh = scene.mesh_with(index, Factors::none())?;
+            Ok(Stepped {
+                given: mesh.prescribed.clone(),
+                columns: fem::given_columns(&mesh),
+                mesh,
+            })
+        };
+        let subdomains: Result<Vec<Stepped>> = subdomains.into_iter().map(build).collect();
+        Ok(Stepping {
+            scene,
+            subdomains: subdomains?,
+        })
+    }
+
+    /// The loads of the subdomains at load step `step` (0 is the only one without `[steps]`), given values eliminated; at the last step
+    /// those of [`Scene::subdomain`] to the last bit.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a load that is not finite, or a step that the scene does not have.
+    pub fn loads(&mut self, step: usize) -> Result<Vec<Vec<f64>>> {
+        let factors = Factors::of(&self.scene.steps, step)?;
+        let scale = factors.dirichlet();
+        let load = |s: &mut Stepped| {
+            for (now, given) in s.mesh.prescribed.iter_mut().zip(&s.given) {
+                *now = given * scale;
+            }
+            let load = self.scene.nodal_load(&s.mesh, factors)?;
+            Ok(fem::free_load(&s.mesh, &s.columns, &load))
+        };
+        self.subdomains.iter_mut().map(load).collect()
+    }
+}
+
+impl Scene {
+    /// The load f of subdomain `index` at load step `step`; for many of either see [`Stepping`].
+    ///
+    /// # Errors
+    /// As [`Stepping::loads`].
     pub fn loads(&self, index: usize, step: usize) -> Result<Vec<f64>> {
-        let factors = Factors::of(&self.steps, step)?;
-        let mesh = self.mesh_with(index, factors)?;
-        let (body, block) = self.place(index);
-        let load = self.nodal_load(body, &block, &mesh, factors)?;
-        Ok(fem::free_load(&mesh, &load))
+        Ok(Stepping::new(self, [index])?.loads(step)?.remove(0))
     }
 
     /// The sum of all loads on subdomain `index` at load step `step`, by components, those of its sides included, and their moment
@@ -40,10 +92,9 @@ impl Scene {
     ) -> Result<([f64; 3], [f64; 3])> {
         let factors = Factors::of(&self.steps, step)?;
         let mesh = self.mesh_with(index, factors)?;
-        let (body, block) = self.place(index);
-        let load = self.nodal_load(body, &block, &mesh, factors)?;
+        let load = self.nodal_load(&mesh, factors)?;
         let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
-        for (node, at) in load.chunks_exact(body.components).zip(&mesh.points) {
+        for (node, at) in load.chunks_exact(self.components()).zip(&mesh.points) {
             let mut f = [0.0; 3];
             f[..node.len()].copy_from_slice(node);
             let turn = cross(minus(*at, centre), f);
@@ -72,18 +123,17 @@ impl Scene {
     /// The nodal load, checked: what acts inside, and on the sides of the body.
     pub(super) fn nodal_load(
         &self,
-        body: &Body,
-        block: &Block,
         mesh: &SubdomainMesh,
         factors: Factors<'_>,
     ) -> Result<Vec<f64>> {
+        let (body, block) = self.place(mesh.index);
         let load = &body.spec.load;
         let scale = factors.load(body.spec.ramp.as_ref());
         let mut bad = None;
         let mut value = |fields: &[Field], point: [f64; 3]| {
             let mut out = [0.0; 3];
             for (o, field) in out.iter_mut().zip(fields) {
-                *o = evaluate(body, block, field, point) * scale;
+                *o = evaluate(body, &block, field, point) * scale;
                 if !o.is_finite() {
                     bad.get_or_insert((*o, point));
                 }
@@ -102,7 +152,7 @@ impl Scene {
             fem::load_vector(mesh, load.quadrature, |_, point| value(fields, point))
         };
         for load in &body.spec.surface {
-            if !reaches(body, block, load.side) {
+            if !reaches(body, &block, load.side) {
                 continue;
             }
             let force = |point: [f64; 3], normal: [f64; 3]| match &load.force {

@@ -1,6 +1,7 @@
 //! Load steps: factors of loads, gaps and given values.
 
-use fetifeti::scene::Scene;
+use crate::support::mpi::Scratch;
+use fetifeti::scene::{Scene, Stepping};
 
 const SCENE: &str = "
 [[body]]
@@ -160,4 +161,27 @@ fn counted_steps_end_at_one() {
         .map(|k| scene.gaps(&|_| true, k).unwrap()[0])
         .collect();
     assert_eq!(gaps, [0.25, 0.5, 0.125]);
+}
+
+#[test]
+fn a_load_step_does_not_rebuild_meshes() {
+    let scratch = Scratch::new("stepping");
+    let values: Vec<u8> = (1..=16).flat_map(|v| f64::from(v).to_le_bytes()).collect();
+    std::fs::write(scratch.path("rho.bin"), values).unwrap();
+    let text = "[[body]]\nname = \"a\"\nsize = 1\nelements = 4\nsubdomains = 2\nload = 1\n\
+                rho = { file = \"rho.bin\", type = \"f64\" }\ndirichlet = { left = 0.5 }\n\
+                [steps]\ncount = 3\ndirichlet = \"t - 1/3\"\n";
+    std::fs::write(scratch.path("s.toml"), text).unwrap();
+    let scene = Scene::load(scratch.path("s.toml")).unwrap();
+    let wanted: Vec<Vec<Vec<f64>>> = (0..3)
+        .map(|step| (0..4).map(|s| scene.loads(s, step).unwrap()).collect())
+        .collect();
+    let mut stepping = Stepping::new(&scene, 0..4).unwrap();
+    std::fs::remove_file(scratch.path("rho.bin")).unwrap();
+    // A mesh needs its coefficients, a step does not.
+    assert!(scene.subdomain_mesh(0).is_err());
+    for step in [0, 2, 1, 0] {
+        assert_eq!(stepping.loads(step).unwrap(), wanted[step]);
+    }
+    assert_ne!(wanted[0], wanted[2]);
 }

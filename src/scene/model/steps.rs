@@ -86,13 +86,18 @@ impl<'a> Factors<'a> {
     /// The factors of every step, one of all ones where there are no steps.
     pub fn every(steps: &'a Option<Steps>) -> Vec<Factors<'a>> {
         match steps {
-            None => vec![Factors { at: None }],
+            None => vec![Factors::none()],
             Some(s) => s
                 .times
                 .iter()
                 .map(|&t| Factors { at: Some((s, t)) })
                 .collect(),
         }
+    }
+
+    /// All ones.
+    pub fn none() -> Factors<'a> {
+        Factors { at: None }
     }
 
     /// Those of the last step.
