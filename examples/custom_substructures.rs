@@ -12,8 +12,8 @@ use std::process::ExitCode;
 
 use fetifeti::parallel::exchange::max_all;
 use fetifeti::{
-    Csr, Error, FetiFeti, InterfaceRow, Result, RowKind, RowLabel, RowSource, Session, Settings,
-    Subdomain, Substructures,
+    Csr, Error, FetiFeti, InterfaceRow, MethodSettings, Result, RowKind, RowLabel, RowSource,
+    Session, Subdomain, Substructures,
 };
 
 const BOARDS: usize = 3;
@@ -43,15 +43,15 @@ fn run(session: &Session) -> Result<()> {
             Vec::new()
         },
     };
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: 1e-12,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let solver = FetiFeti::new(session, problem, settings)?;
     let spectrum = solver.spectrum()?.expect("there are multipliers");
     let solution = solver.solve()?;
-    if !solution.converged {
-        return Err(Error::NotConverged(solution.reason));
+    if !solution.converged() {
+        return Err(Error::NotConverged(solution.status.to_string()));
     }
 
     // The same sheet by one dense matrix.

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 use fetifeti::parallel::exchange::max_all;
 use fetifeti::scene::{free_all_round, Field, GridSpec, Scene};
-use fetifeti::{FetiFeti, Result, Session, Settings};
+use fetifeti::{FetiFeti, MethodSettings, Result, Session};
 
 fn main() -> ExitCode {
     fetifeti::run(run)
@@ -27,13 +27,13 @@ fn run(session: &Session) -> Result<()> {
     let scene = Scene::grid("One-level FETI", &grid)?;
     let mine = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| mine.contains(&s))?;
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: 1e-12,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let solver = FetiFeti::new(session, problem, settings)?;
     let solution = solver.solve()?;
-    assert!(solution.converged, "{}", solution.reason);
+    assert!(solution.converged(), "{}", solution.status);
 
     // The solution does not depend on y, and linear elements in one dimension are exact at the nodes.
     let mut worst = [0.0f64];

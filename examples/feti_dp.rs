@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use fetifeti::mesh::BoxMesh;
 use fetifeti::parallel::exchange::max_all;
 use fetifeti::scene::{BodySpec, By, Field, Scene, SceneSpec};
-use fetifeti::{FetiFeti, Result, Session, Settings};
+use fetifeti::{FetiFeti, MethodSettings, Result, Session};
 
 /// ρ of each column.
 const RHO: [f64; 4] = [1.0, 1e3, 1e-3, 1.0];
@@ -35,14 +35,14 @@ fn run(session: &Session) -> Result<()> {
 
     let mine = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| mine.contains(&s))?;
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: 1e-12,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let solver = FetiFeti::new(session, problem, settings)?;
     let spectrum = solver.spectrum()?.expect("subdomains have multipliers");
     let solution = solver.solve()?;
-    assert!(solution.converged, "{}", solution.reason);
+    assert!(solution.converged(), "{}", solution.status);
 
     let mut worst = [0.0f64];
     for (sub, u) in solver.problem().local.iter().zip(&solution.u) {

@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use fetifeti::fem::{ErrorNorms, Quadrature};
 use fetifeti::parallel::exchange::{max_all, sum_all};
 use fetifeti::scene::{Expr, Field, GridSpec, Load, Scene, SceneSpec};
-use fetifeti::{Error, FetiFeti, Result, Session, Settings};
+use fetifeti::{Error, FetiFeti, MethodSettings, Result, Session};
 
 /// Elements along the unit square.
 const N: usize = 64;
@@ -37,14 +37,14 @@ fn run(session: &Session) -> Result<()> {
     let problem = scene.substructures(&|s| mine.contains(&s))?;
 
     // A tight tolerance, because the result is compared with the discrete solution below. PETSc options override it.
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: 1e-12,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let solver = FetiFeti::new(session, problem, settings)?;
     let spectrum = solver.spectrum()?.expect("tied bodies have multipliers");
     let solution = solver.solve()?;
-    assert!(solution.converged, "{}", solution.reason);
+    assert!(solution.converged(), "{}", solution.status);
 
     // Bilinear elements on a uniform grid have sin πx sin πy as an eigenvector: the discrete solution is a known multiple
     // of it, so that every nodal value can be checked to rounding and not only to the discretisation error.

@@ -33,7 +33,7 @@
 //! | P | m × m | I − Q G (Gᵀ Q G)⁻¹ Gᵀ, \[Lee\] (2.11) | [`feti::projector::natural`] |
 //! | M_D⁻¹ | m × m | Z B_D S̃ B_Dᵀ Z, \[Lee\] section 3.1 | [`feti::operators::preconditioner`] |
 //! | Z_c, M_C⁻¹ | dim W̃ × n_c, m × m | coarse functions that vanish where bodies may touch; M_D⁻¹ with their span removed | [`feti::lifting`] |
-//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | [`feti::krylov::spectrum`] |
+//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | [`feti::spectrum`] |
 //!
 //! # The way data flows
 //!
@@ -106,6 +106,10 @@ pub mod parallel;
 pub mod petsc;
 pub mod report;
 pub mod scene;
+pub mod settings;
+pub mod solution;
+pub mod solver;
+pub mod status;
 pub mod study;
 pub mod substructures;
 
@@ -117,10 +121,14 @@ extern crate self as fetifeti;
 mod inside;
 
 pub use error::{Error, Result};
-pub use feti::{FetiFeti, PcType, Primal, ProjectorKind, Scaling, Settings, Solution, Spectrum};
+pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling, Spectrum};
 pub use linalg::csr::Csr;
 pub use petsc::Session;
 pub use scene::Scene;
+pub use settings::Settings;
+pub use solution::Solution;
+pub use solver::FetiFeti;
+pub use status::Status;
 pub use substructures::{
     Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow, Subdomain,
     Substructures,

@@ -102,21 +102,6 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Reason(const FetiFetiResult *result, KSPConvergedReason *reason)
-{
-  PetscInt  code;
-  PetscBool same;
-
-  PetscFunctionBegin;
-  *reason = result->converged ? KSP_CONVERGED_RTOL : KSP_DIVERGED_BREAKDOWN;
-  for (code = -11; code <= 9; code++) {
-    if (!code) continue;
-    PetscCall(PetscStrcmp(KSPConvergedReasons[code], result->reason, &same));
-    if (same) *reason = (KSPConvergedReason)code;
-  }
-  PetscFunctionReturn(0);
-}
-
 /* r <- b - A x */
 static PetscErrorCode Residual(Mat A, Vec B, Vec X, Vec R, PetscReal *norm)
 {
@@ -173,8 +158,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, R));
   if (!ksp->guess_zero && norm <= PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol)) { /* the guess is a solution */
     result.iterations = 0;
-    result.converged  = 1;
-    PetscCall(PetscStrcpy(result.reason, norm <= ksp->abstol ? "CONVERGED_ATOL" : "CONVERGED_RTOL"));
+    result.reason     = norm <= ksp->abstol ? KSP_CONVERGED_ATOL : KSP_CONVERGED_RTOL;
     PetscCall(VecSet(D, 0.0));
   } else status = fetifeti_plugin_solve(ff->solver, A, &wishes, R, D, &result);
   if (!status) PetscCall(VecAXPY(ksp->vec_sol, 1.0, D)); /* x <- x + d */
@@ -194,8 +178,8 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
     PetscCall(MatNullSpaceTest(nullsp, A, &kernel));
     if (kernel) PetscCall(MatNullSpaceRemove(nullsp, ksp->vec_sol));
   }
-  ksp->its = result.iterations;
-  PetscCall(Reason(&result, &ksp->reason));
+  ksp->its    = result.iterations;
+  ksp->reason = (KSPConvergedReason)result.reason;
   PetscFunctionReturn(0);
 }
 

@@ -43,9 +43,8 @@ typedef struct {
 
 typedef struct {
   int    iterations;
-  int    converged;
+  int    reason; /* KSPConvergedReason */
   double largest, smallest; /* eigenvalues, or 0 */
-  char   reason[64];
 } FetiFetiResult;
 
 int  fetifeti_plugin_setup(MPI_Comm comm, Mat a, const char *prefix, const FetiFetiWishes *wishes, void **solver);

@@ -10,13 +10,13 @@ use crate::assembled::problem::Problem;
 use crate::assembled::rows::Rows;
 use crate::assembled::system::{Copies, Format};
 use crate::assembled::unknowns::Unknowns;
-use crate::feti::{FetiFeti, Settings, Solution};
+use crate::feti::MethodSettings;
 use crate::parallel::exchange::{gather_all, max_all};
 use crate::parallel::meter::{memory, timed};
 use crate::petsc::{Options, Session, Vec as PetscVec};
 use crate::scene::{distribution, Scene};
 use crate::substructures::Subdomain;
-use crate::Result;
+use crate::{FetiFeti, Result, Solution};
 
 /// Solves a scene by the FETI-FETI method.
 ///
@@ -31,11 +31,11 @@ pub fn solve(
 ) -> Result<Outcome> {
     Options::new(session, "fetifeti_").set_default("threads", &threads.to_string())?;
     let (substructures, assemble) = timed(session, || distribution::substructures(session, scene))?;
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: job.rtol,
         // Directions of one attempt would shorten the next one, which is the one that is timed.
         recycle: 0,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let (mut solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
     // The assembled matrix is for the residual only: what it needs does not count.
@@ -59,7 +59,7 @@ pub fn solve(
         let (u, weight) = mean?;
         let (residual, contact) = match scene.has_contact() {
             true => {
-                let active = active(session, scene, &solver, &solution, &problem.rows)?;
+                let active = active(session, scene, &solution, &problem.rows)?;
                 let outcome = ContactOutcome {
                     steps: Some(solution.steps.len()),
                     active: problem.rows.list(&active),
@@ -85,8 +85,8 @@ pub fn solve(
             recover: Some(seconds[1]),
             setup: 0.0,
             contact,
-            converged: solution.converged,
-            reason: solution.reason,
+            converged: solution.converged(),
+            reason: solution.status.to_string(),
         })
     })?;
     attempt.u.save(file)?;
@@ -146,16 +146,10 @@ fn close(
 }
 
 /// Which of the scene's inequalities are active, the same on every rank. Collective.
-fn active(
-    session: &Session,
-    scene: &Scene,
-    solver: &FetiFeti,
-    solution: &Solution,
-    rows: &Rows,
-) -> Result<Vec<bool>> {
+fn active(session: &Session, scene: &Scene, solution: &Solution, rows: &Rows) -> Result<Vec<bool>> {
     let provided = rows.provided(&distribution::owner(session, scene)?);
-    let solved = solver.rows(solution);
-    let held = provided.into_iter().zip(&solved).filter(|(_, r)| r.holds());
+    let solved = solution.rows();
+    let held = provided.into_iter().zip(solved).filter(|(_, r)| r.holds());
     let mine: Vec<u64> = held.filter_map(|(k, _)| Some(k? as u64)).collect();
     let all = gather_all(session.comm(), &mine).concat();
     Ok(rows.set(&all.iter().map(|&k| k as usize).collect::<Vec<_>>()))

@@ -12,7 +12,7 @@ use crate::linalg::csr::Csr;
 use crate::parallel::exchange::{gather_all, max_all};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
-use crate::{Error, Result, Settings};
+use crate::{Error, MethodSettings, Result};
 use std::collections::HashSet;
 
 /// A subdomain matrix as it was handed over.
@@ -206,9 +206,9 @@ impl Object {
             0 => Grouping::Auto,
             n => Grouping::Number(n),
         };
-        let settings = Settings {
+        let settings = MethodSettings {
             prefix: format!("{}fetifeti_", self.prefix),
-            ..Settings::default()
+            ..MethodSettings::default()
         };
         self.solver = Some(Embedded::new(&self.session, &torn, grouping, settings)?);
         self.stale = false;

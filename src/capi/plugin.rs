@@ -3,7 +3,7 @@
 use super::error::{status, UNFIT};
 use crate::embed::{Embedded, Grouping, Torn};
 use crate::petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
-use crate::{Error, Result, Settings};
+use crate::{Error, MethodSettings, Result};
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void, CStr};
 
@@ -35,10 +35,10 @@ pub struct Facts {
 #[repr(C)]
 pub struct Report {
     iterations: c_int,
-    converged: c_int,
+    /// KSPConvergedReason.
+    reason: c_int,
     largest: f64,
     smallest: f64,
-    reason: [c_char; 64],
 }
 
 /// Makes a solver for a MATIS. Collective.
@@ -79,10 +79,10 @@ const DIRECTIONS: usize = 30;
 
 fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Embedded> {
     let prefix = format!("{prefix}fetifeti_");
-    let settings = Settings {
+    let settings = MethodSettings {
         prefix: prefix.clone(),
         recycle: DIRECTIONS,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let options = Options::new(session, &prefix);
     let help = "bodies to group the ranks into; 0: one for every eight subdomains";
@@ -157,10 +157,6 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
             let done = norm <= wishes.goal || hopeless || !norm.is_finite();
             Ok((!done).then_some(0.5 * wishes.goal.max(1e-4 * norm) / norm))
         })?;
-        let mut reason = [0; 64];
-        for (to, from) in reason[..63].iter_mut().zip(outcome.reason.bytes()) {
-            *to = from as c_char;
-        }
         let (largest, smallest) = outcome.spectrum.unwrap_or_default();
         // SAFETY: by the caller.
         unsafe {
@@ -168,8 +164,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
                 largest,
                 smallest,
                 iterations: outcome.iterations as c_int,
-                converged: outcome.converged.into(),
-                reason,
+                reason: outcome.status.number(),
             }
         };
         Ok(())
@@ -179,7 +174,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
 /// The outer KSP's tolerances hold where no option of the inner one says otherwise.
 fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
     let ksp = solver.solver().ksp().clone();
-    let options = Options::new(solver.session(), &solver.solver().settings().prefix);
+    let options = Options::new(solver.session(), &solver.solver().settings().method.prefix);
     let now = ksp.tolerances()?;
     let f64_of = |name, outer| Ok::<f64, Error>(options.get_f64(name)?.unwrap_or(outer));
     let max_it = match options.get_usize("ksp_max_it")? {

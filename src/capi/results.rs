@@ -19,24 +19,9 @@ pub unsafe extern "C" fn FetiFetiGetIterations(ff: Handle, its: *mut c_int) -> c
 #[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetConvergedReason(ff: Handle, reason: *mut c_int) -> c_int {
     alone(ff, c"FetiFetiGetConvergedReason", |o| {
-        let outcome = o.outcome()?;
-        put(reason, code(&outcome.reason, outcome.converged));
+        put(reason, o.outcome()?.status.number());
         Ok(())
     })
-}
-
-/// KSPConvergedReason; reasons of the contact loop count as the nearest of them.
-fn code(reason: &str, converged: bool) -> c_int {
-    match (reason, converged) {
-        ("CONVERGED_ATOL", _) => 3,
-        ("CONVERGED_ITS", _) => 4,
-        (_, true) => 2,
-        ("DIVERGED_ITS" | "DIVERGED_MAX_IT", _) => -3,
-        ("DIVERGED_DTOL", _) => -4,
-        ("DIVERGED_NANORINF", _) => -9,
-        ("DIVERGED_INDEFINITE_MAT", _) => -10,
-        _ => -5,
-    }
 }
 
 #[no_mangle]

@@ -83,7 +83,7 @@ impl Object {
         if let Some(o) = &self.outcome {
             text += &format!(
                 "  last solve: {} after {} iterations, {} steps of the contact loop\n",
-                o.reason, o.iterations, o.steps
+                o.status, o.iterations, o.steps
             );
         }
         text

@@ -16,8 +16,7 @@ use std::sync::Arc;
 use super::panel;
 use super::symbolic::{Front, Symbolic};
 use crate::linalg::csr::Csr;
-use crate::linalg::dense;
-use crate::linalg::dense::{Dense, Scratch};
+use crate::linalg::dense::{self, Dense, Scratch};
 
 /// A pivot below this fraction of the diagonal entry it came from counts as zero: rounding leaves about 1e-16 times
 /// the number of updates, while a body held by a spring of 1e-8 of its stiffness still shows 1e-8.

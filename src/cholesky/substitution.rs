@@ -4,8 +4,7 @@
 //! of what is below their own rows, so that the vector is read and written once for four, and the panel once at all.
 
 use super::multifrontal::PartialCholesky;
-use super::panel;
-use super::panel::COLUMNS;
+use super::panel::{self, COLUMNS};
 
 /// Partial sums of a product: two vector registers for each column.
 const SUMS: usize = 8;

@@ -1,13 +1,12 @@
 //! Equilibrium of every body: loads, forces on interfaces and obstacles, reactions; in elasticity by components and with moments.
 
-use crate::feti::FetiFeti;
 use crate::linalg::vec3::{cross, minus, norm};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::Session;
 use crate::report::json::contact::{Amount, BodyBalance};
 use crate::scene::{Body, Scene};
 use crate::substructures::{BodyNode, SolvedRow};
-use crate::Result;
+use crate::{FetiFeti, Result};
 
 /// What acts on a body. Moments are about its centre.
 #[derive(Clone, Copy, Default)]

@@ -10,13 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::args::Solve;
 use crate::contact::checkpoint::{Checkpoint, Layout};
 use crate::contact::State;
-use crate::feti::FetiFeti;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::{checkpoint, output};
 use crate::scene::Scene;
-use crate::{Error, Result};
+use crate::{Error, FetiFeti, Result};
 
 /// What was asked for, checked before the work.
 pub struct Checkpoints {
@@ -164,7 +163,7 @@ impl Checkpoints {
     /// A checkpoint whose rows are not those of the solver.
     pub fn attach(mut self, session: &Session, solver: &FetiFeti) -> Result<Attached> {
         let wanted = self.file.is_some() || self.resume.is_some();
-        let layout = wanted.then(|| Layout::new(solver));
+        let layout = wanted.then(|| Layout::new(solver.method()));
         let start = match (&layout, &self.resume) {
             (Some(layout), Some(file)) => {
                 let state = self.found.take().map(|found| found.state);

@@ -3,17 +3,17 @@
 use std::collections::BTreeMap;
 
 use crate::contact::Step;
-use crate::feti::{FetiFeti, Solution};
 use crate::petsc::Session;
 use crate::report::json;
 use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::plots::profile::Profile;
 use crate::scene::{Scene, Shape};
 use crate::substructures::{RowSource, SolvedRow};
+use crate::Solution;
 
 /// All rows on rank 0, by interface and t; empty on the others. Collective.
-pub fn rows(session: &Session, solver: &FetiFeti, solution: &Solution) -> Vec<SolvedRow> {
-    let mut rows = SolvedRow::on_first_rank(session.comm(), &solver.rows(solution));
+pub fn rows(session: &Session, solution: &Solution) -> Vec<SolvedRow> {
+    let mut rows = SolvedRow::on_first_rank(session.comm(), solution.rows());
     rows.sort_by(|a, b| {
         let by_t = |k: usize| a.label.t[k].total_cmp(&b.label.t[k]);
         let by_source = a.label.source.cmp(&b.label.source);

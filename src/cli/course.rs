@@ -6,15 +6,13 @@ use super::args::Solve;
 use super::checkpoint::{Checkpoints, Resumed};
 use super::contact;
 use super::fields::Gathered;
-use crate::contact::State;
-use crate::feti::{FetiFeti, Solution};
 use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
 use crate::scene::{distribution, Scene, Stepping};
 use crate::substructures::SolvedRow;
-use crate::Result;
+use crate::{FetiFeti, Result, Solution};
 
 /// What happened over the load steps.
 pub(super) struct Course {
@@ -80,7 +78,7 @@ pub(super) fn follow(
             checkpoints.save(session, step, || records.followed_by(&outer), state)
         })?;
         progress.finish();
-        let rows = contact::rows(session, solver, &solution);
+        let rows = contact::rows(session, &solution);
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
         let mut now = Course {
@@ -107,11 +105,11 @@ pub(super) fn follow(
         records.outer.append(&mut done.outer);
         records.load_steps.append(&mut done.load_steps);
         records.iterations.append(&mut done.iterations);
-        if !done.solution.converged {
+        if !done.solution.converged() {
             break;
         }
         if step + 1 < n {
-            let next = State::warm(&done.solution);
+            let next = done.solution.warm_start();
             checkpoints.save(session, step + 1, || records.clone(), &next)?;
             state = Some(next);
         }

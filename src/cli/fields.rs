@@ -4,15 +4,14 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use crate::fem::cell::{centre_stress, CellStress};
-use crate::feti::{FetiFeti, Solution};
-use crate::mesh::SubdomainMesh;
+use crate::fem::SubdomainMesh;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::paraview::contact_fields::ContactFields;
 use crate::report::paraview::vtu::{Shape, Vtu};
 use crate::scene::Scene;
 use crate::substructures::{BodyNode, SolvedRow};
-use crate::Result;
+use crate::{FetiFeti, Result, Solution};
 
 /// The whole solution, subdomain after subdomain.
 #[derive(Default)]

@@ -23,7 +23,7 @@ use crate::baselines::{self, Benchmark, Comparison};
 use crate::petsc::{self, Comm, Ksp, Session};
 use crate::report::output;
 use crate::scene::distribution::Distribution;
-use crate::{Error, Result, Settings};
+use crate::{Error, Result, Settings, Status};
 
 /// Runs the program with the process's arguments and returns its exit code.
 pub fn main() -> i32 {
@@ -76,16 +76,16 @@ fn list_options(session: &Session) -> Result<()> {
     let settings = Settings::default().with_options(session)?;
     Distribution::from_options(session)?;
     let ksp = Ksp::new(session, Comm::World)?;
-    ksp.set_options_prefix(&settings.prefix)?;
+    ksp.set_options_prefix(&settings.method.prefix)?;
     ksp.set_type("cg")?;
     ksp.pc()?
-        .set_options_prefix(&format!("{}ksp_", settings.prefix))?;
+        .set_options_prefix(&format!("{}ksp_", settings.method.prefix))?;
     ksp.set_from_options()
 }
 
 /// The error of a solve that stopped early; results were written before.
-fn not_converged(what: &str, reason: &str, iterations: usize) -> Error {
+fn not_converged(what: &str, status: &Status, iterations: usize) -> Error {
     Error::NotConverged(format!(
-        "{what} did not converge: {reason} after {iterations} iterations (the results written are partial)"
+        "{what} did not converge: {status} after {iterations} iterations (the results written are partial)"
     ))
 }

@@ -8,15 +8,16 @@ use super::physics;
 use super::solve::adaptive;
 use crate::fem::cell::rigid_count;
 use crate::feti::cost::sizes::Sizes;
-use crate::feti::deflation::{watch, JUMPS};
+use crate::feti::cost::variation::JUMPS;
+use crate::feti::deflation::watch;
 use crate::feti::settings::Adaptive;
-use crate::feti::{FetiFeti, PcType, Settings};
+use crate::feti::{MethodSettings, PcType};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
 use crate::report::tables::table::{Align, Table};
 use crate::scene::{distribution, Plan, Scene};
 use crate::substructures::Substructures;
-use crate::Result;
+use crate::{FetiFeti, Result};
 
 /// Bodies and interfaces are listed one by one up to this many lines.
 const LIST: usize = 24;
@@ -25,7 +26,7 @@ const LIST: usize = 24;
 pub fn run(session: &Session, path: &Path) -> Result<()> {
     let scene = distribution::load(session, path)?;
     let substructures = distribution::substructures(session, &scene)?;
-    let settings = Settings::default().with_options(session)?;
+    let settings = MethodSettings::default().with_options(session)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
     let team = Team::new(if session.size() == 1 { threads } else { 1 })?;
     let sizes = session.agree(Sizes::with(
@@ -45,7 +46,7 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
 fn deflation(
     session: &Session,
     problem: Substructures,
-    settings: Settings,
+    settings: MethodSettings,
     coefficient: &Coefficient,
 ) -> Result<String> {
     let contrast = coefficient.contrast();
@@ -87,7 +88,7 @@ fn deflation(
         };
         let _ = write!(out, "\n{:<22}{}{rest}", "", listed.join(", "));
     }
-    if solver.settings().spectrum {
+    if solver.settings().method.spectrum {
         if let Some(s) = solver.spectrum()? {
             let _ = write!(out, "\n{:<22}κ with them {:.4}", "", s.kappa());
         }

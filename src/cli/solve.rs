@@ -11,9 +11,9 @@ use super::contact;
 use super::course::{follow, Course};
 use super::fields::Gathered;
 use super::{maps, not_converged, physics, picture};
-use crate::feti::solver::Facts;
 use crate::feti::subdomain::problem::factorisations;
-use crate::feti::{FetiFeti, PcType, Settings, Spectrum};
+use crate::feti::Facts;
+use crate::feti::{MethodSettings, PcType, Spectrum};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
 use crate::report::json::adaptive::{Adaptive, Deflation};
@@ -24,7 +24,7 @@ use crate::report::pictures::contact_map;
 use crate::report::plots::{load_steps, profile};
 use crate::report::tables::summary;
 use crate::scene::{distribution, Scene};
-use crate::Result;
+use crate::{FetiFeti, Result};
 
 /// Directions that a load step leaves to the next one.
 const DIRECTIONS: usize = 30;
@@ -39,20 +39,20 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let substructures = distribution::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
-    let settings = Settings {
+    let settings = MethodSettings {
         recycle: if scene.steps.is_some() { DIRECTIONS } else { 0 },
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let mut solver = FetiFeti::new(session, substructures, settings)?;
     let course = follow(session, &scene, &mut solver, args, checkpoints)?;
     let solution = &course.solution;
-    let exact = match (solver.settings().spectrum, solution.steps.last()) {
+    let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
         (false, _) => None,
         (true, Some(step)) if step.exact.is_some() => step.exact,
         (true, _) => solver.spectrum()?,
     };
     let mut report = report(session, &scene, &solver, &course, exact)?;
-    if solver.settings().check {
+    if solver.settings().method.check {
         report.check = Some(checks(&solver)?);
     }
     report.seconds.assemble = assemble;
@@ -66,7 +66,7 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
         Ok(())
     };
     session.agree(written)?;
-    if solution.converged {
+    if solution.converged() {
         Ok(())
     } else {
         let scene = args.scene.display();
@@ -74,7 +74,7 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
             (0, _) => format!("the dual problem of {scene}"),
             (_, n) => format!("the contact problem of {scene} ({n} contact steps)"),
         };
-        Err(not_converged(&what, &solution.reason, solution.iterations))
+        Err(not_converged(&what, &solution.status, solution.iterations))
     }
 }
 
@@ -174,7 +174,7 @@ fn report(
     let [l2, h1, energy] = errors.map(f64::sqrt);
     let floating = dual.natural.r > 0;
     let inequalities = facts.inequalities > 0;
-    let rows = solver.rows(solution);
+    let rows = solution.rows();
     let mut active = [rows.iter().filter(|r| r.holds()).count() as f64];
     sum_all(session.comm(), &mut active);
     Ok(SolveReport {
@@ -218,7 +218,7 @@ fn report(
             .exact
             .is_some()
             .then_some(json::ErrorNorms { l2, h1, energy }),
-        communication: solver.communication()?.map(Into::into),
+        communication: solver.communication().map(Into::into),
         seconds: json::Seconds {
             assemble: 0.0,
             setup: facts.setup_seconds,
@@ -228,11 +228,18 @@ fn report(
         },
         memory_mb: memory[0],
         operators: Some(operators(session, solver.facts())),
-        converged_reason: solution.reason.clone(),
+        converged_reason: solution.status.to_string(),
         ksp_type: solver.ksp().type_name()?,
         preconditioner: dual.preconditioner.kind().name().into(),
-        local_solver: solver.settings().local.kind.name().into(),
-        local_ordering: solver.settings().local.ordering.taken().name().into(),
+        local_solver: solver.settings().method.local.kind.name().into(),
+        local_ordering: solver
+            .settings()
+            .method
+            .local
+            .ordering
+            .taken()
+            .name()
+            .into(),
         projector: if floating {
             dual.natural.projector.name()
         } else {
@@ -261,7 +268,7 @@ fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
         return Ok(None);
     };
     // A spectrum that reaches over many decades may be out of the eigensolver's reach.
-    let exact_without = match solver.settings().spectrum {
+    let exact_without = match solver.settings().method.spectrum {
         true => solver.plain_spectrum().ok().flatten(),
         false => None,
     };

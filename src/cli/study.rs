@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::args::{Study, StudyName};
 use super::solve::prepare;
-use crate::feti::Settings;
+use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::{json, output};
 use crate::study::{adaptive, hard_cases, hertz, kappa, kernels, scaling, speed_error};
@@ -120,7 +120,7 @@ impl Drop for Scratch {
 }
 
 fn run_kappa(session: &Session, args: &Study) -> Result<()> {
-    let exact = Settings::default().with_options(session)?.spectrum;
+    let exact = MethodSettings::default().with_options(session)?.spectrum;
     let only = args.case.as_deref();
     let report = kappa::run(session, args.quick, only, exact, &mut |what| {
         progress(session, args, what)

@@ -3,14 +3,14 @@
 use super::args::Table1;
 use super::{not_converged, solve};
 use crate::feti::settings::Adaptive;
-use crate::feti::{FetiFeti, PcType, Settings, Solution, Spectrum};
+use crate::feti::{MethodSettings, PcType, Spectrum};
 use crate::petsc::Session;
 use crate::report::json::{self, CoarseCorrected, PaperSide, Table1Row, Table1Side};
 use crate::report::output;
 use crate::report::plots::figure3;
 use crate::report::tables::{paper, summary};
 use crate::scene::{distribution, Faces, Scene};
-use crate::{Error, Result};
+use crate::{Error, FetiFeti, Result, Solution};
 
 /// Computes the rows and writes what was asked for.
 pub fn run(session: &Session, args: &Table1) -> Result<()> {
@@ -62,18 +62,18 @@ fn side(
 ) -> Result<Table1Side> {
     let mut run = |pc| -> Result<(FetiFeti, Solution, Option<Spectrum>)> {
         let substructures = distribution::substructures(session, scene)?;
-        let settings = Settings {
+        let settings = MethodSettings {
             pc_type: Some(pc),
             // The paper's method and nothing else.
             adaptive: Adaptive::Off,
-            ..Settings::default()
+            ..MethodSettings::default()
         };
         let solver = FetiFeti::new(session, substructures, settings)?;
         let solution = solver.solve()?;
-        if !solution.converged {
+        if !solution.converged() {
             stopped.get_or_insert(not_converged(
                 &scene.title,
-                &solution.reason,
+                &solution.status,
                 solution.iterations,
             ));
         }

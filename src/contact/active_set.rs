@@ -11,41 +11,63 @@
 
 use std::time::Instant;
 
-use super::{checkpoint, judge, motion, smalbe, Caution, ContactType, Observer, State, Step};
-use crate::feti::krylov::inner::{target, to_the_end, Inner, Loads, Residual};
-use crate::feti::krylov::recover;
+use super::settings::{ContactSettings, ContactType};
+use super::state::{Caution, Observer, State, Step};
+use super::{checkpoint, judge, motion};
+use crate::feti::krylov::iterate::{IterationControl, Run};
+use crate::feti::krylov::loads::Loads;
+use crate::feti::krylov::residual::{Iterate, Residual};
+use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::rows::Rows;
-use crate::feti::{FetiFeti, Solution, Spectrum};
+use crate::feti::{LinearMethod, LinearSolution, Spectrum};
 use crate::parallel::exchange::{gather_all, max_all, sum_all};
-use crate::petsc::Vec as PetscVec;
+use crate::status::Status;
 use crate::Result;
 
+/// How the loop ended.
+pub(super) enum Ended {
+    /// With a solution, or with the tolerance out of reach.
+    Found(LinearSolution, Vec<Step>),
+    /// Its rule has no way on from this state, after these steps and seconds: SMALBE takes over.
+    HandedOver {
+        state: State,
+        steps: Vec<Step>,
+        seconds: f64,
+    },
+}
+
 /// Solves by the active-set loop. Collective.
-pub fn solve(solver: &FetiFeti, start: Option<&State>, observe: &mut Observer) -> Result<Solution> {
+pub(super) fn solve(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    start: Option<&State>,
+    observe: &mut Observer,
+) -> Result<Ended> {
     let clock = Instant::now();
-    let mut run = Run::new(solver, start)?;
+    let mut run = ActiveSet::new(method, settings, start)?;
     let mut steps: Vec<Step> = Vec::new();
-    let (converged, reason) = loop {
-        if run.state.steps >= solver.settings().contact.max_it {
-            break (false, "DIVERGED_CONTACT_ITS".to_string());
+    let status = loop {
+        if run.state.steps >= settings.max_it {
+            break Status::ContactSteps;
         }
         if run.state.caution == Caution::Fallback {
-            let seconds = clock.elapsed().as_secs_f64();
-            return smalbe::take_over(solver, run.state, steps, seconds, observe);
+            return Ok(Ended::HandedOver {
+                state: run.state,
+                steps,
+                seconds: clock.elapsed().as_secs_f64(),
+            });
         }
-        let (step, inner, verdict) = run.step(solver)?;
+        let (step, status, verdict) = run.step()?;
         observe(&step, &run.state)?;
         steps.push(step);
-        if !inner.reason.converged() {
-            break (false, inner.reason.name);
-        }
-        if verdict == Verdict::Solved {
-            break (true, inner.reason.name);
+        if !status.converged() || verdict == Verdict::Solved {
+            break status;
         }
     };
     let seconds = clock.elapsed().as_secs_f64();
-    run.finish(solver, steps, seconds, converged, reason)
+    let found = run.finish(&steps, seconds, status)?;
+    Ok(Ended::Found(found, steps))
 }
 
 /// Jumps on the rows that hold may be this many times the residual in V: it does not see the part that rigid motions close.
@@ -61,12 +83,12 @@ pub(super) enum Verdict {
 }
 
 /// The loop's data.
-pub(super) struct Run {
+pub(super) struct ActiveSet<'a> {
+    method: &'a LinearMethod,
+    settings: &'a ContactSettings,
     pub state: State,
-    loads: Loads,
-    lambda: PetscVec,
-    residual: Residual,
-    /// Whether `residual` belongs to `lambda` and the set that holds.
+    at: Iterate,
+    /// Whether the residual of `at` belongs to its λ and the set that holds.
     fresh: bool,
     /// The largest displacement in the last step.
     length: f64,
@@ -76,7 +98,7 @@ pub(super) struct Run {
     pub pull: f64,
     /// B R with all candidate rows.
     g: Rows,
-    /// Whether `residual` has the displacements that belong to `lambda`, rigid motions included.
+    /// Whether `at` has the displacements that belong to its λ, rigid motions included.
     placed: bool,
     /// m.
     n_rows: usize,
@@ -87,28 +109,30 @@ pub(super) struct Run {
     last: (Vec<f64>, Option<Spectrum>),
 }
 
-impl Run {
-    pub fn new(solver: &FetiFeti, start: Option<&State>) -> Result<Run> {
-        let (session, problem) = (solver.session(), solver.problem());
-        let dual = solver.dual();
+impl<'a> ActiveSet<'a> {
+    pub fn new(
+        method: &'a LinearMethod,
+        settings: &'a ContactSettings,
+        start: Option<&State>,
+    ) -> Result<ActiveSet<'a>> {
+        let (session, problem, dual) = (method.session(), method.problem(), method.dual());
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(session, problem, &dual);
         let g = dual.natural.all_rows(session.comm(), &dual.stiffness);
         motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
-        let lambda = dual.multipliers()?;
         let n_rows = jump.n_global;
-        let residual = Residual::new(&dual)?;
+        let at = Iterate::new(&dual, loads)?;
         drop(dual);
-        let mut run = Run {
+        let mut run = ActiveSet {
+            method,
+            settings,
             fresh: false,
             tight: false,
             pull: judge::ROUNDING,
             length: 0.0,
             state,
-            loads,
-            lambda,
-            residual,
+            at,
             g,
             n_rows,
             placed: false,
@@ -117,70 +141,69 @@ impl Run {
             last: (Vec::new(), None),
         };
         if start.is_some() {
-            let dual = solver.dual();
+            let dual = method.dual();
             let jump = &dual.stiffness.jump;
             let (active, lambda) = (&mut run.state.active, &run.state.lambda);
-            let load = &run.loads.kernel;
+            let load = &run.at.loads.kernel;
             motion::restore(session.comm(), &run.g, jump, active, &|r| lambda[r], load);
         }
         if run.state.reference == 0.0 {
-            run.state.reference = run.reference(solver)?;
+            run.state.reference = run.reference()?;
             // A cold start stands just where the reference was taken.
             run.fresh = start.is_none();
         }
         if !run.fresh {
-            run.lambda.array_mut()?.copy_from_slice(&run.state.lambda);
+            let mut lambda = run.at.lambda.array_mut()?;
+            lambda.copy_from_slice(&run.state.lambda);
         }
         Ok(run)
     }
 
     /// ‖Pᵀ r‖ at λ₀ with all candidates holding: what tolerances are relative to, whatever λ the loop starts from.
-    fn reference(&mut self, solver: &FetiFeti) -> Result<f64> {
-        let (session, problem) = (solver.session(), solver.problem());
-        let all = State::cold(&solver.dual().stiffness.jump).active;
-        solver.shared().borrow_mut().set_active(problem, &all)?;
-        let dual = solver.dual();
+    fn reference(&mut self) -> Result<f64> {
+        let method = self.method;
+        let all = State::cold(&method.dual().stiffness.jump).active;
+        method.set_active(&all)?;
+        let (session, dual) = (method.session(), method.dual());
         dual.natural
-            .check_held(problem, &dual.stiffness, &self.loads.kernel)?;
-        self.lambda.set(0.0)?;
-        dual.natural
-            .balance(session.comm(), &self.loads.kernel, &self.lambda)?;
-        self.residual
-            .evaluate(session, &dual, &self.loads, &self.lambda)?;
-        dual.p_transpose(&self.residual.r)?;
-        self.residual.r.norm2()
+            .check_held(method.problem(), &dual.stiffness, &self.at.loads.kernel)?;
+        self.at.lambda.set(0.0)?;
+        self.at.balance(session, &dual)?;
+        self.at.evaluate_projected(session, &dual)
     }
 
     /// The residual to end with, as far as the displacements are known.
-    fn target(&self, solver: &FetiFeti) -> Result<f64> {
-        target(solver.ksp(), self.state.reference, self.length, self.n_rows)
+    fn target(&self) -> Result<f64> {
+        let ksp = self.method.ksp();
+        target(ksp, self.state.reference, self.length, self.n_rows)
     }
 
     /// One outer step: equations on the set, then the next set.
-    pub fn step(&mut self, solver: &FetiFeti) -> Result<(Step, Inner, Verdict)> {
+    pub fn step(&mut self) -> Result<(Step, Status, Verdict)> {
         let clock = Instant::now();
-        let (session, problem) = (solver.session(), solver.problem());
-        let settings = solver.settings();
-        let changed = solver
-            .shared()
-            .borrow_mut()
-            .set_active(problem, &self.state.active)?;
-        let dual = solver.dual();
+        let (session, method) = (self.method.session(), self.method);
+        let changed = method.set_active(&self.state.active)?;
+        let dual = method.dual();
         if changed > 0 || !self.fresh {
-            for (l, on) in self.lambda.array_mut()?.iter_mut().zip(&self.state.active) {
+            for (l, on) in self
+                .at
+                .lambda
+                .array_mut()?
+                .iter_mut()
+                .zip(&self.state.active)
+            {
                 *l = if *on { *l } else { 0.0 };
             }
-            dual.natural
-                .balance(session.comm(), &self.loads.kernel, &self.lambda)?;
-            self.residual
-                .evaluate(session, &dual, &self.loads, &self.lambda)?;
+            self.at.balance(session, &dual)?;
+            self.at.evaluate(session, &dual)?;
         }
-        dual.p_transpose(&self.residual.r)?;
+        dual.p_transpose(&self.at.residual.r)?;
+        drop(dual);
 
-        let first = self.residual.r.norm2()?;
-        let target = self.target(solver)?;
+        let first = self.at.residual.r.norm2()?;
+        let target = self.target()?;
         let reduction = match self.state.caution {
-            Caution::Loose => settings.contact.inner_rtol,
+            Caution::Loose => self.settings.inner_rtol,
             _ => 0.0,
         };
         let tolerance = if self.tight {
@@ -188,19 +211,16 @@ impl Run {
         } else {
             target.max(reduction * first)
         };
-        drop(dual);
-        let size = self.residual.size;
-        let residual = &mut self.residual;
-        let inner = solver.reach(&self.loads, residual, size, &self.lambda, tolerance)?;
-        let dual = solver.dual();
-        self.residual
-            .evaluate(session, &dual, &self.loads, &self.lambda)?;
-        let next = self.next(solver, &dual)?;
+        let control = IterationControl::to(tolerance, self.at.residual.size);
+        let inner = method.reach(&mut self.at, control)?;
+        let dual = method.dual();
+        self.at.evaluate(session, &dual)?;
+        let next = self.next(&dual)?;
         drop(dual);
 
         let comm = session.comm();
         let now = &self.state.active;
-        let n_local = solver.dual().stiffness.jump.n_owned_local;
+        let n_local = method.dual().stiffness.jump.n_owned_local;
         let (was, now) = (&self.state.before[n_local..], &now[n_local..]);
         let mut counts = [
             count(was, now, |_, on| on),
@@ -208,10 +228,9 @@ impl Run {
             count(was, now, |was, on| was && !on),
         ];
         sum_all(comm, &mut counts);
-        let exact = if settings.spectrum {
-            solver.spectrum()?
-        } else {
-            None
+        let exact = match method.settings().spectrum {
+            true => method.spectrum()?,
+            false => None,
         };
         let relative = |r: f64| match self.state.reference {
             reference if reference > 0.0 => r / reference,
@@ -234,64 +253,59 @@ impl Run {
             self.last = (inner.residuals.clone(), inner.estimate);
         }
         // The target of the displacements that have come out.
-        let target = self.target(solver)?;
+        let target = self.target()?;
         let to_the_end = to_the_end(tolerance, target);
         let closed = next.jump_left <= CLOSED * target + 1e3 * judge::ROUNDING * self.length;
-        let verdict = self.advance(solver, next, to_the_end, closed)?;
-        Ok((step, inner, verdict))
+        let verdict = self.advance(next, to_the_end, closed)?;
+        Ok((step, inner.status, verdict))
     }
 
-    /// The solution where the loop stands. Collective.
+    /// The solution where the loop stands, after these steps. Collective.
     pub fn finish(
-        self,
-        solver: &FetiFeti,
-        steps: Vec<Step>,
+        mut self,
+        steps: &[Step],
         solve_seconds: f64,
-        converged: bool,
-        reason: String,
-    ) -> Result<Solution> {
-        let dual = solver.dual();
-        let (session, problem) = (solver.session(), solver.problem());
-        let (loads, lambda, residual) = (self.loads, &self.lambda, self.residual);
-        let placed = self.placed;
-        let solution = recover::finish(session, problem, &dual, loads, lambda, residual, placed)?;
+        status: Status,
+    ) -> Result<LinearSolution> {
+        let method = self.method;
+        if !self.placed {
+            self.at.place(method.session(), &method.dual())?;
+        }
         let (residuals, estimate) = self.last;
-        Ok(Solution {
+        let run = Run {
             iterations: steps.iter().map(|s| s.iterations).sum(),
-            converged,
-            reason,
+            status,
             residuals,
             estimate,
-            solve_seconds,
-            steps,
-            ..solution
-        })
+            broken_off: false,
+        };
+        method.recover(self.at, run, solve_seconds)
     }
 
     /// Judges the rows at the λ and the displacements that are there.
-    fn next(&mut self, solver: &FetiFeti, dual: &Dual) -> Result<Next> {
-        let session = solver.session();
+    fn next(&mut self, dual: &Dual) -> Result<Next> {
+        let session = self.method.session();
         let comm = session.comm();
         let jump = &dual.stiffness.jump;
-        self.residual.add_rigid_motion(session, dual)?;
+        self.at.residual.add_rigid_motion(session, dual)?;
         self.placed = true;
-        self.gaps = all_gaps(dual, &self.residual)?;
+        self.gaps = all_gaps(dual, &self.at.residual)?;
         let unheld = dual.natural.unheld();
         // Bodies that nothing holds go to where nothing is violated.
         if let Some(alpha) = motion::settle(comm, &self.g, jump, &self.gaps, unheld) {
-            self.residual.shift(dual, &alpha);
-            self.gaps = all_gaps(dual, &self.residual)?;
+            self.at.residual.shift(dual, &alpha);
+            self.gaps = all_gaps(dual, &self.at.residual)?;
         }
         self.held.clone_from(&jump.active);
-        let (gaps, lambda) = (&self.gaps, self.lambda.array()?);
-        let y = self.residual.largest();
+        let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
+        let y = self.at.residual.largest();
         let mut judged = judge::Rows::new(comm, jump, gaps, &lambda, y, self.pull);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);
         if self.state.caution == Caution::Single {
             judged.keep_worst(comm, jump);
         }
-        let load = &self.loads.kernel;
+        let load = &self.at.loads.kernel;
         let score = |r: usize| judged.score(lambda[r], gaps[r]);
         let mut active = judged.active.clone();
         let restored = motion::restore(comm, &self.g, jump, &mut active, &score, load);
@@ -305,17 +319,11 @@ impl Run {
     }
 
     /// Goes over to the next set.
-    fn advance(
-        &mut self,
-        solver: &FetiFeti,
-        next: Next,
-        to_the_end: bool,
-        closed: bool,
-    ) -> Result<Verdict> {
-        let comm = solver.session().comm();
+    fn advance(&mut self, next: Next, to_the_end: bool, closed: bool) -> Result<Verdict> {
+        let comm = self.method.session().comm();
         let state = &mut self.state;
         state.steps += 1;
-        state.lambda = self.lambda.to_vec()?;
+        state.lambda = self.at.lambda.to_vec()?;
         state.before = std::mem::replace(&mut state.active, next.active);
         let mut same = [f64::from(u8::from(state.active != state.before))];
         max_all(comm, &mut same);
@@ -334,7 +342,7 @@ impl Run {
             state.caution = Caution::Fallback;
             return Ok(Verdict::GoOn);
         }
-        let print = fingerprint(solver, &state.active);
+        let print = fingerprint(self.method, &state.active);
         if state.visited.contains(&print) {
             state.caution = match state.caution {
                 Caution::Loose => Caution::Exact,
@@ -377,7 +385,7 @@ fn count(before: &[bool], now: &[bool], test: impl Fn(bool, bool) -> bool) -> f6
 }
 
 /// A number that tells sets apart, the same on every rank and for every number of ranks. Collective.
-fn fingerprint(solver: &FetiFeti, active: &[bool]) -> u64 {
+fn fingerprint(method: &LinearMethod, active: &[bool]) -> u64 {
     let mix = |x: u64| {
         let x = x.wrapping_mul(0x9E37_79B9_7F4A_7C15);
         let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -385,12 +393,12 @@ fn fingerprint(solver: &FetiFeti, active: &[bool]) -> u64 {
         x ^ (x >> 31)
     };
     let mut mine = 0u64;
-    for (block, rows) in checkpoint::blocks(solver.problem(), &solver.dual().stiffness.jump) {
+    for (block, rows) in checkpoint::blocks(method.problem(), &method.dual().stiffness.jump) {
         let on = rows.enumerate().filter(|(_, r)| active[*r]);
         for (k, _) in on {
             mine = mine.wrapping_add(mix(mix(block + 1).wrapping_add(k as u64)));
         }
     }
-    let all = gather_all(solver.session().comm(), &[mine]);
+    let all = gather_all(method.session().comm(), &[mine]);
     all.iter().fold(0, |sum, w| sum.wrapping_add(w[0]))
 }

@@ -16,7 +16,7 @@ use std::rc::Rc;
 use super::balance::Balance;
 use super::mprgp::Bounded;
 use crate::feti::projector::rows::Rows;
-use crate::feti::FetiFeti;
+use crate::feti::LinearMethod;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -29,7 +29,7 @@ const PENALTY: f64 = 8.0;
 
 /// The operator of SMALBE's inner problems.
 pub struct Augmented<'a> {
-    solver: &'a FetiFeti,
+    method: &'a LinearMethod,
     /// S on the owned rows.
     pub scale: Vec<f64>,
     g: Rows,
@@ -45,11 +45,11 @@ pub struct Augmented<'a> {
 
 impl<'a> Augmented<'a> {
     /// For all candidate rows, which must hold in the dual operators now. Collective.
-    pub fn new(solver: &'a FetiFeti, precondition: bool) -> Result<Augmented<'a>> {
-        let comm = solver.session().comm();
-        let dual = solver.dual();
+    pub fn new(method: &'a LinearMethod, precondition: bool) -> Result<Augmented<'a>> {
+        let comm = method.session().comm();
+        let dual = method.dual();
         let (stiffness, natural) = (&dual.stiffness, &dual.natural);
-        let diagonal = natural.superlumped(solver.session(), solver.problem(), stiffness)?;
+        let diagonal = natural.superlumped(method.session(), method.problem(), stiffness)?;
         let scale: Vec<f64> = (0..diagonal.len())
             .map(|i| match stiffness.jump.is_candidate(i) {
                 true => diagonal[i].sqrt(),
@@ -62,7 +62,7 @@ impl<'a> Augmented<'a> {
         let (lambda, image) = (dual.multipliers()?, dual.multipliers()?);
         drop(dual);
         let mut a = Augmented {
-            solver,
+            method,
             scale,
             g,
             balance,
@@ -92,7 +92,7 @@ impl<'a> Augmented<'a> {
     fn f(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         let lambda = self.unscaled(x);
         self.lambda.array_mut()?.copy_from_slice(&lambda);
-        let dual = self.solver.dual();
+        let dual = self.method.dual();
         dual.stiffness.f_mult_all(&self.lambda, &self.image)?;
         for ((y, f), s) in y.iter_mut().zip(&*self.image.array()?).zip(&self.scale) {
             *y = f * s;
@@ -102,10 +102,10 @@ impl<'a> Augmented<'a> {
 
     /// The largest eigenvalue of Pᵀ F P by the power method, from below; a few per cent are added.
     fn norm(&mut self) -> Result<f64> {
-        let solver = self.solver;
-        let comm = solver.session().comm();
+        let method = self.method;
+        let comm = method.session().comm();
         let balance = self.balance.clone();
-        let first = solver.dual().stiffness.jump.first;
+        let first = method.dual().stiffness.jump.first;
         let mut x: Vec<f64> = (0..self.scale.len())
             .map(|i| 2.0 * ((first + i + 1) as f64 * 0.618_033_988_749_894_9).fract() - 1.0)
             .zip(&self.scale)
@@ -135,7 +135,7 @@ impl<'a> Augmented<'a> {
 
 impl Bounded for Augmented<'_> {
     fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        let comm = self.solver.session().comm();
+        let comm = self.method.session().comm();
         let balance = self.balance.clone();
         let mut inside = x.to_vec();
         let c = balance.project(comm, &mut inside); /*    P x             */
@@ -149,8 +149,8 @@ impl Bounded for Augmented<'_> {
         if !self.precondition {
             return Ok(());
         }
-        let session = self.solver.session();
-        self.solver.shared().borrow_mut().set_face(free);
+        let session = self.method.session();
+        self.method.system().set_face(free);
         let mut g = self.g.clone();
         let mask: Vec<f64> = free.iter().map(|&on| f64::from(u8::from(on))).collect();
         g.scale_rows(&mask);
@@ -163,13 +163,13 @@ impl Bounded for Augmented<'_> {
             z.copy_from_slice(v);
             return Ok(());
         };
-        let comm = self.solver.session().comm();
+        let comm = self.method.session().comm();
         let mut inside = v.to_vec();
         let c = face.project(comm, &mut inside); /*       c = N_F⁺ G_Fᵀ v */
         let lambda = self.scaled(&inside);
         self.lambda.array_mut()?.copy_from_slice(&lambda);
         {
-            let dual = self.solver.dual();
+            let dual = self.method.dual();
             dual.m(&self.lambda, &self.image)?;
         }
         let image = self.image.to_vec()?;

@@ -12,9 +12,9 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::{Caution, State};
+use super::state::{Caution, State};
 use crate::feti::jump::operator::Jump;
-use crate::feti::FetiFeti;
+use crate::feti::LinearMethod;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
@@ -100,7 +100,7 @@ pub struct Layout {
 
 impl Layout {
     /// The layout of this run. Collective.
-    pub fn new(solver: &FetiFeti) -> Layout {
+    pub fn new(solver: &LinearMethod) -> Layout {
         let (session, problem) = (solver.session(), solver.problem());
         let dual = solver.dual();
         let jump = &dual.stiffness.jump;

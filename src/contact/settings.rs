@@ -24,7 +24,7 @@ impl ContactType {
 
 /// What may be set about the contact loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct ContactSettings {
     /// `fetifeti_contact_type`.
     pub kind: ContactType,
     /// `fetifeti_contact_max_it`: outer steps.
@@ -36,9 +36,9 @@ pub struct Settings {
     pub face_pc: bool,
 }
 
-impl Default for Settings {
+impl Default for ContactSettings {
     fn default() -> Self {
-        Settings {
+        ContactSettings {
             kind: ContactType::ActiveSet,
             max_it: 200,
             inner_rtol: 0.1,
@@ -47,9 +47,9 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl ContactSettings {
     /// These settings with what the options say on top.
-    pub(crate) fn with_options(mut self, o: &Options) -> Result<Settings> {
+    pub(crate) fn with_options(mut self, o: &Options) -> Result<ContactSettings> {
         let names = ContactType::NAMES;
         let help = "method of the contact loop";
         self.kind = match o.choice("contact_type", &names, self.kind as usize, help)? {

@@ -13,13 +13,16 @@ use std::time::Instant;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::active_set::{Run, Verdict};
+use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
 use super::mprgp::Setting;
-use super::{Caution, ContactType, Observer, State, Step};
-use crate::feti::krylov::inner::{Loads, Residual};
-use crate::feti::{FetiFeti, Solution};
+use super::settings::{ContactSettings, ContactType};
+use super::state::{Caution, Observer, State, Step};
+use crate::feti::krylov::loads::Loads;
+use crate::feti::krylov::residual::Iterate;
+use crate::feti::{LinearMethod, LinearSolution};
 use crate::parallel::exchange::sum_all;
+use crate::status::Status;
 use crate::Result;
 
 /// η: the largest projected gradient at the end of an inner problem, relative to ‖b‖.
@@ -41,36 +44,31 @@ const PULL: f64 = 10.0;
 /// Active-set steps that may follow a set of SMALBE's before it goes on.
 const CLOSING_STEPS: usize = 5;
 
-/// Solves by SMALBE. Collective.
-pub fn solve(solver: &FetiFeti, start: Option<&State>, observe: &mut Observer) -> Result<Solution> {
-    let state = match start {
-        Some(state) => state.clone(),
-        None => State::cold(&solver.dual().stiffness.jump),
-    };
-    take_over(solver, state, Vec::new(), 0.0, observe)
-}
-
-/// Goes on from `state` after `steps` that took `seconds`. Collective.
-pub fn take_over(
-    solver: &FetiFeti,
+/// Solves by SMALBE from `state` on, after `steps` that took `seconds`. Collective.
+pub(super) fn solve(
+    method: &LinearMethod,
+    settings: &ContactSettings,
     mut state: State,
     mut steps: Vec<Step>,
     seconds: f64,
     observe: &mut Observer,
-) -> Result<Solution> {
+) -> Result<(LinearSolution, Vec<Step>)> {
     let clock = Instant::now();
-    let comm = solver.session().comm();
-    let rtol = solver.ksp().tolerances()?.0;
-    let mut search = Search::new(solver, &state)?;
+    let comm = method.session().comm();
+    let rtol = method.ksp().tolerances()?.0;
+    let finish = |run: ActiveSet, steps: Vec<Step>, status| {
+        let seconds = seconds + clock.elapsed().as_secs_f64();
+        Ok((run.finish(&steps, seconds, status)?, steps))
+    };
+    let mut search = Search::new(method, settings, &state)?;
     state.mu.resize(search.a.balance.n.rows, 0.0);
     // How far SMALBE itself goes; further when the set that it found does not stay.
     let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
     let (mut unchanged, mut jumps) = (0, 0);
     loop {
-        if state.steps >= solver.settings().contact.max_it {
-            let run = Run::new(solver, Some(&state))?;
-            let seconds = seconds + clock.elapsed().as_secs_f64();
-            return run.finish(solver, steps, seconds, false, "DIVERGED_CONTACT_ITS".into());
+        if state.steps >= settings.max_it {
+            let run = ActiveSet::new(method, settings, Some(&state))?;
+            return finish(run, steps, Status::ContactSteps);
         }
         let (step, settled) = search.advance(comm, &mut state, accuracy)?;
         unchanged = match step.entered + step.left {
@@ -83,26 +81,22 @@ pub fn take_over(
         if !settled && unchanged != PATIENCE {
             continue;
         }
-        let mut run = Run::new(
-            solver,
-            Some(&State {
-                caution: Caution::Loose,
-                visited: Vec::new(),
-                ..state.clone()
-            }),
-        )?;
+        let trial = State {
+            caution: Caution::Loose,
+            visited: Vec::new(),
+            ..state.clone()
+        };
+        let mut run = ActiveSet::new(method, settings, Some(&trial))?;
         state.reference = run.state.reference;
         run.pull = PULL * rtol;
         for _ in 0..CLOSING_STEPS {
             run.tight = true;
-            let (step, inner, verdict) = run.step(solver)?;
+            let (step, status, verdict) = run.step()?;
             state.steps += 1;
             observe(&step, &run.state)?;
             steps.push(step);
-            let solved = verdict == Verdict::Solved;
-            if solved || !inner.reason.converged() {
-                let seconds = seconds + clock.elapsed().as_secs_f64();
-                return run.finish(solver, steps, seconds, solved, inner.reason.name);
+            if verdict == Verdict::Solved || !status.converged() {
+                return finish(run, steps, status);
             }
         }
         if settled {
@@ -134,27 +128,30 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(solver: &'a FetiFeti, state: &State) -> Result<Search<'a>> {
-        let (session, problem) = (solver.session(), solver.problem());
+    fn new(
+        method: &'a LinearMethod,
+        settings: &ContactSettings,
+        state: &State,
+    ) -> Result<Search<'a>> {
+        let (session, problem) = (method.session(), method.problem());
         let comm = session.comm();
         let all: Vec<bool> = {
-            let jump = &solver.dual().stiffness.jump;
+            let jump = &method.dual().stiffness.jump;
             (0..jump.n_owned).map(|i| jump.is_candidate(i)).collect()
         };
-        solver.shared().borrow_mut().set_active(problem, &all)?;
-        let a = Augmented::new(solver, solver.settings().contact.face_pc)?;
-        let dual = solver.dual();
+        method.set_active(&all)?;
+        let a = Augmented::new(method, settings.face_pc)?;
+        let dual = method.dual();
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(session, problem, &dual);
         let mut c = loads.kernel.e.clone();
         a.balance.solve(&mut c);
         let mut shift = vec![0.0; jump.n_owned];
         a.balance.add(1.0, &c, &mut shift); /*            λ̃ = G N⁺ e      */
-        let lambda = dual.multipliers()?;
-        lambda.array_mut()?.copy_from_slice(&a.unscaled(&shift));
-        let mut residual = Residual::new(&dual)?;
-        residual.evaluate(session, &dual, &loads, &lambda)?;
-        let mut r = residual.r.to_vec()?;
+        let mut at = Iterate::new(&dual, loads)?;
+        at.lambda.array_mut()?.copy_from_slice(&a.unscaled(&shift));
+        at.evaluate(session, &dual)?;
+        let mut r = at.residual.r.to_vec()?;
         // With all candidates in force rows may contradict each other and be held to other values: here c itself counts.
         for (r, (held, c)) in r.iter_mut().zip(jump.held.iter().zip(&jump.gap)) {
             *r += held - c;
@@ -193,7 +190,12 @@ impl<'a> Search<'a> {
 
     /// Goes on from the λ of an active-set step and the μ that belongs to it: with w = S (c − B u) on the rows that do not hold, the
     /// optimality of L reads G μ = (I − P) w. Collective.
-    fn restart(&mut self, comm: &SimpleCommunicator, run: &Run, state: &mut State) -> Result<()> {
+    fn restart(
+        &mut self,
+        comm: &SimpleCommunicator,
+        run: &ActiveSet,
+        state: &mut State,
+    ) -> Result<()> {
         let scaled = self.a.scaled(&run.state.lambda);
         for (i, x) in self.x.iter_mut().enumerate() {
             *x = (scaled[i] - self.shift[i]).max(self.lower[i]);

@@ -16,22 +16,21 @@ use super::states::states;
 use super::subdomains::{subdomain, Known};
 use super::torn::Torn;
 use crate::contact::State as ContactState;
-use crate::feti::krylov::kkt::Kkt;
-use crate::feti::{FetiFeti, Settings, Solution};
+use crate::feti::Kkt;
+use crate::feti::MethodSettings;
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
+use crate::status::Status;
 use crate::substructures::Substructures;
-use crate::{Error, Result};
+use crate::{Error, FetiFeti, Result, Solution};
 
 /// What one solve did.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Iterations.
     pub iterations: usize,
-    /// Whether the tolerance was reached.
-    pub converged: bool,
-    /// Why it stopped, by PETSc's name.
-    pub reason: String,
+    /// Why it stopped.
+    pub status: Status,
     /// (largest, smallest) eigenvalue of the preconditioned operator as the iteration saw them.
     pub spectrum: Option<(f64, f64)>,
     /// How well the optimality conditions hold.
@@ -66,7 +65,7 @@ impl Embedded {
         session: &Session,
         torn: &Torn,
         grouping: Grouping,
-        settings: Settings,
+        settings: MethodSettings,
     ) -> Result<Embedded> {
         let primal = settings.clone().with_options(session)?.primal;
         let (ghosts, halo) = torn.halo(session)?;
@@ -193,7 +192,7 @@ impl Embedded {
         self.put_together(&solution.u, x)?;
         let multipliers = self.of_given_rows(&solution);
         self.reached
-            .replace(Some((ContactState::warm(&solution), multipliers)));
+            .replace(Some((solution.warm_start(), multipliers)));
         Ok(outcome(&solution))
     }
 
@@ -209,7 +208,7 @@ impl Embedded {
 
     /// The multipliers of the rows of the host, on the ranks that gave them. Collective.
     fn of_given_rows(&self, solution: &Solution) -> Vec<f64> {
-        let rows = self.solver().rows(solution);
+        let rows = solution.rows();
         let given = rows[self.n_ties..].iter().map(|r| r.multiplier);
         self.contact.back(&self.session, given)
     }
@@ -265,8 +264,7 @@ fn outcome(solution: &Solution) -> Outcome {
     let estimate = solution.estimate.as_ref();
     Outcome {
         iterations: solution.iterations,
-        converged: solution.converged,
-        reason: solution.reason.clone(),
+        status: solution.status.clone(),
         spectrum: estimate.map(|s| (s.lambda_max, s.lambda_min)),
         kkt: solution.kkt,
         steps: solution.steps.len(),

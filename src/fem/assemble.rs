@@ -1,8 +1,9 @@
 //! Stiffness of one subdomain, and the loads that follow from given values.
 
 use super::cells::Cells;
+use super::SubdomainMesh;
 use crate::linalg::csr::Csr;
-use crate::mesh::{places, SubdomainMesh};
+use crate::mesh::places;
 
 /// Couplings of one node with itself and its neighbours: block o of C × C belongs to the neighbour at offset
 /// (o mod 3 − 1, o/3 mod 3 − 1, o/9 − 1).

@@ -2,7 +2,7 @@
 
 use super::cell::{self, Element};
 use super::q1;
-use crate::mesh::SubdomainMesh;
+use super::SubdomainMesh;
 use std::collections::HashMap;
 
 /// The element matrices of a subdomain.

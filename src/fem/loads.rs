@@ -2,7 +2,7 @@
 
 use super::cell::{self, Element, Side};
 use super::q1;
-use crate::mesh::SubdomainMesh;
+use super::SubdomainMesh;
 
 /// How loads are integrated over an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

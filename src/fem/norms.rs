@@ -1,7 +1,7 @@
 //! Distance between a finite element function and an exact solution.
 
 use super::cell;
-use crate::mesh::SubdomainMesh;
+use super::SubdomainMesh;
 
 /// Error norms over the whole problem.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,23 +1,29 @@
-//! The linear method, a room for each operator; symbols are those of the theory page.
+//! The linear method, a room for each operator; symbols are those of the theory page. It knows nothing of contact: which
+//! rows hold is said to it.
 
 pub mod adaptive;
 pub mod cost;
 pub mod deflation;
+pub mod facts;
 pub mod interface;
 pub mod jump;
 pub mod krylov;
 pub mod lifting;
+pub mod method;
 pub mod operators;
 pub mod primal;
 pub mod projector;
-mod rows;
 pub mod settings;
-pub mod solver;
+mod setup;
+pub mod spectrum;
 pub mod subdomain;
 
-pub use krylov::kkt::Kkt;
-pub use krylov::recover::Solution;
-pub use krylov::spectrum::Spectrum;
+pub use facts::Facts;
+pub use krylov::certificate::Kkt;
+pub use krylov::recovery::LinearSolution;
 pub use krylov::tally::Communication;
-pub use settings::{CoarseFunctions, PcType, Precision, Primal, ProjectorKind, Scaling, Settings};
-pub use solver::FetiFeti;
+pub use method::LinearMethod;
+pub use settings::{
+    CoarseFunctions, MethodSettings, PcType, Precision, Primal, ProjectorKind, Scaling,
+};
+pub use spectrum::Spectrum;

@@ -197,7 +197,7 @@ names!(ProjectorKind {
 
 /// Everything that can be set about the method itself; Krylov settings live in the KSP (`fetifeti_ksp_`).
 #[derive(Debug, Clone)]
-pub struct Settings {
+pub struct MethodSettings {
     /// `fetifeti_pc_type`; `None` chooses coarse_corrected where a body has more than one subdomain and there is more than
     /// one body, dirichlet otherwise.
     pub pc_type: Option<PcType>,
@@ -233,15 +233,13 @@ pub struct Settings {
     pub spectrum: bool,
     /// Relative residual of the dual problem to stop at, unless `fetifeti_ksp_rtol` says otherwise.
     pub rtol: f64,
-    /// `fetifeti_contact_`: the contact loop.
-    pub contact: crate::contact::Settings,
     /// Prefix of all options.
     pub prefix: String,
 }
 
-impl Default for Settings {
+impl Default for MethodSettings {
     fn default() -> Self {
-        Settings {
+        MethodSettings {
             pc_type: None,
             lifting: None,
             scaling: Scaling::Rho,
@@ -259,15 +257,14 @@ impl Default for Settings {
             check: false,
             spectrum: false,
             rtol: 1e-6,
-            contact: crate::contact::Settings::default(),
             prefix: "fetifeti_".into(),
         }
     }
 }
 
-impl Settings {
+impl MethodSettings {
     /// These settings with what the options database says on top; lists them under `-help`.
-    pub fn with_options(mut self, session: &Session) -> Result<Settings> {
+    pub fn with_options(mut self, session: &Session) -> Result<MethodSettings> {
         let o = Options::new(session, &self.prefix);
         o.heading("FETI-FETI options")?;
         let auto = [&["auto"], PcType::NAMES].concat();
@@ -347,7 +344,6 @@ impl Settings {
         self.check = o.bool("check", self.check, help)?;
         let help = "exact extreme eigenvalues of the preconditioned operator";
         self.spectrum = o.bool("spectrum", self.spectrum, help)?;
-        self.contact = self.contact.with_options(&o)?;
         for (name, help) in [
             (
                 "ksp_",

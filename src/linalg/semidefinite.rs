@@ -3,8 +3,7 @@
 //! Used where columns of a basis may depend on each other (Z_cᵀ S̃ Z_c, Gᵀ Q G): dependent ones are dropped, which gives a
 //! generalised inverse on the span of the others.
 
-use super::dense;
-use super::dense::{Dense, Scratch};
+use super::dense::{self, Dense, Scratch};
 
 /// After scaling to unit diagonal, a pivot below this means that the column depends on those before it. Rounding in
 /// sums of many subdomains' contributions leaves about 1e-14.

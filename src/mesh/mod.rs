@@ -1,10 +1,8 @@
 //! Meshes: boxes of rectangles, their partition into subdomains, the classification of their nodes.
 
 mod boxes;
-mod subdomain;
 
 pub use boxes::{places, Block, BoxMesh};
-pub use subdomain::SubdomainMesh;
 
 use std::ops::Range;
 

@@ -7,8 +7,7 @@ use mpi::datatype::{Partition, PartitionMut};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
 
-use super::traffic;
-use super::traffic::Traffic;
+use super::traffic::{self, Traffic};
 
 /// Something that travels as a fixed number of words.
 pub trait Record: Sized {

@@ -2,10 +2,8 @@
 
 use std::cell::RefCell;
 
-use super::clock;
-use super::clock::Phase;
-use super::traffic;
-use super::traffic::Traffic;
+use super::clock::{self, Phase};
+use super::traffic::{self, Traffic};
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
 use crate::Result;
 

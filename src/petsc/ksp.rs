@@ -30,6 +30,13 @@ pub struct ConvergedReason {
 }
 
 impl ConvergedReason {
+    /// The relative tolerance was reached.
+    pub const RTOL: i32 = sys::KSP_CONVERGED_RTOL;
+    /// There were as many iterations as there may be.
+    pub const ITS: i32 = sys::KSP_DIVERGED_ITS;
+    /// The preconditioner cannot be used.
+    pub const PC_FAILED: i32 = sys::KSP_DIVERGED_PC_FAILED;
+
     /// Did the solver converge?
     pub fn converged(&self) -> bool {
         self.code > 0

@@ -5,7 +5,8 @@ use super::checked::Scene;
 use super::model::expr::Variables;
 use super::model::field::{At, Field};
 use crate::error::Result;
-use crate::mesh::{Block, SubdomainMesh};
+use crate::fem::SubdomainMesh;
+use crate::mesh::Block;
 
 impl Scene {
     /// Least and greatest ρ (Young's modulus in elasticity) by body, over the subdomains for which `owns` holds; ∞ and −∞ for bodies without

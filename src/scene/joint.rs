@@ -5,8 +5,7 @@ use super::coefficient::{at, stiffest};
 use super::geometry::topology::{entities, rigid_motions};
 use super::model::steps::Factors;
 use crate::error::Result;
-use crate::fem;
-use crate::mesh::SubdomainMesh;
+use crate::fem::{self, SubdomainMesh};
 use crate::substructures::{Subdomain, Substructures};
 use rayon::prelude::*;
 

@@ -8,10 +8,9 @@ use super::model::spec::Force;
 use super::model::steps::Factors;
 use super::validate::bad_load;
 use crate::error::Result;
-use crate::fem;
+use crate::fem::{self, SubdomainMesh};
 use crate::linalg::csr::Csr;
 use crate::linalg::vec3::{cross, minus};
-use crate::mesh::SubdomainMesh;
 
 /// Subdomains over the load steps. Their meshes, and the entries of K that given values meet, are built once; a step evaluates loads and
 /// scales given values.

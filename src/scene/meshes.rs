@@ -7,8 +7,8 @@ use super::model::field::Field;
 use super::model::steps::Factors;
 use super::validate::{bad_spring, checked_poisson, checked_rho};
 use crate::error::Result;
-use crate::fem;
-use crate::mesh::{Block, SubdomainMesh};
+use crate::fem::{self, SubdomainMesh};
+use crate::mesh::Block;
 
 impl Scene {
     /// The mesh of subdomain `index`: nodes, which of them are free, values given at the last load step, ρ by element.

@@ -7,11 +7,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::feti::settings::Adaptive;
-use crate::feti::{FetiFeti, PcType, Settings};
+use crate::feti::{MethodSettings, PcType};
 use crate::petsc::Session;
 use crate::report::tables::table::{Align, Table};
 use crate::scene::Scene;
-use crate::{Error, Result};
+use crate::{Error, FetiFeti, Result};
 
 /// What is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,19 +151,19 @@ pub fn grid(
     let mut dofs = [problem.local.iter().map(|s| s.k.n() as f64).sum::<f64>()];
     crate::parallel::exchange::sum_all(session.comm(), &mut dofs);
     let found = |pc: PcType| -> Result<Found> {
-        let settings = Settings {
+        let settings = MethodSettings {
             pc_type: Some(pc),
             rtol: 1e-9,
             // κ as the preconditioner leaves it.
             adaptive: Adaptive::Off,
-            ..Settings::default()
+            ..MethodSettings::default()
         };
         let solver = FetiFeti::new(session, problem.clone(), settings)?;
         let solution = solver.solve()?;
-        if !solution.converged {
+        if !solution.converged() {
             return Err(Error::NotConverged(format!(
                 "kappa, {}, H_b/H_s = {subdomains}, H_s/h = {elements}: {}",
-                family.name, solution.reason
+                family.name, solution.status
             )));
         }
         let exact = match exact {

@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use crate::feti::{FetiFeti, Settings, Solution};
+use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::scene::{distribution, Numbering, Scene};
 use crate::substructures::SolvedRow;
-use crate::Result;
+use crate::{FetiFeti, Result, Solution};
 
 /// A scene and what the method made of it.
 pub struct Solved {
@@ -25,7 +25,12 @@ impl Solved {
     ///
     /// # Errors
     /// Those of the scene and of the method; not converging is none.
-    pub fn new(session: &Session, name: &str, text: &str, settings: &Settings) -> Result<Solved> {
+    pub fn new(
+        session: &Session,
+        name: &str,
+        text: &str,
+        settings: &MethodSettings,
+    ) -> Result<Solved> {
         let scene = session.agree(Scene::parse(name, text))?;
         let (solver, solution, seconds) = distribution::with_options(session, &scene, || {
             let clock = Instant::now();
@@ -44,7 +49,7 @@ impl Solved {
 
     /// The rows of all ranks, in the order of [`Scene::rows`], on every rank. Collective.
     pub fn rows(&self, session: &Session) -> Vec<SolvedRow> {
-        SolvedRow::on_all_ranks(session.comm(), &self.solver.rows(&self.solution))
+        SolvedRow::on_all_ranks(session.comm(), self.solution.rows())
     }
 
     /// Unknowns of the scene.

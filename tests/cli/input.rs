@@ -333,7 +333,7 @@ fn solves(name: &'static str, text: impl Into<String>, multipliers: usize) {
             "{name}: {spectrum:?}"
         );
         let solution = solver.solve().expect(name);
-        assert!(solution.converged, "{name}: {}", solution.reason);
+        assert!(solution.converged(), "{name}: {}", solution.status);
         let distance = direct.distance(&solution.u);
         println!("{name}: {} iterations, {distance:.1e}", solution.iterations);
         assert!(distance < 1e-10, "{name}: {distance:.1e}");
@@ -366,7 +366,7 @@ fn a_body_without_free_nodes() {
     with_session(move |session| {
         let direct = Direct::new(scene);
         let (solution, distance) = direct.run(session, &tight());
-        assert!(solution.converged && distance < 1e-10, "{distance:.1e}");
+        assert!(solution.converged() && distance < 1e-10, "{distance:.1e}");
     });
 }
 

@@ -5,7 +5,7 @@ use crate::support::{mpi, program};
 use fetifeti::contact::{self, ContactType};
 use fetifeti::petsc::{testing::with_session, Session};
 use fetifeti::scene::Scene;
-use fetifeti::{FetiFeti, RowState, Settings, Solution};
+use fetifeti::{FetiFeti, MethodSettings, RowState, Settings, Solution};
 use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
@@ -102,12 +102,14 @@ fn on_four_ranks() {
 fn solve(session: &Session, scene: &Scene, kind: ContactType, rtol: f64) -> (FetiFeti, Solution) {
     let problem = scene.substructures(&|_| true).expect("a good scene");
     let settings = Settings {
-        rtol,
-        contact: contact::Settings {
-            kind,
-            ..contact::Settings::default()
+        method: MethodSettings {
+            rtol,
+            ..MethodSettings::default()
         },
-        ..Settings::default()
+        contact: contact::ContactSettings {
+            kind,
+            ..contact::ContactSettings::default()
+        },
     };
     let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
     let solution = solver.solve().expect("the problem can be solved");
@@ -132,8 +134,8 @@ fn sets_and_displacements() {
                 );
                 let scene = Scene::parse("model.toml", &model(n, s)).expect("a good scene");
                 let (solver, solution) = solve(session, &scene, method, rtol);
-                assert!(solution.converged, "{what}");
-                let rows = solver.rows(&solution);
+                assert!(solution.converged(), "{what}");
+                let rows = solution.rows();
                 let node = |t: f64| (t * n as f64).round() as u64;
                 let mut touching: Vec<u64> = rows
                     .iter()

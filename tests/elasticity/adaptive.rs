@@ -3,10 +3,11 @@
 use crate::support::checks::identities;
 use crate::support::{mpi, solid};
 use fetifeti::feti::settings::Adaptive;
-use fetifeti::feti::{FetiFeti, Scaling, Settings};
+use fetifeti::feti::{MethodSettings, Scaling};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::substructures::Substructures;
+use fetifeti::FetiFeti;
 use solid::{assembled, Physics, Rows, Solid};
 
 const SCALAR: Physics = Physics::Scalar;
@@ -28,11 +29,11 @@ fn solver(
     scaling: Scaling,
     adaptive: Adaptive,
 ) -> FetiFeti {
-    let settings = Settings {
+    let settings = MethodSettings {
         scaling,
         adaptive,
         rtol: 1e-10,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     FetiFeti::new(session, problem, settings).expect("set up")
 }
@@ -72,7 +73,7 @@ fn run_to(
     );
     identities(&solver, rounding, "adaptive");
     assert!(spectrum.lambda_min > 1.0 - 1e-6, "{spectrum:?}");
-    assert!(solution.converged);
+    assert!(solution.converged());
     out
 }
 

@@ -2,22 +2,23 @@
 //! every element and cure of locking.
 
 use fetifeti::fem::ErrorNorms;
-use fetifeti::feti::{FetiFeti, Precision, Settings};
+use fetifeti::feti::{MethodSettings, Precision};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
+use fetifeti::FetiFeti;
 
 /// Error norms of the solution of a scene against the exact solution that it states.
 fn errors(session: &Session, text: &str, rtol: f64) -> ErrorNorms {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let solver = FetiFeti::new(session, problem, settings).expect("set up");
     let solution = solver.solve().expect("solved");
-    assert!(solution.converged, "{}\n{text}", solution.reason);
+    assert!(solution.converged(), "{}\n{text}", solution.status);
     let mut squares = [0.0; 3];
     for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
         let mesh = scene.subdomain_mesh(sub.index).expect("a mesh");
@@ -220,15 +221,15 @@ fn a_preconditioner_in_single_precision_changes_no_answer() {
     with_session(|session| {
         let solve = |precision: Precision| {
             let scene = Scene::parse("scene.toml", &manufactured(3, "", 4)).expect("a scene");
-            let settings = Settings {
+            let settings = MethodSettings {
                 rtol: 1e-12,
                 precision,
-                ..Settings::default()
+                ..MethodSettings::default()
             };
             let problem = scene.substructures(&|_| true).expect("substructures");
             let solver = FetiFeti::new(session, problem, settings).expect("set up");
             let solution = solver.solve().expect("solved");
-            assert!(solution.converged);
+            assert!(solution.converged());
             (solution.u.concat(), solution.iterations)
         };
         let (double, its) = solve(Precision::Double);

@@ -2,36 +2,37 @@
 
 use crate::support::checks::identities;
 use crate::support::{mpi, solid};
-use fetifeti::feti::{FetiFeti, Primal, ProjectorKind, Scaling, Settings};
+use fetifeti::feti::{MethodSettings, Primal, ProjectorKind, Scaling};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::{Options, Session};
 use fetifeti::substructures::Substructures;
+use fetifeti::FetiFeti;
 use solid::{assembled, Held, Physics, Rows, Solid};
 
 const ELASTIC: Physics = Physics::Elastic { nu: 0.3 };
 
-fn tight() -> Settings {
-    Settings {
+fn tight() -> MethodSettings {
+    MethodSettings {
         rtol: 1e-12,
-        ..Settings::default()
+        ..MethodSettings::default()
     }
 }
 
-fn primal(text: &str) -> Settings {
-    Settings {
+fn primal(text: &str) -> MethodSettings {
+    MethodSettings {
         primal: Primal::parse(text).expect("constraints"),
         ..tight()
     }
 }
 
 /// Identities, λ_min, and the distance to the direct solution.
-fn verify(session: &Session, solid: &Solid, settings: Settings, what: &str) -> FetiFeti {
+fn verify(session: &Session, solid: &Solid, settings: MethodSettings, what: &str) -> FetiFeti {
     let problem = solid.substructures(|_| true);
     let direct = assembled::solve(&problem);
     let solver = FetiFeti::new(session, problem, settings).expect("set up");
     identities(&solver, 1e-10, what);
     let solution = solver.solve().expect("solved");
-    assert!(solution.converged, "{what}: {}", solution.reason);
+    assert!(solution.converged(), "{what}: {}", solution.status);
     let size = direct.iter().flatten().fold(0.0f64, |a, u| a.max(u.abs()));
     let pairs = solution.u.iter().flatten().zip(direct.iter().flatten());
     let off = pairs.fold(0.0f64, |a, (u, v)| a.max((u - v).abs()));
@@ -84,7 +85,7 @@ fn every_scaling_solves_and_jumps_do_no_harm() {
         for rows in [Rows::Tied, Rows::Normals] {
             let solid = Solid::new(3, [2, 2, 2], ELASTIC, rows);
             for scaling in [Scaling::Rho, Scaling::Stiffness, Scaling::Deluxe] {
-                let settings = Settings { scaling, ..tight() };
+                let settings = MethodSettings { scaling, ..tight() };
                 let what = format!("{scaling:?}");
                 lambda_min(&verify(session, &solid, settings, &what), &what);
             }
@@ -95,7 +96,7 @@ fn every_scaling_solves_and_jumps_do_no_harm() {
                 ..Solid::new(dim, [1, 3, 4], physics, Rows::Tied)
             };
             for scaling in [Scaling::Stiffness, Scaling::Deluxe] {
-                let settings = Settings { scaling, ..tight() };
+                let settings = MethodSettings { scaling, ..tight() };
                 let solver = verify(session, &solid, settings, "jumps");
                 let s = solver.spectrum().expect("eigenvalues");
                 let s = s.expect("multipliers");
@@ -129,7 +130,7 @@ fn floating_and_partly_held_bodies_are_found() {
             let what = format!("{dim}D {sizes:?}");
             let solver = verify(session, &solid, tight(), &what);
             assert_eq!(solver.facts().kernel_dimension, kernel, "{what}");
-            let settings = Settings {
+            let settings = MethodSettings {
                 projector: ProjectorKind::Preconditioner,
                 ..tight()
             };
@@ -238,7 +239,7 @@ fn on_a_rank(session: &Session, scaling: Scaling) {
     };
     let (size, rank) = (session.size(), session.rank());
     let problem = solid.substructures(|s| s % size == rank);
-    let settings = Settings { scaling, ..tight() };
+    let settings = MethodSettings { scaling, ..tight() };
     let solver = FetiFeti::new(session, problem, settings).expect("set up");
     identities(&solver, 1e-10, "on ranks");
     let solution = solver.solve().expect("solved");

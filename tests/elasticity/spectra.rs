@@ -3,9 +3,10 @@
 use crate::support::checks::identities;
 use crate::support::mpi::alone;
 use crate::support::solid;
-use fetifeti::feti::{FetiFeti, PcType, Primal, Settings};
+use fetifeti::feti::{MethodSettings, PcType, Primal};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
+use fetifeti::FetiFeti;
 use solid::{Physics, Rows, Solid};
 
 const SCALAR: Physics = Physics::Scalar;
@@ -15,7 +16,7 @@ fn elastic(nu: f64) -> Physics {
     Physics::Elastic { nu }
 }
 
-fn kappa_with(session: &Session, solid: &Solid, settings: Settings) -> f64 {
+fn kappa_with(session: &Session, solid: &Solid, settings: MethodSettings) -> f64 {
     let solver = FetiFeti::new(session, solid.substructures(|_| true), settings).expect("set up");
     identities(&solver, 1e-10, "spectra");
     let s = solver.spectrum().expect("eigenvalues");
@@ -30,9 +31,9 @@ fn kappa_with(session: &Session, solid: &Solid, settings: Settings) -> f64 {
 }
 
 fn kappa(session: &Session, solid: &Solid, pc: PcType) -> f64 {
-    let settings = Settings {
+    let settings = MethodSettings {
         pc_type: Some(pc),
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     kappa_with(session, solid, settings)
 }
@@ -56,9 +57,9 @@ fn scalar_in_3d() {
             near(plain, 5.39, 1.0);
             // Without edge averages, vertices alone are no good in 3D; faces on top do no harm.
             let with = |text| {
-                let settings = Settings {
+                let settings = MethodSettings {
                     primal: Primal::parse(text).expect("constraints"),
-                    ..Settings::default()
+                    ..MethodSettings::default()
                 };
                 kappa_with(session, &solid([2, 2, 3]), settings)
             };

@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use faer::{Mat, Side};
-use fetifeti::feti::FetiFeti;
 use fetifeti::petsc::Vec as PetscVec;
 use fetifeti::substructures::Substructures;
+use fetifeti::FetiFeti;
 
 /// A symmetric function of a symmetric positive semidefinite matrix, zero on its kernel.
 pub fn on_range(a: &Mat<f64>, f: impl Fn(f64) -> f64) -> Mat<f64> {

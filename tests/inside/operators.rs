@@ -3,10 +3,11 @@
 use super::dense;
 use crate::inside::support::checks::identities;
 use crate::inside::support::direct;
+use crate::FetiFeti;
 use dense::{columns, defect, jump_of, pseudo_inverse, spectrum, Reference};
 use direct::{tight, Direct};
 use faer::Mat;
-use fetifeti::feti::{FetiFeti, PcType, ProjectorKind, Settings};
+use fetifeti::feti::{MethodSettings, PcType, ProjectorKind};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::{Faces, Scene};
@@ -41,7 +42,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-fn set_up(session: &Session, scene: &Scene, settings: Settings) -> FetiFeti {
+fn set_up(session: &Session, scene: &Scene, settings: MethodSettings) -> FetiFeti {
     let problem = scene.substructures(&|_| true).expect("assembled");
     FetiFeti::new(session, problem, settings).expect("set up")
 }
@@ -50,7 +51,7 @@ fn set_up(session: &Session, scene: &Scene, settings: Settings) -> FetiFeti {
 fn rows_of_b_tie_what_they_should() {
     with_session(|session| {
         for (name, scene) in scenes() {
-            let solver = set_up(session, &scene, Settings::default());
+            let solver = set_up(session, &scene, MethodSettings::default());
             let (b, bd) = jump_of(&solver);
             let problem = solver.problem();
             let dofs: Vec<u64> = problem.local.iter().flat_map(|s| s.dofs.clone()).collect();
@@ -120,10 +121,10 @@ fn f_m_and_p_equal_their_dense_definitions() {
                     ProjectorKind::Preconditioner,
                 ] {
                     let what = format!("{name}, {pc:?}, {projector:?}");
-                    let settings = Settings {
+                    let settings = MethodSettings {
                         pc_type: Some(pc),
                         projector,
-                        ..Settings::default()
+                        ..MethodSettings::default()
                     };
                     let solver = set_up(session, &scene, settings);
                     let dual = solver.dual();
@@ -305,7 +306,7 @@ fn identities_hold_on_random_scenes() {
             for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
                 let solver = direct.solver(
                     session,
-                    &Settings {
+                    &MethodSettings {
                         pc_type: Some(pc),
                         ..tight()
                     },
@@ -320,7 +321,7 @@ fn identities_hold_on_random_scenes() {
                     assert!(s.kappa() < 60.0, "{s:?} in {what}");
                 }
                 let solution = solver.solve().expect("solved");
-                assert!(solution.converged, "{} in {what}", solution.reason);
+                assert!(solution.converged(), "{} in {what}", solution.status);
                 let distance = direct.distance(&solution.u);
                 assert!(distance < 1e-8, "{distance:.1e} in {what}");
             }
@@ -334,10 +335,10 @@ fn jumps_by_body_do_not_hurt() {
         // 4 × 4 bodies of 4 × 4 subdomains of 4 × 4 elements, ρ = 1 and 10⁴ in turns.
         let scene = Scene::load("examples/scenes/jump_checkerboard.toml").expect("valid");
         let kappa = |projector, pc_type| {
-            let settings = Settings {
+            let settings = MethodSettings {
                 projector,
                 pc_type,
-                ..Settings::default()
+                ..MethodSettings::default()
             };
             let solver = set_up(session, &scene, settings);
             assert_eq!(solver.facts().floating_bodies, 4);

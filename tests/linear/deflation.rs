@@ -3,10 +3,11 @@
 use crate::support::{direct, mpi, program, rng};
 use direct::Direct;
 use fetifeti::feti::settings::Adaptive;
-use fetifeti::feti::{FetiFeti, Settings};
+use fetifeti::feti::MethodSettings;
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
+use fetifeti::FetiFeti;
 use rng::Rng;
 
 /// n × n bodies of n_s × n_s subdomains of 4 × 4 elements, held on the left, ρ of a subdomain at random between 10^−decades and
@@ -54,11 +55,11 @@ fn channels(physics: &str) -> String {
     )
 }
 
-fn below(tau: f64) -> Settings {
-    Settings {
+fn below(tau: f64) -> MethodSettings {
+    MethodSettings {
         adaptive: Adaptive::Below(tau),
         rtol: 1e-10,
-        ..Settings::default()
+        ..MethodSettings::default()
     }
 }
 
@@ -66,7 +67,7 @@ fn scene(text: &str) -> Scene {
     Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-fn solver(session: &Session, scene: &Scene, settings: Settings) -> FetiFeti {
+fn solver(session: &Session, scene: &Scene, settings: MethodSettings) -> FetiFeti {
     let problem = scene.substructures(&|_| true).expect("substructures");
     FetiFeti::new(session, problem, settings).expect("set up")
 }
@@ -115,7 +116,7 @@ fn the_answer_is_the_direct_one() {
         for decades in [3.0, 6.0] {
             let direct = Direct::new(scene(&by_subdomain(3, 4, decades, 7)));
             let (with, distance) = direct.run(session, &below(10.0));
-            let off = Settings {
+            let off = MethodSettings {
                 adaptive: Adaptive::Off,
                 ..below(10.0)
             };
@@ -124,7 +125,7 @@ fn the_answer_is_the_direct_one() {
                 "10^{decades}: {distance:.1e} in {} iterations, without {other:.1e} in {}",
                 with.iterations, without.iterations
             );
-            assert!(with.converged && without.converged);
+            assert!(with.converged() && without.converged());
             assert!(distance < 1e-6, "{distance:.1e}");
         }
     });
@@ -144,8 +145,8 @@ fn channels_across_subdomains_and_bodies() {
 fn nothing_is_deflated_where_coefficients_are_constant() {
     with_session(|session| {
         let scene = Scene::load("examples/scenes/lee_column_1.toml").expect("a scene");
-        let solver = solver(session, &scene, Settings::default());
-        assert!(solver.solve().expect("solved").converged);
+        let solver = solver(session, &scene, MethodSettings::default());
+        assert!(solver.solve().expect("solved").converged());
         assert!(solver.deflated().is_none());
     });
 }
@@ -154,7 +155,7 @@ fn nothing_is_deflated_where_coefficients_are_constant() {
 fn the_cap_is_kept_and_said() {
     with_session(|session| {
         let scene = scene(&by_subdomain(3, 4, 6.0, 2));
-        let settings = Settings {
+        let settings = MethodSettings {
             adaptive_max: 1,
             ..below(2.0)
         };
@@ -175,7 +176,7 @@ fn every_krylov_method_works_in_the_complement() {
                 let solver = direct.solver(session, &below(3.0));
                 solver.deflate().expect("a search");
                 let solution = solver.solve().expect("solved");
-                assert!(solution.converged, "{method}: {}", solution.reason);
+                assert!(solution.converged(), "{method}: {}", solution.status);
                 direct.distance(&solution.u)
             });
             println!("{method}: {distance:.1e}");
@@ -218,17 +219,17 @@ fn contact_keeps_its_vectors() {
     with_session(move |session| {
         let scene = scene(&text);
         let energy = |adaptive| {
-            let settings = Settings {
+            let settings = MethodSettings {
                 adaptive,
                 rtol: 1e-10,
-                ..Settings::default()
+                ..MethodSettings::default()
             };
             let solver = solver(session, &scene, settings);
             if adaptive != Adaptive::Off {
                 solver.deflate().expect("a search");
             }
             let solution = solver.solve().expect("solved");
-            assert!(solution.converged, "{}", solution.reason);
+            assert!(solution.converged(), "{}", solution.status);
             println!("{adaptive:?}: {} iterations", solution.iterations);
             (solution.energy, solution.iterations, solution.active)
         };

@@ -2,7 +2,7 @@
 
 use crate::support::direct;
 use direct::{tight, with_options, Direct};
-use fetifeti::feti::{PcType, ProjectorKind, Scaling, Settings};
+use fetifeti::feti::{MethodSettings, PcType, ProjectorKind, Scaling};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::scene::Scene;
 
@@ -29,7 +29,7 @@ fn agrees(name: &'static str) {
             "{name}: {distance:.1e} after {} iterations, {:?}",
             solution.iterations, solution.kkt
         );
-        assert!(solution.converged, "{name}: {}", solution.reason);
+        assert!(solution.converged(), "{name}: {}", solution.status);
         assert!(distance < 1e-8, "{name}: {distance:.1e}");
     });
 }
@@ -99,7 +99,7 @@ fn every_preconditioner_with_every_projector() {
         for (name, direct) in floating_scenes() {
             for pc in PC_TYPES {
                 for projector in PROJECTORS {
-                    let settings = Settings {
+                    let settings = MethodSettings {
                         pc_type: Some(pc),
                         projector,
                         ..tight()
@@ -110,9 +110,9 @@ fn every_preconditioner_with_every_projector() {
                         solution.iterations
                     );
                     assert!(
-                        solution.converged,
+                        solution.converged(),
                         "{name} {pc:?} {projector:?}: {}",
-                        solution.reason
+                        solution.status
                     );
                     assert!(
                         distance < 1e-8,
@@ -136,7 +136,7 @@ fn every_scaling_with_every_projector() {
                     for projector in PROJECTORS {
                         for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
                             let what = format!("{name} {scaling:?} {gamma} {projector:?} {pc:?}");
-                            let settings = Settings {
+                            let settings = MethodSettings {
                                 scaling,
                                 gamma,
                                 projector,
@@ -145,7 +145,7 @@ fn every_scaling_with_every_projector() {
                             };
                             let (solution, distance) = direct.run(session, &settings);
                             println!("{what}: {distance:.1e}, {} iterations", solution.iterations);
-                            assert!(solution.converged, "{what}: {}", solution.reason);
+                            assert!(solution.converged(), "{what}: {}", solution.status);
                             assert!(distance < 1e-8, "{what}: {distance:.1e}");
                         }
                     }
@@ -166,7 +166,7 @@ fn krylov_methods_reach_the_same_solution() {
                     ("ksp_gmres_restart", "200"),
                 ];
                 let (kind, (solution, distance)) = with_options(session, &options, || {
-                    let solver = direct.solver(session, &Settings::default());
+                    let solver = direct.solver(session, &MethodSettings::default());
                     let solution = solver.solve().expect("solved");
                     let distance = direct.distance(&solution.u);
                     (solver.ksp().type_name().unwrap(), (solution, distance))
@@ -176,7 +176,7 @@ fn krylov_methods_reach_the_same_solution() {
                     solution.iterations
                 );
                 assert_eq!(kind, method);
-                assert!(solution.converged, "{name} {method}: {}", solution.reason);
+                assert!(solution.converged(), "{name} {method}: {}", solution.status);
                 assert!(distance < 1e-8, "{name} {method}: {distance:.1e}");
             }
         }
@@ -216,7 +216,7 @@ fn coarse_solvers_may_be_exchanged() {
                     "preonly"
                 };
                 assert_eq!(kind.as_deref(), Some(expected));
-                assert!(solution.converged);
+                assert!(solution.converged());
                 assert!(distance < 1e-8, "{name} {options:?}: {distance:.1e}");
             }
         }
@@ -229,9 +229,9 @@ fn a_run_that_stops_early_says_so() {
         let direct = Direct::example("poisson_2x2");
         let options = [("ksp_max_it", "2")];
         let solution = with_options(session, &options, || direct.run(session, &tight()).0);
-        assert!(!solution.converged);
+        assert!(!solution.converged());
         assert_eq!(
-            (solution.iterations, solution.reason.as_str()),
+            (solution.iterations, solution.status.name()),
             (2, "DIVERGED_ITS")
         );
     });
@@ -253,12 +253,12 @@ fn errors_fall_with_the_second_power_of_h() {
             let direct = Direct::new(scene);
             let (solution, distance) = direct.run(
                 session,
-                &Settings {
+                &MethodSettings {
                     rtol: 1e-10,
-                    ..Settings::default()
+                    ..MethodSettings::default()
                 },
             );
-            assert!(solution.converged && distance < 1e-8, "{distance:.1e}");
+            assert!(solution.converged() && distance < 1e-8, "{distance:.1e}");
             let mut squares = [0.0; 3];
             for (s, u) in solution.u.iter().enumerate() {
                 let mesh = direct.scene.subdomain_mesh(s).unwrap();

@@ -3,10 +3,12 @@
 use crate::support::checks::identities;
 use crate::support::{mpi, program};
 use fetifeti::feti::settings::Operators;
-use fetifeti::feti::{FetiFeti, PcType, Settings, Solution};
+use fetifeti::feti::{MethodSettings, PcType};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
+use fetifeti::FetiFeti;
+use fetifeti::Solution;
 use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
@@ -15,10 +17,10 @@ use serde_json::Value;
 const SOLID: &str = "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 2, 1]\nsubdomains = [2, 2, 2]\n\
                      elements_per_subdomain = 4\nyoung = [[[1], [5]]]\npoisson = 0.3\nload = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n";
 
-fn solver(session: &Session, text: &str, settings: Settings) -> FetiFeti {
+fn solver(session: &Session, text: &str, settings: MethodSettings) -> FetiFeti {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: 1e-10,
         ..settings
     };
@@ -37,10 +39,10 @@ fn sparse_solves_give_what_dense_operators_give() {
     with_session(|session| {
         for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
             let make = |operators| {
-                let settings = Settings {
+                let settings = MethodSettings {
                     operators,
                     pc_type: Some(pc),
-                    ..Settings::default()
+                    ..MethodSettings::default()
                 };
                 solver(session, SOLID, settings)
             };
@@ -52,7 +54,7 @@ fn sparse_solves_give_what_dense_operators_give() {
                 dense.solve().expect("solved"),
                 sparse.solve().expect("solved"),
             );
-            assert!(a.converged && b.converged);
+            assert!(a.converged() && b.converged());
             assert!(a.iterations.abs_diff(b.iterations) <= 1);
             assert!(far(&a, &b) < 1e-8, "{pc:?}: {:.1e}", far(&a, &b));
         }
@@ -63,10 +65,10 @@ fn sparse_solves_give_what_dense_operators_give() {
 fn memory_bounds_dense_operators() {
     with_session(|session| {
         let bounded = |memory| {
-            let settings = Settings {
+            let settings = MethodSettings {
                 memory: Some(memory),
                 pc_type: Some(PcType::Dirichlet),
-                ..Settings::default()
+                ..MethodSettings::default()
             };
             solver(session, SOLID, settings)
         };
@@ -84,14 +86,14 @@ fn subdomains_that_are_multiples_of_each_other_share_their_factors() {
         let text = |rho: &str| {
             format!("[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 5\nload = \"1 + x\"\ndirichlet = \"all\"\n{rho}")
         };
-        let plain = solver(session, &text(""), Settings::default());
+        let plain = solver(session, &text(""), MethodSettings::default());
         // Checkerboards of 1/3 by body.
         let rho = "rho = [[1, 0.3333333333333333, 1], [1e4, 7, 1e4], [1, 0.3333333333333333, 1]]\n";
-        let jumps = solver(session, &text(rho), Settings::default());
+        let jumps = solver(session, &text(rho), MethodSettings::default());
         assert_eq!(plain.facts().kinds, jumps.facts().kinds);
         // The certificate multiplies with the matrices themselves.
         let solution = jumps.solve().expect("solved");
-        assert!(solution.converged);
+        assert!(solution.converged());
         assert!(solution.kkt.stationarity < 1e-8, "{:?}", solution.kkt);
     });
 }
@@ -101,9 +103,9 @@ fn directions_are_kept_from_load_to_load() {
     with_session(|session| {
         let text = "[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 6\nload = \"1 + x\"\ndirichlet = [\"left\"]\n";
         let make = |recycle| {
-            let settings = Settings {
+            let settings = MethodSettings {
                 recycle,
-                ..Settings::default()
+                ..MethodSettings::default()
             };
             solver(session, text, settings)
         };
@@ -131,7 +133,7 @@ fn directions_are_kept_from_load_to_load() {
             fresh.solve().expect("solved"),
         );
         assert!(
-            a.converged && a.iterations <= b.iterations,
+            a.converged() && a.iterations <= b.iterations,
             "{} {}",
             a.iterations,
             b.iterations

@@ -4,7 +4,7 @@
 use crate::support::program;
 use fetifeti::cholesky::interior::{LocalSolver, Ordering, Solver};
 use fetifeti::petsc::testing::with_session;
-use fetifeti::{FetiFeti, Scene, Settings};
+use fetifeti::{FetiFeti, MethodSettings, Scene};
 use program::{fetifeti, run_fetifeti};
 use serde_json::Value;
 
@@ -25,18 +25,22 @@ fn displacements_are_the_same_for_every_solver_and_order() {
             let scene = Scene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e}"));
             let solve = |local: LocalSolver| {
                 let problem = scene.substructures(&|_| true).expect("substructures");
-                let settings = Settings {
+                let settings = MethodSettings {
                     local,
                     rtol: 1e-11,
                     // More than cores, on any machine: libraries below may not take it.
                     threads: (local.kind != Solver::Mumps).then_some(4),
-                    ..Settings::default()
+                    ..MethodSettings::default()
                 };
                 let solver = FetiFeti::new(session, problem, settings)
                     .unwrap_or_else(|e| panic!("{name}, {local:?}: {e}"));
-                assert_eq!(solver.settings().local, local);
+                assert_eq!(solver.settings().method.local, local);
                 let solution = solver.solve().expect("a solution");
-                assert!(solution.converged, "{name}, {local:?}: {}", solution.reason);
+                assert!(
+                    solution.converged(),
+                    "{name}, {local:?}: {}",
+                    solution.status
+                );
                 solution.u.concat()
             };
             let ours = solve(LocalSolver::default());

@@ -3,8 +3,9 @@
 use crate::support::checks::{identities, number};
 use crate::support::common;
 use common::Grid;
-use fetifeti::feti::{FetiFeti, PcType, Settings};
+use fetifeti::feti::{MethodSettings, PcType};
 use fetifeti::petsc::testing::with_session;
+use fetifeti::FetiFeti;
 use serde_json::Value;
 
 #[test]
@@ -22,9 +23,9 @@ fn kappa_multipliers_and_iterations_equal_the_oracle() {
                     (PcType::Dirichlet, "dirichlet"),
                     (PcType::CoarseCorrected, "coarse_corrected"),
                 ] {
-                    let settings = Settings {
+                    let settings = MethodSettings {
                         pc_type: Some(pc),
-                        ..Settings::default()
+                        ..MethodSettings::default()
                     };
                     let solver = FetiFeti::new(session, grid.substructures(|_| true), settings)
                         .expect("set up");
@@ -53,7 +54,7 @@ fn kappa_multipliers_and_iterations_equal_the_oracle() {
                         "{nb} {ns} {ne} {side} {key}: {s:?} for {want}"
                     );
                     assert!(s.lambda_min > 1.0 - 1e-8);
-                    assert!(solution.converged);
+                    assert!(solution.converged());
                 }
             });
         }

@@ -27,12 +27,12 @@ fn against_petsc(session: &Session, text: &str) -> Result<()> {
     let solver = FetiFeti::new(session, problem, Settings::default())?;
     // PETSc finishes the set-up of a scatter in its first use, with messages of its own.
     solver.solve()?;
-    let read = || (traffic::sent(), counters(), solver.dual().tally());
+    let read = || (traffic::sent(), counters(), solver.method().tally());
     let (ours, theirs, tally) = read();
     let solution = solver.solve()?;
     let (ours_after, theirs_after, tally_after) = read();
     let ours = ours_after - ours;
-    assert!(solution.converged && solution.iterations > 3);
+    assert!(solution.converged() && solution.iterations > 3);
     assert!(ours.messages > 0 && ours.bytes > 8 * ours.messages && ours.reductions > 0);
     if let (Some(before), Some(after)) = (theirs, theirs_after) {
         assert_eq!(ours.messages as f64, after.messages - before.messages);

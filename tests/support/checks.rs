@@ -1,6 +1,6 @@
 //! Small things that many tests say.
 
-use fetifeti::feti::FetiFeti;
+use fetifeti::FetiFeti;
 use serde_json::Value;
 
 /// A value of a report that must be a plain number.

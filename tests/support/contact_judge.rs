@@ -3,18 +3,18 @@
 use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use super::assembled::{Assembled, Reference};
 use fetifeti::contact::ContactType;
-use fetifeti::feti::{FetiFeti, Settings};
 use fetifeti::parallel::exchange::gather_all;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::{Error, Result};
+use fetifeti::{FetiFeti, MethodSettings, Settings};
 use std::collections::HashMap;
 
 fn settings(kind: ContactType) -> Settings {
-    let mut settings = Settings {
+    let mut settings = Settings::from(MethodSettings {
         rtol: 1e-11,
-        ..Settings::default()
-    };
+        ..MethodSettings::default()
+    });
     settings.contact.kind = kind;
     settings
 }
@@ -36,8 +36,8 @@ pub fn answer(
     };
     let solver = FetiFeti::new(session, scene.substructures(&mine)?, settings(kind))?;
     let solution = solver.solve()?;
-    if !solution.converged {
-        let reason = format!("not converged: {}", solution.reason);
+    if !solution.converged() {
+        let reason = format!("not converged: {}", solution.status);
         return Err(Error::input(reason));
     }
 
@@ -57,7 +57,7 @@ pub fn answer(
         .filter(|&r| mine(places[&problem.rows[r].block]))
         .map(|r| r as u64)
         .collect();
-    let solved = solver.rows(&solution);
+    let solved = solution.rows();
     let rows = all(provided);
     let values = all(solved.iter().map(|r| r.multiplier.to_bits()).collect());
     let mut lambda = vec![f64::NAN; problem.rows.len()];

@@ -6,10 +6,12 @@ use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 use fetifeti::fem::q1;
-use fetifeti::feti::{FetiFeti, Settings, Solution};
-use fetifeti::mesh::SubdomainMesh;
+use fetifeti::fem::SubdomainMesh;
+use fetifeti::feti::MethodSettings;
 use fetifeti::petsc::{Options, Session};
 use fetifeti::scene::{Numbering, Scene};
+use fetifeti::FetiFeti;
+use fetifeti::Solution;
 
 /// Solution of an assembled scene, torn by subdomain.
 pub struct Direct {
@@ -120,24 +122,24 @@ impl Direct {
     }
 
     /// Sets the method up on the whole scene.
-    pub fn solver(&self, session: &Session, settings: &Settings) -> FetiFeti {
+    pub fn solver(&self, session: &Session, settings: &MethodSettings) -> FetiFeti {
         let problem = self.scene.substructures(&|_| true).unwrap();
         FetiFeti::new(session, problem, settings.clone()).expect("set up")
     }
 
     /// Solves and measures.
-    pub fn run(&self, session: &Session, settings: &Settings) -> (Solution, f64) {
+    pub fn run(&self, session: &Session, settings: &MethodSettings) -> (Solution, f64) {
         let solution = self.solver(session, settings).solve().expect("solved");
         let distance = self.distance(&solution.u);
         (solution, distance)
     }
 }
 
-/// Settings that stop at 1e-12.
-pub fn tight() -> Settings {
-    Settings {
+/// MethodSettings that stop at 1e-12.
+pub fn tight() -> MethodSettings {
+    MethodSettings {
         rtol: 1e-12,
-        ..Settings::default()
+        ..MethodSettings::default()
     }
 }
 

@@ -8,10 +8,8 @@ use std::sync::{Arc, Mutex};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::classes;
-use super::classes::Class;
-use super::pencil;
-use super::pencil::Part;
+use super::classes::{self, Class};
+use super::pencil::{self, Part};
 use crate::cholesky::interior::NoFactor;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;

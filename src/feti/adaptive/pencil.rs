@@ -14,8 +14,7 @@
 use std::collections::HashMap;
 
 use crate::feti::subdomain::basis::Basis;
-use crate::linalg::dense;
-use crate::linalg::dense::{Dense, Scratch};
+use crate::linalg::dense::{self, Dense, Scratch};
 
 /// Energies below this part of a primal dof's stiffness are rounding, and count as if they were so much.
 const FREE: f64 = 1e-12;

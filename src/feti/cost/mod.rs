@@ -3,3 +3,4 @@
 pub mod choice;
 pub mod forms;
 pub mod sizes;
+pub mod variation;

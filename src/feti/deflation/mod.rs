@@ -23,14 +23,12 @@ pub mod whole;
 
 use std::time::Instant;
 
-use mpi::topology::SimpleCommunicator;
-
-use super::krylov::spectrum::Spectrum;
+use super::cost::variation::JUMPS;
 use super::operators::dual::Dual;
 use super::projector::graph::BodyGraph;
 use super::projector::sweep::{self, Column};
 use super::settings::Adaptive;
-use crate::parallel::exchange::max_all;
+use super::spectrum::Spectrum;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::Result;
@@ -62,30 +60,8 @@ pub struct Cost {
     pub seconds: f64,
 }
 
-/// Coefficients of a body whose largest is more than this many times the smallest jump.
-pub const JUMPS: f64 = 1e2;
-
 /// Where coefficients jump, an iteration is broken off at this eigenvalue; elsewhere one has to be far larger.
 pub const EXPECTED: f64 = 1.5 * Adaptive::USUAL;
-
-/// The largest ratio of two scaling weights in one body. Collective.
-pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
-    let n = problem.n_bodies;
-    // −smallest beside the largest, so that one reduction does.
-    let mut ends = vec![f64::NEG_INFINITY; 2 * n];
-    for sub in &problem.local {
-        for &rho in &sub.rho {
-            ends[sub.body] = ends[sub.body].max(rho);
-            ends[n + sub.body] = ends[n + sub.body].max(-rho);
-        }
-    }
-    max_all(comm, &mut ends);
-    let ratio = |b: usize| ends[b] / -ends[n + b];
-    (0..n)
-        .map(ratio)
-        .filter(|r| r.is_finite())
-        .fold(1.0, f64::max)
-}
 
 /// The eigenvalue at which an iteration is broken off so that those above τ are deflated; `varies` is the largest ratio of coefficients
 /// inside a body.
@@ -109,6 +85,8 @@ pub struct Deflation {
     /// M⁻¹ P_iᵀ F_i μ with all rows that the search knew.
     columns: Vec<Column>,
     matrices: Matrices,
+    /// Whether the last search found nothing above the bound: no iteration needs to be broken off for another one.
+    pub exhausted: bool,
 }
 
 impl Deflation {
@@ -168,6 +146,7 @@ impl Deflation {
             balance,
             columns,
             matrices,
+            exhausted: false,
         })
     }
 

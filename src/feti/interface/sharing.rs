@@ -8,8 +8,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::candidates::{candidates, DofMap};
-use super::entities;
-use super::entities::Average;
+use super::entities::{self, Average};
 use crate::feti::settings::Primal;
 use crate::parallel::exchange::{exchange, exchange_words, gather_all, Record};
 use crate::substructures::{Subdomain, Substructures};

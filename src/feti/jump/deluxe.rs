@@ -17,8 +17,7 @@ use mpi::traits::Communicator;
 use super::operator::Jump;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Local;
-use crate::linalg::dense;
-use crate::linalg::dense::{Dense, Scratch};
+use crate::linalg::dense::{self, Dense, Scratch};
 use crate::parallel::exchange::exchange_words;
 use crate::substructures::Substructures;
 

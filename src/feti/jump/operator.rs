@@ -7,8 +7,7 @@
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::blocks;
-use super::blocks::{Block, Entry};
+use super::blocks::{self, Block, Entry};
 use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::{Copy, Sharing};

@@ -1,6 +1,6 @@
 //! D: what the copies of a dof weigh in averages.
 
-use crate::feti::settings::{Scaling, Settings};
+use crate::feti::settings::{MethodSettings, Scaling};
 use crate::substructures::{Subdomain, Substructures};
 
 /// Noise: from dof to dof ln ρ changes by at least this part of its standard deviation. White noise has about 0.8, a field that varies over ten elements 0.2.
@@ -19,7 +19,7 @@ const MODERATE: f64 = 1e3;
 ///
 /// ρ stands for what a copy resists with when it is moved together with its neighbours. Where ρ is noise, that is the mean: weights as rough as ρ itself would turn smooth jumps
 /// into rough averages, whose energy is larger by up to H/h.
-pub fn weights(problem: &Substructures, settings: &Settings) -> Vec<Vec<f64>> {
+pub fn weights(problem: &Substructures, settings: &MethodSettings) -> Vec<Vec<f64>> {
     let of = |sub: &Subdomain| -> Vec<f64> {
         match settings.scaling {
             Scaling::Multiplicity => vec![1.0; sub.k.n()],
@@ -107,7 +107,7 @@ mod tests {
         );
         let scene = Scene::parse("field.toml", &text).expect("a scene");
         let problem = scene.substructures(&|_| true).expect("substructures");
-        let d = &weights(&problem, &Settings::default())[0];
+        let d = &weights(&problem, &MethodSettings::default())[0];
         let mean = problem.local[0].rho.iter().sum::<f64>() / d.len() as f64;
         assert!(d.iter().all(|d| (d - mean).abs() < 1e-14 * mean));
         assert!((1.5..3.0).contains(&mean));

@@ -1,11 +1,18 @@
-//! The Krylov method at work: solve, iterate, look at the spectrum, refine, certify, recover.
+//! The Krylov method at work: project, iterate, look at the spectrum, deflate, refine, certify, recover. [`solve`] is the
+//! page to begin with.
 
-pub mod bounded;
-pub mod correction;
-pub mod inner;
-pub mod kkt;
-pub mod persist;
-pub mod recover;
-pub mod recycle;
-pub mod spectrum;
+mod bound;
+pub mod certificate;
+pub(super) mod check;
+mod eigenvalues;
+pub mod iterate;
+pub mod loads;
+pub mod recovery;
+mod recycling;
+pub mod refinement;
+pub mod residual;
+pub(super) mod shells;
+pub mod solve;
+pub mod system;
 pub mod tally;
+pub mod target;

@@ -1,13 +1,10 @@
 //! What the Krylov iterations of a solver have sent and how long they took, over all ranks.
 
-use crate::feti::solver::FetiFeti;
-use crate::parallel::clock;
-use crate::parallel::clock::Times;
+use crate::parallel::clock::{self, Times};
 use crate::parallel::exchange::{max_all, sum_all};
-use crate::parallel::traffic;
-use crate::parallel::traffic::Traffic;
+use crate::parallel::traffic::{self, Traffic};
 use crate::petsc;
-use crate::Result;
+use mpi::topology::SimpleCommunicator;
 use std::time::Instant;
 
 /// Iterations of this rank, added up.
@@ -96,20 +93,15 @@ pub struct Communication {
     pub reduced_bytes: f64,
 }
 
-impl FetiFeti {
-    /// What an iteration sends, over all iterations of the Krylov method so far; `None` where there were none. Collective.
-    ///
-    /// # Errors
-    /// PETSc's own.
-    pub fn communication(&self) -> Result<Option<Communication>> {
-        let tally = self.dual().tally();
+impl Communication {
+    /// Of the iterations in `tally`, over all ranks; `None` where there were none. Collective.
+    pub(crate) fn of(comm: &SimpleCommunicator, tally: &Tally) -> Option<Communication> {
         if tally.iterations == 0 {
-            return Ok(None);
+            return None;
         }
         let n = tally.iterations as f64;
         let mine = [tally.sent.messages, tally.sent.bytes].map(|v| v as f64 / n);
         let reduced = [tally.sent.reductions, tally.sent.reduced_bytes].map(|v| v as f64 / n);
-        let comm = self.session().comm();
         let (mut sum, mut max) = (mine, mine);
         sum_all(comm, &mut sum);
         max_all(comm, &mut max);
@@ -117,11 +109,11 @@ impl FetiFeti {
             sum: sum[k],
             max: max[k],
         };
-        Ok(Some(Communication {
+        Some(Communication {
             messages: both(0),
             bytes: both(1),
             reductions: reduced[0],
             reduced_bytes: reduced[1],
-        }))
+        })
     }
 }

@@ -1,6 +1,5 @@
 //! F, M⁻¹ and P, as products and as PETSc sees them.
 
-pub mod check;
 pub mod dual;
 pub mod preconditioner;
 pub mod products;

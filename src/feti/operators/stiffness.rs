@@ -11,8 +11,7 @@ use std::sync::Arc;
 use super::products::Products;
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::coarse::PrimalProblem;
-use crate::feti::primal::refine;
-use crate::feti::primal::refine::Refinement;
+use crate::feti::primal::refinement::{self, Refinement};
 use crate::feti::primal::space::PrimalSpace;
 use crate::feti::subdomain::problem::{LocalProblem, Operator};
 use crate::feti::subdomain::scaled::Local;
@@ -109,7 +108,7 @@ impl Stiffness {
         };
         let b = c.to_vec();
         self.primal.finish(&self.team, c)?;
-        for _ in 0..refine::STEPS {
+        for _ in 0..refinement::STEPS {
             let mut r = b.clone();
             refinement.subtract(&self.space, &self.locals, c, &mut r);
             self.primal.solve(&self.team, &mut r)?;

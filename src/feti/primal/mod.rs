@@ -3,5 +3,5 @@
 pub mod coarse;
 pub mod kernel;
 pub mod matrix;
-pub mod refine;
+pub mod refinement;
 pub mod space;

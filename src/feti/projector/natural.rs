@@ -14,7 +14,7 @@ use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::rows::{RowEntry, Rows};
 use super::sweep;
-use crate::feti::deflation;
+use crate::feti::cost::variation::JUMPS;
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::{PcType, ProjectorKind};
@@ -446,7 +446,7 @@ fn choose(
         (l.min(m), h.max(m))
     });
     // A factor of two comes from corners and mesh sizes alone.
-    let differ = high > 3.0 * low || varies > deflation::JUMPS;
+    let differ = high > 3.0 * low || varies > JUMPS;
     match (differ, preconditioner.kind()) {
         (false, _) => ProjectorKind::Identity,
         (true, PcType::None) => ProjectorKind::Diagonal,

@@ -2,8 +2,7 @@
 
 use super::problem::LocalProblem;
 use crate::cholesky::multifrontal::SingularInterior;
-use crate::linalg::dense;
-use crate::linalg::dense::{Dense, Scratch};
+use crate::linalg::dense::{self, Dense, Scratch};
 
 /// S_ΔΔ counts as singular where a pivot is below this fraction of the dof's diagonal entry of K: the dof is then held as a primal one of its own. Holding a dof that
 /// did not need it is harmless (the primal problem frees it exactly), so the bound is generous.

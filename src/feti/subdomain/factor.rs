@@ -10,10 +10,9 @@ use super::problem::{Form, LocalProblem};
 use super::scaled::Local;
 use crate::cholesky::interior::{Analysis, LocalSolver, NoFactor, Solver, Way};
 use crate::cholesky::multifrontal::SingularInterior;
-use crate::feti::cost::forms;
-use crate::feti::cost::forms::Kind;
+use crate::feti::cost::forms::{self, Kind};
 use crate::feti::jump::operator::Jump;
-use crate::feti::settings::{Adaptive, Operators, PcType, Scaling, Settings};
+use crate::feti::settings::{Adaptive, MethodSettings, Operators, PcType, Scaling};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
 use crate::substructures::{Subdomain, Substructures};
@@ -25,7 +24,7 @@ pub(crate) fn factor(
     problem: &Substructures,
     jump: &Jump,
     team: &Team,
-    settings: &Settings,
+    settings: &MethodSettings,
     kind: PcType,
 ) -> Result<Vec<Local>> {
     // What multiplies with S or looks into it before the iteration begins wants a matrix.

@@ -19,8 +19,7 @@ use super::problem::Operator;
 use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use crate::cholesky::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
-use crate::linalg::dense;
-use crate::linalg::dense::{Dense, Scratch};
+use crate::linalg::dense::{self, Dense, Scratch};
 use crate::linalg::rectangular::Rectangular;
 
 /// K_rr counts as singular where a pivot is below this fraction of its diagonal entry: the vertices alone do not hold the subdomain then.

@@ -1,7 +1,8 @@
 //! What a subdomain says about itself besides its matrix: edges and faces, and the rigid motions of its body.
 
 use crate::fem::cell;
-use crate::mesh::{places, SubdomainMesh};
+use crate::fem::SubdomainMesh;
+use crate::mesh::places;
 use crate::scene::body::Body;
 use crate::substructures::{Entity, EntityKind};
 use std::collections::BTreeMap;

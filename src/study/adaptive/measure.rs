@@ -9,12 +9,12 @@ use crate::assembled::reference::{Precision, Reference};
 use crate::assembled::system::Copies;
 use crate::baselines::single;
 use crate::feti::settings::Adaptive;
-use crate::feti::{FetiFeti, Settings, Solution};
+use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::output;
 use crate::scene::{distribution, Numbering, Scene};
 use crate::substructures::{Subdomain, Substructures};
-use crate::{Error, Result};
+use crate::{Error, FetiFeti, Result, Solution};
 
 /// Residuals beyond [`RTOL`], until rounding stops the iteration.
 const TIGHTER: [f64; 4] = [1e-10, 1e-12, 1e-14, 1e-15];
@@ -157,10 +157,10 @@ fn ours(
 }
 
 fn solve(session: &Session, problem: &Substructures, adaptive: Adaptive) -> Result<Solved> {
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: RTOL,
         adaptive,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let problem = problem.clone();
     let clock = Instant::now();
@@ -201,7 +201,7 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
         iterations: solution.iterations,
         seconds: 0.0,
         error: court.error(&solution.u)?,
-        message: (!solution.converged).then(|| solution.reason.clone()),
+        message: (!solution.converged()).then(|| solution.status.to_string()),
     };
     Ok(())
 }
@@ -223,7 +223,7 @@ fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
         capped: cost.as_ref().map_or(0, |c| c.capped.len()),
         iterations: solution.iterations,
         error: court.error(&solution.u)?,
-        message: (!solution.converged).then(|| solution.reason.clone()),
+        message: (!solution.converged()).then(|| solution.status.to_string()),
         ..Run::default()
     };
     run.attainable = attainable(solver, court, run.error)?;
@@ -240,7 +240,7 @@ fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Op
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
-        if !tight.converged {
+        if !tight.converged() {
             break;
         }
     }
@@ -275,8 +275,8 @@ pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Resul
                     return Ok(out);
                 }
             };
-            if !solution.converged {
-                out.message = Some(format!("{}: {}", way.name(), solution.reason));
+            if !solution.converged() {
+                out.message = Some(format!("{}: {}", way.name(), solution.status));
             }
             if way == Adaptive::Off {
                 off.push(seconds);

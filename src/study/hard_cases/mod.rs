@@ -13,7 +13,7 @@ use super::solved::Solved;
 use crate::assembled::layout::Layout;
 use crate::assembled::reference::Reference;
 use crate::assembled::system::Copies;
-use crate::feti::Settings;
+use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::json;
 use crate::report::tables::table::{count, fixed, scientific, Align, Table};
@@ -162,9 +162,9 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
         message: None,
         seconds: 0.0,
     };
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: RTOL,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let solved = match Solved::new(session, &file, &case.text, &settings) {
         Ok(solved) => solved,
@@ -230,13 +230,13 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         Err(e) => return Err(e),
     }
     let near = |e: Option<f64>| e.is_some_and(|e| e <= LIMIT);
-    record.verdict = match solution.converged {
+    record.verdict = match solution.converged() {
         false => Verdict::NotConverged,
         true if near(record.error_energy) && near(record.error_max) => Verdict::Solved,
         true => Verdict::Wrong,
     };
-    if !solution.converged {
-        record.message = Some(solution.reason.clone());
+    if !solution.converged() {
+        record.message = Some(solution.status.to_string());
     }
     if record.reference.is_none() {
         record.message = Some("the direct solver finds no solution".into());

@@ -16,7 +16,7 @@ pub use theory::{Contact, Elastic, Pair};
 use serde::{Deserialize, Serialize};
 
 use super::solved::Solved;
-use crate::feti::Settings;
+use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::{Error, Result};
 
@@ -153,9 +153,9 @@ pub fn run(
 /// # Errors
 /// As [`run`].
 pub fn mesh(session: &Session, case: Case, n: usize) -> Result<Mesh> {
-    let settings = Settings {
+    let settings = MethodSettings {
         rtol: 1e-8,
-        ..Settings::default()
+        ..MethodSettings::default()
     };
     let name = format!("hertz_{}_{n}.toml", case.name());
     let solved = Solved::new(session, &name, &case.scene(n), &settings)?;
@@ -199,7 +199,7 @@ pub fn mesh(session: &Session, case: Case, n: usize) -> Result<Mesh> {
             .stationarity
             .max(kkt.feasibility)
             .max(kkt.complementarity),
-        converged: solution.converged,
+        converged: solution.converged(),
         seconds: solved.seconds,
         pressure,
     })

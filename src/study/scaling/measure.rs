@@ -7,15 +7,14 @@ use serde::{Deserialize, Serialize};
 use super::network::{self, Timing};
 use super::{IterationSeconds, SetupSeconds, Work};
 use crate::feti::krylov::tally::Communication;
-use crate::feti::{FetiFeti, Settings};
-use crate::parallel::clock;
-use crate::parallel::clock::Phase;
+use crate::feti::MethodSettings;
+use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{max_all, min_all};
 use crate::parallel::meter::{memory, timed};
 use crate::petsc::Session;
 use crate::report::json;
 use crate::scene::Scene;
-use crate::{Error, Result};
+use crate::{Error, FetiFeti, Result};
 
 /// A task for a process group.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -156,7 +155,7 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<SolveRecord>
     let comm = session.comm();
     let (subdomains, start) = (problem.n_subdomains, clock::spent());
     let (solver, setup_total) = timed(session, || {
-        FetiFeti::new(session, problem, Settings::default())
+        FetiFeti::new(session, problem, MethodSettings::default())
     })?;
     let spent = clock::spent().since(&start);
     let phases = [
@@ -172,13 +171,13 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<SolveRecord>
     max_all(comm, &mut setup);
 
     let (solution, solve_total) = timed(session, || solver.solve())?;
-    if !solution.converged {
+    if !solution.converged() {
         return Err(Error::NotConverged(format!(
             "a measurement did not converge: {}",
-            solution.reason
+            solution.status
         )));
     }
-    let tally = solver.dual().tally();
+    let tally = solver.method().tally();
     let n = tally.iterations.max(1) as f64;
     let phases = [Phase::Primal, Phase::Lifting, Phase::Natural];
     let coarse = phases.map(|p| tally.times.of(p) / n);
@@ -190,7 +189,7 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<SolveRecord>
     let mut least = sent;
     min_all(comm, &mut least);
     let [local, primal, lifting, natural, iterating] = slowest;
-    let sent = solver.communication()?.unwrap_or(Communication::default());
+    let sent = solver.communication().unwrap_or(Communication::default());
     let facts = solver.facts();
     Ok(SolveRecord {
         subdomains,

@@ -1,7 +1,7 @@
 //! How far the exact solution of a mesh is from that of the continuous problem.
 
 use super::{Case, MeshError};
-use crate::feti::Settings;
+use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::study::solved::Solved;
 use crate::substructures::Subdomain;
@@ -48,16 +48,16 @@ pub fn errors(session: &Session, case: Case, meshes: &[usize]) -> Result<Vec<Mes
 
 impl Tight {
     fn new(session: &Session, case: Case, n: usize) -> Result<Tight> {
-        let settings = Settings {
+        let settings = MethodSettings {
             rtol: 1e-10,
-            ..Settings::default()
+            ..MethodSettings::default()
         };
         let name = format!("{}_{n}.toml", case.name());
         let solved = Solved::new(session, &name, &case.scene(n), &settings)?;
-        if !solved.solution.converged {
+        if !solved.solution.converged() {
             return Err(Error::NotConverged(format!(
                 "{name}: {}",
-                solved.solution.reason
+                solved.solution.status
             )));
         }
         let local = solved.solver.problem().local.iter();

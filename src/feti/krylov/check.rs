@@ -1,7 +1,8 @@
 //! Identities that the theory promises, as numbers that must be about rounding (`-fetifeti_check`).
 
-use super::dual::Dual;
-use super::stiffness::Work;
+use super::system::System;
+use crate::feti::operators::dual::Dual;
+use crate::feti::operators::stiffness::Work;
 use crate::feti::subdomain::problem::Operator;
 use crate::parallel::exchange::{max_all, sum_all};
 use crate::petsc::{Session, Vec as PetscVec};
@@ -12,11 +13,13 @@ use crate::Result;
 pub(crate) fn identities(
     session: &Session,
     problem: &Substructures,
-    dual: &Dual,
+    system: &System,
 ) -> Result<Vec<(&'static str, f64)>> {
+    let dual = &*system.dual();
     let check = Check {
         session,
         problem,
+        system,
         dual,
     };
     let mut out = vec![
@@ -34,7 +37,7 @@ pub(crate) fn identities(
         out.push(("P^T P^T = P^T", check.projector(|x| dual.p_transpose(x))?));
         out.push(("G^T P = 0", check.admissible()?));
     }
-    if dual
+    if system
         .deflation()
         .as_ref()
         .is_some_and(|d| d.matrices().is_some())
@@ -43,7 +46,7 @@ pub(crate) fn identities(
             "P_2 P_2 = P_2",
             check.projector(|x| {
                 dual.p(x)?;
-                dual.p2(x)
+                system.p2(x)
             })?,
         ));
         out.push(("W^T F P_2 = 0", check.complement()?));
@@ -58,6 +61,7 @@ pub(crate) fn identities(
 struct Check<'a> {
     session: &'a Session,
     problem: &'a Substructures,
+    system: &'a System,
     dual: &'a Dual,
 }
 
@@ -104,11 +108,11 @@ impl Check<'_> {
         let mut sizes = [0.0; 2];
         for size in &mut sizes {
             dual.f(&y, &image)?;
-            *size = match dual.deflation().as_ref().and_then(|d| d.matrices()) {
+            *size = match self.system.deflation().as_ref().and_then(|d| d.matrices()) {
                 Some(p2) => p2.part_of(self.session, &image)?,
                 None => 0.0,
             };
-            dual.p2(&y)?;
+            self.system.p2(&y)?;
         }
         Ok(self.relative(sizes[1], sizes[0]))
     }

@@ -1,25 +1,13 @@
 //! Exact extreme eigenvalues of the preconditioned operator on V ∩ range B.
 
-use crate::feti::operators::dual;
-use crate::feti::operators::dual::{Dual, Shared};
+use std::rc::Rc;
+
+use super::shells;
+use super::system::System;
+use crate::feti::operators::dual::Dual;
+use crate::feti::spectrum::Spectrum;
 use crate::petsc::{extreme_eigenvalues, Session};
 use crate::Result;
-
-/// The ends of a spectrum.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spectrum {
-    /// Smallest eigenvalue that is not a kernel direction's.
-    pub lambda_min: f64,
-    /// Largest eigenvalue.
-    pub lambda_max: f64,
-}
-
-impl Spectrum {
-    /// λ_max / λ_min.
-    pub fn kappa(&self) -> f64 {
-        self.lambda_max / self.lambda_min
-    }
-}
 
 /// Residual tolerance of the eigensolver, relative to the eigenvalue. An eigenvalue of a self-adjoint operator lies within the
 /// residual, so κ is good to 1e-6; in fact the error is about the residual's square. Asking for much less would
@@ -30,18 +18,17 @@ const TOLERANCE: f64 = 4e-7;
 ///
 /// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range of G
 /// are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
-pub fn exact(session: &Session, dual: &Shared, prefix: &str) -> Result<Option<Spectrum>> {
-    if dual.borrow().stiffness.jump.n_global == 0 {
+pub fn exact(session: &Session, system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
+    if system.dual().stiffness.jump.n_global == 0 {
         return Ok(None);
     }
-    let a = if dual.borrow().deflation().is_some() {
-        dual::deflated_operator(session, dual)?
-    } else {
-        dual::operator(session, dual)?
+    let a = match system.deflation().is_some() {
+        true => shells::deflated_operator(session, system)?,
+        false => shells::operator(session, system)?,
     };
-    let c = dual::preconditioner_matrix(session, dual)?;
-    let e = dual::range_matrix(session, dual)?;
-    let start = start_vector(&dual.borrow())?;
+    let c = shells::preconditioner(session, system)?;
+    let e = shells::range(session, system)?;
+    let start = start_vector(&system.dual())?;
     let (lambda_min, lambda_max) =
         extreme_eigenvalues(session, &a, &c, Some(&e), &start, TOLERANCE, prefix)?;
     Ok(Some(Spectrum {

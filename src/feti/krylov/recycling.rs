@@ -26,7 +26,6 @@ const DEPENDENT: f64 = 1e-12;
 #[derive(Default)]
 pub struct Recycle {
     most: usize,
-    recording: bool,
     /// Entries of this rank, by columns.
     w: Vec<Vec<f64>>,
     aw: Vec<Vec<f64>>,
@@ -52,11 +51,6 @@ impl Recycle {
         self.most > 0
     }
 
-    /// Number of directions.
-    pub fn len(&self) -> usize {
-        self.w.len()
-    }
-
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.w.is_empty()
@@ -65,15 +59,9 @@ impl Recycle {
     /// Forgets all directions.
     pub fn forget(&mut self) {
         *self = Recycle {
-            recording: self.recording,
             active: std::mem::take(&mut self.active),
             ..Recycle::new(self.most)
         };
-    }
-
-    /// What is applied from now on is kept, or is not.
-    pub fn record(&mut self, on: bool) {
-        self.recording = on && self.is_on();
     }
 
     /// Forgets what belongs to other active rows. The same on all ranks. Collective.
@@ -91,7 +79,7 @@ impl Recycle {
 
     /// Keeps a direction and what the operator makes of it.
     pub fn keep(&mut self, x: &PetscVec, ax: &PetscVec) -> Result<()> {
-        if !self.recording {
+        if !self.is_on() {
             return Ok(());
         }
         let (x, ax) = (x.array()?.to_vec(), ax.array()?.to_vec());

@@ -8,6 +8,9 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
+/// The certificate may be this many times the tolerance of the iteration, which measures another norm.
+const CREDIBLE: f64 = 1e4;
+
 /// How well the optimality conditions hold, relative to the sizes of their terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kkt {
@@ -22,6 +25,14 @@ pub struct Kkt {
     pub min_multiplier: f64,
 }
 
+impl Kkt {
+    /// Whether displacements and rows are a solution at this relative tolerance. NaN is none.
+    pub fn is_credible(&self, rtol: f64) -> bool {
+        self.stationarity <= (CREDIBLE * rtol).clamp(1e-3, 0.5)
+            && self.feasibility <= (CREDIBLE * rtol).clamp(1e-6, 0.1)
+    }
+}
+
 /// What is known of a pair (u, λ).
 pub struct Certificate {
     /// Optimality.
@@ -33,78 +44,80 @@ pub struct Certificate {
     pub gaps: Vec<f64>,
 }
 
-/// Computes the certificate. Collective.
-pub fn certify(
-    session: &Session,
-    problem: &Substructures,
-    dual: &Dual,
-    u: &[Vec<f64>],
-    lambda: &PetscVec,
-) -> Result<Certificate> {
-    let comm = session.comm();
-    let stiffness = &dual.stiffness;
-    let jump = &stiffness.jump;
-    let mut ghost = vec![0.0; jump.ghosts.len()];
-    stiffness.dual_halo.fetch(lambda, &mut ghost)?;
+impl Certificate {
+    /// Of displacements of each local subdomain and multipliers. Collective.
+    pub fn new(
+        session: &Session,
+        problem: &Substructures,
+        dual: &Dual,
+        u: &[Vec<f64>],
+        lambda: &PetscVec,
+    ) -> Result<Certificate> {
+        let comm = session.comm();
+        let stiffness = &dual.stiffness;
+        let jump = &stiffness.jump;
+        let mut ghost = vec![0.0; jump.ghosts.len()];
+        stiffness.dual_halo.fetch(lambda, &mut ghost)?;
 
-    let (locals, places) = (&stiffness.locals, &stiffness.space.of_subdomain);
-    let examined = stiffness.team.map(locals.len(), |j| {
-        let (sub, columns) = (&problem.local[j], &jump.columns[j]);
-        examine((sub, &u[j]), &locals[j], (columns, &ghost), &places[j])
-    });
-    let mut sums = [0.0; 4];
-    let mut primal = vec![0.0; stiffness.space.ghosts.len()];
-    let mut primal_d = primal.clone();
-    let mut work = stiffness.work();
-    for (part, work) in examined.into_iter().zip(&mut work) {
-        sums.iter_mut().zip(part.sums).for_each(|(s, p)| *s += p);
-        for (at, r, d) in part.primal {
-            primal[at as usize] += r;
-            primal_d[at as usize] += d;
+        let (locals, places) = (&stiffness.locals, &stiffness.space.of_subdomain);
+        let examined = stiffness.team.map(locals.len(), |j| {
+            let (sub, columns) = (&problem.local[j], &jump.columns[j]);
+            examine((sub, &u[j]), &locals[j], (columns, &ghost), &places[j])
+        });
+        let mut sums = [0.0; 4];
+        let mut primal = vec![0.0; stiffness.space.ghosts.len()];
+        let mut primal_d = primal.clone();
+        let mut work = stiffness.work();
+        for (part, work) in examined.into_iter().zip(&mut work) {
+            sums.iter_mut().zip(part.sums).for_each(|(s, p)| *s += p);
+            for (at, r, d) in part.primal {
+                primal[at as usize] += r;
+                primal_d[at as usize] += d;
+            }
+            // Fixing dofs take nothing over: no residual, any divisor.
+            part.fixing
+                .iter()
+                .for_each(|&at| primal_d[at as usize] = 1.0);
+            work.y = part.on_interface;
         }
-        // Fixing dofs take nothing over: no residual, any divisor.
-        part.fixing
-            .iter()
-            .for_each(|&at| primal_d[at as usize] = 1.0);
-        work.y = part.on_interface;
-    }
-    let rows = dual.multipliers()?;
-    stiffness.jump_of_all(&work, &rows)?;
-    let mut gaps = rows.to_vec()?;
-    gaps.iter_mut().zip(&jump.gap).for_each(|(b, c)| *b -= c);
-    let lambda = lambda.array()?;
-    sums[3] += gaps.iter().zip(&*lambda).map(|(b, l)| b * l).sum::<f64>();
-    sum_all(comm, &mut sums);
-    let primal = stiffness.primal.weighted_square(&primal, &primal_d)?;
-    let stationarity = (sums[0] + primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
+        let rows = dual.multipliers()?;
+        stiffness.jump_of_all(&work, &rows)?;
+        let mut gaps = rows.to_vec()?;
+        gaps.iter_mut().zip(&jump.gap).for_each(|(b, c)| *b -= c);
+        let lambda = lambda.array()?;
+        sums[3] += gaps.iter().zip(&*lambda).map(|(b, l)| b * l).sum::<f64>();
+        sum_all(comm, &mut sums);
+        let primal = stiffness.primal.weighted_square(&primal, &primal_d)?;
+        let stationarity = (sums[0] + primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
 
-    let mut largest = [0.0f64; 4]; // |u|, |λ|, violation, |λ (Bu − c)|
-    let mut smallest = [0.0f64];
-    largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
-    for r in 0..jump.n_owned {
-        largest[1] = largest[1].max(lambda[r].abs());
-        if jump.inequality[r] {
-            largest[2] = largest[2].max(gaps[r]);
-            largest[3] = largest[3].max((lambda[r] * gaps[r]).abs());
-            smallest[0] = smallest[0].min(lambda[r]);
-        } else if jump.active[r] {
-            largest[2] = largest[2].max(gaps[r].abs());
+        let mut largest = [0.0f64; 4]; // |u|, |λ|, violation, |λ (Bu − c)|
+        let mut smallest = [0.0f64];
+        largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
+        for r in 0..jump.n_owned {
+            largest[1] = largest[1].max(lambda[r].abs());
+            if jump.inequality[r] {
+                largest[2] = largest[2].max(gaps[r]);
+                largest[3] = largest[3].max((lambda[r] * gaps[r]).abs());
+                smallest[0] = smallest[0].min(lambda[r]);
+            } else if jump.active[r] {
+                largest[2] = largest[2].max(gaps[r].abs());
+            }
         }
+        drop(lambda);
+        max_all(comm, &mut largest);
+        min_all(comm, &mut smallest);
+        let [u_max, lambda_max, violation, product] = largest;
+        Ok(Certificate {
+            kkt: Kkt {
+                stationarity,
+                feasibility: violation / positive(u_max),
+                complementarity: product / positive(lambda_max * u_max),
+                min_multiplier: smallest[0] / positive(lambda_max),
+            },
+            energy: sums[3],
+            gaps,
+        })
     }
-    drop(lambda);
-    max_all(comm, &mut largest);
-    min_all(comm, &mut smallest);
-    let [u_max, lambda_max, violation, product] = largest;
-    Ok(Certificate {
-        kkt: Kkt {
-            stationarity,
-            feasibility: violation / positive(u_max),
-            complementarity: product / positive(lambda_max * u_max),
-            min_multiplier: smallest[0] / positive(lambda_max),
-        },
-        energy: sums[3],
-        gaps,
-    })
 }
 
 /// What one subdomain adds to the certificate.

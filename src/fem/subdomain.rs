@@ -1,8 +1,8 @@
 //! The mesh of one subdomain as assembly, error norms and output see it.
 
-use super::boxes::places;
-use crate::fem::cell::Material;
-use crate::fem::Form;
+use super::cell::Material;
+use super::Form;
+use crate::mesh::places;
 
 /// A grid of nodes with the state of every degree of freedom: free, or prescribed by a Dirichlet condition.
 ///

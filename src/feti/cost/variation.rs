@@ -1,0 +1,28 @@
+//! How far coefficients vary inside a body.
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::parallel::exchange::max_all;
+use crate::substructures::Substructures;
+
+/// Coefficients of a body whose largest is more than this many times the smallest jump.
+pub const JUMPS: f64 = 1e2;
+
+/// The largest ratio of two scaling weights in one body. Collective.
+pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
+    let n = problem.n_bodies;
+    // −smallest beside the largest, so that one reduction does.
+    let mut ends = vec![f64::NEG_INFINITY; 2 * n];
+    for sub in &problem.local {
+        for &rho in &sub.rho {
+            ends[sub.body] = ends[sub.body].max(rho);
+            ends[n + sub.body] = ends[n + sub.body].max(-rho);
+        }
+    }
+    max_all(comm, &mut ends);
+    let ratio = |b: usize| ends[b] / -ends[n + b];
+    (0..n)
+        .map(ratio)
+        .filter(|r| r.is_finite())
+        .fold(1.0, f64::max)
+}

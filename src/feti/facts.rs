@@ -1,0 +1,78 @@
+//! What the problem turned out to be, as the method sees it.
+
+use std::sync::Arc;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::operators::dual::Dual;
+use super::subdomain::problem::LocalProblem;
+use super::subdomain::scaled::Local;
+use crate::parallel::exchange::sum_all;
+
+/// Facts about the problem as the solver sees it.
+#[derive(Debug, Clone, Default)]
+pub struct Facts {
+    /// Rows of B_loc.
+    pub multipliers_local: usize,
+    /// Rows of B_gl.
+    pub multipliers_global: usize,
+    /// Rows of B_gl that hold.
+    pub multipliers_active: usize,
+    /// Rows of B_gl that are inequalities.
+    pub inequalities: usize,
+    /// Bodies with a kernel.
+    pub floating_bodies: usize,
+    /// Dimension of all kernels, r.
+    pub kernel_dimension: usize,
+    /// Primal dofs of all bodies.
+    pub primal: usize,
+    /// Adaptive primal constraints in each body; empty where no edge or face is tested.
+    pub adaptive_constraints: Vec<usize>,
+    /// Seconds of set-up that finding them and making them primal took.
+    pub adaptive_seconds: f64,
+    /// Different subdomains on this rank: each is factored once.
+    pub kinds: usize,
+    /// How many of them have S and T as sparse solves.
+    pub implicit_kinds: usize,
+    /// Subdomains of this rank with S in single precision.
+    pub in_single: usize,
+    /// Bytes of the subdomains' sparse factors on this rank.
+    pub factor_bytes: usize,
+    /// Bytes of the subdomains' dense operators on this rank.
+    pub dense_bytes: usize,
+    /// Seconds of set-up.
+    pub setup_seconds: f64,
+}
+
+impl Facts {
+    /// Of these operators; what set-up took and added is left empty. Collective.
+    pub(super) fn new(comm: &SimpleCommunicator, dual: &Dual) -> Facts {
+        let (stiffness, natural) = (&dual.stiffness, &dual.natural);
+        let jump = &stiffness.jump;
+        let contact = jump.active[jump.n_owned_local..].iter();
+        let active = contact.filter(|a| **a).count();
+        let inequalities = jump.inequality.iter().filter(|i| **i).count();
+        let mut counts = [active as f64, inequalities as f64];
+        sum_all(comm, &mut counts);
+        let mut kinds: Vec<&Arc<LocalProblem>> = stiffness.locals.iter().map(Local::kind).collect();
+        kinds.sort_by_key(|l| Arc::as_ptr(l));
+        kinds.dedup_by(|a, b| Arc::ptr_eq(a, b));
+        let bytes = kinds.iter().map(|l| l.bytes());
+        let (factor_bytes, dense_bytes) = bytes.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+        Facts {
+            multipliers_local: jump.n_local,
+            multipliers_global: jump.n_global - jump.n_local,
+            multipliers_active: counts[0] as usize,
+            inequalities: counts[1] as usize,
+            floating_bodies: stiffness.space.defect.iter().filter(|d| **d > 0).count(),
+            kernel_dimension: natural.r,
+            primal: stiffness.space.n_global,
+            kinds: kinds.len(),
+            implicit_kinds: kinds.iter().filter(|k| k.is_implicit()).count(),
+            in_single: dual.preconditioner.in_single(),
+            factor_bytes,
+            dense_bytes,
+            ..Facts::default()
+        }
+    }
+}

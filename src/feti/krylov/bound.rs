@@ -1,0 +1,168 @@
+//! The spectrum, and the bound on it: when deflation is looked for, and how often.
+
+use super::eigenvalues;
+use super::iterate::Watch;
+use crate::feti::deflation::{self, Cost, Deflation};
+use crate::feti::method::LinearMethod;
+use crate::feti::settings::Adaptive;
+use crate::feti::spectrum::Spectrum;
+use crate::Result;
+
+/// Where a bound τ is asked for, deflation of what bodies share sets in above `KEPT` τ and goes down to `SHARED` τ.
+const KEPT: f64 = 1.45;
+const SHARED: f64 = 1.25;
+
+/// Iterations before the first look at the spectrum. A search costs about twenty; most steps of a loop that changes the rows
+/// take no more, and the matrices of the deflation would have to be renewed in each of them.
+const WATCHED_FROM: usize = 5;
+const WATCHED_FROM_IN_STEPS: usize = 20;
+
+impl LinearMethod {
+    /// When an iteration is to be broken off so that what is above τ can be deflated; `None`: it runs to its end.
+    pub(super) fn watch(&self) -> Option<Watch> {
+        let adaptive = self.settings().adaptive;
+        let limit = match &*self.system().deflation() {
+            None => deflation::watch(adaptive, self.varies()),
+            Some(d) if d.cost.given_up || d.exhausted => None,
+            Some(_) => match adaptive {
+                Adaptive::Below(tau) => Some(KEPT * tau),
+                _ => None,
+            },
+        };
+        let from = match self.facts().inequalities {
+            0 => WATCHED_FROM,
+            _ => WATCHED_FROM_IN_STEPS,
+        };
+        limit.map(|limit| Watch { limit, from })
+    }
+
+    /// Whether large eigenvalues are to be expected, or a bound is asked for, while only CG lets its Ritz values be seen: then
+    /// the search cannot wait for them.
+    pub(super) fn is_blind(&self) -> Result<bool> {
+        let expected = self.watch().is_some_and(|watch| {
+            let bounded = matches!(self.settings().adaptive, Adaptive::Below(_));
+            bounded || watch.limit <= deflation::EXPECTED
+        });
+        Ok(expected && !self.is_deflated() && self.ksp().type_name()? != "cg")
+    }
+
+    /// Finds what of the spectrum is above τ and deflates it from now on, whatever the iterations have shown; with all rows
+    /// that may hold. Collective.
+    pub fn deflate(&self) -> Result<()> {
+        self.deflate_candidates(None)
+    }
+
+    /// The same with the rows that hold, unless rows come and go; `seen` is what the iterations have seen of the spectrum.
+    pub(super) fn search(&self, seen: Option<Spectrum>) -> Result<()> {
+        match self.facts().inequalities {
+            0 => self.deflate_held(seen),
+            _ => self.deflate_candidates(seen),
+        }
+    }
+
+    fn deflate_candidates(&self, before: Option<Spectrum>) -> Result<()> {
+        let (candidates, now) = {
+            let dual = self.dual();
+            let jump = &dual.stiffness.jump;
+            let may = |i| jump.active[i] || jump.is_candidate(i);
+            let all: Vec<bool> = (0..jump.n_owned).map(may).collect();
+            (all, jump.active.clone())
+        };
+        let changed = self.set_active(&candidates)?;
+        let found = self.deflate_held(before);
+        if changed > 0 {
+            self.set_active(&now)?;
+        }
+        found
+    }
+
+    /// A first search body by body; modes that bodies share come second, and only where a bound is asked for.
+    fn deflate_held(&self, before: Option<Spectrum>) -> Result<()> {
+        let tau = match self.settings().adaptive {
+            Adaptive::Below(tau) => tau,
+            _ => Adaptive::USUAL,
+        };
+        let most = self.settings().adaptive_max;
+        if self.is_deflated() {
+            let more = self.deflate_shared(SHARED * tau)?;
+            if let Some(deflation) = self.system().change_deflation().as_mut() {
+                deflation.exhausted = !more;
+            }
+        } else {
+            let (session, dual) = (self.session(), self.dual());
+            let mut deflation = Deflation::new(session, self.problem(), &dual, tau, most)?;
+            deflation.cost.before = before;
+            self.system().change_deflation().replace(deflation);
+        }
+        Ok(())
+    }
+
+    /// Deflates what is above `bound` with the rows that hold; `false` where nothing is found, or deflation has been given up.
+    fn deflate_shared(&self, bound: f64) -> Result<bool> {
+        let most = self.settings().adaptive_max;
+        match self.system().change_deflation().as_mut() {
+            Some(deflation) if !deflation.cost.given_up => {
+                let found = deflation.polish(self.session(), &self.dual(), bound, most)?;
+                Ok(found > 0)
+            }
+            _ => Ok(false),
+        }
+    }
+
+    /// P_2 = I from now on, where rounding has made it useless; `false` where it is I already. What was found stays known.
+    pub(super) fn give_deflation_up(&self) -> bool {
+        let useful = |d: &Deflation| d.matrices().is_some();
+        if !self.system().deflation().as_ref().is_some_and(useful) {
+            return false;
+        }
+        if let Some(deflation) = self.system().change_deflation().as_mut() {
+            deflation.give_up();
+        }
+        true
+    }
+
+    fn is_deflated(&self) -> bool {
+        self.system().deflation().is_some()
+    }
+
+    /// What is deflated and what that has cost; `None` where nothing has been searched for.
+    pub fn deflated(&self) -> Option<Cost> {
+        let deflation = self.system().deflation();
+        deflation.as_ref().map(|d| d.cost.clone())
+    }
+
+    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Where a bound is asked for and
+    /// nothing has been deflated yet, that is done first. Collective.
+    pub fn spectrum(&self) -> Result<Option<Spectrum>> {
+        let bound = match self.settings().adaptive {
+            Adaptive::Below(tau) => Some(tau),
+            _ => None,
+        };
+        if bound.is_some() && !self.is_deflated() {
+            self.deflate()?;
+        }
+        let mut spectrum = self.present_spectrum()?;
+        // The rows that hold now may be fewer than those of the search: bodies may share modes that it did not see.
+        if let Some(tau) = bound {
+            let too_large =
+                |s: &Option<Spectrum>| matches!(s, Some(s) if s.lambda_max > KEPT * tau);
+            while too_large(&spectrum) && self.deflate_shared(SHARED * tau)? {
+                spectrum = self.present_spectrum()?;
+            }
+        }
+        Ok(spectrum)
+    }
+
+    /// The same without deflation. Collective.
+    pub fn plain_spectrum(&self) -> Result<Option<Spectrum>> {
+        let kept = self.system().change_deflation().take();
+        let spectrum = self.present_spectrum();
+        *self.system().change_deflation() = kept;
+        spectrum
+    }
+
+    fn present_spectrum(&self) -> Result<Option<Spectrum>> {
+        let prefix = format!("{}eps_", self.settings().prefix);
+        eigenvalues::exact(self.session(), self.system(), &prefix)
+    }
+}

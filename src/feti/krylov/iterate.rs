@@ -1,0 +1,178 @@
+//! One run of the Krylov method: λ ← λ + P x with Pᵀ F P x = Pᵀ r.
+
+use super::residual::ROUNDING;
+use super::tally::Start;
+use crate::feti::method::LinearMethod;
+use crate::feti::spectrum::Spectrum;
+use crate::petsc::{Ksp, Vec as PetscVec};
+use crate::status::Status;
+use crate::Result;
+
+/// An iteration is not broken off any more when its residual is less than this many times what it is to end with.
+const NEARLY: f64 = 30.0;
+
+/// What a run may do.
+#[derive(Debug, Clone, Copy)]
+pub struct IterationControl {
+    /// ‖r‖₂ to stop at.
+    pub tolerance: f64,
+    /// ‖y‖₂ of the displacements that r comes from: what is less than [`ROUNDING`] times it is rounding.
+    pub size: f64,
+    /// Whether it is broken off where large eigenvalues show, to deflate them.
+    pub watch: Option<Watch>,
+    /// Whether monitors may ask for the displacements of the iterate.
+    pub observed: bool,
+}
+
+impl IterationControl {
+    /// To this tolerance, come what may, unobserved.
+    pub fn to(tolerance: f64, size: f64) -> IterationControl {
+        IterationControl {
+            tolerance,
+            size,
+            watch: None,
+            observed: false,
+        }
+    }
+}
+
+/// When a run is broken off because of large eigenvalues.
+#[derive(Debug, Clone, Copy)]
+pub struct Watch {
+    /// Eigenvalue above which it is.
+    pub limit: f64,
+    /// Iterations before the first look at the spectrum.
+    pub from: usize,
+}
+
+/// What one run of the Krylov method did.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Iterations.
+    pub iterations: usize,
+    /// Why it stopped.
+    pub status: Status,
+    /// ‖r_n‖₂ for n = 0, 1, …
+    pub residuals: Vec<f64>,
+    /// The method's own estimate of the spectrum.
+    pub estimate: Option<Spectrum>,
+    /// Whether the run was broken off because of large eigenvalues that are to be deflated.
+    pub broken_off: bool,
+}
+
+impl Run {
+    fn nothing_to_do(residual: f64) -> Run {
+        Run {
+            iterations: 0,
+            status: Status::NothingToDo,
+            residuals: vec![residual],
+            estimate: None,
+            broken_off: false,
+        }
+    }
+
+    /// Whether rounding ended the run after the residual had become less than `part` of what it was.
+    pub fn broke_down(&self, part: f64) -> bool {
+        let ends = (self.residuals.first(), self.residuals.last());
+        let moved = matches!(ends, (Some(first), Some(last)) if *last < part * first);
+        let broken = matches!(&self.status, Status::Krylov(reason) if reason.broke_down());
+        broken && moved
+    }
+
+    /// This run, broken off, and the one that went on from it with another preconditioner: the spectrum is that of the latter.
+    pub fn followed_by(self, more: Run) -> Run {
+        let mut residuals = self.residuals;
+        residuals.extend(&more.residuals);
+        Run {
+            iterations: self.iterations + more.iterations,
+            residuals,
+            ..more
+        }
+    }
+
+    /// Adds a further run of the same method: the longest one knows the spectrum best. One that stalls has met the rounding of
+    /// the operator; what was reached before stands.
+    pub fn add(&mut self, more: Run) {
+        if more.iterations > self.iterations {
+            self.estimate = more.estimate;
+        }
+        self.iterations += more.iterations;
+        self.residuals.extend(more.residuals.iter().skip(1));
+        if more.status.converged() {
+            self.status = more.status;
+        }
+    }
+}
+
+/// Adds the Krylov method's correction to `lambda`; `residual` is Pᵀ r on entry. Collective.
+pub fn iterate(
+    method: &LinearMethod,
+    residual: &PetscVec,
+    lambda: &PetscVec,
+    control: &IterationControl,
+) -> Result<Run> {
+    let (system, ksp) = (method.system(), method.ksp());
+    // Once more: what the first projection of a large jump leaves behind by rounding is out of reach for the iteration, which
+    // would stall on it and go astray. Of the small residual that is left the second one leaves nothing to speak of.
+    system.dual().p_transpose(residual)?;
+    let nothing = (ROUNDING * control.size).max(control.tolerance);
+    let start = residual.norm2()?;
+    if start <= nothing {
+        return Ok(Run::nothing_to_do(start));
+    }
+    // What range W has of the solution is known at once, and what earlier directions have of it.
+    for known_part in [
+        super::system::System::deflated_part,
+        super::system::System::recycled_part,
+    ] {
+        known_part(system, residual, lambda)?;
+        let start = residual.norm2()?;
+        if start <= nothing {
+            return Ok(Run::nothing_to_do(start));
+        }
+    }
+    let start = residual.norm2()?;
+    let x = system.dual().multipliers()?;
+    let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
+    let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
+    ksp.record_residuals(max_it.min(100_000) + 1)?;
+    rtol_of(control.tolerance / start)?;
+    let counted = Start::now();
+    let solved = {
+        let _running = system.run(control.observed.then_some(lambda));
+        match control.watch {
+            Some(watch) if ksp.type_name()? == "cg" => {
+                let rest = NEARLY * control.tolerance;
+                ksp.solve_watched(residual, &x, watch.from, watch.limit, rest)
+            }
+            _ => ksp.solve(residual, &x).map(|()| false),
+        }
+    };
+    rtol_of(rtol)?;
+    let broken_off = solved?;
+    let iterations = ksp.iterations()?;
+    system.count(&counted.since(iterations));
+    system.dual().p(&x)?;
+    system.p2(&x)?;
+    lambda.axpy(1.0, &x)?;
+    Ok(Run {
+        iterations,
+        status: Status::Krylov(ksp.converged_reason()?),
+        residuals: ksp.residual_history()?,
+        estimate: estimate(ksp, iterations)?,
+        broken_off,
+    })
+}
+
+/// The ends of the spectrum by CG's Lanczos matrix. Other methods' singular values are not eigenvalues, and FCG of PETSc 3.18
+/// reads CG's data where it keeps its own.
+fn estimate(ksp: &Ksp, iterations: usize) -> Result<Option<Spectrum>> {
+    if ksp.type_name()? != "cg" || iterations == 0 {
+        return Ok(None);
+    }
+    let (lambda_max, lambda_min) = ksp.extreme_singular_values()?;
+    Ok((lambda_min > 0.0).then_some(Spectrum {
+        lambda_min,
+        lambda_max,
+    }))
+}

@@ -1,0 +1,51 @@
+//! Loads, condensed to the interfaces of the subdomains.
+//!
+//! ```text
+//!     g = f_Γ − K_ΓI K_II⁻¹ f_I,      e = Rᵀ g
+//! ```
+
+use crate::cholesky::lanes::LANES;
+use crate::feti::operators::dual::Dual;
+use crate::feti::projector::natural::KernelLoad;
+use crate::petsc::Session;
+use crate::substructures::Substructures;
+
+/// What the right-hand side of the dual problem is made of.
+pub struct Loads {
+    /// K_II⁻¹ f_I of each local subdomain, as
+    /// [`LocalProblem::condense`](crate::feti::subdomain::problem::LocalProblem) leaves it.
+    pub interiors: Vec<Vec<f64>>,
+    /// g of each local subdomain, length n_Γ.
+    pub g: Vec<Vec<f64>>,
+    /// e = Rᵀ g.
+    pub kernel: KernelLoad,
+    /// c on the owned rows in the place of the rows' own right-hand sides; `None`: their own.
+    pub jumps: Option<Vec<f64>>,
+}
+
+impl Loads {
+    /// Condenses the loads of the problem. Collective.
+    pub fn new(session: &Session, problem: &Substructures, dual: &Dual) -> Loads {
+        let f: Vec<&[f64]> = problem.local.iter().map(|s| &s.f[..]).collect();
+        Loads::of(session, dual, &f, None)
+    }
+
+    /// Condenses given loads, one vector for each local subdomain, to be met with jumps B u = `jumps` if these are given.
+    /// Collective.
+    pub fn of(session: &Session, dual: &Dual, f: &[&[f64]], jumps: Option<Vec<f64>>) -> Loads {
+        let stiffness = &dual.stiffness;
+        let batches = stiffness.batches(LANES);
+        let condensed = stiffness.by_batch(&batches, |locals, members| {
+            let loads: Vec<&[f64]> = members.iter().map(|&j| f[j]).collect();
+            locals[0].condense_many(&loads)
+        });
+        let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
+        let kernel = dual.natural.kernel_load(session.comm(), f, &g);
+        Loads {
+            interiors,
+            g,
+            kernel,
+            jumps,
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The way back from multipliers to displacements.
+//!
+//! ```text
+//!     u_Γ = S̃⁺(g − Bᵀ λ) + R α               u_I by back substitution
+//! ```
+
+use std::time::Instant;
+
+use super::certificate::{Certificate, Kkt};
+use super::iterate::Run;
+use super::loads::Loads;
+use super::residual::{Iterate, Residual};
+use crate::cholesky::lanes::LANES;
+use crate::feti::method::LinearMethod;
+use crate::feti::operators::dual::Dual;
+use crate::feti::spectrum::Spectrum;
+use crate::feti::subdomain::scaled::Local;
+use crate::status::Status;
+use crate::Result;
+
+/// What the linear method returns; vectors are this rank's part.
+#[derive(Debug, Clone)]
+pub struct LinearSolution {
+    /// Displacements of each local subdomain, by local dof; copies inside a body agree.
+    pub u: Vec<Vec<f64>>,
+    /// Multipliers of the rows that this rank owns.
+    pub lambda: Vec<f64>,
+    /// B u − c on these rows, those that do not hold included.
+    pub gaps: Vec<f64>,
+    /// Whether each of these rows holds, those included that follow from others that do.
+    pub active: Vec<bool>,
+    /// Krylov iterations.
+    pub iterations: usize,
+    /// Why the iterations stopped, or what the certificate says of their result.
+    pub status: Status,
+    /// ‖r_n‖₂ for n = 0, 1, …
+    pub residuals: Vec<f64>,
+    /// The Krylov method's own estimate of the spectrum.
+    pub estimate: Option<Spectrum>,
+    /// Optimality.
+    pub kkt: Kkt,
+    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c).
+    pub energy: f64,
+    /// Seconds of condensing, iterating.
+    pub solve_seconds: f64,
+    /// Seconds of the way back.
+    pub recover_seconds: f64,
+}
+
+impl LinearMethod {
+    /// The solution at `at`, whose displacements are those of its λ with the rigid motions, after this run. Collective.
+    pub(crate) fn recover(
+        &self,
+        mut at: Iterate,
+        run: Run,
+        solve_seconds: f64,
+    ) -> Result<LinearSolution> {
+        let clock = Instant::now();
+        let (session, dual) = (self.session(), self.dual());
+        let u = displacements(&dual, &at.loads, &mut at.residual)?;
+        let recover_seconds = clock.elapsed().as_secs_f64();
+        let certificate = Certificate::new(session, self.problem(), &dual, &u, &at.lambda)?;
+        Ok(LinearSolution {
+            u,
+            lambda: at.lambda.to_vec()?,
+            gaps: certificate.gaps,
+            active: dual.stiffness.jump.implied(),
+            iterations: run.iterations,
+            status: run.status,
+            residuals: run.residuals,
+            estimate: run.estimate,
+            kkt: certificate.kkt,
+            energy: certificate.energy,
+            solve_seconds,
+            recover_seconds,
+        })
+    }
+
+    /// Displacements of each local subdomain for the iterate that has been reached, to be asked for by a monitor of the
+    /// Krylov method; `None` where no iteration runs, or one that monitors may not look into. Costs about as much as an
+    /// iteration. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn current(&self) -> Result<Option<Vec<Vec<f64>>>> {
+        let (session, system) = (self.session(), self.system());
+        let Some(start) = system.start() else {
+            return Ok(None);
+        };
+        let dual = self.dual();
+        let loads = Loads::new(session, self.problem(), &dual);
+        let mut at = Iterate::new(&dual, loads)?;
+        self.ksp().current_solution(&at.lambda)?;
+        dual.p(&at.lambda)?;
+        system.p2(&at.lambda)?;
+        at.lambda.axpy(1.0, &start)?;
+        at.place(session, &dual)?;
+        displacements(&dual, &at.loads, &mut at.residual).map(Some)
+    }
+}
+
+/// u of every local subdomain from the y of `residual`, rigid motions included; y is changed.
+pub(super) fn displacements(
+    dual: &Dual,
+    loads: &Loads,
+    residual: &mut Residual,
+) -> Result<Vec<Vec<f64>>> {
+    let stiffness = &dual.stiffness;
+    // What is left of the jumps inside a body is averaged away: u ← u − B_D,locᵀ B_loc u.
+    let work = &mut residual.work;
+    let jump = &residual.r;
+    stiffness.jump_of(work, jump)?;
+    jump.array_mut()?[stiffness.jump.n_owned_local..].fill(0.0);
+    let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+    stiffness.dual_halo.fetch(jump, &mut ghost)?;
+    let columns = &stiffness.jump.columns;
+    stiffness.team.for_each(work, |j, w| {
+        columns[j].bd_transpose(&ghost, &mut w.v);
+        for (y, v) in w.y.iter_mut().zip(&w.v) {
+            *y -= v;
+        }
+    });
+    let work = &*work;
+    let batches = stiffness.batches(LANES);
+    Ok(stiffness.by_batch(&batches, |locals, members| {
+        let part = |&j: &usize| (&loads.interiors[j][..], &work[j].y[..]);
+        let parts: Vec<_> = members.iter().map(part).collect();
+        Local::recover_many(locals, &parts)
+    }))
+}

@@ -1,0 +1,160 @@
+//! Iterative refinement of whole solutions.
+//!
+//! S, T, Ψ and S_Π carry the rounding of their factorisations, which coefficients that jump inside subdomains, or supports of 1e-8, make large. K itself
+//! does not. What u and λ leave of the load is a problem with the same operators,
+//!
+//! ```text
+//!     r = f − K u − Bᵀ λ,    (du, dλ) solves it with load r and jumps c − B u,    u ← u + du,  λ ← λ + dλ
+//! ```
+//!
+//! and r is summed in twice the working precision. The set of rows that hold stays. Where more digits are asked for than [`TIGHT`], the first iteration
+//! stops there and corrections bring the others: a single iteration would stall on the rounding of the operators, or go astray.
+
+use super::certificate::{Certificate, Kkt};
+use super::iterate::{iterate, IterationControl};
+use super::loads::Loads;
+use super::recovery::{displacements, LinearSolution};
+use super::residual::Iterate;
+use crate::feti::method::LinearMethod;
+use crate::feti::operators::dual::Dual;
+use crate::linalg::csr::Csr;
+use crate::petsc::Vec as PetscVec;
+use crate::status::Status;
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// Tolerances below this ask for more than the operators may have.
+pub const TIGHT: f64 = 1e-9;
+
+/// A certificate above this many times the tolerance is refined.
+const WORTH: f64 = 10.0;
+
+/// A certificate above this many times such a tolerance has missed it.
+const MISSED: f64 = 1e4;
+
+/// A certificate below this misses nothing.
+const FLOOR: f64 = 1e-11;
+
+/// Above this, and a thousand times the tolerance, displacements are no solution yet.
+const FAR: f64 = 1e-3;
+
+/// Steps at most; each must halve the certificate at least.
+const STEPS: usize = 4;
+
+impl LinearMethod {
+    /// Refines a solution to the tolerance of the user, as far as that goes. Collective.
+    pub(crate) fn refine(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
+        let rtol = self.ksp().tolerances()?.0;
+        for _ in 0..STEPS {
+            let now = distance(&solution.kkt);
+            let asked = rtol < TIGHT && now > WORTH * rtol;
+            let far = solution.kkt.stationarity > FAR.max(1e3 * rtol);
+            if !solution.status.converged() || !(asked || far) {
+                break;
+            }
+            // No more digits than are missing; where the displacements are no solution yet, what is missing is not known.
+            let most = if far { 1e-2 } else { 0.3 };
+            let reduction = (rtol / now).clamp(1e-6, most);
+            match self.refined(&solution, reduction)? {
+                Some(better) => solution = better,
+                None => break,
+            }
+        }
+        let missed = distance(&solution.kkt) > (MISSED * rtol).max(FLOOR);
+        if solution.status.converged() && rtol < TIGHT && missed {
+            solution.status = Status::Refinement;
+        }
+        Ok(solution)
+    }
+
+    /// One step; `None` where it does not help. Collective.
+    fn refined(&self, solution: &LinearSolution, reduction: f64) -> Result<Option<LinearSolution>> {
+        let (session, problem, dual) = (self.session(), self.problem(), &*self.dual());
+        let lambda = dual.multipliers()?;
+        lambda.array_mut()?.copy_from_slice(&solution.lambda);
+        let (forces, jumps) = remainder(problem, dual, solution, &lambda)?;
+        let forces: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
+        let loads = Loads::of(session, dual, &forces, Some(jumps));
+        let mut at = Iterate::new(dual, loads)?;
+        at.balance(session, dual)?;
+        let first = at.evaluate_projected(session, dual)?;
+        let control = IterationControl::to(reduction * first, at.residual.size);
+        let run = iterate(self, &at.residual.r, &at.lambda, &control)?;
+        at.place(session, dual)?;
+        let du = displacements(dual, &at.loads, &mut at.residual)?;
+        let mut u = solution.u.clone();
+        for (u, du) in u.iter_mut().flatten().zip(du.iter().flatten()) {
+            *u += du;
+        }
+        lambda.axpy(1.0, &at.lambda)?;
+        let certificate = Certificate::new(session, problem, dual, &u, &lambda)?;
+        let better = distance(&certificate.kkt) < 0.5 * distance(&solution.kkt);
+        if !better {
+            return Ok(None);
+        }
+        Ok(Some(LinearSolution {
+            u,
+            lambda: lambda.to_vec()?,
+            gaps: certificate.gaps,
+            kkt: certificate.kkt,
+            energy: certificate.energy,
+            iterations: solution.iterations + run.iterations,
+            ..solution.clone()
+        }))
+    }
+}
+
+/// What refinement makes small.
+fn distance(kkt: &Kkt) -> f64 {
+    kkt.stationarity.max(kkt.feasibility)
+}
+
+/// r of every local subdomain, and what the rows still have to close. Collective.
+fn remainder(
+    problem: &Substructures,
+    dual: &Dual,
+    solution: &LinearSolution,
+    lambda: &PetscVec,
+) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
+    let stiffness = &dual.stiffness;
+    let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+    stiffness.dual_halo.fetch(lambda, &mut ghost)?;
+    let mut work = stiffness.work();
+    let mut forces = Vec::new();
+    for (j, (sub, w)) in problem.local.iter().zip(&mut work).enumerate() {
+        let interface = &stiffness.locals[j].interface;
+        stiffness.jump.columns[j].b_transpose(&ghost, &mut w.v);
+        let mut f = sub.f.clone();
+        for (&i, v) in interface.iter().zip(&w.v) {
+            f[i as usize] -= v;
+        }
+        forces.push(less_product(&sub.k, &solution.u[j], f));
+        for (y, &i) in w.y.iter_mut().zip(interface) {
+            *y = solution.u[j][i as usize];
+        }
+    }
+    let rows = dual.multipliers()?;
+    stiffness.jump_of(&work, &rows)?;
+    let jumps = rows.array()?;
+    let jumps = stiffness.jump.held.iter().zip(&*jumps).map(|(c, b)| c - b);
+    let jumps = jumps.collect();
+    Ok((forces, jumps))
+}
+
+/// f − K u, products and sums in twice the working precision.
+fn less_product(k: &Csr, u: &[f64], mut f: Vec<f64>) -> Vec<f64> {
+    for (i, f) in f.iter_mut().enumerate() {
+        let (col, val) = k.row(i);
+        let (mut sum, mut rest) = (*f, 0.0);
+        for (&j, &v) in col.iter().zip(val) {
+            let x = -u[j as usize];
+            let product = v * x;
+            let next = sum + product;
+            let part = next - sum;
+            rest += (sum - (next - part)) + (product - part) + v.mul_add(x, -product);
+            sum = next;
+        }
+        *f = sum + rest;
+    }
+    f
+}

@@ -1,0 +1,143 @@
+//! λ, the displacements that belong to it, and what is left of the jumps.
+//!
+//! ```text
+//!     y = S̃⁺(g − Bᵀ λ),      r = B y − c
+//! ```
+
+use super::loads::Loads;
+use crate::feti::operators::dual::Dual;
+use crate::feti::operators::stiffness::Work;
+use crate::parallel::exchange::{max_all, sum_all};
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::Result;
+
+/// A residual below this fraction of the displacements it was formed from is rounding: nothing is left to iterate on.
+pub const ROUNDING: f64 = 1e-14;
+
+/// Displacements that belong to a λ, and what is left of the jumps.
+pub struct Residual {
+    /// y = S̃⁺(g − Bᵀ λ) on every local subdomain.
+    pub work: Vec<Work>,
+    /// B y − c on the rows that hold, zero on the others.
+    pub r: PetscVec,
+    /// ‖y‖₂ over all ranks.
+    pub size: f64,
+}
+
+impl Residual {
+    /// Room for one.
+    pub fn new(dual: &Dual) -> Result<Residual> {
+        Ok(Residual {
+            work: dual.stiffness.work(),
+            r: dual.multipliers()?,
+            size: 0.0,
+        })
+    }
+
+    /// Computes it for `lambda`. Collective.
+    pub fn evaluate(
+        &mut self,
+        session: &Session,
+        dual: &Dual,
+        loads: &Loads,
+        lambda: &PetscVec,
+    ) -> Result<()> {
+        let stiffness = &dual.stiffness;
+        let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+        stiffness.dual_halo.fetch(lambda, &mut ghost)?;
+        let columns = &stiffness.jump.columns;
+        stiffness.team.for_each(&mut self.work, |j, w| {
+            columns[j].b_transpose(&ghost, &mut w.v); /*      v ← Bᵀ λ          */
+            for (v, g) in w.v.iter_mut().zip(&loads.g[j]) {
+                *v = g - *v; /*                               v ← g − v         */
+            }
+        });
+        stiffness.s_plus(&mut self.work)?; /*                 y ← S̃⁺ v          */
+        stiffness.jump_of(&self.work, &self.r)?; /*           r ← B y − c       */
+        {
+            let jump = &stiffness.jump;
+            let c = loads.jumps.as_ref().unwrap_or(&jump.held);
+            let mut r = self.r.array_mut()?;
+            for (r, (c, on)) in r.iter_mut().zip(c.iter().zip(&jump.active)) {
+                *r -= if *on { *c } else { 0.0 };
+            }
+        }
+        let mut norm = [self.work.iter().flat_map(|w| &w.y).map(|y| y * y).sum()];
+        sum_all(session.comm(), &mut norm);
+        self.size = norm[0].sqrt();
+        Ok(())
+    }
+
+    /// Largest |y| on this rank.
+    pub fn largest(&self) -> f64 {
+        let y = self.work.iter().flat_map(|w| &w.y);
+        y.fold(0.0, |a, y| a.max(y.abs()))
+    }
+
+    /// Largest |y| over all ranks. Collective.
+    pub fn length(&self, session: &Session) -> f64 {
+        let mut largest = [self.largest()];
+        max_all(session.comm(), &mut largest);
+        largest[0]
+    }
+
+    /// y ← y + R α for given α.
+    pub fn shift(&mut self, dual: &Dual, alpha: &[f64]) {
+        for (j, w) in self.work.iter_mut().enumerate() {
+            dual.natural.add_kernel(j, alpha, &mut w.y);
+        }
+    }
+
+    /// y ← y + R α with the rigid motions α that close the jumps of the rows that hold, as far as those allow. Collective.
+    pub fn add_rigid_motion(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+        let alpha = dual.natural.alpha(session.comm(), &self.r)?;
+        self.shift(dual, &alpha); /*                          y ← y + R α       */
+        Ok(())
+    }
+}
+
+/// λ on its way to the solution, for one load.
+pub struct Iterate {
+    /// The load.
+    pub loads: Loads,
+    /// λ.
+    pub lambda: PetscVec,
+    /// Displacements and jumps; they belong to λ where the last call says so.
+    pub residual: Residual,
+}
+
+impl Iterate {
+    /// λ = 0 for these loads.
+    pub fn new(dual: &Dual, loads: Loads) -> Result<Iterate> {
+        Ok(Iterate {
+            loads,
+            lambda: dual.multipliers()?,
+            residual: Residual::new(dual)?,
+        })
+    }
+
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): the forces on every floating body balance; λ₀ from λ = 0. Collective.
+    pub fn balance(&self, session: &Session, dual: &Dual) -> Result<()> {
+        let load = &self.loads.kernel;
+        dual.natural.balance(session.comm(), load, &self.lambda)
+    }
+
+    /// y and r of λ. Collective.
+    pub fn evaluate(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+        self.residual
+            .evaluate(session, dual, &self.loads, &self.lambda)
+    }
+
+    /// y of λ and Pᵀ r, whose norm is returned. Collective.
+    pub fn evaluate_projected(&mut self, session: &Session, dual: &Dual) -> Result<f64> {
+        self.evaluate(session, dual)?;
+        dual.p_transpose(&self.residual.r)?;
+        self.residual.r.norm2()
+    }
+
+    /// y of λ with the rigid motions that close the jumps, and r before these. Collective.
+    pub fn place(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+        self.evaluate(session, dual)?;
+        self.residual.add_rigid_motion(session, dual)
+    }
+}

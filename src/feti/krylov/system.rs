@@ -1,0 +1,248 @@
+//! The dual problem as the Krylov method works on it: A = Pᵀ P_2ᵀ F P and its preconditioner P_2 P M⁻¹ Pᵀ.
+//!
+//! The projector stands on both sides of both, so that every Krylov method, flexible or pipelined, left or right
+//! preconditioned, works in the space V = ker Gᵀ without knowing of it. P_2 is I as long as nothing is deflated.
+
+use std::cell::{Cell, Ref, RefCell, RefMut};
+
+use super::recycling::Recycle;
+use super::tally::Tally;
+use crate::feti::deflation::matrices::Matrices;
+use crate::feti::deflation::Deflation;
+use crate::feti::operators::dual::Dual;
+use crate::petsc::{Session, Vec as PetscVec};
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// F, M⁻¹, P, P_2, and the directions of earlier iterations.
+pub struct System {
+    session: Session,
+    dual: RefCell<Dual>,
+    /// P_2, where it is in use.
+    deflation: RefCell<Option<Deflation>>,
+    /// Directions of earlier iterations.
+    recycled: RefCell<Recycle>,
+    /// The iteration that runs now.
+    running: RefCell<Option<Running>>,
+    /// What the iterations have sent and how long they took.
+    tally: Cell<Tally>,
+    /// Buffers for projected copies.
+    x: PetscVec,
+    y: PetscVec,
+}
+
+/// An iteration at work: its directions are kept.
+struct Running {
+    /// The λ that it corrects, where a monitor may ask for the displacements.
+    start: Option<PetscVec>,
+}
+
+/// Ends the iteration when it goes.
+pub struct RunningGuard<'a>(&'a System);
+
+impl Drop for RunningGuard<'_> {
+    fn drop(&mut self) {
+        self.0.running.replace(None);
+    }
+}
+
+impl System {
+    /// The problem of `dual`, without deflation; `recycle` directions at most are kept from load to load. Collective.
+    pub fn new(session: &Session, dual: Dual, recycle: usize) -> Result<System> {
+        let x = dual.multipliers()?;
+        Ok(System {
+            session: session.clone(),
+            y: x.duplicate()?,
+            x,
+            dual: RefCell::new(dual),
+            deflation: RefCell::new(None),
+            recycled: RefCell::new(Recycle::new(recycle)),
+            running: RefCell::new(None),
+            tally: Cell::default(),
+        })
+    }
+
+    /// F, M⁻¹ and P.
+    pub fn dual(&self) -> Ref<'_, Dual> {
+        self.dual.borrow()
+    }
+
+    /// Changes Z^k to `active`, and P_2 with it. Returns the number of rows that changed over all ranks. Collective.
+    pub(crate) fn set_active(&self, problem: &Substructures, active: &[bool]) -> Result<usize> {
+        let (changed, renewed) = self.dual.borrow_mut().set_active(problem, active)?;
+        if let Some(deflation) = self.deflation.borrow_mut().as_mut().filter(|_| renewed) {
+            deflation.renew(&self.session, &self.dual())?;
+        }
+        Ok(changed)
+    }
+
+    /// Changes Z^k in B and B_D alone: see [`Dual::set_face`]. Collective.
+    pub(crate) fn set_face(&self, free: &[bool]) {
+        self.dual.borrow_mut().set_face(free);
+    }
+
+    /// Replaces the right-hand sides of the rows.
+    pub(crate) fn set_gaps(&self, gaps: &[f64]) {
+        self.dual.borrow_mut().stiffness.jump.set_gaps(gaps);
+    }
+
+    /// P_2, where it is in use.
+    pub fn deflation(&self) -> Ref<'_, Option<Deflation>> {
+        self.deflation.borrow()
+    }
+
+    /// P_2 to be changed. Directions belong to the operator as it was: they are forgotten.
+    pub(crate) fn change_deflation(&self) -> RefMut<'_, Option<Deflation>> {
+        self.recycled.borrow_mut().forget();
+        self.deflation.borrow_mut()
+    }
+
+    /// What the iterations of this rank have sent and how long they took.
+    pub fn tally(&self) -> Tally {
+        self.tally.get()
+    }
+
+    /// Adds iterations to the [`tally`](Self::tally).
+    pub(crate) fn count(&self, more: &Tally) {
+        let mut tally = self.tally.get();
+        tally.add(more);
+        self.tally.set(tally);
+    }
+
+    /// Says that an iteration runs as long as the guard lives, and what it corrects if monitors may know.
+    pub(crate) fn run(&self, start: Option<&PetscVec>) -> RunningGuard<'_> {
+        let start = start.cloned();
+        self.running.replace(Some(Running { start }));
+        RunningGuard(self)
+    }
+
+    /// What the running iteration corrects, where one runs that monitors may look into.
+    pub(crate) fn start(&self) -> Option<PetscVec> {
+        self.running.borrow().as_ref()?.start.clone()
+    }
+
+    fn p2_matrices(&self) -> Option<Ref<'_, Matrices>> {
+        let deflation = self.deflation.borrow();
+        Ref::filter_map(deflation, |d| d.as_ref()?.matrices()).ok()
+    }
+
+    /// x ← P_2 x for x in V. Collective.
+    pub fn p2(&self, x: &PetscVec) -> Result<()> {
+        match self.p2_matrices() {
+            Some(p2) => p2.project(&self.session, x),
+            None => Ok(()),
+        }
+    }
+
+    /// x ← P_2ᵀ x. Collective.
+    pub fn p2_transpose(&self, x: &PetscVec) -> Result<()> {
+        match self.p2_matrices() {
+            Some(p2) => p2.project_transpose(&self.session, x),
+            None => Ok(()),
+        }
+    }
+
+    /// λ ← λ + W (Wᵀ F W)⁺ Wᵀ r and r ← P_2ᵀ r, where something is deflated. Collective.
+    pub(crate) fn deflated_part(&self, residual: &PetscVec, lambda: &PetscVec) -> Result<()> {
+        if let Some(p2) = self.p2_matrices() {
+            // What is left in range F W stays there: the preconditioner does not see it. The second time removes the
+            // rounding of the first.
+            for _ in 0..2 {
+                p2.solve(&self.session, residual, lambda)?;
+                p2.project_transpose(&self.session, residual)?;
+                let natural = &self.dual().natural;
+                natural.project_transpose(self.session.comm(), residual)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// λ ← λ + x₀ and r ← r − A x₀ with what earlier iterations have left for the rows that hold. Collective.
+    pub(crate) fn recycled_part(&self, residual: &PetscVec, lambda: &PetscVec) -> Result<()> {
+        let mut recycled = self.recycled.borrow_mut();
+        let comm = self.session.comm();
+        let dual = self.dual();
+        recycled.fit(comm, &dual.stiffness.jump.active);
+        if recycled.is_empty() {
+            return Ok(());
+        }
+        recycled.begin(comm, residual, lambda)?;
+        dual.p_transpose(residual)
+    }
+
+    fn keep(&self, direction: &PetscVec, image: &PetscVec) -> Result<()> {
+        match *self.running.borrow() {
+            Some(_) => self.recycled.borrow_mut().keep(direction, image),
+            None => Ok(()),
+        }
+    }
+
+    /// y ← A x = Pᵀ P_2ᵀ F P x. Residuals that this makes have no part in range F W, where the preconditioner would not see it.
+    pub(super) fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let dual = self.dual();
+        if dual.natural.r == 0 {
+            dual.f(x, y)?;
+            self.p2_transpose(y)?;
+            return self.keep(x, y);
+        }
+        self.x.copy_from(x)?;
+        dual.p(&self.x)?; /*            x ← P x          */
+        dual.f(&self.x, y)?; /*         y ← F x          */
+        self.p2_transpose(y)?; /*       y ← P_2ᵀ y       */
+        dual.p_transpose(y)?; /*        y ← Pᵀ y         */
+        self.keep(&self.x, y)
+    }
+
+    /// y ← P_2 P M⁻¹ Pᵀ x for residuals x, which P_2ᵀ leaves as they are.
+    pub(super) fn precondition(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let dual = self.dual();
+        if dual.natural.r == 0 && self.deflation.borrow().is_none() {
+            return dual.m(x, y);
+        }
+        self.y.copy_from(x)?;
+        dual.p_transpose(&self.y)?; /*  x ← Pᵀ x         */
+        dual.m(&self.y, y)?; /*         y ← M⁻¹ x        */
+        dual.p(y)?; /*                  y ← P y          */
+        self.p2(y) /*                   y ← P_2 y        */
+    }
+
+    /// y ← Pᵀ P_2ᵀ F P_2 P x: what CG works with where a part is deflated.
+    pub(super) fn apply_deflated(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let dual = self.dual();
+        let inner = dual.multipliers()?;
+        inner.copy_from(x)?;
+        dual.p(&inner)?; /*             x ← P x          */
+        self.p2(&inner)?; /*            x ← P_2 x        */
+        dual.f(&inner, y)?; /*          y ← F x          */
+        self.p2_transpose(y)?; /*       y ← P_2ᵀ y       */
+        dual.p_transpose(y) /*          y ← Pᵀ y         */
+    }
+
+    /// y ← E x; E = Π P with the orthogonal projection Π onto range B, E P_2 E where something is deflated.
+    pub(super) fn to_range(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let dual = self.dual();
+        self.x.copy_from(x)?;
+        dual.p(&self.x)?;
+        dual.stiffness.range_projection(&self.x, y)?;
+        if self.deflation.borrow().is_some() {
+            self.p2(y)?;
+            self.x.copy_from(y)?;
+            dual.stiffness.range_projection(&self.x, y)?;
+        }
+        Ok(())
+    }
+
+    /// y ← Eᵀ x.
+    pub(super) fn to_range_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        let dual = self.dual();
+        if self.deflation.borrow().is_some() {
+            dual.stiffness.range_projection(x, &self.x)?;
+            self.p2_transpose(&self.x)?;
+            dual.p_transpose(&self.x)?;
+            dual.stiffness.range_projection(&self.x, y)?;
+        } else {
+            dual.stiffness.range_projection(x, y)?;
+        }
+        dual.p_transpose(y)
+    }
+}

@@ -1,0 +1,106 @@
+//! The linear method, set up for one problem. Which rows hold, Z^k, may change; nothing else does.
+
+use std::cell::Ref;
+use std::rc::Rc;
+
+use super::facts::Facts;
+use super::krylov::check;
+use super::krylov::system::System;
+use super::krylov::tally::{Communication, Tally};
+use super::operators::dual::Dual;
+use super::settings::MethodSettings;
+use crate::petsc::{Ksp, Session};
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// Operators, Krylov method and what the problem turned out to be.
+pub struct LinearMethod {
+    pub(super) session: Session,
+    pub(super) problem: Substructures,
+    pub(super) settings: MethodSettings,
+    pub(super) system: Rc<System>,
+    pub(super) ksp: Ksp,
+    pub(super) facts: Facts,
+    /// The largest ratio of coefficients inside a body.
+    pub(super) varies: f64,
+}
+
+impl LinearMethod {
+    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows (in the order in which this
+    /// rank provides them). Nothing is factored again.
+    ///
+    /// # Panics
+    /// If a length differs from what is there.
+    pub fn set_loads(&mut self, loads: Vec<Vec<f64>>, gaps: &[f64]) {
+        assert_eq!(loads.len(), self.problem.local.len());
+        assert_eq!(gaps.len(), self.problem.rows.len());
+        for (sub, f) in self.problem.local.iter_mut().zip(loads) {
+            assert_eq!(f.len(), sub.f.len());
+            sub.f = f;
+        }
+        for (row, &gap) in self.problem.rows.iter_mut().zip(gaps) {
+            row.gap = gap;
+        }
+        self.system.set_gaps(gaps);
+    }
+
+    /// Changes Z^k to `active` (one per owned row). Returns the number of rows that changed over all ranks. Collective.
+    pub(crate) fn set_active(&self, active: &[bool]) -> Result<usize> {
+        self.system.set_active(&self.problem, active)
+    }
+
+    /// The identities that the theory promises, each with its relative defect, which must be about rounding. Collective.
+    pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
+        check::identities(&self.session, &self.problem, &self.system)
+    }
+
+    /// The session.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &Substructures {
+        &self.problem
+    }
+
+    /// The settings in force, with options applied.
+    pub fn settings(&self) -> &MethodSettings {
+        &self.settings
+    }
+
+    /// The dual problem as the Krylov method works on it.
+    pub(crate) fn system(&self) -> &Rc<System> {
+        &self.system
+    }
+
+    /// F, M⁻¹ and P for the rows that hold.
+    pub fn dual(&self) -> Ref<'_, Dual> {
+        self.system.dual()
+    }
+
+    /// The Krylov solver of the dual problem.
+    pub fn ksp(&self) -> &Ksp {
+        &self.ksp
+    }
+
+    /// Facts about the problem.
+    pub fn facts(&self) -> &Facts {
+        &self.facts
+    }
+
+    /// What an iteration sends, over all iterations of the Krylov method so far; `None` where there were none. Collective.
+    pub fn communication(&self) -> Option<Communication> {
+        Communication::of(self.session.comm(), &self.system.tally())
+    }
+
+    /// What the iterations of this rank have sent and how long they took.
+    pub fn tally(&self) -> Tally {
+        self.system.tally()
+    }
+
+    /// The largest ratio of coefficients inside a body.
+    pub(super) fn varies(&self) -> f64 {
+        self.varies
+    }
+}

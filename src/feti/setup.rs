@@ -1,0 +1,273 @@
+//! From substructures to operators and a Krylov method: the set-up as an outline.
+
+use std::rc::Rc;
+use std::time::Instant;
+
+use mpi::traits::Communicator;
+
+use super::adaptive::constraints;
+use super::cost::{choice, variation};
+use super::facts::Facts;
+use super::interface::entities;
+use super::interface::sharing::Sharing;
+use super::jump::deluxe;
+use super::jump::operator::Jump;
+use super::jump::weights::weights;
+use super::krylov::shells;
+use super::krylov::system::System;
+use super::lifting::correction::Lifting;
+use super::method::LinearMethod;
+use super::operators::dual::Dual;
+use super::operators::preconditioner::Preconditioner;
+use super::operators::stiffness::Stiffness;
+use super::primal::coarse::PrimalProblem;
+use super::primal::refinement::{self, Refinement};
+use super::primal::space::PrimalSpace;
+use super::projector::natural::NaturalCoarse;
+use super::settings::{MethodSettings, PcType, Scaling};
+use super::subdomain::factor::{factor, no_factor};
+use super::subdomain::scaled::Local;
+use crate::parallel::clock::{self, Phase};
+use crate::parallel::halo::Halo;
+use crate::parallel::team::Team;
+use crate::petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
+use crate::substructures::{Subdomain, Substructures};
+use crate::{Error, Result};
+
+/// The residual may become this many times the first one before the iteration counts as divergent.
+const GROWTH: f64 = 1e12;
+
+/// Adaptive primal constraints of each body, and the seconds that they took.
+#[derive(Default)]
+struct Added {
+    constraints: Vec<usize>,
+    seconds: f64,
+}
+
+impl LinearMethod {
+    /// Factors, assembles the coarse problems and sets the Krylov method up. Collective.
+    ///
+    /// # Errors
+    /// Bad substructures, a body that nothing holds, or PETSc's own errors; the same on all ranks.
+    pub fn new(
+        session: &Session,
+        problem: Substructures,
+        settings: MethodSettings,
+    ) -> Result<LinearMethod> {
+        let clock = Instant::now();
+        let comm = session.comm();
+        session.agree(entities::check(&problem, settings.primal))?;
+        let weights = weights(&problem, &settings);
+        let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
+        drop(weights);
+        let mut jump = Jump::new(comm, &problem, &sharing); /*                B, B_D                 */
+        let mut team = Team::new(threads(session, &settings))?;
+        let kind = settings.pc_type.unwrap_or_else(|| {
+            choice::preconditioner(comm, &problem, &sharing, &jump, settings.coarse_functions())
+        });
+        let (locals, added) = subdomains(
+            session,
+            &problem,
+            &sharing,
+            &mut jump,
+            &team,
+            (kind, &settings),
+        )?; /* S, T, Ψ */
+        let varies = variation::varies(comm, &problem);
+        team.set_load(locals.iter().map(|l| l.n_delta.pow(2)).sum());
+        let stiffness = stiffness(
+            session,
+            &problem,
+            &sharing,
+            jump,
+            locals,
+            (team, varies, &settings),
+        )?; /* S̃⁺, F */
+        let lifting = match kind {
+            PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
+                let functions = settings.coarse_functions();
+                Lifting::new(session, &problem, &sharing, &stiffness, functions)
+                /* Z_c               */
+            })?,
+            _ => None,
+        };
+        let preconditioner = Preconditioner::new(
+            comm,
+            kind,
+            &problem,
+            &stiffness,
+            lifting,
+            settings.precision,
+        ); /* M⁻¹ */
+        let natural = clock::timed(Phase::NaturalSetup, || {
+            let projector = (settings.projector, varies);
+            let prefix = format!("{}gtg_", settings.prefix);
+            NaturalCoarse::new(
+                session,
+                &problem,
+                &stiffness,
+                &preconditioner,
+                projector,
+                &prefix,
+            )
+        })?; /*                                                                 G, P                   */
+        let dual = Dual::new(session, stiffness, preconditioner, natural)?;
+        let facts = Facts::new(comm, &dual);
+        let system = Rc::new(System::new(session, dual, settings.recycle)?);
+        let ksp = krylov(session, &system, &settings)?;
+        Ok(LinearMethod {
+            session: session.clone(),
+            problem,
+            settings,
+            system,
+            ksp,
+            facts: Facts {
+                adaptive_constraints: added.constraints,
+                adaptive_seconds: added.seconds,
+                setup_seconds: clock.elapsed().as_secs_f64(),
+                ..facts
+            },
+            varies,
+        })
+    }
+}
+
+/// Factors the subdomains of this rank, and adds the primal constraints that jumping coefficients ask for. Collective.
+fn subdomains(
+    session: &Session,
+    problem: &Substructures,
+    sharing: &Sharing,
+    jump: &mut Jump,
+    team: &Team,
+    (kind, settings): (PcType, &MethodSettings),
+) -> Result<(Vec<Local>, Added)> {
+    let comm = session.comm();
+    let factored = clock::timed(Phase::LocalSetup, || {
+        factor(session, problem, jump, team, settings, kind)
+    });
+    let mut locals = session.agree(factored)?;
+    for (j, local) in locals.iter().enumerate() {
+        jump.place(j, &local.interface);
+    }
+    if settings.scaling == Scaling::Deluxe {
+        deluxe::apply(comm, problem, sharing, jump, &locals);
+    }
+    let adapting = Instant::now();
+    let adaptive = settings.adaptive;
+    let added = constraints::find(comm, problem, sharing, jump, &locals, team, adaptive);
+    if added.iter().any(|&n| n > 0) {
+        let fails = |sub: &Subdomain, e| no_factor(problem, sub, e);
+        let renewed = constraints::constrain(problem, jump, locals, team, fails);
+        locals = session.agree(renewed)?;
+    }
+    let added = Added {
+        constraints: added,
+        seconds: adapting.elapsed().as_secs_f64(),
+    };
+    Ok((locals, added))
+}
+
+/// S̃⁺: the subdomains with the primal problem of their bodies. Collective.
+fn stiffness(
+    session: &Session,
+    problem: &Substructures,
+    sharing: &Sharing,
+    jump: Jump,
+    locals: Vec<Local>,
+    (team, varies, settings): (Team, f64, &MethodSettings),
+) -> Result<Stiffness> {
+    let comm = session.comm();
+    let mut space = PrimalSpace::new(comm, problem, sharing, &jump.averages, &locals);
+    let primal = clock::timed(Phase::PrimalSetup, || {
+        let prefix = format!("{}coarse_", settings.prefix);
+        PrimalProblem::new(session, &mut space, &team, &prefix)
+    })?;
+    let layout = PetscVec::mpi(session, jump.n_owned)?;
+    let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
+    let mut stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
+    if varies > refinement::PLAIN {
+        stiffness.refine(Refinement::new(problem, &stiffness.locals));
+    }
+    Ok(stiffness)
+}
+
+/// Threads of this rank. Collective.
+fn threads(session: &Session, settings: &MethodSettings) -> usize {
+    let wanted = settings.threads.unwrap_or_else(|| {
+        let neighbours = session.comm().split_shared(session.rank() as i32);
+        usual_threads(neighbours.size() as usize)
+    });
+    wanted.min(settings.local.most_threads().unwrap_or(wanted))
+}
+
+/// The cores of this machine divided among the ranks on it, no more than this rank is bound to.
+fn usual_threads(ranks: usize) -> usize {
+    let bound = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let online = std::fs::read_to_string("/sys/devices/system/cpu/online");
+    let cores = online.ok().and_then(|text| count(&text)).unwrap_or(bound);
+    (cores / ranks).clamp(1, bound)
+}
+
+/// How many numbers a list such as 0-3,8 names.
+fn count(list: &str) -> Option<usize> {
+    let ranges = list.trim().split(',').map(|range| {
+        let (low, high) = range.split_once('-').unwrap_or((range, range));
+        let (low, high): (usize, usize) = (low.parse().ok()?, high.parse().ok()?);
+        (high + 1).checked_sub(low)
+    });
+    ranges.sum()
+}
+
+/// CG on Pᵀ F P with P M⁻¹ Pᵀ, stopped by ‖r_n‖₂ / ‖r_0‖₂ as in the paper.
+fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> Result<Ksp> {
+    let a = shells::operator(session, system)?;
+    let ksp = Ksp::new(session, Comm::World)?;
+    ksp.set_operators(&a, &a)?;
+    // PETSc itself adds `ksp_` to this prefix. The PC gets another one: `pc_type` chooses among our M⁻¹, not among PETSc's PCs.
+    ksp.set_options_prefix(&settings.prefix)?;
+    ksp.set_type("cg")?;
+    ksp.set_norm_type(NormType::Unpreconditioned)?;
+    // ‖r‖₂ may grow by √κ and more before it falls; what does not converge ends at the largest number of iterations.
+    ksp.set_tolerances(Some(settings.rtol), None, Some(GROWTH), None)?;
+    ksp.set_compute_singular_values(true)?;
+    let pc = ksp.pc()?;
+    pc.set_shell("fetifeti", shells::preconditioner_shell(system))?;
+    pc.set_options_prefix(&format!("{}ksp_", settings.prefix))?;
+    ksp.set_from_options()?;
+    let rtol = ksp.tolerances()?.0;
+    if !(0.0..1.0).contains(&rtol) {
+        return Err(Error::input(format!(
+            "option -{}ksp_rtol is {rtol}, expected a number from 0 to below 1",
+            settings.prefix
+        )));
+    }
+    ksp.setup().map_err(|e| unfit_norm(e, &settings.prefix))?;
+    Ok(ksp)
+}
+
+/// Says what to do where a Krylov method cannot judge convergence by the norm that is set.
+fn unfit_norm(error: Error, prefix: &str) -> Error {
+    match error {
+        Error::Petsc { trace, .. } if trace.first().is_some_and(|t| t.contains("norm type")) => {
+            Error::input(format!(
+                "option -{prefix}ksp_type: {} (set -{prefix}ksp_norm_type to one that it supports, such as preconditioned)",
+                trace[0]
+            ))
+        }
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{count, usual_threads};
+
+    #[test]
+    fn ranks_share_the_cores_of_a_machine() {
+        assert_eq!(count("0-3,8\n"), Some(5));
+        assert_eq!(count("0"), Some(1));
+        assert_eq!(count("none"), None);
+        assert!(usual_threads(1) >= 1);
+        assert_eq!(usual_threads(1 << 20), 1);
+    }
+}

@@ -1,0 +1,75 @@
+//! What a solve returns.
+
+use crate::contact::{State, Step};
+use crate::feti::{Kkt, LinearSolution, Spectrum};
+use crate::status::Status;
+use crate::substructures::SolvedRow;
+
+/// The solution of a problem, with contact or without; vectors are this rank's part.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// Displacements of each local subdomain, by local dof; copies inside a body agree.
+    pub u: Vec<Vec<f64>>,
+    /// Multipliers of the rows that this rank owns.
+    pub lambda: Vec<f64>,
+    /// B u − c on these rows, those that do not hold included.
+    pub gaps: Vec<f64>,
+    /// Whether each of these rows holds at the end, those included that follow from others that do.
+    pub active: Vec<bool>,
+    /// Krylov iterations, of all steps of the contact loop.
+    pub iterations: usize,
+    /// Why it stopped; [`Solution::converged`] says whether everything reached its tolerance.
+    pub status: Status,
+    /// ‖r_n‖₂ for n = 0, 1, …; of the contact loop those of the last step that iterated.
+    pub residuals: Vec<f64>,
+    /// The Krylov method's own estimate of the spectrum, of the contact loop in the last step that iterated.
+    pub estimate: Option<Spectrum>,
+    /// Optimality.
+    pub kkt: Kkt,
+    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c).
+    pub energy: f64,
+    /// Seconds of condensing, iterating.
+    pub solve_seconds: f64,
+    /// Seconds of the way back.
+    pub recover_seconds: f64,
+    /// Steps of the contact loop; empty without inequalities.
+    pub steps: Vec<Step>,
+    rows: Vec<SolvedRow>,
+}
+
+impl Solution {
+    /// What the linear method has found, row by row too, at the end of these steps of the contact loop.
+    pub(crate) fn new(found: LinearSolution, rows: Vec<SolvedRow>, steps: Vec<Step>) -> Solution {
+        Solution {
+            u: found.u,
+            lambda: found.lambda,
+            gaps: found.gaps,
+            active: found.active,
+            iterations: found.iterations,
+            status: found.status,
+            residuals: found.residuals,
+            estimate: found.estimate,
+            kkt: found.kkt,
+            energy: found.energy,
+            solve_seconds: found.solve_seconds,
+            recover_seconds: found.recover_seconds,
+            steps,
+            rows,
+        }
+    }
+
+    /// Where the contact loop starts for other loads: the multipliers and the set of this solution.
+    pub fn warm_start(&self) -> State {
+        State::warm(&self.lambda, &self.active)
+    }
+
+    /// The rows between bodies that this rank provides, in its order: body, node, normal, gap, multiplier, pressure, state.
+    pub fn rows(&self) -> &[SolvedRow] {
+        &self.rows
+    }
+
+    /// Whether everything reached its tolerance.
+    pub fn converged(&self) -> bool {
+        self.status.converged()
+    }
+}

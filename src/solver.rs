@@ -1,0 +1,223 @@
+//! The front door: from substructures to a solver that can be asked for solutions and spectra.
+
+use std::cell::Ref;
+
+use crate::contact::{self, Step};
+use crate::feti::deflation::Cost;
+use crate::feti::krylov::solve::Judge;
+use crate::feti::operators::dual::Dual;
+use crate::feti::{Communication, Facts, LinearMethod, LinearSolution, Spectrum};
+use crate::petsc::{cite, Ksp, Session, Stage};
+use crate::settings::Settings;
+use crate::solution::Solution;
+use crate::substructures::{SolvedRow, Substructures};
+use crate::Result;
+
+const CITATION: &str = "@techreport{Lee2010,
+  author = {Jungho Lee},
+  title  = {Convergence analysis of a new domain decomposition method for a linearized contact problem},
+  institution = {Oak Ridge National Laboratory},
+  year   = {2010}
+}
+";
+
+/// The FETI-FETI solver of one problem: the linear method, and the contact loop around it.
+///
+/// ```no_run
+/// use fetifeti::{FetiFeti, Result, Scene, Session, Settings};
+///
+/// fn solve(session: &Session) -> Result<()> {
+///     let scene = Scene::load("examples/scenes/model_contact.toml")?;
+///     let mine = fetifeti::share(session, scene.n_subdomains());
+///     let problem = scene.substructures(&|s| mine.contains(&s))?;
+///     let solver = FetiFeti::new(session, problem, Settings::default())?;
+///     let solution = solver.solve()?;
+///     println!("{} after {} iterations", solution.status, solution.iterations);
+///     Ok(())
+/// }
+///
+/// fn main() -> std::process::ExitCode {
+///     fetifeti::run(solve)
+/// }
+/// ```
+pub struct FetiFeti {
+    method: LinearMethod,
+    settings: Settings,
+    solve_stage: Stage,
+}
+
+impl FetiFeti {
+    /// Factors, assembles the coarse problems and sets the Krylov method up. Collective.
+    ///
+    /// # Errors
+    /// Bad substructures, a body that nothing holds, or PETSc's own errors; the same on all ranks.
+    pub fn new(
+        session: &Session,
+        problem: Substructures,
+        settings: impl Into<Settings>,
+    ) -> Result<FetiFeti> {
+        cite(session, CITATION)?;
+        let stage = Stage::register(session, "FETI-FETI setup")?;
+        let _staged = stage.scope()?;
+        let settings = settings.into().with_options(session)?;
+        Ok(FetiFeti {
+            method: LinearMethod::new(session, problem, settings.method.clone())?,
+            settings,
+            solve_stage: Stage::register(session, "FETI-FETI solve")?,
+        })
+    }
+
+    /// Solves for the loads of the substructures: by the contact loop where rows are inequalities, at once where none is.
+    /// Collective.
+    ///
+    /// An iteration that stops early is no error here: look at [`Solution::status`].
+    ///
+    /// # Errors
+    /// A body that nothing holds or that is pushed away for ever, gaps that contradict each other; PETSc's own errors.
+    pub fn solve(&self) -> Result<Solution> {
+        self.solve_from(None, &mut |_, _| Ok(()))
+    }
+
+    /// The same without inequalities, for those who measure the solution themselves: whenever the tolerance is reached,
+    /// `enough` is asked for the factor by which the residual should fall further, and the iteration goes on from where it is
+    /// until it says `None`. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::solve`], and what `enough` returns.
+    pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
+        let _staged = self.solve_stage.scope()?;
+        let found = self.method.solve(Some(enough))?;
+        Ok(self.solution(found, Vec::new()))
+    }
+
+    /// The same from a given state of the contact loop, with a call after each of its steps. Without inequalities the
+    /// state is not used. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::solve`], and what `observe` returns.
+    pub fn solve_from(
+        &self,
+        start: Option<&contact::State>,
+        observe: &mut contact::Observer,
+    ) -> Result<Solution> {
+        let _staged = self.solve_stage.scope()?;
+        if self.facts().inequalities == 0 {
+            let found = self.method.solve(None)?;
+            return Ok(self.solution(found, Vec::new()));
+        }
+        let (found, steps) = contact::solve(&self.method, &self.settings.contact, start, observe)?;
+        Ok(self.solution(found, steps))
+    }
+
+    /// What was found, with the rows in the order in which the problem has them.
+    fn solution(&self, found: LinearSolution, steps: Vec<Step>) -> Solution {
+        let dual = self.dual();
+        let jump = &dual.stiffness.jump;
+        let multipliers = jump.in_given_order(&found.lambda);
+        let gaps = jump.in_given_order(&found.gaps);
+        let holds = jump.in_given_order(&found.active);
+        let values = multipliers.into_iter().zip(gaps).zip(holds);
+        let rows = self.problem().rows.iter().zip(values);
+        let rows = rows
+            .map(|(row, ((multiplier, gap), holds))| SolvedRow::new(row, multiplier, gap, holds));
+        Solution::new(found, rows.collect(), steps)
+    }
+
+    /// Displacements of each local subdomain for the iterate that has been reached, to be asked for by a monitor of
+    /// [`FetiFeti::ksp`] during a solve without inequalities; `None` where no iteration is running. Costs about as much as an
+    /// iteration. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn current(&self) -> Result<Option<Vec<Vec<f64>>>> {
+        self.method.current()
+    }
+
+    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows (in the order in which this
+    /// rank provides them). Nothing is factored again.
+    ///
+    /// # Panics
+    /// If a length differs from what is there.
+    pub fn set_loads(&mut self, loads: Vec<Vec<f64>>, gaps: &[f64]) {
+        self.method.set_loads(loads, gaps);
+    }
+
+    /// Finds what of the spectrum is above τ and deflates it from now on, whatever the iterations have shown; with all rows
+    /// that may hold. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn deflate(&self) -> Result<()> {
+        self.method.deflate()
+    }
+
+    /// What is deflated and what that has cost; `None` where nothing has been searched for.
+    pub fn deflated(&self) -> Option<Cost> {
+        self.method.deflated()
+    }
+
+    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Where a bound is asked for and
+    /// nothing has been deflated yet, that is done first. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and SLEPc's own.
+    pub fn spectrum(&self) -> Result<Option<Spectrum>> {
+        self.method.spectrum()
+    }
+
+    /// The same without deflation. Collective.
+    ///
+    /// # Errors
+    /// PETSc's and SLEPc's own.
+    pub fn plain_spectrum(&self) -> Result<Option<Spectrum>> {
+        self.method.plain_spectrum()
+    }
+
+    /// The identities that the theory promises, each with its relative defect, which must be about rounding. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
+        self.method.check()
+    }
+
+    /// What an iteration sends, over all iterations of the Krylov method so far; `None` where there were none. Collective.
+    pub fn communication(&self) -> Option<Communication> {
+        self.method.communication()
+    }
+
+    /// Facts about the problem.
+    pub fn facts(&self) -> &Facts {
+        self.method.facts()
+    }
+
+    /// The settings in force, with options applied.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &Substructures {
+        self.method.problem()
+    }
+
+    /// The session.
+    pub fn session(&self) -> &Session {
+        self.method.session()
+    }
+
+    /// The Krylov solver of the dual problem.
+    pub fn ksp(&self) -> &Ksp {
+        self.method.ksp()
+    }
+
+    /// The linear method inside.
+    pub fn method(&self) -> &LinearMethod {
+        &self.method
+    }
+
+    /// F, M⁻¹ and P for the rows that hold.
+    pub fn dual(&self) -> Ref<'_, Dual> {
+        self.method.dual()
+    }
+}

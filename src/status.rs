@@ -1,0 +1,85 @@
+//! How a solve ended.
+
+use std::fmt;
+
+use crate::petsc::ConvergedReason;
+
+/// Why a solve stopped. Displayed as PETSc names its reasons, such as `CONVERGED_RTOL`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Status {
+    /// The Krylov method's own reason.
+    Krylov(ConvergedReason),
+    /// The residual was within the tolerance before the first iteration.
+    NothingToDo,
+    /// The iteration converged, but refinement did not reach the digits that were asked for.
+    Refinement,
+    /// The iteration converged, but the displacements are far from equilibrium, or rows are far from holding.
+    Certificate,
+    /// The contact loop took as many steps as it may.
+    ContactSteps,
+}
+
+impl Status {
+    /// Whether everything reached its tolerance.
+    pub fn converged(&self) -> bool {
+        match self {
+            Status::Krylov(reason) => reason.converged(),
+            Status::NothingToDo => true,
+            Status::Refinement | Status::Certificate | Status::ContactSteps => false,
+        }
+    }
+
+    /// The number of PETSc's `KSPConvergedReason` that says the same, or the nearest of them: operators that have lost
+    /// their digits are a preconditioner that failed, too many contact steps are too many iterations.
+    pub fn number(&self) -> i32 {
+        match self {
+            Status::Krylov(reason) => reason.code,
+            Status::NothingToDo => ConvergedReason::RTOL,
+            Status::Refinement | Status::Certificate => ConvergedReason::PC_FAILED,
+            Status::ContactSteps => ConvergedReason::ITS,
+        }
+    }
+
+    /// The name, such as `CONVERGED_RTOL`.
+    pub fn name(&self) -> &str {
+        match self {
+            Status::Krylov(reason) => &reason.name,
+            Status::NothingToDo => "CONVERGED_NOTHING_TO_DO",
+            Status::Refinement => "DIVERGED_REFINEMENT",
+            Status::Certificate => "DIVERGED_CERTIFICATE",
+            Status::ContactSteps => "DIVERGED_CONTACT_ITS",
+        }
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_sign_of_what_happened() {
+        let krylov = |code, name: &str| {
+            let name = name.into();
+            Status::Krylov(ConvergedReason { code, name })
+        };
+        let all = [
+            (krylov(3, "CONVERGED_ATOL"), 3),
+            (krylov(-4, "DIVERGED_DTOL"), -4),
+            (Status::NothingToDo, 2),
+            (Status::Refinement, -11),
+            (Status::Certificate, -11),
+            (Status::ContactSteps, -3),
+        ];
+        for (status, number) in all {
+            assert_eq!(status.number(), number, "{status}");
+            assert_eq!(status.converged(), number > 0, "{status}");
+            assert_eq!(status.name().starts_with("CONVERGED"), number > 0);
+        }
+    }
+}
