@@ -220,8 +220,8 @@ impl<'a> ActiveSet<'a> {
 
         let comm = session.comm();
         let now = &self.state.active;
-        let n_local = method.dual().stiffness.jump.n_owned_local;
-        let (was, now) = (&self.state.before[n_local..], &now[n_local..]);
+        let rows = method.dual().stiffness.jump.rows_between_bodies();
+        let (was, now) = (&self.state.before[rows.clone()], &now[rows]);
         let mut counts = [
             count(was, now, |_, on| on),
             count(was, now, |was, on| on && !was),

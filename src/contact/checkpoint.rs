@@ -66,7 +66,7 @@ pub(super) fn blocks<'a>(
     jump: &'a Jump,
 ) -> impl Iterator<Item = (u64, Range<usize>)> + 'a {
     jump.blocks.iter().map(|block| {
-        let first = jump.order[block.rows.start - jump.n_owned_local];
+        let first = jump.given(block.rows.start);
         (problem.rows[first].block, block.rows.clone())
     })
 }
@@ -85,7 +85,8 @@ struct Chunk {
 /// Who owns which rows: known to rank 0.
 #[derive(Debug)]
 pub struct Layout {
-    n_owned_local: usize,
+    /// The owned rows of B_gl.
+    contact: Range<usize>,
     /// Z⁰ and whether it may change, on the owned rows.
     initial: Vec<bool>,
     inequality: Vec<bool>,
@@ -140,7 +141,7 @@ impl Layout {
         local.sort_unstable();
         contact.sort_unstable();
         Layout {
-            n_owned_local: jump.n_owned_local,
+            contact: jump.rows_between_bodies(),
             initial: jump.initial.clone(),
             inequality: jump.inequality.clone(),
             r: dual.natural.r,
@@ -155,7 +156,7 @@ impl Layout {
         // One word for each row's λ, one for each contact row's place in the two sets.
         let mut mine: Vec<u64> = state.lambda.iter().map(|l| l.to_bits()).collect();
         let sets = state.active.iter().zip(&state.before);
-        let sets = sets.skip(self.n_owned_local);
+        let sets = sets.skip(self.contact.start);
         mine.extend(sets.map(|(&now, &was)| u64::from(now) | u64::from(was) << 1));
         let received = to_first(session, mine);
         if session.rank() > 0 {
@@ -263,7 +264,7 @@ impl Layout {
         // Equations stay what they are.
         let set = |bit: u64| {
             let mut on = self.initial.clone();
-            for (r, word) in (self.n_owned_local..).zip(sets) {
+            for (r, word) in self.contact.clone().zip(sets) {
                 if self.inequality[r] {
                     on[r] = word >> bit & 1 == 1;
                 }

@@ -39,7 +39,7 @@ impl Rows {
         y: f64,
         pull: f64,
     ) -> Rows {
-        let contact = jump.n_owned_local..jump.n_owned;
+        let contact = jump.rows_between_bodies();
         // [largest jump left on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
         let mut largest = [0.0f64, 0.0, y, 0.0];
         for r in contact.clone().filter(|&r| jump.active[r]) {

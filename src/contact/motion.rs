@@ -70,7 +70,7 @@ pub fn check(
 fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (Dense, Vec<bool>) {
     // [free, n, (column, value) × n] of each direction
     let mut mine: Vec<Vec<u64>> = Vec::new();
-    for i in jump.n_owned_local..jump.n_owned {
+    for i in jump.rows_between_bodies() {
         if !jump.is_candidate(i) {
             continue;
         }
@@ -144,7 +144,8 @@ pub fn restore(
             });
             work.fold(f64::NEG_INFINITY, f64::max)
         };
-        let mine = (jump.n_owned_local..jump.n_owned)
+        let mine = jump
+            .rows_between_bodies()
             .filter(|&i| jump.is_candidate(i) && !active[i] && against(i) > 1e-8)
             .max_by(|&i, &j| score(i).total_cmp(&score(j)).then(j.cmp(&i)));
         let words = mine.map_or(vec![], |i| vec![score(i).to_bits()]);
@@ -194,7 +195,7 @@ pub fn settle(
         let least = tightest.entry(a).or_insert(f64::INFINITY);
         *least = least.min(b);
     };
-    for i in (jump.n_owned_local..jump.n_owned).filter(|&i| jump.inequality[i]) {
+    for i in jump.rows_between_bodies().filter(|&i| jump.inequality[i]) {
         let work = |v: &Vec<f64>| g.row(i).map(|(c, x)| x * v[c]).sum::<f64>();
         let a: Vec<f64> = motions.iter().map(work).collect();
         let largest = a.iter().fold(0.0f64, |m, x| m.max(x.abs()));

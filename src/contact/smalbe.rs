@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
         Ok(Search {
             x: x.collect(),
             fixed: all.iter().map(|on| !on).collect(),
-            contact: jump.n_owned_local..jump.n_owned,
+            contact: jump.rows_between_bodies(),
             a,
             b,
             size: size[0].sqrt(),

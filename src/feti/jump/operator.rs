@@ -95,7 +95,7 @@ pub struct Jump {
     /// Number of rows over all ranks, m.
     pub n_global: usize,
     /// How many of the owned rows (the first ones) tie subdomains inside a body; the others are rows of B_gl.
-    pub n_owned_local: usize,
+    pub(in crate::feti) n_owned_local: usize,
     /// Rows of B_loc over all ranks.
     pub n_local: usize,
     /// Global number of each ghost row, increasing.
@@ -116,7 +116,7 @@ pub struct Jump {
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
     /// For each owned row of B_gl, which of the rows that this rank provides it is.
-    pub order: Vec<usize>,
+    pub(in crate::feti) order: Vec<usize>,
     /// First owned local row of each local subdomain, and the end: a subdomain's rows are those of the dofs in which it is
     /// the lowest.
     pub local_start: Vec<usize>,
@@ -216,6 +216,16 @@ impl Jump {
         }
         self.held.clone_from(&self.gap);
         self.reconcile(|_| true);
+    }
+
+    /// The owned rows of B_gl; those before them tie subdomains inside a body.
+    pub fn rows_between_bodies(&self) -> std::ops::Range<usize> {
+        self.n_owned_local..self.n_owned
+    }
+
+    /// Which of the rows that this rank provides is the owned row `i` of B_gl.
+    pub fn given(&self, i: usize) -> usize {
+        self.order[i - self.n_owned_local]
     }
 
     /// What `owned` has for the owned rows of B_gl, in the order in which this rank provides them.
