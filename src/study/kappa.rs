@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::feti::settings::Adaptive;
 use crate::feti::{MethodSettings, PcType};
+use crate::mesh::contiguous_share;
 use crate::petsc::Session;
 use crate::report::tables::table::{Align, Table};
 use crate::scene::Scene;
@@ -146,7 +147,7 @@ pub fn grid(
     exact: bool,
 ) -> Result<Row> {
     let scene = Scene::parse("kappa.toml", &text(family, [bodies, subdomains, elements]))?;
-    let mine = crate::share(session, scene.n_subdomains());
+    let mine = contiguous_share(scene.n_subdomains(), session.size(), session.rank());
     let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
     let mut dofs = [problem.local.iter().map(|s| s.k.n() as f64).sum::<f64>()];
     crate::parallel::exchange::sum_all(session.comm(), &mut dofs);

@@ -8,6 +8,7 @@ use super::network::{self, Timing};
 use super::{IterationSeconds, SetupSeconds, Work};
 use crate::feti::krylov::tally::Communication;
 use crate::feti::MethodSettings;
+use crate::mesh::contiguous_share;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{max_all, min_all};
 use crate::parallel::meter::{memory, timed};
@@ -120,7 +121,7 @@ fn leave<T: Serialize>(session: &Session, file: &Path, record: &T) -> Result<()>
 fn solve(session: &Session, text: &str, repeats: usize) -> Result<SolveRecord> {
     let before = memory(session) / 1e6;
     let scene = session.agree(Scene::parse("scaling.toml", text))?;
-    let mine = crate::share(session, scene.n_subdomains());
+    let mine = contiguous_share(scene.n_subdomains(), session.size(), session.rank());
     let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
     let mut best: Option<SolveRecord> = None;
     for _ in 0..repeats.max(1) {

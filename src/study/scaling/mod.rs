@@ -9,6 +9,7 @@ mod measure;
 mod model;
 mod network;
 mod picture;
+mod points;
 mod predict;
 mod quantities;
 mod scenes;
@@ -19,6 +20,7 @@ pub use measure::run_task;
 pub use model::{Model, Modelled};
 pub use network::{Measured, Network, Timing};
 pub use picture::{figure, model_figure};
+pub use points::{Point, Problem, Series};
 pub use predict::{Limit, Prediction, Row, RANKS};
 pub use quantities::{IterationSeconds, SetupSeconds, Work};
 pub use tables::{points_csv, prediction_csv, text};
@@ -29,7 +31,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::baselines::launch::{Launcher, Workspace};
 use crate::petsc::{Options, Session};
-use crate::report::json::Communication;
 use crate::{Error, Result};
 use measure::{NetworkRecord, SolveRecord, Task, What};
 use model::Sent;
@@ -38,106 +39,6 @@ use scenes::Setup;
 
 /// α and β of a usual network between the nodes of a cluster: 1.5 µs, and 100 Gbit/s.
 const USUAL: [f64; 2] = [1.5e-6, 8e-11];
-
-/// What a run belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Series {
-    /// Ever more bodies of one size, on one rank.
-    Bodies,
-    /// Subdomains of other sizes, on one rank.
-    Elements,
-    /// One scene on ever more ranks.
-    Strong,
-    /// As many bodies as ever per rank.
-    Weak,
-    /// A body per rank, for the messages of one with eight neighbours.
-    Neighbours,
-}
-
-impl Series {
-    /// As tables say it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Series::Bodies => "bodies",
-            Series::Elements => "elements",
-            Series::Strong => "strong",
-            Series::Weak => "weak",
-            Series::Neighbours => "neighbours",
-        }
-    }
-}
-
-/// What is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Problem {
-    /// Poisson's equation on tied bodies.
-    Tied,
-    /// The model contact problem.
-    Contact,
-}
-
-impl Problem {
-    /// As tables say it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Problem::Tied => "tied",
-            Problem::Contact => "contact",
-        }
-    }
-}
-
-/// One run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Point {
-    /// What it belongs to.
-    pub series: Series,
-    /// What is solved.
-    pub problem: Problem,
-    /// MPI ranks.
-    pub ranks: usize,
-    /// More ranks than cores: messages are right, seconds are not.
-    pub oversubscribed: bool,
-    /// Whether the costs are fitted to it.
-    pub fitted: bool,
-    /// Bodies.
-    pub bodies: usize,
-    /// Those with a kernel.
-    pub floating_bodies: usize,
-    /// Subdomains over all bodies.
-    pub subdomains: usize,
-    /// Elements of a subdomain in each direction.
-    pub elements: usize,
-    /// Rows of B.
-    pub multipliers: usize,
-    /// Krylov iterations, in all contact steps.
-    pub iterations: usize,
-    /// Contact steps.
-    pub steps: usize,
-    /// κ by CG, of the last step.
-    pub kappa: Option<f64>,
-    /// Seconds of set-up, the slowest rank in each phase.
-    pub setup: SetupSeconds,
-    /// Seconds of an iteration, likewise; messages: of the rank that waits least.
-    pub iteration: IterationSeconds,
-    /// Seconds of a solve besides its iterations.
-    pub outside: f64,
-    /// Wall-clock seconds of set-up and of a solve.
-    pub total: [f64; 2],
-    /// Resident memory at the end, and before the scene was read, over all ranks, in MB.
-    pub memory_mb: [f64; 2],
-    /// Largest work of a rank.
-    pub work: Work,
-    /// What an iteration sends.
-    pub communication: Communication,
-    /// What the model says.
-    pub model: Modelled,
-    /// Modelled over measured seconds of set-up, minus one.
-    pub setup_deviation: f64,
-    /// The same for an iteration.
-    pub iteration_deviation: f64,
-}
 
 /// The study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
