@@ -92,6 +92,7 @@ mod assembled;
 pub mod baselines;
 #[allow(unsafe_code)]
 pub mod capi;
+pub mod checkpoint;
 pub mod cholesky;
 pub mod cli;
 pub mod contact;

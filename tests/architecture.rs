@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The doors, from the first to the last.
-const ORDER: [&str; 24] = [
+const ORDER: [&str; 25] = [
     "error",
     "linalg",
     "petsc",
@@ -28,6 +28,7 @@ const ORDER: [&str; 24] = [
     "capi",
     "assembled",
     "report",
+    "checkpoint",
     "baselines",
     "study",
     "cli",

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::args::Solve;
-use super::checkpoint::{Checkpoints, Resumed};
 use super::contact;
 use super::fields::Gathered;
+use crate::checkpoint::{Checkpoints, Resumed};
 use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;

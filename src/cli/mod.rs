@@ -2,7 +2,6 @@
 
 pub mod args;
 mod balance;
-mod checkpoint;
 mod coefficient;
 mod contact;
 mod course;

@@ -6,11 +6,11 @@ use std::time::Instant;
 
 use super::args::Solve;
 use super::balance;
-use super::checkpoint::Checkpoints;
 use super::contact;
 use super::course::{follow, Course};
 use super::fields::Gathered;
 use super::{maps, not_converged, physics, picture};
+use crate::checkpoint::Checkpoints;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::feti::{MethodSettings, PcType, Spectrum};
@@ -34,7 +34,13 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     let clock = Instant::now();
     let scene = distribution::load(session, &args.scene)?;
     prepare(session, args.out.as_deref(), args.json.as_deref())?;
-    let checkpoints = Checkpoints::new(session, args, &scene)?;
+    let checkpoints = Checkpoints::new(
+        session,
+        &args.scene,
+        &scene,
+        args.checkpoint.as_deref(),
+        args.resume.as_deref(),
+    )?;
     let start = Instant::now();
     let substructures = distribution::substructures(session, &scene)?;
     let assemble = start.elapsed().as_secs_f64();

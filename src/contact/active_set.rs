@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use super::settings::{ContactSettings, ContactType};
 use super::state::{Caution, Observer, State, Step};
-use super::{checkpoint, judge, motion};
+use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::{Iterate, Residual};
@@ -393,7 +393,8 @@ fn fingerprint(method: &LinearMethod, active: &[bool]) -> u64 {
         x ^ (x >> 31)
     };
     let mut mine = 0u64;
-    for (block, rows) in checkpoint::blocks(method.problem(), &method.dual().stiffness.jump) {
+    let jump = &method.dual().stiffness.jump;
+    for (block, rows) in jump.numbered_blocks(method.problem()) {
         let on = rows.enumerate().filter(|(_, r)| active[*r]);
         for (k, _) in on {
             mine = mine.wrapping_add(mix(mix(block + 1).wrapping_add(k as u64)));

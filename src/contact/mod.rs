@@ -11,7 +11,6 @@
 pub mod active_set;
 pub mod augmented;
 pub mod balance;
-pub mod checkpoint;
 mod cone;
 pub mod feasible;
 pub mod judge;

@@ -1,5 +1,7 @@
 //! Where the contact loop stands, and what its steps have done.
 
+use serde::{Deserialize, Serialize};
+
 use super::settings::ContactType;
 use crate::feti::jump::operator::Jump;
 use crate::feti::Spectrum;
@@ -33,7 +35,7 @@ pub struct Step {
 }
 
 /// Where the outer loop stands; enough to go on from. Vectors are this rank's part.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Multipliers of the owned rows.
     pub lambda: Vec<f64>,
@@ -84,7 +86,7 @@ impl State {
 }
 
 /// How carefully an active-set loop goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Caution {
     /// Loose inner tolerances while the set changes.
     Loose,
@@ -94,16 +96,6 @@ pub enum Caution {
     Single,
     /// And again: SMALBE takes over.
     Fallback,
-}
-
-impl Caution {
-    /// All of them, each at its number.
-    pub const ALL: [Caution; 4] = [
-        Caution::Loose,
-        Caution::Exact,
-        Caution::Single,
-        Caution::Fallback,
-    ];
 }
 
 /// Called after each outer step.

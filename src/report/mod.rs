@@ -15,7 +15,6 @@
 //! | [`paraview`] | VTU files, contact as point data, time series |
 //! | [`progress`] | the line that tells how far a contact solve is |
 
-pub mod checkpoint;
 pub mod destination;
 pub mod drawing;
 pub mod json;

@@ -6,8 +6,7 @@ use crate::support::{mpi, program};
 use std::fs;
 use std::path::Path;
 
-use fetifeti::contact::checkpoint::Checkpoint;
-use fetifeti::report::checkpoint::read;
+use fetifeti::checkpoint::{file::read, Checkpoint};
 use mpi::{Output, Scratch};
 use program::{fetifeti, run_fetifeti};
 use serde_json::Value;
@@ -315,8 +314,8 @@ fn bad_files_are_refused_and_stay() {
         &["damaged", &format!("{} bytes", n + 4)],
     );
     let mut older = good.clone();
-    older[20..24].copy_from_slice(&0u32.to_le_bytes());
-    resume(&older, &["format 0", "format 1"]);
+    older[20..24].copy_from_slice(&1u32.to_le_bytes());
+    resume(&older, &["format 1", "format 2"]);
     let foreign = fs::read(MODEL).expect("the scene");
     resume(&foreign, &["no checkpoint"]);
     assert_eq!(scratch.files().len(), 2, "{:?}", scratch.files());

@@ -4,6 +4,8 @@
 //! rank that provides a contact row owns that. A rank also sees *ghost* rows: all those that touch
 //! its subdomains. Entries are kept per subdomain on interface positions, B and B_D side by side.
 
+use std::ops::Range;
+
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
@@ -140,6 +142,17 @@ pub struct Jump {
 }
 
 impl Jump {
+    /// The blocks of the owned rows of B_gl: the number that the scene gave each, and its rows among the owned ones.
+    pub fn numbered_blocks<'a>(
+        &'a self,
+        problem: &'a Substructures,
+    ) -> impl Iterator<Item = (u64, Range<usize>)> + 'a {
+        self.blocks.iter().map(|block| {
+            let first = self.given(block.rows.start);
+            (problem.rows[first].block, block.rows.clone())
+        })
+    }
+
     /// Builds Z B and Z B_D with the rows that hold to begin with. Collective.
     pub fn new(comm: &SimpleCommunicator, problem: &Substructures, sharing: &Sharing) -> Jump {
         let rank = comm.rank() as u32;

@@ -1,21 +1,43 @@
-//! `--checkpoint FILE` and `--resume FILE` of `fetifeti solve`.
+//! Checkpoints of the contact loop: `--checkpoint FILE` and `--resume FILE` of `fetifeti solve`.
 //!
-//! A file says in which load step the run is, where the contact loop stands in it, and, in a text that is the caller's, what came before.
-//! It belongs to a scene, not to a run: ranks, tolerances and methods may be others.
+//! A file says in which load step the run is, where the contact loop stands in it, and what came before. It belongs to a scene,
+//! not to a run: ranks, tolerances and methods may be others.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | [`rows`] | takes the ranks out of a state and deals it out again |
+//! | [`file`] | writes a checkpoint and reads it, with all that a file on a disk needs |
+//! | this one | decides whether a checkpoint belongs to a scene, and goes on from it |
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::args::Solve;
-use crate::contact::checkpoint::{Checkpoint, Layout};
 use crate::contact::State;
-use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
-use crate::report::{checkpoint, output};
+use crate::report::output;
 use crate::scene::Scene;
 use crate::{Error, FetiFeti, Result};
+use rows::{GlobalState, Layout};
+
+pub mod file;
+pub mod rows;
+
+/// Everything that a run needs to go on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// Title of the scene, for messages.
+    pub title: String,
+    /// Fingerprint of the scene.
+    pub scene: u64,
+    /// The load step that is under way.
+    pub load_step: usize,
+    /// The [`Records`] of the time before this state, as JSON.
+    pub records: String,
+    /// Where the load step stands.
+    pub state: GlobalState,
+}
 
 /// What was asked for, checked before the work.
 pub struct Checkpoints {
@@ -77,14 +99,20 @@ impl Records {
 }
 
 impl Checkpoints {
-    /// Proves that the file can be written and reads the one to resume from. Collective.
+    /// Proves that `file` can be written and reads the one to resume from; `path` is the file of the scene. Collective.
     ///
     /// # Errors
     /// A scene without an outer loop, a place that cannot be written, a file that is no checkpoint of this scene.
-    pub fn new(session: &Session, args: &Solve, scene: &Scene) -> Result<Checkpoints> {
+    pub fn new(
+        session: &Session,
+        path: &Path,
+        scene: &Scene,
+        file: Option<&Path>,
+        resume: Option<&Path>,
+    ) -> Result<Checkpoints> {
         let mut out = Checkpoints {
-            file: args.checkpoint.clone(),
-            resume: args.resume.clone(),
+            file: file.map(Path::to_path_buf),
+            resume: resume.map(Path::to_path_buf),
             title: scene.title.clone(),
             scene: 0,
             found: None,
@@ -94,12 +122,14 @@ impl Checkpoints {
             return Ok(out);
         }
         let read = match session.rank() {
-            0 => out.read(&args.scene, scene),
+            0 => out.read(path, scene),
             _ => Ok(()),
         };
         session.agree(read)?;
         if out.resume.is_some() {
-            out.before = Some(share(session, out.found.as_ref()));
+            let before = out.found.as_ref().map(|c| (c.load_step, c.records.clone()));
+            let everywhere = before.map(|before| vec![before; session.size()]);
+            out.before = Some(rows::from_first(session, everywhere));
         }
         Ok(out)
     }
@@ -130,7 +160,7 @@ impl Checkpoints {
             output::prepare_file(file)?;
         }
         if let Some(file) = &self.resume {
-            let found = checkpoint::read(file)?;
+            let found = file::read(file)?;
             let name = file.display();
             if found.scene != self.scene {
                 return Err(Error::input(format!(
@@ -227,7 +257,7 @@ impl Attached {
                 records,
                 state,
             };
-            checkpoint::write(file, &content)
+            file::write(file, &content)
         };
         session.agree(layout.gather(session, state).map_or(Ok(()), write))
     }
@@ -240,31 +270,11 @@ fn fingerprint(text: &str) -> u64 {
             for key in ["title", "name", "options"] {
                 table.remove(key);
             }
-            checkpoint::hash(table.to_string().as_bytes())
+            file::hash(table.to_string().as_bytes())
         }
         // Not reached: the scene was read from this text.
-        Err(_) => checkpoint::hash(text.as_bytes()),
+        Err(_) => file::hash(text.as_bytes()),
     }
-}
-
-/// Load step and records from rank 0 to all. Collective.
-fn share(session: &Session, found: Option<&Checkpoint>) -> (usize, String) {
-    let mut words = Vec::new();
-    if let Some(found) = found {
-        words.push(found.load_step as u64);
-        words.extend(found.records.bytes().map(u64::from));
-    }
-    let outgoing = match session.rank() {
-        0 => vec![words; session.size()],
-        _ => vec![Vec::new(); session.size()],
-    };
-    let received = exchange_words(session.comm(), outgoing).swap_remove(0);
-    let (step, records) = received.split_first().expect("rank 0 has read a file");
-    let records: Vec<u8> = records.iter().map(|&b| b as u8).collect();
-    (
-        *step as usize,
-        String::from_utf8(records).expect("it was a text"),
-    )
 }
 
 #[cfg(test)]

@@ -1,0 +1,193 @@
+//! The file of a checkpoint.
+//!
+//! ```text
+//!     "fetifeti checkpoint\n"   version u32   length of the content u64   content   hash of all before u64
+//! ```
+//!
+//! The content is a [`Checkpoint`] in the postcard format; the numbers around it are little-endian. Nothing is believed before the file
+//! has the length that it announces and its hash is right. A file is replaced as a whole or not at all.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::Checkpoint;
+use crate::report::output;
+use crate::{Error, Result};
+
+const MAGIC: &[u8] = b"fetifeti checkpoint\n";
+/// Changes when the content or its meaning does.
+const VERSION: u32 = 2;
+/// Bytes in front of the content, and behind it.
+const HEAD: usize = MAGIC.len() + 4 + 8;
+const TAIL: usize = 8;
+
+/// Writes the file, atomically. To be called on one rank.
+///
+/// # Errors
+/// [`Error::Environment`] with the path; the old file is then untouched.
+pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
+    output::write_durably(path, &to_bytes(checkpoint))
+}
+
+/// Reads a file. To be called on one rank.
+///
+/// # Errors
+/// [`Error::Input`] with the path, what was found and what was expected, for anything but a whole checkpoint of this version.
+pub fn read(path: &Path) -> Result<Checkpoint> {
+    let name = path.display();
+    let refused = |e| Error::input(format!("{name}: the checkpoint cannot be read: {e}"));
+    let mut file = File::open(path).map_err(refused)?;
+    let mut bytes = Vec::new();
+    let mut start = (&mut file).take(MAGIC.len() as u64);
+    start.read_to_end(&mut bytes).map_err(refused)?;
+    // What is no checkpoint may be of any size.
+    if MAGIC.starts_with(&bytes) {
+        file.read_to_end(&mut bytes).map_err(refused)?;
+    }
+    from_bytes(&bytes).map_err(|what| Error::input(format!("{name}: {what}")))
+}
+
+/// FNV-1a: differs for sure where one byte does.
+pub(super) fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &byte| {
+        (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+fn to_bytes(checkpoint: &Checkpoint) -> Vec<u8> {
+    let content = postcard::to_allocvec(checkpoint).expect("numbers, texts and lists have a form");
+    let mut file = Vec::with_capacity(HEAD + content.len() + TAIL);
+    file.extend(MAGIC);
+    file.extend(VERSION.to_le_bytes());
+    file.extend((content.len() as u64).to_le_bytes());
+    file.extend(content);
+    file.extend(hash(&file).to_le_bytes());
+    file
+}
+
+fn from_bytes(file: &[u8]) -> std::result::Result<Checkpoint, String> {
+    let found = file.len();
+    if !file.starts_with(&MAGIC[..found.min(MAGIC.len())]) {
+        return Err("the file is no checkpoint, expected one that --checkpoint has written".into());
+    }
+    if found < HEAD {
+        return Err(format!(
+            "the checkpoint is truncated: {found} bytes, expected at least {}",
+            HEAD + TAIL
+        ));
+    }
+    let number = |bytes: &[u8]| {
+        let places = bytes.iter().rev();
+        places.fold(0u64, |n, &byte| n << 8 | u64::from(byte))
+    };
+    let version = number(&file[MAGIC.len()..MAGIC.len() + 4]);
+    if version != u64::from(VERSION) {
+        return Err(format!(
+            "the checkpoint has format {version}, expected format {VERSION}, which this version of fetifeti reads"
+        ));
+    }
+    let wanted = number(&file[MAGIC.len() + 4..HEAD]).saturating_add((HEAD + TAIL) as u64);
+    if wanted != found as u64 {
+        let longer = wanted < found as u64;
+        let state = if longer { "damaged" } else { "truncated" };
+        return Err(format!(
+            "the checkpoint is {state}: {found} bytes, expected {wanted}"
+        ));
+    }
+    let (whole, tail) = file.split_at(found - TAIL);
+    let (here, written) = (hash(whole), number(tail));
+    if here != written {
+        return Err(format!(
+            "the checkpoint is damaged: checksum {here:016x}, expected {written:016x}"
+        ));
+    }
+    match postcard::take_from_bytes::<Checkpoint>(&whole[HEAD..]) {
+        Ok((checkpoint, [])) if checkpoint.state.is_consistent() => Ok(checkpoint),
+        _ => Err(
+            "the checkpoint contradicts itself, expected one that --checkpoint has written".into(),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::GlobalState;
+    use super::*;
+    use crate::contact::Caution;
+
+    fn example() -> Checkpoint {
+        Checkpoint {
+            title: "Ein Körper".into(),
+            scene: 0x1234_5678_9abc_def0,
+            load_step: 3,
+            records: "{\"steps\": [1, 2]}".into(),
+            state: GlobalState {
+                local: vec![2, 0, 1],
+                blocks: vec![(7, 2), (40, 1)],
+                lambda: vec![0.5, -1e-300, f64::MAX, 3.0, 0.0, -0.0],
+                active: vec![true, false, true],
+                before: vec![true, true, false],
+                reference: 0.1,
+                steps: 12,
+                visited: vec![u64::MAX, 5],
+                caution: Caution::Single,
+                mu: vec![-2.5],
+            },
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let c = example();
+        assert_eq!(from_bytes(&to_bytes(&c)), Ok(c));
+    }
+
+    #[test]
+    fn every_damage_is_found() {
+        let bytes = to_bytes(&example());
+        for n in 0..bytes.len() {
+            let message = from_bytes(&bytes[..n]).expect_err("too short");
+            assert!(message.contains("truncated"), "{n}: {message}");
+        }
+        for at in 0..bytes.len() {
+            for bit in 0..8 {
+                let mut bad = bytes.clone();
+                bad[at] ^= 1 << bit;
+                assert!(from_bytes(&bad).is_err(), "byte {at}, bit {bit}");
+            }
+        }
+        let longer = [&bytes[..], b"x"].concat();
+        assert!(from_bytes(&longer)
+            .expect_err("too long")
+            .contains("damaged"));
+    }
+
+    #[test]
+    fn contents_that_contradict_themselves_are_refused() {
+        let wrong: [fn(&mut GlobalState); 4] = [
+            |s| s.local[0] = u64::MAX,
+            |s| s.blocks[0].1 = 1,
+            |s| s.lambda.truncate(5),
+            |s| s.before.truncate(2),
+        ];
+        for change in wrong {
+            let mut c = example();
+            change(&mut c.state);
+            let message = from_bytes(&to_bytes(&c)).expect_err("wrong counts");
+            assert!(message.contains("contradicts itself"), "{message}");
+        }
+        // A right hash around a content that announces a list of 2⁶³ numbers.
+        let content = [&[0, 0, 0, 0][..], &[0xff; 9], &[0x7f]].concat();
+        let mut file = [
+            MAGIC,
+            &VERSION.to_le_bytes(),
+            &(content.len() as u64).to_le_bytes(),
+            &content,
+        ]
+        .concat();
+        file.extend(hash(&file).to_le_bytes());
+        let message = from_bytes(&file).expect_err("no such list");
+        assert!(message.contains("contradicts itself"), "{message}");
+    }
+}
