@@ -3,7 +3,7 @@
 //!
 //! The font is DejaVu Sans, carried inside the program: a picture looks the same on every machine.
 
-use ab_glyph::{Font, FontRef, ScaleFont};
+use ab_glyph::{Font, FontRef, GlyphId};
 use std::sync::OnceLock;
 
 /// A position in logical pixels, y downwards.
@@ -44,6 +44,17 @@ pub enum Anchor {
     End,
 }
 
+impl Anchor {
+    /// The share of a text's width that lies before its anchor.
+    pub(super) fn share(self) -> f64 {
+        match self {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5,
+            Anchor::End => 1.0,
+        }
+    }
+}
+
 /// How a text is set. In the text `_{...}` is a subscript and `^{...}` a superscript.
 #[derive(Debug, Clone, Copy)]
 pub struct TextStyle {
@@ -68,6 +79,14 @@ impl TextStyle {
             anchor,
             bold: false,
             upwards: false,
+        }
+    }
+
+    /// Bold ink-coloured text around its position: a title.
+    pub fn title(size: f64) -> Self {
+        TextStyle {
+            bold: true,
+            ..TextStyle::new(size, Anchor::Middle)
         }
     }
 }
@@ -99,11 +118,9 @@ pub(super) fn font(bold: bool) -> &'static FontRef<'static> {
 /// Height of the capital letters of DejaVu Sans over its em (1493 of 2048 font units).
 pub(super) const CAP_HEIGHT: f64 = 0.729;
 
-/// ab_glyph scales by ascent plus descent, everybody else by the em.
-pub(super) fn px_scale(size: f64, bold: bool) -> f32 {
-    let font = font(bold);
-    let em = font.units_per_em().unwrap_or(2048.0);
-    (size as f32) * font.height_unscaled() / em
+/// Font units per em.
+pub(super) fn em(bold: bool) -> f64 {
+    f64::from(font(bold).units_per_em().unwrap_or(2048.0))
 }
 
 /// A piece of a text in one size: its characters, its size and how far its baseline is raised.
@@ -143,20 +160,25 @@ pub(super) fn runs(text: &str, size: f64) -> Vec<Run> {
     out
 }
 
-/// Width of a run in logical pixels.
-pub(super) fn run_width(run: &Run, bold: bool) -> f64 {
-    let font = font(bold).as_scaled(px_scale(run.size, bold));
-    let mut width = 0.0;
-    let mut last = None;
+/// The glyphs of a run with their places behind its start, and its width, in logical pixels.
+pub(super) fn glyphs(run: &Run, bold: bool) -> (Vec<(GlyphId, f64)>, f64) {
+    let (font, unit) = (font(bold), run.size / em(bold));
+    let mut out: Vec<(GlyphId, f64)> = Vec::new();
+    let mut x = 0.0;
     for c in run.text.chars() {
         let id = font.glyph_id(c);
-        if let Some(last) = last {
-            width += font.kern(last, id);
+        if let Some((last, _)) = out.last() {
+            x += unit * f64::from(font.kern_unscaled(*last, id));
         }
-        width += font.h_advance(id);
-        last = Some(id);
+        out.push((id, x));
+        x += unit * f64::from(font.h_advance_unscaled(id));
     }
-    f64::from(width)
+    (out, x)
+}
+
+/// Width of a run in logical pixels.
+pub(super) fn run_width(run: &Run, bold: bool) -> f64 {
+    glyphs(run, bold).1
 }
 
 /// Width of a text in logical pixels.

@@ -1,33 +1,28 @@
-//! A canvas of pixels with exact-area anti-aliasing, written as PNG.
+//! A canvas of pixels, rasterised by tiny-skia and written as PNG.
 
-use super::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use super::canvas::{self, Canvas, Colour, Point, TextStyle};
 use crate::report::output;
 use crate::Result;
-use ab_glyph::{Font, ScaleFont};
-use ab_glyph_rasterizer::{point, Rasterizer};
+use ab_glyph::{Font, OutlineCurve};
 use std::path::Path;
+use tiny_skia::{
+    FillRule, LineJoin, Paint, PathBuilder, Pixmap, PremultipliedColorU8, Stroke, StrokeDash,
+    Transform,
+};
 
 /// Pixels in RGB, drawn on in logical pixels of `scale` × `scale` real ones.
 pub struct Raster {
-    width: usize,
-    height: usize,
     scale: f64,
-    pixels: Vec<u8>,
+    pixels: Pixmap,
 }
 
 impl Raster {
     /// A white canvas of width × height logical pixels.
     pub fn new(width: f64, height: f64, scale: f64) -> Self {
-        let (w, h) = (
-            (width * scale).ceil() as usize,
-            (height * scale).ceil() as usize,
-        );
-        Raster {
-            width: w,
-            height: h,
-            scale,
-            pixels: vec![255; 3 * w * h],
-        }
+        let [width, height] = [width, height].map(|x| (x * scale).ceil().max(1.0) as u32);
+        let mut pixels = Pixmap::new(width, height).expect("a picture fits into the memory");
+        pixels.fill(tiny_skia::Color::WHITE);
+        Raster { scale, pixels }
     }
 
     /// Real pixels per logical pixel.
@@ -37,21 +32,22 @@ impl Raster {
 
     /// Size in real pixels: width, height.
     pub fn size(&self) -> (usize, usize) {
-        (self.width, self.height)
+        (self.pixels.width() as usize, self.pixels.height() as usize)
     }
 
     /// Sets one real pixel; what lies outside is ignored.
-    pub fn set(&mut self, x: usize, y: usize, colour: Colour) {
-        if x < self.width && y < self.height {
-            let at = 3 * (y * self.width + x);
-            self.pixels[at..at + 3].copy_from_slice(&[colour.0, colour.1, colour.2]);
+    pub fn set(&mut self, x: usize, y: usize, Colour(r, g, b): Colour) {
+        let (width, height) = self.size();
+        if x < width && y < height {
+            let opaque = PremultipliedColorU8::from_rgba(r, g, b, u8::MAX);
+            self.pixels.pixels_mut()[y * width + x] = opaque.expect("nothing exceeds full opacity");
         }
     }
 
     /// One real pixel.
     pub fn get(&self, x: usize, y: usize) -> Colour {
-        let at = 3 * (y * self.width + x);
-        Colour(self.pixels[at], self.pixels[at + 1], self.pixels[at + 2])
+        let pixel = self.pixels.pixels()[y * self.size().0 + x];
+        Colour(pixel.red(), pixel.green(), pixel.blue())
     }
 
     /// Writes the picture as PNG.
@@ -60,247 +56,162 @@ impl Raster {
     /// [`crate::Error::Environment`] with the path.
     pub fn write_png(&self, path: &Path) -> Result<()> {
         output::write_file(path, |out| {
-            let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
+            let mut encoder = png::Encoder::new(out, self.pixels.width(), self.pixels.height());
             encoder.set_color(png::ColorType::Rgb);
-            encoder.set_depth(png::BitDepth::Eight);
+            let opaque = self.pixels.data().chunks_exact(4);
+            let rgb: Vec<u8> = opaque.flat_map(|p| [p[0], p[1], p[2]]).collect();
             let mut writer = encoder.write_header().map_err(std::io::Error::other)?;
             writer
-                .write_image_data(&self.pixels)
+                .write_image_data(&rgb)
                 .map_err(std::io::Error::other)?;
             writer.finish().map_err(std::io::Error::other)
         })
     }
 
-    fn blend(&mut self, x: i64, y: i64, colour: Colour, coverage: f32) {
-        if x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64 {
-            return;
-        }
-        let at = 3 * (y as usize * self.width + x as usize);
-        let c = coverage.clamp(0.0, 1.0);
-        for (pixel, ink) in self.pixels[at..at + 3]
-            .iter_mut()
-            .zip([colour.0, colour.1, colour.2])
-        {
-            *pixel = (f32::from(*pixel) * (1.0 - c) + f32::from(ink) * c).round() as u8;
+    /// Fills closed curves; what has no extent or is not finite is left out.
+    fn fill(&mut self, path: PathBuilder, colour: Colour) {
+        if let Some(path) = path.finish() {
+            let (paint, transform) = (paint(colour), self.transform());
+            self.pixels
+                .fill_path(&path, &paint, FillRule::Winding, transform, None);
         }
     }
 
-    /// Fills the union of convex polygons of equal orientation, given in real pixels.
-    fn fill(&mut self, shapes: &[Vec<Point>], colour: Colour) {
-        let corners = || shapes.iter().flatten();
-        let low = corners().fold((f64::MAX, f64::MAX), |m, p| (m.0.min(p.0), m.1.min(p.1)));
-        let high = corners().fold((f64::MIN, f64::MIN), |m, p| (m.0.max(p.0), m.1.max(p.1)));
-        if !(low.0 <= high.0
-            && low.0.is_finite()
-            && high.0.is_finite()
-            && low.1.is_finite()
-            && high.1.is_finite())
-        {
-            return;
-        }
-        // Only the part inside the picture is rasterised; shapes far outside must not cost memory.
-        let (x0, y0) = (low.0.floor().max(-8.0), low.1.floor().max(-8.0));
-        let (x1, y1) = (
-            high.0.ceil().min(self.width as f64 + 8.0),
-            high.1.ceil().min(self.height as f64 + 8.0),
-        );
-        if x1 <= x0 || y1 <= y0 {
-            return;
-        }
-        let (w, h) = ((x1 - x0) as usize + 2, (y1 - y0) as usize + 2);
-        let mut rasterizer = Rasterizer::new(w, h);
-        let inside = |p: &Point| {
-            point(
-                (p.0.clamp(x0, x1) - x0) as f32,
-                (p.1.clamp(y0, y1) - y0) as f32,
-            )
-        };
-        for shape in shapes {
-            for (k, p) in shape.iter().enumerate() {
-                rasterizer.draw_line(inside(p), inside(&shape[(k + 1) % shape.len()]));
-            }
-        }
-        rasterizer.for_each_pixel_2d(|x, y, c| {
-            if c > 0.002 {
-                self.blend(
-                    x0 as i64 + i64::from(x),
-                    y0 as i64 + i64::from(y),
-                    colour,
-                    c,
-                );
-            }
-        });
-    }
-
-    fn scaled(&self, points: &[Point]) -> Vec<Point> {
-        points
-            .iter()
-            .map(|p| (p.0 * self.scale, p.1 * self.scale))
-            .collect()
+    /// From logical to real pixels.
+    fn transform(&self) -> Transform {
+        Transform::from_scale(self.scale as f32, self.scale as f32)
     }
 }
 
-/// Reverses a polygon where needed so that all have the same orientation.
-fn oriented(mut polygon: Vec<Point>) -> Vec<Point> {
-    let n = polygon.len();
-    let area: f64 = (0..n)
-        .map(|k| {
-            let (a, b) = (polygon[k], polygon[(k + 1) % n]);
-            a.0 * b.1 - b.0 * a.1
-        })
-        .sum();
-    if area < 0.0 {
-        polygon.reverse();
+/// Calls `visit` with the pixels of a picture whose centres lie in the triangle p, and with a and b of p₀ + a (p₁ − p₀) + b (p₂ − p₀),
+/// the centre. For fields of many small cells, which are coloured pixel by pixel.
+pub fn triangle(
+    p: [[f64; 2]; 3],
+    (width, height): (usize, usize),
+    mut visit: impl FnMut(usize, usize, f64, f64),
+) {
+    let edge = |k: usize, d: usize| p[k][d] - p[0][d];
+    let det = edge(1, 0) * edge(2, 1) - edge(2, 0) * edge(1, 1);
+    if det == 0.0 || !det.is_finite() {
+        return;
     }
-    polygon
+    let bound = |d: usize, limit: usize| {
+        let low = p[0][d].min(p[1][d]).min(p[2][d]) - 0.5;
+        let high = p[0][d].max(p[1][d]).max(p[2][d]) - 0.5;
+        let end = (high.floor().max(-1.0) + 1.0).min(limit as f64);
+        (low.ceil().max(0.0) as usize, end as usize)
+    };
+    let ((x0, x1), (y0, y1)) = (bound(0, width), bound(1, height));
+    for y in y0..y1 {
+        for x in x0..x1 {
+            let (dx, dy) = (x as f64 + 0.5 - p[0][0], y as f64 + 0.5 - p[0][1]);
+            let a = (dx * edge(2, 1) - dy * edge(2, 0)) / det;
+            let b = (dy * edge(1, 0) - dx * edge(1, 1)) / det;
+            // The slack closes the seams between triangles.
+            if a >= -1e-9 && b >= -1e-9 && a + b <= 1.0 + 1e-9 {
+                visit(x, y, a, b);
+            }
+        }
+    }
 }
 
-/// Drops the points that lie straight between their neighbours: joins there would darken the line's soft rim.
-fn straightened(points: Vec<Point>) -> Vec<Point> {
-    let mut out: Vec<Point> = Vec::with_capacity(points.len());
-    for p in points {
-        while out.len() > 1 {
-            let (a, b) = (out[out.len() - 2], out[out.len() - 1]);
-            let (ahead, step) = ((b.0 - a.0, b.1 - a.1), (p.0 - b.0, p.1 - b.1));
-            let cross = (ahead.0 * step.1 - ahead.1 * step.0).abs();
-            let dot = ahead.0 * step.0 + ahead.1 * step.1;
-            let length = ahead.0.hypot(ahead.1).max(step.0.hypot(step.1));
-            if dot < 0.0 || cross > 1e-3 * length {
-                break;
-            }
-            out.pop();
-        }
-        out.push(p);
-    }
-    out
+fn paint(Colour(r, g, b): Colour) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(r, g, b, u8::MAX);
+    paint
 }
 
-/// Cuts a polyline into its strokes.
-fn dashes(points: &[Point], dash: &[f64]) -> Vec<Vec<Point>> {
-    if dash.is_empty() || dash.iter().any(|d| d.is_nan() || *d <= 0.0) {
-        return vec![points.to_vec()];
-    }
-    let mut strokes = Vec::new();
-    let (mut which, mut left) = (0, dash[0]);
-    let mut current = vec![points[0]];
-    for pair in points.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        let length = (b.0 - a.0).hypot(b.1 - a.1);
-        let mut done = 0.0;
-        while done + left < length {
-            done += left;
-            let p = (
-                a.0 + (b.0 - a.0) * done / length,
-                a.1 + (b.1 - a.1) * done / length,
-            );
-            if which % 2 == 0 {
-                current.push(p);
-                strokes.push(std::mem::take(&mut current));
-            } else {
-                current = vec![p];
-            }
-            which += 1;
-            left = dash[which % dash.len()];
-        }
-        left -= length - done;
-        if which % 2 == 0 {
-            current.push(b);
+fn polyline(points: &[Point]) -> PathBuilder {
+    let mut path = PathBuilder::new();
+    for (k, p) in points.iter().enumerate() {
+        let (x, y) = (p.0 as f32, p.1 as f32);
+        match k {
+            0 => path.move_to(x, y),
+            _ => path.line_to(x, y),
         }
     }
-    if which % 2 == 0 && current.len() > 1 {
-        strokes.push(current);
-    }
-    strokes
+    path
 }
 
 impl Canvas for Raster {
     fn polygon(&mut self, points: &[Point], fill: Colour) {
-        let shape = oriented(self.scaled(points));
-        self.fill(&[shape], fill);
+        let mut path = polyline(points);
+        path.close();
+        self.fill(path, fill);
     }
 
     fn line(&mut self, points: &[Point], width: f64, colour: Colour, dash: &[f64]) {
-        if points.is_empty() {
-            return;
-        }
-        let half = 0.5 * width * self.scale;
-        for stroke in dashes(points, dash) {
-            let stroke = straightened(self.scaled(&stroke));
-            let mut shapes = Vec::new();
-            for (k, pair) in stroke.windows(2).enumerate() {
-                let (a, b) = (pair[0], pair[1]);
-                let length = (b.0 - a.0).hypot(b.1 - a.1);
-                if length == 0.0 {
-                    continue;
-                }
-                let (nx, ny) = (-(b.1 - a.1) / length * half, (b.0 - a.0) / length * half);
-                shapes.push(oriented(vec![
-                    (a.0 + nx, a.1 + ny),
-                    (b.0 + nx, b.1 + ny),
-                    (b.0 - nx, b.1 - ny),
-                    (a.0 - nx, a.1 - ny),
-                ]));
-                // Round joins.
-                if k > 0 && half > 0.6 {
-                    shapes.push(oriented(canvas::circle(a, half)));
-                }
-            }
-            self.fill(&shapes, colour);
+        if let Some(path) = polyline(points).finish() {
+            let stroke = Stroke {
+                width: width as f32,
+                line_join: LineJoin::Round,
+                dash: StrokeDash::new(dash.iter().map(|&d| d as f32).collect(), 0.0),
+                ..Stroke::default()
+            };
+            let transform = self.transform();
+            self.pixels
+                .stroke_path(&path, &paint(colour), &stroke, transform, None);
         }
     }
 
     fn text(&mut self, at: Point, text: &str, style: &TextStyle) {
-        let size = style.size * self.scale;
-        let runs = canvas::runs(text, size);
+        let font = canvas::font(style.bold);
+        let runs = canvas::runs(text, style.size);
         let total: f64 = runs.iter().map(|r| canvas::run_width(r, style.bold)).sum();
-        let mut x = match style.anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => -0.5 * total,
-            Anchor::End => -total,
-        };
-        let origin = (at.0 * self.scale, at.1 * self.scale);
-        let baseline = 0.5 * canvas::CAP_HEIGHT * size;
+        let mut start = -style.anchor.share() * total;
+        let mut path = PathBuilder::new();
         for run in runs {
-            let font = canvas::font(style.bold).as_scaled(canvas::px_scale(run.size, style.bold));
-            let mut last = None;
-            for c in run.text.chars() {
-                let id = font.glyph_id(c);
-                if let Some(last) = last {
-                    x += f64::from(font.kern(last, id));
-                }
-                let (dx, dy) = (x, baseline - run.raise);
-                x += f64::from(font.h_advance(id));
-                last = Some(id);
-                // Text that reads upwards is drawn at the origin and turned pixel by pixel.
-                let place = if style.upwards {
-                    (dx, dy)
-                } else {
-                    (origin.0 + dx, origin.1 + dy)
-                };
-                let glyph = id.with_scale_and_position(
-                    font.scale(),
-                    ab_glyph::point(place.0 as f32, place.1 as f32),
-                );
-                let Some(outline) = font.font.outline_glyph(glyph) else {
-                    continue;
-                };
-                let bounds = outline.px_bounds();
-                outline.draw(|px, py, c| {
-                    let (gx, gy) = (
-                        bounds.min.x as i64 + i64::from(px),
-                        bounds.min.y as i64 + i64::from(py),
+            let unit = run.size / canvas::em(style.bold);
+            let baseline = 0.5 * canvas::CAP_HEIGHT * style.size - run.raise;
+            let (glyphs, width) = canvas::glyphs(&run, style.bold);
+            for (id, x) in glyphs {
+                let place = |p: ab_glyph::Point| {
+                    let (right, down) = (
+                        start + x + unit * f64::from(p.x),
+                        baseline - unit * f64::from(p.y),
                     );
-                    if style.upwards {
-                        self.blend(
-                            origin.0.round() as i64 + gy,
-                            origin.1.round() as i64 - gx - 1,
-                            style.colour,
-                            c,
-                        );
+                    let (x, y) = if style.upwards {
+                        (at.0 + down, at.1 - right)
                     } else {
-                        self.blend(gx, gy, style.colour, c);
-                    }
-                });
+                        (at.0 + right, at.1 + down)
+                    };
+                    (x as f32, y as f32)
+                };
+                let outline = font.outline(id);
+                add_outline(&mut path, outline.iter().flat_map(|o| &o.curves), place);
+            }
+            start += width;
+        }
+        self.fill(path, style.colour);
+    }
+}
+
+/// Adds the outline of a glyph: closed curves, each listed from its start to its start.
+fn add_outline<'a>(
+    path: &mut PathBuilder,
+    curves: impl Iterator<Item = &'a OutlineCurve>,
+    place: impl Fn(ab_glyph::Point) -> (f32, f32),
+) {
+    let mut last = None;
+    for curve in curves {
+        let (OutlineCurve::Line(start, end)
+        | OutlineCurve::Quad(start, _, end)
+        | OutlineCurve::Cubic(start, _, _, end)) = *curve;
+        if last != Some(start) {
+            let (x, y) = place(start);
+            path.move_to(x, y);
+        }
+        last = Some(end);
+        let (x, y) = place(end);
+        match *curve {
+            OutlineCurve::Line(..) => path.line_to(x, y),
+            OutlineCurve::Quad(_, a, _) => {
+                let (ax, ay) = place(a);
+                path.quad_to(ax, ay, x, y);
+            }
+            OutlineCurve::Cubic(_, a, b, _) => {
+                let ((ax, ay), (bx, by)) = (place(a), place(b));
+                path.cubic_to(ax, ay, bx, by, x, y);
             }
         }
     }
@@ -308,6 +219,7 @@ impl Canvas for Raster {
 
 #[cfg(test)]
 mod tests {
+    use super::super::canvas::Anchor;
     use super::*;
 
     const RED: Colour = Colour(255, 0, 0);
@@ -347,7 +259,7 @@ mod tests {
         with.line(&[(1.0, 4.2), (9.3, 4.2), (18.0, 4.2)], 2.5, RED, &[]);
         let mut without = Raster::new(20.0, 9.0, 1.0);
         without.line(&[(1.0, 4.2), (18.0, 4.2)], 2.5, RED, &[]);
-        assert_eq!(with.pixels, without.pixels);
+        assert!(with.pixels == without.pixels);
         // Far outside: nothing is drawn and nothing fails.
         raster.line(&[(1e9, 1e9), (2e9, 1e9)], 1.0, RED, &[]);
         raster.polygon(&[(f64::NAN, 0.0), (1.0, 1.0), (2.0, 0.0)], RED);

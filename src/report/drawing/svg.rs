@@ -113,9 +113,7 @@ impl Canvas for Svg {
         let (anchor, mut x) = match style.anchor {
             Anchor::Middle if runs.len() == 1 => ("middle", 0.0),
             Anchor::End if runs.len() == 1 => ("end", 0.0),
-            Anchor::Start => ("start", 0.0),
-            Anchor::Middle => ("start", -0.5 * total),
-            Anchor::End => ("start", -total),
+            anchor => ("start", -anchor.share() * total),
         };
         for run in runs {
             let place = if style.upwards {

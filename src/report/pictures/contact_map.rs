@@ -1,9 +1,9 @@
 //! Pressure on the faces where solids may touch: maps of the interfaces with the largest forces, and all rows as CSV.
 
-use super::field::{Field, Values};
 use super::marks::{self, ContactMark};
 use super::outline::Mesh;
-use super::paint::{axes, colour_bar, colour_range, paint, View, BAR};
+use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
+use super::values::{Field, Values};
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use crate::report::drawing::raster::Raster;
 use crate::report::drawing::ticks::Scale;
@@ -16,11 +16,8 @@ use std::path::{Path, PathBuf};
 
 /// Interfaces in the figure.
 const SHOWN: usize = 6;
-const TEXT: f64 = 13.0;
-const TITLE_TEXT: f64 = 15.0;
 const LEFT: f64 = 66.0;
 const GAP: f64 = 12.0;
-const LABELS: f64 = 74.0;
 /// Largest size of a map.
 const PANEL: (f64, f64) = (300.0, 260.0);
 /// Below a map, for numbers and the name of the axis.
@@ -181,22 +178,9 @@ fn draw(maps: &[ContactMap], title: &str) -> Raster {
         LEFT + PANEL.0 + GAP + BAR + LABELS,
         2.4 * TEXT + PANEL.1 + BELOW,
     );
-    let width = columns as f64 * cell.0;
-    let width = width.max(canvas::text_width(&title, TITLE_TEXT, true) + 24.0);
-    let top = if title.is_empty() {
-        6.0
-    } else {
-        2.3 * TITLE_TEXT
-    };
     let below = marks::legend_height(&all);
-    let mut raster = Raster::new(width, top + rows as f64 * cell.1 + below, 2.0);
-    let bold = |size: f64| TextStyle {
-        bold: true,
-        ..TextStyle::new(size, Anchor::Middle)
-    };
-    if !title.is_empty() {
-        raster.text((0.5 * width, 1.25 * TITLE_TEXT), &title, &bold(TITLE_TEXT));
-    }
+    let content = (columns as f64 * cell.0, rows as f64 * cell.1 + below);
+    let (mut raster, width, top) = sheet(&title, content);
     for (k, (map, outline)) in order.iter().zip(&outlines).enumerate() {
         let at = (
             (k % columns) as f64 * cell.0,
@@ -232,15 +216,8 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
         true,
         PANEL.0 + LABELS,
     );
-    let style = TextStyle {
-        bold: true,
-        ..TextStyle::new(TEXT, Anchor::Middle)
-    };
-    raster.text(
-        (view.origin.0 + 0.5 * w.max(120.0), at.1 + 1.2 * TEXT),
-        &name,
-        &style,
-    );
+    let middle = (view.origin.0 + 0.5 * w.max(120.0), at.1 + 1.2 * TEXT);
+    raster.text(middle, &name, &TextStyle::title(TEXT));
     let pressure = map.pressure();
     let field = Field {
         title: "pressure",
@@ -248,7 +225,7 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
         scale: Scale::Linear,
     };
     // Zero is always shown: it is where nothing presses.
-    let (least, most) = colour_range(&field);
+    let (least, most) = field.range();
     let range = match (least, most) {
         (a, b) if a >= 0.0 && b > 0.0 && pressure.iter().any(|&p| p > 0.0) => (0.0, b),
         _ if pressure.iter().all(|p| p.is_nan() || *p == 0.0) => (0.0, 1.0),

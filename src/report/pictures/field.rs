@@ -5,8 +5,8 @@
 
 use super::marks;
 use super::outline::Lines;
-use super::paint::{axes, colour_bar, colour_range, paint, View, BAR};
-use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
+use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
+use crate::report::drawing::canvas::{Canvas, Colour, TextStyle};
 use crate::report::drawing::raster::Raster;
 use crate::report::drawing::ticks::Scale;
 use crate::{Error, Result};
@@ -14,34 +14,7 @@ use std::path::Path;
 
 pub use super::marks::ContactMark;
 pub use super::outline::Mesh;
-
-/// Numbers to show.
-#[derive(Debug, Clone, Copy)]
-pub enum Values<'a> {
-    /// One per point, interpolated in the cells.
-    Nodal(&'a [f64]),
-    /// One per cell.
-    Cell(&'a [f64]),
-}
-
-impl<'a> Values<'a> {
-    pub(super) fn numbers(self) -> &'a [f64] {
-        match self {
-            Values::Nodal(v) | Values::Cell(v) => v,
-        }
-    }
-}
-
-/// One picture: what it is called and what it shows.
-#[derive(Debug, Clone, Copy)]
-pub struct Field<'a> {
-    /// Written above it.
-    pub title: &'a str,
-    /// What it shows.
-    pub values: Values<'a>,
-    /// Scale of the colours.
-    pub scale: Scale,
-}
+pub use super::values::{coefficient_scale, Field, Values};
 
 /// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100. Where
 /// sides may touch, between bodies or at obstacles, `contact` says so: its marks are drawn on u. Empty without contact.
@@ -70,16 +43,6 @@ pub fn write_solution(
     ];
     check(mesh, &fields)?;
     draw(mesh, &fields, contact, title).write_png(path)
-}
-
-/// The scale that shows a coefficient: logarithmic where it varies by more than 100.
-pub fn coefficient_scale(values: &[f64]) -> Scale {
-    let (low, high) = extremes(values);
-    if low > 0.0 && high > 100.0 * low {
-        Scale::Log
-    } else {
-        Scale::Linear
-    }
 }
 
 /// Writes any fields of one mesh as PNG: side by side, or under each other where the mesh is wide.
@@ -123,27 +86,12 @@ pub fn write_displaced(
 
 fn check(mesh: &Mesh, fields: &[Field]) -> Result<()> {
     mesh.check()?;
-    for field in fields {
-        let (expected, what) = match field.values {
-            Values::Nodal(_) => (mesh.points.len(), "points"),
-            Values::Cell(_) => (mesh.quads.len(), "cells"),
-        };
-        let found = field.values.numbers().len();
-        if found != expected {
-            return Err(Error::input(format!(
-                "the field '{}' has {found} numbers, expected one for each of {expected} {what}",
-                field.title
-            )));
-        }
-    }
-    Ok(())
+    let (points, cells) = (mesh.points.len(), mesh.quads.len());
+    fields.iter().try_for_each(|f| f.check(points, cells))
 }
 
-const TEXT: f64 = 13.0;
-const TITLE_TEXT: f64 = 15.0;
 const LEFT: f64 = 52.0;
 const BAR_GAP: f64 = 12.0;
-const LABELS: f64 = 74.0;
 /// Outlines of bodies before they moved.
 const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
@@ -186,21 +134,9 @@ fn draw_lines(
     );
     let n = fields.len().max(1) as f64;
     let (columns, rows) = if wide { (1.0, n) } else { (n, 1.0) };
-    let top = if title.is_empty() {
-        6.0
-    } else {
-        2.3 * TITLE_TEXT
-    };
-    let width = (columns * cell.0).max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
     let below = marks::legend_height(contact);
-    let mut raster = Raster::new(width, top + rows * cell.1 + below, 2.0);
-    if !title.is_empty() {
-        let style = TextStyle {
-            bold: true,
-            ..TextStyle::new(TITLE_TEXT, Anchor::Middle)
-        };
-        raster.text((0.5 * width, 1.25 * TITLE_TEXT), title, &style);
-    }
+    let content = (columns * cell.0, rows * cell.1 + below);
+    let (mut raster, width, top) = sheet(title, content);
     for (k, field) in fields.iter().enumerate() {
         let at = if wide {
             (0.0, top + k as f64 * cell.1)
@@ -212,20 +148,11 @@ fn draw_lines(
             scale,
             origin: (at.0 + LEFT, at.1 + 2.4 * TEXT + h),
         };
-        let style = TextStyle {
-            bold: true,
-            ..TextStyle::new(TEXT, Anchor::Middle)
-        };
-        raster.text(
-            (view.origin.0 + 0.5 * w.max(60.0), at.1 + 1.2 * TEXT),
-            field.title,
-            &style,
-        );
-
-        let range = colour_range(field);
+        let middle = (view.origin.0 + 0.5 * w.max(60.0), at.1 + 1.2 * TEXT);
+        raster.text(middle, field.title, &TextStyle::title(TEXT));
+        let range = field.range();
         for line in before {
-            let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
-            raster.line(&line, 0.7, BEFORE, &[]);
+            view.line(&mut raster, line, 0.7, BEFORE);
         }
         paint(&mut raster, mesh, field, range, &view);
 
@@ -234,19 +161,13 @@ fn draw_lines(
         let between_subdomains = spacing(mesh.count(mesh.subdomain));
         if between_subdomains > 7.0 {
             for line in &lines.subdomains {
-                let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
-                raster.line(
-                    &line,
-                    (0.02 * between_subdomains).clamp(0.35, 0.7),
-                    Colour::WHITE,
-                    &[],
-                );
+                let width = (0.02 * between_subdomains).clamp(0.35, 0.7);
+                view.line(&mut raster, line, width, Colour::WHITE);
             }
         }
         let body_line = (0.02 * spacing(mesh.count(mesh.body))).clamp(0.4, 1.5);
         for line in &lines.bodies {
-            let line: Vec<Point> = line.iter().map(|&p| view.place(p)).collect();
-            raster.line(&line, body_line, Colour(0, 0, 0), &[]);
+            view.line(&mut raster, line, body_line, Colour(0, 0, 0));
         }
         if k == 0 {
             let spacing = spacing(mesh.count(mesh.body));
@@ -264,14 +185,6 @@ fn draw_lines(
     let middle = top + rows * cell.1 + 0.5 * below - 4.0;
     marks::legend(&mut raster, contact, (0.5 * width, middle));
     raster
-}
-
-/// Smallest and largest finite number; (∞, −∞) without any.
-pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
-    let finite = values.iter().filter(|v| v.is_finite());
-    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |m, &v| {
-        (m.0.min(v), m.1.max(v))
-    })
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The contact zone on a picture: closed parts as strong lines, open ones dashed, with their legend.
 
 use super::outline;
-use super::paint::View;
-use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, TextStyle};
+use super::paint::{self, View};
+use crate::report::drawing::canvas::{self, Canvas, Colour};
 use crate::report::drawing::raster::Raster;
 
 /// A part of a side that may touch another body or an obstacle: usually the face of one element. A mark whose ends coincide
@@ -18,9 +18,7 @@ pub struct ContactMark {
 }
 
 const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
-const TEXT: f64 = 13.0;
 const SAMPLE: f64 = 34.0;
-const GAP: f64 = 26.0;
 const DASH: [f64; 2] = [4.0, 3.0];
 const LABELS: [(bool, &str); 2] = [(true, "in contact"), (false, "may touch, open")];
 
@@ -59,20 +57,11 @@ pub(super) fn draw(raster: &mut Raster, marks: &[ContactMark], view: &View, spac
 
 /// The two kinds of line around the middle of a picture.
 pub(super) fn legend(raster: &mut Raster, marks: &[ContactMark], middle: (f64, f64)) {
-    let shown: Vec<_> = LABELS
-        .iter()
-        .filter(|l| marks.iter().any(|m| m.closed == l.0))
-        .collect();
-    let width = |label: &str| SAMPLE + 8.0 + canvas::text_width(label, TEXT, false);
-    let total: f64 = shown.iter().map(|l| width(l.1)).sum();
-    let mut x = middle.0 - 0.5 * (total + GAP * shown.len().saturating_sub(1) as f64);
-    for &&(closed, label) in &shown {
-        let y = middle.1;
-        stroke(raster, &[(x, y), (x + SAMPLE, y)], closed, 3.4);
-        let style = TextStyle::new(TEXT, Anchor::Start);
-        raster.text((x + SAMPLE + 8.0, y), label, &style);
-        x += width(label) + GAP;
-    }
+    let mut shown = LABELS.to_vec();
+    shown.retain(|l| marks.iter().any(|m| m.closed == l.0));
+    paint::legend(raster, &shown, SAMPLE, middle, |raster, (x, y), closed| {
+        stroke(raster, &[(x, y), (x + SAMPLE, y)], *closed, 3.4);
+    });
 }
 
 /// White under both kinds: they are seen on every colour of a field and on the line around a body.

@@ -9,3 +9,4 @@ pub mod solid;
 mod space;
 mod stage;
 mod surface;
+pub mod values;

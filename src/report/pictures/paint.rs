@@ -1,16 +1,54 @@
 //! Painting a field on a mesh of quadrilaterals: where it lies in the picture, its cells, axes and colour bar.
 
-use super::field::{Field, Values};
 use super::outline::Mesh;
-use crate::report::drawing::canvas::{Anchor, Canvas, Colour, Point, TextStyle};
+use super::values::Field;
+use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
 use crate::report::drawing::colormap::viridis;
-use crate::report::drawing::raster::Raster;
+use crate::report::drawing::raster::{self, Raster};
 use crate::report::drawing::ticks::{self, Scale};
 
 const TICK_TEXT: f64 = 11.5;
 
 /// Width of the colour bar in logical pixels.
 pub(super) const BAR: f64 = 14.0;
+
+pub(super) const TEXT: f64 = 13.0;
+const TITLE_TEXT: f64 = 15.0;
+/// Room for the numbers at a colour bar.
+pub(super) const LABELS: f64 = 74.0;
+
+/// A picture with a title above a content of this size: the picture, its width, and where the content begins.
+pub(super) fn sheet(title: &str, (width, height): (f64, f64)) -> (Raster, f64, f64) {
+    let width = width.max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
+    if title.is_empty() {
+        return (Raster::new(width, 6.0 + height, 2.0), width, 6.0);
+    }
+    let top = 2.3 * TITLE_TEXT;
+    let mut raster = Raster::new(width, top + height, 2.0);
+    let at = (0.5 * width, 1.25 * TITLE_TEXT);
+    raster.text(at, title, &TextStyle::title(TITLE_TEXT));
+    (raster, width, top)
+}
+
+/// Samples of a width with their labels, side by side around a point; `draw` draws a sample to the right of a point.
+pub(super) fn legend<T>(
+    raster: &mut Raster,
+    entries: &[(T, &str)],
+    sample: f64,
+    middle: Point,
+    draw: impl Fn(&mut Raster, Point, &T),
+) {
+    const GAP: f64 = 26.0;
+    let width = |label: &str| sample + 8.0 + canvas::text_width(label, TEXT, false);
+    let total: f64 = entries.iter().map(|e| width(e.1)).sum();
+    let mut x = middle.0 - 0.5 * (total + GAP * entries.len().saturating_sub(1) as f64);
+    for (what, label) in entries {
+        draw(raster, (x, middle.1), what);
+        let style = TextStyle::new(TEXT, Anchor::Start);
+        raster.text((x + sample + 8.0, middle.1), label, &style);
+        x += width(label) + GAP;
+    }
+}
 
 /// Where the mesh lies in the picture.
 pub(super) struct View {
@@ -27,6 +65,12 @@ impl View {
             self.origin.1 - self.scale * (p[1] - self.low[1]),
         )
     }
+
+    /// Draws a polyline of the mesh.
+    pub fn line(&self, raster: &mut Raster, points: &[[f64; 2]], width: f64, colour: Colour) {
+        let points: Vec<Point> = points.iter().map(|&p| self.place(p)).collect();
+        raster.line(&points, width, colour, &[]);
+    }
 }
 
 /// Paints all cells: each as four triangles around its centre, linear on each of them.
@@ -38,91 +82,23 @@ pub(super) fn paint(
     view: &View,
 ) {
     let s = raster.scale();
-    let (low, high) = (field.scale.forward(range.0), field.scale.forward(range.1));
-    let shade = |v: f64| {
-        if field.scale.shows(v) {
-            viridis((field.scale.forward(v) - low) / (high - low))
-        } else {
-            viridis(f64::NAN)
-        }
-    };
+    let shade = field.colour(range);
     for (cell, quad) in mesh.quads.iter().enumerate() {
         let corner = quad.map(|p| {
             let (x, y) = view.place(mesh.points[p as usize]);
-            (x * s, y * s)
+            [x * s, y * s]
         });
-        let value = match field.values {
-            Values::Nodal(v) => quad.map(|p| v[p as usize]),
-            Values::Cell(v) => [v[cell]; 4],
-        };
-        let centre = (
-            corner.iter().map(|c| c.0).sum::<f64>() / 4.0,
-            corner.iter().map(|c| c.1).sum::<f64>() / 4.0,
-        );
+        let value = field.at(cell, *quad);
+        let centre = [0, 1].map(|d| corner.iter().map(|c| c[d]).sum::<f64>() / 4.0);
         let mean = value.iter().sum::<f64>() / 4.0;
         for k in 0..4 {
             let l = (k + 1) % 4;
-            triangle(
-                raster,
-                [corner[k], corner[l], centre],
-                [value[k], value[l], mean],
-                &shade,
-            );
-        }
-    }
-}
-
-/// Paints the pixels whose centres lie in a triangle given in real pixels.
-fn triangle(raster: &mut Raster, p: [Point; 3], v: [f64; 3], shade: &impl Fn(f64) -> Colour) {
-    let det = (p[1].0 - p[0].0) * (p[2].1 - p[0].1) - (p[2].0 - p[0].0) * (p[1].1 - p[0].1);
-    if det == 0.0 || !det.is_finite() {
-        return;
-    }
-    let (w, h) = raster.size();
-    let bound = |c: [f64; 3], limit: usize| {
-        let low = c[0].min(c[1]).min(c[2]) - 0.5;
-        let high = c[0].max(c[1]).max(c[2]) - 0.5;
-        (
-            low.ceil().max(0.0) as usize,
-            (high.floor().max(-1.0) + 1.0).min(limit as f64) as usize,
-        )
-    };
-    let (x0, x1) = bound(p.map(|q| q.0), w);
-    let (y0, y1) = bound(p.map(|q| q.1), h);
-    for y in y0..y1 {
-        for x in x0..x1 {
-            let (dx, dy) = (x as f64 + 0.5 - p[0].0, y as f64 + 0.5 - p[0].1);
-            let a = (dx * (p[2].1 - p[0].1) - dy * (p[2].0 - p[0].0)) / det;
-            let b = (dy * (p[1].0 - p[0].0) - dx * (p[1].1 - p[0].1)) / det;
-            // The slack closes the seams between triangles.
-            if a >= -1e-9 && b >= -1e-9 && a + b <= 1.0 + 1e-9 {
+            let v = [value[k], value[l], mean];
+            let size = raster.size();
+            raster::triangle([corner[k], corner[l], centre], size, |x, y, a, b| {
                 raster.set(x, y, shade(v[0] + a * (v[1] - v[0]) + b * (v[2] - v[0])));
-            }
+            });
         }
-    }
-}
-
-/// The numbers at both ends of the colour bar; a constant field gets the middle colour.
-pub(super) fn colour_range(field: &Field) -> (f64, f64) {
-    let shown = field
-        .values
-        .numbers()
-        .iter()
-        .copied()
-        .filter(|&v| field.scale.shows(v));
-    let (low, high) = shown.fold((f64::INFINITY, f64::NEG_INFINITY), |m, v| {
-        (m.0.min(v), m.1.max(v))
-    });
-    if low > high {
-        return (1.0, 2.0);
-    }
-    if high - low > 1e-10 * high.abs().max(low.abs()) {
-        return (low, high);
-    }
-    match field.scale {
-        Scale::Linear if low == 0.0 => (-1.0, 1.0),
-        Scale::Linear => (low - 0.5 * low.abs(), low + 0.5 * low.abs()),
-        Scale::Log => (low / 2.0, low * 2.0),
     }
 }
 
@@ -202,32 +178,6 @@ pub(super) fn colour_bar(
             (at.0 + BAR + 7.0, y),
             &t.label,
             &TextStyle::new(TICK_TEXT, Anchor::Start),
-        );
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn constant_and_foreign_values_have_a_colour() {
-        let values = [3.0, 3.0];
-        let field = Field {
-            title: "",
-            values: Values::Cell(&values),
-            scale: Scale::Linear,
-        };
-        let (low, high) = colour_range(&field);
-        assert!(low < 3.0 && high > 3.0);
-        let nothing = [f64::NAN, -1.0];
-        assert_eq!(
-            colour_range(&Field {
-                values: Values::Cell(&nothing),
-                scale: Scale::Log,
-                ..field
-            }),
-            (1.0, 2.0)
         );
     }
 }

@@ -3,24 +3,21 @@
 //! The projection is parallel and from a fixed direction, y upwards, so that pictures of different scenes and meshes compare. Hidden
 //! parts are found pixel by pixel.
 
-use super::field::{Field, Values};
-use super::paint::{colour_bar, colour_range, BAR};
+use super::paint::{colour_bar, legend, sheet, BAR, LABELS, TEXT};
 use super::space::Camera;
 use super::stage::{diagonals, pale, Stage, CLOSED};
 use super::surface::Surface;
-use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, TextStyle};
+use super::values::Field;
+use crate::report::drawing::canvas::{Anchor, Canvas, Colour, TextStyle};
 use crate::report::drawing::colormap::viridis;
 use crate::report::drawing::raster::Raster;
-use crate::{Error, Result};
+use crate::Result;
 use std::path::Path;
 
 pub use super::surface::{FaceMark, Solid};
 
-const TEXT: f64 = 13.0;
-const TITLE_TEXT: f64 = 15.0;
 const SMALL_TEXT: f64 = 11.5;
 const MARGIN: f64 = 16.0;
-const LABELS: f64 = 74.0;
 /// Room for the axes below a picture.
 const AXES: f64 = 62.0;
 /// So far two or three bodies are moved apart, and more, relative to the distances of their centres from the middle.
@@ -46,19 +43,8 @@ pub fn write_solution(
 
 fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Result<Raster> {
     solid.check()?;
-    for field in fields {
-        let (expected, what) = match field.values {
-            Values::Nodal(_) => (solid.points.len(), "points"),
-            Values::Cell(_) => (solid.hexahedra.len(), "cells"),
-        };
-        let found = field.values.numbers().len();
-        if found != expected {
-            return Err(Error::input(format!(
-                "the field '{}' has {found} numbers, expected one for each of {expected} {what}",
-                field.title
-            )));
-        }
-    }
+    let (points, cells) = (solid.points.len(), solid.hexahedra.len());
+    fields.iter().try_for_each(|f| f.check(points, cells))?;
     let surface = solid.surface(marks);
     let shifts = shifts(solid);
     let several = shifts.len() > 1;
@@ -80,22 +66,10 @@ fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Res
     let panel_height = scenes.iter().map(|s| s.size().1).fold(90.0, f64::max);
     let width = |s: &Stage| MARGIN + s.size().0.max(150.0) + MARGIN + BAR + LABELS;
     let total: f64 = scenes.iter().map(width).sum();
-    let total = total.max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
-    let top = if title.is_empty() {
-        6.0
-    } else {
-        2.3 * TITLE_TEXT
-    };
-    let legend = if marks.is_empty() { 0.0 } else { 26.0 };
-    let height = top + 2.4 * TEXT + panel_height + AXES + legend;
-    let mut raster = Raster::new(total, height, 2.0);
-    let bold = |size: f64| TextStyle {
-        bold: true,
-        ..TextStyle::new(size, Anchor::Middle)
-    };
-    if !title.is_empty() {
-        raster.text((0.5 * total, 1.25 * TITLE_TEXT), title, &bold(TITLE_TEXT));
-    }
+    let below = if marks.is_empty() { 0.0 } else { 26.0 };
+    let content = 2.4 * TEXT + panel_height + AXES + below;
+    let (mut raster, total, top) = sheet(title, (total, content));
+    let height = top + content;
     let mut left = 0.0;
     for (k, (scene, field)) in scenes.iter().zip(fields).enumerate() {
         let (w, h) = scene.size();
@@ -105,8 +79,12 @@ fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Res
             note => format!("{} ({note})", field.title),
         };
         let middle = at.0 + 0.5 * w.max(150.0);
-        raster.text((middle, top + 1.0 * TEXT), &heading, &bold(TEXT));
-        let range = colour_range(field);
+        raster.text(
+            (middle, top + 1.0 * TEXT),
+            &heading,
+            &TextStyle::title(TEXT),
+        );
+        let range = field.range();
         scene.paint(&mut raster, field, range, at);
         let bar = panel_height.min(300.0);
         colour_bar(
@@ -119,11 +97,11 @@ fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Res
             range,
             field.scale,
         );
-        let below = top + 2.4 * TEXT + panel_height + 0.62 * AXES;
-        triad(&mut raster, (left + MARGIN + 26.0, below), &scene.camera);
+        let origin = top + 2.4 * TEXT + panel_height + 0.62 * AXES;
+        triad(&mut raster, (left + MARGIN + 26.0, origin), &scene.camera);
         left += width(scene);
     }
-    extent(&mut raster, solid, (MARGIN + 78.0, height - legend - 14.0));
+    extent(&mut raster, solid, (MARGIN + 78.0, height - below - 14.0));
     if !marks.is_empty() {
         key(&mut raster, marks, (0.5 * total, height - 14.0));
     }
@@ -224,31 +202,20 @@ fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
 /// What the colours of marked faces mean.
 fn key(raster: &mut Raster, marks: &[FaceMark], middle: (f64, f64)) {
     const SAMPLE: f64 = 18.0;
-    let open = pale(viridis(0.25));
-    let shown: Vec<(Colour, &str)> = [
+    let mut shown = Vec::new();
+    for (closed, colour, label) in [
         (true, CLOSED, "in contact"),
-        (false, open, "may touch, open (pale)"),
-    ]
-    .into_iter()
-    .filter(|l| marks.iter().any(|m| m.closed == l.0))
-    .map(|l| (l.1, l.2))
-    .collect();
-    let width = |label: &str| SAMPLE + 8.0 + canvas::text_width(label, TEXT, false);
-    let total: f64 = shown.iter().map(|l| width(l.1)).sum();
-    let mut x = middle.0 - 0.5 * (total + 26.0 * (shown.len() as f64 - 1.0));
-    for (colour, label) in shown {
-        let (top, bottom) = (middle.1 - 6.0, middle.1 + 6.0);
-        let square = [
-            (x, top),
-            (x + SAMPLE, top),
-            (x + SAMPLE, bottom),
-            (x, bottom),
-        ];
-        raster.polygon(&square, colour);
-        let style = TextStyle::new(TEXT, Anchor::Start);
-        raster.text((x + SAMPLE + 8.0, middle.1), label, &style);
-        x += width(label) + 26.0;
+        (false, pale(viridis(0.25)), "may touch, open (pale)"),
+    ] {
+        if marks.iter().any(|m| m.closed == closed) {
+            shown.push((colour, label));
+        }
     }
+    legend(raster, &shown, SAMPLE, middle, |raster, (x, y), colour| {
+        let (top, bottom, right) = (y - 6.0, y + 6.0, x + SAMPLE);
+        let square = [(x, top), (right, top), (right, bottom), (x, bottom)];
+        raster.polygon(&square, *colour);
+    });
 }
 
 #[cfg(test)]
@@ -256,6 +223,7 @@ mod tests {
     use super::*;
     use crate::report::drawing::ticks::Scale;
     use crate::report::pictures::surface::tests::Blocks;
+    use crate::report::pictures::values::Values;
 
     fn count(raster: &Raster, is: impl Fn(Colour) -> bool) -> [usize; 2] {
         let (w, h) = raster.size();

@@ -1,7 +1,7 @@
 //! Drawing in space: a parallel projection and a buffer of pixels with depths.
 
 use crate::report::drawing::canvas::Colour;
-use crate::report::drawing::raster::Raster;
+use crate::report::drawing::raster::{self, Raster};
 
 /// Where the picture is looked at from, y upwards and z towards the viewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,35 +60,15 @@ impl Buffer {
     /// Paints the pixels of a triangle (x to the right, y downwards, depth towards the viewer) that nothing nearer covers; `shade`
     /// gets the value there.
     pub fn triangle(&mut self, p: [[f64; 3]; 3], v: [f64; 3], shade: &impl Fn(f64) -> Colour) {
-        let edge = |k: usize, d: usize| p[k][d] - p[0][d];
-        let det = edge(1, 0) * edge(2, 1) - edge(2, 0) * edge(1, 1);
-        if det == 0.0 || !det.is_finite() {
-            return;
-        }
-        let bound = |d: usize, limit: usize| {
-            let low = p[0][d].min(p[1][d]).min(p[2][d]) - 0.5;
-            let high = p[0][d].max(p[1][d]).max(p[2][d]) - 0.5;
-            let end = (high.floor().max(-1.0) + 1.0).min(limit as f64);
-            (low.ceil().max(0.0) as usize, end as usize)
-        };
-        let ((x0, x1), (y0, y1)) = (bound(0, self.width), bound(1, self.height));
-        for y in y0..y1 {
-            for x in x0..x1 {
-                let (dx, dy) = (x as f64 + 0.5 - p[0][0], y as f64 + 0.5 - p[0][1]);
-                let a = (dx * edge(2, 1) - dy * edge(2, 0)) / det;
-                let b = (dy * edge(1, 0) - dx * edge(1, 1)) / det;
-                // The slack closes the seams between triangles.
-                if a < -1e-9 || b < -1e-9 || a + b > 1.0 + 1e-9 {
-                    continue;
-                }
-                let depth = p[0][2] + a * edge(1, 2) + b * edge(2, 2);
-                let at = y * self.width + x;
-                if depth > self.depth[at] {
-                    self.depth[at] = depth;
-                    self.colour[at] = shade(v[0] + a * (v[1] - v[0]) + b * (v[2] - v[0]));
-                }
+        let (size, flat) = ((self.width, self.height), p.map(|[x, y, _]| [x, y]));
+        raster::triangle(flat, size, |x, y, a, b| {
+            let between = |v: [f64; 3]| v[0] + a * (v[1] - v[0]) + b * (v[2] - v[0]);
+            let (depth, at) = (between(p.map(|p| p[2])), y * self.width + x);
+            if depth > self.depth[at] {
+                self.depth[at] = depth;
+                self.colour[at] = shade(between(v));
             }
-        }
+        });
     }
 
     /// Draws a line of a width in fine pixels where nothing is nearer than it by more than `slack`; its ends are round.

@@ -1,10 +1,9 @@
 //! A solid seen from one place: its surface in the colours of a field, lit, with lines around bodies and between subdomains.
 
-use super::field::{Field, Values};
 use super::space::{Buffer, Camera};
 use super::surface::{unit_cross, Solid, Surface};
+use super::values::Field;
 use crate::report::drawing::canvas::Colour;
-use crate::report::drawing::colormap::viridis;
 use crate::report::drawing::raster::Raster;
 
 /// Largest size of one picture.
@@ -90,14 +89,7 @@ impl<'a> Stage<'a> {
                 unit * near,
             ]
         };
-        let (low, high) = (field.scale.forward(range.0), field.scale.forward(range.1));
-        let colour = |v: f64| {
-            if field.scale.shows(v) {
-                viridis((field.scale.forward(v) - low) / (high - low))
-            } else {
-                viridis(f64::NAN)
-            }
-        };
+        let colour = field.colour(range);
         for face in &self.surface.faces {
             let body = self.solid.body[face.cell as usize];
             let positions = face.corners.map(|p| self.solid.shown[p as usize]);
@@ -108,10 +100,7 @@ impl<'a> Stage<'a> {
                 continue;
             }
             let light = light(normal, &self.camera);
-            let values = match field.values {
-                Values::Nodal(v) => face.corners.map(|p| v[p as usize]),
-                Values::Cell(v) => [v[face.cell as usize]; 4],
-            };
+            let values = field.at(face.cell as usize, face.corners);
             let corners = face.corners.map(|p| place(p, body));
             let (_, centre) = diagonals(corners);
             let mean = values.iter().sum::<f64>() / 4.0;

@@ -1,9 +1,12 @@
 //! One plot: its axes and what is drawn between them.
 
-use super::plot::{MARGIN, TEXT, TICK_TEXT};
 use super::series::Series;
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
 use crate::report::drawing::ticks::{self, Scale, Tick};
+
+pub(super) const TEXT: f64 = 13.0;
+const TICK_TEXT: f64 = 12.0;
+pub(super) const MARGIN: f64 = 14.0;
 
 /// One axis of a panel.
 #[derive(Debug, Clone)]
@@ -168,12 +171,9 @@ impl Panel {
         let py = |v: f64| y1 - (y1 - y0) * place(self.y.scale, y_range, v);
 
         if !self.title.is_empty() {
-            let style = TextStyle {
-                bold: true,
-                ..TextStyle::new(TEXT, Anchor::Middle)
-            };
             let title = canvas::shortened(&self.title, TEXT, true, x1 - x0);
-            canvas.text((0.5 * (x0 + x1), at.1 + 0.8 * TEXT), &title, &style);
+            let place = (0.5 * (x0 + x1), at.1 + 0.8 * TEXT);
+            canvas.text(place, &title, &TextStyle::title(TEXT));
         }
         for band in &self.bands {
             let place = |v: f64| px(v).clamp(x0, x1);

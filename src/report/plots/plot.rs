@@ -1,5 +1,6 @@
 //! Line and scatter plots with one or more panels, as PNG and SVG. The legend stands below the panels, never on the data.
 
+use super::panel::{MARGIN, TEXT};
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use crate::report::drawing::raster::Raster;
 use crate::report::drawing::svg::Svg;
@@ -22,10 +23,7 @@ pub struct Figure {
     pub panel_size: (f64, f64),
 }
 
-pub(super) const TEXT: f64 = 13.0;
-pub(super) const TICK_TEXT: f64 = 12.0;
 const TITLE_TEXT: f64 = 15.0;
-pub(super) const MARGIN: f64 = 14.0;
 const LEGEND_LINE: f64 = 22.0;
 const SAMPLE: f64 = 34.0;
 
@@ -129,15 +127,8 @@ impl Figure {
     pub fn draw(&self, canvas: &mut dyn Canvas) {
         let (width, height) = self.size();
         if !self.title.is_empty() {
-            let style = TextStyle {
-                bold: true,
-                ..TextStyle::new(TITLE_TEXT, Anchor::Middle)
-            };
-            canvas.text(
-                (0.5 * width, 0.5 * MARGIN + TITLE_TEXT),
-                &self.title,
-                &style,
-            );
+            let at = (0.5 * width, 0.5 * MARGIN + TITLE_TEXT);
+            canvas.text(at, &self.title, &TextStyle::title(TITLE_TEXT));
         }
         let left = 0.5 * (width - self.columns.max(1) as f64 * self.panel_size.0 - MARGIN);
         let mut label_width = vec![0.0_f64; self.columns.max(1)];

@@ -4,7 +4,7 @@ use super::plot::{Axis, Band, Figure, Line, Marker, Panel, Series};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::{self, Scale};
 use crate::report::output;
-use crate::report::pictures::field::extremes;
+use crate::report::pictures::values::extremes;
 use crate::report::tables::summary::exactly;
 use crate::report::tables::table::quoted;
 use crate::{Error, Result};
