@@ -177,7 +177,7 @@ fn report(
         }
     }
     sum_all(session.comm(), &mut errors);
-    let [l2, h1, energy] = errors.map(f64::sqrt);
+    let [l2, h1, energy_norm] = errors.map(f64::sqrt);
     let floating = dual.natural.r > 0;
     let inequalities = facts.inequalities > 0;
     let rows = solution.rows();
@@ -220,10 +220,11 @@ fn report(
         },
         energy: solution.energy,
         contact,
-        error: scene
-            .exact
-            .is_some()
-            .then_some(json::ErrorNorms { l2, h1, energy }),
+        error: scene.exact.is_some().then_some(json::ErrorNorms {
+            l2,
+            h1,
+            energy_norm,
+        }),
         communication: solver.communication().map(Into::into),
         seconds: json::Seconds {
             assemble: 0.0,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Spectrum;
+use super::spectrum::Spectrum;
 
 /// Constraints inside bodies, and deflation of eigenvalues above τ between them; key `adaptive` of a report.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

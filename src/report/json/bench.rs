@@ -1,6 +1,7 @@
 //! The record of `bench`.
 
-use super::{number, CompareContact, CompareInequalities};
+use super::compare::{CompareContact, CompareInequalities};
+use super::number;
 use serde::{Deserialize, Serialize};
 
 /// What `bench` reports: one document for all cases.

@@ -4,7 +4,8 @@
 //! against each other. In elasticity forces have directions: `force` is still the sum of the multipliers, `resultant` their vector
 //! sum. As in [`crate::report::json`], a number that is not known or not finite is `null` and never NaN.
 
-use super::{number, Spectrum};
+use super::number;
+use super::spectrum::Spectrum;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// How the contact was found, and what holds it.
@@ -204,7 +205,7 @@ pub struct LoadStep {
     pub iterations: usize,
     /// Active inequalities at its end.
     pub active: usize,
-    /// ½ uᵀKu − fᵀu.
+    /// As [`super::SolveReport::energy`].
     #[serde(with = "number")]
     pub energy: f64,
     /// Sum of the multipliers of all inequalities.

@@ -97,7 +97,10 @@ pub fn solve(r: &SolveReport) -> String {
     if let Some(e) = r.error {
         lines.push((
             "error",
-            format!("L² {:.3e}, H¹ {:.3e}, energy {:.3e}", e.l2, e.h1, e.energy),
+            format!(
+                "L² {:.3e}, H¹ {:.3e}, energy {:.3e}",
+                e.l2, e.h1, e.energy_norm
+            ),
         ));
     }
     if let Some(c) = r.communication.filter(|_| r.ranks > 1) {

@@ -1,0 +1,341 @@
+//! The record of `solve`.
+
+use super::adaptive::Adaptive;
+use super::contact::ContactReport;
+use super::number;
+use super::spectrum::Condition;
+use serde::{Deserialize, Serialize};
+
+/// What `solve` reports.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SolveReport {
+    /// The scene's name or file.
+    pub scene: String,
+    /// 2 or 3.
+    #[serde(default)]
+    pub dimension: usize,
+    /// `scalar` or `elasticity`.
+    #[serde(default)]
+    pub physics: String,
+    /// Components of the field.
+    #[serde(default)]
+    pub components: usize,
+    /// Equation and elements in words, such as `plane strain elasticity, Q1, no cure of locking`.
+    #[serde(default)]
+    pub form: String,
+    /// MPI ranks.
+    pub ranks: usize,
+    /// Threads per rank.
+    pub threads: usize,
+    /// Bodies.
+    pub bodies: usize,
+    /// Bodies whose stiffness matrix is singular.
+    pub floating_bodies: usize,
+    /// Subdomains over all bodies.
+    pub subdomains: usize,
+    /// Free degrees of freedom, those that subdomains of one body share counted once.
+    pub dofs: usize,
+    /// Rows of B.
+    pub multipliers: Multipliers,
+    /// Steps of the contact loop; 1 without inequalities.
+    pub outer_iterations: usize,
+    /// Krylov iterations.
+    pub iterations: Iterations,
+    /// Extreme eigenvalues of the preconditioned operator.
+    pub condition: Condition,
+    /// What was deflated; absent where nothing was searched for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<Adaptive>,
+    /// Residuals of the Karush-Kuhn-Tucker conditions.
+    pub kkt: Kkt,
+    /// The value of the Lagrangian ½ uᵀKu − fᵀu + λᵀ(Bu − c) on the free dofs: at the solution the potential energy, without what
+    /// given displacements alone contribute.
+    #[serde(with = "number")]
+    pub energy: f64,
+    /// How contact was found and what it carries; absent where no sides may touch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactReport>,
+    /// Error against the exact solution, where the scene has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorNorms>,
+    /// What a Krylov iteration sends; `null` where there was none.
+    #[serde(default)]
+    pub communication: Option<Communication>,
+    /// Wall-clock time by phase.
+    pub seconds: Seconds,
+    /// Largest resident memory, summed over the ranks, in MB of 10⁶ bytes.
+    #[serde(with = "number")]
+    pub memory_mb: f64,
+    /// How the subdomains' operators are held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operators: Option<Operators>,
+    /// PETSc's name for why the iteration ended, such as `CONVERGED_RTOL`.
+    pub converged_reason: String,
+    /// Krylov method, such as `cg`.
+    pub ksp_type: String,
+    /// `none`, `lumped`, `dirichlet` or `coarse_corrected`.
+    pub preconditioner: String,
+    /// Factorisation of the subdomains: `multifrontal`, `faer`, `cholmod` or `mumps`.
+    #[serde(default)]
+    pub local_solver: String,
+    /// Its order of elimination: `nd`, `amd`, `metis` or `scotch`.
+    #[serde(default)]
+    pub local_ordering: String,
+    /// Weight Q of the projector: `none` without floating bodies, else `identity`, `diagonal` or `preconditioner`.
+    pub projector: String,
+    /// Relative defects of the operators' identities, where `-fetifeti_check` asked for them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub check: Option<std::collections::BTreeMap<String, f64>>,
+    /// Relative tolerance of the inner iteration.
+    #[serde(with = "number")]
+    pub rtol: f64,
+}
+
+/// The subdomains' operators, over all ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Operators {
+    /// Different subdomains: those whose matrices are multiples of each other count once on each rank.
+    pub kinds: usize,
+    /// Kinds with S and T as sparse solves; the others have dense matrices.
+    pub sparse: usize,
+    /// Subdomains with S in single precision (`-fetifeti_precision mixed`).
+    #[serde(default)]
+    pub single: usize,
+    /// MB of sparse factors.
+    #[serde(with = "number")]
+    pub factor_mb: f64,
+    /// MB of S, T, Ψ and Σ.
+    #[serde(with = "number")]
+    pub dense_mb: f64,
+}
+
+/// Rows of B.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Multipliers {
+    /// Rows of B_loc, inside the bodies.
+    pub local: usize,
+    /// Rows of B_gl, between bodies.
+    pub global: usize,
+    /// Rows of B_gl that hold in the last contact step.
+    pub active: usize,
+}
+
+/// Krylov iterations.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Iterations {
+    /// Per contact step.
+    pub inner: Vec<usize>,
+    /// Their sum.
+    pub total: usize,
+}
+
+impl Iterations {
+    /// From the counts per contact step.
+    pub fn new(inner: Vec<usize>) -> Self {
+        let total = inner.iter().sum();
+        Iterations { inner, total }
+    }
+}
+
+/// Residuals of the Karush-Kuhn-Tucker conditions, relative to the load and the solution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Kkt {
+    /// ‖Ku + Bᵀλ − f‖ / (‖f‖ + ‖Bᵀλ‖) in the norm of diag(K)⁻¹.
+    #[serde(with = "number")]
+    pub stationarity: f64,
+    /// Largest violation of Bu = c and Bu ≤ c.
+    #[serde(with = "number")]
+    pub feasibility: f64,
+    /// Largest |λ_r (Bu − c)_r| over the inequalities; 0 without any.
+    #[serde(with = "number")]
+    pub complementarity: f64,
+    /// Smallest multiplier of an inequality; `null` without any.
+    pub min_multiplier: Option<f64>,
+}
+
+/// What one Krylov iteration sends: means over all iterations.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Communication {
+    /// Messages from rank to rank.
+    pub messages_per_iteration: PerIteration,
+    /// Their bytes.
+    pub bytes_per_iteration: PerIteration,
+    /// All-reduces; every rank takes part in each.
+    pub reductions_per_iteration: f64,
+    /// Bytes that a rank puts into them.
+    pub reduced_bytes_per_iteration: f64,
+}
+
+/// A quantity over the ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct PerIteration {
+    /// Of all ranks.
+    pub sum: f64,
+    /// Of the rank that has most.
+    pub max: f64,
+}
+
+impl From<crate::feti::Communication> for Communication {
+    fn from(c: crate::feti::Communication) -> Communication {
+        let both = |q: crate::feti::krylov::tally::PerIteration| PerIteration {
+            sum: q.sum,
+            max: q.max,
+        };
+        Communication {
+            messages_per_iteration: both(c.messages),
+            bytes_per_iteration: both(c.bytes),
+            reductions_per_iteration: c.reductions,
+            reduced_bytes_per_iteration: c.reduced_bytes,
+        }
+    }
+}
+
+/// Error against an exact solution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ErrorNorms {
+    /// L² norm.
+    #[serde(with = "number")]
+    pub l2: f64,
+    /// H¹ seminorm.
+    #[serde(with = "number")]
+    pub h1: f64,
+    /// Energy norm; a distance, and no energy as that of the report.
+    #[serde(rename = "energy", with = "number")]
+    pub energy_norm: f64,
+}
+
+/// Wall-clock seconds of `solve` by phase.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Seconds {
+    /// Mesh and matrices.
+    pub assemble: f64,
+    /// Factorisations and coarse problems.
+    pub setup: f64,
+    /// Iterations.
+    pub solve: f64,
+    /// u from λ.
+    pub recover: f64,
+    /// Everything, input and output included.
+    pub total: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::json::{to_string, Spectrum};
+    use serde_json::{json, Value};
+
+    fn report() -> SolveReport {
+        SolveReport {
+            scene: "two bodies".into(),
+            dimension: 2,
+            physics: "scalar".into(),
+            components: 1,
+            form: "plane scalar, Q1".into(),
+            ranks: 2,
+            threads: 1,
+            bodies: 2,
+            floating_bodies: 1,
+            subdomains: 8,
+            dofs: 100,
+            multipliers: Multipliers {
+                local: 16,
+                global: 18,
+                active: 18,
+            },
+            outer_iterations: 1,
+            iterations: Iterations::new(vec![7, 4]),
+            condition: Condition {
+                exact: None,
+                estimate: Some(Spectrum::new(2.0, 5.0)),
+            },
+            adaptive: None,
+            operators: None,
+            kkt: Kkt {
+                stationarity: 1e-9,
+                feasibility: f64::NAN,
+                complementarity: 0.0,
+                min_multiplier: None,
+            },
+            energy: f64::INFINITY,
+            contact: None,
+            error: None,
+            communication: None,
+            seconds: Seconds::default(),
+            memory_mb: 12.5,
+            converged_reason: "CONVERGED_RTOL".into(),
+            ksp_type: "cg".into(),
+            preconditioner: "dirichlet".into(),
+            local_solver: "multifrontal".into(),
+            local_ordering: "nd".into(),
+            projector: "identity".into(),
+            check: None,
+            rtol: 1e-6,
+        }
+    }
+
+    #[test]
+    fn solve_report_has_the_promised_keys() {
+        let value: Value = serde_json::from_str(&to_string(&report()).unwrap()).unwrap();
+        let promised = [
+            "scene",
+            "dimension",
+            "physics",
+            "components",
+            "ranks",
+            "bodies",
+            "floating_bodies",
+            "subdomains",
+            "dofs",
+            "multipliers",
+            "outer_iterations",
+            "iterations",
+            "condition",
+            "kkt",
+            "energy",
+            "seconds",
+            "memory_mb",
+            "converged_reason",
+        ];
+        for key in promised {
+            assert!(value.get(key).is_some(), "{key}");
+        }
+        assert_eq!(
+            value["multipliers"],
+            json!({"local": 16, "global": 18, "active": 18})
+        );
+        assert_eq!(value["iterations"], json!({"inner": [7, 4], "total": 11}));
+        let estimate = json!({"lambda_min": 2.0, "lambda_max": 5.0, "kappa": 2.5});
+        assert_eq!(
+            value["condition"],
+            json!({"exact": null, "estimate": estimate})
+        );
+        for key in ["assemble", "setup", "solve", "recover", "total"] {
+            assert!(value["seconds"][key].is_number(), "{key}");
+        }
+        assert!(value.get("error").is_none() && value.get("contact").is_none());
+    }
+
+    #[test]
+    fn what_is_not_finite_is_null_and_comes_back() {
+        let text = to_string(&report()).unwrap();
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+        let value: Value = serde_json::from_str(&text).unwrap();
+        assert!(value["energy"].is_null() && value["kkt"]["feasibility"].is_null());
+        let back: SolveReport = serde_json::from_str(&text).unwrap();
+        assert!(back.energy.is_nan() && back.kkt.feasibility.is_nan());
+        assert_eq!(back.iterations, report().iterations);
+    }
+
+    #[test]
+    fn error_norms_appear_where_known() {
+        let mut known = report();
+        known.error = Some(ErrorNorms {
+            l2: 1.0,
+            h1: 2.0,
+            energy_norm: 3.0,
+        });
+        let value: Value = serde_json::from_str(&to_string(&known).unwrap()).unwrap();
+        assert_eq!(value["error"], json!({"l2": 1.0, "h1": 2.0, "energy": 3.0}));
+    }
+}

@@ -1,0 +1,38 @@
+//! Spectra.
+
+use super::number;
+use serde::{Deserialize, Serialize};
+
+/// Extreme eigenvalues of the preconditioned operator.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Condition {
+    /// By an eigenvalue solver; `null` where it was not asked for.
+    pub exact: Option<Spectrum>,
+    /// Lanczos estimate of the run; `null` where the Krylov method gives none.
+    pub estimate: Option<Spectrum>,
+}
+
+/// Both ends of a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spectrum {
+    /// Smallest eigenvalue.
+    #[serde(with = "number")]
+    pub lambda_min: f64,
+    /// Largest eigenvalue.
+    #[serde(with = "number")]
+    pub lambda_max: f64,
+    /// Their ratio.
+    #[serde(with = "number")]
+    pub kappa: f64,
+}
+
+impl Spectrum {
+    /// κ = λ_max / λ_min.
+    pub fn new(lambda_min: f64, lambda_max: f64) -> Self {
+        Spectrum {
+            lambda_min,
+            lambda_max,
+            kappa: lambda_max / lambda_min,
+        }
+    }
+}
