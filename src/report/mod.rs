@@ -17,6 +17,7 @@
 
 pub mod destination;
 pub mod drawing;
+mod interfaces;
 pub mod json;
 pub mod output;
 pub mod paraview;

@@ -7,6 +7,7 @@ use super::values::{Field, Values};
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use crate::report::drawing::raster::Raster;
 use crate::report::drawing::ticks::Scale;
+use crate::report::interfaces;
 use crate::report::output;
 use crate::report::tables::summary::exactly;
 use crate::report::tables::table::quoted;
@@ -51,21 +52,15 @@ pub struct ContactMap {
 impl ContactMap {
     fn check(&self) -> Result<()> {
         let n = self.at.len();
-        for (found, what) in [
+        let lists = [
             (self.t.len(), "parameters"),
             (self.points.len(), "points"),
             (self.gap.len(), "gaps"),
             (self.multiplier.len(), "multipliers"),
             (self.area.len(), "areas"),
             (self.active.len(), "states"),
-        ] {
-            if found != n {
-                return Err(Error::input(format!(
-                    "the interface '{}' lists {found} {what}, expected one for each of {n} nodes",
-                    self.name
-                )));
-            }
-        }
+        ];
+        interfaces::check_lengths(&self.name, n, "nodes", &lists)?;
         match self.cells.iter().flatten().find(|&&k| k as usize >= n) {
             Some(bad) => Err(Error::input(format!(
                 "the interface '{}' has a face with node {bad}, expected one below {n}",
@@ -77,17 +72,12 @@ impl ContactMap {
 
     /// Force per area by node; NaN where a node has no area.
     pub fn pressure(&self) -> Vec<f64> {
-        let each = self.multiplier.iter().zip(&self.area);
-        each.map(|(&force, &area)| if area > 0.0 { force / area } else { f64::NAN })
-            .collect()
+        interfaces::pressure(&self.multiplier, &self.area)
     }
 
-    /// Sum of the multipliers; what is not a number must be seen and counts as largest.
+    /// Sum of the multipliers.
     fn force(&self) -> f64 {
-        match self.multiplier.iter().sum::<f64>().abs() {
-            force if force.is_nan() => f64::INFINITY,
-            force => force,
-        }
+        self.multiplier.iter().sum()
     }
 
     /// The line around the faces in contact, and around those that may touch.
@@ -156,22 +146,14 @@ pub fn write(maps: &[ContactMap], title: &str, dir: &Path) -> Result<Vec<PathBuf
 
 /// The maps of the interfaces with the largest forces; an interface without faces has none.
 fn draw(maps: &[ContactMap], title: &str) -> Raster {
-    let mut order: Vec<&ContactMap> = maps.iter().filter(|m| !m.cells.is_empty()).collect();
-    order.sort_by(|a, b| b.force().total_cmp(&a.force()));
-    let total = order.len();
-    order.truncate(SHOWN);
+    let known = maps.iter().filter(|m| !m.cells.is_empty());
+    let (order, title) = interfaces::largest(known, ContactMap::force, SHOWN, title);
     let columns = match order.len() {
         0 | 1 => 1,
         2 | 4 => 2,
         _ => 3,
     };
     let rows = order.len().div_ceil(columns).max(1);
-    let note = format!("the {SHOWN} of {total} interfaces with the largest forces");
-    let title = match (title, total > SHOWN) {
-        (_, false) => title.to_string(),
-        ("", true) => note,
-        _ => format!("{title}: {note}"),
-    };
     let outlines: Vec<Vec<ContactMark>> = order.iter().map(|m| m.outlines()).collect();
     let all: Vec<ContactMark> = outlines.iter().flatten().copied().collect();
     let cell = (

@@ -3,11 +3,12 @@
 use super::plot::{Axis, Band, Figure, Line, Marker, Panel, Series};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::{self, Scale};
+use crate::report::interfaces;
 use crate::report::output;
 use crate::report::pictures::values::extremes;
 use crate::report::tables::summary::exactly;
 use crate::report::tables::table::quoted;
-use crate::{Error, Result};
+use crate::Result;
 use std::path::{Path, PathBuf};
 
 /// Interfaces in the figure.
@@ -45,28 +46,19 @@ pub struct Profile {
 impl Profile {
     fn check(&self) -> Result<()> {
         let n = self.t.len();
-        for (found, what) in [
+        let areas = if self.has_pressure() {
+            self.area.len()
+        } else {
+            n
+        };
+        let lists = [
             (self.points.len(), "points"),
             (self.gap.len(), "gaps"),
             (self.multiplier.len(), "multipliers"),
             (self.active.len(), "states"),
-            (
-                if self.has_pressure() {
-                    self.area.len()
-                } else {
-                    n
-                },
-                "areas",
-            ),
-        ] {
-            if found != n {
-                return Err(Error::input(format!(
-                    "the interface '{}' lists {found} {what}, expected one for each of {n} positions",
-                    self.name
-                )));
-            }
-        }
-        Ok(())
+            (areas, "areas"),
+        ];
+        interfaces::check_lengths(&self.name, n, "positions", &lists)
     }
 
     /// Whether there are areas.
@@ -76,9 +68,7 @@ impl Profile {
 
     /// Force per area, node by node; NaN where a node has no area.
     pub fn pressure(&self) -> Vec<f64> {
-        let each = self.multiplier.iter().zip(&self.area);
-        each.map(|(&force, &area)| if area > 0.0 { force / area } else { f64::NAN })
-            .collect()
+        interfaces::pressure(&self.multiplier, &self.area)
     }
 
     /// Sum of the multipliers.
@@ -225,15 +215,8 @@ impl Profile {
 /// [`Error::Input`] when the arrays of an interface differ in length.
 pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
     profiles.iter().try_for_each(Profile::check)?;
-    let mut order: Vec<&Profile> = profiles.iter().filter(|p| !p.t.is_empty()).collect();
-    // What is not a number comes first: it must be seen.
-    let size = |p: &Profile| match p.force() {
-        force if force.is_nan() => f64::INFINITY,
-        force => force.abs(),
-    };
-    order.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let hidden = order.len().saturating_sub(SHOWN);
-    order.truncate(SHOWN);
+    let known = profiles.iter().filter(|p| !p.t.is_empty());
+    let (order, title) = interfaces::largest(known, Profile::force, SHOWN, title);
     let columns = match order.len() {
         0 | 1 => 1,
         2 | 4 => 2,
@@ -249,15 +232,6 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
             panels.extend((row.len()..columns).map(|_| Panel::blank()));
         }
     }
-    let note = format!(
-        "the {SHOWN} of {} interfaces with the largest forces",
-        hidden + SHOWN
-    );
-    let title = match (title, hidden) {
-        (_, 0) => title.to_string(),
-        ("", _) => note,
-        _ => format!("{title}: {note}"),
-    };
     Ok(Figure {
         title,
         panels,

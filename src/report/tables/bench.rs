@@ -1,5 +1,6 @@
 //! The benchmark as tables and as a picture.
 
+use super::methods::{counted, outcome, outer, ranks_and_threads, without};
 use super::summary::exactly;
 use super::table::{count, fixed, scientific, Align, Table};
 use crate::report::drawing::canvas::Colour;
@@ -42,25 +43,16 @@ fn case_text(case: &BenchCase) -> String {
         "method", "parts", "ranks", "outer", "it", "set-up s", "solve s", "recover", "total s",
         "min", "max", "ratio", "again s", "MB", "MB net", "error", "residual", "outcome",
     ];
-    let kept = |k: &usize| contact || *k != 3;
-    let names = (0..).zip(header).filter(|(k, _)| kept(k)).map(|h| h.1);
+    let dropped: &[usize] = if contact { &[] } else { &[3] };
     let last = if contact { 17 } else { 16 };
-    let mut table = Table::new(names)
+    let mut table = Table::new(without(dropped, header))
         .align(0, Align::Left)
         .align(last, Align::Left);
     let mut notes = String::new();
     for r in &case.methods {
-        let mut note = |text: String| notes += &format!("{}: {text}\n", label(r));
-        if let Some(options) = &r.rescue {
-            note(format!("second try, with {options}"));
-        }
-        let outcome = match &r.message {
-            None => r.converged_reason.clone(),
-            Some(message) => {
-                note(message.clone());
-                "see below".to_string()
-            }
-        };
+        let note = |text: String| notes += &format!("{}: {text}\n", label(r));
+        let (rescue, message) = (r.rescue.as_deref(), r.message.as_deref());
+        let outcome = outcome(&r.converged_reason, rescue, message, note);
         let net = r
             .memory_mb
             .zip(r.memory_at_start_mb)
@@ -69,14 +61,8 @@ fn case_text(case: &BenchCase) -> String {
         let cells = [
             r.method.clone(),
             count(r.subdomains),
-            match r.threads {
-                0 | 1 => r.ranks.to_string(),
-                n => format!("{} x {n}", r.ranks),
-            },
-            match r.set_given() {
-                true => "last set".to_string(),
-                false => count(r.contact.and_then(|c| c.outer)),
-            },
+            ranks_and_threads(r.ranks, r.threads),
+            outer(r.contact),
             count(r.iterations),
             fixed(median(r.seconds.setup), 3),
             fixed(median(r.seconds.solve), 3),
@@ -92,8 +78,7 @@ fn case_text(case: &BenchCase) -> String {
             scientific(r.residual),
             outcome,
         ];
-        let cells = (0..).zip(cells).filter(|(k, _)| kept(k)).map(|c| c.1);
-        table.row(cells);
+        table.row(without(dropped, cells));
     }
     format!(
         "{}: {}, {} bodies, {} subdomains, {} unknowns, ‖b − Au‖ ≤ {} ‖b‖, {} rounds\n\n{table}{notes}{}\n",
@@ -159,7 +144,6 @@ pub fn csv(report: &BenchReport) -> Table {
     ];
     header.extend(tail.map(String::from));
     let mut table = Table::new(header);
-    let counted = |n: Option<usize>| n.map(|n| n.to_string()).unwrap_or_default();
     for case in &report.cases {
         for r in &case.methods {
             let s = &r.seconds;

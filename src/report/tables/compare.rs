@@ -1,8 +1,9 @@
 //! The comparison of methods as a table.
 
+use super::methods::{counted, outcome, outer, ranks_and_threads, without};
 use super::summary::{exactly, ranks};
 use super::table::{count, fixed, scientific, Align, Table};
-use crate::report::json::{CompareContact, CompareInequalities, CompareReport, CompareRow};
+use crate::report::json::{CompareInequalities, CompareReport, CompareRow};
 
 /// Columns that only inequalities fill.
 const OUTER: usize = 4;
@@ -12,13 +13,12 @@ const SET: usize = 13;
 pub fn text(report: &CompareReport) -> String {
     // Outer steps and the set only where there are inequalities.
     let contact = report.contact.is_some();
-    let drop = |k: usize| !contact && (k == OUTER || k == SET);
+    let dropped: &[usize] = if contact { &[] } else { &[OUTER, SET] };
     let header = [
         "method", "parts", "ranks", "κ", "outer", "it", "set-up s", "solve s", "total s", "MB",
         "MB net", "error", "residual", "set", "outcome",
     ];
-    let header = (0..).zip(header).filter(|(k, _)| !drop(*k)).map(|h| h.1);
-    let mut table = Table::new(header).align(0, Align::Left);
+    let mut table = Table::new(without(dropped, header)).align(0, Align::Left);
     table = table.align(if contact { 14 } else { 12 }, Align::Left);
     let mut notes = String::new();
     for r in &report.rows {
@@ -26,32 +26,18 @@ pub fn text(report: &CompareReport) -> String {
             .memory_mb
             .zip(r.memory_at_start_mb)
             .map(|(all, start)| all - start);
-        let mut note = |text: String| {
+        let note = |text: String| {
             notes += if notes.is_empty() { "\n" } else { "" };
             notes += &format!("{} on {}: {text}\n", r.method, ranks(r.ranks));
         };
-        if let Some(options) = &r.rescue {
-            note(format!("second try, with {options}"));
-        }
-        let outcome = match &r.message {
-            None => r.converged_reason.clone(),
-            Some(message) => {
-                note(message.clone());
-                "see below".to_string()
-            }
-        };
+        let (rescue, message) = (r.rescue.as_deref(), r.message.as_deref());
+        let outcome = outcome(&r.converged_reason, rescue, message, note);
         let cells = [
             r.method.clone(),
             count(r.subdomains),
-            match r.threads {
-                0 | 1 => r.ranks.to_string(),
-                n => format!("{} x {n}", r.ranks),
-            },
+            ranks_and_threads(r.ranks, r.threads),
             fixed(r.kappa, 3),
-            match r.contact {
-                Some(CompareContact { outer: None, .. }) => "last set".to_string(),
-                contact => count(contact.and_then(|c| c.outer)),
-            },
+            outer(r.contact),
             count(r.iterations),
             fixed(r.seconds.setup, 3),
             fixed(r.seconds.solve, 3),
@@ -67,8 +53,7 @@ pub fn text(report: &CompareReport) -> String {
             },
             outcome,
         ];
-        let cells = (0..).zip(cells).filter(|(k, _)| !drop(*k)).map(|c| c.1);
-        table.row(cells);
+        table.row(without(dropped, cells));
     }
     format!(
         "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n\
@@ -147,7 +132,6 @@ pub fn csv(rows: &[CompareRow]) -> Table {
         "rescue",
         "message",
     ]);
-    let counted = |n: Option<usize>| n.map(|n| n.to_string()).unwrap_or_default();
     for r in rows {
         table.row([
             r.method.clone(),
@@ -182,7 +166,7 @@ pub fn csv(rows: &[CompareRow]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::json::CompareSeconds;
+    use crate::report::json::{CompareContact, CompareSeconds};
 
     #[test]
     fn compare_names_the_outcome() {

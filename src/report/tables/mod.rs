@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod compare;
 pub mod contact;
+mod methods;
 pub mod paper;
 pub mod summary;
 pub mod table;
