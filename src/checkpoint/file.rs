@@ -4,8 +4,8 @@
 //!     "fetifeti checkpoint\n"   version u32   length of the content u64   content   hash of all before u64
 //! ```
 //!
-//! The content is a [`Checkpoint`] in the postcard format; the numbers around it are little-endian. Nothing is believed before the file
-//! has the length that it announces and its hash is right. A file is replaced as a whole or not at all.
+//! The content is a [`Checkpoint`] in the postcard format; the numbers around it are little-endian. Nothing is believed
+//! before the file has the length that it announces and its hash is right. A file is replaced as a whole or not at all.
 
 use std::fs::File;
 use std::io::Read;
@@ -33,7 +33,8 @@ pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
 /// Reads a file. To be called on one rank.
 ///
 /// # Errors
-/// [`Error::Input`] with the path, what was found and what was expected, for anything but a whole checkpoint of this version.
+/// [`Error::Input`] with the path, what was found and what was expected, for anything but a whole checkpoint of this
+/// version.
 pub fn read(path: &Path) -> Result<Checkpoint> {
     let name = path.display();
     let refused = |e| Error::input(format!("{name}: the checkpoint cannot be read: {e}"));

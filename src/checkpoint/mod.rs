@@ -1,7 +1,7 @@
 //! Checkpoints of the contact loop: `--checkpoint FILE` and `--resume FILE` of `fetifeti solve`.
 //!
-//! A file says in which load step the run is, where the contact loop stands in it, and what came before. It belongs to a scene,
-//! not to a run: ranks, tolerances and methods may be others.
+//! A file says in which load step the run is, where the contact loop stands in it, and what came before. It belongs to
+//! a scene, not to a run: ranks, tolerances and methods may be others.
 //!
 //! | file | what it does |
 //! |---|---|
@@ -232,8 +232,8 @@ impl Attached {
         })
     }
 
-    /// Writes where load step `load_step` stands and what was done so far; nothing where no file was asked for. Between two
-    /// load steps that is the beginning of the next one. Collective.
+    /// Writes where load step `load_step` stands and what was done so far; nothing where no file was asked for. Between
+    /// two load steps that is the beginning of the next one. Collective.
     ///
     /// # Errors
     /// [`Error::Environment`] when the disk refuses; the old file is then untouched.

@@ -1,9 +1,9 @@
-//! The state of the contact loop without the ranks: gathered in an order that only the problem decides, and dealt out again to any
-//! number of ranks.
+//! The state of the contact loop without the ranks: gathered in an order that only the problem decides, and dealt out
+//! again to any number of ranks.
 //!
-//! Rows of B_loc belong to the lowest subdomain of their dof and follow its local dofs; rows of B_gl belong to a block and stand
-//! in it as the scene provides them. Neither depends on who owns what, so that (subdomain, position) and (block, position)
-//! name a row in every run of the problem:
+//! Rows of B_loc belong to the lowest subdomain of their dof and follow its local dofs; rows of B_gl belong to a block
+//! and stand in it as the scene provides them. Neither depends on who owns what, so that (subdomain, position) and
+//! (block, position) name a row in every run of the problem:
 //!
 //! ```text
 //!     λ = [ rows of subdomain 0 | rows of subdomain 1 | … | rows of the lowest block | of the next | … ]

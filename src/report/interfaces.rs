@@ -24,8 +24,8 @@ pub(super) fn pressure(force: &[f64], area: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// At most `shown` interfaces, those with the largest forces first, and the title, which says how many there are where that is more.
-/// What is not a number comes first: it must be seen.
+/// At most `shown` interfaces, those with the largest forces first, and the title, which says how many there are where
+/// that is more. What is not a number comes first: it must be seen.
 pub(super) fn largest<'a, T>(
     interfaces: impl Iterator<Item = &'a T>,
     force: fn(&T) -> f64,

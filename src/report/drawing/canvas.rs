@@ -1,5 +1,5 @@
-//! What a plot may draw, and the one font that all pictures use. Two canvases exist: [`super::raster::Raster`] (PNG) and
-//! [`super::svg::Svg`].
+//! What a plot may draw, and the one font that all pictures use. Two canvases exist: [`super::raster::Raster`] (PNG)
+//! and [`super::svg::Svg`].
 //!
 //! The font is DejaVu Sans, carried inside the program: a picture looks the same on every machine.
 
@@ -189,8 +189,8 @@ pub fn text_width(text: &str, size: f64, bold: bool) -> f64 {
         .sum()
 }
 
-/// The text, or as much of its start and its end as fits into a width, with an ellipsis between: of the name of an interface
-/// both bodies are seen.
+/// The text, or as much of its start and its end as fits into a width, with an ellipsis between: of the name of an
+/// interface both bodies are seen.
 pub fn shortened(text: &str, size: f64, bold: bool, width: f64) -> String {
     if text_width(text, size, bold) <= width {
         return text.to_string();

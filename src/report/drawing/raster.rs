@@ -83,8 +83,8 @@ impl Raster {
     }
 }
 
-/// Calls `visit` with the pixels of a picture whose centres lie in the triangle p, and with a and b of p₀ + a (p₁ − p₀) + b (p₂ − p₀),
-/// the centre. For fields of many small cells, which are coloured pixel by pixel.
+/// Calls `visit` with the pixels of a picture whose centres lie in the triangle p: column, row, and the a and b of the
+/// centre p₀ + a (p₁ − p₀) + b (p₂ − p₀). For fields of many small cells, which are coloured pixel by pixel.
 pub fn triangle(
     p: [[f64; 2]; 3],
     (width, height): (usize, usize),

@@ -19,7 +19,8 @@ pub struct BenchReport {
     pub rounds: usize,
     /// Whether the named cases are the small ones.
     pub quick: bool,
-    /// The cases that are finished; the last one may be in the middle of its rounds when the run was ended from outside.
+    /// The cases that are finished; the last one may be in the middle of its rounds when the run was ended from
+    /// outside.
     pub cases: Vec<BenchCase>,
 }
 
@@ -116,8 +117,8 @@ pub struct BenchSeconds {
     pub recover: Option<Spread>,
     /// Set-up and solve.
     pub total: Option<Spread>,
-    /// A solve for another load with all that was set up for the first; in contact scenes the whole loop, with what has to be set up for its
-    /// sets.
+    /// A solve for another load with all that was set up for the first; in contact scenes the whole loop, with what has
+    /// to be set up for its sets.
     pub again: Option<Spread>,
     /// In contact loops: the total over the number of active sets.
     pub step: Option<Spread>,
@@ -224,7 +225,8 @@ impl BenchCase {
         }
     }
 
-    /// The fastest of ours, or of the others: those that solve the whole problem and always converged, by the median total.
+    /// The fastest of ours, or of the others: those that solve the whole problem and always converged, by the median
+    /// total.
     pub fn fastest(&self, ours: bool) -> Option<&BenchRow> {
         let total = |r: &BenchRow| r.seconds.total.map_or(f64::INFINITY, |t| t.median);
         let fit = |r: &&BenchRow| {

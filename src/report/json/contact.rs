@@ -1,8 +1,9 @@
 //! The record of a contact solve: key `contact` of [`super::SolveReport`].
 //!
-//! Forces are sums of multipliers, in the units of the loads; a multiplier of an inequality is positive where the bodies press
-//! against each other. In elasticity forces have directions: `force` is still the sum of the multipliers, `resultant` their vector
-//! sum. As in [`crate::report::json`], a number that is not known or not finite is `null` and never NaN.
+//! Forces are sums of multipliers, in the units of the loads; a multiplier of an inequality is positive where the
+//! bodies press against each other. In elasticity forces have directions: `force` is still the sum of the multipliers,
+//! `resultant` their vector sum. As in [`crate::report::json`], a number that is not known or not finite is `null` and
+//! never NaN.
 
 use super::number;
 use super::spectrum::Spectrum;
@@ -11,8 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// How the contact was found, and what holds it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactReport {
-    /// The methods that made the steps, in the order in which they came: `active_set`, or `active_set, then smalbe` where the first
-    /// gave up, or `smalbe, then active_set`, whose steps close what SMALBE has found.
+    /// The methods that made the steps, in the order in which they came: `active_set`, or `active_set, then smalbe`
+    /// where the first gave up, or `smalbe, then active_set`, whose steps close what SMALBE has found.
     pub method: String,
     /// Inequalities: pairs of nodes, or nodes at an obstacle, that may touch.
     pub candidates: usize,
@@ -187,8 +188,8 @@ pub struct BodyBalance {
     /// What is missing to equilibrium, relative to the forces; in elasticity in the components that are given nowhere.
     #[serde(with = "number")]
     pub imbalance: f64,
-    /// Elasticity, bodies without given displacements: what is missing to equilibrium of the moments about the body's centre, relative to
-    /// the moments of the single forces.
+    /// Elasticity, bodies without given displacements: what is missing to equilibrium of the moments about the body's
+    /// centre, relative to the moments of the single forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moment_imbalance: Option<f64>,
 }

@@ -1,4 +1,5 @@
-//! Numbers of a record that may be unknown: `null` is read back as NaN. The serialiser writes NaN and the infinities as `null`.
+//! Numbers of a record that may be unknown: `null` is read back as NaN. The serialiser writes NaN and the infinities as
+//! `null`.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

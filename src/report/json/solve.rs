@@ -48,8 +48,8 @@ pub struct SolveReport {
     pub adaptive: Option<Adaptive>,
     /// Residuals of the Karush-Kuhn-Tucker conditions.
     pub kkt: Kkt,
-    /// The value of the Lagrangian ½ uᵀKu − fᵀu + λᵀ(Bu − c) on the free dofs: at the solution the potential energy, without what
-    /// given displacements alone contribute.
+    /// The value of the Lagrangian ½ uᵀKu − fᵀu + λᵀ(Bu − c) on the free dofs: at the solution the potential energy,
+    /// without what given displacements alone contribute.
     #[serde(with = "number")]
     pub energy: f64,
     /// How contact was found and what it carries; absent where no sides may touch.

@@ -1,9 +1,9 @@
 //! Contact as point data of a VTU file: arrays over all points from what is known at the candidates.
 //!
-//! Every array is a number everywhere. ParaView would take NaN (VTK 9.7 reads it in base64 and in ascii, and leaves it out of
-//! the colour range), but filters that compute, such as contours and calculators, pass it on, and other readers of the format
-//! need not know it. So `multiplier`, `gap` and `contact` are 0 away from the interfaces, and `candidate` says where that 0
-//! means something: a threshold on `candidate` leaves the interfaces alone.
+//! Every array is a number everywhere. ParaView would take NaN (VTK 9.7 reads it in base64 and in ascii, and leaves it
+//! out of the colour range), but filters that compute, such as contours and calculators, pass it on, and other readers
+//! of the format need not know it. So `multiplier`, `gap` and `contact` are 0 away from the interfaces, and `candidate`
+//! says where that 0 means something: a threshold on `candidate` leaves the interfaces alone.
 
 use super::vtu::Vtu;
 use crate::{Error, Result};

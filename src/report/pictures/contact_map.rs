@@ -112,8 +112,8 @@ impl ContactMap {
     }
 }
 
-/// Writes `interfaces.png` and `interfaces.csv` into a directory; returns their paths. The CSV has all interfaces: name, t, s (the second
-/// parameter), x, y, z, gap, multiplier, active (0 or 1), pressure, area.
+/// Writes `interfaces.png` and `interfaces.csv` into a directory; returns their paths. The CSV has all interfaces:
+/// name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure, area.
 ///
 /// # Errors
 /// [`Error::Input`] when the arrays of an interface differ in length; [`Error::Environment`] with the path.
@@ -281,7 +281,8 @@ mod tests {
                 .map(|m| (m.to[0] - m.from[0]).hypot(m.to[1] - m.from[1]))
                 .sum()
         };
-        // Nodes with r² < 1/8 around the middle: a cross of 4 × 4 cells without its corners, whose outline is as long as the square's.
+        // Nodes with r² < 1/8 around the middle: a cross of 4 × 4 cells without its corners, whose outline is as long
+        // as the square's.
         assert!(
             (length(true) - 16.0 / 8.0).abs() < 1e-12,
             "{}",

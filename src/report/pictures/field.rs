@@ -1,7 +1,7 @@
 //! Pictures of fields on meshes of quadrilaterals: u and ρ side by side with colour bars, bodies outlined.
 //!
-//! Cells are painted pixel by pixel, so that a million of them cost a fraction of a second. Points may be listed once per body
-//! or once per subdomain: lines between bodies and subdomains are found from the coordinates.
+//! Cells are painted pixel by pixel, so that a million of them cost a fraction of a second. Points may be listed once
+//! per body or once per subdomain: lines between bodies and subdomains are found from the coordinates.
 
 use super::marks;
 use super::outline::Lines;
@@ -16,8 +16,9 @@ pub use super::marks::ContactMark;
 pub use super::outline::Mesh;
 pub use super::values::{coefficient_scale, Field, Values};
 
-/// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100. Where
-/// sides may touch, between bodies or at obstacles, `contact` says so: its marks are drawn on u. Empty without contact.
+/// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100.
+/// Where sides may touch, between bodies or at obstacles, `contact` says so: its marks are drawn on u. Empty without
+/// contact.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
@@ -54,8 +55,8 @@ pub fn write(mesh: &Mesh, fields: &[Field], title: &str, path: &Path) -> Result<
     draw(mesh, fields, &[], title).write_png(path)
 }
 
-/// As [`write()`] for bodies that have been displaced: `mesh` as it was, `shown` where its points are drawn; bodies are outlined each for
-/// itself, and thinly as they were. `contact` is marked where it is drawn.
+/// As [`write()`] for bodies that have been displaced: `mesh` as it was, `shown` where its points are drawn; bodies are
+/// outlined each for itself, and thinly as they were. `contact` is marked where it is drawn.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.

@@ -5,8 +5,8 @@ use super::paint::{self, View};
 use crate::report::drawing::canvas::{self, Canvas, Colour};
 use crate::report::drawing::raster::Raster;
 
-/// A part of a side that may touch another body or an obstacle: usually the face of one element. A mark whose ends coincide
-/// is a single node.
+/// A part of a side that may touch another body or an obstacle: usually the face of one element. A mark whose ends
+/// coincide is a single node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactMark {
     /// One end.

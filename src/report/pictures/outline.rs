@@ -83,8 +83,8 @@ impl Mesh<'_> {
         self.lines_at(self.points, false)
     }
 
-    /// The lines where the points have moved to `shown`; with `apart` around every body for itself, because bodies that touched
-    /// need not do so any more.
+    /// The lines where the points have moved to `shown`; with `apart` around every body for itself, because bodies that
+    /// touched need not do so any more.
     pub(super) fn lines_at(&self, shown: &[[f64; 2]], apart: bool) -> Lines {
         // Edges by point numbers: those that one subdomain has twice lie inside it and are most of all.
         let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.quads.len());

@@ -1,7 +1,8 @@
-//! Pictures of fields on solids: the surface from two sides, bodies moved apart in the second picture, so that it shows where they touch.
+//! Pictures of fields on solids: the surface from two sides, bodies moved apart in the second picture, so that it shows
+//! where they touch.
 //!
-//! The projection is parallel and from a fixed direction, y upwards, so that pictures of different scenes and meshes compare. Hidden
-//! parts are found pixel by pixel.
+//! The projection is parallel and from a fixed direction, y upwards, so that pictures of different scenes and meshes
+//! compare. Hidden parts are found pixel by pixel.
 
 use super::paint::{colour_bar, legend, sheet, BAR, LABELS, TEXT};
 use super::space::Camera;
@@ -26,8 +27,8 @@ const APART: [f64; 2] = [0.75, 0.5];
 /// So much more of the marked area another place has to show before it is taken.
 const BETTER: f64 = 1.6;
 
-/// Writes fields as PNG, side by side: the first on the bodies as they are, the others on bodies moved apart, or on the other side of a
-/// single one, seen from where most of the faces in `marks` are seen.
+/// Writes fields as PNG, side by side: the first on the bodies as they are, the others on bodies moved apart, or on the
+/// other side of a single one, seen from where most of the faces in `marks` are seen.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.

@@ -57,8 +57,8 @@ impl Buffer {
         (buffer, scale)
     }
 
-    /// Paints the pixels of a triangle (x to the right, y downwards, depth towards the viewer) that nothing nearer covers; `shade`
-    /// gets the value there.
+    /// Paints the pixels of a triangle (x to the right, y downwards, depth towards the viewer) that nothing nearer
+    /// covers; `shade` gets the value there.
     pub fn triangle(&mut self, p: [[f64; 3]; 3], v: [f64; 3], shade: &impl Fn(f64) -> Colour) {
         let (size, flat) = ((self.width, self.height), p.map(|[x, y, _]| [x, y]));
         raster::triangle(flat, size, |x, y, a, b| {

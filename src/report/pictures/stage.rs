@@ -1,4 +1,5 @@
-//! A solid seen from one place: its surface in the colours of a field, lit, with lines around bodies and between subdomains.
+//! A solid seen from one place: its surface in the colours of a field, lit, with lines around bodies and between
+//! subdomains.
 
 use super::space::{Buffer, Camera};
 use super::surface::{unit_cross, Solid, Surface};
@@ -144,7 +145,8 @@ pub(super) fn pale(Colour(r, g, b): Colour) -> Colour {
     Colour(mix(r), mix(g), mix(b))
 }
 
-/// How light a face is: the light comes from above the viewer's left shoulder and leaves no side dark, because colours have to be read.
+/// How light a face is: the light comes from above the viewer's left shoulder and leaves no side dark, because colours
+/// have to be read.
 fn light(normal: [f64; 3], camera: &Camera) -> f64 {
     let seen = camera.project(normal);
     let from = [-0.35, 0.65, 0.67];

@@ -8,7 +8,8 @@ use std::collections::HashMap;
 /// Hexahedra with the body and the subdomain of each.
 #[derive(Debug, Clone, Copy)]
 pub struct Solid<'a> {
-    /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per subdomain.
+    /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per
+    /// subdomain.
     pub points: &'a [[f64; 3]],
     /// Where the points are drawn: as `points`, or displaced.
     pub shown: &'a [[f64; 3]],
@@ -239,7 +240,8 @@ pub(crate) mod tests {
     }
 
     impl Blocks {
-        /// `bodies` unit cubes on top of each other, each of two subdomains (left and right) with points of their own, n × n × n cells.
+        /// `bodies` unit cubes on top of each other, each of two subdomains (left and right) with points of their own,
+        /// n × n × n cells.
         pub(crate) fn new(bodies: u32, n: u32) -> Blocks {
             let mut out = Blocks::default();
             for (body, half) in (0..bodies).flat_map(|b| [(b, 0), (b, 1)]) {

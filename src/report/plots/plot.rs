@@ -1,4 +1,5 @@
-//! Line and scatter plots with one or more panels, as PNG and SVG. The legend stands below the panels, never on the data.
+//! Line and scatter plots with one or more panels, as PNG and SVG. The legend stands below the panels, never on the
+//! data.
 
 use super::panel::{MARGIN, TEXT};
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};

@@ -39,7 +39,8 @@ pub struct Profile {
     pub multiplier: Vec<f64>,
     /// Whether the sides touch.
     pub active: Vec<bool>,
-    /// The area (in the plane a length) of the side that belongs to the node; empty: forces are not reported as pressures.
+    /// The area (in the plane a length) of the side that belongs to the node; empty: forces are not reported as
+    /// pressures.
     pub area: Vec<f64>,
 }
 
@@ -244,8 +245,8 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
     })
 }
 
-/// Writes `interfaces.png`, `interfaces.svg` and `interfaces.csv` into a directory; returns their paths. The CSV has all
-/// interfaces: name, t, x, y, gap, multiplier, active (0 or 1), and with areas pressure and area.
+/// Writes `interfaces.png`, `interfaces.svg` and `interfaces.csv` into a directory; returns their paths. The CSV has
+/// all interfaces: name, t, x, y, gap, multiplier, active (0 or 1), and with areas pressure and area.
 ///
 /// # Errors
 /// [`Error::Input`] when the arrays of an interface differ in length; [`Error::Environment`] with the path.

@@ -180,8 +180,8 @@ pub fn csv(report: &BenchReport) -> Table {
     table
 }
 
-/// Error over seconds of set-up and solve: a panel for each case, a marker for each method at its median, a bar from its smallest to its
-/// largest total.
+/// Error over seconds of set-up and solve: a panel for each case, a marker for each method at its median, a bar from
+/// its smallest to its largest total.
 pub fn figure(report: &BenchReport) -> Figure {
     // One colour for a method in all panels, one shape for a layout.
     let mut methods: Vec<&str> = Vec::new();
