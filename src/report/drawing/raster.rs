@@ -4,9 +4,8 @@ use super::canvas::{self, Canvas, Colour, Point, TextStyle};
 use crate::report::output;
 use crate::Result;
 use ab_glyph::{Font, OutlineCurve};
-use std::path::Path;
 use tiny_skia::{
-    FillRule, LineJoin, Paint, PathBuilder, Pixmap, PremultipliedColorU8, Stroke, StrokeDash,
+    FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8, Stroke, StrokeDash,
     Transform,
 };
 
@@ -54,7 +53,7 @@ impl Raster {
     ///
     /// # Errors
     /// [`crate::Error::Environment`] with the path.
-    pub fn write_png(&self, path: &Path) -> Result<()> {
+    pub fn write_png(&self, path: &std::path::Path) -> Result<()> {
         output::write_file(path, |out| {
             let mut encoder = png::Encoder::new(out, self.pixels.width(), self.pixels.height());
             encoder.set_color(png::ColorType::Rgb);
@@ -68,9 +67,9 @@ impl Raster {
         })
     }
 
-    /// Fills closed curves; what has no extent or is not finite is left out.
+    /// Fills closed curves.
     fn fill(&mut self, path: PathBuilder, colour: Colour) {
-        if let Some(path) = path.finish() {
+        if let Some(path) = finished(path) {
             let (paint, transform) = (paint(colour), self.transform());
             self.pixels
                 .fill_path(&path, &paint, FillRule::Winding, transform, None);
@@ -133,6 +132,14 @@ fn polyline(points: &[Point]) -> PathBuilder {
     path
 }
 
+/// The path, if it has an extent and all its points are numbers of a size that can be drawn: tiny-skia takes no others.
+fn finished(path: PathBuilder) -> Option<Path> {
+    let drawable = |x: f32| x.abs() < 1e9;
+    let path = path.finish()?;
+    let all = path.points().iter().all(|p| drawable(p.x) && drawable(p.y));
+    all.then_some(path)
+}
+
 impl Canvas for Raster {
     fn polygon(&mut self, points: &[Point], fill: Colour) {
         let mut path = polyline(points);
@@ -141,7 +148,7 @@ impl Canvas for Raster {
     }
 
     fn line(&mut self, points: &[Point], width: f64, colour: Colour, dash: &[f64]) {
-        if let Some(path) = polyline(points).finish() {
+        if let Some(path) = finished(polyline(points)) {
             let stroke = Stroke {
                 width: width as f32,
                 line_join: LineJoin::Round,
@@ -262,7 +269,11 @@ mod tests {
         assert!(with.pixels == without.pixels);
         // Far outside: nothing is drawn and nothing fails.
         raster.line(&[(1e9, 1e9), (2e9, 1e9)], 1.0, RED, &[]);
-        raster.polygon(&[(f64::NAN, 0.0), (1.0, 1.0), (2.0, 0.0)], RED);
+        for bad in [f64::NAN, f64::INFINITY, 1e300, -1e8] {
+            raster.polygon(&[(bad, 0.0), (1.0, 1.0), (2.0, 0.0)], RED);
+            raster.line(&[(0.0, bad), (1.0, 1.0)], 1.0, RED, &[]);
+            raster.text((bad, 1.0), "a", &TextStyle::new(9.0, Anchor::Start));
+        }
     }
 
     #[test]

@@ -31,7 +31,7 @@ const BETTER: f64 = 1.6;
 /// other side of a single one, seen from where most of the faces in `marks` are seen.
 ///
 /// # Errors
-/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
+/// [`crate::Error::Input`] when an array does not fit the mesh; [`crate::Error::Environment`] with the path.
 pub fn write_solution(
     solid: &Solid,
     fields: &[Field],

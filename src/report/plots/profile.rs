@@ -213,7 +213,7 @@ impl Profile {
 /// The figure: the interfaces with the largest forces, each with its multiplier above its gap.
 ///
 /// # Errors
-/// [`Error::Input`] when the arrays of an interface differ in length.
+/// [`crate::Error::Input`] when the arrays of an interface differ in length.
 pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
     profiles.iter().try_for_each(Profile::check)?;
     let known = profiles.iter().filter(|p| !p.t.is_empty());
@@ -249,7 +249,7 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
 /// all interfaces: name, t, x, y, gap, multiplier, active (0 or 1), and with areas pressure and area.
 ///
 /// # Errors
-/// [`Error::Input`] when the arrays of an interface differ in length; [`Error::Environment`] with the path.
+/// [`crate::Error::Input`] when the arrays of an interface differ in length; [`crate::Error::Environment`] with the path.
 pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
     let csv = dir.join("interfaces.csv");
