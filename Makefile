@@ -59,6 +59,7 @@ run: build ## Solve the model problems with contact and without, compare with PE
 test: setup ## Check format, lints and documentation, then run every test
 	cargo fmt --all -- --check
 	cargo clippy --workspace --all-targets -- -D warnings
+	cargo clippy --lib --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
 	cargo test --workspace --no-fail-fast
 
@@ -79,6 +80,7 @@ fmt: ## Format the sources
 lint: setup ## Check format and lints only
 	cargo fmt --all -- --check
 	cargo clippy --workspace --all-targets -- -D warnings
+	cargo clippy --lib --no-default-features -- -D warnings
 
 docs: setup ## Build the documentation of the crate
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps

@@ -87,13 +87,19 @@
 //! `docs/theory.md` in the repository has the others and the reasons behind the choices, `docs/options.md` every option.
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
+// Without the program nobody calls what only the program needs.
+#![cfg_attr(not(feature = "cli"), allow(dead_code))]
 
+#[cfg(feature = "cli")]
 mod assembled;
+#[cfg(feature = "cli")]
 pub mod baselines;
 #[allow(unsafe_code)]
 pub mod capi;
+#[cfg(feature = "cli")]
 pub mod checkpoint;
 pub mod cholesky;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
 pub mod embed;
@@ -105,19 +111,21 @@ pub mod mesh;
 pub mod parallel;
 #[allow(unsafe_code)]
 pub mod petsc;
+#[cfg(feature = "cli")]
 pub mod report;
 pub mod scene;
 pub mod settings;
 pub mod solution;
 pub mod solver;
 pub mod status;
+#[cfg(feature = "cli")]
 pub mod study;
 pub mod substructures;
 
 // Tests say `fetifeti` inside the crate as they do outside.
 #[cfg(test)]
 extern crate self as fetifeti;
-#[cfg(test)]
+#[cfg(all(test, feature = "cli"))]
 #[path = "../tests/inside/mod.rs"]
 mod inside;
 

@@ -26,7 +26,7 @@ impl Workspace {
         let stamp = std::time::SystemTime::now()
             .duration_since(std::time::UNIX_EPOCH)
             .map_or(0, |d| d.as_nanos());
-        let name = format!("fetifeti-compare-{}-{stamp}", std::process::id());
+        let name = format!("fetifeti-{}-{stamp}", std::process::id());
         let dir = std::env::temp_dir().join(name);
         std::fs::DirBuilder::new()
             .mode(0o700)
@@ -35,6 +35,11 @@ impl Workspace {
                 Error::environment(format!("cannot make the directory {}: {e}", dir.display()))
             })?;
         Ok(Workspace { dir })
+    }
+
+    /// Where it is.
+    pub fn dir(&self) -> &Path {
+        &self.dir
     }
 
     /// The path of a file in it.

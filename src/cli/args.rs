@@ -1,144 +1,270 @@
-//! What the command line may say; [`parse`] reads it.
+//! What the command line may say, as clap reads it. The comments on commands and fields are the help that users see.
 
 use std::path::PathBuf;
 
-pub use super::parse::parse;
-pub use super::usage::USAGE;
-use crate::baselines::{Benchmark, Comparison};
+use clap::builder::PossibleValuesParser;
+use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap_complete::Shell;
+
+use crate::baselines::{Benchmark, Comparison, BASELINES};
+use crate::report::destination::Destination;
+
+/// What ends the help of the program.
+const PETSC: &str = "\
+PETSc options have one dash and stand anywhere on the line, with their values: -fetifeti_ksp_rtol 1e-10.
+fetifeti -help lists ours with PETSc's; they are also read from PETSC_OPTIONS and -options_file.
+
+On several ranks: mpirun -n N fetifeti solve SCENE ... gives the same answer.
+
+Exit codes: 0 solved, 1 not converged (what was written is partial), 2 bad input, 3 the environment (PETSc, MPI, disk).";
+
+/// What ends the help of a command that solves something.
+const OPTIONS: &str =
+    "PETSc options have one dash and stand anywhere on the line: fetifeti -help lists them.";
+
+/// The FETI-FETI method for bodies in contact, on PETSc
+#[derive(Debug, Parser)]
+#[command(name = "fetifeti", version, after_help = PETSC)]
+// PETSc has the options of one dash, -h and -V among them.
+#[command(disable_help_flag = true, disable_version_flag = true)]
+pub struct Line {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Say this, or more of the command
+    #[arg(long, global = true, action = ArgAction::Help)]
+    help: Option<bool>,
+    /// Say which version this is
+    #[arg(long, action = ArgAction::Version)]
+    version: Option<bool>,
+}
 
 /// A command with its arguments.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Subcommand)]
 pub enum Command {
-    /// Print the usage.
-    Help,
-    /// Print the version.
-    Version,
-    /// Solve one scene.
+    /// Solve a scene
+    ///
+    /// The directory of --out gets solution.vtu, solution.png and report.json; with contact also
+    /// interfaces.png, .svg and .csv; with load steps also solution.pvd, step_*.vtu, steps.png, .svg and .csv.
+    #[command(after_help = OPTIONS)]
     Solve(Solve),
-    /// Say what would be built.
-    Plan {
-        /// The scene file.
-        scene: PathBuf,
-    },
-    /// Redo Table 1.
+    /// Validate a scene; say what the solver will build and why, with sizes and memory
+    #[command(after_help = OPTIONS)]
+    Plan(Plan),
+    /// Solve a scene with PETSc's solvers, too
+    ///
+    /// All are driven to the same relative residual. The options of PETSc's solvers have the prefixes
+    /// -bddc_ -fetidp_ -gamg_ -hypre_ -mumps_; -compare_cores N and -compare_time_limit SECONDS are for each method.
+    #[command(after_help = OPTIONS)]
+    Compare(Compare),
+    /// Run the methods of compare in turns
+    ///
+    /// Several rounds of them: medians, smallest and largest seconds beside errors, as
+    /// table, JSON, CSV and picture.
+    #[command(after_help = OPTIONS)]
+    Bench(Bench),
+    /// Redo Table 1 and Figure 3 of Lee (2010)
+    #[command(after_help = OPTIONS)]
     Table1(Table1),
-    /// Run the baselines.
-    Compare(Comparison),
-    /// Run the baselines in rounds.
-    Bench(Benchmark),
-    /// Say which cases `bench` has.
-    BenchList,
-    /// Run a study.
+    /// Run a study of the method
+    #[command(after_help = OPTIONS)]
     Study(Study),
-    /// One method of a comparison, in a process of its own (not for users).
+    /// Print a script that completes command lines
+    ///
+    /// For bash:
+    /// fetifeti completions bash > ~/.local/share/bash-completion/completions/fetifeti
+    Completions {
+        /// The shell that reads it
+        shell: Shell,
+    },
+    /// Print the manual page
+    ///
+    /// To read it: fetifeti man | man -l -. With --out it is written into a directory, with those of all commands.
+    Man {
+        /// Directory for fetifeti.1, fetifeti-solve.1, ...
+        #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+        out: Option<PathBuf>,
+    },
+    /// One method of a comparison, in a process of its own (not for users)
+    #[command(hide = true)]
     Baseline {
-        /// What to run, as the parent process wrote it.
+        /// What to run, as the parent process wrote it
         job: PathBuf,
     },
-    /// One measurement of a study, in a process of its own (not for users).
+    /// One measurement of a study, in a process of its own (not for users)
+    #[command(hide = true)]
     Measure {
-        /// What to measure, as the parent process wrote it.
+        /// What to measure, as the parent process wrote it
         task: PathBuf,
     },
 }
 
+/// Where results go.
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+pub struct Results {
+    /// Directory for all results; made if it is missing
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    out: Option<PathBuf>,
+    /// File for the report; - is standard output, and then nothing else is printed there
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    json: Option<PathBuf>,
+    /// No summary and no progress
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl From<Results> for Destination {
+    fn from(Results { out, json, quiet }: Results) -> Destination {
+        Destination { out, json, quiet }
+    }
+}
+
 /// Arguments of `solve`.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct Solve {
-    /// The scene file.
+    /// The scene, a TOML file
+    #[arg(value_hint = ValueHint::FilePath)]
     pub scene: PathBuf,
-    /// Directory for results.
-    pub out: Option<PathBuf>,
-    /// File for the JSON report.
-    pub json: Option<PathBuf>,
-    /// No summary.
-    pub quiet: bool,
-    /// File for the state of the contact loop.
+    #[command(flatten)]
+    pub results: Results,
+    /// File for the state of the contact loop, written after every step
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub checkpoint: Option<PathBuf>,
-    /// File with a state to go on from.
+    /// Go on from such a file, on any number of ranks
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub resume: Option<PathBuf>,
 }
 
+/// Arguments of `plan`.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct Plan {
+    /// The scene, a TOML file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+}
+
 /// Arguments of `table1`.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct Table1 {
-    /// (1/H_b, H_b/H_s, H_s/h); empty for the paper's 20 rows.
+    /// A row by 1/H_b, H_b/H_s and H_s/h, as in 2,4,2; may be repeated [default: the 20 rows of the paper]
+    #[arg(long, value_name = "N,N,N", value_parser = row)]
     pub rows: Vec<[usize; 3]>,
-    /// Directory for CSV, JSON and figures.
-    pub out: Option<PathBuf>,
-    /// File for the JSON.
-    pub json: Option<PathBuf>,
-    /// No table.
-    pub quiet: bool,
+    #[command(flatten)]
+    pub results: Results,
 }
 
-/// The studies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StudyName {
-    /// Condition numbers that the user chooses, on coefficients that jump inside bodies.
-    Adaptive,
-    /// Half-width and peak pressure against Hertz's theory.
-    Hertz,
-    /// Problems that are hard for the method, against direct solutions.
-    HardCases,
-    /// Condition numbers with M_D and M_C.
-    Kappa,
-    /// Local solvers and orderings.
-    Kernels,
-    /// Seconds over ranks and bodies, with a model.
-    Scaling,
-    /// Error against seconds, ours and every baseline.
-    SpeedError,
+/// Which baselines run.
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+pub struct With {
+    /// Methods beside ours, with commas [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    #[arg(value_parser = PossibleValuesParser::new(BASELINES.map(|b| b.name)))]
+    with: Vec<String>,
 }
 
-impl StudyName {
-    /// All of them.
-    pub const ALL: [StudyName; 7] = [
-        StudyName::Adaptive,
-        StudyName::Hertz,
-        StudyName::HardCases,
-        StudyName::Kappa,
-        StudyName::Kernels,
-        StudyName::Scaling,
-        StudyName::SpeedError,
-    ];
+/// Arguments of `compare`.
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+pub struct Compare {
+    /// The scene, a TOML file
+    #[arg(value_hint = ValueHint::FilePath)]
+    scene: PathBuf,
+    #[command(flatten)]
+    with: With,
+    #[command(flatten)]
+    results: Results,
+}
 
-    /// As it is written.
-    pub fn name(self) -> &'static str {
-        match self {
-            StudyName::Adaptive => "adaptive",
-            StudyName::Hertz => "hertz",
-            StudyName::HardCases => "hard-cases",
-            StudyName::Kappa => "kappa",
-            StudyName::Kernels => "kernels",
-            StudyName::Scaling => "scaling",
-            StudyName::SpeedError => "speed-error",
+impl Compare {
+    /// What is asked for; the jobs get PETSc's options, too.
+    pub fn wanted(self, petsc: Vec<String>) -> Comparison {
+        Comparison {
+            scene: self.scene,
+            with: self.with.with,
+            destination: self.results.into(),
+            petsc,
         }
     }
 }
 
-/// Arguments of `study`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Study {
-    /// Which one.
-    pub name: StudyName,
-    /// The one of its cases that is run; `None`: all.
-    pub case: Option<String>,
-    /// File for the JSON.
-    pub json: Option<PathBuf>,
-    /// Directory for tables and pictures.
-    pub out: Option<PathBuf>,
-    /// Coarser meshes, smaller cases.
-    pub quick: bool,
-    /// No table.
-    pub quiet: bool,
+/// Arguments of `bench`.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct Bench {
+    /// Cases by name, or scenes [default: all cases]
+    #[arg(value_name = "CASE|SCENE", value_hint = ValueHint::FilePath)]
+    cases: Vec<String>,
+    /// How often every method is run
+    #[arg(long, value_name = "N", default_value = "5", value_parser = rounds)]
+    rounds: usize,
+    #[command(flatten)]
+    with: With,
+    /// Smaller cases
+    #[arg(long)]
+    quick: bool,
+    /// Only say which cases there are
+    #[arg(long)]
+    pub list: bool,
+    #[command(flatten)]
+    results: Results,
 }
 
-/// What was written: a command and the options that are PETSc's.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Invocation {
-    /// The command.
-    pub command: Command,
-    /// Arguments for PetscInitialize.
-    pub petsc: Vec<String>,
+impl Bench {
+    /// As [`Compare::wanted`].
+    pub fn wanted(self, petsc: Vec<String>) -> Benchmark {
+        Benchmark {
+            cases: self.cases,
+            rounds: self.rounds,
+            with: self.with.with,
+            quick: self.quick,
+            destination: self.results.into(),
+            petsc,
+        }
+    }
+}
+
+/// The studies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StudyName {
+    /// Condition numbers that the user chooses, where coefficients jump inside bodies
+    Adaptive,
+    /// Contact half-width and peak pressure against Hertz's theory
+    Hertz,
+    /// Problems that are hard for the method against direct solutions; exit code 1 where an answer is wrong
+    HardCases,
+    /// Condition numbers with M_D and M_C over H_b/H_s and H_s/h; -fetifeti_spectrum: exact ones too
+    Kappa,
+    /// Local solvers and orderings against each other
+    Kernels,
+    /// Seconds over ranks and bodies by phase, messages, and a model for up to 100 000 ranks of a network with
+    /// -scaling_alpha SECONDS -scaling_beta SECONDS_PER_BYTE
+    Scaling,
+    /// Error against seconds, ours and the baselines of compare, over meshes and tolerances
+    SpeedError,
+}
+
+/// Arguments of `study`.
+#[derive(Debug, Clone, PartialEq, Args)]
+pub struct Study {
+    /// Which study
+    #[arg(value_name = "STUDY")]
+    pub name: StudyName,
+    /// One of its cases [default: all]
+    pub case: Option<String>,
+    /// Coarser meshes, smaller cases, a few seconds
+    #[arg(long)]
+    pub quick: bool,
+    #[command(flatten)]
+    pub results: Results,
+}
+
+fn rounds(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|&n| n > 0);
+    number.ok_or_else(|| "expected a whole number from 1".into())
+}
+
+/// `1/H_b,H_b/H_s,H_s/h`, as in `2,4,2`.
+fn row(text: &str) -> Result<[usize; 3], String> {
+    let counts: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match counts.as_deref() {
+        Some(&[b, s, e]) if b >= 2 && s >= 1 && e >= 1 => Ok([b, s, e]),
+        _ => Err("expected three counts of at least 1 (2 for the first) as in 2,4,2".into()),
+    }
 }

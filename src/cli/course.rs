@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::args::Solve;
 use super::contact;
 use super::fields::Gathered;
 use crate::checkpoint::{Checkpoints, Resumed};
 use crate::petsc::Session;
+use crate::report::destination::Destination;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
@@ -36,15 +36,15 @@ pub(super) fn follow(
     session: &Session,
     scene: &Scene,
     solver: &mut FetiFeti,
-    args: &Solve,
+    destination: &Destination,
     checkpoints: Checkpoints,
 ) -> Result<Course> {
     let n = scene.n_steps();
     let times = scene.steps.as_ref().map(|s| s.times.clone());
     let owns = distribution::owner(session, scene)?;
-    let mut progress = Progress::new(session.rank() == 0 && !args.quiet);
+    let mut progress = Progress::new(session.rank() == 0 && !destination.quiet);
     let mut course: Option<Course> = None;
-    let mut pvd = args
+    let mut pvd = destination
         .out
         .as_ref()
         .map(|dir| Pvd::new(dir.join("solution.pvd")));
@@ -54,7 +54,7 @@ pub(super) fn follow(
         mut records,
         mut state,
     } = checkpoints.resume(session)?;
-    if let (Some(dir), Some(pvd), Some(times)) = (&args.out, &mut pvd, &times) {
+    if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
         session.agree(list_before(session, dir, &times[..first], pvd))?;
     }
     let mut seconds = [0.0; 2];
@@ -97,7 +97,7 @@ pub(super) fn follow(
         };
         if let Some(times) = &times {
             now.load_steps.push(load_step_record(times[step], &now));
-            if let (Some(dir), Some(pvd)) = (&args.out, &mut pvd) {
+            if let (Some(dir), Some(pvd)) = (&destination.out, &mut pvd) {
                 write_step(session, scene, solver, &now, dir, times[step], pvd)?;
             }
         }

@@ -1,12 +1,14 @@
 //! The command-line program: arguments, then run, then an exit code.
 
-pub mod args;
+mod args;
 mod balance;
 mod coefficient;
 mod contact;
 mod course;
 mod fields;
+mod first_rank;
 mod maps;
+mod pages;
 mod parse;
 mod physics;
 mod picture;
@@ -14,23 +16,21 @@ mod plan;
 mod solve;
 mod study;
 mod table1;
-mod usage;
 
-use args::{Command, Invocation};
+use args::Command;
+use first_rank::{on_first_rank, say};
+use parse::{Invocation, Wanted};
 
-use crate::baselines::{self, Benchmark, Comparison};
 use crate::petsc::{self, Comm, Ksp, Session};
-use crate::report::output;
 use crate::scene::distribution::Distribution;
-use crate::{Error, Result, Settings, Status};
+use crate::{baselines, Result, Settings};
 
 /// Runs the program with the process's arguments and returns its exit code.
 pub fn main() -> i32 {
     petsc::let_threads_allocate();
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let parsed = args::parse(&args);
+    let parsed = parse::parse(std::env::args().skip(1).collect());
     let petsc = parsed.as_ref().map(|p| p.petsc.clone()).unwrap_or_default();
-    let session = match Session::new(&petsc, args::USAGE) {
+    let session = match Session::new(&petsc, &parse::usage()) {
         Ok(session) => session,
         Err(error) => {
             eprintln!("Error: {error}");
@@ -41,33 +41,27 @@ pub fn main() -> i32 {
 }
 
 fn run(session: &Session, invocation: Invocation) -> Result<()> {
-    let Invocation { command, petsc } = invocation;
-    let wants_help = petsc.iter().any(|a| a == "-help" || a == "-h");
+    let Invocation { wanted, petsc } = invocation;
+    let command = match wanted {
+        Wanted::Run(command) => command,
+        Wanted::Say(_) if petsc.iter().any(|a| a == "-help" || a == "-h") => {
+            return list_options(session)
+        }
+        Wanted::Say(text) => return say(session, &text),
+    };
     match command {
-        Command::Help if wants_help => list_options(session),
-        Command::Help => say(session, args::USAGE),
-        Command::Version => say(
-            session,
-            concat!("fetifeti ", env!("CARGO_PKG_VERSION"), "\n"),
-        ),
-        Command::Solve(args) => solve::run(session, &args),
-        Command::Plan { scene } => plan::run(session, &scene),
-        Command::Table1(args) => table1::run(session, &args),
-        Command::Study(args) => study::run(session, &args, &petsc),
-        Command::Compare(wanted) => baselines::compare(session, &Comparison { petsc, ..wanted }),
-        Command::Bench(wanted) => baselines::bench(session, &Benchmark { petsc, ..wanted }),
-        Command::BenchList => say(session, &baselines::cases()),
+        Command::Solve(args) => solve::run(session, args),
+        Command::Plan(args) => plan::run(session, &args.scene),
+        Command::Table1(args) => table1::run(session, args),
+        Command::Study(args) => study::run(session, args, &petsc),
+        Command::Compare(args) => baselines::compare(session, &args.wanted(petsc)),
+        Command::Bench(args) if args.list => say(session, &baselines::cases()),
+        Command::Bench(args) => baselines::bench(session, &args.wanted(petsc)),
+        Command::Completions { shell } => say(session, &pages::completions(shell)),
+        Command::Man { out } => on_first_rank(session, || pages::manual(out.as_deref())),
         Command::Baseline { job } => baselines::run_job(session, &job),
         Command::Measure { task } => crate::study::scaling::run_task(session, &task),
     }
-}
-
-/// Prints `text` on rank 0. Collective.
-fn say(session: &Session, text: &str) -> Result<()> {
-    session.agree(match session.rank() {
-        0 => output::print(text),
-        _ => Ok(()),
-    })
 }
 
 /// `fetifeti -help`: our options and those of the solvers behind them, without a scene.
@@ -80,11 +74,4 @@ fn list_options(session: &Session) -> Result<()> {
     ksp.pc()?
         .set_options_prefix(&format!("{}ksp_", settings.method.prefix))?;
     ksp.set_from_options()
-}
-
-/// The error of a solve that stopped early; results were written before.
-fn not_converged(what: &str, status: &Status, iterations: usize) -> Error {
-    Error::NotConverged(format!(
-        "{what} did not converge: {status} after {iterations} iterations (the results written are partial)"
-    ))
 }

@@ -1,308 +1,167 @@
-//! The command line: ours with two dashes, PETSc's with one, resolved once.
+//! Reads the command line: options with one dash are PETSc's, clap takes the rest.
 
-use std::path::PathBuf;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, Parser};
 
-use super::args::{Command, Invocation, Solve, Study, StudyName, Table1};
-use crate::baselines::{Benchmark, Comparison};
-use crate::report::destination::Destination;
+use super::args::{Command, Line};
 use crate::{Error, Result};
 
-/// Splits the arguments (without the program's name).
+/// What is to be done.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Wanted {
+    /// Print a text: help, version.
+    Say(String),
+    /// Run a command.
+    Run(Command),
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Invocation {
+    /// What is to be done.
+    pub wanted: Wanted,
+    /// Arguments for PetscInitialize.
+    pub petsc: Vec<String>,
+}
+
+/// Reads the arguments (without the program's name).
 ///
 /// # Errors
-/// [`Error::Input`] naming the argument and what was expected.
-pub fn parse(args: &[String]) -> Result<Invocation> {
-    let (words, petsc) = split(args)?;
-    let mut words = Words { rest: words };
-    let command = match words.next_plain() {
-        None if words.flag("--version") => Command::Version,
-        None => {
-            words.flag("--help");
-            Command::Help
-        }
-        Some(name) if words.flag("--help") => {
-            known(&name)?;
-            return Ok(Invocation {
-                command: Command::Help,
-                petsc,
-            });
-        }
-        Some(name) => words.command(&name)?,
+/// [`Error::Input`], one sentence.
+pub fn parse(args: Vec<String>) -> Result<Invocation> {
+    let (ours, petsc) = split(args);
+    let words = std::iter::once("fetifeti".to_string()).chain(ours);
+    let wanted = match Line::try_parse_from(words) {
+        Ok(Line { command, .. }) => command.map_or_else(|| Wanted::Say(usage()), Wanted::Run),
+        Err(said) if !said.use_stderr() => Wanted::Say(said.to_string()),
+        Err(mistake) => return Err(Error::input(sentence(&mistake))),
     };
-    words.finish()?;
-    Ok(Invocation { command, petsc })
+    Ok(Invocation { wanted, petsc })
 }
 
-const COMMANDS: [&str; 8] = [
-    "solve", "plan", "compare", "bench", "table1", "study", "baseline", "measure",
-];
-
-/// Rounds of `bench` where `--rounds` does not say.
-const ROUNDS: usize = 5;
-
-fn known(name: &str) -> Result<()> {
-    if COMMANDS.contains(&name) {
-        return Ok(());
-    }
-    Err(Error::input(format!(
-        "\"{name}\" is no command, expected solve, plan, compare, bench, table1 or study (fetifeti --help tells more)"
-    )))
+/// What `fetifeti --help` prints.
+pub fn usage() -> String {
+    Line::command().render_help().to_string()
 }
 
-/// Flags of ours that take a value.
-const WITH_VALUE: [&str; 7] = [
-    "--out",
-    "--json",
-    "--rows",
-    "--with",
-    "--rounds",
-    "--checkpoint",
-    "--resume",
-];
-
-/// Ours (plain words and --flags with their values, in order) and PETSc's.
-fn split(args: &[String]) -> Result<(Vec<String>, Vec<String>)> {
+/// Ours and PETSc's. As PETSc reads them: what follows an option and is no option is its value.
+fn split(args: Vec<String>) -> (Vec<String>, Vec<String>) {
+    let is_option = |word: &str| word.starts_with('-') && word.parse::<f64>().is_err();
     let (mut ours, mut petsc) = (Vec::new(), Vec::new());
-    let mut args = args.iter().peekable();
+    let mut args = args.into_iter().peekable();
     while let Some(arg) = args.next() {
-        if let Some((flag, value)) = arg.split_once('=').filter(|(f, _)| WITH_VALUE.contains(f)) {
-            ours.extend([flag.to_string(), value.to_string()]);
-        } else if WITH_VALUE.contains(&arg.as_str()) {
-            let value = args.next().ok_or_else(|| {
-                Error::input(format!("{arg} stands last, expected a value behind it"))
-            })?;
-            ours.extend([arg.clone(), value.clone()]);
-        } else if arg.starts_with("--") || !arg.starts_with('-') || arg == "-" {
-            ours.push(arg.clone());
-        } else {
-            petsc.push(arg.clone());
-            // As PETSc reads them: what follows an option and is no option is its value.
-            let is_value = |next: &&String| !next.starts_with('-') || next.parse::<f64>().is_ok();
-            if let Some(value) = args.next_if(is_value) {
-                petsc.push(value.clone());
-            }
+        if arg.starts_with("--") || !arg.starts_with('-') || arg == "-" {
+            ours.push(arg);
+            continue;
         }
+        petsc.push(arg);
+        petsc.extend(args.next_if(|next| !is_option(next)));
     }
-    Ok((ours, petsc))
+    (ours, petsc)
 }
 
-struct Words {
-    rest: Vec<String>,
-}
-
-impl Words {
-    fn next_plain(&mut self) -> Option<String> {
-        let mut at = 0;
-        while at < self.rest.len() {
-            match self.rest[at].as_str() {
-                word if WITH_VALUE.contains(&word) => at += 2,
-                word if word.starts_with("--") => at += 1,
-                _ => return Some(self.rest.remove(at)),
-            }
-        }
-        None
-    }
-
-    fn flag(&mut self, name: &str) -> bool {
-        let before = self.rest.len();
-        self.rest.retain(|w| w != name);
-        self.rest.len() < before
-    }
-
-    fn value(&mut self, name: &str) -> Option<String> {
-        let at = self.rest.iter().position(|w| w == name)?;
-        self.rest.remove(at);
-        Some(self.rest.remove(at))
-    }
-
-    fn path(&mut self, name: &str) -> Option<PathBuf> {
-        self.value(name).map(PathBuf::from)
-    }
-
-    fn scene(&mut self, command: &str) -> Result<PathBuf> {
-        self.next_plain().map(PathBuf::from).ok_or_else(|| {
-            Error::input(format!(
-                "{command} was given no scene, expected a TOML file right behind the command"
-            ))
-        })
-    }
-
-    fn destination(&mut self) -> Destination {
-        Destination {
-            out: self.path("--out"),
-            json: self.path("--json"),
-            quiet: self.flag("--quiet"),
-        }
-    }
-
-    fn with(&mut self) -> Vec<String> {
-        let list = self.value("--with");
-        list.map(|list| list.split(',').map(|s| s.trim().to_string()).collect())
-            .unwrap_or_default()
-    }
-
-    fn rounds(&mut self) -> Result<usize> {
-        let Some(text) = self.value("--rounds") else {
-            return Ok(ROUNDS);
-        };
-        let number = text.parse().ok().filter(|&n: &usize| n > 0);
-        number.ok_or_else(|| {
-            Error::input(format!(
-                "--rounds is \"{text}\", expected a whole number from 1"
-            ))
-        })
-    }
-
-    fn study(&mut self) -> Result<StudyName> {
-        let names = StudyName::ALL.map(StudyName::name).join(", ");
-        let Some(word) = self.next_plain() else {
-            return Err(Error::input(format!(
-                "study was given no name, expected one of {names} right behind the command"
-            )));
-        };
-        let found = StudyName::ALL.into_iter().find(|s| s.name() == word);
-        found
-            .ok_or_else(|| Error::input(format!("\"{word}\" is no study, expected one of {names}")))
-    }
-
-    fn command(&mut self, name: &str) -> Result<Command> {
-        known(name)?;
-        Ok(match name {
-            "solve" => Command::Solve(Solve {
-                scene: self.scene(name)?,
-                out: self.path("--out"),
-                json: self.path("--json"),
-                quiet: self.flag("--quiet"),
-                checkpoint: self.path("--checkpoint"),
-                resume: self.path("--resume"),
-            }),
-            "plan" => Command::Plan {
-                scene: self.scene(name)?,
-            },
-            "table1" => Command::Table1(Table1 {
-                rows: std::iter::from_fn(|| self.value("--rows"))
-                    .map(|text| row(&text))
-                    .collect::<Result<_>>()?,
-                out: self.path("--out"),
-                json: self.path("--json"),
-                quiet: self.flag("--quiet"),
-            }),
-            "compare" => Command::Compare(Comparison {
-                scene: self.scene(name)?,
-                with: self.with(),
-                destination: self.destination(),
-                petsc: Vec::new(),
-            }),
-            "bench" if self.flag("--list") => Command::BenchList,
-            "bench" => Command::Bench(Benchmark {
-                rounds: self.rounds()?,
-                with: self.with(),
-                destination: self.destination(),
-                quick: self.flag("--quick"),
-                cases: std::iter::from_fn(|| self.next_plain()).collect(),
-                petsc: Vec::new(),
-            }),
-            "study" => Command::Study(Study {
-                name: self.study()?,
-                case: self.next_plain(),
-                json: self.path("--json"),
-                out: self.path("--out"),
-                quick: self.flag("--quick"),
-                quiet: self.flag("--quiet"),
-            }),
-            "measure" => Command::Measure {
-                task: self.scene(name)?,
-            },
-            _ => Command::Baseline {
-                job: self.scene(name)?,
-            },
-        })
-    }
-
-    fn finish(self) -> Result<()> {
-        match self.rest.first() {
-            None => Ok(()),
-            Some(word) if word.starts_with("--") => Err(Error::input(format!(
-                "{word} is no option of this command (fetifeti --help tells more; PETSc options have one dash)"
-            ))),
-            Some(word) => Err(Error::input(format!(
-                "\"{word}\" was not expected behind the other arguments"
-            ))),
-        }
-    }
-}
-
-/// `1/H_b,H_b/H_s,H_s/h`, as in `2,4,2`.
-fn row(text: &str) -> Result<[usize; 3]> {
-    let wrong = || {
-        Error::input(format!(
-            "--rows {text} is no row of the table, expected three counts of at least 1 (2 for the first) as in 2,4,2"
-        ))
+/// One sentence of what clap says in several lines.
+fn sentence(mistake: &clap::Error) -> String {
+    let of = |kind| match mistake.get(kind) {
+        Some(ContextValue::String(one)) => Some(one.clone()),
+        Some(ContextValue::Strings(several)) => Some(several.join(", ")),
+        _ => None,
     };
-    let counts: Vec<usize> = text
-        .split(',')
-        .map(|n| n.trim().parse().map_err(|_| wrong()))
-        .collect::<Result<_>>()?;
-    match counts[..] {
-        [b, s, e] if b >= 2 && s >= 1 && e >= 1 => Ok([b, s, e]),
-        _ => Err(wrong()),
+    let wrong = of(ContextKind::InvalidSubcommand).or_else(|| of(ContextKind::InvalidArg));
+    let mut out = match (mistake.kind(), wrong) {
+        (ErrorKind::InvalidSubcommand, Some(name)) => format!("\"{name}\" is no command"),
+        (ErrorKind::UnknownArgument, Some(flag)) if flag.starts_with("--") => {
+            format!("{flag} is no option of this command")
+        }
+        (ErrorKind::UnknownArgument, Some(word)) => {
+            format!("\"{word}\" was not expected behind the other arguments")
+        }
+        (ErrorKind::MissingRequiredArgument, Some(names)) => {
+            let names = names.replace(['<', '>'], "").to_lowercase();
+            format!("no {names} was given")
+        }
+        // The first paragraph says what is wrong.
+        _ => {
+            let text = mistake.to_string();
+            let text = text.strip_prefix("error: ").unwrap_or(&text);
+            let first = text.split("\n\n").next().unwrap_or_default();
+            first.split_whitespace().collect::<Vec<_>>().join(" ")
+        }
+    };
+    let similar = [
+        ContextKind::SuggestedSubcommand,
+        ContextKind::SuggestedArg,
+        ContextKind::SuggestedValue,
+    ];
+    if let Some(name) = similar.into_iter().find_map(of) {
+        out += &format!(", did you mean {name}?");
     }
+    out + " (fetifeti --help tells more; PETSc options have one dash)"
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::baselines::{Benchmark, Comparison};
+    use crate::report::destination::Destination;
 
     fn read(line: &str) -> Result<Invocation> {
-        parse(
-            &line
-                .split_whitespace()
-                .map(String::from)
-                .collect::<Vec<_>>(),
-        )
+        parse(line.split_whitespace().map(String::from).collect())
+    }
+
+    fn command(line: &str) -> Command {
+        match read(line).expect(line).wanted {
+            Wanted::Run(command) => command,
+            Wanted::Say(text) => panic!("{line}: {text}"),
+        }
+    }
+
+    fn said(line: &str) -> String {
+        match read(line).expect(line).wanted {
+            Wanted::Say(text) => text,
+            Wanted::Run(command) => panic!("{line}: {command:?}"),
+        }
+    }
+
+    #[test]
+    fn the_definition_is_sound() {
+        Line::command().debug_assert();
     }
 
     #[test]
     fn ours_and_petscs_arguments_mix() {
-        let out = read(
-            "solve a.toml -fetifeti_ksp_rtol 1e-9 --json - -fetifeti_ksp_monitor --quiet -n -3",
-        )
-        .expect("fine");
-        let solve = Solve {
-            scene: "a.toml".into(),
+        let line =
+            "-fetifeti_ksp_rtol 1e-9 solve a.toml --json - -fetifeti_ksp_monitor --quiet -n -3";
+        let Command::Solve(solve) = command(line) else {
+            panic!("solve")
+        };
+        assert_eq!(solve.scene.to_str(), Some("a.toml"));
+        let wanted = Destination {
             json: Some("-".into()),
             quiet: true,
-            ..Solve::default()
+            out: None,
         };
-        assert_eq!(out.command, Command::Solve(solve));
+        assert_eq!(Destination::from(solve.results), wanted);
         assert_eq!(
-            out.petsc,
-            [
-                "-fetifeti_ksp_rtol",
-                "1e-9",
-                "-fetifeti_ksp_monitor",
-                "-n",
-                "-3"
-            ]
+            read(line).expect(line).petsc.join(" "),
+            "-fetifeti_ksp_rtol 1e-9 -fetifeti_ksp_monitor -n -3"
         );
     }
 
     #[test]
     fn a_run_is_resumed_and_goes_on_writing() {
-        let out = read("solve --resume=a.ckpt --checkpoint b.ckpt a.toml").expect("fine");
-        let solve = Solve {
-            scene: "a.toml".into(),
-            checkpoint: Some("b.ckpt".into()),
-            resume: Some("a.ckpt".into()),
-            ..Solve::default()
+        let Command::Solve(solve) = command("solve --resume=a.ckpt --checkpoint b.ckpt a.toml")
+        else {
+            panic!("solve")
         };
-        assert_eq!(out.command, Command::Solve(solve));
+        assert_eq!(solve.scene.to_str(), Some("a.toml"));
+        assert_eq!(solve.checkpoint, Some("b.ckpt".into()));
+        assert_eq!(solve.resume, Some("a.ckpt".into()));
     }
 
     #[test]
     fn rows_repeat_and_are_checked() {
-        let out = read("table1 --rows 2,4,2 --rows=2,2,8 --json -").expect("fine");
-        let Command::Table1(table) = out.command else {
+        let Command::Table1(table) = command("table1 --rows 2,4,2 --rows=2,2,8 --json -") else {
             panic!("table1")
         };
         assert_eq!(table.rows, [[2, 4, 2], [2, 2, 8]]);
@@ -313,45 +172,92 @@ mod tests {
 
     #[test]
     fn bench_takes_any_number_of_cases() {
-        let out = read("bench cube-24 --rounds 7 a.toml --with gamg,mumps --quick").expect("fine");
+        let wanted = |line| match command(line) {
+            Command::Bench(bench) => bench.wanted(vec!["-x".into()]),
+            other => panic!("{other:?}"),
+        };
         let bench = Benchmark {
             cases: vec!["cube-24".into(), "a.toml".into()],
             rounds: 7,
             with: vec!["gamg".into(), "mumps".into()],
             quick: true,
+            petsc: vec!["-x".into()],
             ..Benchmark::default()
         };
-        assert_eq!(out.command, Command::Bench(bench));
-        let Command::Bench(all) = read("bench").expect("fine").command else {
-            panic!("bench")
-        };
-        assert_eq!((all.cases.len(), all.rounds), (0, 5));
+        let line = "bench cube-24 --rounds 7 a.toml --with gamg,mumps --quick";
+        assert_eq!(wanted(line), bench);
+        let all = wanted("bench");
+        assert_eq!((all.cases.len(), all.rounds, all.with.len()), (0, 5, 0));
     }
 
     #[test]
-    fn mistakes_are_named() {
-        for (line, part) in [
-            ("solv a.toml", "solv"),
-            ("solve", "no scene"),
-            ("solve a.toml b.toml", "b.toml"),
-            ("solve a.toml --jsn x", "--jsn"),
-            ("solve a.toml --json", "--json"),
-            ("solve a.toml --resume", "--resume"),
-            ("plan a.toml --checkpoint c", "--checkpoint"),
-            ("bench --rounds 0", "--rounds is \"0\""),
-            ("bench --rounds many", "many"),
-            ("bench --rounds", "--rounds"),
-            ("study", "no name"),
-            ("study hurtz", "hurtz"),
-            ("study hertz sphere a.toml", "a.toml"),
+    fn compare_passes_on_what_it_is_given() {
+        let Command::Compare(compare) = command("compare a.toml --out d --with bddc") else {
+            panic!("compare")
+        };
+        let wanted = Comparison {
+            scene: "a.toml".into(),
+            with: vec!["bddc".into()],
+            destination: Destination {
+                out: Some("d".into()),
+                ..Destination::default()
+            },
+            petsc: Vec::new(),
+        };
+        assert_eq!(compare.wanted(Vec::new()), wanted);
+    }
+
+    #[test]
+    fn mistakes_are_named_in_one_line() {
+        for (line, parts) in [
+            ("solv a.toml", &["\"solv\" is no command", "solve"][..]),
+            ("solve", &["no scene was given"]),
+            ("solve a.toml b.toml", &["\"b.toml\" was not expected"]),
+            ("solve a.toml --jsn x", &["--jsn is no option", "--json"]),
+            ("solve a.toml --json", &["--json"]),
+            ("solve a.toml --json -ksp_view", &["--json"]),
+            ("solve a.toml --json x --json y", &["--json"]),
+            ("solve a.toml --resume", &["--resume"]),
+            ("plan a.toml --checkpoint c", &["--checkpoint"]),
+            ("compare a.toml --with bdcc", &["bdcc", "did you mean bddc"]),
+            ("bench --rounds 0", &["'0'", "--rounds"]),
+            ("bench --rounds many", &["many"]),
+            ("bench --rounds", &["--rounds"]),
+            ("table1 --rows 2,4", &["2,4", "three counts"]),
+            ("study", &["no study was given"]),
+            ("study hurtz", &["hurtz", "kappa", "did you mean hertz"]),
+            ("study hertz sphere a.toml", &["a.toml"]),
+            ("completions tcsh", &["tcsh", "bash"]),
         ] {
             let message = read(line).expect_err(line).to_string();
-            assert!(message.contains(part), "{line}: {message}");
+            assert_eq!(message.lines().count(), 1, "{line}: {message}");
+            for part in parts {
+                assert!(message.contains(part), "{line}: {message}");
+            }
         }
-        assert_eq!(read("").expect("usage").command, Command::Help);
-        assert_eq!(
-            read("--version").expect("version").command,
-            Command::Version
-        );
+    }
+
+    #[test]
+    fn every_command_that_users_see_has_its_help() {
+        let all = said("");
+        assert_eq!(all, said("--help"));
+        assert!(said("--version").starts_with("fetifeti "));
+        assert!(!all.contains("baseline"), "{all}");
+        for name in [
+            "solve",
+            "plan",
+            "compare",
+            "bench",
+            "table1",
+            "study",
+            "completions",
+            "man",
+        ] {
+            assert!(all.contains(&format!("  {name} ")), "{name}: {all}");
+            let own = said(&format!("{name} --help"));
+            assert!(own.contains(&format!("Usage: fetifeti {name}")), "{own}");
+            assert_eq!(own, said(&format!("help {name}")));
+        }
+        assert!(said("study --help").contains("- hard-cases:"));
     }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::coefficient::Coefficient;
+use super::first_rank::say;
 use super::physics;
 use super::solve::adaptive;
 use crate::fem::cell::rigid_count;
@@ -39,7 +40,7 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
     let mut out = text(&scene, &sizes, &coefficient);
     let deflation = deflation(session, substructures, settings, &coefficient)?;
     let _ = writeln!(out, "{:<22}{deflation}", "adaptive");
-    super::say(session, &out)
+    say(session, &out)
 }
 
 /// What `-fetifeti_adaptive` comes to. Where it is sure to be looked at, the search is made: that factors the subdomains. Collective.

@@ -9,31 +9,33 @@ use super::balance;
 use super::contact;
 use super::course::{follow, Course};
 use super::fields::Gathered;
-use super::{maps, not_converged, physics, picture};
+use super::first_rank::on_first_rank;
+use super::{maps, physics, picture};
 use crate::checkpoint::Checkpoints;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::feti::{MethodSettings, PcType, Spectrum};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
+use crate::report::destination::Destination;
 use crate::report::json::adaptive::{Adaptive, Deflation};
 use crate::report::json::contact::ContactReport;
 use crate::report::json::{self, Operators, SolveReport};
-use crate::report::output;
 use crate::report::pictures::contact_map;
 use crate::report::plots::{load_steps, profile};
 use crate::report::tables::summary;
 use crate::scene::{distribution, Scene};
-use crate::{FetiFeti, Result};
+use crate::{Error, FetiFeti, Result, Status};
 
 /// Directions that a load step leaves to the next one.
 const DIRECTIONS: usize = 30;
 
 /// Solves a scene and writes what was asked for.
-pub fn run(session: &Session, args: &Solve) -> Result<()> {
+pub fn run(session: &Session, args: Solve) -> Result<()> {
     let clock = Instant::now();
+    let destination = Destination::from(args.results.clone());
     let scene = distribution::load(session, &args.scene)?;
-    prepare(session, args.out.as_deref(), args.json.as_deref())?;
+    on_first_rank(session, || destination.prepare())?;
     let checkpoints = Checkpoints::new(
         session,
         &args.scene,
@@ -50,7 +52,7 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
         ..MethodSettings::default()
     };
     let mut solver = FetiFeti::new(session, substructures, settings)?;
-    let course = follow(session, &scene, &mut solver, args, checkpoints)?;
+    let course = follow(session, &scene, &mut solver, &destination, checkpoints)?;
     let solution = &course.solution;
     let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
         (false, _) => None,
@@ -62,16 +64,11 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
         report.check = Some(checks(&solver)?);
     }
     report.seconds.assemble = assemble;
-    if let Some(dir) = &args.out {
+    if let Some(dir) = &destination.out {
         write_fields(session, &scene, &solver, &course, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
-    let written = if session.rank() == 0 {
-        write_report(args, &report)
-    } else {
-        Ok(())
-    };
-    session.agree(written)?;
+    on_first_rank(session, || write_report(&destination, &report))?;
     if solution.converged() {
         Ok(())
     } else {
@@ -84,39 +81,17 @@ pub fn run(session: &Session, args: &Solve) -> Result<()> {
     }
 }
 
-/// Finds out before the work whether results can be written. Collective.
-pub(super) fn prepare(session: &Session, out: Option<&Path>, file: Option<&Path>) -> Result<()> {
-    let ready = || -> Result<()> {
-        if let Some(dir) = out {
-            output::prepare_directory(dir)?;
-        }
-        if let Some(file) = file {
-            output::prepare_file(file)?;
-        }
-        Ok(())
-    };
-    session.agree(if session.rank() == 0 { ready() } else { Ok(()) })
+/// The error of a solve that stopped early; results were written before.
+pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> Error {
+    Error::NotConverged(format!(
+        "{what} did not converge: {status} after {iterations} iterations (the results written are partial)"
+    ))
 }
 
-fn write_report(args: &Solve, report: &SolveReport) -> Result<()> {
-    let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
-    if !args.quiet && !to_stdout {
-        output::print(&summary::solve(report))?;
-    }
-    if let Some(file) = &args.json {
-        json::write(file, report)?;
-    }
-    if let Some(dir) = &args.out {
-        json::write(&dir.join("report.json"), report)?;
-        if !args.quiet && !to_stdout {
-            output::print(&format!(
-                "written: {} in {}\n",
-                files(report).join(", "),
-                dir.display()
-            ))?;
-        }
-    }
-    Ok(())
+fn write_report(destination: &Destination, report: &SolveReport) -> Result<()> {
+    destination.print(&summary::solve(report))?;
+    destination.write_json("report.json", report)?;
+    destination.written(&files(report))
 }
 
 /// What a directory of results holds.

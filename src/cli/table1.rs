@@ -1,32 +1,36 @@
 //! `fetifeti table1`: Lee's experiment, his numbers and ours.
 
 use super::args::Table1;
-use super::{not_converged, solve};
+use super::first_rank::on_first_rank;
+use super::solve::not_converged;
 use crate::feti::settings::Adaptive;
 use crate::feti::{MethodSettings, PcType, Spectrum};
 use crate::petsc::Session;
-use crate::report::json::{self, CoarseCorrected, PaperSide, Table1Row, Table1Side};
-use crate::report::output;
+use crate::report::destination::Destination;
+use crate::report::json::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
 use crate::report::plots::figure3;
 use crate::report::tables::{paper, summary};
 use crate::scene::{distribution, Faces, Scene};
 use crate::{Error, FetiFeti, Result, Solution};
 
 /// Computes the rows and writes what was asked for.
-pub fn run(session: &Session, args: &Table1) -> Result<()> {
-    solve::prepare(session, args.out.as_deref(), args.json.as_deref())?;
+pub fn run(session: &Session, args: Table1) -> Result<()> {
+    let destination = Destination::from(args.results);
+    on_first_rank(session, || destination.prepare())?;
     let wanted: Vec<[usize; 3]> = if args.rows.is_empty() {
         paper::table1()
             .iter()
             .map(|r| [r.bodies, r.subdomains, r.elements])
             .collect()
     } else {
-        args.rows.clone()
+        args.rows
     };
     let mut rows = Vec::with_capacity(wanted.len());
     let mut stopped = None;
     for (done, &[bodies, subdomains, elements]) in wanted.iter().enumerate() {
-        progress(session, args, done, wanted.len());
+        if session.rank() == 0 {
+            destination.progress(&format!("table1: {done} of {} rows", wanted.len()));
+        }
         let of_paper = paper::lookup(bodies, subdomains, elements);
         let mut side = |faces, paper: Option<PaperSide>| {
             let scene = session.agree(Scene::lee(bodies, subdomains, elements, faces))?;
@@ -43,13 +47,17 @@ pub fn run(session: &Session, args: &Table1) -> Result<()> {
             )?,
         });
     }
-    progress(session, args, wanted.len(), wanted.len());
-    let written = if session.rank() == 0 {
-        write(args, &rows)
-    } else {
-        Ok(())
-    };
-    session.agree(written)?;
+    on_first_rank(session, || {
+        destination.progress("");
+        let text = summary::table1(&rows).to_string();
+        destination.finish("table1", &text, &rows, |dir| {
+            summary::table1_csv(&rows).write_csv(&dir.join("table1.csv"))?;
+            figure3::figure3(&rows, &dir.join("figure3"))?;
+            Ok(["table1.csv", "figure3.png", "figure3.svg"]
+                .map(String::from)
+                .into())
+        })
+    })?;
     stopped.map_or(Ok(()), Err)
 }
 
@@ -101,37 +109,4 @@ fn side(
             iterations: lifted.iterations,
         },
     })
-}
-
-/// One line on stderr that overwrites itself, on a terminal only.
-fn progress(session: &Session, args: &Table1, done: usize, all: usize) {
-    use std::io::IsTerminal;
-    if session.rank() == 0 && !args.quiet && std::io::stderr().is_terminal() {
-        eprint!("\rtable1: {done} of {all} rows");
-        if done == all {
-            eprintln!();
-        }
-    }
-}
-
-fn write(args: &Table1, rows: &[Table1Row]) -> Result<()> {
-    let to_stdout = args.json.as_deref().is_some_and(output::is_stdout);
-    if !args.quiet && !to_stdout {
-        output::print(&summary::table1(rows).to_string())?;
-    }
-    if let Some(file) = &args.json {
-        json::write(file, &rows)?;
-    }
-    if let Some(dir) = &args.out {
-        json::write(&dir.join("table1.json"), &rows)?;
-        summary::table1_csv(rows).write_csv(&dir.join("table1.csv"))?;
-        figure3::figure3(rows, &dir.join("figure3"))?;
-        if !args.quiet && !to_stdout {
-            output::print(&format!(
-                "written: table1.json, table1.csv, figure3.png, figure3.svg in {}\n",
-                dir.display()
-            ))?;
-        }
-    }
-    Ok(())
 }

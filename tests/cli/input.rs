@@ -270,7 +270,13 @@ fn command_lines() {
         (&["frobnicate"][..], "frobnicate"),
         (&["solve"], "no scene"),
         (&["solve", EXAMPLE, EXAMPLE], "not expected"),
-        (&["solve", EXAMPLE, "--jsn", "x"], "--jsn"),
+        (&["solve", EXAMPLE, "--jsn", "x"], "did you mean --json?"),
+        (&["slove", EXAMPLE], "did you mean solve?"),
+        (
+            &["compare", EXAMPLE, "--with", "bdcc"],
+            "did you mean bddc?",
+        ),
+        (&["solve", EXAMPLE, "--json", "-ksp_view"], "--json"),
         (&["solve", EXAMPLE, "--json"], "--json"),
         (&["table1", "--rows", "2,4"], "2,4"),
         (&["table1", "--rows", "1,2,2"], "1,2,2"),
@@ -278,6 +284,55 @@ fn command_lines() {
         let out = fetifeti(args);
         refused(&out, 2, &[part]);
         assert_eq!(out.stderr.lines().count(), 1, "{}", out.all());
+    }
+}
+
+#[test]
+fn the_program_explains_itself() {
+    let commands = [
+        "solve",
+        "plan",
+        "compare",
+        "bench",
+        "table1",
+        "study",
+        "completions",
+        "man",
+    ];
+    let all = fetifeti(&["--help"]);
+    assert_eq!((all.code, all.stderr.as_str()), (0, ""), "{}", all.all());
+    let scratch = Scratch::new("pages");
+    let dir = scratch.path("man1");
+    let written = fetifeti(&["man", "--out", &dir]);
+    assert_eq!(written.code, 0, "{}", written.all());
+    assert_eq!(scratch.files().len(), 1 + commands.len());
+    let script = fetifeti(&["completions", "bash"]).stdout;
+    for name in commands {
+        let own = fetifeti(&[name, "--help"]);
+        assert_eq!(own.code, 0, "{}", own.all());
+        assert!(own.stdout.contains(&format!("Usage: fetifeti {name}")));
+        assert!(all.stdout.contains(&format!("  {name} ")));
+        assert!(script.contains(name), "{script}");
+        let page = std::fs::read_to_string(format!("{dir}/fetifeti-{name}.1")).expect(name);
+        assert!(
+            page.starts_with(".ie") && page.contains(".SH SYNOPSIS"),
+            "{page}"
+        );
+    }
+    // Commands by which processes of the program call each other are for nobody else.
+    for text in [&all.stdout, &script] {
+        assert!(
+            !text.contains("baseline") && !text.contains("measure"),
+            "{text}"
+        );
+    }
+    let version = concat!("fetifeti ", env!("CARGO_PKG_VERSION"), "\n");
+    assert_eq!(fetifeti(&["--version"]).stdout, version);
+    // PETSc's list begins with the program's own help.
+    let options = fetifeti(&["-help"]);
+    assert_eq!(options.code, 0, "{}", options.all());
+    for part in ["Usage: fetifeti", "-fetifeti_pc_type", "-fetifeti_ksp_rtol"] {
+        assert!(options.stdout.contains(part), "{part}: {}", options.stdout);
     }
 }
 

@@ -17,11 +17,11 @@ mod scenes;
 pub use picture::{figure, table, text};
 pub use scenes::Case;
 
-use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use serde::{Deserialize, Serialize};
 
+use crate::baselines::launch::Workspace;
 use crate::petsc::Session;
 use crate::report::json::CompareReport;
 use crate::report::output;
@@ -221,15 +221,6 @@ fn rows(
     out
 }
 
-/// A directory that goes away with the value.
-struct Scratch(PathBuf);
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 /// `fetifeti compare` as a process of its own.
 fn compare(
     case: Case,
@@ -238,10 +229,8 @@ fn compare(
     variant: &Variant,
     with: Option<&str>,
 ) -> Result<CompareReport> {
-    let name = format!("fetifeti-study-{}-{}-{n}", std::process::id(), case.name());
-    let dir = Scratch(std::env::temp_dir().join(name));
-    output::prepare_directory(&dir.0)?;
-    let (scene, file) = (dir.0.join("scene.toml"), dir.0.join("compare.json"));
+    let workspace = Workspace::new()?;
+    let (scene, file) = (workspace.file("scene.toml"), workspace.file("compare.json"));
     output::write_text(&scene, &case.scene(n))?;
     let own = std::env::current_exe()
         .map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))?;

@@ -1,0 +1,24 @@
+//! What rank 0 does for all.
+
+use crate::petsc::Session;
+use crate::report::output;
+use crate::Result;
+
+/// Does `work` on rank 0. Collective.
+///
+/// # Errors
+/// Those of `work`, on all ranks.
+pub fn on_first_rank(session: &Session, work: impl FnOnce() -> Result<()>) -> Result<()> {
+    session.agree(match session.rank() {
+        0 => work(),
+        _ => Ok(()),
+    })
+}
+
+/// Prints `text` on rank 0. Collective.
+///
+/// # Errors
+/// [`crate::Error::Environment`] where standard output takes nothing.
+pub fn say(session: &Session, text: &str) -> Result<()> {
+    on_first_rank(session, || output::print(text))
+}
