@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 use super::frame::{parallel, Frame};
 use super::motions::{Echelon, Form, Motions};
-use crate::linalg::vec3::norm;
+use crate::linalg::vec3::{ball, norm};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::scene::{Numbering, Scene};
@@ -207,6 +207,16 @@ impl<'a> Layout<'a> {
         self.supports = self.all_held.complete(self.motions.len(), &candidates);
         self.void.extend(self.supports.iter().map(|s| s.0));
         self.void.sort_unstable();
+    }
+
+    /// Centre and radius of a ball around the scene.
+    pub fn ball(&self) -> ([f64; 3], f64) {
+        let bounds = self.scene.bodies.iter().map(|b| b.bounds);
+        let bounds = bounds.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |a, b| {
+            let low = [0, 1, 2].map(|d| a[0][d].min(b[0][d]));
+            [low, [0, 1, 2].map(|d| a[1][d].max(b[1][d]))]
+        });
+        ball(bounds)
     }
 
     /// Number of rigid motions that nothing in the scene holds.

@@ -2,7 +2,6 @@
 
 use super::unknowns::Unknowns;
 use crate::fem::cell::rigid_count;
-use crate::linalg::vec3::ball;
 use crate::petsc::{Mat, Vec as PetscVec};
 use crate::scene::Scene;
 use crate::Result;
@@ -47,12 +46,7 @@ impl NearKernel {
             Near::Rotations => dim..rigid_count(dim),
             Near::Motions => 0..rigid_count(dim),
         };
-        let bounds = scene.bodies.iter().map(|b| b.bounds);
-        let bounds = bounds.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |a, b| {
-            let low = [0, 1, 2].map(|d| a[0][d].min(b[0][d]));
-            [low, [0, 1, 2].map(|d| a[1][d].max(b[1][d]))]
-        });
-        let (centre, scale) = ball(bounds);
+        let (centre, scale) = layout.ball();
         for _ in wanted.clone() {
             vectors.push(like.duplicate()?);
         }

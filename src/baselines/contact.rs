@@ -37,7 +37,7 @@ pub fn baseline(
         let system = System::new(session, scene, &unknowns, row.format)?;
         let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;
         let load = match job.again {
-            true => Some(SecondLoad::new(scene).of(&unknowns, &system.b)?),
+            true => Some(SecondLoad::new(&layout).of(&unknowns, &system.b)?),
             false => None,
         };
         let reduced = Reduced::new(session, &system, &rows, kernel)?;

@@ -5,16 +5,14 @@
 
 use std::path::Path;
 
-use serde::Serialize;
-
 use super::judge::judge;
+use super::launch::{leave, task};
 use super::table::{Baseline, Case};
 use super::task::{Job, Outcome, Task};
 use super::{contact, linear, ours};
 use crate::assembled::system::Format;
 use crate::parallel::meter::memory;
 use crate::petsc::Session;
-use crate::report::json;
 use crate::scene::distribution;
 use crate::{Error, Result};
 
@@ -23,16 +21,7 @@ use crate::{Error, Result};
 /// # Errors
 /// Those of the scene, of the method, and of the disk.
 pub fn run(session: &Session, file: &Path) -> Result<()> {
-    let read = || -> std::result::Result<Job, String> {
-        let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
-        serde_json::from_str(&text).map_err(|e| e.to_string())
-    };
-    let job = session.agree(read().map_err(|e| {
-        let file = file.display();
-        Error::input(format!(
-            "{file}: {e}, expected a job that compare has written"
-        ))
-    }))?;
+    let job: Job = task(session, file, "a job that compare has written")?;
     let memory_at_start = memory(session);
     let scene = distribution::load(session, &job.scene)?;
     let outcome = match &job.task {
@@ -61,10 +50,10 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         }
         Task::Judge { solutions } => {
             let verdict = judge(session, &scene, solutions)?;
-            return write(session, &job.result, &verdict);
+            return leave(session, &job.result, &verdict);
         }
     };
-    write(
+    leave(
         session,
         &job.result,
         &Outcome {
@@ -72,13 +61,4 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
             ..outcome
         },
     )
-}
-
-fn write<T: Serialize>(session: &Session, path: &Path, record: &T) -> Result<()> {
-    let written = if session.rank() == 0 {
-        json::write(path, record)
-    } else {
-        Ok(())
-    };
-    session.agree(written)
 }

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use serde::de::DeserializeOwned;
 use serde::Serialize;
 
 use super::task::Job;
+use crate::petsc::Session;
 use crate::report::json;
 use crate::{Error, Result};
 
@@ -120,13 +122,11 @@ impl Launcher {
             File::create(path)
                 .map_err(|e| Error::environment(format!("cannot write {}: {e}", path.display())))
         };
-        let own = std::env::current_exe()
-            .map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))?;
         let mut command = Command::new("mpirun");
         command
             .arg("-n")
             .arg(ranks.to_string())
-            .arg(own)
+            .arg(own()?)
             .arg(verb)
             .arg(task);
         command.args(&self.petsc);
@@ -197,10 +197,36 @@ impl Launcher {
     }
 }
 
-/// A record that a job has left.
-pub fn read<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
+/// A record that a process has left.
+pub fn read<T: DeserializeOwned>(text: &str) -> Result<T> {
     serde_json::from_str(text)
-        .map_err(|e| Error::environment(format!("a job has written an unreadable result: {e}")))
+        .map_err(|e| Error::environment(format!("a process has left an unreadable result: {e}")))
+}
+
+/// On all ranks of a process that the program has started: the task that `file` describes, which should be `what`. Collective.
+///
+/// # Errors
+/// [`Error::Input`] for a file that is none.
+pub fn task<T: DeserializeOwned>(session: &Session, file: &Path, what: &str) -> Result<T> {
+    let read = || -> std::result::Result<T, String> {
+        let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
+        serde_json::from_str(&text).map_err(|e| e.to_string())
+    };
+    session.agree(read().map_err(|e| {
+        let file = file.display();
+        Error::input(format!("{file}: {e}, expected {what}"))
+    }))
+}
+
+/// Leaves a record on rank 0. Collective.
+///
+/// # Errors
+/// [`Error::Environment`] with the path.
+pub fn leave<T: Serialize>(session: &Session, file: &Path, record: &T) -> Result<()> {
+    session.agree(match session.rank() {
+        0 => json::write(file, record),
+        _ => Ok(()),
+    })
 }
 
 /// The program's own error among what mpirun and other ranks say, or what mpirun says first.
@@ -229,9 +255,17 @@ fn spoken(stderr: &str) -> Option<String> {
     Some(text)
 }
 
-/// The environment of mpirun: what this process inherited from an mpirun around it would lead it astray, and there may be
-/// more ranks than cores.
-fn environment(command: &mut Command, limit: Duration) {
+/// This program's file.
+///
+/// # Errors
+/// [`Error::Environment`] where the system does not tell.
+pub fn own() -> Result<PathBuf> {
+    let own = std::env::current_exe();
+    own.map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))
+}
+
+/// Leaves out what this process has inherited from an mpirun around it, which would lead another one astray.
+pub fn without_mpi(command: &mut Command) {
     // What a user may have set about transports stays.
     const KEPT: [&str; 6] = ["btl_", "btl", "pml", "mtl", "coll_", "opal_"];
     for (name, _) in std::env::vars_os() {
@@ -246,6 +280,11 @@ fn environment(command: &mut Command, limit: Duration) {
             command.env_remove(&name);
         }
     }
+}
+
+/// The environment of mpirun: there may be more ranks than cores.
+fn environment(command: &mut Command, limit: Duration) {
+    without_mpi(command);
     command
         .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
         .env("OMPI_MCA_mpi_yield_when_idle", "1")

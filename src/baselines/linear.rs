@@ -162,7 +162,7 @@ pub fn baseline(
     let again = match job.again && message.is_none() {
         true => {
             krylov.set_tolerances(Some(rtol), None, None, None)?;
-            let b = SecondLoad::new(scene).of(&unknowns, &system.b)?;
+            let b = SecondLoad::new(&layout).of(&unknowns, &system.b)?;
             let u = b.duplicate()?;
             Some(timed(session, || ksp.solve(&b, &u))?.1)
         }

@@ -91,7 +91,7 @@ pub fn solve(
     })?;
     attempt.u.save(file)?;
     let again = match job.again && message.is_none() {
-        true => Some(again(session, scene, &mut solver, &layout, rtol)?),
+        true => Some(again(session, &mut solver, &layout, rtol)?),
         false => None,
     };
     let mut outcome = Outcome::new(attempt, rtol, message, [assemble, setup, bytes]);
@@ -103,14 +103,8 @@ pub fn solve(
 }
 
 /// Seconds of a solve for another load with all that is set up; the contact loop begins from the beginning. Collective.
-fn again(
-    session: &Session,
-    scene: &Scene,
-    solver: &mut FetiFeti,
-    layout: &Layout,
-    rtol: f64,
-) -> Result<f64> {
-    let second = SecondLoad::new(scene);
+fn again(session: &Session, solver: &mut FetiFeti, layout: &Layout, rtol: f64) -> Result<f64> {
+    let second = SecondLoad::new(layout);
     let problem = solver.problem();
     let load = |s: &Subdomain| -> Vec<f64> {
         let terms = s.f.iter().zip(&s.dofs);

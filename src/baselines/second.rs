@@ -3,9 +3,7 @@
 
 use crate::assembled::layout::Layout;
 use crate::assembled::unknowns::Unknowns;
-use crate::linalg::vec3::ball;
 use crate::petsc::Vec as PetscVec;
-use crate::scene::Scene;
 use crate::Result;
 
 /// How much the factor changes along x and y over half the size of the scene.
@@ -18,14 +16,9 @@ pub struct SecondLoad {
 }
 
 impl SecondLoad {
-    /// The factor on `scene`.
-    pub fn new(scene: &Scene) -> SecondLoad {
-        let bounds = scene.bodies.iter().map(|b| b.bounds);
-        let bounds = bounds.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |a, b| {
-            let low = [0, 1, 2].map(|d| a[0][d].min(b[0][d]));
-            [low, [0, 1, 2].map(|d| a[1][d].max(b[1][d]))]
-        });
-        let (centre, radius) = ball(bounds);
+    /// The factor on the scene of `layout`.
+    pub fn new(layout: &Layout) -> SecondLoad {
+        let (centre, radius) = layout.ball();
         SecondLoad { centre, radius }
     }
 
@@ -57,6 +50,7 @@ impl SecondLoad {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     #[test]
     fn the_factor_stays_positive_and_changes_across_the_scene() {
@@ -65,7 +59,7 @@ mod tests {
             "[grid]\nbodies = 2\nelements = 2\nsize = [4, 2]\norigin = [1, 1]\n",
         )
         .expect("a scene");
-        let load = SecondLoad::new(&scene);
+        let load = SecondLoad::new(&Layout::new(&scene));
         let [low, mid, high] =
             [[1.0, 3.0, 0.0], [3.0, 2.0, 0.0], [5.0, 1.0, 0.0]].map(|x| load.value(x));
         assert_eq!(mid, 1.0);

@@ -12,7 +12,21 @@ pub mod scaling;
 mod solved;
 pub mod speed_error;
 
+use crate::petsc::Session;
 use crate::{Error, Result};
+
+/// Refuses several ranks for the study `name`, for which `why` says what one rank is needed for.
+///
+/// # Errors
+/// [`Error::Input`].
+fn alone(session: &Session, name: &str, why: &str) -> Result<()> {
+    match session.size() {
+        1 => Ok(()),
+        ranks => Err(Error::input(format!(
+            "study {name} was started on {ranks} ranks, expected one: {why}"
+        ))),
+    }
+}
 
 /// The cases of a study, or the one that is asked for.
 fn chosen<T>(all: Vec<T>, name: impl Fn(&T) -> &str, only: Option<&str>) -> Result<Vec<T>> {

@@ -20,7 +20,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::petsc::Session;
-use crate::{Error, Result};
+use crate::Result;
 
 /// Relative residual that is asked of all methods.
 pub const RTOL: f64 = 1e-8;
@@ -230,7 +230,7 @@ struct Effort {
 /// every case can be solved again by itself.
 ///
 /// # Errors
-/// [`Error::Input`] on several ranks; those of the disk; PETSc's own errors.
+/// [`Error::Input`](crate::Error::Input) on several ranks; those of the disk; PETSc's own errors.
 pub fn run(
     session: &Session,
     quick: bool,
@@ -238,12 +238,7 @@ pub fn run(
     dir: &Path,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Report> {
-    if session.size() > 1 {
-        return Err(Error::input(format!(
-            "study adaptive was started on {} ranks, expected one: it starts PCBDDC on ranks of its own",
-            session.size()
-        )));
-    }
+    super::alone(session, "adaptive", "it starts PCBDDC on ranks of its own")?;
     let effort = match quick {
         false => Effort {
             taus: &TAUS,

@@ -118,19 +118,14 @@ struct Seconds {
 /// Runs the study.
 ///
 /// # Errors
-/// [`Error::Input`] on several ranks, which would measure each other; a solver that fails.
+/// [`Error::Input`](crate::Error::Input) on several ranks, which would measure each other; a solver that fails.
 pub fn run(
     session: &Session,
     quick: bool,
     only: Option<&str>,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Report> {
-    if session.size() > 1 {
-        return Err(Error::input(format!(
-            "study kernels was started on {} ranks, expected one: it measures one thread",
-            session.size()
-        )));
-    }
+    super::alone(session, "kernels", "it measures one thread")?;
     let mut rows = Vec::new();
     for case in super::chosen(CASES.to_vec(), |c| c.name, only)? {
         let sizes = if quick { &case.sizes[..1] } else { case.sizes };

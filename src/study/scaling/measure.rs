@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::network::{self, Timing};
 use super::{IterationSeconds, SetupSeconds, Work};
+use crate::baselines::launch;
 use crate::feti::krylov::tally::Communication;
 use crate::feti::MethodSettings;
 use crate::mesh::contiguous_share;
@@ -85,16 +86,7 @@ pub struct SolveRecord {
 /// # Errors
 /// [`Error::Input`] for a file that the study has not written; those of the method; [`Error::NotConverged`].
 pub fn run_task(session: &Session, file: &Path) -> Result<()> {
-    let read = || -> std::result::Result<Task, String> {
-        let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
-        serde_json::from_str(&text).map_err(|e| e.to_string())
-    };
-    let task = session.agree(read().map_err(|e| {
-        let file = file.display();
-        Error::input(format!(
-            "{file}: {e}, expected a task that study scaling has written"
-        ))
-    }))?;
+    let task: Task = launch::task(session, file, "a task that study scaling has written")?;
     match &task.what {
         What::Network => {
             let (messages, reductions) = network::measure(session.comm());
@@ -102,20 +94,13 @@ pub fn run_task(session: &Session, file: &Path) -> Result<()> {
                 messages,
                 reductions,
             };
-            leave(session, &task.result, &record)
+            launch::leave(session, &task.result, &record)
         }
         What::Solve { scene, repeats } => {
             let record = solve(session, scene, *repeats)?;
-            leave(session, &task.result, &record)
+            launch::leave(session, &task.result, &record)
         }
     }
-}
-
-fn leave<T: Serialize>(session: &Session, file: &Path, record: &T) -> Result<()> {
-    session.agree(match session.rank() {
-        0 => json::write(file, record),
-        _ => Ok(()),
-    })
 }
 
 fn solve(session: &Session, text: &str, repeats: usize) -> Result<SolveRecord> {

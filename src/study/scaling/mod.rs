@@ -128,12 +128,11 @@ pub fn run(
     case: Option<&str>,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Report> {
-    if session.size() > 1 {
-        return Err(Error::input(format!(
-            "study scaling was started on {} ranks, expected one: it starts its runs on ranks of their own",
-            session.size()
-        )));
-    }
+    super::alone(
+        session,
+        "scaling",
+        "it starts its runs on ranks of their own",
+    )?;
     if let Some(case) = case {
         return Err(Error::input(format!(
             "\"{case}\" was not expected: study scaling has no cases"

@@ -21,7 +21,7 @@ use std::process::{Command, Stdio};
 
 use serde::{Deserialize, Serialize};
 
-use crate::baselines::launch::Workspace;
+use crate::baselines::launch::{own, read, without_mpi, Workspace};
 use crate::petsc::Session;
 use crate::report::json::CompareReport;
 use crate::report::output;
@@ -131,12 +131,11 @@ pub fn run(
     only: Option<&str>,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Report> {
-    if session.size() > 1 {
-        return Err(Error::input(format!(
-            "study speed-error was started on {} ranks, expected one: it starts the methods on ranks of their own",
-            session.size()
-        )));
-    }
+    super::alone(
+        session,
+        "speed-error",
+        "it starts the methods on ranks of their own",
+    )?;
     let mut cores = 0;
     let mut cases = Vec::new();
     for case in super::chosen(Case::ALL.to_vec(), |c| c.name(), only)? {
@@ -230,21 +229,10 @@ fn compare(
     with: Option<&str>,
 ) -> Result<CompareReport> {
     let workspace = Workspace::new()?;
-    let (scene, file) = (workspace.file("scene.toml"), workspace.file("compare.json"));
+    let [scene, file] = ["scene.toml", "compare.json"].map(|name| workspace.file(name));
     output::write_text(&scene, &case.scene(n))?;
-    let own = std::env::current_exe()
-        .map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))?;
-    let mut command = Command::new(own);
-    // MPI of this process is not that of the comparison, which clears what its jobs would inherit.
-    for (name, _) in std::env::vars_os() {
-        let text = name.to_string_lossy();
-        if ["OMPI_COMM_", "PMIX_", "PMI_", "ORTE_"]
-            .iter()
-            .any(|p| text.starts_with(p))
-        {
-            command.env_remove(&name);
-        }
-    }
+    let mut command = Command::new(own()?);
+    without_mpi(&mut command);
     command
         .arg("compare")
         .arg(&scene)
@@ -271,8 +259,7 @@ fn compare(
             .unwrap_or("no message");
         Error::environment(format!("compare left no result: {said}"))
     })?;
-    serde_json::from_str(&text)
-        .map_err(|e| Error::environment(format!("compare left an unreadable result: {e}")))
+    read(&text)
 }
 
 impl CaseReport {
