@@ -29,12 +29,13 @@ pub const LIMIT: f64 = 1e-3;
 const SPECTRUM: [usize; 2] = [1200, 400];
 
 /// How a case ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Converged, and near the direct solution.
     Solved,
     /// The solver says that it did not converge.
+    #[default]
     NotConverged,
     /// The program refuses the scene with a sentence, and the direct solver finds no solution either.
     Refused,
@@ -68,7 +69,7 @@ pub struct Report {
 }
 
 /// One case.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Its name.
     pub case: String,
@@ -146,21 +147,7 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
         title: case.title.into(),
         dofs: crate::scene::Numbering::new(&scene).len() as usize,
         subdomains: scene.n_subdomains(),
-        multipliers: 0,
-        outer_iterations: 0,
-        iterations: 0,
-        condition: json::Condition {
-            exact: None,
-            estimate: None,
-        },
-        kkt: None,
-        error_energy: None,
-        error_max: None,
-        active: [None; 2],
-        reference: None,
-        verdict: Verdict::NotConverged,
-        message: None,
-        seconds: 0.0,
+        ..Record::default()
     };
     let settings = MethodSettings {
         rtol: RTOL,

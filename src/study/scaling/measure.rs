@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::network::{self, Timing};
-use super::{IterationSeconds, SetupSeconds, Work};
+use super::{IterationSeconds, Point, SetupSeconds, Work};
 use crate::baselines::launch;
 use crate::feti::krylov::tally::Communication;
 use crate::feti::MethodSettings;
@@ -14,7 +14,6 @@ use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{max_all, min_all};
 use crate::parallel::meter::{memory, timed};
 use crate::petsc::Session;
-use crate::report::json;
 use crate::scene::Scene;
 use crate::{Error, FetiFeti, Result};
 
@@ -50,37 +49,6 @@ pub struct NetworkRecord {
     pub reductions: Vec<Timing>,
 }
 
-/// A scene that was solved.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct SolveRecord {
-    /// Subdomains over all ranks.
-    pub subdomains: usize,
-    /// Bodies with a kernel.
-    pub floating_bodies: usize,
-    /// Rows of B.
-    pub multipliers: usize,
-    /// Krylov iterations, in all contact steps.
-    pub iterations: usize,
-    /// Contact steps.
-    pub steps: usize,
-    /// κ by CG, of the last step.
-    pub kappa: Option<f64>,
-    /// Seconds of set-up.
-    pub setup: SetupSeconds,
-    /// Seconds of an iteration.
-    pub iteration: IterationSeconds,
-    /// Seconds of a solve besides its iterations: loads, residuals, displacements.
-    pub outside: f64,
-    /// Seconds of all set-up, and of all of a solve.
-    pub total: [f64; 2],
-    /// Resident memory at the end, and before the scene was read, over all ranks, in MB.
-    pub memory_mb: [f64; 2],
-    /// Largest work of a rank.
-    pub work: Work,
-    /// What an iteration sends.
-    pub communication: json::Communication,
-}
-
 /// Runs the task that `file` describes. Collective.
 ///
 /// # Errors
@@ -103,12 +71,12 @@ pub fn run_task(session: &Session, file: &Path) -> Result<()> {
     }
 }
 
-fn solve(session: &Session, text: &str, repeats: usize) -> Result<SolveRecord> {
+fn solve(session: &Session, text: &str, repeats: usize) -> Result<Point> {
     let before = memory(session) / 1e6;
     let scene = session.agree(Scene::parse("scaling.toml", text))?;
     let mine = contiguous_share(scene.n_subdomains(), session.size(), session.rank());
     let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
-    let mut best: Option<SolveRecord> = None;
+    let mut best: Option<Point> = None;
     for _ in 0..repeats.max(1) {
         let record = once(session, problem.clone())?;
         best = Some(match best {
@@ -121,10 +89,10 @@ fn solve(session: &Session, text: &str, repeats: usize) -> Result<SolveRecord> {
     Ok(record)
 }
 
-impl SolveRecord {
+impl Point {
     /// The smaller seconds of both, phase by phase.
-    fn faster(self, other: &SolveRecord) -> SolveRecord {
-        SolveRecord {
+    fn faster(self, other: &Point) -> Point {
+        Point {
             setup: SetupSeconds::from_fn(|k| self.setup.all()[k].min(other.setup.all()[k])),
             iteration: IterationSeconds::from_fn(|k| {
                 self.iteration.all()[k].min(other.iteration.all()[k])
@@ -137,7 +105,7 @@ impl SolveRecord {
 }
 
 /// Set-up and solve. Every phase is that of the slowest rank, but messages are those of the rank that waits least. Collective.
-fn once(session: &Session, problem: crate::Substructures) -> Result<SolveRecord> {
+fn once(session: &Session, problem: crate::Substructures) -> Result<Point> {
     let comm = session.comm();
     let (subdomains, start) = (problem.n_subdomains, clock::spent());
     let (solver, setup_total) = timed(session, || {
@@ -177,7 +145,7 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<SolveRecord>
     let [local, primal, lifting, natural, iterating] = slowest;
     let sent = solver.communication().unwrap_or(Communication::default());
     let facts = solver.facts();
-    Ok(SolveRecord {
+    Ok(Point {
         subdomains,
         floating_bodies: facts.floating_bodies,
         multipliers: facts.multipliers_local + facts.multipliers_global,
@@ -195,9 +163,9 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<SolveRecord>
         },
         outside: (solve_total - iterating).max(0.0),
         total: [setup_total, solve_total],
-        memory_mb: [0.0; 2],
         work: work(session, &solver),
         communication: sent.into(),
+        ..Point::default()
     })
 }
 

@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use crate::baselines::launch::{Launcher, Workspace};
 use crate::petsc::{Options, Session};
 use crate::{Error, Result};
-use measure::{NetworkRecord, SolveRecord, Task, What};
+use measure::{NetworkRecord, Task, What};
 use model::Sent;
 use predict::Basis;
 use scenes::Setup;
@@ -247,7 +247,7 @@ fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Resul
         scene: setup.scene(),
         repeats,
     };
-    let r: SolveRecord = started(launcher, &setup.name(), what, setup.ranks)?;
+    let measured: Point = started(launcher, &setup.name(), what, setup.ranks)?;
     Ok(Point {
         series: setup.series,
         problem: setup.problem,
@@ -256,23 +256,8 @@ fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Resul
         // Contact adds work of its own in every step.
         fitted: setup.ranks == 1 && setup.problem == Problem::Tied,
         bodies: setup.n_bodies(),
-        floating_bodies: r.floating_bodies,
-        subdomains: r.subdomains,
         elements: setup.elements,
-        multipliers: r.multipliers,
-        iterations: r.iterations,
-        steps: r.steps,
-        kappa: r.kappa,
-        setup: r.setup,
-        iteration: r.iteration,
-        outside: r.outside,
-        total: r.total,
-        memory_mb: r.memory_mb,
-        work: r.work,
-        communication: r.communication,
-        model: Modelled::default(),
-        setup_deviation: 0.0,
-        iteration_deviation: 0.0,
+        ..measured
     })
 }
 

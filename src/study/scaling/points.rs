@@ -7,10 +7,11 @@ use super::quantities::{IterationSeconds, SetupSeconds, Work};
 use crate::report::json::Communication;
 
 /// What a run belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Series {
     /// Ever more bodies of one size, on one rank.
+    #[default]
     Bodies,
     /// Subdomains of other sizes, on one rank.
     Elements,
@@ -36,10 +37,11 @@ impl Series {
 }
 
 /// What is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Problem {
     /// Poisson's equation on tied bodies.
+    #[default]
     Tied,
     /// The model contact problem.
     Contact,
@@ -56,7 +58,7 @@ impl Problem {
 }
 
 /// One run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// What it belongs to.
     pub series: Series,
