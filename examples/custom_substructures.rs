@@ -10,10 +10,9 @@
 
 use std::process::ExitCode;
 
-use fetifeti::parallel::exchange::max_all;
 use fetifeti::{
-    Csr, Error, FetiFeti, InterfaceRow, MethodSettings, Result, RowKind, RowLabel, RowSource,
-    Session, Subdomain, Substructures,
+    max_all, Csr, Error, FetiFeti, InterfaceRow, MethodSettings, Result, RowKind, RowLabel,
+    RowSource, Session, Subdomain, Substructures,
 };
 
 const BOARDS: usize = 3;

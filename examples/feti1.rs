@@ -8,9 +8,8 @@
 
 use std::process::ExitCode;
 
-use fetifeti::parallel::exchange::max_all;
 use fetifeti::scene::{free_all_round, Field, GridSpec, Scene};
-use fetifeti::{FetiFeti, MethodSettings, Result, Session};
+use fetifeti::{max_all, FetiFeti, MethodSettings, Result, Session};
 
 fn main() -> ExitCode {
     fetifeti::run(run)

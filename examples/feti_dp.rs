@@ -10,9 +10,8 @@
 use std::process::ExitCode;
 
 use fetifeti::mesh::BoxMesh;
-use fetifeti::parallel::exchange::max_all;
 use fetifeti::scene::{BodySpec, By, Field, Scene, SceneSpec};
-use fetifeti::{FetiFeti, MethodSettings, Result, Session};
+use fetifeti::{max_all, FetiFeti, MethodSettings, Result, Session};
 
 /// ρ of each column.
 const RHO: [f64; 4] = [1.0, 1e3, 1e-3, 1.0];

@@ -9,9 +9,8 @@ use std::f64::consts::PI;
 use std::process::ExitCode;
 
 use fetifeti::fem::{ErrorNorms, Quadrature};
-use fetifeti::parallel::exchange::{max_all, sum_all};
 use fetifeti::scene::{Expr, Field, GridSpec, Load, Scene, SceneSpec};
-use fetifeti::{Error, FetiFeti, MethodSettings, Result, Session};
+use fetifeti::{max_all, sum_all, Error, FetiFeti, MethodSettings, Result, Session};
 
 /// Elements along the unit square.
 const N: usize = 64;

@@ -20,20 +20,20 @@
 //! | symbol | shape | meaning | where |
 //! |---|---|---|---|
 //! | K, f | n × n, n | stiffness and load of one subdomain, Dirichlet dofs eliminated | [`substructures`] |
-//! | Γ = Δ ∪ Π | | interface dofs of a subdomain: dual, then primal ones | [`feti::subdomain::problem`] |
-//! | S | n_Γ × n_Γ | Schur complement K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ, with T = S_ΔΔ⁻¹ and the coarse basis Ψ | [`feti::subdomain::problem`] |
-//! | W̃ | | functions continuous at the primal dofs of a body, torn elsewhere, \[Lee\] (3.5)–(3.7) | [`feti::primal`] |
-//! | S̃⁺ | dim W̃ | Σ T + Ψ S_Π⁺ Ψᵀ, block diagonal by body | [`feti::operators::stiffness`], [`feti::primal::coarse`] |
-//! | B = \[B_loc; B_gl\] | m × dim W̃ | jumps inside the bodies (fully redundant) and between them | [`feti::jump`] |
-//! | Z | m × m | 0/1 diagonal: rows that hold; 1 on B_loc | [`feti::jump`] |
-//! | B_D | m × dim W̃ | (B D⁻¹ Bᵀ)⁺ B D⁻¹, jumps scaled with D = ρ^γ | [`feti::jump::scaling`] |
-//! | R | dim W̃ × r | kernels of the floating bodies, found from the matrices | [`feti::primal::kernel`] |
-//! | F | m × m | Z B S̃⁺ Bᵀ Z, \[Lee\] (3.8) | [`feti::operators::stiffness`] |
-//! | G, e | m × r, r | Z B R and Rᵀ g | [`feti::projector::natural`] |
-//! | P | m × m | I − Q G (Gᵀ Q G)⁻¹ Gᵀ, \[Lee\] (2.11) | [`feti::projector::natural`] |
-//! | M_D⁻¹ | m × m | Z B_D S̃ B_Dᵀ Z, \[Lee\] section 3.1 | [`feti::operators::preconditioner`] |
-//! | Z_c, M_C⁻¹ | dim W̃ × n_c, m × m | coarse functions that vanish where bodies may touch; M_D⁻¹ with their span removed | [`feti::lifting`] |
-//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | [`feti::spectrum`] |
+//! | Γ = Δ ∪ Π | | interface dofs of a subdomain: dual, then primal ones | `feti::subdomain::problem` |
+//! | S | n_Γ × n_Γ | Schur complement K_ΓΓ − K_ΓI K_II⁻¹ K_IΓ, with T = S_ΔΔ⁻¹ and the coarse basis Ψ | `feti::subdomain::problem` |
+//! | W̃ | | functions continuous at the primal dofs of a body, torn elsewhere, \[Lee\] (3.5)–(3.7) | `feti::primal` |
+//! | S̃⁺ | dim W̃ | Σ T + Ψ S_Π⁺ Ψᵀ, block diagonal by body | `feti::operators::stiffness`, `feti::primal::coarse` |
+//! | B = \[B_loc; B_gl\] | m × dim W̃ | jumps inside the bodies (fully redundant) and between them | `feti::jump` |
+//! | Z | m × m | 0/1 diagonal: rows that hold; 1 on B_loc | `feti::jump` |
+//! | B_D | m × dim W̃ | (B D⁻¹ Bᵀ)⁺ B D⁻¹, jumps scaled with D = ρ^γ | `feti::jump::scaling` |
+//! | R | dim W̃ × r | kernels of the floating bodies, found from the matrices | `feti::primal::kernel` |
+//! | F | m × m | Z B S̃⁺ Bᵀ Z, \[Lee\] (3.8) | `feti::operators::stiffness` |
+//! | G, e | m × r, r | Z B R and Rᵀ g | `feti::projector::natural` |
+//! | P | m × m | I − Q G (Gᵀ Q G)⁻¹ Gᵀ, \[Lee\] (2.11) | `feti::projector::natural` |
+//! | M_D⁻¹ | m × m | Z B_D S̃ B_Dᵀ Z, \[Lee\] section 3.1 | `feti::operators::preconditioner` |
+//! | Z_c, M_C⁻¹ | dim W̃ × n_c, m × m | coarse functions that vanish where bodies may touch; M_D⁻¹ with their span removed | `feti::lifting` |
+//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | `feti::spectrum` |
 //!
 //! # The way data flows
 //!
@@ -42,7 +42,7 @@
 //!              MATIS → embed ──────┘                                                   (other PETSc programs, docs/embedding.md)
 //! ```
 //!
-//! Each stage imports only from stages to its left; [`cli`] puts them in a row and [`baselines`] sends the same scene through
+//! Each stage imports only from stages to its left; [`cli`] puts them in a row and `baselines` sends the same scene through
 //! PETSc's own solvers. [`petsc`] and [`capi`], what C calls, are the only modules with unsafe code.
 //!
 //! # Only what the problem needs
@@ -93,7 +93,7 @@
 #[cfg(feature = "cli")]
 mod assembled;
 #[cfg(feature = "cli")]
-pub mod baselines;
+pub(crate) mod baselines;
 #[allow(unsafe_code)]
 pub mod capi;
 #[cfg(feature = "cli")]
@@ -106,9 +106,9 @@ pub mod embed;
 pub mod error;
 pub mod fem;
 pub mod feti;
-pub mod linalg;
+pub(crate) mod linalg;
 pub mod mesh;
-pub mod parallel;
+pub(crate) mod parallel;
 #[allow(unsafe_code)]
 pub mod petsc;
 #[cfg(feature = "cli")]
@@ -132,6 +132,7 @@ mod inside;
 pub use error::{Error, Result};
 pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling, Spectrum};
 pub use linalg::csr::Csr;
+pub use parallel::exchange::{gather_all, max_all, sum_all};
 pub use petsc::Session;
 pub use scene::Scene;
 pub use settings::Settings;

@@ -1,5 +1,6 @@
 //! Where the contact loop stands, and what its steps have done.
 
+#[cfg(feature = "cli")]
 use serde::{Deserialize, Serialize};
 
 use super::settings::ContactType;
@@ -35,7 +36,8 @@ pub struct Step {
 }
 
 /// Where the outer loop stands; enough to go on from. Vectors are this rank's part.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
 pub struct State {
     /// Multipliers of the owned rows.
     pub lambda: Vec<f64>,
@@ -86,7 +88,8 @@ impl State {
 }
 
 /// How carefully an active-set loop goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
 pub enum Caution {
     /// Loose inner tolerances while the set changes.
     Loose,

@@ -5,24 +5,24 @@
 //! ```
 //!
 //! A host program knows dofs by their global numbers and has one matrix per subdomain. What the method wants besides is
-//! found here from the matrices and the numbers: which dofs are held ([`states`]), who shares what ([`sharing`]), which subdomains form a body
-//! ([`bodies`]), rows between bodies and the host's own ([`rows`], [`contact`]), vertices, edges and faces ([`classes`]), and constraints enough that no subdomain is loose ([`hold`]).
+//! found here from the matrices and the numbers: which dofs are held (`states`), who shares what (`sharing`), which subdomains form a body
+//! (`bodies`), rows between bodies and the host's own (`rows`, `contact`), vertices, edges and faces (`classes`), and constraints enough that no subdomain is loose (`hold`).
 
-pub mod bodies;
-pub mod classes;
-pub mod contact;
-pub mod hold;
-pub mod kernels;
-pub mod partition;
-pub mod parts;
-pub mod pieces;
-pub mod rows;
-pub mod shares;
-pub mod sharing;
-pub mod solver;
-pub mod states;
-pub mod subdomains;
-pub mod torn;
+pub(crate) mod bodies;
+pub(crate) mod classes;
+pub(crate) mod contact;
+pub(crate) mod hold;
+pub(crate) mod kernels;
+pub(crate) mod partition;
+pub(crate) mod parts;
+pub(crate) mod pieces;
+pub(crate) mod rows;
+pub(crate) mod shares;
+pub(crate) mod sharing;
+pub(crate) mod solver;
+pub(crate) mod states;
+pub(crate) mod subdomains;
+pub(crate) mod torn;
 
 pub use bodies::Grouping;
 pub use pieces::Piece;

@@ -80,11 +80,6 @@ impl Semidefinite {
         })
     }
 
-    /// Number of rows and columns.
-    pub fn order(&self) -> usize {
-        self.n
-    }
-
     /// Rank of the matrix.
     pub fn rank(&self) -> usize {
         self.kept.len()

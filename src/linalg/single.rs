@@ -29,11 +29,6 @@ impl Single {
         }
     }
 
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        self.data.len() * std::mem::size_of::<f32>()
-    }
-
     /// y ← factor A x; x is scaled to a largest entry of one before it is rounded, so that no size leaves the range of single precision.
     pub fn mul(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);

@@ -6,7 +6,7 @@
 //! - An error or a panic in a callback travels through PETSc's C frames as an error code and comes out of the outer
 //!   call ([`Ksp::solve`], [`Mat::mult`], …) as the original Rust error.
 //! - Nothing that is PETSc's is `Send`: PETSc is not thread safe. The direct solvers that come with it ([`Cholmod`], [`Mumps`],
-//!   [`ordering`]) are called without it, and say what they allow.
+//!   `ordering`) are called without it, and say what they allow.
 
 #[macro_use]
 mod error;
@@ -24,7 +24,7 @@ mod matis;
 mod mumps;
 mod nested;
 mod options;
-pub mod ordering;
+pub(crate) mod ordering;
 mod partition;
 mod pc;
 mod scatter;

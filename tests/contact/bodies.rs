@@ -36,10 +36,12 @@ fn agree(session: &Session, name: &str) -> Result<(), String> {
 
 #[test]
 fn on_one_rank() {
-    with_session(|session| {
-        for name in SCENES {
-            agree(session, name).unwrap();
-        }
+    mpi::alone(|| {
+        with_session(|session| {
+            for name in SCENES {
+                agree(session, name).unwrap();
+            }
+        });
     });
 }
 

@@ -2,7 +2,7 @@
 
 use crate::support::checks::identities;
 use crate::support::{mpi, solid};
-use fetifeti::feti::settings::Adaptive;
+use fetifeti::feti::Adaptive;
 use fetifeti::feti::{MethodSettings, Scaling};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;

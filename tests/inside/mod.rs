@@ -7,3 +7,4 @@ mod petsc_eps;
 mod petsc_mpi;
 mod report_contact;
 mod support;
+mod traffic;

@@ -2,7 +2,7 @@
 
 use crate::support::{direct, mpi, program, rng};
 use direct::Direct;
-use fetifeti::feti::settings::Adaptive;
+use fetifeti::feti::Adaptive;
 use fetifeti::feti::MethodSettings;
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;

@@ -2,7 +2,7 @@
 
 use crate::support::checks::identities;
 use crate::support::{mpi, program};
-use fetifeti::feti::settings::Operators;
+use fetifeti::feti::Operators;
 use fetifeti::feti::{MethodSettings, PcType};
 use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;

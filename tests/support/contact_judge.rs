@@ -3,7 +3,7 @@
 use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use super::assembled::{Assembled, Reference};
 use fetifeti::contact::ContactType;
-use fetifeti::parallel::exchange::gather_all;
+use fetifeti::gather_all;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::{Error, Result};

@@ -49,11 +49,6 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Counts with the default constraints. Collective.
-    pub fn new(comm: &SimpleCommunicator, problem: &Substructures, team: &Team) -> Result<Sizes> {
-        Sizes::with(comm, problem, team, Primal::default())
-    }
-
     /// Counts with the chosen constraints. Collective.
     pub fn with(
         comm: &SimpleCommunicator,

@@ -9,9 +9,9 @@ pub mod compare;
 use std::collections::BTreeMap;
 
 use super::qp::{Outcome, Qp, Row, Solved};
-use fetifeti::linalg::csr::Csr;
 use fetifeti::scene::Scene;
 use fetifeti::substructures::{InterfaceRow, RowKind, Substructures};
+use fetifeti::Csr;
 
 /// Where a row of the problem went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

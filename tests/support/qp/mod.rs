@@ -16,7 +16,7 @@ mod polish;
 pub mod scaled;
 
 use faer::{Mat, Side};
-use fetifeti::linalg::csr::Csr;
+use fetifeti::Csr;
 
 pub use certificate::Kkt;
 

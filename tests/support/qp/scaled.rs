@@ -1,7 +1,7 @@
 //! The problem with unit diagonal, unit rows and data of size one: what the algorithm works on.
 
 use super::{Qp, Row};
-use fetifeti::linalg::csr::Csr;
+use fetifeti::Csr;
 
 /// A point of the scaled problem.
 #[derive(Debug, Clone)]

@@ -5,10 +5,10 @@ mod element;
 
 use std::collections::BTreeMap;
 
-use fetifeti::linalg::csr::Csr;
 use fetifeti::substructures::{
     Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures,
 };
+use fetifeti::Csr;
 
 /// What the bodies are made of.
 #[derive(Clone, Copy, PartialEq)]
