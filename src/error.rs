@@ -8,6 +8,8 @@ use std::fmt;
 pub enum Error {
     /// What the user wrote cannot be solved as written (exit code 2).
     Input(String),
+    /// What a caller of the C API handed over cannot be taken (exit code 2).
+    Argument(Fault, String),
     /// A matrix that is no stiffness matrix: not positive semidefinite (exit code 2).
     Unfit(String),
     /// The Krylov or the outer iteration did not reach its tolerance (exit code 1).
@@ -23,6 +25,44 @@ pub enum Error {
         /// PETSc's message and stack, one entry per frame.
         trace: Vec<String>,
     },
+}
+
+/// What is wrong with an argument, as PETSc tells such errors apart; the number is its `PETSC_ERR_*`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Fault {
+    /// PETSC_ERR_SUP: what was asked for is not supported.
+    Unsupported = 56,
+    /// PETSC_ERR_ARG_SIZ: things whose sizes do not fit.
+    Sizes = 60,
+    /// PETSC_ERR_ARG_WRONG: anything else.
+    Wrong = 62,
+    /// PETSC_ERR_ARG_OUTOFRANGE: a number that there is not.
+    OutOfRange = 63,
+    /// PETSC_ERR_ARG_CORRUPT: not the object that it should be.
+    Corrupt = 64,
+    /// PETSC_ERR_ARG_WRONGSTATE: something has to be done before.
+    WrongState = 73,
+    /// PETSC_ERR_ARG_NULL: nothing where something should be.
+    Null = 85,
+}
+
+impl Fault {
+    /// All of them.
+    pub const ALL: [Fault; 7] = [
+        Fault::Unsupported,
+        Fault::Sizes,
+        Fault::Wrong,
+        Fault::OutOfRange,
+        Fault::Corrupt,
+        Fault::WrongState,
+        Fault::Null,
+    ];
+
+    /// An [`Error::Argument`] from anything printable.
+    pub fn error(self, message: impl Into<String>) -> Error {
+        Error::Argument(self, message.into())
+    }
 }
 
 /// Shorthand for results of this crate.
@@ -43,7 +83,7 @@ impl Error {
     pub fn exit_code(&self) -> i32 {
         match self {
             Error::NotConverged(_) => 1,
-            Error::Input(_) | Error::Unfit(_) => 2,
+            Error::Input(_) | Error::Argument(..) | Error::Unfit(_) => 2,
             Error::Environment(_) | Error::Petsc { .. } => 3,
         }
     }
@@ -52,9 +92,11 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Input(m) | Error::Unfit(m) | Error::NotConverged(m) | Error::Environment(m) => {
-                out.write_str(m)
-            }
+            Error::Input(m)
+            | Error::Argument(_, m)
+            | Error::Unfit(m)
+            | Error::NotConverged(m)
+            | Error::Environment(m) => out.write_str(m),
             Error::Petsc { code, call, trace } => {
                 write!(out, "{call} failed with PETSc error {code}")?;
                 for line in trace {

@@ -2,9 +2,9 @@
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::coordinates::Coordinates;
-use super::error::Kind;
 use super::handle::{alone, array, list, not_null, starts, together, Handle};
 use super::object::Given;
+use crate::error::Fault;
 use crate::linalg::csr::Csr;
 use crate::petsc::{raw, Attached, Mat};
 use std::ffi::c_int;
@@ -16,7 +16,7 @@ pub unsafe extern "C" fn FetiFetiSetSizes(ff: Handle, local: c_int, global: c_in
         // PETSC_DECIDE and PETSC_DETERMINE are negative.
         let size = |n: c_int| usize::try_from(n).ok();
         if size(local).is_none() && size(global).is_none() {
-            return Err(Kind::Wrong.error(
+            return Err(Fault::Wrong.error(
                 "neither the local nor the global number of unknowns was given, expected one of them",
             ));
         }
@@ -32,7 +32,7 @@ pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: Handle, bs: c_int) -> c_int {
     alone(ff, c"FetiFetiSetBlockSize", |o| {
         if bs < 1 {
             return Err(
-                Kind::OutOfRange.error(format!("the block size is {bs}, expected at least 1"))
+                Fault::OutOfRange.error(format!("the block size is {bs}, expected at least 1"))
             );
         }
         o.block_size = Some(bs as usize);
@@ -65,12 +65,12 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
             let range = range[0] as usize..range[1] as usize;
             for (&j, &v) in ja[range.clone()].iter().zip(&a[range]) {
                 if !(0..n).contains(&j) {
-                    return Err(Kind::OutOfRange.error(format!(
+                    return Err(Fault::OutOfRange.error(format!(
                         "row {row} of the subdomain has an entry in column {j}, expected columns from 0 to below {n}"
                     )));
                 }
                 if !v.is_finite() {
-                    return Err(Kind::Wrong.error(format!(
+                    return Err(Fault::Wrong.error(format!(
                         "row {row} of the subdomain has the entry {v}, expected a finite number"
                     )));
                 }
@@ -137,7 +137,7 @@ pub unsafe extern "C" fn FetiFetiSetCoordinates(
     alone(ff, c"FetiFetiSetCoordinates", |o| {
         if !(1..=3).contains(&dim) {
             return Err(
-                Kind::OutOfRange.error(format!("the dimension is {dim}, expected 1, 2 or 3"))
+                Fault::OutOfRange.error(format!("the dimension is {dim}, expected 1, 2 or 3"))
             );
         }
         let of_node = array(coords, n.saturating_mul(dim), "coords")?.to_vec();

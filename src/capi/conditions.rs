@@ -1,10 +1,10 @@
 //! The functions of `wrappers/fetifeti.h` for conditions: held unknowns, primal ones, contact; their manual pages are there.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
-use super::error::Kind;
 use super::handle::{alone, array, list, not_null, starts, together, Handle};
 use super::object::Object;
 use super::rows::{pairs, row_kind, Numbering, Origin, Row, Side};
+use crate::error::Fault;
 use crate::petsc::{raw, Vec as PetscVec};
 use crate::Result;
 use std::ffi::c_int;
@@ -84,7 +84,7 @@ fn contact_row(
     let mut terms = Vec::new();
     for e in range {
         let dof = u32::try_from(ja[e]).map_err(|_| {
-            Kind::OutOfRange.error(format!(
+            Fault::OutOfRange.error(format!(
                 "contact row {r} has a coefficient at unknown {}, expected at least 0",
                 ja[e]
             ))
@@ -94,7 +94,7 @@ fn contact_row(
         }
     }
     if terms.is_empty() || terms.iter().any(|t| !t.2.is_finite()) || !gap.is_finite() {
-        return Err(Kind::Wrong.error(format!(
+        return Err(Fault::Wrong.error(format!(
             "contact row {r} is empty or not finite (gap {gap}), expected coefficients other than zero and a finite gap"
         )));
     }

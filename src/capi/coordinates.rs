@@ -1,6 +1,6 @@
 //! Rigid body motions from the places of the nodes.
 
-use super::error::Kind;
+use crate::error::Fault;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -16,7 +16,7 @@ pub struct Coordinates {
 pub fn rigid(layout: &PetscVec, bs: usize, c: &Coordinates) -> Result<Vec<PetscVec>> {
     let nodes = layout.local_len() / bs;
     if c.of_node.len() != nodes * c.dim {
-        return Err(Kind::Sizes.error(format!(
+        return Err(Fault::Sizes.error(format!(
             "{} coordinates were given for {nodes} nodes in {} dimensions, expected {}",
             c.of_node.len(),
             c.dim,

@@ -1,6 +1,6 @@
 //! How a Rust error reaches C: a status, and the sentence on request.
 
-use crate::parallel::exchange::max_all;
+use crate::error::Fault;
 use crate::petsc::raw::{self, caught, settle};
 use crate::petsc::Session;
 use crate::{Error, Result};
@@ -16,34 +16,6 @@ const RAISED: c_int = 3;
 /// An error with a sentence that this rank has and others may not.
 const ALONE: c_int = 4;
 
-/// What is wrong with what the caller said, as PETSc tells such errors apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// PETSC_ERR_SUP: what was asked for is not supported.
-    Unsupported = 56,
-    /// PETSC_ERR_ARG_SIZ: things whose sizes do not fit.
-    Sizes = 60,
-    /// PETSC_ERR_ARG_WRONG: anything else.
-    Wrong = 62,
-    /// PETSC_ERR_ARG_OUTOFRANGE: a number that there is not.
-    OutOfRange = 63,
-    /// PETSC_ERR_ARG_CORRUPT: not the object that it should be.
-    Corrupt = 64,
-    /// PETSC_ERR_ARG_WRONGSTATE: something has to be done before.
-    WrongState = 73,
-    /// PETSC_ERR_ARG_NULL: nothing where something should be.
-    Null = 85,
-}
-
-impl Kind {
-    /// An error of this kind with a sentence.
-    pub fn error(self, sentence: impl Into<String>) -> Error {
-        let sentence = sentence.into();
-        NOTED.set((sentence.clone(), self as c_int));
-        Error::Input(sentence)
-    }
-}
-
 /// PETSC_ERR_NOT_CONVERGED.
 const ERR_NOT_CONVERGED: c_int = 91;
 /// PETSC_ERR_LIB.
@@ -51,25 +23,22 @@ const ERR_LIB: c_int = 76;
 
 thread_local! {
     static LAST: RefCell<(CString, c_int)> = RefCell::default();
-    /// The last sentence that has a kind, and that kind: errors of the crate carry none.
-    static NOTED: RefCell<(String, c_int)> = RefCell::default();
 }
 
-/// [`classified`] where errors of input have no kind of their own: they are taken as [`Kind::Unsupported`].
+/// [`classified`] where errors of input are taken as [`Fault::Unsupported`].
 pub fn status(what: &'static str, body: impl FnOnce(&mut Option<Session>) -> Result<()>) -> c_int {
-    classified(what, Kind::Unsupported, body)
+    classified(what, Fault::Unsupported, body)
 }
 
 /// Runs `body`, on which all ranks of the session that it makes or has are at work, and turns what comes out into a status. A panic is an error like others.
-/// Errors of input that have no kind are of the kind `else_kind`.
+/// Errors of input, which are not about an argument, are taken as `input`.
 pub fn classified(
     what: &'static str,
-    else_kind: Kind,
+    input: Fault,
     body: impl FnOnce(&mut Option<Session>) -> Result<()>,
 ) -> c_int {
     // A host that went on after an error has settled it.
     settle();
-    NOTED.take();
     let mut session = None;
     let result = caught(what, || body(&mut session));
     let concluded = match &session {
@@ -81,14 +50,9 @@ pub fn classified(
     };
     let (status, code) = match &error {
         Error::Petsc { code, .. } => (RAISED, *code),
-        Error::Input(sentence) => {
-            let all = session.as_ref().filter(|_| common);
-            (
-                SENTENCE,
-                kind_of(sentence, all).unwrap_or(else_kind as c_int),
-            )
-        }
-        Error::Unfit(_) => (SENTENCE, Kind::Wrong as c_int),
+        Error::Argument(fault, _) => (SENTENCE, *fault as c_int),
+        Error::Input(_) => (SENTENCE, input as c_int),
+        Error::Unfit(_) => (SENTENCE, Fault::Wrong as c_int),
         Error::NotConverged(_) => (SENTENCE, ERR_NOT_CONVERGED),
         Error::Environment(_) => (SENTENCE, ERR_LIB),
     };
@@ -100,16 +64,6 @@ pub fn classified(
     let text = error.to_string().replace('\0', " ");
     LAST.set((CString::new(text).unwrap_or_default(), code));
     status
-}
-
-/// The kind that was noted with this sentence, here or, where all ranks of a session have it, on any of them.
-fn kind_of(sentence: &str, all: Option<&Session>) -> Option<c_int> {
-    let noted = NOTED.with_borrow(|(text, kind)| if text == sentence { *kind } else { 0 });
-    let mut kind = [f64::from(noted)];
-    if let Some(session) = all {
-        max_all(session.comm(), &mut kind);
-    }
-    (kind[0] > 0.0).then_some(kind[0] as c_int)
 }
 
 /// Hands what [`status`] returned to the host's error handler; the PETSc error code. `comm` where all ranks of it are in the same call, and `None` else.

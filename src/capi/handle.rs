@@ -1,7 +1,8 @@
 //! What C calls a `FetiFeti`, and the way into it and out again: checks of what C hands over, and one fence for all functions.
 
-use super::error::{classified, raise, Kind};
+use super::error::{classified, raise};
 use super::object::Object;
+use crate::error::Fault;
 use crate::petsc::{raw, Is, Session};
 use crate::Result;
 use std::ffi::{c_int, CStr};
@@ -31,11 +32,11 @@ const MAGIC: u64 = 0x4645_5449_4645_5449;
 pub(super) type Handle = *mut Held;
 
 fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
-    let none = || Kind::Null.error("the FetiFeti is NULL, expected one from FetiFetiCreate");
+    let none = || Fault::Null.error("the FetiFeti is NULL, expected one from FetiFetiCreate");
     // SAFETY: the header asks for NULL or an object of FetiFetiCreate.
     let held = unsafe { ff.as_mut() }.ok_or_else(none)?;
     if held.magic != MAGIC {
-        return Err(Kind::Corrupt.error("the FetiFeti is not one that FetiFetiCreate made"));
+        return Err(Fault::Corrupt.error("the FetiFeti is not one that FetiFetiCreate made"));
     }
     Ok(held)
 }
@@ -55,7 +56,7 @@ pub(super) fn together(
     work: impl FnOnce(&mut Object) -> Result<()>,
 ) -> c_int {
     let comm = held(ff).ok().map(|h| h.comm);
-    let code = classified("fetifeti.h", Kind::Wrong, |at_work| {
+    let code = classified("fetifeti.h", Fault::Wrong, |at_work| {
         let object = &mut held(ff)?.object;
         *at_work = Some(object.session.clone());
         work(object)
@@ -69,20 +70,20 @@ pub(super) fn alone(
     name: &'static CStr,
     work: impl FnOnce(&mut Object) -> Result<()>,
 ) -> c_int {
-    let code = classified("fetifeti.h", Kind::Wrong, |_| work(&mut held(ff)?.object));
+    let code = classified("fetifeti.h", Fault::Wrong, |_| work(&mut held(ff)?.object));
     raise(code, name, None)
 }
 
 /// An array of C.
 pub(super) fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [T]> {
     let n = usize::try_from(n).map_err(|_| {
-        Kind::OutOfRange.error(format!("the length of {what} is {n}, expected at least 0"))
+        Fault::OutOfRange.error(format!("the length of {what} is {n}, expected at least 0"))
     })?;
     if n == 0 {
         return Ok(&[]);
     }
     if data.is_null() {
-        return Err(Kind::Null.error(format!("{what} is NULL, expected an array of {n} entries")));
+        return Err(Fault::Null.error(format!("{what} is NULL, expected an array of {n} entries")));
     }
     // SAFETY: the header asks for this length.
     Ok(unsafe { std::slice::from_raw_parts(data, n) })
@@ -97,7 +98,7 @@ pub(super) fn put<T>(to: *mut T, value: T) {
 
 pub(super) fn not_null<T>(object: *mut T, what: &str) -> Result<*mut T> {
     match object.is_null() {
-        true => Err(Kind::Null.error(format!("the {what} is NULL, expected one"))),
+        true => Err(Fault::Null.error(format!("the {what} is NULL, expected one"))),
         false => Ok(object),
     }
 }
@@ -107,9 +108,9 @@ pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
     let bad = ia.windows(2).position(|w| w[1] < w[0]);
     match (ia.first(), bad) {
         (Some(&first), _) if first != 0 => {
-            Err(Kind::Wrong.error(format!("the row pointers begin with {first}, expected 0")))
+            Err(Fault::Wrong.error(format!("the row pointers begin with {first}, expected 0")))
         }
-        (_, Some(row)) => Err(Kind::Wrong.error(format!(
+        (_, Some(row)) => Err(Fault::Wrong.error(format!(
             "the row pointers fall from {} to {} at row {row}, expected increasing ones",
             ia[row],
             ia[row + 1]

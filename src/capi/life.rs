@@ -1,9 +1,10 @@
 //! The functions of `wrappers/fetifeti.h` for the life of a solver: made, set up, used, destroyed; their manual pages are there.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
-use super::error::{classified, raise, Kind};
+use super::error::{classified, raise};
 use super::handle::{alone, destroy, not_null, put, together, Handle, Held};
 use super::object::Object;
+use crate::error::Fault;
 use crate::petsc::{raw, Session, Vec as PetscVec};
 use crate::Result;
 use std::ffi::{c_char, c_int, CStr};
@@ -11,12 +12,13 @@ use std::ffi::{c_char, c_int, CStr};
 #[no_mangle]
 #[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
-    let code = classified("FetiFetiCreate", Kind::Wrong, |at_work| {
-        let session = Session::borrowed(comm)?;
+    let code = classified("FetiFetiCreate", Fault::Wrong, |at_work| {
+        // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin and end.
+        let session = unsafe { Session::borrowed(comm) }?;
         *at_work = Some(session.clone());
         if ff.is_null() {
             return Err(
-                Kind::Null.error("there is no place for the FetiFeti, expected a pointer to one")
+                Fault::Null.error("there is no place for the FetiFeti, expected a pointer to one")
             );
         }
         put(ff, Box::into_raw(Box::new(Held::new(comm, session))));
@@ -41,7 +43,7 @@ pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut Handle) -> c_int {
     }
     // SAFETY: not NULL.
     let handle = unsafe { *ff };
-    let code = classified("FetiFetiDestroy", Kind::Wrong, |_| {
+    let code = classified("FetiFetiDestroy", Fault::Wrong, |_| {
         destroy(handle)?;
         put(ff, std::ptr::null_mut());
         Ok(())

@@ -1,7 +1,7 @@
 //! Vectors of the host in the layout of all unknowns: plain ones, or nested ones with a part for each matrix.
 
-use super::error::Kind;
 use super::stack::{fits, Stack};
+use crate::error::Fault;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
@@ -27,12 +27,12 @@ impl Given {
         match &parts {
             None => fits(session, v, layout, what)?,
             Some(_) if stack.is_empty() => {
-                return Err(Kind::Wrong.error(format!(
+                return Err(Fault::Wrong.error(format!(
                     "{what} is a nested vector, expected a plain one: only matrices added without numbers have parts"
                 )))
             }
             Some(parts) if parts.len() != stack.len() => {
-                return Err(Kind::Sizes.error(format!(
+                return Err(Fault::Sizes.error(format!(
                     "{what} is nested and has {} parts, expected {}: one for each matrix",
                     parts.len(),
                     stack.len()

@@ -1,13 +1,13 @@
 //! The object behind `FetiFeti` of fetifeti.h: what the host has said so far, and the solver made of it.
 
 use super::coordinates::{rigid, Coordinates};
-use super::error::Kind;
 use super::nested::Given as GivenVector;
 use super::rows::Row;
 use super::stack::{fits, Local, Stack};
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Grouping, Outcome, Torn};
+use crate::error::Fault;
 use crate::linalg::csr::Csr;
 use crate::parallel::exchange::{gather_all, max_all};
 use crate::parallel::halo::Halo;
@@ -161,7 +161,7 @@ impl Object {
 
     /// The error where subdomains are numbered in two ways.
     pub fn mixed(&self) -> Error {
-        Kind::WrongState.error(
+        Fault::WrongState.error(
             "some matrices were added without numbers, which follows their order, and other subdomains with numbers of unknowns, \
              expected one way for all of a FetiFeti",
         )
@@ -171,7 +171,7 @@ impl Object {
     fn renumbered(&self, layout: &PetscVec, dofs: &[i32], numbers: &[i32]) -> Result<Vec<i32>> {
         let n = layout.local_len();
         let wrong = (numbers.len() != n).then(|| {
-            Kind::Sizes.error(format!(
+            Fault::Sizes.error(format!(
                 "rank {} gave {} numbers for the {n} rows of the matrix that it owns, expected as many",
                 self.session.rank(),
                 numbers.len()
@@ -225,7 +225,7 @@ impl Object {
         let n_global = layout.global_len();
         let bs = self.nodes();
         if n_global % bs != 0 {
-            return Err(Kind::Sizes.error(format!(
+            return Err(Fault::Sizes.error(format!(
                 "there are {n_global} unknowns in blocks of {bs}, expected a multiple"
             )));
         }
@@ -326,7 +326,7 @@ impl Object {
         let out = |dof: &&i32| **dof >= n as i32;
         for (s, sub) in self.subdomains.iter().enumerate() {
             if let Some(dof) = sub.dofs.iter().find(out) {
-                return Err(Kind::OutOfRange.error(format!(
+                return Err(Fault::OutOfRange.error(format!(
                     "subdomain {s} of rank {} has unknown {dof}, expected numbers below {n}",
                     self.session.rank()
                 )));
@@ -334,7 +334,7 @@ impl Object {
         }
         for (what, list) in [("held", &self.held), ("primal", &self.primal)] {
             if let Some(dof) = list.iter().find(|d| **d < 0 || **d >= n as i32) {
-                return Err(Kind::OutOfRange.error(format!(
+                return Err(Fault::OutOfRange.error(format!(
                     "unknown {dof} is to be {what}, expected numbers from 0 to below {n}"
                 )));
             }

@@ -55,7 +55,8 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
 ) -> c_int {
     let mut unfit = false;
     let code = status("KSPSetUp_FETIFETI", |at_work| {
-        let session = Session::borrowed(comm)?;
+        // SAFETY: by the caller; the KSP that owns the solver keeps the communicator.
+        let session = unsafe { Session::borrowed(comm) }?;
         *at_work = Some(session.clone());
         let a = Mat::share(a, &session)?;
         // SAFETY: by the caller.

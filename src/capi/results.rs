@@ -1,8 +1,8 @@
 //! The functions of `wrappers/fetifeti.h` that tell what a solve has found.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
-use super::error::Kind;
 use super::handle::{alone, put, Handle};
+use crate::error::Fault;
 use crate::petsc::raw;
 use std::ffi::c_int;
 
@@ -69,7 +69,7 @@ pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *m
         o.outcome()?;
         let found = o.solver()?.multipliers().unwrap_or_default();
         if n as usize != found.len() || (lambda.is_null() && n > 0) {
-            return Err(Kind::Sizes.error(format!(
+            return Err(Fault::Sizes.error(format!(
                 "there is room for {n} multipliers, expected {}: as many as this rank gave rows",
                 found.len()
             )));

@@ -1,8 +1,8 @@
 //! The rows that a rank gives, as it says them: terms by unknowns of all bodies, or by unknowns of one matrix.
 
-use super::error::Kind;
 use super::object::Object;
 use crate::embed::GivenRow;
+use crate::error::Fault;
 use crate::substructures::RowKind;
 use crate::Result;
 
@@ -38,7 +38,7 @@ pub fn row_kind(number: i32, whose: impl FnOnce() -> String) -> Result<RowKind> 
     match number {
         0 => Ok(RowKind::Equality),
         1 => Ok(RowKind::Inequality),
-        _ => Err(Kind::OutOfRange.error(format!(
+        _ => Err(Fault::OutOfRange.error(format!(
             "{} of kind {number}, expected FETIFETI_EQUALITY (0) or FETIFETI_INEQUALITY (1)",
             whose()
         ))),
@@ -67,7 +67,7 @@ impl Side {
                 Some(n) => format!("numbers from 0 to below {n}, those of matrix {matrix}"),
                 None => "at least 0".into(),
             };
-            return Err(Kind::OutOfRange.error(format!(
+            return Err(Fault::OutOfRange.error(format!(
                 "contact pair {r} of rank {} has unknown {dof}, expected {expected}",
                 o.session.rank()
             )));
@@ -89,7 +89,7 @@ pub fn pairs(
 ) -> Result<Vec<Row>> {
     let n = first.dofs.len();
     if second.dofs.len() != n {
-        return Err(Kind::Sizes.error(format!(
+        return Err(Fault::Sizes.error(format!(
             "rank {rank} gave {n} unknowns on the first side of contact pairs and {} on the second, expected as many",
             second.dofs.len()
         )));
@@ -98,12 +98,12 @@ pub fn pairs(
     for (r, (&a, &b)) in first.dofs.iter().zip(&second.dofs).enumerate() {
         let gap = gap.get(r).copied().unwrap_or(0.0);
         if !gap.is_finite() {
-            return Err(Kind::Wrong.error(format!(
+            return Err(Fault::Wrong.error(format!(
                 "contact pair {r} of rank {rank} has a gap of {gap}, expected a finite one"
             )));
         }
         if a == b && first.numbering == second.numbering {
-            return Err(Kind::Wrong.error(format!(
+            return Err(Fault::Wrong.error(format!(
                 "contact pair {r} of rank {rank} has unknown {a} on both sides, expected different ones"
             )));
         }
@@ -132,7 +132,7 @@ impl Object {
             };
             let n = self.size_of(k)?;
             if dof as usize >= n {
-                return Err(Kind::OutOfRange.error(format!(
+                return Err(Fault::OutOfRange.error(format!(
                     "a contact pair of rank {} has unknown {dof} of matrix {k}, which has {n} by now, expected pairs of the present matrices",
                     self.session.rank()
                 )));
@@ -161,7 +161,7 @@ impl Object {
             (_, n) if k < n => return Ok(self.stack.size_of(k)),
             (_, n) => n,
         };
-        Err(Kind::OutOfRange.error(format!(
+        Err(Fault::OutOfRange.error(format!(
             "contact pairs name matrix {k} but {there} have been added without numbers so far, expected one of these (from 0)"
         )))
     }

@@ -1,9 +1,9 @@
 //! Solving with the object behind `FetiFeti`, and what it tells afterwards.
 
-use super::error::Kind;
 use super::nested::Given;
 use super::object::Object;
 use crate::embed::{Embedded, Outcome};
+use crate::error::Fault;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -45,8 +45,9 @@ impl Object {
     /// # Errors
     /// There was none.
     pub fn outcome(&self) -> Result<&Outcome> {
-        let none =
-            || Kind::WrongState.error("nothing has been solved yet, expected FetiFetiSolve before");
+        let none = || {
+            Fault::WrongState.error("nothing has been solved yet, expected FetiFetiSolve before")
+        };
         self.outcome.as_ref().ok_or_else(none)
     }
 
@@ -56,7 +57,7 @@ impl Object {
     /// There is none yet.
     pub fn solver(&self) -> Result<&Embedded> {
         let none =
-            || Kind::WrongState.error("there is no solver yet, expected FetiFetiSetUp before");
+            || Fault::WrongState.error("there is no solver yet, expected FetiFetiSetUp before");
         self.solver.as_ref().ok_or_else(none)
     }
 

@@ -2,10 +2,10 @@
 //!
 //! On each rank come its rows of the first matrix, then those of the second, and so on: as DMComposite numbers, and as nested vectors lie.
 
-use super::error::Kind;
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::{modes, unassembled};
 use crate::embed::Piece;
+use crate::error::Fault;
 use crate::linalg::csr::Csr;
 use crate::parallel::exchange::gather_all;
 use crate::petsc::{Mat, Session, Vec as PetscVec};
@@ -46,10 +46,10 @@ pub struct Local {
 impl Local {
     /// Takes the matrix apart. Collective.
     pub fn of(session: &Session, a: &Mat) -> Result<Local> {
-        unassembled(a).map_err(|e| Kind::Unsupported.error(e.to_string()))?;
+        unassembled(a).map_err(|e| Fault::Unsupported.error(e.to_string()))?;
         let (rows, cols) = a.size()?;
         if rows != cols {
-            return Err(Kind::Sizes.error(format!(
+            return Err(Fault::Sizes.error(format!(
                 "the matrix has {rows} rows and {cols} columns, expected a square one"
             )));
         }
@@ -81,7 +81,7 @@ pub fn fits(session: &Session, v: &PetscVec, layout: &PetscVec, what: &str) -> R
     if found == wanted {
         return Ok(());
     }
-    Err(Kind::Sizes.error(format!(
+    Err(Fault::Sizes.error(format!(
         "{what} has entries {found:?} on rank {}, expected {wanted:?}",
         session.rank()
     )))

@@ -241,19 +241,19 @@ fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> 
             settings.prefix
         )));
     }
-    ksp.setup().map_err(|e| unfit_norm(e, &settings.prefix))?;
+    ksp.check_norm_type()
+        .map_err(|e| unfit_norm(e, &settings.prefix))?;
+    ksp.setup()?;
     Ok(ksp)
 }
 
-/// Says what to do where a Krylov method cannot judge convergence by the norm that is set.
+/// Says what to do where PETSc refuses to judge convergence by the norm that is set.
 fn unfit_norm(error: Error, prefix: &str) -> Error {
     match error {
-        Error::Petsc { trace, .. } if trace.first().is_some_and(|t| t.contains("norm type")) => {
-            Error::input(format!(
-                "option -{prefix}ksp_type: {} (set -{prefix}ksp_norm_type to one that it supports, such as preconditioned)",
-                trace[0]
-            ))
-        }
+        Error::Petsc { trace, .. } if !trace.is_empty() => Error::input(format!(
+            "option -{prefix}ksp_type: {} (set -{prefix}ksp_norm_type to one that it supports, such as preconditioned)",
+            trace[0]
+        )),
         other => other,
     }
 }

@@ -51,35 +51,37 @@ pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) ->
         return vec![own];
     }
     let send_counts: Vec<i32> = outgoing.iter().map(|w| count(w.len())).collect();
-    let mut receive_counts = vec![0i32; size];
-    comm.all_to_all_into(&send_counts[..], &mut receive_counts[..]);
-    let starts = |counts: &[i32]| {
-        let mut sum = 0;
-        counts
-            .iter()
-            .map(|&c| {
-                sum += c;
-                sum - c
-            })
-            .collect::<Vec<i32>>()
-    };
-    let (send_starts, receive_starts) = (starts(&send_counts), starts(&receive_counts));
-    let sent: Vec<u64> = outgoing.concat();
-    let total: i32 = receive_counts.iter().sum();
-    let mut received = vec![0u64; total as usize];
-    {
-        let from = Partition::new(&sent[..], &send_counts[..], &send_starts[..]);
-        let mut into =
-            PartitionMut::new(&mut received[..], &receive_counts[..], &receive_starts[..]);
-        comm.all_to_all_varcount_into(&from, &mut into);
-    }
-    let mut all: Vec<Vec<u64>> = receive_counts
-        .iter()
-        .zip(&receive_starts)
-        .map(|(&c, &s)| received[s as usize..(s + c) as usize].to_vec())
-        .collect();
+    let mut counts = vec![0i32; size];
+    comm.all_to_all_into(&send_counts[..], &mut counts[..]);
+    let (sent, send_starts) = (outgoing.concat(), starts(&send_counts));
+    let from = Partition::new(&sent[..], &send_counts[..], &send_starts[..]);
+    let mut all = received(&counts, |into| comm.all_to_all_varcount_into(&from, into));
     all[rank] = own;
     all
+}
+
+/// Where each list begins when they lie one behind the other.
+fn starts(counts: &[i32]) -> Vec<i32> {
+    let mut sum = 0;
+    let before = counts.iter().map(|&c| {
+        sum += c;
+        sum - c
+    });
+    before.collect()
+}
+
+/// So many words from each rank, as `receive` gets them.
+fn received(
+    counts: &[i32],
+    receive: impl FnOnce(&mut PartitionMut<[u64], &[i32], &[i32]>),
+) -> Vec<Vec<u64>> {
+    let starts = starts(counts);
+    let mut words = vec![0u64; counts.iter().map(|&c| c as usize).sum()];
+    receive(&mut PartitionMut::new(&mut words[..], counts, &starts[..]));
+    let lists = counts.iter().zip(&starts);
+    lists
+        .map(|(&c, &s)| words[s as usize..(s + c) as usize].to_vec())
+        .collect()
 }
 
 /// MPI counts are C ints: 2³¹ words to one rank would be 16 GB of interface.
@@ -112,8 +114,12 @@ fn reduce(comm: &SimpleCommunicator, values: &mut [f64], operation: SystemOperat
 
 /// Every rank's words, in the order of the ranks. Collective.
 pub fn gather_all(comm: &SimpleCommunicator, mine: &[u64]) -> Vec<Vec<u64>> {
-    let size = comm.size() as usize;
-    exchange_words(comm, vec![mine.to_vec(); size])
+    if comm.size() == 1 {
+        return vec![mine.to_vec()];
+    }
+    let mut counts = vec![0i32; comm.size() as usize];
+    comm.all_gather_into(&count(mine.len()), &mut counts[..]);
+    received(&counts, |into| comm.all_gather_varcount_into(mine, into))
 }
 
 /// (Σ of `n` over the lower ranks, Σ over all ranks). Collective.

@@ -2,7 +2,11 @@
 
 use std::cell::RefCell;
 
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
 use super::clock::{self, Phase};
+use super::exchange::{exchange_words, gather_all};
 use super::traffic::{self, Traffic};
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
 use crate::Result;
@@ -40,7 +44,7 @@ impl Halo {
             scatter: Scatter::new(layout, &indices, &buffer)?,
             buffer: RefCell::new(buffer),
             n_ghosts: ghosts.len(),
-            sent: traffic::of_ghosts(session.comm(), layout.ownership_range().start, ghosts),
+            sent: of_ghosts(session.comm(), layout.ownership_range().start, ghosts),
         })
     }
 
@@ -89,4 +93,26 @@ impl Halo {
             self.scatter.reverse_add_end(&self.buffer.borrow(), y)
         })
     }
+}
+
+/// What this rank sends to move the ghosts once: (owners to ghosts, ghosts to owners). `first` is the first entry that this rank owns.
+/// Collective.
+fn of_ghosts(comm: &SimpleCommunicator, first: usize, ghosts: &[u32]) -> (Traffic, Traffic) {
+    let (size, rank) = (comm.size() as usize, comm.rank() as usize);
+    if size == 1 {
+        return Default::default();
+    }
+    let starts: Vec<u64> = gather_all(comm, &[first as u64]).concat();
+    let mut wanted = vec![0u64; size];
+    for &g in ghosts {
+        // The last rank that starts at or before the entry: ranks without entries start where the next one does.
+        wanted[starts.partition_point(|&s| s <= u64::from(g)) - 1] += 1;
+    }
+    wanted[rank] = 0;
+    let asked = wanted.iter().map(|&n| vec![n]).collect();
+    let asking = exchange_words(comm, asked).concat();
+    (
+        Traffic::of_counts(asking.into_iter()),
+        Traffic::of_counts(wanted.into_iter()),
+    )
 }

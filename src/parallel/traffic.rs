@@ -6,11 +6,6 @@
 use std::cell::Cell;
 use std::ops::{AddAssign, Sub};
 
-use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
-
-use super::exchange::{exchange_words, gather_all};
-
 /// Bytes of a number.
 const NUMBER: u64 = 8;
 
@@ -38,7 +33,7 @@ impl Traffic {
     }
 
     /// One message for every count above zero.
-    fn of_counts(counts: impl Iterator<Item = u64>) -> Traffic {
+    pub(super) fn of_counts(counts: impl Iterator<Item = u64>) -> Traffic {
         counts
             .filter(|&n| n > 0)
             .fold(Traffic::default(), |t, n| Traffic {
@@ -85,28 +80,6 @@ pub fn count(more: Traffic) {
     let mut all = SENT.get();
     all += more;
     SENT.set(all);
-}
-
-/// What this rank sends to move the ghosts once: (owners to ghosts, ghosts to owners). `first` is the first entry that this rank owns.
-/// Collective.
-pub fn of_ghosts(comm: &SimpleCommunicator, first: usize, ghosts: &[u32]) -> (Traffic, Traffic) {
-    let (size, rank) = (comm.size() as usize, comm.rank() as usize);
-    if size == 1 {
-        return Default::default();
-    }
-    let starts: Vec<u64> = gather_all(comm, &[first as u64]).concat();
-    let mut wanted = vec![0u64; size];
-    for &g in ghosts {
-        // The last rank that starts at or before the entry: ranks without entries start where the next one does.
-        wanted[starts.partition_point(|&s| s <= u64::from(g)) - 1] += 1;
-    }
-    wanted[rank] = 0;
-    let asked = wanted.iter().map(|&n| vec![n]).collect();
-    let asking = exchange_words(comm, asked).concat();
-    (
-        Traffic::of_counts(asking.into_iter()),
-        Traffic::of_counts(wanted.into_iter()),
-    )
 }
 
 #[cfg(test)]

@@ -139,6 +139,15 @@ impl Ksp {
         petsc!(KSPSetNormType(self.raw(), norm))
     }
 
+    /// Asks for the norm that convergence is judged by, which a method may not support.
+    ///
+    /// # Errors
+    /// PETSc's, where it does not.
+    pub fn check_norm_type(&self) -> Result<()> {
+        let mut norm = sys::KSP_NORM_NONE;
+        petsc!(KSPGetNormType(self.raw(), &mut norm))
+    }
+
     /// Keep what [`Ksp::eigenvalues`] needs.
     pub fn set_compute_eigenvalues(&self, on: bool) -> Result<()> {
         petsc!(KSPSetComputeEigenvalues(self.raw(), Flag::of(on)))

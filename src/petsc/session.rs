@@ -1,6 +1,7 @@
 //! An initialised PETSc: starting it, ending it, and failing on several ranks without a hang.
 
 use super::error::{c_string, collect_traces, panicked, settled};
+use crate::error::Fault;
 use crate::{Error, Result};
 use mpi::raw::FromRaw;
 use mpi::topology::SimpleCommunicator;
@@ -111,11 +112,12 @@ impl Session {
     /// A session inside a program that initialised PETSc itself, on one of its communicators. PETSc is not finalised at the end
     /// and its error handler stays the host's.
     ///
-    /// `comm` must be a valid communicator that outlives the session.
-    ///
     /// # Errors
     /// [`Error::Environment`] when PETSc is not initialised or is another version than the one compiled against.
-    pub fn borrowed(comm: sys::MPI_Comm) -> Result<Session> {
+    ///
+    /// # Safety
+    /// `comm` is a valid communicator, and neither it nor PETSc ends before the session and all objects made with it.
+    pub unsafe fn borrowed(comm: sys::MPI_Comm) -> Result<Session> {
         check_version()?;
         let mut begun = Flag::of(false);
         petsc!(PetscInitialized(&mut begun))?;
@@ -418,6 +420,8 @@ fn check_version() -> Result<()> {
 fn pack(error: &Error) -> Vec<u8> {
     let kind = match error {
         Error::Input(_) => 'i',
+        // A code is below 128.
+        Error::Argument(fault, _) => char::from(*fault as u8),
         Error::Unfit(_) => 'u',
         Error::NotConverged(_) => 'n',
         Error::Environment(_) | Error::Petsc { .. } => 'e',
@@ -431,6 +435,10 @@ fn unpack(bytes: &[u8]) -> Error {
         Some(b'i') => Error::Input(text),
         Some(b'u') => Error::Unfit(text),
         Some(b'n') => Error::NotConverged(text),
-        _ => Error::Environment(text),
+        Some(&code) => match Fault::ALL.into_iter().find(|f| *f as u8 == code) {
+            Some(fault) => Error::Argument(fault, text),
+            None => Error::Environment(text),
+        },
+        None => Error::Environment(text),
     }
 }
