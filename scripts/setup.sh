@@ -29,8 +29,8 @@ packages=(build-essential ca-certificates pkg-config libopenmpi-dev openmpi-bin 
 # PETSc's own examples, a Fortran compiler and petsc4py are for the tests of the plug-in.
 packages+=(gfortran)
 [ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev libpetsc3.18-dev-examples python3-petsc4py-real)
-# The sparse Cholesky solvers and orderings that subdomains may be factored with; the build goes without what is missing.
-[ -n "${PETSC_DIR:-}" ] || packages+=(libsuitesparse-dev libmumps-dev libscotch-dev)
+# The orderings METIS (through CHOLMOD of SuiteSparse) and Scotch; the build goes without what is missing.
+[ -n "${PETSC_DIR:-}" ] || packages+=(libsuitesparse-dev libscotch-dev)
 # Builds of PETSc that the plug-in must refuse.
 packages+=(libpetsc-complex3.18-dev libpetsc64-real3.18-dev)
 [ -n "${SLEPC_DIR:-}${PETSC_DIR:-}" ] || packages+=(slepc-dev)

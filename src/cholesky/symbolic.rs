@@ -1,9 +1,17 @@
 //! The pattern of a partial factorisation: order of elimination, fronts, and where their entries go.
 
 use super::dissection::nested_dissection;
-use super::interior::Keep;
 use super::panel;
 use crate::linalg::csr::Csr;
+
+/// What is kept of [L_II; L_ΓI].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// All of it: condensing a load and recovering a solution are half a solve each.
+    Boundary,
+    /// L_II: they are a whole solve each, in three quarters of the memory in the plane and in a quarter of it in space.
+    Interior,
+}
 
 /// What depends on the pattern alone: elimination order, fronts, index maps.
 #[derive(Debug)]

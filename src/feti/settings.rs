@@ -1,6 +1,6 @@
 //! What a user may choose, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
-use crate::cholesky::interior::{LocalSolver, Ordering, Solver};
+use crate::cholesky::interior::LocalSolver;
 use crate::petsc::{Options, Session};
 use crate::substructures::EntityKind;
 use crate::{Error, Result};
@@ -339,7 +339,7 @@ impl MethodSettings {
             0 => None,
             n => Some(n),
         };
-        self.local_solver(&o)?;
+        self.local = self.local.from_options(&o)?;
         let help = "print the operator identities, which must be zero";
         self.check = o.bool("check", self.check, help)?;
         let help = "exact extreme eigenvalues of the preconditioned operator";
@@ -373,29 +373,5 @@ impl MethodSettings {
             None => CoarseFunctions::Vertices,
             Some(_) => CoarseFunctions::All,
         })
-    }
-
-    /// How subdomains are factored, and on how many threads that can be.
-    fn local_solver(&mut self, o: &Options) -> Result<()> {
-        let LocalSolver { kind, ordering } = self.local;
-        let help = "factorisation of the subdomains";
-        let i = o.choice("local_solver", Solver::NAMES, kind as usize, help)?;
-        let kind = Solver::ALL[i];
-        let help = "order of elimination in the subdomains";
-        let i = o.choice("local_ordering", Ordering::NAMES, ordering as usize, help)?;
-        let ordering = match i {
-            0 => Ordering::Auto,
-            i => Ordering::ALL[i - 1],
-        };
-        self.local = LocalSolver { kind, ordering };
-        self.local.check(&self.prefix)?;
-        match (self.threads, self.local.most_threads()) {
-            (Some(n), Some(most)) if n > most => Err(Error::input(format!(
-                "option -{0}threads is {n}, but {1} (-{0}local_solver) is not safe on several threads: expected {most}, or more ranks instead",
-                self.prefix,
-                kind.name()
-            ))),
-            _ => Ok(()),
-        }
     }
 }

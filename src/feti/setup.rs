@@ -193,11 +193,10 @@ fn stiffness(
 
 /// Threads of this rank. Collective.
 fn threads(session: &Session, settings: &MethodSettings) -> usize {
-    let wanted = settings.threads.unwrap_or_else(|| {
+    settings.threads.unwrap_or_else(|| {
         let neighbours = session.comm().split_shared(session.rank() as i32);
         usual_threads(neighbours.size() as usize)
-    });
-    wanted.min(settings.local.most_threads().unwrap_or(wanted))
+    })
 }
 
 /// The cores of this machine divided among the ranks on it, no more than this rank is bound to.

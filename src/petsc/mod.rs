@@ -5,14 +5,12 @@
 //! - PETSc owns what a shell ([`ShellMat`], [`ShellPc`], [`ShellOp`]) captures and drops it with the object.
 //! - An error or a panic in a callback travels through PETSc's C frames as an error code and comes out of the outer
 //!   call ([`Ksp::solve`], [`Mat::mult`], …) as the original Rust error.
-//! - Nothing that is PETSc's is `Send`: PETSc is not thread safe. The direct solvers that come with it ([`Cholmod`], [`Mumps`],
-//!   `ordering`) are called without it, and say what they allow.
+//! - Nothing that is PETSc's is `Send`: PETSc is not thread safe. The libraries of `ordering`, which come with it, are
+//!   called without it, one thread at a time.
 
 #[macro_use]
 mod error;
-mod cholmod;
 mod citations;
-mod direct;
 mod eps;
 mod handle;
 mod heap;
@@ -21,7 +19,6 @@ mod ksp;
 mod log;
 mod mat;
 mod matis;
-mod mumps;
 mod nested;
 mod options;
 pub(crate) mod ordering;
@@ -34,9 +31,7 @@ mod spectrum;
 pub mod testing;
 mod vec;
 
-pub use cholmod::{have_cholmod, Cholmod, CholmodSymbolic, Supernode, Upper};
 pub use citations::cite;
-pub use direct::Refusal;
 pub use eps::{Eps, ProblemType, Which};
 pub use heap::let_threads_allocate;
 pub use is::Is;
@@ -44,7 +39,6 @@ pub use ksp::{ConvergedReason, Ksp, NormType};
 pub use log::{counters, Counters, Event, Scope, Stage};
 pub use mat::{Mat, MatFlag};
 pub use matis::Attached;
-pub use mumps::{have_mumps, Mumps};
 pub use options::Options;
 pub use partition::partition;
 pub use pc::Pc;

@@ -35,7 +35,7 @@ pub fn have_scotch() -> bool {
 /// METIS's nested dissection: the vertices in the order of elimination.
 ///
 /// # Errors
-/// The library's number, or that it is absent.
+/// What failed, in one sentence without a full stop.
 pub fn metis(graph: &Graph) -> Result<Vec<u32>, String> {
     order(graph, "METIS", sys::ff_metis_order)
 }
@@ -43,7 +43,7 @@ pub fn metis(graph: &Graph) -> Result<Vec<u32>, String> {
 /// Scotch's nested dissection: the vertices in the order of elimination.
 ///
 /// # Errors
-/// The library's number, or that it is absent.
+/// What failed, in one sentence without a full stop.
 pub fn scotch(graph: &Graph) -> Result<Vec<u32>, String> {
     order(graph, "Scotch", sys::ff_scotch_order)
 }
@@ -70,7 +70,18 @@ fn order(graph: &Graph, library: &str, call: Order) -> Result<Vec<u32>, String> 
     };
     drop(alone);
     if code != 0 {
-        return Err(super::direct::complaint(library, "ordering", code, 0));
+        return Err(complaint(library, code));
     }
     Ok(found.into_iter().map(|i| i as u32).collect())
+}
+
+/// What the code of a wrapper says, in one sentence without a full stop.
+fn complaint(library: &str, code: c_int) -> String {
+    match code {
+        sys::FF_ABSENT => format!("this build has no {library}"),
+        c if c == sys::FF_NO_MEMORY as c_int => {
+            format!("{library} has not enough memory for the ordering")
+        }
+        _ => format!("{library} failed at the ordering"),
+    }
 }

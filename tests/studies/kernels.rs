@@ -29,7 +29,7 @@ fn every_combination_is_measured_and_solves() {
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(&file).expect("a report");
     let report: Report = keys::read(&text, KEYS);
-    assert_eq!(report.rows.len(), CASES.len() * 16);
+    assert_eq!(report.rows.len(), CASES.len() * 8);
     for row in &report.rows {
         for seconds in [row.analyse, row.factor, row.solve, row.schur] {
             assert!(seconds > 0.0 && seconds.is_finite(), "{row:?}");

@@ -6,14 +6,14 @@ use std::{env, fs};
 
 include!("names.rs");
 
-/// Sparse Cholesky factorisations and orderings of the C libraries that usually come with PETSc.
-const DIRECT: [&str; 5] = ["direct.h", "blas.c", "cholmod.c", "scotch.c", "mumps.c"];
+/// Orderings by the C libraries that usually come with PETSc.
+const ORDERINGS: [&str; 3] = ["ordering.h", "metis.c", "scotch.c"];
 
 fn main() {
     for file in ["build.rs", "names.rs", "wrapper.h", "shim.h", "shim.c"] {
         println!("cargo:rerun-if-changed={file}");
     }
-    for file in DIRECT {
+    for file in ORDERINGS {
         println!("cargo:rerun-if-changed={file}");
     }
     for var in [
@@ -46,7 +46,7 @@ fn main() {
 
     let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR"));
     shim(&include);
-    direct(&include, &petsc.link_paths, &out);
+    orderings(&include, &petsc.link_paths, &out);
     bindings(&include, &out);
 
     // The loader does not search the directories of a private build; the top crate turns these into an rpath.
@@ -167,7 +167,7 @@ fn shim(include: &[PathBuf]) {
 }
 
 /// Compiles the wrappers of the C libraries that are there; the others say that they are absent.
-fn direct(include: &[PathBuf], lib: &[PathBuf], out: &Path) {
+fn orderings(include: &[PathBuf], lib: &[PathBuf], out: &Path) {
     let mut build = cc::Build::new();
     build.includes(include).flag("-Wno-unused-parameter");
     let found: Vec<&Library> = LIBRARIES
@@ -178,8 +178,8 @@ fn direct(include: &[PathBuf], lib: &[PathBuf], out: &Path) {
         build.define(library.define, None);
     }
     build
-        .files(DIRECT.iter().filter(|file| file.ends_with(".c")))
-        .compile("fetifeti_direct");
+        .files(ORDERINGS.iter().filter(|file| file.ends_with(".c")))
+        .compile("fetifeti_ordering");
     // Behind the archive that needs them.
     for name in found.iter().flat_map(|l| l.names) {
         println!("cargo:rustc-link-lib={name}");
@@ -194,12 +194,12 @@ struct Library {
     program: &'static str,
 }
 
-const LIBRARIES: [Library; 3] = [
+const LIBRARIES: [Library; 2] = [
     Library {
-        define: "FF_HAVE_CHOLMOD",
+        define: "FF_HAVE_METIS",
         names: &["cholmod"],
         program: "#if __has_include(<suitesparse/cholmod.h>)\n#include <suitesparse/cholmod.h>\n#else\n#include <cholmod.h>\n#endif\n\
-                  int main(void) { cholmod_common c; return !cholmod_start(&c) || !&cholmod_super_numeric; }\n",
+                  int main(void) { cholmod_common c; return !cholmod_start(&c) || !&cholmod_metis; }\n",
     },
     Library {
         define: "FF_HAVE_SCOTCH",
@@ -207,11 +207,6 @@ const LIBRARIES: [Library; 3] = [
         program: "#include <stdio.h>\n#include <stdint.h>\n\
                   #if __has_include(<scotch/scotch.h>)\n#include <scotch/scotch.h>\n#else\n#include <scotch.h>\n#endif\n\
                   int main(void) { SCOTCH_Graph g; return SCOTCH_graphInit(&g); }\n",
-    },
-    Library {
-        define: "FF_HAVE_MUMPS",
-        names: &["dmumps"],
-        program: "#include <dmumps_c.h>\nint main(void) { DMUMPS_STRUC_C id; dmumps_c(&id); return 0; }\n",
     },
 ];
 

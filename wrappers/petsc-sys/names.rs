@@ -231,7 +231,7 @@ const FUNCTIONS: &[&str] = &[
     "STGetKSP",
 ];
 
-const VARIABLES: &[&str] = &["FF_(ABSENT|NOT_POSITIVE|NO_MEMORY|FAILED)", "PETSC_VERSION_(MAJOR|MINOR)", "EPSConvergedReasons"];
+const VARIABLES: &[&str] = &["FF_(ABSENT|NO_MEMORY|FAILED)", "PETSC_VERSION_(MAJOR|MINOR)", "EPSConvergedReasons"];
 
 const TYPES: &[&str] = &[
     "PetscObject",

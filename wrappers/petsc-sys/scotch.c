@@ -1,5 +1,5 @@
 /* Scotch's nested dissection. */
-#include "direct.h"
+#include "ordering.h"
 
 #if defined(FF_HAVE_SCOTCH)
   #include <stdio.h>

@@ -2,4 +2,4 @@
 #include <petscksp.h>
 #include <slepceps.h>
 #include "shim.h"
-#include "direct.h"
+#include "ordering.h"

@@ -11,10 +11,9 @@ use faer::linalg::matmul::triangular::{matmul, BlockStructure};
 use faer::{Accum, Par};
 
 use super::triangle::Triangle;
-use super::Keep;
 use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior, SINGULAR};
 use crate::cholesky::panel;
-use crate::cholesky::symbolic::Symbolic;
+use crate::cholesky::symbolic::{Keep, Symbolic};
 use crate::linalg::dense::Dense;
 
 /// A supernode of L.
@@ -24,7 +23,7 @@ pub struct Panel<'a> {
     /// Number of columns.
     pub width: usize,
     /// Rows below the columns' own, increasing.
-    pub below: Vec<u32>,
+    pub below: &'a [u32],
     /// Entries by columns, `width + below.len()` each.
     pub values: &'a [f64],
 }

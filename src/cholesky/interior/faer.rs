@@ -12,14 +12,15 @@ use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Auto, Conj, MatMut, Par, Side};
 
+use super::analysis::{Analysis, NoFactor};
 use super::boundary::{held, split, Panel};
-use super::condensation::{Condensation, Factor};
+use super::factor::{Condensation, Factor, SparseCholesky};
 use super::order::Elimination;
 use super::triangle::Triangle;
-use super::{positive_diagonal, refused, Analysis, Keep, NoFactor, SparseCholesky};
+use crate::cholesky::multifrontal::SingularInterior;
+use crate::cholesky::symbolic::Keep;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
-use crate::petsc::Refusal;
 
 /// The analysis of a pattern.
 #[derive(Debug)]
@@ -67,16 +68,19 @@ impl Faer {
             MemStack::new(&mut buffer),
             params,
         );
-        match done.map(|_| ()) {
-            Ok(()) => Ok(l),
+        match done {
+            Ok(_) => Ok(l),
             Err(LltError::NonPositivePivot { index }) => {
                 // Counted from one without supernodes.
                 let column = match symbolic.raw() {
                     SymbolicCholeskyRaw::Simplicial(_) => index - 1,
                     SymbolicCholeskyRaw::Supernodal(_) => index,
                 };
-                let error = Refusal::NotPositive(Some(column));
-                Err(refused(error, &triangle.dofs, triangle.n_interior(), 0))
+                let dof = triangle.dofs[column];
+                Err(match column < triangle.n_interior() {
+                    true => SingularInterior { dof }.into(),
+                    false => NoFactor::Indefinite(dof),
+                })
             }
         }
     }
@@ -136,7 +140,7 @@ impl Analysis for Faer {
             Panel {
                 start: start as usize,
                 width: (end - start) as usize,
-                below: symbolic.supernode(s).pattern().to_vec(),
+                below: symbolic.supernode(s).pattern(),
                 values: &l[starts[s] as usize..starts[s + 1] as usize],
             }
         };
@@ -145,6 +149,18 @@ impl Analysis for Faer {
         let (factor, s) = split(triangle, keep, diagonal, &shift, &panels)?;
         let interface = &triangle.dofs[triangle.n_interior()..];
         Ok((Factor::new(k, interface, factor, keep), s))
+    }
+}
+
+/// No pivot can be positive where the diagonal is not: asked before faer sees the matrix, as NaN is none of its errors.
+fn positive_diagonal(k: &Csr, interior: &[u32]) -> Result<(), SingularInterior> {
+    let positive = |&i: &u32| {
+        let d = k.get(i as usize, i as usize);
+        d > 0.0 && d.is_finite()
+    };
+    match interior.iter().find(|i| !positive(i)) {
+        Some(&dof) => Err(SingularInterior { dof }),
+        None => Ok(()),
     }
 }
 

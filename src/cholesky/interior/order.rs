@@ -5,10 +5,60 @@ use faer::sparse::linalg::amd;
 use faer::sparse::SymbolicSparseColMatRef;
 
 use super::graph::{graph_of, Tree, NONE};
-use super::{NoFactor, Ordering};
 use crate::cholesky::dissection::nested_dissection;
 use crate::linalg::csr::Csr;
-use crate::petsc::ordering::{metis, scotch, Graph};
+use crate::petsc::ordering::{have_metis, have_scotch, metis, scotch, Graph};
+
+/// In which order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Ordering {
+    /// The best one as measured: [`Ordering::Nd`].
+    #[default]
+    Auto,
+    /// Nested dissection: by coordinates where there are any, else by distance in the graph.
+    Nd,
+    /// Approximate minimum degree (faer's).
+    Amd,
+    /// METIS's nested dissection, through CHOLMOD.
+    Metis,
+    /// Scotch's nested dissection.
+    Scotch,
+}
+
+impl Ordering {
+    /// Those that differ.
+    pub const ALL: [Ordering; 4] = [
+        Ordering::Nd,
+        Ordering::Amd,
+        Ordering::Metis,
+        Ordering::Scotch,
+    ];
+
+    /// Names as the option takes them.
+    pub const NAMES: &'static [&'static str] = &["auto", "nd", "amd", "metis", "scotch"];
+
+    /// The name as the option takes it.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// The one that is taken.
+    pub fn taken(self) -> Ordering {
+        match self {
+            Ordering::Auto => Ordering::Nd,
+            chosen => chosen,
+        }
+    }
+
+    /// Whether this build has it.
+    pub fn available(self) -> bool {
+        match self {
+            Ordering::Auto | Ordering::Nd | Ordering::Amd => true,
+            Ordering::Metis => have_metis(),
+            Ordering::Scotch => have_scotch(),
+        }
+    }
+}
 
 /// The dofs of a subdomain in the order [interior, interface].
 #[derive(Debug, Clone)]
@@ -25,18 +75,17 @@ impl Elimination {
     /// Orders the dofs of `k` that are not in `interface`; `coordinates`, if given, has one position per dof.
     ///
     /// # Errors
-    /// [`NoFactor::Failed`] where the library of the ordering fails.
+    /// One sentence without a full stop where the library of the ordering fails.
     pub fn new(
         k: &Csr,
         interface: &[u32],
         coordinates: Option<&[[f64; 3]]>,
         ordering: Ordering,
-    ) -> Result<Elimination, NoFactor> {
+    ) -> Result<Elimination, String> {
         let mut kept = vec![false; k.n()];
         interface.iter().for_each(|&i| kept[i as usize] = true);
         let inside: Vec<u32> = (0..k.n() as u32).filter(|&i| !kept[i as usize]).collect();
         let graph = graph_of(k, &inside);
-        let library = |found: Result<Vec<u32>, String>| found.map_err(NoFactor::Failed);
         let (order, given) = match ordering.taken() {
             Ordering::Auto | Ordering::Nd => {
                 let sets = nested_dissection(k, &inside, coordinates).supernodes;
@@ -44,8 +93,8 @@ impl Elimination {
                 (sets.iter().flatten().map(vertex).collect(), Some(sets))
             }
             Ordering::Amd => (minimum_degree(&graph), None),
-            Ordering::Metis => (library(metis(&graph))?, None),
-            Ordering::Scotch => (library(scotch(&graph))?, None),
+            Ordering::Metis => (metis(&graph)?, None),
+            Ordering::Scotch => (scotch(&graph)?, None),
         };
         let tree = Tree::new(&graph, order).postordered(&graph);
         let dofs = |set: &Vec<u32>| set.iter().map(|&v| inside[v as usize]).collect();
@@ -169,9 +218,8 @@ fn fronts(tree: &Tree, counts: &[u32]) -> Vec<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cholesky::interior::Keep;
     use crate::cholesky::multifrontal::PartialCholesky;
-    use crate::cholesky::symbolic::Symbolic;
+    use crate::cholesky::symbolic::{Keep, Symbolic};
     use crate::linalg::testing::grid_laplacian;
     use std::sync::Arc;
 

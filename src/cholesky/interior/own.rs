@@ -2,11 +2,11 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::condensation::Factor;
+use super::analysis::{Analysis, NoFactor};
+use super::factor::{Factor, SparseCholesky};
 use super::order::Elimination;
-use super::{Analysis, Keep, NoFactor, SparseCholesky};
 use crate::cholesky::multifrontal::PartialCholesky;
-use crate::cholesky::symbolic::Symbolic;
+use crate::cholesky::symbolic::{Keep, Symbolic};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 

@@ -2,10 +2,10 @@
 
 use faer::linalg::solvers::Solve;
 
-use super::{Factor, Keep, LocalSolver, NoFactor, Ordering, Solver};
+use super::{Factor, LocalSolver, NoFactor, Ordering, Solver};
+use crate::cholesky::symbolic::Keep;
 use crate::linalg::csr::Csr;
 use crate::linalg::testing::{grid_laplacian, random};
-use crate::petsc::testing::with_session;
 use crate::scene::Scene;
 
 /// A subdomain that touches no side: K is singular, Γ its whole surface.
@@ -60,17 +60,15 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Runs `test` for every solver and order, on the thread that started MPI.
-fn for_all(test: impl Fn(LocalSolver) + Send + 'static) {
-    with_session(move |_| {
-        for kind in Solver::ALL {
-            for ordering in Ordering::ALL {
-                let solver = LocalSolver { kind, ordering };
-                assert!(solver.check("").is_ok(), "{solver:?}");
-                test(solver);
-            }
+/// Runs `test` for every solver and order.
+fn for_all(test: impl Fn(LocalSolver)) {
+    for kind in Solver::ALL {
+        for ordering in Ordering::ALL {
+            let solver = LocalSolver { kind, ordering };
+            assert!(ordering.available(), "{solver:?}");
+            test(solver);
         }
-    });
+    }
 }
 
 fn pick(k: &Csr, rows: &[u32], cols: &[u32]) -> faer::Mat<f64> {
@@ -131,7 +129,7 @@ fn s_is_the_dense_schur_complement_and_the_factor_condenses_and_recovers() {
             .map(|keep| cases().into_iter().map(move |c| (keep, c)));
         for (keep, case) in both.into_iter().flatten() {
             let (factor, s) = solver
-                .way(keep)
+                .condenser(keep)
                 .condense(&case.k, &case.interface, Some(&case.x))
                 .expect("the interior is held");
             let (dofs, gamma) = (inside(&case), &case.interface);
@@ -229,9 +227,10 @@ fn matrices_that_are_not_definite_are_refused() {
                         .position(|&j| j as usize == dof)
                         .expect("a diagonal entry");
                 k.val[at] += value * k.val[at];
-                let found = solver
-                    .way(Keep::Interior)
-                    .condense(&k, &case.interface, Some(&case.x));
+                let found =
+                    solver
+                        .condenser(Keep::Interior)
+                        .condense(&k, &case.interface, Some(&case.x));
                 let refused = matches!(found, Err(NoFactor::Interior(_)));
                 assert!(refused, "{solver:?}, {}: {name}", case.name);
             }
@@ -244,9 +243,10 @@ fn matrices_that_are_not_definite_are_refused() {
                     }
                 }
             }
-            let found = solver
-                .way(Keep::Interior)
-                .condense(&k, &case.interface, Some(&case.x));
+            let found =
+                solver
+                    .condenser(Keep::Interior)
+                    .condense(&k, &case.interface, Some(&case.x));
             assert!(
                 matches!(found, Err(NoFactor::Interior(_))),
                 "{solver:?}, {}: indefinite",
@@ -261,7 +261,7 @@ fn an_interface_without_interior_and_an_interior_without_interface() {
     for_all(|solver| {
         let k = Csr::from_triplets(2, &[(0, 0, 2.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 2.0)]);
         let (factor, s) = solver
-            .way(Keep::Interior)
+            .condenser(Keep::Interior)
             .condense(&k, &[1, 0], None)
             .expect("nothing to do");
         assert!(far(&s.data, &[2.0, -1.0, -1.0, 2.0]) < 1e-14);
@@ -270,7 +270,7 @@ fn an_interface_without_interior_and_an_interior_without_interface() {
         factor.backward(&mut b);
         assert_eq!(b, [3.0, 4.0]);
         let (factor, s) = solver
-            .way(Keep::Interior)
+            .condenser(Keep::Interior)
             .condense(&k, &[], None)
             .expect("definite");
         assert!(s.data.is_empty());

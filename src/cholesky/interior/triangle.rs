@@ -1,4 +1,4 @@
-//! The matrix as the libraries take it: in the order of elimination, one triangle.
+//! The matrix as faer takes it: in the order of elimination, one triangle.
 
 use super::order::Elimination;
 use crate::linalg::csr::Csr;
@@ -89,14 +89,6 @@ impl Triangle {
     /// The diagonal of the interior.
     pub fn interior_diagonal<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         self.diagonal[..self.interior].iter().map(|&e| values[e])
-    }
-
-    /// (row, column) of each entry.
-    pub fn entries(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        (0..self.n()).flat_map(|j| {
-            let range = self.ptr[j] as usize..self.ptr[j + 1] as usize;
-            self.row[range].iter().map(move |&i| (i, j as u32))
-        })
     }
 
     /// A solve by dof around `solve`, which works in the order of elimination.

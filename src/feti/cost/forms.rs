@@ -8,8 +8,7 @@
 //! with n from the interface, flops and entries l of the factors from the symbolic factorisation (exact), and seconds f, d, e per operation
 //! as measured (`fetifeti study kernels` measures them again). They are the same everywhere, so that runs can be repeated.
 
-use crate::cholesky::interior::Keep;
-use crate::cholesky::symbolic::Symbolic;
+use crate::cholesky::symbolic::{Keep, Symbolic};
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Operators;
 use crate::feti::subdomain::problem::Form;

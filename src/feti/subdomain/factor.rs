@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::equal;
 use super::problem::{Form, LocalProblem};
 use super::scaled::Local;
-use crate::cholesky::interior::{Analysis, LocalSolver, NoFactor, Solver, Way};
+use crate::cholesky::interior::{Analysis, Condenser, LocalSolver, NoFactor, Solver};
 use crate::cholesky::multifrontal::SingularInterior;
 use crate::feti::cost::forms::{self, Kind};
 use crate::feti::jump::operator::Jump;
@@ -58,7 +58,7 @@ pub(crate) fn factor(
     let analyses = analyses(&kinds, &forms, team, settings.local);
     let factored = team.map(kinds.len(), |k| {
         let (kind, sub) = (&kinds[k], kinds[k].sub);
-        let way = Way {
+        let condenser = Condenser {
             solver: settings.local,
             analysis: analyses.of[k].map(|a| &*analyses.all[a]),
             keep: kind.keep(),
@@ -67,7 +67,7 @@ pub(crate) fn factor(
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
         let places = sub.coordinates.as_deref();
         let (delta, primal, form) = (kind.delta, kind.primal, forms[k]);
-        LocalProblem::new(&sub.k, delta, primal, &averages, places, way, form)
+        LocalProblem::new(&sub.k, delta, primal, &averages, places, condenser, form)
             .map(|mut local| {
                 if kind.copies < forms::MANY {
                     local.pack();

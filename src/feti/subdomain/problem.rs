@@ -23,7 +23,8 @@ use std::sync::{Arc, OnceLock};
 
 use super::basis::Basis;
 use super::implicit::Implicit;
-use crate::cholesky::interior::{Factor, Keep, LocalSolver, NoFactor, Solver, Way};
+use crate::cholesky::interior::{Condenser, Factor, LocalSolver, NoFactor, Solver};
+use crate::cholesky::symbolic::Keep;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::symmetric::Symmetric;
@@ -102,7 +103,7 @@ pub(crate) enum Inside {
 
 impl LocalProblem {
     /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists dual dofs whose means
-    /// are primal. An analysis that comes with `way` is one for the interface [delta, primal].
+    /// are primal. An analysis that comes with `condenser` is one for the interface [delta, primal].
     ///
     /// # Errors
     /// A matrix that is no stiffness matrix; what the solver says.
@@ -112,7 +113,7 @@ impl LocalProblem {
         primal: &[u32],
         averages: &[&[u32]],
         coordinates: Option<&[[f64; 3]]>,
-        mut way: Way,
+        mut condenser: Condenser,
         form: Form,
     ) -> Result<LocalProblem, NoFactor> {
         let mut basis = Basis::default();
@@ -120,7 +121,7 @@ impl LocalProblem {
         let at = averages.iter().map(|a| at.of(a));
         at.for_each(|at| basis.push_mean(at));
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
-        if form == Form::Implicit && way.solver.kind == Solver::Multifrontal {
+        if form == Form::Implicit && condenser.solver.kind == Solver::Multifrontal {
             let interface = [delta, primal].concat();
             // An interior that nothing holds is for the dense form to deal with.
             let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);
@@ -144,12 +145,12 @@ impl LocalProblem {
         let mut delta = delta.to_vec();
         let (interface, factor, s) = loop {
             let interface = [&delta[..], primal].concat();
-            match way.condense(k, &interface, coordinates) {
+            match condenser.condense(k, &interface, coordinates) {
                 Ok((factor, s)) => break (interface, factor, s),
                 // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
                 Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => {
                     delta.push(e.dof);
-                    way.analysis = None;
+                    condenser.analysis = None;
                 }
                 Err(e) => return Err(e),
             }
@@ -182,8 +183,8 @@ impl LocalProblem {
         let (s, factor) = match &self.inside {
             Inside::Partial(factor) => (self.s(), factor.clone()),
             Inside::Implicit(_) => {
-                let way = LocalSolver::default().way(Keep::Interior);
-                let (factor, s) = way.condense(k, &self.interface, coordinates)?;
+                let condenser = LocalSolver::default().condenser(Keep::Interior);
+                let (factor, s) = condenser.condense(k, &self.interface, coordinates)?;
                 (Arc::new(s), Arc::new(factor))
             }
         };

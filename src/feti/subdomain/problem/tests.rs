@@ -20,7 +20,7 @@ fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: Form) {
         &[0, 8],
         &[],
         Some(x),
-        LocalSolver::default().way(Keep::Interior),
+        LocalSolver::default().condenser(Keep::Interior),
         form,
     )
     .expect("definite");
@@ -63,8 +63,8 @@ fn an_indefinite_or_broken_matrix_is_refused() {
         }
         let delta: Vec<u32> = (0..12).collect();
         for form in [Form::Explicit, Form::Implicit] {
-            let way = LocalSolver::default().way(Keep::Interior);
-            let made = LocalProblem::new(&k, &delta, &[], &[], Some(&x), way, form);
+            let condenser = LocalSolver::default().condenser(Keep::Interior);
+            let made = LocalProblem::new(&k, &delta, &[], &[], Some(&x), condenser, form);
             assert!(made.is_err(), "{value}");
         }
     }
@@ -81,7 +81,7 @@ fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
         &[],
         &[],
         Some(&x),
-        LocalSolver::default().way(Keep::Interior),
+        LocalSolver::default().condenser(Keep::Interior),
         form,
     )
     .expect("one is held");
@@ -105,7 +105,7 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
             &vertices,
             &averages,
             Some(&x),
-            LocalSolver::default().way(Keep::Interior),
+            LocalSolver::default().condenser(Keep::Interior),
             form,
         )
     };

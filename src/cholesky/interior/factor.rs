@@ -1,9 +1,23 @@
 //! From loads to the interface and back, whoever factored the interior.
 
-use super::{Keep, SparseCholesky};
+use std::fmt::Debug;
+
 use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::symbolic::Keep;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
+
+/// L Lᵀ of a symmetric positive definite matrix; any thread may use it.
+pub trait SparseCholesky: Debug + Send + Sync {
+    /// x ← K⁻¹ x.
+    fn solve(&self, x: &mut [f64]);
+
+    /// The same for several vectors of equal length.
+    fn solve_many(&self, x: &mut [Vec<f64>]);
+
+    /// Bytes held by the factor.
+    fn bytes(&self) -> usize;
+}
 
 /// The factored interior of a subdomain.
 ///

@@ -1,0 +1,44 @@
+//! What a pattern is analysed for: factors of matrices that have it.
+
+use std::fmt::Debug;
+
+use super::factor::{Factor, SparseCholesky};
+use crate::cholesky::multifrontal::SingularInterior;
+use crate::cholesky::symbolic::Keep;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+
+/// Why there is no factor.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NoFactor {
+    /// A pivot of the interior is not positive: nothing holds it, or K is no stiffness matrix.
+    Interior(SingularInterior),
+    /// K is not positive semidefinite at this dof of the interface.
+    Indefinite(u32),
+    /// The library failed, in one sentence without a full stop.
+    Failed(String),
+}
+
+impl From<SingularInterior> for NoFactor {
+    fn from(e: SingularInterior) -> NoFactor {
+        NoFactor::Interior(e)
+    }
+}
+
+/// What depends on the pattern of K alone: one analysis serves matrices of equal pattern.
+pub trait Analysis: Debug + Send + Sync {
+    /// L Lᵀ of the whole matrix.
+    ///
+    /// # Errors
+    /// [`NoFactor`].
+    ///
+    /// # Panics
+    /// If the analysis was made with an interface.
+    fn factor(&self, k: &Csr) -> Result<Box<dyn SparseCholesky>, NoFactor>;
+
+    /// Eliminates the interior: the factor and S, both triangles, in the order of the interface.
+    ///
+    /// # Errors
+    /// [`NoFactor`].
+    fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), NoFactor>;
+}
