@@ -6,7 +6,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::operators::dual::Dual;
 use super::subdomain::problem::LocalProblem;
-use super::subdomain::scaled::Local;
+use super::subdomain::scaled::Scaled;
 use crate::parallel::exchange::sum_all;
 
 /// Facts about the problem as the solver sees it.
@@ -54,7 +54,8 @@ impl Facts {
         let inequalities = jump.inequality.iter().filter(|i| **i).count();
         let mut counts = [active as f64, inequalities as f64];
         sum_all(comm, &mut counts);
-        let mut kinds: Vec<&Arc<LocalProblem>> = stiffness.locals.iter().map(Local::kind).collect();
+        let mut kinds: Vec<&Arc<LocalProblem>> =
+            stiffness.locals.iter().map(Scaled::kind).collect();
         kinds.sort_by_key(|l| Arc::as_ptr(l));
         kinds.dedup_by(|a, b| Arc::ptr_eq(a, b));
         let bytes = kinds.iter().map(|l| l.bytes());

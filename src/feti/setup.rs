@@ -26,7 +26,7 @@ use super::primal::space::PrimalSpace;
 use super::projector::natural::NaturalCoarse;
 use super::settings::{MethodSettings, PcType, Scaling};
 use super::subdomain::factor::{factor, no_factor};
-use super::subdomain::scaled::Local;
+use super::subdomain::scaled::Scaled;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::halo::Halo;
 use crate::parallel::team::Team;
@@ -74,7 +74,7 @@ impl LinearMethod {
             (kind, &settings),
         )?; /* S, T, Ψ */
         let varies = variation::varies(comm, &problem);
-        team.set_load(locals.iter().map(|l| l.n_delta.pow(2)).sum());
+        team.set_load(locals.iter().map(|l| l.n_delta().pow(2)).sum());
         let stiffness = stiffness(
             session,
             &problem,
@@ -140,14 +140,14 @@ fn subdomains(
     jump: &mut Jump,
     team: &Team,
     (kind, settings): (PcType, &MethodSettings),
-) -> Result<(Vec<Local>, Added)> {
+) -> Result<(Vec<Scaled>, Added)> {
     let comm = session.comm();
     let factored = clock::timed(Phase::LocalSetup, || {
         factor(session, problem, jump, team, settings, kind)
     });
     let mut locals = session.agree(factored)?;
     for (j, local) in locals.iter().enumerate() {
-        jump.place(j, &local.interface);
+        jump.place(j, local.interface());
     }
     if settings.scaling == Scaling::Deluxe {
         deluxe::apply(comm, problem, sharing, jump, &locals);
@@ -173,7 +173,7 @@ fn stiffness(
     problem: &Substructures,
     sharing: &Sharing,
     jump: Jump,
-    locals: Vec<Local>,
+    locals: Vec<Scaled>,
     (team, varies, settings): (Team, f64, &MethodSettings),
 ) -> Result<Stiffness> {
     let comm = session.comm();

@@ -11,7 +11,7 @@ use mpi::traits::Communicator;
 
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::parallel::exchange::{exchange_words, sum_all};
 use crate::substructures::{Subdomain, Substructures};
 
@@ -38,9 +38,9 @@ impl Class {
 }
 
 /// The classes of a subdomain.
-pub fn of(sub: &Subdomain, sharing: &Sharing, local: &Local) -> Vec<Class> {
+pub fn of(sub: &Subdomain, sharing: &Sharing, local: &Scaled) -> Vec<Class> {
     let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
-    for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+    for (i, &dof) in local.interface()[..local.n_delta()].iter().enumerate() {
         let dof = sub.dofs[dof as usize];
         let copies = sharing.shared(dof);
         if copies.len() > 1 {
@@ -66,14 +66,14 @@ pub fn rough(
     comm: &SimpleCommunicator,
     problem: &Substructures,
     sharing: &Sharing,
-    locals: &[Local],
+    locals: &[Scaled],
     classes: &[Vec<Class>],
 ) -> Vec<Vec<bool>> {
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
     for (j, list) in classes.iter().enumerate() {
         let stiff = diagonal(&problem.local[j]);
         for class in list {
-            let dofs = class.at.iter().map(|&i| locals[j].interface[i]);
+            let dofs = class.at.iter().map(|&i| locals[j].interface()[i]);
             if varies(&problem.local[j], &stiff, dofs) {
                 for &to in &class.sharers {
                     outgoing[sharing.rank_of[to as usize] as usize].push(class.name());
@@ -91,11 +91,11 @@ pub fn rough(
 }
 
 /// Whether stiffness varies along the interface of any subdomain at all; equal subdomains are looked at once. Collective.
-pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Local]) -> bool {
+pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Scaled]) -> bool {
     let mut seen = HashSet::new();
     let mut locals = locals.iter().zip(&problem.local);
     let found = locals.any(|(local, sub)| {
-        let shared = local.interface[..local.n_delta].iter().copied();
+        let shared = local.interface()[..local.n_delta()].iter().copied();
         seen.insert(Arc::as_ptr(local.kind())) && varies(sub, &diagonal(sub), shared)
     });
     let mut found = [f64::from(u8::from(found))];
@@ -121,10 +121,10 @@ fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bo
 }
 
 /// Places in the class of the dofs of the averages that are primal already.
-pub fn means(local: &Local, class: &Class) -> Vec<Vec<usize>> {
+pub fn means(local: &Scaled, class: &Class) -> Vec<Vec<usize>> {
     let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
     let inside = local
-        .basis
+        .basis()
         .supports()
         .filter(|at| place.contains_key(&at[0]));
     inside

@@ -15,7 +15,7 @@ use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Adaptive;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::{multiply, Dense};
 use crate::parallel::exchange::{exchange_words, sum_all};
 use crate::parallel::team::Team;
@@ -29,7 +29,7 @@ pub fn find(
     problem: &Substructures,
     sharing: &Sharing,
     jump: &mut Jump,
-    locals: &[Local],
+    locals: &[Scaled],
     team: &Team,
     adaptive: Adaptive,
 ) -> Vec<usize> {
@@ -146,7 +146,7 @@ pub fn find(
         while let [to, name, k, tail @ ..] = rest {
             let (j, class) = here[&(*name, *to)];
             let (values, tail) = tail.split_at(*k as usize * class.dofs.len());
-            let interface = &locals[j].interface;
+            let interface = locals[j].interface();
             let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
             added.extend(functionals.map(|(values, &key)| {
                 let average = Average {
@@ -172,10 +172,10 @@ pub fn find(
 pub fn constrain(
     problem: &Substructures,
     jump: &Jump,
-    locals: Vec<Local>,
+    locals: Vec<Scaled>,
     team: &Team,
     fails: impl Fn(&Subdomain, NoFactor) -> crate::Error + Sync,
-) -> Result<Vec<Local>> {
+) -> Result<Vec<Scaled>> {
     let added = |j: usize| {
         let list = jump.averages[j].iter();
         list.filter_map(|a| Some((&a.dofs[..], a.weights.as_deref()?)))
@@ -188,7 +188,7 @@ pub fn constrain(
     let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
     let held = |&j: &usize| Mutex::new(Some(locals[j].kind().clone()));
     let held: Vec<_> = kinds.iter().map(held).collect();
-    let factors: Vec<f64> = locals.iter().map(Local::factor).collect();
+    let factors: Vec<f64> = locals.iter().map(Scaled::factor).collect();
     drop(locals);
     let renewed = team.map(kinds.len(), |k| {
         let (j, old) = (kinds[k], held[k].lock().expect("nobody panics").take());
@@ -202,7 +202,7 @@ pub fn constrain(
     });
     let renewed = renewed.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: &usize| kinds.binary_search(j).expect("a first one is a kind");
-    let of = |(j, factor): (&usize, f64)| Local::new(renewed[place(j)].clone(), factor);
+    let of = |(j, factor): (&usize, f64)| Scaled::new(renewed[place(j)].clone(), factor);
     Ok(first.iter().zip(factors).map(of).collect())
 }
 
@@ -211,7 +211,7 @@ pub fn constrain(
 fn signature(
     problem: &Substructures,
     jump: &Jump,
-    locals: &[Local],
+    locals: &[Scaled],
     sharers: &[(usize, &Class)],
 ) -> Vec<u64> {
     fn number<K: std::hash::Hash + Eq>(seen: &mut HashMap<K, u64>, key: K) -> u64 {
@@ -242,17 +242,17 @@ fn signature(
 }
 
 /// Names of the primal dofs of local subdomain `j`: equal where subdomains share them.
-fn names(sub: &Subdomain, jump: &Jump, local: &Local, j: usize) -> Vec<[u64; 2]> {
-    let vertices = local.interface[local.n_delta..].iter();
+fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]> {
+    let vertices = local.interface()[local.n_delta()..].iter();
     let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
     let averages = jump.averages[j].iter().map(|a| [1, a.key]);
-    let fixing = local.fixing.iter();
+    let fixing = local.fixing().iter();
     let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
     vertices.chain(averages).chain(fixing).collect()
 }
 
 /// What local subdomain `j` has to say about a class.
-fn part(problem: &Substructures, jump: &Jump, local: &Local, j: usize, class: &Class) -> Part {
+fn part(problem: &Substructures, jump: &Jump, local: &Scaled, j: usize, class: &Class) -> Part {
     let sub = &problem.local[j];
     let (n, at) = (class.at.len(), &class.at);
     let q = lifted(jump, j, class);
@@ -264,7 +264,7 @@ fn part(problem: &Substructures, jump: &Jump, local: &Local, j: usize, class: &C
     let mut psi = Dense::zeros(n, local.n_pi());
     for p in 0..psi.cols {
         for (k, &i) in at.iter().enumerate() {
-            psi.set(k, p, local.psi.get(i, p));
+            psi.set(k, p, local.psi().get(i, p));
         }
     }
     Part {

@@ -8,10 +8,11 @@
 //! with n from the interface, flops and entries l of the factors from the symbolic factorisation (exact), and seconds f, d, e per operation
 //! as measured (`fetifeti study kernels` measures them again). They are the same everywhere, so that runs can be repeated.
 
-use crate::cholesky::symbolic::{Keep, Symbolic};
+use crate::cholesky::symbolic::Keep;
+use crate::cholesky::symbolic::Symbolic;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Operators;
-use crate::feti::subdomain::problem::Form;
+use crate::feti::subdomain::which::OperatorForm;
 use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
 
@@ -80,13 +81,13 @@ pub struct Kind<'a> {
 
 impl Kind<'_> {
     /// Entries of the sparse factors in this form.
-    pub fn factor_entries(&self, form: Form) -> usize {
+    pub fn factor_entries(&self, form: OperatorForm) -> usize {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
         match form {
-            Form::Explicit => {
+            OperatorForm::Explicit => {
                 Symbolic::new(k, &[self.delta, self.primal].concat(), x).factor_entries(self.keep())
             }
-            Form::Implicit => sparse_entries(&self.sparse()),
+            OperatorForm::Implicit => sparse_entries(&self.sparse()),
         }
     }
 
@@ -142,25 +143,25 @@ pub fn choose(
     applications: f64,
     memory: f64,
     wants_s: bool,
-) -> Vec<Form> {
+) -> Vec<OperatorForm> {
     match asked {
-        Operators::Explicit => return vec![Form::Explicit; kinds.len()],
-        Operators::Implicit => return vec![Form::Implicit; kinds.len()],
+        Operators::Explicit => return vec![OperatorForm::Explicit; kinds.len()],
+        Operators::Implicit => return vec![OperatorForm::Implicit; kinds.len()],
         Operators::Auto => {}
     }
     let bytes: f64 = kinds.iter().map(dense_bytes).sum();
     if wants_s && bytes <= memory {
-        return vec![Form::Explicit; kinds.len()];
+        return vec![OperatorForm::Explicit; kinds.len()];
     }
     let costs = team.map(kinds.len(), |k| cost(&kinds[k], bytes > memory));
     let form = |c: &Option<Cost>| match c {
-        Some(c) if c.gain(applications) < 0.0 && !wants_s => Form::Implicit,
-        _ => Form::Explicit,
+        Some(c) if c.gain(applications) < 0.0 && !wants_s => OperatorForm::Implicit,
+        _ => OperatorForm::Explicit,
     };
-    let mut forms: Vec<Form> = costs.iter().map(form).collect();
+    let mut forms: Vec<OperatorForm> = costs.iter().map(form).collect();
     let mut used: f64 = 0.0;
     let mut dense: Vec<usize> = (0..kinds.len())
-        .filter(|&k| forms[k] == Form::Explicit)
+        .filter(|&k| forms[k] == OperatorForm::Explicit)
         .collect();
     dense.iter().for_each(|&k| used += dense_bytes(&kinds[k]));
     // What saves the least time for its memory goes first.
@@ -171,7 +172,7 @@ pub fn choose(
         if used <= memory {
             break;
         }
-        forms[k] = Form::Implicit;
+        forms[k] = OperatorForm::Implicit;
         used -= dense_bytes(&kinds[k]);
     }
     forms
@@ -246,7 +247,7 @@ mod tests {
     use crate::scene::Scene;
 
     /// Forms for a grid with one kind of physics; `rho` by position.
-    fn forms(grid: &'static str, memory: f64, check: fn(&[Form])) {
+    fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
         with_session(move |session| {
             let scene = Scene::parse("grid.toml", grid).expect("a scene");
             let problem = scene.substructures(&|_| true).expect("substructures");
@@ -274,16 +275,26 @@ mod tests {
 
     #[test]
     fn large_solids_that_differ_are_solved_sparsely_and_plane_ones_are_dense() {
-        forms(SOLID, 1e12, |f| assert!(f.contains(&Form::Implicit)));
-        forms(PLANE, 1e12, |f| assert!(!f.contains(&Form::Implicit)));
+        forms(
+            SOLID,
+            1e12,
+            |f| assert!(f.contains(&OperatorForm::Implicit)),
+        );
+        forms(PLANE, 1e12, |f| {
+            assert!(!f.contains(&OperatorForm::Implicit))
+        });
     }
 
     #[test]
     fn what_does_not_fit_is_solved_sparsely() {
-        forms(PLANE, 0.0, |f| assert!(!f.contains(&Form::Explicit)));
+        forms(
+            PLANE,
+            0.0,
+            |f| assert!(!f.contains(&OperatorForm::Explicit)),
+        );
         let n = 4.0 * 48.0; // a subdomain has no more rows than that
         forms(PLANE, 2.5 * 8.0 * n * n, |f| {
-            let dense = f.iter().filter(|f| **f == Form::Explicit).count();
+            let dense = f.iter().filter(|f| **f == OperatorForm::Explicit).count();
             assert!((2..9).contains(&dense), "{dense} of {}", f.len());
         });
     }

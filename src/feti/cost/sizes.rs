@@ -10,7 +10,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::primal::kernel;
 use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
 use crate::feti::subdomain::equal;
-use crate::feti::subdomain::problem::Form;
+use crate::feti::subdomain::which::OperatorForm;
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{exchange_words, max_all, sum_all};
 use crate::parallel::team::Team;
@@ -87,8 +87,8 @@ impl Sizes {
             // Ψ and Σ; S and T.
             sums[1] += 8.0 * (n_delta * n_pi + n_pi.powi(2));
             match form {
-                Form::Explicit => sums[1] += 8.0 * (n_gamma.powi(2) + n_delta.powi(2)),
-                Form::Implicit => sums[5] += 1.0,
+                OperatorForm::Explicit => sums[1] += 8.0 * (n_gamma.powi(2) + n_delta.powi(2)),
+                OperatorForm::Implicit => sums[5] += 1.0,
             }
         }
         let mut largest = [0.0f64];

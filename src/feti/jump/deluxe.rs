@@ -16,7 +16,7 @@ use mpi::traits::Communicator;
 
 use super::operator::Jump;
 use crate::feti::interface::sharing::Sharing;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::{self, Dense, Scratch};
 use crate::parallel::exchange::exchange_words;
 use crate::substructures::Substructures;
@@ -37,7 +37,7 @@ pub fn apply(
     problem: &Substructures,
     sharing: &Sharing,
     jump: &mut Jump,
-    locals: &[Local],
+    locals: &[Scaled],
 ) {
     let groups: Vec<Vec<Group>> = (0..locals.len())
         .map(|j| groups(problem, sharing, jump, &locals[j], j))
@@ -89,7 +89,7 @@ fn groups(
     problem: &Substructures,
     sharing: &Sharing,
     jump: &Jump,
-    local: &Local,
+    local: &Scaled,
     j: usize,
 ) -> Vec<Group> {
     let dofs = &problem.local[j].dofs;
@@ -99,7 +99,7 @@ fn groups(
         plain[columns.at[k as usize] as usize] = true;
     }
     let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
-    for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+    for (i, &dof) in local.interface()[..local.n_delta()].iter().enumerate() {
         let copies = sharing.shared(dofs[dof as usize]);
         if copies.len() > 1 && !plain[i] {
             let sharers = copies.iter().map(|c| c.subdomain).collect();

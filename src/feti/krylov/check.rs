@@ -2,8 +2,8 @@
 
 use super::system::System;
 use crate::feti::operators::dual::Dual;
-use crate::feti::operators::stiffness::Work;
-use crate::feti::subdomain::problem::Operator;
+use crate::feti::operators::work::Work;
+use crate::feti::subdomain::which::Operator;
 use crate::parallel::exchange::{max_all, sum_all};
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
@@ -79,8 +79,8 @@ impl Check<'_> {
         let mut work = stiffness.work();
         for (j, w) in work.iter_mut().enumerate() {
             let (sub, local) = (&self.problem.local[j], &stiffness.locals[j]);
-            for (i, &dof) in local.interface.iter().enumerate() {
-                let copy = if i < local.n_delta {
+            for (i, &dof) in local.interface().iter().enumerate() {
+                let copy = if i < local.n_delta() {
                     sub.index as u64 + 1
                 } else {
                     0
@@ -89,7 +89,7 @@ impl Check<'_> {
             }
             let averages = stiffness.jump.averages[j].iter();
             let values: Vec<f64> = averages.map(|a| noise(a.key)).collect();
-            local.basis.set_values(&values, &mut w.y);
+            local.basis().set_values(&values, &mut w.y);
         }
         work
     }
@@ -226,7 +226,7 @@ impl Check<'_> {
         let (stiffness, natural) = (&self.dual.stiffness, &self.dual.natural);
         let locals = self.problem.local.iter().zip(&stiffness.locals);
         let g: Vec<Vec<f64>> = locals
-            .map(|(sub, local)| local.condense(&sub.f).1)
+            .map(|(sub, local)| local.kind().condense(&sub.f).1)
             .collect();
         let lambda = self.dual.multipliers()?;
         lambda.set(0.0)?;

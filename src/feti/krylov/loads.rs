@@ -37,7 +37,7 @@ impl Loads {
         let batches = stiffness.batches(LANES);
         let condensed = stiffness.by_batch(&batches, |locals, members| {
             let loads: Vec<&[f64]> = members.iter().map(|&j| f[j]).collect();
-            locals[0].condense_many(&loads)
+            locals[0].kind().condense_many(&loads)
         });
         let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
         let kernel = dual.natural.kernel_load(session.comm(), f, &g);

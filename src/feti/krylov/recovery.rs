@@ -14,7 +14,7 @@ use crate::cholesky::lanes::LANES;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::status::Status;
 use crate::Result;
 
@@ -125,6 +125,6 @@ pub(super) fn displacements(
     Ok(stiffness.by_batch(&batches, |locals, members| {
         let part = |&j: &usize| (&loads.interiors[j][..], &work[j].y[..]);
         let parts: Vec<_> = members.iter().map(part).collect();
-        Local::recover_many(locals, &parts)
+        Scaled::recover_many(locals, &parts)
     }))
 }

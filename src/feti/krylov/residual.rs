@@ -6,7 +6,7 @@
 
 use super::loads::Loads;
 use crate::feti::operators::dual::Dual;
-use crate::feti::operators::stiffness::Work;
+use crate::feti::operators::work::Work;
 use crate::parallel::exchange::{max_all, sum_all};
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;

@@ -69,7 +69,7 @@ impl Averaging {
         for (j, (sub, local)) in problem.local.iter().zip(&stiffness.locals).enumerate() {
             let candidate = candidates(jump, local, j);
             let mut here = Vec::new();
-            for (i, &at) in local.interface[..local.n_delta].iter().enumerate() {
+            for (i, &at) in local.interface()[..local.n_delta()].iter().enumerate() {
                 let dof = sub.dofs[at as usize];
                 let copies = sharing.shared(dof);
                 let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
@@ -83,7 +83,7 @@ impl Averaging {
                 }
             }
             found.push(here);
-            let held = local.n_delta..local.n_delta + jump.n_shared[j];
+            let held = local.n_delta()..local.n_delta() + jump.n_shared[j];
             vertices.push(held.filter(|&i| !candidate[i]).map(|i| i as u32).collect());
         }
         // The rank of the lowest copy numbers a dof that others share with it.

@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::{multiply, Dense};
 
 /// An order of Γ and of the columns in which Z_c is a matrix of few blocks.
@@ -76,7 +76,7 @@ fn runs(inside: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
 }
 
 /// Z_cᵀ S Z_c in the columns of the recipe; the lower triangle counts. `local` has a dense S.
-pub(crate) fn block(local: &Local, recipe: &Recipe, functions: &[Functions]) -> Dense {
+pub(crate) fn block(local: &Scaled, recipe: &Recipe, functions: &[Functions]) -> Dense {
     let groups = Groups::new(recipe);
     let s = local.s_in_order(&groups.rows);
     let whole = recipe.build(functions);

@@ -12,7 +12,7 @@ use super::interpolation::Functions;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
@@ -65,7 +65,7 @@ pub(crate) fn recipes(
     };
     let places: Vec<Vec<u32>> = team.map(locals.len(), |j| {
         let mut place = vec![u32::MAX; problem.local[j].k.n()];
-        let interface = locals[j].interface.iter().zip(0..);
+        let interface = locals[j].interface().iter().zip(0..);
         interface.for_each(|(&i, p)| place[i as usize] = p);
         place
     });
@@ -76,7 +76,7 @@ pub(crate) fn recipes(
     let given = team.map(locals.len(), |j| {
         let (sub, local) = (&problem.local[j], &locals[j]);
         let mut lists: BTreeMap<u32, Vec<(u32, u32, f64)>> = BTreeMap::new();
-        for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+        for (i, &dof) in local.interface()[..local.n_delta()].iter().enumerate() {
             let copies = sharing.shared(sub.dofs[dof as usize]);
             let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
             let Some(own) = own.filter(|_| !candidate[j][i]) else {
@@ -145,7 +145,7 @@ pub(crate) fn recipes(
     let recipe = |(j, mut contributions): (usize, Vec<Contribution>)| {
         // Added up in the same order whatever the ranks.
         contributions.sort_unstable_by_key(|c| c.from);
-        let n_delta = locals[j].n_delta;
+        let n_delta = locals[j].n_delta();
         let held = (0..jump.n_shared[j]).filter(|p| !candidate[j][n_delta + p]);
         let held: Vec<(u32, u32)> = held.map(|p| ((n_delta + p) as u32, global(j, p))).collect();
         Recipe::new(locals[j].n_gamma(), contributions, held)
@@ -154,7 +154,7 @@ pub(crate) fn recipes(
 }
 
 /// Which interface positions of local subdomain `j` may be in contact: those with an entry of B_gl.
-pub(crate) fn candidates(jump: &Jump, local: &Local, j: usize) -> Vec<bool> {
+pub(crate) fn candidates(jump: &Jump, local: &Scaled, j: usize) -> Vec<bool> {
     let columns = &jump.columns[j];
     let mut out = vec![false; local.n_gamma()];
     for (&row, &at) in columns.row.iter().zip(&columns.at) {

@@ -8,7 +8,7 @@
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::CoarseFunctions;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::substructures::Subdomain;
@@ -39,7 +39,7 @@ impl Functions {
         sub: &Subdomain,
         sharing: &Sharing,
         jump: &Jump,
-        local: &Local,
+        local: &Scaled,
         j: usize,
     ) -> Functions {
         let n_shared = jump.n_shared[j];
@@ -49,7 +49,7 @@ impl Functions {
             psi: Dense::default(),
         };
         (0..n_shared).for_each(|p| out.keep(p));
-        let vertices = &local.interface[local.n_delta..][..n_shared];
+        let vertices = &local.interface()[local.n_delta()..][..n_shared];
         let copies = |dof: u32| sharing.shared(sub.dofs[dof as usize]);
         for (a, average) in jump.averages[j].iter().enumerate() {
             let p = local.n_vertices() + a;
@@ -72,10 +72,10 @@ impl Functions {
                 None => out.keep(p),
             }
         }
-        out.psi = Dense::zeros(local.n_delta, out.columns.len());
+        out.psi = Dense::zeros(local.n_delta(), out.columns.len());
         for &(p, c, w) in &out.weights {
             let terms = out.psi.col_mut(c as usize).iter_mut();
-            let terms = terms.zip(local.psi.col(p as usize));
+            let terms = terms.zip(local.psi().col(p as usize));
             terms.for_each(|(y, x)| *y += w * x);
         }
         out

@@ -8,8 +8,8 @@ use super::coarse_functions::Recipe;
 use super::interpolation::Functions;
 use super::stored::Pair;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::subdomain::problem::Operator;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::{multiply, Dense};
 use crate::substructures::Substructures;
 
@@ -104,7 +104,7 @@ impl Sums {
 }
 
 /// The first local subdomain with the same Z_cᵀ S Z_c, for each.
-fn representatives(locals: &[Local], functions: &[Functions], recipes: &[Recipe]) -> Vec<usize> {
+fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe]) -> Vec<usize> {
     let mut names: HashMap<Vec<u64>, u64> = HashMap::new();
     let mut name = |j: usize| {
         let mut key = vec![Arc::as_ptr(locals[j].kind()) as u64];
@@ -128,7 +128,7 @@ fn representatives(locals: &[Local], functions: &[Functions], recipes: &[Recipe]
 }
 
 /// Z_cᵀ S Z_c of one subdomain, and what it is made of.
-fn block(local: &Local, z: Dense) -> (Dense, Pair) {
+fn block(local: &Scaled, z: Dense) -> (Dense, Pair) {
     let mut y = Dense::zeros(z.rows, z.cols);
     local.apply(Operator::S, &z, &mut y);
     let mut a = Dense::zeros(z.cols, z.cols);

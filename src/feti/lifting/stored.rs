@@ -3,7 +3,8 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use crate::feti::operators::stiffness::{Columns, Stiffness, Work};
+use crate::feti::operators::stiffness::Stiffness;
+use crate::feti::operators::work::{Columns, Work};
 use crate::linalg::dense::Dense;
 use crate::parallel::halo::{numbered, Halo};
 use crate::petsc::{Session, Vec as PetscVec};

@@ -4,3 +4,4 @@ pub mod dual;
 pub mod preconditioner;
 pub mod products;
 pub mod stiffness;
+pub mod work;

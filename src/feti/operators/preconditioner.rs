@@ -13,11 +13,13 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 
 use super::products::Products;
-use super::stiffness::{Columns, Stiffness, Work};
+use super::stiffness::Stiffness;
+use super::work::{Columns, Work};
 use crate::feti::lifting::correction::Lifting;
 use crate::feti::settings::{PcType, Precision};
-use crate::feti::subdomain::problem::{LocalProblem, Operator};
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::problem::LocalProblem;
+use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::Dense;
 use crate::linalg::rectangular::Rectangular;
 use crate::linalg::single::Single;
@@ -54,7 +56,9 @@ impl Preconditioner {
                 .local
                 .iter()
                 .zip(&stiffness.locals)
-                .map(|(sub, local)| Rectangular::block(&sub.k, &local.interface, &local.interface))
+                .map(|(sub, local)| {
+                    Rectangular::block(&sub.k, local.interface(), local.interface())
+                })
                 .collect(),
             _ => Vec::new(),
         };
@@ -159,7 +163,7 @@ impl Preconditioner {
         }
         let (_, ghost) = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
-        let room = |local: &Local| Columns {
+        let room = |local: &Scaled| Columns {
             v: Dense::zeros(local.n_gamma(), lambdas.len()),
             y: Dense::zeros(local.n_gamma(), lambdas.len()),
         };
@@ -200,7 +204,7 @@ const ALIKE: f64 = 1e3;
 
 /// S of every local subdomain in single precision, where that is safe. Collective.
 fn in_single(comm: &SimpleCommunicator, stiffness: &Stiffness) -> Vec<Option<Arc<Single>>> {
-    let each = stiffness.locals.iter().map(Local::stiffness);
+    let each = stiffness.locals.iter().map(Scaled::stiffness);
     let (low, high) = each.fold((f64::INFINITY, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
     let (mut low, mut high) = ([low], [high]);
     min_all(comm, &mut low);
@@ -209,12 +213,12 @@ fn in_single(comm: &SimpleCommunicator, stiffness: &Stiffness) -> Vec<Option<Arc
         return vec![None; stiffness.locals.len()];
     }
     let mut known: HashMap<*const LocalProblem, Arc<Single>> = HashMap::new();
-    let of = |local: &Local| {
-        if local.is_implicit() || local.condition() > ROUNDABLE {
+    let of = |local: &Scaled| {
+        if local.is_implicit() || local.kind().condition() > ROUNDABLE {
             return None;
         }
         let entry = known.entry(Arc::as_ptr(local.kind()));
-        let single = entry.or_insert_with(|| Arc::new(Single::new(&local.s())));
+        let single = entry.or_insert_with(|| Arc::new(Single::new(&local.kind().s())));
         Some(single.clone())
     };
     stiffness.locals.iter().map(of).collect()

@@ -5,9 +5,9 @@
 
 use std::cell::{Ref, RefCell};
 
-use super::stiffness::Work;
-use crate::feti::subdomain::problem::Operator;
-use crate::feti::subdomain::scaled::Local;
+use super::work::Work;
+use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::Dense;
 use crate::parallel::team::Team;
 
@@ -36,8 +36,8 @@ pub struct Panel {
 
 impl Products {
     /// `batches(n)` are the local subdomains in groups of at most n that share their operators.
-    pub fn new(locals: &[Local], batches: impl Fn(usize) -> Vec<Vec<usize>>) -> Products {
-        let worth = |l: &Local| l.is_implicit() || l.n_delta >= WORTH_PACKING;
+    pub fn new(locals: &[Scaled], batches: impl Fn(usize) -> Vec<Vec<usize>>) -> Products {
+        let worth = |l: &Scaled| l.is_implicit() || l.n_delta() >= WORTH_PACKING;
         let together = |b: &Vec<usize>| b.len() > 1 && worth(&locals[b[0]]);
         let batches: Vec<Vec<usize>> = batches(WIDTH).into_iter().filter(together).collect();
         let mut place = vec![None; locals.len()];
@@ -59,7 +59,7 @@ impl Products {
     pub fn multiply(
         &self,
         team: &Team,
-        locals: &[Local],
+        locals: &[Scaled],
         work: &[Work],
         which: Operator,
         apply: impl Fn(usize, &Dense, &mut Dense, usize) + Sync + Send,
@@ -103,7 +103,7 @@ pub struct Results<'a> {
 
 impl Results<'_> {
     /// y ← A v of local subdomain `j`, made by `alone` if it goes with no other; entries beyond the operator's order are set to zero.
-    pub fn take(&self, j: usize, local: &Local, y: &mut [f64], alone: impl Fn(&mut [f64])) {
+    pub fn take(&self, j: usize, local: &Scaled, y: &mut [f64], alone: impl Fn(&mut [f64])) {
         match self.place[j] {
             None => alone(y),
             Some((b, c)) if self.panels[b].live[c] => {

@@ -9,44 +9,26 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::products::Products;
+use super::work::Work;
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::coarse::PrimalProblem;
 use crate::feti::primal::refinement::{self, Refinement};
 use crate::feti::primal::space::PrimalSpace;
-use crate::feti::subdomain::problem::{LocalProblem, Operator};
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::problem::LocalProblem;
+use crate::feti::subdomain::scaled::Scaled;
+use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::Dense;
 use crate::parallel::halo::Halo;
 use crate::parallel::team::Team;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
-/// Buffers of one subdomain on its interface Γ.
-#[derive(Debug, Clone, Default)]
-pub struct Work {
-    /// Input: a load, length n_Γ.
-    pub v: Vec<f64>,
-    /// Output: a displacement, length n_Γ.
-    pub y: Vec<f64>,
-    /// Coarse values in and out, length n_Π.
-    pub p: Vec<f64>,
-}
-
-/// Several columns of one subdomain on its interface Γ.
-#[derive(Debug, Clone, Default)]
-pub struct Columns {
-    /// Inputs, n_Γ × their number.
-    pub v: Dense,
-    /// Outputs, same shape.
-    pub y: Dense,
-}
-
 /// Everything that depends on the matrices alone, with the jump operator on top.
 pub struct Stiffness {
     /// B and B_D.
     pub jump: Jump,
     /// The factored subdomains of this rank.
-    pub locals: Vec<Local>,
+    pub locals: Vec<Scaled>,
     /// Numbering and kernels of the bodies.
     pub space: PrimalSpace,
     /// The bodies' primal problem S_Π behind a KSP.
@@ -72,7 +54,7 @@ impl Stiffness {
     /// Puts the parts together.
     pub fn new(
         jump: Jump,
-        locals: Vec<Local>,
+        locals: Vec<Scaled>,
         space: PrimalSpace,
         primal: PrimalProblem,
         dual_halo: Halo,
@@ -222,8 +204,8 @@ impl Stiffness {
     ) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&self.jump.columns, &self.locals);
-        let room = |local: &Local| {
-            let zeros = || Dense::zeros(local.n_delta, lambdas.len());
+        let room = |local: &Scaled| {
+            let zeros = || Dense::zeros(local.n_delta(), lambdas.len());
             (zeros(), zeros())
         };
         let mut blocks: Vec<(Dense, Dense)> = locals.iter().map(room).collect();
@@ -282,7 +264,7 @@ impl Stiffness {
         for (j, w) in work.iter_mut().enumerate() {
             let columns = &self.jump.columns[j];
             columns.bd_transpose_of(ghost, &mut w.y, |r| !contact[r]);
-            self.locals[j].basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
+            self.locals[j].basis().remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
             columns.add_b(&w.y, &mut inside); /*          inside ← B y     */
             columns.bd_transpose_of(ghost, &mut w.y, |r| contact[r]);
             columns.add_b(&w.y, &mut between); /*         between ← B B_D,glᵀ λ */
@@ -326,11 +308,11 @@ impl Stiffness {
     pub fn by_batch<T: Send>(
         &self,
         batches: &[Vec<usize>],
-        work: impl Fn(&[&Local], &[usize]) -> Vec<T> + Sync + Send,
+        work: impl Fn(&[&Scaled], &[usize]) -> Vec<T> + Sync + Send,
     ) -> Vec<T> {
         let locals = &self.locals;
         let of = |b: usize| {
-            let members: Vec<&Local> = batches[b].iter().map(|&j| &locals[j]).collect();
+            let members: Vec<&Scaled> = batches[b].iter().map(|&j| &locals[j]).collect();
             work(&members, &batches[b])
         };
         let done = self.team.map(batches.len(), of).into_iter().flatten();
@@ -345,7 +327,7 @@ impl Stiffness {
     }
 }
 
-fn batches(locals: &[Local], most: usize) -> Vec<Vec<usize>> {
+fn batches(locals: &[Scaled], most: usize) -> Vec<Vec<usize>> {
     let mut kinds: BTreeMap<*const LocalProblem, Vec<usize>> = BTreeMap::new();
     for (j, local) in locals.iter().enumerate() {
         kinds.entry(Arc::as_ptr(local.kind())).or_default().push(j);
@@ -355,15 +337,4 @@ fn batches(locals: &[Local], most: usize) -> Vec<Vec<usize>> {
     kinds.sort_unstable();
     let chunks = kinds.iter().flat_map(|kind| kind.chunks(most));
     chunks.map(<[usize]>::to_vec).collect()
-}
-
-impl Work {
-    /// Zeros of the sizes of a subdomain.
-    pub fn for_subdomain(local: &Local) -> Work {
-        Work {
-            v: vec![0.0; local.n_gamma()],
-            y: vec![0.0; local.n_gamma()],
-            p: vec![0.0; local.n_pi()],
-        }
-    }
 }

@@ -9,7 +9,7 @@
 //! ```
 
 use super::space::PrimalSpace;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::Dense;
 use crate::substructures::{Subdomain, Substructures};
 
@@ -29,7 +29,7 @@ pub struct Refinement {
 
 impl Refinement {
     /// The rigid motions at the primal dofs.
-    pub fn new(problem: &Substructures, locals: &[Local]) -> Refinement {
+    pub fn new(problem: &Substructures, locals: &[Scaled]) -> Refinement {
         let pairs = problem.local.iter().zip(locals);
         Refinement {
             motions: pairs.map(|(sub, l)| motions(sub, l)).collect(),
@@ -37,7 +37,7 @@ impl Refinement {
     }
 
     /// r ← r − Σ_j R_jᵀ Π_j Σ_j Π_j R_j c, all at this rank's ghosts.
-    pub fn subtract(&self, space: &PrimalSpace, locals: &[Local], c: &[f64], r: &mut [f64]) {
+    pub fn subtract(&self, space: &PrimalSpace, locals: &[Scaled], c: &[f64], r: &mut [f64]) {
         let mut force = Vec::new();
         for ((places, local), n) in space.of_subdomain.iter().zip(locals).zip(&self.motions) {
             let mut x: Vec<f64> = places.iter().map(|&g| c[g as usize]).collect();
@@ -65,11 +65,11 @@ fn remove(n: &Dense, x: &mut [f64]) {
     }
 }
 
-fn motions(sub: &Subdomain, local: &Local) -> Dense {
+fn motions(sub: &Subdomain, local: &Scaled) -> Dense {
     let n_pi = local.n_pi();
     let mut out = Dense::zeros(n_pi, 0);
     for column in sub.near_kernel.iter().flatten() {
-        let on_gamma = local.interface.iter().map(|&i| column[i as usize]);
+        let on_gamma = local.interface().iter().map(|&i| column[i as usize]);
         let mut x = local.primal_values(&on_gamma.collect::<Vec<f64>>());
         let before: f64 = x.iter().map(|v| v * v).sum();
         remove(&out, &mut x);

@@ -12,7 +12,7 @@ use super::kernel;
 use super::matrix::{Outgoing, PrimalMatrix};
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;
-use crate::feti::subdomain::scaled::Local;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{exchange_words, offsets, sum_all};
@@ -66,7 +66,7 @@ impl PrimalSpace {
         problem: &Substructures,
         sharing: &Sharing,
         averages: &[Vec<Average>],
-        locals: &[Local],
+        locals: &[Scaled],
     ) -> PrimalSpace {
         let mut space = PrimalSpace {
             owner: owners(problem, sharing),
@@ -95,17 +95,17 @@ impl PrimalSpace {
         comm: &SimpleCommunicator,
         problem: &Substructures,
         averages: &[Vec<Average>],
-        locals: &[Local],
+        locals: &[Scaled],
     ) -> Vec<Vec<u32>> {
         let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
             // A vertex is known by its body dof, an average by its entity, another functional by a body dof; a fixing dof belongs to its
             // subdomain alone.
-            let vertices = local.interface[local.n_delta..].iter();
+            let vertices = local.interface()[local.n_delta()..].iter();
             let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
             let averages = averages[j].iter();
             let averages = averages.map(|a| (if a.weights.is_some() { 3 } else { 1 }, a.key));
-            let fixing = local.fixing.iter();
+            let fixing = local.fixing().iter();
             let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
             for (kind, key) in vertices.chain(averages).chain(fixing) {
                 let body = (sub.body as u64) << 2 | kind;
@@ -173,7 +173,7 @@ impl PrimalSpace {
         &mut self,
         comm: &SimpleCommunicator,
         problem: &Substructures,
-        locals: &[Local],
+        locals: &[Scaled],
         asked: &[Vec<u32>],
     ) {
         // What the subdomains say: [body, k, factor (k²)], and N at the primal dofs: [number, k values].
@@ -191,7 +191,7 @@ impl PrimalSpace {
                 continue;
             }
             let on_gamma = |c: &Vec<f64>| {
-                let values = local.interface.iter().map(|&i| c[i as usize]);
+                let values = local.interface().iter().map(|&i| c[i as usize]);
                 local.primal_values(&values.collect::<Vec<f64>>())
             };
             let primal: Vec<Vec<f64>> = columns.iter().map(on_gamma).collect();
@@ -236,7 +236,7 @@ impl PrimalSpace {
     }
 
     /// Largest diagonal entry of K on the interface among this rank's subdomains of a body.
-    fn local_stiffness(&self, problem: &Substructures, locals: &[Local], body: usize) -> f64 {
+    fn local_stiffness(&self, problem: &Substructures, locals: &[Scaled], body: usize) -> f64 {
         let of = |k: &Csr, interface: &[u32]| {
             let diagonal = interface.iter().map(|&i| k.get(i as usize, i as usize));
             diagonal.fold(0.0, f64::max)
@@ -246,7 +246,7 @@ impl PrimalSpace {
             .iter()
             .zip(locals)
             .filter(|(sub, _)| sub.body == body)
-            .map(|(sub, local)| of(&sub.k, &local.interface))
+            .map(|(sub, local)| of(&sub.k, local.interface()))
             .fold(0.0, f64::max)
     }
 
@@ -324,7 +324,7 @@ impl PrimalSpace {
     }
 
     /// R of local subdomain `j` on its interface, n_Γ × defect of its body: Ψ times the kernel at the primal dofs.
-    pub fn kernel_on_interface(&self, j: usize, body: usize, local: &Local) -> Dense {
+    pub fn kernel_on_interface(&self, j: usize, body: usize, local: &Scaled) -> Dense {
         let mut r = Dense::zeros(local.n_gamma(), self.defect[body]);
         for c in 0..r.cols {
             let z: Vec<f64> = self.of_subdomain[j]

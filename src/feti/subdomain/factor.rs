@@ -6,8 +6,9 @@ use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use super::equal;
-use super::problem::{Form, LocalProblem};
-use super::scaled::Local;
+use super::problem::LocalProblem;
+use super::scaled::Scaled;
+use super::which::OperatorForm;
 use crate::cholesky::interior::{Analysis, Condenser, LocalSolver, NoFactor, Solver};
 use crate::cholesky::multifrontal::SingularInterior;
 use crate::feti::cost::forms::{self, Kind};
@@ -26,7 +27,7 @@ pub(crate) fn factor(
     team: &Team,
     settings: &MethodSettings,
     kind: PcType,
-) -> Result<Vec<Local>> {
+) -> Result<Vec<Scaled>> {
     // What multiplies with S or looks into it before the iteration begins wants a matrix.
     let wants_s = kind == PcType::CoarseCorrected
         || settings.scaling == Scaling::Deluxe
@@ -78,7 +79,7 @@ pub(crate) fn factor(
     });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
-    let of = |&(j, factor): &(usize, f64)| Local::new(factored[place(j)].clone(), factor);
+    let of = |&(j, factor): &(usize, f64)| Scaled::new(factored[place(j)].clone(), factor);
     Ok(first.iter().map(of).collect())
 }
 
@@ -90,11 +91,11 @@ struct Analyses {
 }
 
 /// One analysis for kinds with dense operators that have the same pattern and interface: coefficients and moved nodes change numbers alone.
-fn analyses(kinds: &[Kind], forms: &[Form], team: &Team, solver: LocalSolver) -> Analyses {
+fn analyses(kinds: &[Kind], forms: &[OperatorForm], team: &Team, solver: LocalSolver) -> Analyses {
     let mut found: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
     let hashes = team.map(kinds.len(), |k| pattern_hash(&kinds[k]));
     for (k, hash) in hashes.iter().enumerate() {
-        if forms[k] == Form::Explicit {
+        if forms[k] == OperatorForm::Explicit {
             let groups = found.entry(*hash).or_default();
             match groups
                 .iter_mut()

@@ -15,7 +15,7 @@
 use std::sync::Arc;
 
 use super::basis::Basis;
-use super::problem::Operator;
+use super::which::Operator;
 use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use crate::cholesky::symbolic::Symbolic;
 use crate::linalg::csr::Csr;

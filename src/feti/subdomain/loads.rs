@@ -4,7 +4,7 @@ use super::problem::{Inside, LocalProblem};
 
 impl LocalProblem {
     /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
-    /// handed to [`Local::recover_many`](super::scaled::Local::recover_many).
+    /// handed to [`Scaled::recover_many`](super::scaled::Scaled::recover_many).
     pub fn condense(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut both = self.condense_many(&[f]);
         both.pop().expect("one load")

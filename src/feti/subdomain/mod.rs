@@ -9,3 +9,4 @@ pub mod loads;
 pub mod operators;
 pub mod problem;
 pub mod scaled;
+pub mod which;

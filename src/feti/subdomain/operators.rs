@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use super::problem::{Inside, LocalProblem, Operator, Packed};
+use super::problem::{Inside, LocalProblem, Packed};
+use super::which::Operator;
 use crate::cholesky::lanes::LANES;
 use crate::linalg::dense::{multiply, Dense};
 use crate::linalg::symmetric::Symmetric;

@@ -12,8 +12,8 @@
 //! An average over dual dofs, or any other functional of them, is made a coordinate first ([`Basis`]), and so are the dofs that have to be held to make S_ΔΔ regular: the
 //! formulas hold in that basis, and only T and Ψ know of it. Everything outside sees nodal dofs.
 //!
-//! S and T are dense matrices or sparse solves, as the caller chooses ([`Form`]). What is here belongs to one matrix; subdomains with multiples of it
-//! share it as [`Local`](super::scaled::Local).
+//! S and T are dense matrices or sparse solves, as the caller chooses ([`OperatorForm`]). What is here belongs to one matrix; subdomains with multiples of it
+//! share it as [`Scaled`](super::scaled::Scaled).
 
 #[cfg(test)]
 mod tests;
@@ -23,6 +23,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::basis::Basis;
 use super::implicit::Implicit;
+use super::which::OperatorForm;
 use crate::cholesky::interior::{Condenser, Factor, LocalSolver, NoFactor, Solver};
 use crate::cholesky::symbolic::Keep;
 use crate::linalg::csr::Csr;
@@ -39,24 +40,6 @@ static FACTORISATIONS: AtomicUsize = AtomicUsize::new(0);
 /// How many subdomains this process has factored so far: a contact loop must not add to it.
 pub fn factorisations() -> usize {
     FACTORISATIONS.load(Ordering::Relaxed)
-}
-
-/// How S and T are held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// As dense matrices.
-    Explicit,
-    /// As sparse solves; where the vertices alone do not hold the subdomain, dense matrices after all.
-    Implicit,
-}
-
-/// One of the operators.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Operator {
-    /// S, of order n_Γ.
-    S,
-    /// T, of order n_Δ.
-    T,
 }
 
 /// One subdomain, factored.
@@ -114,14 +97,14 @@ impl LocalProblem {
         averages: &[&[u32]],
         coordinates: Option<&[[f64; 3]]>,
         mut condenser: Condenser,
-        form: Form,
+        form: OperatorForm,
     ) -> Result<LocalProblem, NoFactor> {
         let mut basis = Basis::default();
         let at = positions(delta);
         let at = averages.iter().map(|a| at.of(a));
         at.for_each(|at| basis.push_mean(at));
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
-        if form == Form::Implicit && condenser.solver.kind == Solver::Multifrontal {
+        if form == OperatorForm::Implicit && condenser.solver.kind == Solver::Multifrontal {
             let interface = [delta, primal].concat();
             // An interior that nothing holds is for the dense form to deal with.
             let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);

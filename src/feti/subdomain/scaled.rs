@@ -6,31 +6,24 @@
 //!
 //! Subdomains of different coefficients share one factorisation that way; whatever has a stiffness in it goes through this type.
 
-use std::ops::Deref;
 use std::sync::Arc;
 
-use super::problem::{LocalProblem, Operator};
+use super::basis::Basis;
+use super::problem::LocalProblem;
+use super::which::Operator;
 use crate::linalg::dense::Dense;
 
 /// One subdomain of this rank.
 #[derive(Debug, Clone)]
-pub struct Local {
+pub struct Scaled {
     problem: Arc<LocalProblem>,
     factor: f64,
 }
 
-impl Deref for Local {
-    type Target = LocalProblem;
-
-    fn deref(&self) -> &LocalProblem {
-        &self.problem
-    }
-}
-
-impl Local {
+impl Scaled {
     /// `factor` times the matrix of `problem`.
-    pub fn new(problem: Arc<LocalProblem>, factor: f64) -> Local {
-        Local { problem, factor }
+    pub fn new(problem: Arc<LocalProblem>, factor: f64) -> Scaled {
+        Scaled { problem, factor }
     }
 
     /// φ.
@@ -44,8 +37,68 @@ impl Local {
     }
 
     /// Whether both have the same matrix, up to a factor.
-    pub fn shares_with(&self, other: &Local) -> bool {
+    pub fn shares_with(&self, other: &Scaled) -> bool {
         Arc::ptr_eq(&self.problem, &other.problem)
+    }
+
+    /// Local dofs of the interface in the order [Δ, vertices]; length n_Γ.
+    pub fn interface(&self) -> &[u32] {
+        &self.problem.interface
+    }
+
+    /// Number of interface dofs n_Γ.
+    pub fn n_gamma(&self) -> usize {
+        self.problem.n_gamma()
+    }
+
+    /// Number of dual interface dofs n_Δ.
+    pub fn n_delta(&self) -> usize {
+        self.problem.n_delta
+    }
+
+    /// Number of vertices.
+    pub fn n_vertices(&self) -> usize {
+        self.problem.n_vertices()
+    }
+
+    /// Number of primal dofs n_Π.
+    pub fn n_pi(&self) -> usize {
+        self.problem.n_pi()
+    }
+
+    /// Functionals of dual dofs that are primal.
+    pub fn basis(&self) -> &Basis {
+        &self.problem.basis
+    }
+
+    /// Positions in Γ of the coordinates that were added to the primal dofs.
+    pub fn fixing(&self) -> &[usize] {
+        &self.problem.fixing
+    }
+
+    /// S and T are sparse solves.
+    pub fn is_implicit(&self) -> bool {
+        self.problem.is_implicit()
+    }
+
+    /// Ψ on Δ, n_Δ × n_Π: the same for all multiples.
+    pub fn psi(&self) -> &Dense {
+        &self.problem.psi
+    }
+
+    /// p ← Ψᵀ v, v on Γ.
+    pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
+        self.problem.psi_transpose(v, p);
+    }
+
+    /// y ← y + Ψ c.
+    pub fn add_psi(&self, c: &[f64], y: &mut [f64]) {
+        self.problem.add_psi(c, y);
+    }
+
+    /// The primal dofs of a function on Γ.
+    pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
+        self.problem.primal_values(u)
     }
 
     /// The multiple of the operator of `problem` that is the one of this subdomain.
@@ -111,16 +164,14 @@ impl Local {
 
     /// Solutions of subdomains that share their operators, at most [`LANES`](crate::cholesky::lanes::LANES): what
     /// [`LocalProblem::condense`] left, and the values on Γ, of each.
-    pub fn recover_many(members: &[&Local], parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
+    pub fn recover_many(members: &[&Scaled], parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
         let scales: Vec<f64> = members.iter().map(|m| m.factor).collect();
         match members {
             [] => Vec::new(),
             [first, ..] => first.problem.recover_many(parts, &scales),
         }
     }
-}
 
-impl Local {
     fn block(&self, which: Operator, at: &[usize]) -> Dense {
         let (n, factor) = (at.len(), self.multiple(which));
         let mut out = Dense::zeros(n, n);

@@ -1,6 +1,7 @@
 //! One subdomain against what its matrix says.
 
 use super::*;
+use crate::feti::subdomain::which::Operator;
 use crate::linalg::testing::{distance, grid_laplacian, random};
 
 #[test]
@@ -8,12 +9,12 @@ fn s_plus_inverts_a_definite_subdomain() {
     // With one subdomain, S̃⁺ = T + Ψ Σ⁻¹ Ψᵀ is S⁻¹; interiors come back through condense and recover.
     let (k, x) = grid_laplacian(9, 9, 0.1);
     let delta: Vec<u32> = (1..8).collect();
-    for form in [Form::Explicit, Form::Implicit] {
+    for form in [OperatorForm::Explicit, OperatorForm::Implicit] {
         s_plus_inverts(&k, &x, &delta, form);
     }
 }
 
-fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: Form) {
+fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: OperatorForm) {
     let local = LocalProblem::new(
         k,
         delta,
@@ -24,7 +25,7 @@ fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: Form) {
         form,
     )
     .expect("definite");
-    assert_eq!(local.is_implicit(), form == Form::Implicit);
+    assert_eq!(local.is_implicit(), form == OperatorForm::Implicit);
     assert!(local.fixing.is_empty());
     let u = random(k.n(), 5);
     let mut f = vec![0.0; k.n()];
@@ -62,7 +63,7 @@ fn an_indefinite_or_broken_matrix_is_refused() {
             k.val[at] += value;
         }
         let delta: Vec<u32> = (0..12).collect();
-        for form in [Form::Explicit, Form::Implicit] {
+        for form in [OperatorForm::Explicit, OperatorForm::Implicit] {
             let condenser = LocalSolver::default().condenser(Keep::Interior);
             let made = LocalProblem::new(&k, &delta, &[], &[], Some(&x), condenser, form);
             assert!(made.is_err(), "{value}");
@@ -74,7 +75,7 @@ fn an_indefinite_or_broken_matrix_is_refused() {
 fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
     let (k, x) = grid_laplacian(8, 6, 0.0);
     let delta: Vec<u32> = (0..8).collect();
-    let form = Form::Implicit; // becomes dense: no vertex holds anything
+    let form = OperatorForm::Implicit; // becomes dense: no vertex holds anything
     let local = LocalProblem::new(
         &k,
         &delta,
@@ -109,8 +110,8 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
             form,
         )
     };
-    let dense = make(Form::Explicit).expect("held by vertices");
-    let sparse = make(Form::Implicit).expect("held by vertices");
+    let dense = make(OperatorForm::Explicit).expect("held by vertices");
+    let sparse = make(OperatorForm::Implicit).expect("held by vertices");
     assert!(sparse.is_implicit() && !dense.is_implicit());
     let close = |a: &[f64], b: &[f64]| {
         let far = distance(a, b);

@@ -1,0 +1,35 @@
+//! Room for the vectors of one subdomain.
+
+use crate::feti::subdomain::scaled::Scaled;
+use crate::linalg::dense::Dense;
+
+/// Buffers of one subdomain on its interface Γ.
+#[derive(Debug, Clone, Default)]
+pub struct Work {
+    /// Input: a load, length n_Γ.
+    pub v: Vec<f64>,
+    /// Output: a displacement, length n_Γ.
+    pub y: Vec<f64>,
+    /// Coarse values in and out, length n_Π.
+    pub p: Vec<f64>,
+}
+
+/// Several columns of one subdomain on its interface Γ.
+#[derive(Debug, Clone, Default)]
+pub struct Columns {
+    /// Inputs, n_Γ × their number.
+    pub v: Dense,
+    /// Outputs, same shape.
+    pub y: Dense,
+}
+
+impl Work {
+    /// Zeros of the sizes of a subdomain.
+    pub fn for_subdomain(local: &Scaled) -> Work {
+        Work {
+            v: vec![0.0; local.n_gamma()],
+            y: vec![0.0; local.n_gamma()],
+            p: vec![0.0; local.n_pi()],
+        }
+    }
+}
