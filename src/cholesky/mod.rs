@@ -1,4 +1,21 @@
-//! Sparse Cholesky factorisation of one subdomain, and its Schur complement on the interface.
+//! Sparse Cholesky factorisation with an interface that is kept: K = L Lᵀ down to the Schur complement S.
+//!
+//! ```text
+//!     pattern of K, interface ──dissection, cover──> order ──symbolic──> Symbolic (fronts)
+//!     Symbolic, numbers of K  ──multifrontal───────> PartialCholesky (panels), S
+//!     PartialCholesky, loads  ──substitution, lanes─> condensed loads, interior solutions
+//! ```
+//!
+//! | file | what it does |
+//! |---|---|
+//! | [`dissection`], [`cover`] | order of elimination: nested dissection with the smallest separators |
+//! | [`symbolic`] | fronts, their rows, and where these stand in the parent's front |
+//! | [`multifrontal`] | factors front by front; what reaches the root is S |
+//! | [`panel`] | how the columns of a front lie in memory |
+//! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
+//! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
+//!
+//! `docs/cholesky.md` has the theory, the data structures and the measurements.
 
 pub mod cover;
 pub mod dissection;
