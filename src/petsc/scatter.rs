@@ -29,58 +29,26 @@ impl Scatter {
         Ok(Scatter(Handle::own(raw, session)))
     }
 
-    /// to ← entries of from: starts the messages.
-    pub fn forward_begin(&self, from: &Vec, to: &Vec) -> Result<()> {
-        let (x, y) = (from.read()?, to.write()?);
-        petsc!(VecScatterBegin(
-            self.0.raw(),
-            x,
-            y,
-            sys::INSERT_VALUES,
-            sys::SCATTER_FORWARD
-        ))
-    }
-
-    /// Completes [`Scatter::forward_begin`].
-    pub fn forward_end(&self, from: &Vec, to: &Vec) -> Result<()> {
-        let (x, y) = (from.read()?, to.write()?);
-        petsc!(VecScatterEnd(
-            self.0.raw(),
-            x,
-            y,
-            sys::INSERT_VALUES,
-            sys::SCATTER_FORWARD
-        ))
-    }
-
     /// to ← entries of from.
     pub fn forward(&self, from: &Vec, to: &Vec) -> Result<()> {
-        self.forward_begin(from, to)?;
-        self.forward_end(from, to)
+        let (x, y) = (from.read()?, to.write()?);
+        let (scatter, insert) = (self.0.raw(), sys::INSERT_VALUES);
+        petsc!(VecScatterBegin(scatter, x, y, insert, sys::SCATTER_FORWARD))?;
+        petsc!(VecScatterEnd(scatter, x, y, insert, sys::SCATTER_FORWARD))
     }
 
-    /// from ← from + entries of to, on every rank: starts the messages. (`local` is the `to` of [`Scatter::new`].)
+    /// global ← global + entries of local, on every rank: starts the messages. (`local` is the `to` of [`Scatter::new`].)
     pub fn reverse_add_begin(&self, local: &Vec, global: &Vec) -> Result<()> {
         let (x, y) = (local.read()?, global.write()?);
-        petsc!(VecScatterBegin(
-            self.0.raw(),
-            x,
-            y,
-            sys::ADD_VALUES,
-            sys::SCATTER_REVERSE
-        ))
+        let (scatter, add) = (self.0.raw(), sys::ADD_VALUES);
+        petsc!(VecScatterBegin(scatter, x, y, add, sys::SCATTER_REVERSE))
     }
 
     /// Completes [`Scatter::reverse_add_begin`].
     pub fn reverse_add_end(&self, local: &Vec, global: &Vec) -> Result<()> {
         let (x, y) = (local.read()?, global.write()?);
-        petsc!(VecScatterEnd(
-            self.0.raw(),
-            x,
-            y,
-            sys::ADD_VALUES,
-            sys::SCATTER_REVERSE
-        ))
+        let (scatter, add) = (self.0.raw(), sys::ADD_VALUES);
+        petsc!(VecScatterEnd(scatter, x, y, add, sys::SCATTER_REVERSE))
     }
 
     /// global ← global + entries of local.

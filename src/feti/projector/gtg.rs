@@ -40,15 +40,7 @@ pub struct Gtg {
 impl Gtg {
     /// Assembles and factors the r × r matrix Gᵀ (Q G). Collective.
     pub fn new(session: &Session, r: usize, g: &Rows, qg: &Rows, prefix: &str) -> Result<Gtg> {
-        let mut a = Dense::zeros(r, r);
-        for i in 0..g.n() {
-            for (p, gp) in g.row(i) {
-                for (q, gq) in qg.row(i) {
-                    a.data[p + q * r] += gp * gq;
-                }
-            }
-        }
-        sum_all(session.comm(), &mut a.data);
+        let mut a = product(session, r, g, qg);
         let diagonal = |i: usize| match a.get(i, i) {
             d if d > 0.0 => 1.0 / d.sqrt(),
             _ => 1.0,
@@ -144,17 +136,23 @@ impl Gtg {
     }
 }
 
-/// Columns of G that depend on the others, and the combinations of columns that vanish. Collective.
-fn dependent(session: &Session, r: usize, g: &Rows) -> (Vec<usize>, Vec<Vec<f64>>) {
+/// The r × r matrix Gᵀ H of matrices whose rows are distributed alike. Collective.
+fn product(session: &Session, r: usize, g: &Rows, h: &Rows) -> Dense {
     let mut a = Dense::zeros(r, r);
     for i in 0..g.n() {
         for (p, gp) in g.row(i) {
-            for (q, gq) in g.row(i) {
-                a.data[p + q * r] += gp * gq;
+            for (q, hq) in h.row(i) {
+                a.data[p + q * r] += gp * hq;
             }
         }
     }
     sum_all(session.comm(), &mut a.data);
+    a
+}
+
+/// Columns of G that depend on the others, and the combinations of columns that vanish. Collective.
+fn dependent(session: &Session, r: usize, g: &Rows) -> (Vec<usize>, Vec<Vec<f64>>) {
+    let a = product(session, r, g, g);
     let factor = Semidefinite::new(&a);
     (factor.dropped(), null_vectors(&a, &factor))
 }
