@@ -3,7 +3,7 @@
 use super::coordinates::{rigid, Coordinates};
 use super::nested::Given as GivenVector;
 use super::rows::Row;
-use super::stack::{fits, Local, Stack};
+use super::stack::{fits, LocalMatrix, Stack};
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Grouping, Outcome, Torn};
@@ -110,7 +110,7 @@ impl Object {
 
     /// Takes the local matrices of a MATIS of all unknowns, instead of everything before. Collective.
     pub fn set_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
-        let local = Local::of(&self.session, a)?;
+        let local = LocalMatrix::of(&self.session, a)?;
         self.stack.clear();
         self.subdomains.clear();
         self.push(local.k, local.map, local.copies, body);
@@ -127,7 +127,7 @@ impl Object {
         let others = !self.subdomains.is_empty() || self.matis.is_some();
         let others = others.then(|| self.mixed()).map_or(Ok(()), Err);
         self.session.agree(others)?;
-        let local = Local::of(&self.session, a)?;
+        let local = LocalMatrix::of(&self.session, a)?;
         self.stack.push(&self.session, local, body);
         self.stale = true;
         Ok(())
@@ -138,7 +138,7 @@ impl Object {
         if !self.stack.is_empty() {
             return Err(self.mixed());
         }
-        let local = Local::of(&self.session, a)?;
+        let local = LocalMatrix::of(&self.session, a)?;
         let dofs = self.renumbered(&local.layout, &local.map, numbers)?;
         if self.block_size_of_added == 1 {
             self.block_size_of_added = local.block_size;

@@ -32,7 +32,7 @@ pub struct Member {
 pub struct Stack(Vec<Member>);
 
 /// The local matrix of a MATIS, the number of each of its rows, and what the matrix tells besides.
-pub struct Local {
+pub struct LocalMatrix {
     pub k: Csr,
     pub map: Vec<i32>,
     /// The block size where the map may name a dof several times, once for each subdomain that has it.
@@ -43,9 +43,9 @@ pub struct Local {
     pub modes: Option<Vec<PetscVec>>,
 }
 
-impl Local {
+impl LocalMatrix {
     /// Takes the matrix apart. Collective.
-    pub fn of(session: &Session, a: &Mat) -> Result<Local> {
+    pub fn of(session: &Session, a: &Mat) -> Result<LocalMatrix> {
         unassembled(a).map_err(|e| Fault::Unsupported.error(e.to_string()))?;
         let (rows, cols) = a.size()?;
         if rows != cols {
@@ -64,7 +64,7 @@ impl Local {
                 "the near-null space of the matrix",
             ))?;
         }
-        Ok(Local {
+        Ok(LocalMatrix {
             k,
             map,
             copies: a.is_repeated()?.then_some(block_size),
@@ -101,7 +101,7 @@ impl Stack {
     }
 
     /// Puts a matrix after the others. Collective.
-    pub fn push(&mut self, session: &Session, local: Local, body: i32) {
+    pub fn push(&mut self, session: &Session, local: LocalMatrix, body: i32) {
         let first = local.layout.ownership_range().start as u64;
         let starts = gather_all(session.comm(), &[first]);
         self.0.push(Member {

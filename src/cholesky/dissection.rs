@@ -28,7 +28,7 @@ pub fn nested_dissection(
     interior: &[u32],
     coordinates: Option<&[[f64; 3]]>,
 ) -> Dissection {
-    let mut work = Work {
+    let mut work = Cutting {
         k,
         coordinates,
         part: vec![NONE; k.n()],
@@ -42,7 +42,7 @@ pub fn nested_dissection(
 
 const NONE: u32 = u32::MAX;
 
-struct Work<'a> {
+struct Cutting<'a> {
     k: &'a Csr,
     coordinates: Option<&'a [[f64; 3]]>,
     /// The set that a dof belongs to at the moment; `NONE` for dofs outside every live set.
@@ -53,7 +53,7 @@ struct Work<'a> {
     next_part: u32,
 }
 
-impl Work<'_> {
+impl Cutting<'_> {
     fn dissect(&mut self, set: Vec<u32>) {
         if set.len() <= LEAF {
             if !set.is_empty() {

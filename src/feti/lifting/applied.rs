@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::averaging::{Averaging, Way};
+use super::averaging::{Averaging, Transposition};
 use super::interpolation::Functions;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::primal::space::PrimalSpace;
@@ -64,7 +64,7 @@ impl Applied {
         solve: impl Fn(&mut [f64]),
     ) -> Result<()> {
         let ghost = &mut *self.ghost.borrow_mut();
-        self.averaging.apply(Way::Transposed, w)?;
+        self.averaging.apply(Transposition::Transposed, w)?;
         let (functions, locals) = (&self.functions, &stiffness.locals);
         stiffness.team.for_each(w, |j, w| {
             let mut p = vec![0.0; locals[j].n_pi()];
@@ -95,6 +95,6 @@ impl Applied {
             w.resize(locals[j].n_gamma(), 0.0);
             locals[j].add_psi(&p, w); /*                  w ← Ψ p         */
         });
-        self.averaging.apply(Way::Plain, w) /*            w ← E_D w       */
+        self.averaging.apply(Transposition::Plain, w) /*            w ← E_D w       */
     }
 }

@@ -45,7 +45,7 @@ pub(crate) struct Averaging {
 
 /// Which of the two.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum Transposition {
     /// E_D.
     Plain,
     /// E_Dᵀ.
@@ -130,12 +130,16 @@ impl Averaging {
     }
 
     /// w ← E_D w or E_Dᵀ w on the interface of every local subdomain. Collective.
-    pub fn apply(&self, way: Way, w: &mut [Vec<f64>]) -> Result<()> {
+    pub fn apply(&self, which: Transposition, w: &mut [Vec<f64>]) -> Result<()> {
         let sums = &mut *self.sums.borrow_mut();
         sums.fill(0.0);
         for (places, w) in self.places.iter().zip(&*w) {
             for p in places {
-                let weight = if way == Way::Plain { p.weight } else { 1.0 };
+                let weight = if which == Transposition::Plain {
+                    p.weight
+                } else {
+                    1.0
+                };
                 sums[p.slot as usize] += weight * w[p.at as usize];
             }
         }
@@ -148,7 +152,11 @@ impl Averaging {
             let vertices = vertices.iter().zip(kept);
             vertices.for_each(|(&i, v)| w[i as usize] = v);
             for p in places {
-                let weight = if way == Way::Plain { 1.0 } else { p.weight };
+                let weight = if which == Transposition::Plain {
+                    1.0
+                } else {
+                    p.weight
+                };
                 w[p.at as usize] = weight * sums[p.slot as usize];
             }
         }

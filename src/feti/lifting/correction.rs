@@ -35,7 +35,7 @@ use crate::Result;
 
 /// Z_c of all bodies, with A factored. Columns carry the numbers of the primal dofs they come from.
 pub struct Lifting {
-    form: Form,
+    z: Kept,
     bodies: Vec<BodyFactor>,
     vector: PetscVec,
     /// Rank of A and its order (columns that are not zero), over this rank's bodies.
@@ -45,7 +45,7 @@ pub struct Lifting {
 }
 
 /// What is kept of Z_c.
-enum Form {
+enum Kept {
     /// Matrices: few columns.
     Stored(Box<Stored>),
     /// What it is the product of.
@@ -106,16 +106,16 @@ impl Lifting {
             return Ok(None);
         }
         let vector = PetscVec::mpi(session, space.n_owned)?;
-        let form = if keep {
+        let z = if keep {
             let columns: Vec<&[u32]> = recipes.iter().map(|r| &r.columns[..]).collect();
-            Form::Stored(Box::new(Stored::new(session, &vector, kept, &columns)?))
+            Kept::Stored(Box::new(Stored::new(session, &vector, kept, &columns)?))
         } else {
             let averaging = Averaging::new(session, problem, sharing, stiffness)?;
             let applied = Applied::new(session, &vector, space, functions, averaging)?;
-            Form::Applied(Box::new(applied))
+            Kept::Applied(Box::new(applied))
         };
         Ok(Some(Lifting {
-            form,
+            z,
             bodies,
             vector,
             rank_and_order: (rank, order),
@@ -125,17 +125,17 @@ impl Lifting {
 
     /// Z_c x on the interface of every local subdomain, x given by global column number. Collective.
     pub fn combine(&self, stiffness: &Stiffness, x: impl Fn(u32) -> f64) -> Result<Vec<Vec<f64>>> {
-        match &self.form {
-            Form::Stored(stored) => Ok(stored.combine(x)),
-            Form::Applied(applied) => applied.combine(stiffness, x),
+        match &self.z {
+            Kept::Stored(stored) => Ok(stored.combine(x)),
+            Kept::Applied(applied) => applied.combine(stiffness, x),
         }
     }
 
     /// The first half of work.y ← S̃ (I − Z_c A⁺ Z_cᵀ S̃) work.v: what can be sent before work.y ← S work.v is there. Collective.
     pub fn begin(&self, stiffness: &Stiffness, work: &[Work]) -> Result<()> {
-        match &self.form {
-            Form::Stored(stored) => stored.begin(stiffness, work, &self.vector),
-            Form::Applied(_) => Ok(()),
+        match &self.z {
+            Kept::Stored(stored) => stored.begin(stiffness, work, &self.vector),
+            Kept::Applied(_) => Ok(()),
         }
     }
 
@@ -147,9 +147,9 @@ impl Lifting {
         multiply: impl Fn(&mut [Work]),
     ) -> Result<()> {
         let solve = |x: &mut [f64]| self.solve(x);
-        match &self.form {
-            Form::Stored(stored) => stored.finish(stiffness, work, &self.vector, solve),
-            Form::Applied(applied) => {
+        match &self.z {
+            Kept::Stored(stored) => stored.finish(stiffness, work, &self.vector, solve),
+            Kept::Applied(applied) => {
                 let mut lifted: Vec<Vec<f64>> = work.iter().map(|w| w.y.clone()).collect();
                 applied.project(stiffness, &mut lifted, &self.vector, solve)?;
                 for (w, lifted) in work.iter_mut().zip(&lifted) {
@@ -169,9 +169,9 @@ impl Lifting {
         multiply: impl Fn(&mut [Columns]),
     ) -> Result<()> {
         let solve = |x: &mut [f64]| self.solve(x);
-        match &self.form {
-            Form::Stored(stored) => stored.remove_many(stiffness, blocks, &self.vector, solve),
-            Form::Applied(applied) => {
+        match &self.z {
+            Kept::Stored(stored) => stored.remove_many(stiffness, blocks, &self.vector, solve),
+            Kept::Applied(applied) => {
                 for c in 0..blocks.first().map_or(0, |b| b.v.cols) {
                     let columns = blocks.iter().map(|b| b.y.col(c).to_vec());
                     let mut lifted: Vec<Vec<f64>> = columns.collect();
