@@ -6,7 +6,7 @@
 //! | file | what it does |
 //! |---|---|
 //! | [`rows`] | takes the ranks out of a state and deals it out again |
-//! | [`file`] | writes a checkpoint and reads it, with all that a file on a disk needs |
+//! | [`mod@file`] | writes a checkpoint and reads it, with all that a file on a disk needs |
 //! | this one | decides whether a checkpoint belongs to a scene, and goes on from it |
 
 use std::path::{Path, PathBuf};

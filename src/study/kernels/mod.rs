@@ -119,7 +119,7 @@ struct Seconds {
 /// Runs the study.
 ///
 /// # Errors
-/// [`Error::Input`](crate::Error::Input) on several ranks, which would measure each other; a solver that fails.
+/// [`Error::Input`] on several ranks, which would measure each other; a solver that fails.
 pub fn run(
     session: &Session,
     quick: bool,
