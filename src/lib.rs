@@ -38,12 +38,17 @@
 //! # The way data flows
 //!
 //! ```text
-//! scene.toml → scene → mesh, fem → Substructures → FetiFeti → Solution → report        (a program may enter at Substructures)
-//!              MATIS → embed ──────┘                                                   (other PETSc programs, docs/embedding.md)
+//! scene.toml ── scene ──┐
+//!                       ├──> Substructures ──> FetiFeti (contact around feti) ──> Solution ──> report
+//! MATIS, CSR ── embed ──┘
 //! ```
 //!
-//! Each stage imports only from stages to its left; [`cli`] puts them in a row and `baselines` sends the same scene through
-//! PETSc's own solvers. [`petsc`] and [`capi`], what C calls, are the only modules with unsafe code.
+//! A program may enter at [`Substructures`] with matrices of its own. `scene` makes them by `mesh` and `fem`; `embed` finds
+//! them in matrices of other PETSc programs (docs/embedding.md). Nothing behind them knows where they came from. `feti` solves
+//! equations, `contact` says which rows of B are equations, [`FetiFeti`] is both.
+//!
+//! The modules have an order, and each imports only from those before it: docs/architecture.md has the map, and follows a load,
+//! a contact row and a MATIS through the code. [`petsc`] and [`capi`], what C calls, are the only modules with unsafe code.
 //!
 //! # Only what the problem needs
 //!
@@ -84,7 +89,8 @@
 //! # References
 //!
 //! \[Lee\] J. Lee, *Convergence analysis of a new domain decomposition method for a linearized contact problem*, 2010.
-//! `docs/theory.md` in the repository has the others and the reasons behind the choices, `docs/options.md` every option.
+//! `docs/theory.md` in the repository has the others and the reasons behind the choices, `docs/options.md` every option;
+//! `docs/README.md` says which page is for whom.
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
 // Without the program nobody calls what only the program needs.

@@ -1,4 +1,4 @@
-//! The primal-dual active set of method section 6.
+//! The primal-dual active set (docs/theory.md, section 9).
 //!
 //! ```text
 //!     solve the equations on A_k,    A_{k+1} = { j : λ_j + ρ (B u − c)_j > 0 }

@@ -1,4 +1,4 @@
-//! The contact loop: inequality rows B_I u ≤ c with multipliers λ_I ≥ 0, [Lee (3.1)-(3.3)], method section 6.
+//! The contact loop: inequality rows B_I u ≤ c with multipliers λ_I ≥ 0, [Lee (3.1)-(3.3)] (docs/theory.md, section 9).
 //!
 //! ```text
 //!     min ½ uᵀ K u − fᵀ u    subject to    B_E u = c_E,  B_I u ≤ c_I

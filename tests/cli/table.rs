@@ -17,7 +17,7 @@ fn table(rows: &[&str]) -> (Output, Vec<Value>) {
     (out, table)
 }
 
-/// Checks rows against the paper's numbers; what can be checked at all follows from section 7 of the method.
+/// Checks rows against the paper's numbers; docs/theory.md, section 14, says what can be checked at all.
 fn against_the_paper(rows: &[&str]) {
     let (out, table) = table(rows);
     assert_eq!(table.len(), rows.len());

@@ -51,7 +51,7 @@ impl Grid {
         x > 0 && y > 0 && x < n && y < n
     }
 
-    /// The load of method section 7 at an element's midpoint.
+    /// The load of Table 1 (docs/theory.md, section 14) at an element's midpoint.
     fn load(x: f64, y: f64) -> f64 {
         if x < 0.5 && y > 0.75 {
             -3.0

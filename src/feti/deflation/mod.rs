@@ -1,4 +1,4 @@
-//! Deflation of what coefficients that jump inside bodies leave above τ (method section 5b).
+//! Deflation of what coefficients that jump inside bodies leave above τ (docs/theory.md, section 12).
 //!
 //! ```text
 //!     W = P M⁻¹ [ P_iᵀ F_i μ ],    P_2 = I − W (Wᵀ F W)⁺ Wᵀ F

@@ -5,9 +5,9 @@
 //!     P_i M_i⁻¹ P_iᵀ F_i μ = θ μ
 //! ```
 //!
-//! With v = S̃_i⁺ B_iᵀ μ this is B_iᵀ M⁻¹ B_i v = θ S̃_i v (method section 5b), v orthogonal to the kernel of S̃_i. Rows between two bodies
-//! belong to both pencils; bodies are coloured so that none is near two of one colour, and a vector of multipliers holds all bodies of a colour. F is one product
-//! for all colours, M⁻¹ one with several columns.
+//! With v = S̃_i⁺ B_iᵀ μ this is B_iᵀ M⁻¹ B_i v = θ S̃_i v, v orthogonal to the kernel of S̃_i (docs/theory.md, section
+//! 12). Rows between two bodies belong to both pencils; bodies are coloured so that none is near two of one colour, and a
+//! vector of multipliers holds all bodies of a colour. F is one product for all colours, M⁻¹ one with several columns.
 
 use std::ops::Range;
 

@@ -97,8 +97,8 @@ impl Block {
         for (r, &on) in active.iter().enumerate() {
             let row = (first + self.rows.start + r) as u64;
             for (j, copies) in self.copies.iter().enumerate() {
-                // A row acts on the weighted average of the copies of one body (method section 3);
-                // B_Dᵀ λ is then the same on all of them, as a function in W̃ must be.
+                // A row acts on the weighted average of the copies of one body (docs/theory.md,
+                // section 3); B_Dᵀ λ is then the same on all of them, as a function in W̃ must be.
                 for copy in copies {
                     let full = self.b.get(r, j) * copy.weight / self.weights[j];
                     let b = if on { full } else { 0.0 };

@@ -1,4 +1,4 @@
-//! The scaled jump operator B_D = (B D⁻¹ Bᵀ)⁺ B D⁻¹ of method section 3, block by block.
+//! The scaled jump operator B_D = (B D⁻¹ Bᵀ)⁺ B D⁻¹, block by block (docs/theory.md, section 3).
 //!
 //! With P_D the D-orthogonal projection along ker B, B_Dᵀ = P_D B⁺ holds. B⁺ does not see the weights and P_D is
 //! an average, so jumps of any size in the coefficients cost no digits; inverting B D⁻¹ Bᵀ would.

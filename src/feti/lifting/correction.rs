@@ -1,4 +1,4 @@
-//! Z_c: coarse functions of the bodies that vanish where bodies may touch (method section 5).
+//! Z_c: coarse functions of the bodies that vanish where bodies may touch (docs/theory.md, section 4).
 //!
 //! Columns of Z_c are columns of Ψ at vertices and averages that subdomains of the body share, their copies averaged inside the body with the scaling weights, set to zero on
 //! candidate contact nodes: Z_c = E_D Ψ I, with I the identity or the interpolation of averages from vertices. Removing their span S̃-orthogonally from what

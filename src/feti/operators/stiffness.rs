@@ -1,4 +1,4 @@
-//! S̃⁺ and F: the FETI-DP solve inside every body (method section 2).
+//! S̃⁺ and F: the FETI-DP solve inside every body (docs/theory.md, section 2).
 //!
 //! ```text
 //!     S̃⁺ v = Σ_j T_j v_j + Ψ S_Π⁺ Ψᵀ v            F = Z B S̃⁺ Bᵀ Z

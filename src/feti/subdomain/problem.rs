@@ -1,4 +1,4 @@
-//! The operators of one subdomain on its interface: S, T, Ψ and Σ of method section 2.
+//! The operators of one subdomain on its interface: S, T, Ψ and Σ (docs/theory.md, section 2).
 //!
 //! The interface Γ is ordered [Δ, vertices]. Without averages the vertices are the primal dofs Π, and from the Schur complement S on Γ
 //! follow

@@ -1,4 +1,4 @@
-//! A contact problem assembled body by body and solved by the reference of `tests/qp`: what runs of the method are measured
+//! A contact problem assembled body by body and solved by the reference of `tests/support/qp`: what runs of the method are measured
 //! against.
 //!
 //! Unknowns are the free body dofs, so that a node where bodies meet has one for each of them; ties, contacts and obstacles
