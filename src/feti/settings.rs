@@ -196,6 +196,22 @@ names!(ProjectorKind {
 });
 
 /// Everything that can be set about the method itself; Krylov settings live in the KSP (`fetifeti_ksp_`).
+///
+/// ```
+/// use fetifeti::{MethodSettings, PcType, Primal, ProjectorKind};
+///
+/// let settings = MethodSettings {
+///     pc_type: Some(PcType::CoarseCorrected),
+///     primal: Primal::parse("vertices, faces").expect("names of constraints"),
+///     rtol: 1e-10,
+///     ..MethodSettings::default()
+/// };
+/// assert_eq!(settings.primal.name(), "vertices,faces");
+/// assert_eq!(settings.projector, ProjectorKind::Auto);
+/// // What the option takes: -fetifeti_pc_type coarse_corrected.
+/// assert_eq!(PcType::CoarseCorrected.name(), "coarse_corrected");
+/// assert_eq!(Primal::parse("corners"), None);
+/// ```
 #[derive(Debug, Clone)]
 pub struct MethodSettings {
     /// `fetifeti_pc_type`; `None` chooses coarse_corrected where a body has more than one subdomain and there is more than

@@ -13,6 +13,33 @@ use crate::fem::Form;
 use std::path::Path;
 
 /// A checked scene.
+///
+/// ```
+/// use fetifeti::Scene;
+///
+/// let text = r#"
+///     [grid]
+///     bodies = [2, 1]
+///     origin = [0, 0]
+///     size = [2, 1]
+///     subdomains = 2
+///     elements_per_subdomain = 4
+///     dirichlet = ["left"]
+///     load = -1
+///     [[contact]]
+///     bodies = "all"
+///     gap = 0
+/// "#;
+/// let scene = Scene::parse("two.toml", text)?;
+/// assert_eq!((scene.n_bodies(), scene.n_subdomains()), (2, 8));
+/// assert!(scene.has_contact());
+/// // The bodies meet in 9 nodes, each with a row u_a − u_b ≤ 0.
+/// assert_eq!(scene.substructures(&|_| true)?.rows.len(), 9);
+/// // A mistake is answered with file, line and what was expected.
+/// let error = Scene::parse("two.toml", &text.replace("gap", "gpa")).unwrap_err();
+/// assert!(error.to_string().starts_with("two.toml:12: unknown key `gpa`"));
+/// # Ok::<(), fetifeti::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Title for reports.

@@ -65,6 +65,57 @@ pub struct Entity {
 }
 
 /// Everything the method needs to know about a problem; each rank holds its own part.
+///
+/// Two springs in a row, each a body of one subdomain. The first is fixed at its left end, which is eliminated; the
+/// second floats. One row ties the first's right end to the second's left end. The other lets the second's right end
+/// press against a wall at a distance of 0.1.
+///
+/// ```
+/// use fetifeti::substructures::BodyNode;
+/// use fetifeti::{Csr, InterfaceRow, RowKind, RowLabel, RowSource, Subdomain, Substructures};
+///
+/// let spring = |body: usize, k: Csr, f: Vec<f64>, dofs: Vec<u64>| Subdomain {
+///     index: body,
+///     body,
+///     rho: vec![1.0; f.len()],
+///     primal: Vec::new(),       // one subdomain: nothing to hold together
+///     entities: Vec::new(),
+///     near_kernel: None,        // kernels are found from the matrices
+///     coordinates: None,
+///     k,
+///     f,
+///     dofs,
+/// };
+/// let fixed = Csr::from_triplets(1, &[(0, 0, 1.0)]);
+/// let free = Csr::from_triplets(2, &[(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)]);
+/// let row = |block, terms: &[(u64, f64)], gap, kind, source| InterfaceRow {
+///     terms: terms.to_vec(),
+///     gap,
+///     kind,
+///     holds: true,
+///     block,                    // rows that share a dof have the same block
+///     label: RowLabel::new(source, [Some(BodyNode { body: 1, node: 0 }), None]),
+/// };
+/// let problem = Substructures {
+///     n_bodies: 2,
+///     n_subdomains: 2,
+///     body_names: vec!["fixed".into(), "free".into()],
+///     local: vec![
+///         spring(0, fixed, vec![0.0], vec![0]),
+///         spring(1, free, vec![0.0, 1.0], vec![1, 2]),
+///     ],
+///     rows: vec![
+///         row(0, &[(0, 1.0), (1, -1.0)], 0.0, RowKind::Equality, RowSource::Interface(0)),
+///         row(1, &[(2, 1.0)], 0.1, RowKind::Inequality, RowSource::Obstacle(0)),
+///     ],
+/// };
+/// // A floating body's matrix has a kernel: here the translation.
+/// let mut force = [0.0; 2];
+/// problem.local[1].k.mul(&[1.0, 1.0], &mut force);
+/// assert_eq!(force, [0.0, 0.0]);
+/// ```
+///
+/// [`FetiFeti`](crate::FetiFeti) takes it from here.
 #[derive(Debug, Clone)]
 pub struct Substructures {
     /// Number of bodies over all ranks.
