@@ -43,12 +43,13 @@
 //! MATIS, CSR ── embed ──┘
 //! ```
 //!
-//! A program may enter at [`Substructures`] with matrices of its own. `scene` makes them by `mesh` and `fem`; `embed` finds
-//! them in matrices of other PETSc programs (docs/embedding.md). Nothing behind them knows where they came from. `feti` solves
-//! equations, `contact` says which rows of B are equations, [`FetiFeti`] is both.
+//! A program may enter at [`Substructures`] with matrices of its own. `scene` makes them by `mesh` and `fem`; `embed`
+//! finds them in matrices of other PETSc programs (docs/embedding.md). Nothing behind them knows where they came from.
+//! `feti` solves equations, `contact` says which rows of B are equations, [`FetiFeti`] is both.
 //!
-//! The modules have an order, and each imports only from those before it: docs/architecture.md has the map, and follows a load,
-//! a contact row and a MATIS through the code. [`petsc`] and [`capi`], what C calls, are the only modules with unsafe code.
+//! The modules have an order, and each imports only from those before it. docs/architecture.md has the map, and follows
+//! a load, a contact row and a MATIS through the code. [`petsc`] and [`capi`], what C calls, are the only modules with
+//! unsafe code.
 //!
 //! # Only what the problem needs
 //!
