@@ -6,7 +6,7 @@
 //! ```
 
 use super::potentials::Potentials;
-use super::rows::Rows;
+use super::rows::Inequalities;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 
@@ -16,7 +16,7 @@ const SAME: f64 = 1e-12;
 /// The groups of one active set.
 #[derive(Debug, Clone)]
 pub struct Groups {
-    /// For every unknown of [`Rows::unknowns`] the lowest one of its group; `None` where the group hangs on ground.
+    /// For every unknown of [`Inequalities::unknowns`] the lowest one of its group; `None` where the group hangs on ground.
     pub lead: Vec<Option<usize>>,
     /// u less u of that one; u itself in a group that hangs on ground.
     pub offset: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct Groups {
 impl Groups {
     /// Joins the unknowns of the active rows, in the order of `priority`. A row that contradicts those before it is taken out of
     /// `active`.
-    pub fn new(rows: &Rows, active: &mut [bool], priority: &[usize]) -> Groups {
+    pub fn new(rows: &Inequalities, active: &mut [bool], priority: &[usize]) -> Groups {
         let largest = rows.rows.iter().fold(0.0f64, |a, r| a.max(r.gap.abs()));
         let n = rows.ground();
         let mut sets = Potentials::new(n + 1);
@@ -97,7 +97,7 @@ impl Groups {
 }
 
 /// The shortest multipliers of the active rows with Bᵀ λ = r, as nearly as they can; `r` at the unknowns in rows. Zero on the others.
-pub fn multipliers(rows: &Rows, active: &[bool], r: &[f64]) -> Vec<f64> {
+pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64]) -> Vec<f64> {
     let ground = rows.ground();
     // Ground passes on no force: groups that hang on it stay apart.
     let mut sets = Potentials::new(ground);
@@ -155,17 +155,17 @@ mod tests {
     use super::super::rows::Row;
     use super::*;
 
-    fn rows(n: usize, list: &[(usize, usize, f64)]) -> Rows {
+    fn rows(n: usize, list: &[(usize, usize, f64)]) -> Inequalities {
         let row = |&(plus, minus, gap): &(usize, usize, f64)| Row { plus, minus, gap };
-        Rows {
+        Inequalities {
             unknowns: (0..n as u64).collect(),
             rows: list.iter().map(row).collect(),
             initial: vec![true; list.len()],
-            ..Rows::default()
+            ..Inequalities::default()
         }
     }
 
-    fn groups(rows: &Rows, active: &mut [bool]) -> Groups {
+    fn groups(rows: &Inequalities, active: &mut [bool]) -> Groups {
         Groups::new(rows, active, &(0..rows.len()).collect::<Vec<_>>())
     }
 

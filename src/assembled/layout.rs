@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 
 use super::frame::{parallel, Frame};
-use super::motions::{Echelon, Form, Motions};
+use super::motions::{Echelon, Functional, Motions};
 use crate::linalg::vec3::{ball, norm};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
@@ -33,7 +33,7 @@ pub struct Layout<'a> {
     /// Those and the supports, increasing.
     void: Vec<u64>,
     /// Supports with their forms.
-    supports: Vec<(u64, Form)>,
+    supports: Vec<(u64, Functional)>,
     /// Nodes at which w is not u.
     frames: BTreeMap<u64, Frame>,
     /// The rigid motions.
@@ -41,7 +41,7 @@ pub struct Layout<'a> {
     /// What ties, springs and given values hold of them.
     pub held: Echelon,
     /// The forms of the inequalities.
-    pub forms: Vec<Form>,
+    pub forms: Vec<Functional>,
     /// All of that with the supports' forms left out.
     all_held: Echelon,
     /// Why the inequalities have no frames, if they have none.
@@ -187,7 +187,7 @@ impl<'a> Layout<'a> {
             .flat_map(|row| self.ends(row).0)
             .map(|(block, _)| block)
             .collect();
-        let mut candidates: Vec<(u64, Form)> = Vec::new();
+        let mut candidates: Vec<(u64, Functional)> = Vec::new();
         for (b, body) in self.scene.bodies.iter().enumerate() {
             let mesh = body.mesh();
             for place in mesh.boundary() {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Scene ──> Layout (unknowns w, frames, supports) ──> Unknowns ──> System (A, b) ──> Reduced (Tᵀ K T of changing active sets)
-//!      └──> Rows (w_p − w_m ≤ g) ──> Groups (active rows as equations) ──────────────────────┘
+//!      └──> Inequalities (w_p − w_m ≤ g) ──> Groups (active rows as equations) ──────────────────────┘
 //! ```
 
 pub mod frame;

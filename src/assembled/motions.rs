@@ -16,7 +16,7 @@ const DEPENDENT: f64 = 1e-9;
 const FIRM: f64 = 0.3;
 
 /// A linear form, or an equation: (place, coefficient), increasing.
-pub type Form = Vec<(usize, f64)>;
+pub type Functional = Vec<(usize, f64)>;
 
 /// Independent equations in echelon form.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +33,7 @@ impl Echelon {
     }
 
     /// What is left of a form once the equations are used, the largest entry of it, and the right-hand side.
-    fn reduce(&self, form: &Form, mut rhs: f64) -> (BTreeMap<usize, f64>, f64) {
+    fn reduce(&self, form: &Functional, mut rhs: f64) -> (BTreeMap<usize, f64>, f64) {
         let mut rest: BTreeMap<usize, f64> = BTreeMap::new();
         form.iter()
             .for_each(|&(k, v)| *rest.entry(k).or_default() += v);
@@ -49,7 +49,7 @@ impl Echelon {
     }
 
     /// The part of a form that the equations leave, relative to the form: 0 if it depends on them.
-    pub fn left(&self, form: &Form) -> f64 {
+    pub fn left(&self, form: &Functional) -> f64 {
         let largest = |m: f64, v: f64| m.max(v.abs());
         let size = form.iter().map(|t| t.1).fold(0.0, largest);
         let left = self.reduce(form, 0.0).0.into_values().fold(0.0, largest);
@@ -61,7 +61,7 @@ impl Echelon {
     }
 
     /// Adds form·α = rhs if it is independent, and says whether it was.
-    pub fn insert(&mut self, form: &Form, rhs: f64) -> bool {
+    pub fn insert(&mut self, form: &Functional, rhs: f64) -> bool {
         let size = form.iter().fold(0.0f64, |m, t| m.max(t.1.abs()));
         let (mut rest, mut rhs) = self.reduce(form, rhs);
         let by_size = |a: &(&usize, &f64), b: &(&usize, &f64)| {
@@ -83,7 +83,7 @@ impl Echelon {
     }
 
     /// Those of the candidates that, set to zero, hold all n motions with these equations; the firm ones first.
-    pub fn complete(&self, n: usize, candidates: &[(u64, Form)]) -> Vec<(u64, Form)> {
+    pub fn complete(&self, n: usize, candidates: &[(u64, Functional)]) -> Vec<(u64, Functional)> {
         let (mut now, mut chosen) = (self.clone(), Vec::new());
         let mut firm = FIRM;
         while now.rank() < n && firm > 1e-6 {
@@ -137,7 +137,7 @@ impl Motions {
     }
 
     /// Component `component` of u at a point of a body.
-    pub fn form(&self, body: usize, point: [f64; 3], component: usize) -> Form {
+    pub fn form(&self, body: usize, point: [f64; 3], component: usize) -> Functional {
         let first = body * self.count;
         if self.components == 1 {
             return vec![(first, 1.0)];
@@ -149,7 +149,7 @@ impl Motions {
     }
 
     /// The form of Σ coefficient · u(body dof).
-    pub fn of_terms(&self, scene: &Scene, terms: &[(u64, f64)]) -> Form {
+    pub fn of_terms(&self, scene: &Scene, terms: &[(u64, f64)]) -> Functional {
         let mut out: BTreeMap<usize, f64> = BTreeMap::new();
         for &(dof, coefficient) in terms {
             let body = scene.bodies.partition_point(|b| b.first_dof <= dof) - 1;
@@ -162,7 +162,7 @@ impl Motions {
     }
 
     /// The form of degree of freedom C k + c of a body.
-    fn at(&self, scene: &Scene, body: usize, inside: usize) -> Form {
+    fn at(&self, scene: &Scene, body: usize, inside: usize) -> Functional {
         let spec = &scene.bodies[body].spec;
         let place = spec.mesh.place(inside / self.components);
         self.form(body, spec.position(place), inside % self.components)

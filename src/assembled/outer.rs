@@ -14,7 +14,7 @@ use std::time::Instant;
 use super::groups::{multipliers, Groups};
 use super::reduced::Reduced;
 use super::refine::{over, Refiner};
-use super::rows::Rows;
+use super::rows::Inequalities;
 use crate::parallel::meter::timed;
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::Result;
@@ -54,7 +54,7 @@ pub enum Solve<'a> {
 }
 
 /// What the loop has found.
-pub struct Found {
+pub struct ActiveSetEnd {
     /// The solution.
     pub u: PetscVec,
     /// The active set.
@@ -123,13 +123,13 @@ pub type Solvers<'a> = dyn FnMut() -> Result<Ksp> + 'a;
 /// PETSc's.
 pub fn solve(
     session: &Session,
-    rows: &Rows,
+    rows: &Inequalities,
     reduced: &Reduced,
     solvers: &mut Solvers,
     tolerances: Tolerances,
     solve: Solve,
     given: Option<&[bool]>,
-) -> Result<Found> {
+) -> Result<ActiveSetEnd> {
     let (whole, mut setup) = (Instant::now(), 0.0);
     let u = reduced.vector()?;
     let mut active = given.map_or_else(|| rows.initial.clone(), <[bool]>::to_vec);
@@ -240,7 +240,7 @@ pub fn solve(
             None
         };
         if let Some((converged, reason)) = end {
-            return Ok(Found {
+            return Ok(ActiveSetEnd {
                 u,
                 active,
                 lambda: judged.lambda,
@@ -293,7 +293,13 @@ struct Judged {
 }
 
 impl Judged {
-    fn new(rows: &Rows, active: &[bool], lambda: Vec<f64>, gaps: Vec<f64>, u_max: f64) -> Judged {
+    fn new(
+        rows: &Inequalities,
+        active: &[bool],
+        lambda: Vec<f64>,
+        gaps: Vec<f64>,
+        u_max: f64,
+    ) -> Judged {
         let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
         let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
         let mut out = Judged {

@@ -1,7 +1,7 @@
 //! K, f and the inequalities of a scene in one place, and how far vectors are from satisfying them.
 
 use super::groups::Groups;
-use super::rows::Rows;
+use super::rows::Inequalities;
 use super::system::{Format, System};
 use super::unknowns::{Trace, Unknowns};
 use crate::petsc::{Session, Vec as PetscVec};
@@ -13,7 +13,7 @@ pub struct Problem {
     /// K and f.
     pub system: System,
     /// The inequalities; none where the scene has no contact.
-    pub rows: Rows,
+    pub rows: Inequalities,
     /// Entries of vectors at the unknowns in rows.
     pub trace: Trace,
 }
@@ -31,8 +31,8 @@ impl Problem {
     ) -> Result<Problem> {
         let system = System::new(session, scene, unknowns, format)?;
         let rows = match scene.has_contact() {
-            true => Rows::new(scene, unknowns.layout),
-            false => Rows::default(),
+            true => Inequalities::new(scene, unknowns.layout),
+            false => Inequalities::default(),
         };
         let trace = Trace::new(&rows, &system.b);
         Ok(Problem {

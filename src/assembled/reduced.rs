@@ -8,7 +8,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::groups::Groups;
 use super::near::NearKernel;
-use super::rows::Rows;
+use super::rows::Inequalities;
 use super::system::System;
 use super::unknowns::Trace;
 use crate::parallel::exchange::sum_all;
@@ -52,7 +52,7 @@ impl Reduced {
     pub fn new(
         session: &Session,
         system: &System,
-        rows: &Rows,
+        rows: &Inequalities,
         kernel: NearKernel,
     ) -> Result<Reduced> {
         let unknowns: Vec<i32> = rows.unknowns.iter().map(|&u| u as i32).collect();
@@ -252,7 +252,7 @@ impl Reduced {
 fn pattern(
     session: &Session,
     system: &System,
-    rows: &Rows,
+    rows: &Inequalities,
     trace: &Trace,
     touched: &[(Option<usize>, KRow)],
     lengths: &[[i32; 2]],

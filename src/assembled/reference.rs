@@ -5,7 +5,7 @@
 
 use super::layout::Layout;
 use super::near::{Near, NearKernel};
-use super::outer::{self, Found, Solve, Tolerances};
+use super::outer::{self, ActiveSetEnd, Solve, Tolerances};
 use super::problem::Problem;
 use super::reduced::Reduced;
 use super::refine::{over, Refiner};
@@ -43,7 +43,7 @@ pub struct Reference<'a> {
     /// The assembled problem.
     pub problem: Problem,
     /// Its solution.
-    pub found: Found,
+    pub found: ActiveSetEnd,
 }
 
 impl<'a> Reference<'a> {

@@ -7,12 +7,12 @@
 use std::collections::BTreeMap;
 
 use super::layout::Layout;
-use super::motions::{Echelon, Form};
+use super::motions::{Echelon, Functional};
 use super::potentials::Potentials;
 use crate::scene::Scene;
 use crate::substructures::RowKind;
 
-/// u_plus − u_minus ≤ gap. Indices into [`Rows::unknowns`]; their number stands for ground.
+/// u_plus − u_minus ≤ gap. Indices into [`Inequalities::unknowns`]; their number stands for ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Index of the unknown with coefficient 1.
@@ -25,7 +25,7 @@ pub struct Row {
 
 /// All inequalities, in the order of [`Scene::rows`].
 #[derive(Debug, Clone, Default)]
-pub struct Rows {
+pub struct Inequalities {
     /// Unknowns in some row, increasing.
     pub unknowns: Vec<u64>,
     /// The rows.
@@ -35,23 +35,23 @@ pub struct Rows {
     /// What ties, springs and given values hold of the rigid motions.
     pub(super) held: Echelon,
     /// The forms of the rows on them.
-    pub(super) forms: Vec<Form>,
+    pub(super) forms: Vec<Functional>,
     /// For every row of the scene its subdomain, and its place in `rows` if it is an inequality.
     pub(super) from: Vec<(usize, Option<usize>)>,
 }
 
-impl Rows {
+impl Inequalities {
     /// The inequalities of `scene`; those of a layout that has no frames for them mean nothing.
-    pub fn new(scene: &Scene, layout: &Layout) -> Rows {
+    pub fn new(scene: &Scene, layout: &Layout) -> Inequalities {
         let all = scene.rows(&|_| true);
         let subdomains = scene
             .points
             .iter()
             .flat_map(|point| std::iter::repeat_n(point.subdomain, point.rows.len()));
-        let mut out = Rows {
+        let mut out = Inequalities {
             held: layout.held.clone(),
             forms: layout.forms.clone(),
-            ..Rows::default()
+            ..Inequalities::default()
         };
         // Unknowns with coefficient 1 and −1.
         let mut ends: Vec<[Option<u64>; 2]> = Vec::new();
@@ -118,7 +118,7 @@ impl Rows {
         mine.map(|&(_, place)| place).collect()
     }
 
-    /// B u − c from u at [`Rows::unknowns`].
+    /// B u − c from u at [`Inequalities::unknowns`].
     pub fn gaps(&self, u: &[f64]) -> Vec<f64> {
         let at = |k: usize| u.get(k).copied().unwrap_or(0.0);
         let gap = |r: &Row| at(r.plus) - at(r.minus) - r.gap;

@@ -190,7 +190,7 @@ struct Part {
 }
 
 /// What u at the dofs of a subdomain is in local unknowns: (unknown, coefficient) and an offset.
-type Local = Vec<(Vec<(i32, f64)>, f64)>;
+type RankRows = Vec<(Vec<(i32, f64)>, f64)>;
 
 impl Part {
     fn new(session: &Session, subdomains: &[Subdomain], all: &Unknowns) -> Result<Part> {
@@ -205,7 +205,7 @@ impl Part {
             let found = unknowns.binary_search(&(g as i32));
             found.expect("every unknown was listed") as i32
         };
-        let local = |s: &Subdomain| -> Local {
+        let local = |s: &Subdomain| -> RankRows {
             let terms = s.dofs.iter().map(|&dof| all.terms(dof));
             let found = |list: Vec<(u64, f64)>| list.into_iter().map(|(g, c)| (find(g), c));
             terms.map(|(list, o)| (found(list).collect(), o)).collect()

@@ -2,7 +2,7 @@
 
 use super::groups::Groups;
 use super::layout::Layout;
-use super::rows::Rows;
+use super::rows::Inequalities;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
 use crate::Result;
@@ -43,7 +43,7 @@ impl<'a> Unknowns<'a> {
     }
 
     /// One v per group, and none at void places.
-    pub fn merged(layout: &'a Layout<'a>, rows: &Rows, groups: &Groups) -> Unknowns<'a> {
+    pub fn merged(layout: &'a Layout<'a>, rows: &Inequalities, groups: &Groups) -> Unknowns<'a> {
         let each = rows.unknowns.iter().enumerate();
         let led = each.clone().filter(|(k, _)| !groups.is_free(*k));
         let mut gone: Vec<u64> = led.map(|(_, &unknown)| unknown).collect();
@@ -176,7 +176,7 @@ pub struct Trace {
 
 impl Trace {
     /// For vectors that are laid out as `like`.
-    pub fn new(rows: &Rows, like: &PetscVec) -> Trace {
+    pub fn new(rows: &Inequalities, like: &PetscVec) -> Trace {
         let range = like.ownership_range();
         let unknowns = rows.unknowns.iter().enumerate();
         let mine = unknowns.filter(|(_, u)| range.contains(&(**u as usize)));

@@ -11,7 +11,7 @@ use crate::assembled::layout::Layout;
 use crate::assembled::near::NearKernel;
 use crate::assembled::outer::{self, Solve, Tolerances};
 use crate::assembled::reduced::Reduced;
-use crate::assembled::rows::Rows;
+use crate::assembled::rows::Inequalities;
 use crate::assembled::system::System;
 use crate::assembled::unknowns::Unknowns;
 use crate::parallel::meter::{memory, timed};
@@ -32,7 +32,7 @@ pub fn baseline(
 ) -> Result<Outcome> {
     let ((rows, mut reduced, load), assemble) = timed(session, || {
         let layout = Layout::new(scene);
-        let rows = Rows::new(scene, &layout);
+        let rows = Inequalities::new(scene, &layout);
         let unknowns = Unknowns::all(&layout);
         let system = System::new(session, scene, &unknowns, row.format)?;
         let kernel = NearKernel::new(scene, &unknowns, &system.b, row.near)?;

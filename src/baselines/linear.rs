@@ -10,7 +10,7 @@ use super::task::{ContactOutcome, Job, Outcome};
 use crate::assembled::groups::Groups;
 use crate::assembled::layout::Layout;
 use crate::assembled::near::NearKernel;
-use crate::assembled::rows::Rows;
+use crate::assembled::rows::Inequalities;
 use crate::assembled::system::{Format, System};
 use crate::assembled::unknowns::Unknowns;
 use crate::parallel::meter::{memory, timed};
@@ -98,7 +98,7 @@ pub fn baseline(
     let unknowns = match row.format {
         Format::Assembled => Unknowns::all(&layout),
         Format::Unassembled if scene.has_contact() => {
-            let rows = Rows::new(scene, &layout);
+            let rows = Inequalities::new(scene, &layout);
             let mut on = rows.set(active);
             let in_order: Vec<usize> = (0..rows.len()).collect();
             let groups = Groups::new(&rows, &mut on, &in_order);

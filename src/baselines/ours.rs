@@ -7,7 +7,7 @@ use super::second::SecondLoad;
 use super::task::{ContactOutcome, Job, Outcome};
 use crate::assembled::layout::Layout;
 use crate::assembled::problem::Problem;
-use crate::assembled::rows::Rows;
+use crate::assembled::rows::Inequalities;
 use crate::assembled::system::{Copies, Format};
 use crate::assembled::unknowns::Unknowns;
 use crate::feti::MethodSettings;
@@ -140,7 +140,12 @@ fn close(
 }
 
 /// Which of the scene's inequalities are active, the same on every rank. Collective.
-fn active(session: &Session, scene: &Scene, solution: &Solution, rows: &Rows) -> Result<Vec<bool>> {
+fn active(
+    session: &Session,
+    scene: &Scene,
+    solution: &Solution,
+    rows: &Inequalities,
+) -> Result<Vec<bool>> {
     let provided = rows.provided(&distribution::owner(session, scene)?);
     let solved = solution.rows();
     let held = provided.into_iter().zip(solved).filter(|(_, r)| r.holds());

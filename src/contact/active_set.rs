@@ -299,7 +299,7 @@ impl<'a> ActiveSet<'a> {
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
         let y = self.at.residual.largest();
-        let mut judged = judge::Rows::new(comm, jump, gaps, &lambda, y, self.pull);
+        let mut judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, y, self.pull);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);
         if self.state.caution == Caution::Single {

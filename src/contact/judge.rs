@@ -14,7 +14,7 @@ const NOISE: f64 = 3.0;
 pub const ROUNDING: f64 = 1e-14;
 
 /// The next set and why.
-pub struct Rows {
+pub struct JudgedRows {
     /// Whether each owned row is to hold.
     pub active: Vec<bool>,
     /// Whether rows that hold contradict each other on some rank.
@@ -28,7 +28,7 @@ pub struct Rows {
     pub y_max: f64,
 }
 
-impl Rows {
+impl JudgedRows {
     /// Judges the owned rows by their gaps B u − c and multipliers; `y` is the largest displacement on this rank, and multipliers above
     /// minus `pull`, relative to the largest, do not pull. Collective.
     pub fn new(
@@ -38,7 +38,7 @@ impl Rows {
         lambda: &[f64],
         y: f64,
         pull: f64,
-    ) -> Rows {
+    ) -> JudgedRows {
         let contact = jump.rows_between_bodies();
         // [largest jump left on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
         let mut largest = [0.0f64, 0.0, y, 0.0];
@@ -50,7 +50,7 @@ impl Rows {
         }
         max_all(comm, &mut largest);
         let [jump_left, lambda_max, y_max, contradictory] = largest;
-        let mut rows = Rows {
+        let mut rows = JudgedRows {
             active: jump.active.clone(),
             contradictory: contradictory > 0.0,
             wrong: vec![0.0; jump.n_owned],

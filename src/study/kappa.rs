@@ -70,7 +70,7 @@ pub const FAMILIES: [Family; 5] = [
 
 /// One preconditioner on one grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct KappaOf {
     /// CG's estimate of κ.
     pub kappa: f64,
     /// Its smallest eigenvalue, at least 1 up to rounding.
@@ -93,9 +93,9 @@ pub struct Row {
     /// Free degrees of freedom of the subdomains, copies counted.
     pub dofs: usize,
     /// With M_D.
-    pub dirichlet: Found,
+    pub dirichlet: KappaOf,
     /// With M_C.
-    pub coarse_corrected: Found,
+    pub coarse_corrected: KappaOf,
 }
 
 /// The study.
@@ -151,7 +151,7 @@ pub fn grid(
     let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
     let mut dofs = [problem.local.iter().map(|s| s.k.n() as f64).sum::<f64>()];
     crate::parallel::exchange::sum_all(session.comm(), &mut dofs);
-    let found = |pc: PcType| -> Result<Found> {
+    let found = |pc: PcType| -> Result<KappaOf> {
         let settings = MethodSettings {
             pc_type: Some(pc),
             rtol: 1e-9,
@@ -171,7 +171,7 @@ pub fn grid(
             true => solver.spectrum()?.map(|s| s.kappa()),
             false => None,
         };
-        Ok(Found {
+        Ok(KappaOf {
             kappa: solution.estimate.map_or(f64::NAN, |s| s.kappa()),
             lambda_min: solution.estimate.map_or(f64::NAN, |s| s.lambda_min),
             iterations: solution.iterations,

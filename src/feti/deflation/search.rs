@@ -66,7 +66,7 @@ const ROUNDING: f64 = 1e-10;
 
 /// What the search has found for one body.
 #[derive(Debug, Default, Clone)]
-pub struct Found {
+pub struct TopOfPencil {
     /// Ritz values above τ, the largest first.
     pub theta: Vec<f64>,
     /// Their vectors in terms of the basis.
@@ -90,9 +90,9 @@ pub fn top(
     tau: f64,
     most: usize,
     mut visit: impl FnMut(usize, &[f64], &[f64]),
-) -> Result<Vec<Found>> {
+) -> Result<Vec<TopOfPencil>> {
     let n = pencil.parts().len();
-    let mut found = vec![Found::default(); n];
+    let mut found = vec![TopOfPencil::default(); n];
     let mut basis = Basis {
         q: Vec::new(),
         fq: Vec::new(),
@@ -131,7 +131,7 @@ pub fn top(
 
 impl Basis {
     /// The image of the next vector, orthogonal to the others, becomes a new one.
-    fn expand(&mut self, pencil: &impl Pencils, found: &[Found]) -> Result<()> {
+    fn expand(&mut self, pencil: &impl Pencils, found: &[TopOfPencil]) -> Result<()> {
         let s = self.h.len();
         let mut v = self.fq[s].clone();
         // Bodies that have settled rest.
@@ -179,7 +179,7 @@ impl Basis {
     }
 
     /// The Rayleigh–Ritz problem of body `s` over the expanded vectors.
-    fn judge(&self, s: usize, tau: f64, most: usize, body: &mut Found) {
+    fn judge(&self, s: usize, tau: f64, most: usize, body: &mut TopOfPencil) {
         let m = self.h.len();
         let entry = |i: usize, j: usize| self.h[j].get(i).map_or(0.0, |h| h[s]);
         let a = faer::Mat::from_fn(m, m, |i, j| 0.5 * (entry(i, j) + entry(j, i)));
