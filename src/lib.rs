@@ -2,13 +2,13 @@
 //!
 //! # The problem
 //!
-//! Bodies Ω_i, i = 1..N, are each cut into subdomains Ω_ij. Every body carries −∇·(ρ∇u) = f with Dirichlet conditions on
-//! some of its sides, or on none: then it *floats*. On the faces where bodies meet, their displacements are tied, B_gl u = c,
-//! or in contact, B_gl u ≤ c with λ ≥ 0: \[Lee\] (3.1)–(3.3) is the model. [`contact`] is the loop around the equations; it
-//! changes Z and nothing that depends on K.
+//! Bodies Ω_i, i = 1..N, are each cut into subdomains Ω_ij. Every body carries −∇·(ρ∇u) = f with Dirichlet conditions
+//! on some of its sides. A body without Dirichlet conditions *floats*. On the faces where bodies meet, their
+//! displacements are tied, B_gl u = c, or in contact, B_gl u ≤ c with λ ≥ 0; the model is \[Lee\] (3.1)–(3.3).
+//! [`contact`] is the loop around the equations; it changes Z and nothing that depends on K.
 //!
-//! After condensation to the interface Γ the unknowns are torn twice, inside the bodies and between them, and tied again by
-//! multipliers λ. What is solved is \[Lee\] (2.11), (3.8)
+//! After condensation to the interface Γ the unknowns are torn twice, inside the bodies and between them, and tied
+//! again by multipliers λ. The dual problem is \[Lee\] (2.11), (3.8):
 //!
 //! ```text
 //!     Pᵀ F λ = Pᵀ d,   Gᵀ λ = e        by CG in λ₀ + ker Gᵀ, preconditioned by P M⁻¹ Pᵀ
@@ -43,13 +43,13 @@
 //! MATIS, CSR ── embed ──┘
 //! ```
 //!
-//! A program may enter at [`Substructures`] with matrices of its own. `scene` makes them by `mesh` and `fem`; `embed`
-//! finds them in matrices of other PETSc programs (docs/embedding.md). Nothing behind them knows where they came from.
-//! `feti` solves equations, `contact` says which rows of B are equations, [`FetiFeti`] is both.
+//! A program may enter at [`Substructures`] with matrices of its own. `scene` builds substructures with `mesh` and `fem`;
+//! `embed` finds them in matrices of other PETSc programs (docs/embedding.md). The solver does not know where they came
+//! from. `feti` solves equations, `contact` says which rows of B are equations, [`FetiFeti`] combines both.
 //!
 //! The modules have an order, and each imports only from those before it. docs/architecture.md has the map, and follows
-//! a load, a contact row and a MATIS through the code. [`petsc`] and [`capi`], what C calls, are the only modules with
-//! unsafe code.
+//! a load, a contact row and a MATIS through the code. [`petsc`] and the C interface [`capi`] are the only
+//! modules with unsafe code.
 //!
 //! # Only what the problem needs
 //!
@@ -61,8 +61,8 @@
 //! | no inequality | the outer loop | one linear problem |
 //! | `-fetifeti_pc_type dirichlet` | Z_c | the method whose κ ≤ C (H_b/H_s)(1 + log H_s/h)² is Theorem 3.10 of \[Lee\] |
 //!
-//! These are sizes that come out as zero, not branches of their own: there is one code path. `fetifeti plan` prints what a
-//! scene leads to.
+//! In these cases sizes become zero; there is one code path without branches of its own for them. `fetifeti plan`
+//! prints the sizes for a scene.
 //!
 //! # Example
 //!
@@ -90,11 +90,11 @@
 //! # References
 //!
 //! \[Lee\] J. Lee, *Convergence analysis of a new domain decomposition method for a linearized contact problem*, 2010.
-//! `docs/theory.md` in the repository has the others and the reasons behind the choices, `docs/options.md` every option;
-//! `docs/README.md` says which page is for whom.
+//! `docs/theory.md` in the repository has the other references and the reasons behind the choices; `docs/options.md`
+//! has every option. `docs/README.md` says which page is for whom.
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
-// Without the program nobody calls what only the program needs.
+// Some functions are used by the program alone.
 #![cfg_attr(not(feature = "cli"), allow(dead_code))]
 
 #[cfg(feature = "cli")]
@@ -129,7 +129,7 @@ pub mod status;
 pub mod study;
 pub mod substructures;
 
-// Tests say `fetifeti` inside the crate as they do outside.
+// With this name, tests use `fetifeti` inside the crate as they do outside.
 #[cfg(test)]
 extern crate self as fetifeti;
 #[cfg(all(test, feature = "cli"))]
@@ -151,8 +151,8 @@ pub use substructures::{
     Substructures,
 };
 
-/// Runs `work` as the whole program: starts PETSc with the process's arguments (so that PETSc options work), ends it
-/// afterwards, prints an error as one sentence and turns it into the exit code of [`Error::exit_code`].
+/// Runs `work` as the whole program. It starts PETSc with the process's arguments (so that PETSc options work) and ends
+/// it afterwards. An error is printed as one sentence and becomes the exit code of [`Error::exit_code`].
 pub fn run(work: impl FnOnce(&Session) -> Result<()>) -> std::process::ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let code = match Session::new(&args, "") {
@@ -165,7 +165,7 @@ pub fn run(work: impl FnOnce(&Session) -> Result<()>) -> std::process::ExitCode 
     std::process::ExitCode::from(code as u8)
 }
 
-/// The subdomains of this rank where `n` are dealt out in equal runs; any other distribution is as good.
+/// The subdomains of this rank if `n` subdomains are dealt out in equal runs. Any other distribution is as good.
 pub fn share(session: &Session, n: usize) -> std::ops::Range<usize> {
     mesh::contiguous_share(n, session.size(), session.rank())
 }

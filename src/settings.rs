@@ -1,11 +1,11 @@
-//! What a user may choose, with defaults: the linear method and the contact loop.
+//! Settings of the linear method and of the contact loop, with defaults.
 
 use crate::contact::ContactSettings;
 use crate::feti::MethodSettings;
 use crate::petsc::{Options, Session};
 use crate::Result;
 
-/// Everything that can be set; Krylov settings live in the KSP (`fetifeti_ksp_`).
+/// All settings. Krylov settings live in the KSP (`fetifeti_ksp_`).
 ///
 /// ```
 /// use fetifeti::{MethodSettings, PcType, Settings};
@@ -30,7 +30,7 @@ pub struct Settings {
 }
 
 impl From<MethodSettings> for Settings {
-    /// With the contact loop as it is by default.
+    /// These settings, with the default contact loop.
     fn from(method: MethodSettings) -> Settings {
         Settings {
             method,
@@ -40,10 +40,10 @@ impl From<MethodSettings> for Settings {
 }
 
 impl Settings {
-    /// These settings with what the options database says on top; lists them under `-help`.
+    /// These settings, overridden by the options database; lists the options under `-help`.
     ///
     /// # Errors
-    /// An option whose value makes no sense.
+    /// An option with an invalid value.
     pub fn with_options(self, session: &Session) -> Result<Settings> {
         let method = self.method.with_options(session)?;
         let options = Options::new(session, &method.prefix);

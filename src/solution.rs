@@ -1,4 +1,4 @@
-//! What a solve returns.
+//! The result of a solve.
 
 use crate::contact::{State, Step};
 use crate::feti::{Kkt, LinearSolution, Spectrum};
@@ -12,25 +12,25 @@ pub struct Solution {
     pub u: Vec<Vec<f64>>,
     /// Multipliers of the rows that this rank owns.
     pub lambda: Vec<f64>,
-    /// B u − c on these rows, those that do not hold included.
+    /// B u − c on these rows, including those that do not hold.
     pub gaps: Vec<f64>,
-    /// Whether each of these rows holds at the end, those included that follow from others that do.
+    /// Whether each of these rows holds at the end. Rows that follow from others that hold are included.
     pub active: Vec<bool>,
-    /// Krylov iterations, of all steps of the contact loop.
+    /// Krylov iterations; with contact, of all steps of the loop.
     pub iterations: usize,
-    /// Why it stopped; [`Solution::converged`] says whether everything reached its tolerance.
+    /// The reason for the end; [`Solution::converged`] says whether everything reached its tolerance.
     pub status: Status,
-    /// ‖r_n‖₂ for n = 0, 1, …; of the contact loop those of the last step that iterated.
+    /// ‖r_n‖₂ for n = 0, 1, …; with contact, those of the last step that iterated.
     pub residuals: Vec<f64>,
-    /// The Krylov method's own estimate of the spectrum, of the contact loop in the last step that iterated.
+    /// The Krylov method's own estimate of the spectrum; with contact, that of the last step that iterated.
     pub estimate: Option<Spectrum>,
     /// Optimality.
     pub kkt: Kkt,
     /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c).
     pub energy: f64,
-    /// Seconds of condensing, iterating.
+    /// Seconds of condensing and iterating.
     pub solve_seconds: f64,
-    /// Seconds of the way back.
+    /// Seconds of the recovery of displacements.
     pub recover_seconds: f64,
     /// Steps of the contact loop; empty without inequalities.
     pub steps: Vec<Step>,
@@ -38,7 +38,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// What the linear method has found, row by row too, at the end of these steps of the contact loop.
+    /// The solution from the result of the linear method, its rows, and the steps of the contact loop.
     pub(crate) fn new(found: LinearSolution, rows: Vec<SolvedRow>, steps: Vec<Step>) -> Solution {
         Solution {
             u: found.u,
@@ -58,12 +58,13 @@ impl Solution {
         }
     }
 
-    /// Where the contact loop starts for other loads: the multipliers and the set of this solution.
+    /// The start of the contact loop for other loads: the multipliers and the set of this solution.
     pub fn warm_start(&self) -> State {
         State::warm(&self.lambda, &self.active)
     }
 
-    /// The rows between bodies that this rank provides, in its order: body, node, normal, gap, multiplier, pressure, state.
+    /// The rows between bodies that this rank provides, in its order: body, node, normal, gap, multiplier, pressure,
+    /// state.
     pub fn rows(&self) -> &[SolvedRow] {
         &self.rows
     }

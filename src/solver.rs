@@ -1,4 +1,4 @@
-//! The front door: from substructures to a solver that can be asked for solutions and spectra.
+//! The main entry: from substructures to a solver that returns solutions and spectra.
 
 use std::cell::Ref;
 
@@ -67,10 +67,10 @@ impl FetiFeti {
         })
     }
 
-    /// Solves for the loads of the substructures: by the contact loop where rows are inequalities, at once where none is.
-    /// Collective.
+    /// Solves for the loads of the substructures: by the contact loop if some rows are inequalities, by one linear
+    /// solve otherwise. Collective.
     ///
-    /// An iteration that stops early is no error here: look at [`Solution::status`].
+    /// An iteration that stops early is not an error: look at [`Solution::status`].
     ///
     /// # Errors
     /// A body that nothing holds or that is pushed away for ever, gaps that contradict each other; PETSc's own errors.
@@ -78,23 +78,23 @@ impl FetiFeti {
         self.solve_from(None, &mut |_, _| Ok(()))
     }
 
-    /// The same without inequalities, for those who measure the solution themselves: whenever the tolerance is reached,
-    /// `enough` is asked for the factor by which the residual should fall further, and the iteration goes on from where it is
-    /// until it says `None`. Collective.
+    /// Solves without inequalities, for callers that measure the solution themselves. Whenever the tolerance is
+    /// reached, `enough` returns the factor by which the residual should fall further, and the iteration goes on;
+    /// `None` ends it. Collective.
     ///
     /// # Errors
-    /// As [`FetiFeti::solve`], and what `enough` returns.
+    /// As [`FetiFeti::solve`], and those of `enough`.
     pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
         let found = self.method.solve(Some(enough))?;
         Ok(self.solution(found, Vec::new()))
     }
 
-    /// The same from a given state of the contact loop, with a call after each of its steps. Without inequalities the
-    /// state is not used. Collective.
+    /// Solves as [`FetiFeti::solve`], from a given state of the contact loop and with a call after each of its steps.
+    /// Without inequalities the state is not used. Collective.
     ///
     /// # Errors
-    /// As [`FetiFeti::solve`], and what `observe` returns.
+    /// As [`FetiFeti::solve`], and those of `observe`.
     pub fn solve_from(
         &self,
         start: Option<&contact::State>,
@@ -109,7 +109,7 @@ impl FetiFeti {
         Ok(self.solution(found, steps))
     }
 
-    /// What was found, with the rows in the order in which the problem has them.
+    /// The solution, with the rows in the order in which the problem has them.
     fn solution(&self, found: LinearSolution, steps: Vec<Step>) -> Solution {
         let dual = self.dual();
         let jump = &dual.stiffness.jump;
@@ -123,9 +123,8 @@ impl FetiFeti {
         Solution::new(found, rows.collect(), steps)
     }
 
-    /// Displacements of each local subdomain for the iterate that has been reached, to be asked for by a monitor of
-    /// [`FetiFeti::ksp`] during a solve without inequalities; `None` where no iteration is running. Costs about as much as an
-    /// iteration. Collective.
+    /// Displacements of each local subdomain for the present iterate, for a monitor of [`FetiFeti::ksp`] during a solve
+    /// without inequalities; `None` if no iteration is running. The cost is about that of an iteration. Collective.
     ///
     /// # Errors
     /// PETSc's own.
@@ -133,17 +132,17 @@ impl FetiFeti {
         self.method.current()
     }
 
-    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows (in the order in which this
-    /// rank provides them). Nothing is factored again.
+    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows, which are in the
+    /// order in which this rank provides them. Nothing is factored again.
     ///
     /// # Panics
-    /// If a length differs from what is there.
+    /// If a length differs from the present one.
     pub fn set_loads(&mut self, loads: Vec<Vec<f64>>, gaps: &[f64]) {
         self.method.set_loads(loads, gaps);
     }
 
-    /// Finds what of the spectrum is above τ and deflates it from now on, whatever the iterations have shown; with all rows
-    /// that may hold. Collective.
+    /// Finds the eigenvectors above τ with all candidate rows and deflates them from now on, whatever the spectrum of
+    /// the iterations. Collective.
     ///
     /// # Errors
     /// PETSc's own.
@@ -151,13 +150,13 @@ impl FetiFeti {
         self.method.deflate()
     }
 
-    /// What is deflated and what that has cost; `None` where nothing has been searched for.
+    /// Result and cost of the deflation; `None` if there was no search.
     pub fn deflated(&self) -> Option<Cost> {
         self.method.deflated()
     }
 
-    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Where a bound is asked for and
-    /// nothing has been deflated yet, that is done first. Collective.
+    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. If a bound is asked for
+    /// and nothing has been deflated yet, deflation comes first. Collective.
     ///
     /// # Errors
     /// PETSc's and SLEPc's own.
@@ -165,7 +164,7 @@ impl FetiFeti {
         self.method.spectrum()
     }
 
-    /// The same without deflation. Collective.
+    /// [`spectrum`](Self::spectrum) without deflation. Collective.
     ///
     /// # Errors
     /// PETSc's and SLEPc's own.
@@ -173,7 +172,7 @@ impl FetiFeti {
         self.method.plain_spectrum()
     }
 
-    /// The identities that the theory promises, each with its relative defect, which must be about rounding. Collective.
+    /// The identities of the theory, each with its relative defect, which must be of the size of rounding. Collective.
     ///
     /// # Errors
     /// PETSc's own.
@@ -181,7 +180,8 @@ impl FetiFeti {
         self.method.check()
     }
 
-    /// What an iteration sends, over all iterations of the Krylov method so far; `None` where there were none. Collective.
+    /// Messages and reductions per iteration, over all iterations of the Krylov method so far; `None` if there were
+    /// none. Collective.
     pub fn communication(&self) -> Option<Communication> {
         self.method.communication()
     }
@@ -211,7 +211,7 @@ impl FetiFeti {
         self.method.ksp()
     }
 
-    /// The linear method inside.
+    /// The linear method of this solver.
     pub fn method(&self) -> &LinearMethod {
         &self.method
     }

@@ -4,18 +4,18 @@ use std::fmt;
 
 use crate::petsc::ConvergedReason;
 
-/// Why a solve stopped. Displayed as PETSc names its reasons, such as `CONVERGED_RTOL`.
+/// The reason why a solve stopped. It is displayed as PETSc names its reasons, such as `CONVERGED_RTOL`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Status {
     /// The Krylov method's own reason.
     Krylov(ConvergedReason),
     /// The residual was within the tolerance before the first iteration.
     NothingToDo,
-    /// The iteration converged, but refinement did not reach the digits that were asked for.
+    /// The iteration converged, but refinement did not reach the requested accuracy.
     Refinement,
     /// The iteration converged, but the displacements are far from equilibrium, or rows are far from holding.
     Certificate,
-    /// The contact loop took as many steps as it may.
+    /// The contact loop reached its largest number of steps.
     ContactSteps,
 }
 
@@ -29,8 +29,8 @@ impl Status {
         }
     }
 
-    /// The number of PETSc's `KSPConvergedReason` that says the same, or the nearest of them: operators that have lost
-    /// their digits are a preconditioner that failed, too many contact steps are too many iterations.
+    /// The number of PETSc's `KSPConvergedReason` with the same meaning, or the nearest one: operators that have lost
+    /// their digits count as a preconditioner that failed, too many contact steps as too many iterations.
     pub fn number(&self) -> i32 {
         match self {
             Status::Krylov(reason) => reason.code,

@@ -1,13 +1,13 @@
-//! The primal-dual active set (docs/theory.md, section 9).
+//! The primal-dual active set method (docs/theory.md, section 9).
 //!
 //! ```text
 //!     solve the equations on A_k,    A_{k+1} = { j : λ_j + ρ (B u − c)_j > 0 }
 //! ```
 //!
-//! On A_k the second term vanishes and off it the first does, so that ρ plays no part. The loop starts from all candidates: a
-//! body that only contact holds makes every smaller guess singular. While the set changes, the inner problem is solved
-//! loosely and λ goes on from where it was; a set that stays is solved to the end, and only a set that stays then is
-//! the solution. A set that comes back is treated with growing [`Caution`].
+//! On A_k the gap B u − c vanishes and off it λ vanishes, so that ρ plays no part. The loop starts from all candidates,
+//! because a smaller set is singular if only contact holds a body. While the set changes, the inner problem is solved
+//! loosely, starting from the last λ. A set that stays is solved to the end; it is the solution if it stays then, too.
+//! A set that comes back is treated with growing [`Caution`].
 
 use std::time::Instant;
 
@@ -25,11 +25,11 @@ use crate::parallel::exchange::{gather_all, max_all, sum_all};
 use crate::status::Status;
 use crate::Result;
 
-/// How the loop ended.
+/// The end of the loop.
 pub(super) enum Ended {
-    /// With a solution, or with the tolerance out of reach.
+    /// A solution, or a tolerance that is out of reach.
     Found(LinearSolution, Vec<Step>),
-    /// Its rule has no way on from this state, after these steps and seconds: SMALBE takes over.
+    /// The rule finds no next set from this state, after these steps and seconds: SMALBE takes over.
     HandedOver {
         state: State,
         steps: Vec<Step>,
@@ -70,19 +70,20 @@ pub(super) fn solve(
     Ok(Ended::Found(found, steps))
 }
 
-/// Jumps on the rows that hold may be this many times the residual in V: it does not see the part that rigid motions close.
+/// Largest jump on the rows that hold, relative to the residual in V. That residual does not contain the part of the
+/// jump that rigid motions close.
 const CLOSED: f64 = 1e3;
 
-/// What a step has shown.
+/// The verdict after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// The set stays, at the tolerance of the user.
+    /// The set stays at the tolerance of the user.
     Solved,
-    /// There is more to do.
+    /// The loop must go on.
     GoOn,
 }
 
-/// The loop's data.
+/// The data of the loop.
 pub(super) struct ActiveSet<'a> {
     method: &'a LinearMethod,
     settings: &'a ContactSettings,
@@ -92,20 +93,20 @@ pub(super) struct ActiveSet<'a> {
     fresh: bool,
     /// The largest displacement in the last step.
     length: f64,
-    /// Solve the next step to the end.
+    /// Whether the next step is solved to the end.
     pub tight: bool,
-    /// Multipliers above minus this, relative to the largest, do not pull.
+    /// A multiplier pulls only if it is below minus this, relative to the largest one.
     pub pull: f64,
     /// B R with all candidate rows.
     g: Rows,
     /// Whether `at` has the displacements that belong to its λ, rigid motions included.
     placed: bool,
-    /// m.
+    /// Number of rows over all ranks, m.
     n_rows: usize,
-    /// B u − c on the owned rows after the last step, and which of them held in it.
+    /// B u − c on the owned rows after the last step, and whether each of them held in it.
     pub gaps: Vec<f64>,
     pub held: Vec<bool>,
-    /// Krylov residuals of the last step that iterated, and its spectrum.
+    /// Krylov residuals and spectrum of the last step that iterated.
     last: (Vec<f64>, Option<Spectrum>),
 }
 
@@ -149,7 +150,7 @@ impl<'a> ActiveSet<'a> {
         }
         if run.state.reference == 0.0 {
             run.state.reference = run.reference()?;
-            // A cold start stands just where the reference was taken.
+            // A cold start begins at the λ for which the reference was computed.
             run.fresh = start.is_none();
         }
         if !run.fresh {
@@ -159,7 +160,7 @@ impl<'a> ActiveSet<'a> {
         Ok(run)
     }
 
-    /// ‖Pᵀ r‖ at λ₀ with all candidates holding: what tolerances are relative to, whatever λ the loop starts from.
+    /// ‖Pᵀ r‖ at λ₀ with all candidates active. Tolerances are relative to it, whatever λ the loop starts from.
     fn reference(&mut self) -> Result<f64> {
         let method = self.method;
         let all = State::cold(&method.dual().stiffness.jump).active;
@@ -172,13 +173,13 @@ impl<'a> ActiveSet<'a> {
         self.at.evaluate_projected(session, &dual)
     }
 
-    /// The residual to end with, as far as the displacements are known.
+    /// The tolerance of the residual, from the displacements of the last step.
     fn target(&self) -> Result<f64> {
         let ksp = self.method.ksp();
         target(ksp, self.state.reference, self.length, self.n_rows)
     }
 
-    /// One outer step: equations on the set, then the next set.
+    /// One outer step: solves the equations on the set, then determines the next set.
     pub fn step(&mut self) -> Result<(Step, Status, Verdict)> {
         let clock = Instant::now();
         let (session, method) = (self.method.session(), self.method);
@@ -252,7 +253,7 @@ impl<'a> ActiveSet<'a> {
         if inner.iterations > 0 || self.last.0.is_empty() {
             self.last = (inner.residuals.clone(), inner.estimate);
         }
-        // The target of the displacements that have come out.
+        // The tolerance from the new displacements.
         let target = self.target()?;
         let to_the_end = to_the_end(tolerance, target);
         let closed = next.jump_left <= CLOSED * target + 1e3 * judge::ROUNDING * self.length;
@@ -260,7 +261,7 @@ impl<'a> ActiveSet<'a> {
         Ok((step, inner.status, verdict))
     }
 
-    /// The solution where the loop stands, after these steps. Collective.
+    /// The solution at the present state of the loop, after these steps. Collective.
     pub fn finish(
         mut self,
         steps: &[Step],
@@ -282,7 +283,7 @@ impl<'a> ActiveSet<'a> {
         method.recover(self.at, run, solve_seconds)
     }
 
-    /// Judges the rows at the λ and the displacements that are there.
+    /// Judges the rows by the present λ and displacements.
     fn next(&mut self, dual: &Dual) -> Result<Next> {
         let session = self.method.session();
         let comm = session.comm();
@@ -291,7 +292,7 @@ impl<'a> ActiveSet<'a> {
         self.placed = true;
         self.gaps = all_gaps(dual, &self.at.residual)?;
         let unheld = dual.natural.unheld();
-        // Bodies that nothing holds go to where nothing is violated.
+        // Bodies that nothing holds are moved to where no row is violated.
         if let Some(alpha) = motion::settle(comm, &self.g, jump, &self.gaps, unheld) {
             self.at.residual.shift(dual, &alpha);
             self.gaps = all_gaps(dual, &self.at.residual)?;
@@ -318,7 +319,7 @@ impl<'a> ActiveSet<'a> {
         })
     }
 
-    /// Goes over to the next set.
+    /// Moves on to the next set.
     fn advance(&mut self, next: Next, to_the_end: bool, closed: bool) -> Result<Verdict> {
         let comm = self.method.session().comm();
         let state = &mut self.state;
@@ -337,8 +338,8 @@ impl<'a> ActiveSet<'a> {
             if next.restored == 0 && !next.contradictory && closed {
                 return Ok(Verdict::Solved);
             }
-            // Rows that pull are kept because nothing else holds a body, or rows cannot all be satisfied, or no motion closes their
-            // jumps: the rule has no way on from here.
+            // The rule has no next set here. Rows that pull are kept because nothing else holds a body, or rows cannot
+            // all be satisfied, or no motion closes their jumps.
             state.caution = Caution::Fallback;
             return Ok(Verdict::GoOn);
         }
@@ -356,7 +357,7 @@ impl<'a> ActiveSet<'a> {
     }
 }
 
-/// B y − c on the owned rows, those that do not hold included. Collective.
+/// B y − c on the owned rows, including those that do not hold. Collective.
 fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
     let gaps = dual.multipliers()?;
     dual.stiffness.jump_of_all(&residual.work, &gaps)?;
@@ -366,16 +367,16 @@ fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
     Ok(gaps)
 }
 
-/// The next set and how it came about.
+/// The next set, and the observations that led to it.
 struct Next {
     active: Vec<bool>,
-    /// Rows on the wrong side over all ranks.
+    /// Number of rows on the wrong side over all ranks.
     wrong: usize,
     /// Whether rows that hold contradict each other.
     contradictory: bool,
-    /// Largest jump that is left on rows that hold.
+    /// Largest remaining jump on rows that hold.
     jump_left: f64,
-    /// Rows that were put back so that no body comes loose, over all ranks.
+    /// Number of rows, over all ranks, that were put back so that no body comes loose.
     restored: usize,
 }
 
@@ -384,7 +385,7 @@ fn count(before: &[bool], now: &[bool], test: impl Fn(bool, bool) -> bool) -> f6
     pairs.filter(|(was, on)| test(**was, **on)).count() as f64
 }
 
-/// A number that tells sets apart, the same on every rank and for every number of ranks. Collective.
+/// A number that identifies a set, the same on every rank and for every number of ranks. Collective.
 fn fingerprint(method: &LinearMethod, active: &[bool]) -> u64 {
     let mix = |x: u64| {
         let x = x.wrapping_mul(0x9E37_79B9_7F4A_7C15);

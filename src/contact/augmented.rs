@@ -1,15 +1,15 @@
 //! A = Pᵀ F P + ϱ (I − P) on all candidate rows, and its preconditioner inside a face.
 //!
-//! Variables are x = S⁻¹ λ with S² = diag(B_D diag(K) B_Dᵀ), so that rows between stiff and soft bodies weigh alike; rows that are
-//! no candidates have S = 0. On the rows F that are free in a face, with G_F the rows of G there, N_F = G_FᵀG_F and P_F its
-//! projector,
+//! The variables are x = S⁻¹ λ with S² = diag(B_D diag(K) B_Dᵀ), so that rows between stiff and soft bodies have the
+//! same weight. Rows that are no candidates have S = 0. Let F be the rows that are free in a face, G_F the rows of G
+//! there, N_F = G_FᵀG_F and P_F its projector. Then
 //!
 //! ```text
 //!     z = P_F S⁻¹ M_F⁻¹ S⁻¹ P_F v + ϱ⁻¹ G_F N_F⁺ N N_F⁺ G_Fᵀ v
 //! ```
 //!
-//! inverts A_FF up to what M_F⁻¹ leaves: on ker G_Fᵀ the operator is F alone, and the second term is the inverse of the penalty
-//! on range G_F.
+//! inverts A_FF up to the error of M_F⁻¹: on ker G_Fᵀ the operator is F alone, and the second term is the inverse of
+//! the penalty on range G_F.
 
 use std::rc::Rc;
 
@@ -20,11 +20,13 @@ use crate::feti::LinearMethod;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
-/// Steps of the power method: the norm is wanted to a few per cent, and ‖A‖ is one of the outer eigenvalues.
+/// Number of steps of the power method. The norm is needed to a few per cent only, and ‖A‖ is one of the outer
+/// eigenvalues.
 const POWER_STEPS: usize = 15;
 
-/// ϱ relative to the largest eigenvalue of Pᵀ F P. The ascent of μ takes fewer steps where ϱ is larger (16 bodies in a row: 83 outer
-/// steps with 1, 13 with 10, 6 with 30), the expansion steps, of length 2/ϱ, more; 5 to 10 is a flat optimum.
+/// ϱ relative to the largest eigenvalue of Pᵀ F P. With a larger ϱ the ascent of μ takes fewer steps (16 bodies in a
+/// row: 83 outer steps with 1, 13 with 10, 6 with 30), but the number of expansion steps, of length 2/ϱ, grows. The
+/// optimum is flat between 5 and 10.
 const PENALTY: f64 = 8.0;
 
 /// The operator of SMALBE's inner problems.
@@ -44,7 +46,7 @@ pub struct Augmented<'a> {
 }
 
 impl<'a> Augmented<'a> {
-    /// For all candidate rows, which must hold in the dual operators now. Collective.
+    /// The operator on all candidate rows, all of which must hold in the dual operators now. Collective.
     pub fn new(method: &'a LinearMethod, precondition: bool) -> Result<Augmented<'a>> {
         let comm = method.session().comm();
         let dual = method.dual();
@@ -81,7 +83,7 @@ impl<'a> Augmented<'a> {
         x.iter().zip(&self.scale).map(|(x, s)| x * s).collect()
     }
 
-    /// x = S⁻¹ λ, zero where S is.
+    /// x = S⁻¹ λ, zero where S is zero.
     pub fn scaled(&self, lambda: &[f64]) -> Vec<f64> {
         let rows = lambda.iter().zip(&self.scale);
         rows.map(|(l, s)| if *s > 0.0 { l / s } else { 0.0 })
@@ -100,7 +102,7 @@ impl<'a> Augmented<'a> {
         Ok(())
     }
 
-    /// The largest eigenvalue of Pᵀ F P by the power method, from below; a few per cent are added.
+    /// The largest eigenvalue of Pᵀ F P by the power method. The method gives a lower bound; a few per cent are added.
     fn norm(&mut self) -> Result<f64> {
         let method = self.method;
         let comm = method.session().comm();

@@ -1,4 +1,4 @@
-//! Gᵀ x = 0: the balance of forces on floating bodies, in variables in which its projector is orthogonal.
+//! The balance of forces Gᵀ x = 0 on floating bodies, in variables in which its projector is orthogonal.
 
 use mpi::topology::SimpleCommunicator;
 
@@ -7,7 +7,7 @@ use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::parallel::exchange::sum_all;
 
-/// G (this rank's rows) with N = GᵀG factored; dependent columns are found and left out.
+/// G (this rank's rows) and the factor of N = GᵀG, with dependent columns left out.
 pub struct Balance {
     g: Rows,
     /// N = Gᵀ G, r × r, the same on every rank.

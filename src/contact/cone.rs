@@ -1,5 +1,5 @@
-//! How far a load lies outside the cone of the forces that rows can exert, for many rigid motions: by MPRGP, where the exact method
-//! of [`crate::linalg::nnls`] would take too long.
+//! Distance of a load from the cone of forces that the rows can exert, for many rigid motions. It is computed by MPRGP,
+//! where the exact method of [`crate::linalg::nnls`] would take too long.
 
 use mpi::topology::SimpleCommunicator;
 
@@ -7,10 +7,10 @@ use super::mprgp::{Bounded, Setting};
 use crate::linalg::dense::Dense;
 use crate::Result;
 
-/// Products with GᵀG at most.
+/// Largest number of products with GᵀG.
 const PRODUCTS: usize = 20_000;
 
-/// min ½ ‖G x − e‖² with x_j ≥ 0 where column j is of an inequality.
+/// min ½ ‖G x − e‖² with x_j ≥ 0 if column j belongs to an inequality.
 struct Cone {
     columns: Vec<Vec<(usize, f64)>>,
     r: usize,
@@ -33,7 +33,7 @@ impl Cone {
         self.columns.iter().map(of).collect()
     }
 
-    /// A bound of ‖GᵀG‖: ‖G‖₁ ‖G‖_∞.
+    /// An upper bound of ‖GᵀG‖: ‖G‖₁ ‖G‖_∞.
     fn norm(&self) -> f64 {
         let mut rows = vec![0.0; self.r];
         let mut largest = 0.0f64;
@@ -64,8 +64,9 @@ impl Bounded for Cone {
     }
 }
 
-/// What is left of `e` outside the cone of the columns of `g` (nonnegative combinations, any where `equation` is true), and whether it is
-/// known well: smaller than `enough`, or of a minimiser. Every rank computes the same for itself.
+/// The part of `e` outside the cone of the columns of `g`, and whether it is known well: it is smaller than `enough`,
+/// or it belongs to a minimiser. The cone has nonnegative coefficients, except where `equation` is true. Every rank
+/// computes the same by itself.
 pub fn outside(g: &Dense, e: &[f64], equation: &[bool], enough: f64) -> Result<(Vec<f64>, bool)> {
     let n = g.cols;
     let entries = |j: usize| {
@@ -98,7 +99,8 @@ pub fn outside(g: &Dense, e: &[f64], equation: &[bool], enough: f64) -> Result<(
         length: 1.9 / bound,
     };
     let b = cone.work(e);
-    // Forces that reach the load are found to `enough`; else what is left is a minimiser when the gradient is far smaller.
+    // If the cone contains the load, the forces are found to `enough`. Otherwise the rest belongs to a minimiser if the
+    // gradient is far smaller.
     let checker = Cone {
         columns: cone.columns.clone(),
         r: cone.r,
@@ -124,7 +126,7 @@ mod tests {
     #[test]
     fn agrees_with_lawson_and_hanson() {
         with_session(|_| {
-            // A chain of bodies, each pushing at the next; the load is inside or outside the cone.
+            // A chain of bodies, each pushing the next one; the load is inside or outside the cone.
             let r = 12;
             let mut g = Dense::zeros(r, r);
             for j in 0..r {

@@ -1,7 +1,8 @@
-//! Whether the rows can hold together at all: gaps that contradict each other.
+//! Contradictory gaps: whether all rows can hold together.
 //!
-//! Rows of different blocks share no dof, and u may take any values at the dofs of a block, so that B_E u = c_E, B_I u ≤ c_I has a
-//! solution if and only if every block has one; by Farkas' lemma, unless some λ with λ_I ≥ 0 has B ᵀλ = 0 and cᵀλ < 0.
+//! Rows of different blocks share no dof, and u may take any values at the dofs of a block. B_E u = c_E, B_I u ≤ c_I
+//! therefore has a solution if and only if every block has one. By Farkas' lemma a block has a solution unless some λ
+//! with λ_I ≥ 0 has Bᵀλ = 0 and cᵀλ < 0.
 
 use crate::feti::operators::dual::Dual;
 use crate::linalg::dense::Dense;
@@ -10,10 +11,10 @@ use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
-/// A contradiction is found where NNLS comes this close to (Bᵀλ, cᵀλ) = (0, −1).
+/// A block is contradictory if NNLS comes this close to (Bᵀλ, cᵀλ) = (0, −1).
 const CONTRADICTION: f64 = 1e-8;
 
-/// An error that names the bodies and the place of the first contradiction. Collective.
+/// Returns an error that names the bodies and the place of the first contradiction. Collective.
 pub fn check(session: &Session, problem: &Substructures, dual: &Dual) -> Result<()> {
     session.agree(check_mine(problem, dual))
 }
@@ -26,7 +27,7 @@ fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
             .collect();
         let gap = |r: usize| jump.gap[block.rows.start + r];
         let equation = |r: usize| !jump.inequality[block.rows.start + r];
-        // u = 0 satisfies rows without interference.
+        // Rows without interference are satisfied by u = 0.
         if rows
             .iter()
             .all(|&r| gap(r) >= 0.0 && (gap(r) == 0.0 || !equation(r)))

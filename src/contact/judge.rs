@@ -1,4 +1,4 @@
-//! Which rows are on the wrong side: the rule of the active-set loop, row by row.
+//! The rule of the active-set loop, row by row: which rows are on the wrong side.
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -6,22 +6,23 @@ use mpi::traits::Communicator;
 use crate::feti::jump::operator::Jump;
 use crate::parallel::exchange::{gather_all, max_all, sum_all};
 
-/// A gap counts as violated above this multiple of the largest jump that is left on the rows that hold: a row that depends on
-/// three others inherits the sum of theirs.
+/// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
+/// depends on three others inherits the sum of their jumps.
 const NOISE: f64 = 3.0;
 
-/// Rounding of multipliers, relative to the largest, and of gaps, relative to the largest displacement.
+/// Rounding of multipliers, relative to the largest one, and of gaps, relative to the largest displacement.
 pub const ROUNDING: f64 = 1e-14;
 
-/// The next set and why.
+/// The next set, and the measures behind it.
 pub struct JudgedRows {
     /// Whether each owned row is to hold.
     pub active: Vec<bool>,
-    /// Whether rows that hold contradict each other on some rank.
+    /// Whether holding rows contradict each other on some rank.
     pub contradictory: bool,
-    /// How wrong each owned row is, in units in which multipliers and gaps compare; 0: it is right.
+    /// The violation of each owned row, in units in which multipliers and gaps compare; 0 if the row is on the right
+    /// side.
     wrong: Vec<f64>,
-    /// Largest jump that is left on rows that hold.
+    /// Largest remaining jump on rows that hold.
     pub jump_left: f64,
     lambda_max: f64,
     /// The largest displacement over all ranks.
@@ -29,8 +30,8 @@ pub struct JudgedRows {
 }
 
 impl JudgedRows {
-    /// Judges the owned rows by their gaps B u − c and multipliers; `y` is the largest displacement on this rank, and multipliers above
-    /// minus `pull`, relative to the largest, do not pull. Collective.
+    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank. A
+    /// multiplier pulls only if it is below minus `pull`, relative to the largest one. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         jump: &Jump,
@@ -40,7 +41,7 @@ impl JudgedRows {
         pull: f64,
     ) -> JudgedRows {
         let contact = jump.rows_between_bodies();
-        // [largest jump left on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
+        // [largest remaining jump on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
         let mut largest = [0.0f64, 0.0, y, 0.0];
         for r in contact.clone().filter(|&r| jump.active[r]) {
             let slack = jump.held[r] - jump.gap[r];
@@ -75,8 +76,8 @@ impl JudgedRows {
         rows
     }
 
-    /// Blocks whose rows cannot hold together (they were held to the nearest right-hand sides that can): violated rows stay, and at
-    /// least the row that stands open the most goes.
+    /// Changes the set in blocks whose rows cannot hold together; these rows were held to the nearest right-hand sides
+    /// that can be satisfied. Violated rows stay, and at least the row with the largest opening leaves.
     fn resolve(&mut self, jump: &Jump, lambda: &[f64]) {
         for block in &jump.blocks {
             let slack = |r: usize| jump.held[r] - jump.gap[r];
@@ -114,13 +115,13 @@ impl JudgedRows {
         total[0] as usize
     }
 
-    /// λ + ρ (B u − c) with the ρ that makes both alike.
+    /// λ + ρ (B u − c), with ρ such that both terms have the same scale.
     pub fn score(&self, lambda: f64, gap: f64) -> f64 {
         let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
         scale(lambda, self.lambda_max) + scale(gap, self.y_max)
     }
 
-    /// Of all changes only the worst stays, the first of them where several are equal. Collective.
+    /// Keeps only the worst of all changes, the first one if several are equal. Collective.
     pub fn keep_worst(&mut self, comm: &SimpleCommunicator, jump: &Jump) {
         let (old, new) = (&jump.active, &mut self.active);
         let mut largest = [self.wrong.iter().fold(0.0f64, |a, w| a.max(*w))];

@@ -4,9 +4,10 @@
 //!     min ½ uᵀ K u − fᵀ u    subject to    B_E u = c_E,  B_I u ≤ c_I
 //! ```
 //!
-//! The loop stands around the solver of equations and changes Z^k, the set of rows that hold, and nothing else: subdomains are
-//! factored once. Two methods: a primal-dual active set ([`active_set`]) and SMALBE with MPRGP ([`smalbe`]), which
-//! is also where the first one goes when its sets cycle. Whether a solution exists is found out before ([`feasible`]).
+//! The loop calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are factored
+//! once. There are two methods: a primal-dual active set ([`active_set`]) and SMALBE with MPRGP ([`smalbe`]). The first
+//! hands over to the second if its sets cycle. A check before the loop finds out whether a solution exists
+//! ([`feasible`]).
 
 pub mod active_set;
 pub mod augmented;
@@ -27,10 +28,10 @@ use crate::feti::{LinearMethod, LinearSolution};
 use crate::Result;
 use active_set::Ended;
 
-/// Solves the problem with its inequalities: the solution and the steps that led to it. Collective.
+/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. Collective.
 ///
 /// # Errors
-/// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and what `observe` returns.
+/// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
 pub fn solve(
     method: &LinearMethod,
     settings: &ContactSettings,

@@ -1,8 +1,9 @@
-//! Rigid motions of the floating bodies against the rows: whether the load pushes a body away for ever, and which rows must
-//! stay so that none comes loose.
+//! Rigid motions of the floating bodies and the rows: whether the load pushes a body away for ever, and which rows must
+//! hold so that no body comes loose.
 //!
-//! A solution exists if and only if no motion v = R α that the rows allow (B_E v = 0, B_I v ≤ 0) gains energy, eᵀα ≤ 0 for all of
-//! them; by Farkas' lemma, if and only if Gᵀ λ = e has a solution with λ_I ≥ 0.
+//! Let v = R α be a motion that the rows allow: B_E v = 0, B_I v ≤ 0. A solution exists if and only if the load gains
+//! no energy on any such motion: eᵀα ≤ 0 for all of them. By Farkas' lemma this holds if and only if Gᵀ λ = e has a
+//! solution with λ_I ≥ 0.
 
 use std::collections::BTreeMap;
 
@@ -22,16 +23,18 @@ use crate::parallel::exchange::{gather_all, sum_all};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
-/// Up to this many rigid motions the check is exact; it grows with their cube and more. Beyond, an iteration finds out.
+/// Largest number of rigid motions for an exact check. Its time grows with their cube and more; beyond this number an
+/// iteration decides.
 const EXACT: usize = 150;
 
-/// What the iteration may leave of e, relative to the loads, and still call it balanced.
+/// The iteration accepts the load as balanced if the rest of e is below this, relative to the loads.
 const NEARLY: f64 = 1e-7;
 
-/// What is left of e outside the cone, relative to the loads, may be rounding below this.
+/// The part of e outside the cone may be rounding if it is below this, relative to the loads.
 const BALANCE: f64 = 1e-9;
 
-/// An error that names the bodies if the load moves some of them away for ever. `g` is B R with all rows. Collective.
+/// Returns an error that names the bodies if the load moves some of them away for ever. `g` is B R with all rows.
+/// Collective.
 pub fn check(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -50,7 +53,7 @@ pub fn check(
         (nnls(&columns, &load.e, &free).1, BALANCE)
     } else {
         let (rest, known) = cone::outside(&columns, &load.e, &free, 0.1 * NEARLY * size)?;
-        // What is not known is left to the loop, and to the certificate at its end.
+        // The loop, and the certificate at its end, handle the undecided cases.
         (rest, if known { NEARLY } else { f64::INFINITY })
     };
     let left = rest.iter().fold(0.0f64, |a, v| a.max(v.abs()));
@@ -65,8 +68,8 @@ pub fn check(
     )))
 }
 
-/// The different directions among the rows of G, scaled to a largest entry of 1, as columns of length r; and which of them are of
-/// equations. The same on every rank. Collective.
+/// The different directions among the rows of G, scaled to a largest entry of 1, as columns of length r; and for each
+/// of them whether it belongs to an equation. The same on every rank. Collective.
 fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (Dense, Vec<bool>) {
     // [free, n, (column, value) × n] of each direction
     let mut mine: Vec<Vec<u64>> = Vec::new();
@@ -81,7 +84,7 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
         let entries: Vec<(usize, f64)> = g.row(i).filter(|e| e.1 != 0.0).collect();
         let mut words = vec![u64::from(!jump.inequality[i]), entries.len() as u64];
         for (c, v) in entries {
-            // Rounded, so that the rows of one flat face count once; 1e-13 is far below what decides.
+            // Rounded, so that the rows of one flat face count once. 1e-13 is far below the differences that matter.
             let rounded = (v / largest * 1e13).round() / 1e13;
             words.extend([c as u64, (rounded + 0.0).to_bits()]);
         }
@@ -109,9 +112,9 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
     (columns, all.iter().map(|w| w[0] == 1).collect())
 }
 
-/// Puts rows back into `active` until the active rows hold all rigid motions that the load drives: for every loose motion along which
-/// the load gains energy, the row with the largest `score` among those that stand against it. Returns how many were put back.
-/// Collective.
+/// Puts rows back into `active` until the active rows hold all rigid motions that the load drives. In each pass it
+/// takes the row with the largest `score` among those that oppose a driven motion. Returns the number of rows that were
+/// put back. Collective.
 pub fn restore(
     comm: &SimpleCommunicator,
     g: &Rows,
@@ -131,7 +134,7 @@ pub fn restore(
         if driven.is_empty() {
             return restored;
         }
-        // The largest work of row i on a motion that the load drives: positive where the row stands in its way.
+        // The largest work of row i on a motion that the load drives. It is positive if the row opposes the motion.
         let against = |i: usize| {
             let size: f64 = g.row(i).map(|(_, x)| x.abs()).sum();
             let work = driven.iter().map(|v| {
@@ -155,7 +158,7 @@ pub fn restore(
             .enumerate()
             .filter_map(|(rank, w)| w.first().map(|&w| (rank, f64::from_bits(w))))
             .reduce(|a, b| if b.1 > a.1 { b } else { a });
-        // The load stands against such a row for every driven motion, or `check` would have refused the problem.
+        // Every driven motion has such a row, or `check` would have refused the problem.
         let Some((rank, _)) = best else {
             return restored;
         };
@@ -166,7 +169,7 @@ pub fn restore(
     }
 }
 
-/// The motion in the direction in which the load gains energy; `None` where it neither gains nor loses.
+/// The motion with the sign for which the load gains energy; `None` if the load does no work on it.
 fn along(v: Vec<f64>, load: &KernelLoad) -> Option<Vec<f64>> {
     let work: f64 = v.iter().zip(&load.e).map(|(v, e)| v * e).sum();
     let scale: f64 = v.iter().zip(&load.size).map(|(v, s)| (v * s).abs()).sum();
@@ -176,8 +179,8 @@ fn along(v: Vec<f64>, load: &KernelLoad) -> Option<Vec<f64>> {
     Some(v.into_iter().map(|v| v * work.signum()).collect())
 }
 
-/// The smallest rigid motion, out of those in `motions` that nothing holds or drives, that takes the bodies to where no row of an
-/// inequality is violated, as coefficients of the kernel vectors; `None` where there is none. Collective.
+/// The smallest rigid motion that removes all violations of inequality rows, as coefficients of the kernel vectors. It
+/// is a combination of those `motions` that nothing holds or drives. `None` if there is no such motion. Collective.
 pub fn settle(
     comm: &SimpleCommunicator,
     g: &Rows,
@@ -189,7 +192,7 @@ pub fn settle(
     if n == 0 {
         return None;
     }
-    // Rows a z ≤ b with a scaled to a largest entry of 1; of those with the same a only the smallest b counts.
+    // Rows a z ≤ b with a scaled to a largest entry of 1. Of several rows with the same a only the smallest b matters.
     let mut tightest: BTreeMap<Vec<u64>, f64> = BTreeMap::new();
     let mut meet = |a: Vec<u64>, b: f64| {
         let least = tightest.entry(a).or_insert(f64::INFINITY);
@@ -237,13 +240,13 @@ pub fn settle(
     let mut alpha = vec![0.0; motions[0].len()];
     for (j, v) in motions.iter().enumerate() {
         let z = -rest[j] / rest[n] * scale;
-        // `rest` is b − A x here, the negative of the book's residual; the quotient does not mind.
+        // `rest` is b − A x here, the negative of the residual in the book. The quotient is the same.
         alpha.iter_mut().zip(v).for_each(|(a, v)| *a += z * v);
     }
     Some(alpha)
 }
 
-/// Motions that none of the chosen rows sees. Collective.
+/// A basis of the motions on which all chosen rows vanish. Collective.
 fn loose(
     comm: &SimpleCommunicator,
     g: &Rows,

@@ -1,43 +1,44 @@
-//! MPRGP: modified proportioning with reduced gradient projections, for min ½ xᵀA x − bᵀx with x ≥ l (Dostál 2009, chapter 5),
-//! with a preconditioner in the free face.
+//! MPRGP: modified proportioning with reduced gradient projections, for min ½ xᵀA x − bᵀx with x ≥ l (Dostál 2009,
+//! chapter 5), with a preconditioner in the free face.
 //!
-//! Conjugate gradients run inside a face until the next step would leave the feasible set (an expansion step follows: gradient
-//! projection with a fixed length) or the gradient says that the face is wrong (a proportioning step leaves it).
+//! Conjugate gradients run inside a face. They end if the next step would leave the feasible set, and an expansion step
+//! follows (gradient projection with a fixed length). They also end if the gradient says that the face is wrong, and a
+//! proportioning step leaves the face.
 
 use mpi::topology::SimpleCommunicator;
 
 use crate::parallel::exchange::{min_all, sum_all};
 use crate::Result;
 
-/// Γ: how much larger than the free gradient the chopped gradient may be before a face is left.
+/// Γ: a face is left if the chopped gradient is larger than this many times the free gradient.
 const GAMMA: f64 = 1.0;
 
-/// Curvature below this, relative to ‖A‖, is none.
+/// Curvature below this, relative to ‖A‖, counts as zero.
 const FLAT: f64 = 1e-13;
 
 /// The quadratic function and its bounds; vectors are this rank's part.
 pub trait Bounded {
     /// y ← A x.
     fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()>;
-    /// The face has changed: `free` marks the entries that may move.
+    /// Enters a face: `free` marks the entries that may move.
     fn enter(&mut self, free: &[bool]) -> Result<()>;
-    /// z ← an approximation of A⁻¹ v inside the face entered last; v and z vanish outside.
+    /// z ← an approximation of A⁻¹ v inside the face that was entered last; v and z vanish outside the face.
     fn precondition(&mut self, v: &[f64], z: &mut [f64]) -> Result<()>;
 }
 
-/// Lower bounds and the rest of what stays the same.
+/// The ranks, the bounds and the step length: data that do not change.
 pub struct Setting<'a> {
     /// The ranks.
     pub comm: &'a SimpleCommunicator,
-    /// l: −∞ where there is no bound.
+    /// l: −∞ for entries without a bound.
     pub lower: &'a [f64],
-    /// Entries that stay what they are.
+    /// Entries that do not change.
     pub fixed: &'a [bool],
     /// Length of the expansion step, at most 2/‖A‖.
     pub length: f64,
 }
 
-/// What a run has come to.
+/// The result of a run.
 pub struct Run {
     /// The minimiser so far.
     pub x: Vec<f64>,
@@ -59,7 +60,8 @@ impl Setting<'_> {
         rows.map(|((x, l), fixed)| !fixed && x > l).collect()
     }
 
-    /// Free and chopped gradient: φ where entries are free, the part that points into the feasible set where they are not.
+    /// Free and chopped gradient: the gradient at free entries, and its part that points into the feasible set at the
+    /// other entries.
     fn split(&self, x: &[f64], g: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let free = self.free(x);
         let part = |keep: &dyn Fn(usize) -> f64| (0..g.len()).map(keep).collect::<Vec<f64>>();
@@ -114,8 +116,9 @@ impl Setting<'_> {
                 run.products += 1;
                 let (curvature, along) = (self.dot(&p, &ap), self.dot(&run.g, &p));
                 let (pp, gg) = (self.dot(&p, &p), self.dot(&run.g, &run.g));
-                // Dependent rows have directions without curvature, and what rounding leaves of it must not set the step: along
-                // them x goes to a bound if that lowers the function, and nowhere otherwise.
+                // Dependent rows have directions without curvature. Their computed curvature is rounding and must not
+                // set the step: x goes to a bound along such a direction if that lowers the function, and does not move
+                // otherwise.
                 let flat = curvature <= FLAT * pp / self.length;
                 if flat && along <= FLAT.sqrt() * (pp * gg).sqrt() {
                     break;
@@ -132,7 +135,7 @@ impl Setting<'_> {
                     break;
                 }
                 for i in 0..n {
-                    // What the step takes to its bound shall stand on it, rounding or not.
+                    // An entry that the step takes to its bound is set to the bound exactly.
                     let reach = p[i] > 0.0 && (run.x[i] - self.lower[i]) <= step * p[i];
                     run.x[i] -= step * p[i];
                     run.g[i] -= step * ap[i];

@@ -22,15 +22,15 @@ impl ContactType {
     }
 }
 
-/// What may be set about the contact loop.
+/// Settings of the contact loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSettings {
     /// `fetifeti_contact_type`.
     pub kind: ContactType,
     /// `fetifeti_contact_max_it`: outer steps.
     pub max_it: usize,
-    /// `fetifeti_contact_inner_rtol`: reduction of the residual in a step of the active-set method while the set still
-    /// changes, in (0, 1).
+    /// `fetifeti_contact_inner_rtol`: reduction of the residual, in (0, 1), in a step of the active-set method while
+    /// the set still changes.
     pub inner_rtol: f64,
     /// `fetifeti_contact_face_pc`: whether M⁻¹ preconditions SMALBE inside the free face.
     pub face_pc: bool,
@@ -48,7 +48,7 @@ impl Default for ContactSettings {
 }
 
 impl ContactSettings {
-    /// These settings with what the options say on top.
+    /// These settings, overridden by the options.
     pub(crate) fn with_options(mut self, o: &Options) -> Result<ContactSettings> {
         let names = ContactType::NAMES;
         let help = "method of the contact loop";

@@ -1,13 +1,14 @@
-//! SMALBE-M: augmented Lagrangians for the balance of forces on floating bodies, MPRGP for the bounds (Dostál 2009, chapter 7).
+//! SMALBE-M: augmented Lagrangians for the balance of forces on floating bodies, MPRGP for the bounds (Dostál 2009,
+//! chapter 7).
 //!
 //! ```text
 //!     min ½ λᵀF λ − λᵀd    subject to   Gᵀ λ = e,  λ_I ≥ 0,     d = B S̃⁺ g − c, all candidate rows
 //!     L(λ, μ) = ½ λᵀ(Pᵀ F P + ϱ (I − P)) λ − … + μᵀ Gᵀ λ
 //! ```
 //!
-//! in the variables of [`Augmented`], shifted by a λ̃ with Gᵀ λ̃ = e. SMALBE finds the rows that hold; the equations on
-//! them are then solved to the tolerance of the user by steps of the active-set loop, which also judge the result: if they change the
-//! set, SMALBE goes on with a tenth of its tolerance.
+//! The variables are those of [`Augmented`], shifted by a λ̃ with Gᵀ λ̃ = e. SMALBE finds the rows that hold. Steps of
+//! the active-set loop then solve the equations on these rows to the tolerance of the user, and judge the result. If
+//! they change the set, SMALBE goes on with a tenth of its tolerance.
 
 use std::time::Instant;
 
@@ -31,20 +32,20 @@ const ETA: f64 = 0.1;
 const M_START: f64 = 0.1;
 /// … and the factor by which it shrinks when the Lagrangian does not grow enough.
 const M_SHRINK: f64 = 0.1;
-/// Products with A in one inner problem at most.
+/// Largest number of products with A in one inner problem.
 const PRODUCTS: usize = 2_000;
-/// Steps without a change after which a set is tried.
+/// Number of steps without a change after which a set is tried.
 const PATIENCE: usize = 3;
-/// How often the search goes on from where such a trial ended; later it keeps its own course, which is the one that is proved to
-/// converge.
+/// Number of times that the search goes on from the end of such a trial. Later it keeps its own iterates, for which
+/// convergence is proved.
 const JUMPS: usize = 4;
-/// Multipliers above minus this many tolerances, relative to the largest, do not pull in such a trial: SMALBE leaves rows that carry
-/// nothing on either side of zero.
+/// In a trial, a multiplier counts as pulling only if it is below minus this many tolerances, relative to the largest
+/// one. SMALBE leaves rows without force on either side of zero.
 const PULL: f64 = 10.0;
-/// Active-set steps that may follow a set of SMALBE's before it goes on.
+/// Number of active-set steps after a set of SMALBE, before SMALBE goes on.
 const CLOSING_STEPS: usize = 5;
 
-/// Solves by SMALBE from `state` on, after `steps` that took `seconds`. Collective.
+/// Solves by SMALBE from `state`, after `steps` that took `seconds`. Collective.
 pub(super) fn solve(
     method: &LinearMethod,
     settings: &ContactSettings,
@@ -62,7 +63,7 @@ pub(super) fn solve(
     };
     let mut search = Search::new(method, settings, &state)?;
     state.mu.resize(search.a.balance.n.rows, 0.0);
-    // How far SMALBE itself goes; further when the set that it found does not stay.
+    // The accuracy of SMALBE itself. It is tightened if the set that was found does not stay.
     let mut accuracy = rtol.sqrt().clamp(1e-6, 1e-2);
     let (mut unchanged, mut jumps) = (0, 0);
     loop {
@@ -77,7 +78,8 @@ pub(super) fn solve(
         };
         observe(&step, &state)?;
         steps.push(step);
-        // A set that stays is tried, though μ may still be far: its ascent is slow where stiff bodies hang on soft ones.
+        // A set that stays is tried even if μ is still far from its limit. The ascent of μ is slow where stiff bodies
+        // hang on soft ones.
         if !settled && unchanged != PATIENCE {
             continue;
         }
@@ -110,12 +112,12 @@ pub(super) fn solve(
     }
 }
 
-/// The dual problem in shifted and scaled variables, and where the search stands.
+/// The dual problem in shifted and scaled variables, and the state of the search.
 struct Search<'a> {
     a: Augmented<'a>,
     /// Pᵀ S (d − F λ̃).
     b: Vec<f64>,
-    /// ‖b‖, which tolerances are relative to.
+    /// ‖b‖; tolerances are relative to it.
     size: f64,
     shift: Vec<f64>,
     lower: Vec<f64>,
@@ -152,7 +154,8 @@ impl<'a> Search<'a> {
         at.lambda.array_mut()?.copy_from_slice(&a.unscaled(&shift));
         at.evaluate(session, &dual)?;
         let mut r = at.residual.r.to_vec()?;
-        // With all candidates in force rows may contradict each other and be held to other values: here c itself counts.
+        // With all candidates active, rows may contradict each other and be held to other right-hand sides. The bound
+        // constraints need c itself.
         for (r, (held, c)) in r.iter_mut().zip(jump.held.iter().zip(&jump.gap)) {
             *r += held - c;
         }
@@ -188,8 +191,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Goes on from the λ of an active-set step and the μ that belongs to it: with w = S (c − B u) on the rows that do not hold, the
-    /// optimality of L reads G μ = (I − P) w. Collective.
+    /// Continues from the λ of an active-set step and the μ that belongs to it. With w = S (c − B u) on the rows that
+    /// do not hold, the optimality of L reads G μ = (I − P) w. Collective.
     fn restart(
         &mut self,
         comm: &SimpleCommunicator,
@@ -211,7 +214,8 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// One inner problem and one ascent of the multipliers μ: the step, and whether all is within `accuracy`. Collective.
+    /// One inner problem and one ascent of the multipliers μ. Returns the step, and whether all residuals are within
+    /// `accuracy`. Collective.
     fn advance(
         &mut self,
         comm: &SimpleCommunicator,
@@ -251,7 +255,7 @@ impl<'a> Search<'a> {
         balance.solve(&mut c);
         state.mu.iter_mut().zip(&c).for_each(|(m, c)| *m += rho * c);
 
-        // Rows on their bound whose gradient wants them to leave it.
+        // Rows on their bound with a gradient that points into the feasible set.
         let wrong = (0..run.x.len())
             .filter(|&i| !self.fixed[i] && run.x[i] <= self.lower[i] && run.g[i] < -floor);
         let wrong = wrong.count();

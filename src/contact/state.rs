@@ -1,4 +1,4 @@
-//! Where the contact loop stands, and what its steps have done.
+//! The state of the contact loop, and a record of its steps.
 
 #[cfg(feature = "cli")]
 use serde::{Deserialize, Serialize};
@@ -8,57 +8,58 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::Spectrum;
 use crate::Result;
 
-/// What one step of the outer loop did.
+/// Record of one step of the outer loop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// The method that made it.
+    /// The method of the step.
     pub method: ContactType,
     /// Rows of B_gl that held.
     pub active: usize,
-    /// Rows that hold now and did not in the step before.
+    /// Number of rows that hold now and did not in the step before.
     pub entered: usize,
-    /// Rows that held in the step before and do not now.
+    /// Number of rows that held in the step before and do not now.
     pub left: usize,
     /// Krylov iterations.
     pub iterations: usize,
     /// The Krylov method's estimate of the spectrum.
     pub estimate: Option<Spectrum>,
-    /// Exact spectrum with these rows, where `-fetifeti_spectrum` asks for it.
+    /// Exact spectrum with these rows, if `-fetifeti_spectrum` asks for it.
     pub exact: Option<Spectrum>,
     /// Residual at the end, relative to the reference.
     pub residual: f64,
-    /// What was asked of it.
+    /// The tolerance of the step.
     pub tolerance: f64,
-    /// Inequality rows that are on the wrong side at the end of the step: violated, or pulling.
+    /// Number of inequality rows that are on the wrong side at the end of the step: violated, or with a pulling
+    /// multiplier.
     pub wrong: usize,
     /// Seconds.
     pub seconds: f64,
 }
 
-/// Where the outer loop stands; enough to go on from. Vectors are this rank's part.
+/// The state of the outer loop, sufficient to continue it. Vectors are this rank's part.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
 pub struct State {
     /// Multipliers of the owned rows.
     pub lambda: Vec<f64>,
-    /// Which of the owned rows are to hold in the next step.
+    /// Whether each owned row is to hold in the next step.
     pub active: Vec<bool>,
-    /// Which of them held in the step before.
+    /// Whether each owned row held in the step before.
     pub before: Vec<bool>,
-    /// Residual that tolerances are relative to; 0 where it is not known yet.
+    /// Residual that tolerances are relative to; 0 if it is not known yet.
     pub reference: f64,
     /// Steps so far.
     pub steps: usize,
-    /// Fingerprints of the sets so far.
+    /// Fingerprints of the sets of earlier steps.
     pub visited: Vec<u64>,
-    /// How carefully the loop goes on.
+    /// The caution with which the loop continues.
     pub caution: Caution,
-    /// SMALBE's multipliers of the balance of forces, length r, the same on every rank; empty where it has not run.
+    /// SMALBE's multipliers of the balance of forces, length r, the same on every rank; empty if SMALBE has not run.
     pub mu: Vec<f64>,
 }
 
 impl State {
-    /// Where a loop starts for other loads: the multipliers and the set of a solution.
+    /// The start of a loop for other loads: the multipliers and the set of a solution.
     pub fn warm(lambda: &[f64], active: &[bool]) -> State {
         State {
             lambda: lambda.to_vec(),
@@ -72,7 +73,7 @@ impl State {
         }
     }
 
-    /// Where the loop starts: λ = 0, and all rows hold that may.
+    /// The start of a loop: λ = 0, and all candidate rows hold.
     pub fn cold(jump: &Jump) -> State {
         State {
             lambda: vec![0.0; jump.n_owned],
@@ -87,17 +88,17 @@ impl State {
     }
 }
 
-/// How carefully an active-set loop goes on.
+/// The caution of the active-set loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
 pub enum Caution {
     /// Loose inner tolerances while the set changes.
     Loose,
-    /// The set came back: inner problems are solved to the end.
+    /// A set has come back: inner problems are solved to the end.
     Exact,
-    /// It came back again: one row changes at a time.
+    /// A set has come back again: one row changes at a time.
     Single,
-    /// And again: SMALBE takes over.
+    /// A set has come back once more: SMALBE takes over.
     Fallback,
 }
 

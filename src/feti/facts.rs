@@ -1,4 +1,4 @@
-//! What the problem turned out to be, as the method sees it.
+//! Facts about the problem that the set-up finds.
 
 use std::sync::Arc;
 
@@ -28,13 +28,13 @@ pub struct Facts {
     pub primal: usize,
     /// Adaptive primal constraints in each body; empty where no edge or face is tested.
     pub adaptive_constraints: Vec<usize>,
-    /// Seconds of set-up that finding them and making them primal took.
+    /// Seconds of set-up for finding the adaptive constraints and making them primal.
     pub adaptive_seconds: f64,
-    /// Different subdomains on this rank: each is factored once.
+    /// Number of different subdomains on this rank. Each of them is factored once.
     pub kinds: usize,
-    /// How many of them have S and T as sparse solves.
+    /// Number of these kinds with S and T as sparse solves.
     pub implicit_kinds: usize,
-    /// Subdomains of this rank with S in single precision.
+    /// Number of subdomains of this rank with S in single precision.
     pub in_single: usize,
     /// Bytes of the subdomains' sparse factors on this rank.
     pub factor_bytes: usize,
@@ -45,7 +45,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Of these operators; what set-up took and added is left empty. Collective.
+    /// The facts of these operators. The fields about the time and the additions of set-up are left empty. Collective.
     pub(super) fn new(comm: &SimpleCommunicator, dual: &Dual) -> Facts {
         let (stiffness, natural) = (&dual.stiffness, &dual.natural);
         let jump = &stiffness.jump;

@@ -1,4 +1,4 @@
-//! The linear method, set up for one problem. Which rows hold, Z^k, may change; nothing else does.
+//! The linear method, set up for one problem. Only Z^k, the set of rows that hold, may change.
 
 use std::cell::Ref;
 use std::rc::Rc;
@@ -13,7 +13,7 @@ use crate::petsc::{Ksp, Session};
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// Operators, Krylov method and what the problem turned out to be.
+/// The operators, the Krylov method and facts about the problem.
 pub struct LinearMethod {
     pub(super) session: Session,
     pub(super) problem: Substructures,
@@ -26,11 +26,11 @@ pub struct LinearMethod {
 }
 
 impl LinearMethod {
-    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows (in the order in which this
-    /// rank provides them). Nothing is factored again.
+    /// Replaces the loads (one vector per local subdomain) and the right-hand sides c of the rows, which are in the
+    /// order in which this rank provides them. Nothing is factored again.
     ///
     /// # Panics
-    /// If a length differs from what is there.
+    /// If a length differs from the present one.
     pub fn set_loads(&mut self, loads: Vec<Vec<f64>>, gaps: &[f64]) {
         assert_eq!(loads.len(), self.problem.local.len());
         assert_eq!(gaps.len(), self.problem.rows.len());
@@ -49,7 +49,7 @@ impl LinearMethod {
         self.system.set_active(&self.problem, active)
     }
 
-    /// The identities that the theory promises, each with its relative defect, which must be about rounding. Collective.
+    /// The identities of the theory, each with its relative defect, which must be of the size of rounding. Collective.
     pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
         check::identities(&self.session, &self.problem, &self.system)
     }
@@ -89,12 +89,13 @@ impl LinearMethod {
         &self.facts
     }
 
-    /// What an iteration sends, over all iterations of the Krylov method so far; `None` where there were none. Collective.
+    /// Messages and reductions per iteration, over all iterations of the Krylov method so far; `None` if there were
+    /// none. Collective.
     pub fn communication(&self) -> Option<Communication> {
         Communication::of(self.session.comm(), &self.system.tally())
     }
 
-    /// What the iterations of this rank have sent and how long they took.
+    /// Messages, reductions and seconds of the iterations on this rank.
     pub fn tally(&self) -> Tally {
         self.system.tally()
     }

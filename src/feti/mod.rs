@@ -1,5 +1,5 @@
-//! The linear method, a room for each operator; symbols are those of the theory page. It knows nothing of contact: which
-//! rows hold is said to it.
+//! The linear method, with one module for each operator. Symbols are those of the theory page. This module knows
+//! nothing of contact: its caller says which rows hold.
 
 pub(crate) mod adaptive;
 pub(crate) mod cost;

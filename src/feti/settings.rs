@@ -1,4 +1,4 @@
-//! What a user may choose, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
+//! Settings of the linear method, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
 use crate::cholesky::interior::LocalSolver;
 use crate::petsc::{Options, Session};
@@ -12,7 +12,7 @@ pub enum PcType {
     None,
     /// B_D K_ΓΓ B_Dᵀ: no interior solve.
     Lumped,
-    /// M_D of the paper.
+    /// M_D of \[Lee\].
     Dirichlet,
     /// M_C: M_D with the coarse functions of the bodies removed.
     CoarseCorrected,
@@ -31,16 +31,16 @@ pub enum Scaling {
     Deluxe,
 }
 
-/// What Z_c is made of: in the plane there is nothing but vertices.
+/// The coarse functions in Z_c. In the plane there are only vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CoarseFunctions {
     /// Functions of vertices and of averages.
     All,
-    /// Functions of vertices, averages following them: fewer than half as many.
+    /// Functions of vertices, with averages interpolated from them: fewer than half as many.
     Vertices,
 }
 
-/// The digits of M⁻¹.
+/// The precision of M⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// Everything in double precision.
@@ -49,10 +49,10 @@ pub enum Precision {
     Mixed,
 }
 
-/// How S and T are held.
+/// The form in which S and T are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operators {
-    /// As it costs less time, in the memory that there is.
+    /// The form that takes less time within the available memory.
     Auto,
     /// Dense matrices.
     Explicit,
@@ -60,14 +60,15 @@ pub enum Operators {
     Implicit,
 }
 
-/// How far the spectrum is cut down where coefficients jump inside bodies.
+/// The bound on the spectrum where coefficients jump inside bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Adaptive {
-    /// As it comes.
+    /// No bound.
     Off,
-    /// Below [`Adaptive::USUAL`] where coefficients vary inside a body, or where the first iterations show large eigenvalues.
+    /// Bound [`Adaptive::USUAL`] where coefficients vary inside a body, or where the first iterations show large
+    /// eigenvalues.
     Auto,
-    /// Below τ > 1 in every body.
+    /// Bound τ > 1 in every body.
     Below(f64),
 }
 
@@ -75,7 +76,7 @@ impl Adaptive {
     /// τ of `auto`.
     pub const USUAL: f64 = 10.0;
 
-    /// As the option takes it.
+    /// The value as the option takes it.
     pub fn name(self) -> String {
         match self {
             Adaptive::Off => "off".into(),
@@ -84,7 +85,7 @@ impl Adaptive {
         }
     }
 
-    /// From `off`, `auto` or a number above 1; `None` where the text is none of these.
+    /// Parses `off`, `auto` or a number above 1; `None` for any other text.
     pub fn parse(text: &str) -> Option<Adaptive> {
         match text.trim().to_ascii_lowercase().as_str() {
             "off" => Some(Adaptive::Off),
@@ -97,7 +98,7 @@ impl Adaptive {
     }
 }
 
-/// The constraints that hold the subdomains of a body together, at least one of them.
+/// The kinds of primal constraints inside a body; at least one of them is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Primal {
     /// Values at vertices.
@@ -129,14 +130,14 @@ impl Primal {
         }
     }
 
-    /// As the option takes it.
+    /// The value as the option takes it.
     pub fn name(self) -> String {
         let chosen = [self.vertices, self.edges, self.faces];
         let names = Self::NAMES.iter().zip(chosen).filter(|n| n.1).map(|n| *n.0);
         names.collect::<Vec<_>>().join(",")
     }
 
-    /// From a list with commas; `None` where a word is wrong.
+    /// Parses a list with commas; `None` if a word is wrong.
     pub fn parse(text: &str) -> Option<Primal> {
         let mut chosen = [false; 3];
         for word in text.split(',') {
@@ -155,13 +156,13 @@ impl Primal {
 /// The weight Q of the projector P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProjectorKind {
-    /// Q = I, as in the paper.
+    /// Q = I, as in \[Lee\].
     Identity,
     /// Q = the diagonal of B_D diag(K) B_Dᵀ (superlumped).
     Diagonal,
     /// Q = M⁻¹.
     Preconditioner,
-    /// Q = M⁻¹ where some bodies float and bodies differ in stiffness, else I.
+    /// Q = M⁻¹ where some bodies float and bodies differ in stiffness or coefficients jump inside them, else I.
     Auto,
 }
 
@@ -195,7 +196,7 @@ names!(ProjectorKind {
     Auto = "auto",
 });
 
-/// Everything that can be set about the method itself; Krylov settings live in the KSP (`fetifeti_ksp_`).
+/// Settings of the linear method. Krylov settings live in the KSP (`fetifeti_ksp_`).
 ///
 /// ```
 /// use fetifeti::{MethodSettings, PcType, Primal, ProjectorKind};
@@ -214,10 +215,11 @@ names!(ProjectorKind {
 /// ```
 #[derive(Debug, Clone)]
 pub struct MethodSettings {
-    /// `fetifeti_pc_type`; `None` chooses coarse_corrected where a body has more than one subdomain and there is more than
-    /// one body, dirichlet otherwise.
+    /// `fetifeti_pc_type`; `None` chooses coarse_corrected if there are several bodies, a body has several subdomains
+    /// and the model of cost favours it; dirichlet otherwise.
     pub pc_type: Option<PcType>,
-    /// `fetifeti_lifting`: what M_C takes away; `None`: vertices where `pc_type` is chosen here, all where coarse_corrected is asked for.
+    /// `fetifeti_lifting`: the coarse functions of M_C. `None` means vertices if `pc_type` is chosen automatically, all
+    /// if coarse_corrected is asked for.
     pub lifting: Option<CoarseFunctions>,
     /// `fetifeti_scaling`.
     pub scaling: Scaling,
@@ -227,7 +229,8 @@ pub struct MethodSettings {
     pub precision: Precision,
     /// `fetifeti_operators`.
     pub operators: Operators,
-    /// `fetifeti_memory`: megabytes that dense operators may take on this rank; `None`: half of what the machine has, divided by the ranks.
+    /// `fetifeti_memory`: megabytes that dense operators may take on this rank; `None` means half of the machine's
+    /// memory divided by the ranks.
     pub memory: Option<usize>,
     /// `fetifeti_primal`.
     pub primal: Primal,
@@ -235,19 +238,19 @@ pub struct MethodSettings {
     pub projector: ProjectorKind,
     /// `fetifeti_adaptive`.
     pub adaptive: Adaptive,
-    /// `fetifeti_adaptive_max`: vectors per body at most.
+    /// `fetifeti_adaptive_max`: largest number of vectors per body.
     pub adaptive_max: usize,
-    /// `fetifeti_recycle`: directions that are kept for the next load.
+    /// `fetifeti_recycle`: number of directions that are kept for the next load.
     pub recycle: usize,
-    /// `fetifeti_local_solver` and `fetifeti_local_ordering`: how subdomains are factored.
+    /// `fetifeti_local_solver` and `fetifeti_local_ordering`: the factorisation of subdomains.
     pub local: LocalSolver,
-    /// `fetifeti_threads`: threads of this rank; `None`: the cores of the machine divided by the ranks on it.
+    /// `fetifeti_threads`: threads of this rank; `None` means the cores of the machine divided by the ranks on it.
     pub threads: Option<usize>,
-    /// `fetifeti_check`: print the identities that the theory promises.
+    /// `fetifeti_check`: print the identities of the theory with their defects.
     pub check: bool,
     /// `fetifeti_spectrum`: exact extreme eigenvalues of the preconditioned operator.
     pub spectrum: bool,
-    /// Relative residual of the dual problem to stop at, unless `fetifeti_ksp_rtol` says otherwise.
+    /// Relative residual of the dual problem at which the iteration stops, unless `fetifeti_ksp_rtol` sets another one.
     pub rtol: f64,
     /// Prefix of all options.
     pub prefix: String,
@@ -279,7 +282,7 @@ impl Default for MethodSettings {
 }
 
 impl MethodSettings {
-    /// These settings with what the options database says on top; lists them under `-help`.
+    /// These settings, overridden by the options database; lists the options under `-help`.
     pub fn with_options(mut self, session: &Session) -> Result<MethodSettings> {
         let o = Options::new(session, &self.prefix);
         o.heading("FETI-FETI options")?;

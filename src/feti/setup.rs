@@ -1,4 +1,4 @@
-//! From substructures to operators and a Krylov method: the set-up as an outline.
+//! The set-up of the linear method: from substructures to operators and a Krylov method.
 
 use std::rc::Rc;
 use std::time::Instant;
@@ -34,10 +34,10 @@ use crate::petsc::{Comm, Ksp, NormType, Session, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
-/// The residual may become this many times the first one before the iteration counts as divergent.
+/// The iteration counts as divergent if the residual becomes this many times the first one.
 const GROWTH: f64 = 1e12;
 
-/// Adaptive primal constraints of each body, and the seconds that they took.
+/// Number of adaptive primal constraints of each body, and the seconds for finding them.
 #[derive(Default)]
 struct Added {
     constraints: Vec<usize>,
@@ -132,7 +132,7 @@ impl LinearMethod {
     }
 }
 
-/// Factors the subdomains of this rank, and adds the primal constraints that jumping coefficients ask for. Collective.
+/// Factors the subdomains of this rank and adds the adaptive primal constraints. Collective.
 fn subdomains(
     session: &Session,
     problem: &Substructures,
@@ -167,7 +167,7 @@ fn subdomains(
     Ok((locals, added))
 }
 
-/// S̃⁺: the subdomains with the primal problem of their bodies. Collective.
+/// S̃⁺: the subdomains and the primal problem of their bodies. Collective.
 fn stiffness(
     session: &Session,
     problem: &Substructures,
@@ -199,7 +199,7 @@ fn threads(session: &Session, settings: &MethodSettings) -> usize {
     })
 }
 
-/// The cores of this machine divided among the ranks on it, no more than this rank is bound to.
+/// The cores of this machine divided by the ranks on it, but no more than this rank is bound to.
 fn usual_threads(ranks: usize) -> usize {
     let bound = std::thread::available_parallelism().map_or(1, |n| n.get());
     let online = std::fs::read_to_string("/sys/devices/system/cpu/online");
@@ -207,7 +207,7 @@ fn usual_threads(ranks: usize) -> usize {
     (cores / ranks).clamp(1, bound)
 }
 
-/// How many numbers a list such as 0-3,8 names.
+/// The number of cores in a list such as 0-3,8.
 fn count(list: &str) -> Option<usize> {
     let ranges = list.trim().split(',').map(|range| {
         let (low, high) = range.split_once('-').unwrap_or((range, range));
@@ -217,16 +217,18 @@ fn count(list: &str) -> Option<usize> {
     ranges.sum()
 }
 
-/// CG on Pᵀ F P with P M⁻¹ Pᵀ, stopped by ‖r_n‖₂ / ‖r_0‖₂ as in the paper.
+/// CG on Pᵀ F P with P M⁻¹ Pᵀ, stopped by ‖r_n‖₂ / ‖r_0‖₂ as in \[Lee\].
 fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> Result<Ksp> {
     let a = shells::operator(session, system)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_operators(&a, &a)?;
-    // PETSc itself adds `ksp_` to this prefix. The PC gets another one: `pc_type` chooses among our M⁻¹, not among PETSc's PCs.
+    // PETSc itself adds `ksp_` to this prefix. The PC gets another prefix: `pc_type` chooses among the M⁻¹ of this
+    // crate, not among PETSc's PCs.
     ksp.set_options_prefix(&settings.prefix)?;
     ksp.set_type("cg")?;
     ksp.set_norm_type(NormType::Unpreconditioned)?;
-    // ‖r‖₂ may grow by √κ and more before it falls; what does not converge ends at the largest number of iterations.
+    // ‖r‖₂ may grow by √κ and more before it falls. An iteration without convergence ends at the largest number of
+    // iterations.
     ksp.set_tolerances(Some(settings.rtol), None, Some(GROWTH), None)?;
     ksp.set_compute_singular_values(true)?;
     let pc = ksp.pc()?;
@@ -246,7 +248,7 @@ fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> 
     Ok(ksp)
 }
 
-/// Says what to do where PETSc refuses to judge convergence by the norm that is set.
+/// Explains the remedy if PETSc cannot test convergence in the norm that is set.
 fn unfit_norm(error: Error, prefix: &str) -> Error {
     match error {
         Error::Petsc { trace, .. } if !trace.is_empty() => Error::input(format!(

@@ -3,7 +3,7 @@
 /// The smallest and the largest eigenvalue of an operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
-    /// Smallest eigenvalue that is not a kernel direction's.
+    /// Smallest eigenvalue outside the kernel.
     pub lambda_min: f64,
     /// Largest eigenvalue.
     pub lambda_max: f64,

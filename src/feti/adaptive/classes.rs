@@ -1,7 +1,7 @@
 //! Classes: the dual dofs that the same subdomains of a body share, and whether coefficients vary along them.
 //!
-//! In the plane a class is an edge, in space a face with the edges in which it meets the surface of its body, or an edge; all components
-//! of the field together.
+//! In the plane a class is an edge. In space it is an edge, or a face together with the edges in which it meets the
+//! surface of its body. A class contains all components of the field.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -15,7 +15,8 @@ use crate::feti::subdomain::scaled::Scaled;
 use crate::parallel::exchange::{exchange_words, sum_all};
 use crate::substructures::{Subdomain, Substructures};
 
-/// Diagonal entries of K along a class and beside it that differ by less than this come from the mesh, or from jumps that weights alone deal with.
+/// Diagonal entries of K along a class and beside it may differ by this factor. Smaller differences come from the mesh,
+/// or from jumps that the weights alone deal with.
 const SMOOTH: f64 = 1e2;
 
 /// Dual dofs of one subdomain that the same subdomains share, in the order of body dof.
@@ -26,7 +27,7 @@ pub struct Class {
     pub dofs: Vec<u64>,
     /// Positions in Γ.
     pub at: Vec<usize>,
-    /// Where the entries of its rows stand in the subdomain's list of entries of B_D.
+    /// Places of the entries of the class's rows in the subdomain's list of entries of B_D.
     pub entries: Vec<u32>,
 }
 
@@ -90,7 +91,7 @@ pub fn rough(
         .collect()
 }
 
-/// Whether stiffness varies along the interface of any subdomain at all; equal subdomains are looked at once. Collective.
+/// Whether stiffness varies along the interface of any subdomain. Equal subdomains are examined once. Collective.
 pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Scaled]) -> bool {
     let mut seen = HashSet::new();
     let mut locals = locals.iter().zip(&problem.local);

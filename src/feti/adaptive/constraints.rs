@@ -1,6 +1,8 @@
-//! Adaptive primal constraints: what is made primal inside bodies where coefficients jump along and beside the interfaces of their subdomains.
+//! Adaptive primal constraints: functionals that become primal inside bodies, where coefficients jump along or beside
+//! the interfaces of the subdomains.
 //!
-//! The rank of a class's lowest subdomain solves the eigenproblem of [`pencil`] on it and tells the functionals to all sharers.
+//! The rank of the lowest subdomain of a class solves the eigenproblem of [`pencil`] on the class. It sends the
+//! functionals to all subdomains that share the class.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
@@ -22,8 +24,9 @@ use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
-/// Finds the constraints that keep the eigenvalues of every class below τ and adds them to `jump.averages`. Entries of `jump` are on interface
-/// positions. Returns how many each body gets, over all ranks; nothing where none is wanted. Collective.
+/// Finds the constraints that bring the eigenvalues of every class below τ and adds them to `jump.averages`. The
+/// entries of `jump` are on interface positions. Returns the number of constraints of each body over all ranks; the
+/// list is empty if no class is tested. Collective.
 pub fn find(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -36,7 +39,8 @@ pub fn find(
     let (tau, all) = match adaptive {
         Adaptive::Off => return Vec::new(),
         Adaptive::Auto => (Adaptive::USUAL, false),
-        // Where coefficients do not vary along a class its eigenvalues are those of the mesh, below ten or so; the deflation knows of them, too.
+        // Where coefficients do not vary along a class, its eigenvalues come from the mesh and are about ten at most.
+        // Deflation sees these eigenvalues, too.
         Adaptive::Below(tau) => (tau, tau < Adaptive::USUAL),
     };
     if !all && !classes::anywhere(comm, problem, locals) {
@@ -62,7 +66,7 @@ pub fn find(
     for (j, list) in classes.iter_mut().enumerate() {
         classes::collect_entries(jump, j, locals[j].n_gamma(), list);
     }
-    // Parts travel to the rank of the lowest sharer.
+    // Each sharer sends its part to the rank of the lowest sharer.
     let rank = comm.rank() as u32;
     let rank_of = |s: u32| sharing.rank_of[s as usize];
     let part = |j: usize, class: &Class| part(problem, jump, &locals[j], j, class);
@@ -167,8 +171,8 @@ pub fn find(
     per_body.iter().map(|&n| n as usize).collect()
 }
 
-/// Gives the subdomains the constraints that [`find`] added. Equal ones stay equal. What is replaced is given up one by one, so that there are never two
-/// operators of every subdomain.
+/// Gives the subdomains the constraints that [`find`] added. Subdomains that were equal stay equal. The old operators
+/// are dropped one by one, so that two operators of every subdomain never exist at the same time.
 pub fn constrain(
     problem: &Substructures,
     jump: &Jump,
@@ -206,8 +210,9 @@ pub fn constrain(
     Ok(first.iter().zip(factors).map(of).collect())
 }
 
-/// All that the functionals of a class depend on, as numbers: the subdomains that share it, given with their class, by their matrices (equal ones are one
-/// object), where the class lies in them, the entries of B_D there, and which of their primal dofs are one.
+/// All data that the functionals of a class depend on, as numbers. These are, for each sharer (given with its class):
+/// its matrix (equal matrices are one object), the positions of the class in it, the entries of B_D there, and the
+/// names that say which primal dofs the sharers have in common.
 fn signature(
     problem: &Substructures,
     jump: &Jump,
@@ -241,7 +246,7 @@ fn signature(
     out
 }
 
-/// Names of the primal dofs of local subdomain `j`: equal where subdomains share them.
+/// Names of the primal dofs of local subdomain `j`. Subdomains that share a primal dof have the same name for it.
 fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]> {
     let vertices = local.interface()[local.n_delta()..].iter();
     let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
@@ -251,7 +256,7 @@ fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]
     vertices.chain(averages).chain(fixing).collect()
 }
 
-/// What local subdomain `j` has to say about a class.
+/// The contribution of local subdomain `j` to the eigenproblem of a class.
 fn part(problem: &Substructures, jump: &Jump, local: &Scaled, j: usize, class: &Class) -> Part {
     let sub = &problem.local[j];
     let (n, at) = (class.at.len(), &class.at);
@@ -277,7 +282,8 @@ fn part(problem: &Substructures, jump: &Jump, local: &Scaled, j: usize, class: &
     }
 }
 
-/// Q_c: what B_Dᵀ B makes, on the copy in local subdomain `j`, of differences to the last sharer, read from the entries of B_D.
+/// Q_c: the matrix of B_Dᵀ B from the differences to the last sharer to the copy in local subdomain `j`. It is read
+/// from the entries of B_D.
 fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
     let (n, q) = (class.at.len(), class.sharers.len());
     let columns = &jump.columns[j];
@@ -286,7 +292,7 @@ fn lifted(jump: &Jump, j: usize, class: &Class) -> Dense {
         let k = k as usize;
         (columns.row[k], place[&columns.at[k]], columns.bd[k])
     });
-    // The first entry of a row is the one on the dof that it belongs to; rows of a dof are numbered pair after pair.
+    // The first entry of a row is the one on the row's own dof. The rows of a dof are numbered pair after pair.
     let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n];
     let mut known: HashMap<u32, usize> = HashMap::new();
     for (row, x, _) in entries.clone() {

@@ -1,31 +1,33 @@
-//! The eigenproblem behind adaptive primal constraints, on the dofs that the same q subdomains share (docs/theory.md, section 11).
+//! The eigenproblem behind adaptive primal constraints, on the dofs that the same q subdomains share (docs/theory.md,
+//! section 11).
 //!
-//! For jumps d = (w_a − w_q)_{a<q} of these dofs, A measures what B_Dᵀ makes of them and M is the least energy that can hold
-//! them open with the primal dofs of the q subdomains as they are,
-//!
+//! The jumps of these dofs are d = (w_a − w_q)_{a<q}. A is the energy of B_Dᵀ applied to them. M is the least energy of
+//! functions with these jumps that are continuous in the common primal dofs of the q subdomains:
 //! ```text
 //!     dᵀ A d = Σ_c |Q_c d|²_{S_c},     Q_c d = w_c − Σ_k D_k w_k,     M⁻¹ = B T Bᵀ + B Ψ Σ⁺ Ψᵀ Bᵀ
 //! ```
 //!
-//! A v = μ M v is solved for μ > τ as A M⁻¹ c = μ c, which gives the functionals c = A v to be made primal. M⁻¹ is the F of q
-//! subdomains alone, a sum of semidefinite terms: soft motions, the ones that matter, are its large part, so that nothing
-//! cancels whatever the jumps in the coefficients are, and a motion without energy is a very large μ.
+//! A v = μ M v is solved for μ > τ as A M⁻¹ c = μ c, which gives the functionals c = A v to be made primal. M⁻¹ is the
+//! F of the q subdomains alone, a sum of semidefinite terms. The soft motions are the ones that matter, and they are
+//! the large part of M⁻¹: nothing cancels, however large the jumps in the coefficients are. A motion without energy has
+//! a very large μ.
 
 use std::collections::HashMap;
 
 use crate::feti::subdomain::basis::Basis;
 use crate::linalg::dense::{self, Dense, Scratch};
 
-/// Energies below this part of a primal dof's stiffness are rounding, and count as if they were so much.
+/// Energies below this part of a primal dof's stiffness are rounding. They are replaced by this part.
 const FREE: f64 = 1e-12;
 
-/// What is added to A, scaled to unit diagonal, to factor it.
+/// This shift is added to A, scaled to unit diagonal, before the factorisation.
 const ROUNDING: f64 = 1e-13;
 
-/// A functional of which less than this is left beside the others (with entries weighed by the stiffness of their dofs) says nothing new.
+/// A functional is dependent on the others if less than this part of it is left after orthogonalisation. Its entries
+/// are weighed by the stiffness of their dofs.
 const SAME: f64 = 1e-6;
 
-/// What one of the subdomains has to say.
+/// The contribution of one of the subdomains.
 #[derive(Debug, Clone, Default)]
 pub struct Part {
     /// Q_cᵀ S_c Q_c, N × N with N = (q − 1) n.
@@ -38,12 +40,12 @@ pub struct Part {
     pub sigma: Dense,
     /// A stiffness of each primal dof that does not vanish with Σ.
     pub stiff: Vec<f64>,
-    /// Names of the primal dofs: equal where subdomains share them.
+    /// Names of the primal dofs. Subdomains that share a primal dof have the same name for it.
     pub names: Vec<[u64; 2]>,
 }
 
-/// The functionals of n dofs to make primal so that A ≤ τ M on what they leave; `means` has the places of the dofs of each average that
-/// is primal already.
+/// The functionals of n dofs to be made primal, so that A ≤ τ M where they vanish. `means` has, for each average that
+/// is primal already, the places of its dofs.
 pub fn functionals(parts: &[Part], means: &[Vec<usize>], tau: f64) -> Vec<Vec<f64>> {
     let n = parts[0].t.rows;
     let order = parts[0].a.rows;
@@ -77,7 +79,8 @@ pub fn functionals(parts: &[Part], means: &[Vec<usize>], tau: f64) -> Vec<Vec<f6
             });
             return chosen.list;
         }
-        // The strongest part of the worst one; what it leaves decides about the next.
+        // The strongest part of the worst functional is taken. The eigenvalues of the restricted M⁻¹ decide about the
+        // next.
         let Some(worst) = found.first() else {
             return chosen.list;
         };
@@ -114,7 +117,7 @@ fn factor(a: &Dense, scale: &[f64]) -> Dense {
             }
             l.set(j, j, 1.0 + shift);
         }
-        // A is semidefinite to rounding; more than one round means that rounding is larger than usual.
+        // A is semidefinite up to rounding. A second round is needed only if rounding is larger than usual.
         if dense::cholesky(l.view_mut(), &mut Scratch::default()).is_ok() || shift > 1.0 {
             for j in 1..n {
                 l.col_mut(j)[..j].fill(0.0);
@@ -207,7 +210,8 @@ fn product(l: &Dense, f: &Dense) -> Dense {
     k
 }
 
-/// Whether all eigenvalues lie below τ: a Cholesky factorisation is much cheaper than they are.
+/// Whether all eigenvalues lie below τ. This takes one Cholesky factorisation, which is much cheaper than the
+/// eigenvalues.
 fn below(k: &Dense, tau: f64) -> bool {
     let mut rest = k.clone();
     rest.data.iter_mut().for_each(|v| *v = -*v);
@@ -243,8 +247,8 @@ fn dominant(c: &[f64], n: usize) -> Vec<f64> {
     (0..n).map(|i| svd.U()[(i, 0)]).collect()
 }
 
-/// F ← F − F G (Gᵀ F G)⁺ Gᵀ F: what is left of the compliance when the functional holds between all subdomains. `c` is the functional in units
-/// of `node`, F in units of `scale`.
+/// F ← F − F G (Gᵀ F G)⁺ Gᵀ F: the compliance with the functional held equal in all subdomains. `c` is the functional
+/// in units of `node`, F is in units of `scale`.
 fn restrict(f: &mut Dense, c: &[f64], node: &[f64], scale: &[f64]) {
     let (n, order) = (c.len(), f.rows);
     let blocks = order / n;
@@ -263,7 +267,7 @@ fn restrict(f: &mut Dense, c: &[f64], node: &[f64], scale: &[f64]) {
         }
         g.iter_mut().for_each(|v| *v /= size);
         f.add_mul(&g, fg.col_mut(b));
-        // One block after the other: G₁ is gone when G₂ comes.
+        // The blocks are removed one after the other: G₁ is already removed when G₂ comes.
         let energy: f64 = g.iter().zip(fg.col(b)).map(|(g, f)| g * f).sum();
         if energy > 0.0 {
             for j in 0..order {
@@ -279,7 +283,7 @@ fn restrict(f: &mut Dense, c: &[f64], node: &[f64], scale: &[f64]) {
 
 /// The functionals found so far.
 struct Chosen {
-    /// As they are asked for.
+    /// In the units of the caller.
     list: Vec<Vec<f64>>,
     /// Averages and functionals, orthonormal in units of `scale`.
     scaled: Vec<Vec<f64>>,
@@ -312,7 +316,7 @@ impl Chosen {
         out
     }
 
-    /// Adds a functional in units of the scale; `false` if it says nothing new.
+    /// Adds a functional in units of the scale; `false` if it depends on the earlier ones.
     fn add(&mut self, c: &[f64]) -> bool {
         let norm = |c: &[f64]| c.iter().map(|v| v * v).sum::<f64>().sqrt();
         let mut rest = c.to_vec();

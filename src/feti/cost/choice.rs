@@ -1,7 +1,8 @@
-//! M_C or M_D: whether lifting jumps into whole bodies pays.
+//! M_C or M_D: a model of cost decides whether lifting jumps into whole bodies pays.
 //!
-//! M_C takes fewer iterations the more subdomains lie across a body, and costs a product S Z_c per subdomain, a dense A per body, and in every iteration
-//! reading Y = S Z_c twice or S once more. In the plane a subdomain sees a dozen columns of Z_c for each component, in space 200 from vertices and 600 with averages.
+//! M_C takes fewer iterations than M_D if many subdomains lie across a body. It costs a product S Z_c per subdomain and
+//! a dense A per body; in every iteration it reads Y = S Z_c twice or S once more. In the plane a subdomain sees a
+//! dozen columns of Z_c for each component, in space 200 from vertices and 600 with averages.
 
 use std::collections::BTreeSet;
 
@@ -14,44 +15,47 @@ use crate::feti::settings::{CoarseFunctions, PcType};
 use crate::parallel::exchange::sum_all;
 use crate::substructures::Substructures;
 
-/// Each neighbour adds this part of a subdomain's own columns to those that it sees, in the plane and in space; the others it shares already.
+/// Columns that each neighbour adds to those that a subdomain sees, relative to the subdomain's own columns, in the
+/// plane and in space. The neighbour's other columns are shared already.
 const NEW_COLUMNS: [f64; 2] = [0.4, 0.3];
 
-/// Each column is shared by so many subdomains, in the plane and in space.
+/// Number of subdomains that share a column, in the plane and in space.
 const SHARED_BY: [f64; 2] = [2.7, 5.0];
 
 /// Seconds per entry of a matrix that is read for one vector.
 const DENSE_BY_ITSELF: f64 = 4e-10;
 
-/// Subdomains with more neighbours lie in space.
+/// A subdomain with more neighbours than this lies in space.
 const PLANE: f64 = 9.0;
 
-/// Seconds of an application of F and M⁻¹ per dof of an interface besides the dense operators, in the plane and in space, where more copies are
-/// tied: jumps, Ψ, vectors.
+/// Seconds of an application of F and M⁻¹ per interface dof, without the dense operators, in the plane and in space:
+/// jumps, Ψ, vectors. In space more copies are tied.
 const PER_DOF: [f64; 2] = [6e-8, 1.6e-7];
 
-/// Iterations of M_D grow with the subdomains across a body, H_b/H_s, as √(1 + this · (H_b/H_s − 1)) where those of M_C do not: in the plane; in space,
-/// tied and with inequalities (measured at H_b/H_s from 4.8 to 6.3).
+/// The iterations of M_D grow with the number of subdomains across a body, H_b/H_s, as √(1 + this · (H_b/H_s − 1));
+/// those of M_C do not. The values are for the plane, for tied problems in space, and for inequalities in space
+/// (measured at H_b/H_s from 4.8 to 6.3).
 const GROWTH: [f64; 3] = [0.35, 0.65, 1.6];
 
 /// Iterations of M_C in space, in all steps of a contact loop together.
 const ITERATIONS_IN_SPACE: f64 = 12.0;
 
-/// So large a part of the subdomains in space has surroundings of its own where bodies are cut regularly: the others share its block of A.
+/// Fraction of the subdomains in space that need a block of A of their own if bodies are cut regularly. The others
+/// share a block with subdomains in the same surroundings.
 const OF_ITS_OWN: f64 = 0.5;
 
-/// What both cost on this rank, from sizes alone: the same on any number of ranks once it is added up.
+/// Cost of both preconditioners on this rank, from sizes alone. The sum over the ranks does not depend on their number.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Estimate {
     /// Seconds of set-up that M_C adds.
     setup: f64,
-    /// Seconds that it adds to an iteration.
+    /// Seconds that M_C adds to an iteration.
     more: f64,
     /// Seconds of an iteration with M_D.
     iteration: f64,
 }
 
-/// What numbers of iterations depend on.
+/// The quantities that determine the number of iterations.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
     /// H_b/H_s.
@@ -61,8 +65,9 @@ struct Shape {
 }
 
 impl Estimate {
-    /// Whether M_C takes less time in space. In the plane, whether what it adds is less than all iterations with M_D: it is the safer one, with numbers of
-    /// iterations that neither subdomains nor coefficients change much.
+    /// Whether M_C pays. In space it pays if it takes less time. In the plane it pays if its additional time is less
+    /// than the time of all iterations with M_D. It is the safer choice there, because neither subdomains nor
+    /// coefficients change its number of iterations much.
     fn pays(&self, shape: Shape) -> bool {
         let contact = usize::from(shape.inequalities);
         let (few, growth, own) = match shape.in_space {
@@ -74,7 +79,8 @@ impl Estimate {
     }
 }
 
-/// M_C where there is something to lift, a body cut into subdomains that other bodies pull at, and where it costs little enough; else M_D. Collective.
+/// The preconditioner of the model: M_C if there is something to lift (a body cut into subdomains that other bodies
+/// pull at) and if it pays; else M_D. Collective.
 pub fn preconditioner(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -122,7 +128,7 @@ pub fn preconditioner(
     let order = primal / SHARED_BY[space] / bodies;
     let part = if space == 1 { OF_ITS_OWN } else { 1.0 };
     let estimate = Estimate {
-        // A of every body is factored, and solved with.
+        // A of every body is factored, and applied in every iteration.
         setup: part * setup + bodies * FLOP * order.powi(3) / 3.0,
         more: more + bodies * DENSE_BY_ITSELF * order.powi(2),
         iteration,

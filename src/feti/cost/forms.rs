@@ -1,12 +1,14 @@
-//! Dense matrices or sparse solves: for each kind of subdomain what takes less time until the solution is there, in the memory that there is.
+//! Dense matrices or sparse solves for each kind of subdomain: the form with the shorter time to the solution is taken,
+//! within the available memory.
 //!
 //! ```text
 //!     explicit    f (flops of [I, Γ] → S and of S → T)  +  applications · copies · (n_Γ² + n_Δ²) · d
 //!     implicit    f (flops of K_rr and K_II)  +  columns of Ψ · 2 l · e  +  applications · copies · 2 (l_rr + l_II) · e
 //! ```
 //!
-//! with n from the interface, flops and entries l of the factors from the symbolic factorisation (exact), and seconds f, d, e per operation
-//! as measured (`fetifeti study kernels` measures them again). They are the same everywhere, so that runs can be repeated.
+//! n follows from the interface. Flops and the entries l of the factors follow from the symbolic factorisation and are
+//! exact. The seconds f, d, e per operation are measured (`fetifeti study kernels` measures them again). They are the
+//! same on every machine, so that runs can be repeated.
 
 use crate::cholesky::symbolic::Keep;
 use crate::cholesky::symbolic::Symbolic;
@@ -19,34 +21,34 @@ use crate::substructures::{Subdomain, Substructures};
 /// Seconds per multiplication and addition in dense fronts.
 pub(crate) const FLOP: f64 = 8e-11;
 
-/// Seconds per entry of a dense operator and application: by itself (half of the entries are read), and where many copies make it a
-/// matrix-matrix product.
+/// Seconds per entry of a dense operator and application. The first is for a single vector (half of the entries are
+/// read), the second for many copies in a matrix-matrix product.
 pub(crate) const DENSE: f64 = 2e-10;
 pub(crate) const DENSE_SHARED: f64 = 6e-11;
 
-/// Seconds per entry of a sparse factor and pass over it, for one vector, and for each of several.
+/// Seconds per entry of a sparse factor and pass over it: for one vector, and for each of several.
 const SPARSE: f64 = 6e-10;
 const SPARSE_SHARED: f64 = 2e-10;
 
-/// So many copies on a rank make a product of matrices; with fewer, products with S and T take longer to read them than to multiply, and their lower
-/// triangles are kept alone.
+/// Number of copies on a rank from which on products with S and T are matrix-matrix products. With fewer copies,
+/// reading S and T takes longer than multiplying, and only their lower triangles are stored.
 pub(crate) const MANY: usize = 8;
 
-/// Dense operators that take less than this to make are made without asking.
+/// Dense operators are chosen without an analysis if they take less than this to compute.
 const SHORT: f64 = 5e-3;
 
-/// Making S and T takes about so many times n_Γ³ operations where the interface is not large beside the interior.
+/// Computing S and T takes about this many times n_Γ³ operations if the interface is not large beside the interior.
 const SMALL: f64 = 3.0;
 
-/// Applications of F and M⁻¹ that one set-up is for: tied problems, and loops over active sets.
+/// Expected number of applications of F and M⁻¹ per set-up: for tied problems, and for loops over active sets.
 pub const APPLICATIONS: [f64; 2] = [25.0, 60.0];
 
-/// What a kind of subdomain costs.
+/// The cost of a kind of subdomain.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Cost {
-    /// Seconds with dense operators: to make them, and for one application to all copies.
+    /// Seconds with dense operators: for computing them, and for one application to all copies.
     pub explicit: [f64; 2],
-    /// Seconds with sparse solves.
+    /// Seconds with sparse solves: for the same two.
     pub implicit: [f64; 2],
     /// Bytes of S and T.
     pub dense_bytes: f64,
@@ -57,30 +59,30 @@ impl Cost {
         make + applications * apply
     }
 
-    /// Seconds that dense operators save.
+    /// Seconds that dense operators save over sparse solves.
     fn gain(&self, applications: f64) -> f64 {
         Cost::total(self.implicit, applications) - Cost::total(self.explicit, applications)
     }
 }
 
-/// What is known about a kind of subdomain before it is factored.
+/// Data about a kind of subdomain before its factorisation.
 pub struct Kind<'a> {
-    /// Which local subdomain stands for it.
+    /// Index of the local subdomain that represents it.
     pub j: usize,
-    /// One of them.
+    /// The representative.
     pub sub: &'a Subdomain,
-    /// Dual and primal dofs.
+    /// Dual dofs of the interface.
     pub delta: &'a [u32],
     /// Primal dofs.
     pub primal: &'a [u32],
     /// Number of averages.
     pub averages: usize,
-    /// How many there are on this rank.
+    /// Number of subdomains of this kind on this rank.
     pub copies: usize,
 }
 
 impl Kind<'_> {
-    /// Entries of the sparse factors in this form.
+    /// Entries of the sparse factors in the given form.
     pub fn factor_entries(&self, form: OperatorForm) -> usize {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
         match form {
@@ -91,7 +93,8 @@ impl Kind<'_> {
         }
     }
 
-    /// What is kept of its factor beside dense operators: a few copies alone do not pay for rows that save each of them half a solve.
+    /// The part of the factor that is kept beside dense operators. With a few copies, the rows that save each of them
+    /// half a solve do not pay.
     pub fn keep(&self) -> Keep {
         if self.copies < MANY {
             Keep::Interior
@@ -100,7 +103,7 @@ impl Kind<'_> {
         }
     }
 
-    /// K_rr and K_II.
+    /// Symbolic factorisations of K_rr and K_II.
     fn sparse(&self) -> [Symbolic; 2] {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
         let mut kept = vec![false; k.n()];
@@ -116,7 +119,7 @@ impl Kind<'_> {
     }
 }
 
-/// One of each kind of subdomain; `first` has the representative of every local subdomain.
+/// One of each kind of subdomain. `first` has the representative of every local subdomain.
 pub fn kinds<'a>(
     problem: &'a Substructures,
     jump: &'a Jump,
@@ -134,8 +137,8 @@ pub fn kinds<'a>(
     own.map(of).collect()
 }
 
-/// The form of each kind: as asked, or what costs less with `applications`, with dense operators of at most `memory` bytes where sparse
-/// solves are possible. Dense ones are preferred where S itself is wanted (`wants_s`).
+/// The form of each kind: the one asked for, or the cheaper one with `applications`. Dense operators take at most
+/// `memory` bytes where sparse solves are possible. They are preferred if S itself is needed (`wants_s`).
 pub fn choose(
     kinds: &[Kind],
     team: &Team,
@@ -164,7 +167,7 @@ pub fn choose(
         .filter(|&k| forms[k] == OperatorForm::Explicit)
         .collect();
     dense.iter().for_each(|&k| used += dense_bytes(&kinds[k]));
-    // What saves the least time for its memory goes first.
+    // The kinds that save the least time for their memory become sparse first.
     let worth =
         |k: &usize| costs[*k].map_or(f64::INFINITY, |c| c.gain(applications) / c.dense_bytes);
     dense.sort_by(|a, b| worth(a).total_cmp(&worth(b)).then(a.cmp(b)));
@@ -194,12 +197,13 @@ fn dense_bytes(kind: &Kind) -> f64 {
     each * (n_gamma.powi(2) + n_delta.powi(2))
 }
 
-/// `None` where dense operators are made so fast that nothing else is worth analysing, unless memory is short (`always`).
+/// The cost of a kind; `None` if dense operators are computed so fast that no analysis pays, unless memory is short
+/// (`always`).
 fn cost(kind: &Kind, always: bool) -> Option<Cost> {
     let (k, x) = (&kind.sub.k, kind.sub.coordinates.as_deref());
     let interface = [kind.delta, kind.primal].concat();
     let (n_gamma, n_delta) = (interface.len() as f64, kind.delta.len() as f64);
-    // The set-up analyses again what it factors: not worth it for small interfaces.
+    // The set-up repeats the analysis of what it factors. This does not pay for small interfaces.
     if FLOP * SMALL * n_gamma.powi(3) < SHORT && !always {
         return None;
     }
@@ -229,12 +233,13 @@ fn cost(kind: &Kind, always: bool) -> Option<Cost> {
     })
 }
 
-/// Bytes for dense operators on each of `ranks` ranks of one machine, where nothing is asked for: half of its memory.
+/// Bytes for dense operators on each of `ranks` ranks of one machine if the user sets no limit: half of the machine's
+/// memory.
 pub fn usual_memory(ranks: usize) -> f64 {
     let text = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
     let line = text.lines().find_map(|l| l.strip_prefix("MemTotal:"));
     let kilobytes = line.and_then(|l| l.trim().trim_end_matches("kB").trim().parse::<f64>().ok());
-    // Four gigabytes where the machine does not say.
+    // Four gigabytes if the machine does not tell.
     0.5 * kilobytes.map_or(4e9, |k| 1024.0 * k) / ranks as f64
 }
 
@@ -246,7 +251,7 @@ mod tests {
     use crate::petsc::testing::with_session;
     use crate::scene::Scene;
 
-    /// Forms for a grid with one kind of physics; `rho` by position.
+    /// The forms for a grid with one kind of physics; `rho` is a function of position.
     fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
         with_session(move |session| {
             let scene = Scene::parse("grid.toml", grid).expect("a scene");

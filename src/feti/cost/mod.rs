@@ -1,4 +1,4 @@
-//! What is chosen by counting: dense or sparse operators, M_C or M_D, sizes.
+//! Choices by counting: dense or sparse operators, M_C or M_D, sizes.
 
 pub mod choice;
 pub mod forms;

@@ -1,4 +1,4 @@
-//! What would be built, counted exactly without factoring anything (`fetifeti plan`).
+//! Sizes of all operators, counted exactly without a factorisation (`fetifeti plan`).
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -36,11 +36,11 @@ pub struct Sizes {
     pub largest_interface: usize,
     /// Dimension of every body's kernel.
     pub defect: Vec<usize>,
-    /// Different subdomains, each counted once per rank.
+    /// Number of different subdomains, counted once per rank.
     pub kinds: usize,
-    /// How many of them have S and T as sparse solves.
+    /// Number of these kinds with S and T as sparse solves.
     pub implicit_kinds: usize,
-    /// M⁻¹ unless it is chosen.
+    /// The preconditioner that is used if the user chooses none.
     pub preconditioner: PcType,
     /// Bytes of the sparse factors.
     pub factor_bytes: f64,
@@ -49,7 +49,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Counts with the chosen constraints. Collective.
+    /// Counts the sizes with the chosen constraints. Collective.
     pub fn with(
         comm: &SimpleCommunicator,
         problem: &Substructures,
@@ -97,7 +97,8 @@ impl Sizes {
             largest[0] = largest[0].max(n_gamma as f64);
             let averages = jump.averages[j].iter().map(|a| &a.dofs[0]);
             for &i in jump.primal[j].iter().chain(averages) {
-                // Every primal dof is counted by its lowest subdomain; an average is where its dofs are.
+                // Every primal dof is counted by its lowest subdomain. An average belongs to the subdomains of its
+                // dofs.
                 let copies = sharing.shared(sub.dofs[i as usize]);
                 let first = copies
                     .first()

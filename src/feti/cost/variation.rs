@@ -1,17 +1,17 @@
-//! How far coefficients vary inside a body.
+//! The variation of coefficients inside a body.
 
 use mpi::topology::SimpleCommunicator;
 
 use crate::parallel::exchange::max_all;
 use crate::substructures::Substructures;
 
-/// Coefficients of a body whose largest is more than this many times the smallest jump.
+/// Coefficients jump inside a body if the largest is more than this many times the smallest.
 pub const JUMPS: f64 = 1e2;
 
 /// The largest ratio of two scaling weights in one body. Collective.
 pub fn varies(comm: &SimpleCommunicator, problem: &Substructures) -> f64 {
     let n = problem.n_bodies;
-    // −smallest beside the largest, so that one reduction does.
+    // −smallest is stored beside the largest, so that one reduction is enough.
     let mut ends = vec![f64::NEG_INFINITY; 2 * n];
     for sub in &problem.local {
         for &rho in &sub.rho {

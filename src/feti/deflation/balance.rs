@@ -1,13 +1,14 @@
-//! F on multipliers outside V without the reactions of fixing dofs.
+//! F applied to multipliers outside V without reactions at fixing dofs.
 //!
-//! Columns of W and of Q G alone push floating bodies. What S̃⁺ makes of that hangs on one fixing dof, which may lie in the softest corner: the
-//! displacements are then so large that little is left of F P W when F W and F Q G X cancel. Forces balanced in each body,
+//! Each column of W and of Q G by itself pushes floating bodies. S̃⁺ then puts the reaction on one fixing dof, which
+//! may lie in the softest corner. The displacements become so large that F P W loses its digits when F W and F Q G X
+//! cancel. Forces are therefore balanced in each body:
 //!
 //! ```text
 //!     v ← v − f_i (R_iᵀ f_i)⁺ R_iᵀ v,    f_i = B_iᵀ M_i⁻¹ G_i
 //! ```
 //!
-//! change nothing on V, where they are balanced already, and put the reaction where the body is stiff.
+//! This changes nothing on V, where forces are balanced already. It puts the reaction where the body is stiff.
 
 use super::pencil::Pencil;
 use crate::feti::operators::dual::Dual;
@@ -24,14 +25,14 @@ pub struct Balance {
     f: Vec<Dense>,
     /// Body of each local subdomain.
     body: Vec<usize>,
-    /// R_iᵀ f_i of every body, factored; `None` for those that are held.
+    /// R_iᵀ f_i of every body, factored; `None` for bodies that do not float.
     e: Vec<Option<Semidefinite>>,
     /// First kernel column of every body, and the end.
     start: Vec<usize>,
 }
 
 impl Balance {
-    /// Room for all bodies.
+    /// Allocates the data of all bodies.
     pub fn new(dual: &Dual, bodies: &[usize], n_bodies: usize) -> Balance {
         Balance {
             f: vec![Dense::default(); dual.stiffness.locals.len()],
@@ -41,7 +42,7 @@ impl Balance {
         }
     }
 
-    /// The reactions of all bodies. Collective.
+    /// Computes f_i of all bodies. Collective.
     pub fn take(&mut self, session: &Session, dual: &Dual, pencil: &Pencil) -> Result<()> {
         let stiffness = &dual.stiffness;
         let defect = |b: usize| self.start[b + 1] - self.start[b];

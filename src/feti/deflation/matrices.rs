@@ -1,4 +1,4 @@
-//! W, F W and Wᵀ F W for the rows that hold, and P_2 made of them.
+//! W, F W and Wᵀ F W for the rows that hold, and P_2 built from them.
 
 use super::balance::Balance;
 use super::panels::Panels;
@@ -11,11 +11,12 @@ use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
-/// Vectors of neighbours may show the same mode. What is left of one after the others, relative to it and squared in the F-norm, must be
-/// more than this to count: it carries the rounding of F W divided by it.
+/// Vectors of neighbouring bodies may contain the same mode. A vector counts as independent if the part of it that is
+/// orthogonal to the others is larger than this, relative to the vector and squared in the F-norm. The rounding of F W
+/// is divided by this number.
 const DEPENDENT: f64 = 1e-10;
 
-/// Columns without their kernel part: Y − Q X.
+/// Columns with their kernel part removed: Y − Q X.
 struct Split {
     y: Panels,
     q: Panels,
@@ -35,7 +36,7 @@ pub struct Matrices {
 }
 
 impl Matrices {
-    /// Applies F to the columns and puts everything together. Collective.
+    /// Applies F to the columns and builds the matrices. Collective.
     pub fn new(
         session: &Session,
         dual: &Dual,
@@ -102,7 +103,7 @@ impl Matrices {
         self.add(1.0, &self.w, &c, out)
     }
 
-    /// The size of Wᵀ r, each entry relative to its vector's F-norm. Collective.
+    /// The size of Wᵀ r; each entry is relative to the F-norm of its vector. Collective.
     pub fn part_of(&self, session: &Session, residual: &PetscVec) -> Result<f64> {
         let c = self.transpose(session, &self.w, residual)?;
         let of = |(c, norm): (&f64, &f64)| if *norm > 0.0 { (c / norm).abs() } else { 0.0 };
@@ -140,7 +141,7 @@ impl Matrices {
 /// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
 fn gram(session: &Session, w: &Split, f: &Split, x: &Dense) -> Dense {
     let k = x.cols;
-    // The products of all columns, kernel ones after the others: [Y Q]ᵀ F [Y Q].
+    // The products of all columns, the kernel columns last: [Y Q]ᵀ F [Y Q].
     let m = k + w.q.cols();
     let mut a = Dense::zeros(m, m);
     w.y.add_product(&f.y, &mut a, (0, 0));

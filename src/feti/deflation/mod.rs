@@ -1,14 +1,16 @@
-//! Deflation of what coefficients that jump inside bodies leave above τ (docs/theory.md, section 12).
+//! Deflation of the eigenvalues above τ that coefficients cause by jumping inside bodies (docs/theory.md, section 12).
 //!
 //! ```text
 //!     W = P M⁻¹ [ P_iᵀ F_i μ ],    P_2 = I − W (Wᵀ F W)⁺ Wᵀ F
 //! ```
 //!
-//! The columns μ are the top of the pencils of the bodies, one body after the other ([`pencil`], [`search`]); they are found once, with the rows that
-//! hold to begin with. M⁻¹ becomes P_2 M⁻¹ P_2ᵀ, and λ₀ gets the part of the solution in range W: every Krylov method then works in
-//! the F-orthogonal complement of W without knowing of it.
+//! The columns μ are the eigenvectors at the top of the pencils of the bodies, one body after the other ([`pencil`],
+//! [`search`]). They are found once, with the rows that hold at the start. M⁻¹ becomes P_2 M⁻¹ P_2ᵀ, and λ₀ gets the
+//! part of the solution in range W. Every Krylov method then works in the F-orthogonal complement of W without knowing
+//! of it.
 //!
-//! W without P is sparse: a column lives on its body and those next to it. P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ stays a factor, and so it does in F P W:
+//! W without P is sparse: a column lives on its body and the neighbours of that body. P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ is
+//! therefore kept as a factor, in P W and in F P W:
 //!
 //! ```text
 //!     P W = W − Q G X,    F P W = F W − F Q G X,    X = (Gᵀ Q G)⁻¹ Gᵀ W
@@ -37,36 +39,36 @@ use matrices::Matrices;
 use pencil::Pencil;
 use whole::Whole;
 
-/// What was found and what it cost; the same on every rank except for the seconds.
+/// The result and the cost of the search; the same on every rank except for the seconds.
 #[derive(Debug, Clone, Default)]
 pub struct Cost {
     /// τ.
     pub tau: f64,
-    /// Vectors of every body.
+    /// Number of vectors of each body.
     pub vectors: Vec<usize>,
-    /// Vectors that bodies share, found afterwards.
+    /// Number of vectors that bodies share. They are found after those of the bodies.
     pub shared: usize,
     /// Bodies with more vectors above τ than the cap allows, or whose vectors did not settle.
     pub capped: Vec<usize>,
-    /// The largest Ritz value of all bodies that is deflated; 0 where none is.
+    /// The largest Ritz value that is deflated, over all bodies; 0 if nothing is deflated.
     pub largest: f64,
-    /// Vectors that depended on others.
+    /// Number of vectors that depend on others.
     pub dependent: usize,
     /// The spectrum that the iterations saw before the search.
     pub before: Option<Spectrum>,
-    /// Whether the iteration broke down with the vectors, so that they are not used.
+    /// Whether the iteration broke down with the vectors. They are then not used.
     pub given_up: bool,
     /// Seconds of the search and of the matrices.
     pub seconds: f64,
 }
 
-/// Where coefficients jump, an iteration is broken off at this eigenvalue; elsewhere one has to be far larger.
+/// Where coefficients jump, an iteration is broken off at this eigenvalue. Elsewhere the limit is far higher.
 pub const EXPECTED: f64 = 1.5 * Adaptive::USUAL;
 
-/// The eigenvalue at which an iteration is broken off so that those above τ are deflated; `varies` is the largest ratio of coefficients
-/// inside a body.
+/// The eigenvalue at which an iteration is broken off to deflate the eigenvalues above τ. `varies` is the largest ratio
+/// of coefficients inside a body.
 ///
-/// Where coefficients do not vary, κ is what the mesh makes it, and `auto` leaves it alone unless it is far off.
+/// Where coefficients do not vary, κ comes from the mesh, and `auto` deflates only if κ is far larger than usual.
 pub fn watch(adaptive: Adaptive, varies: f64) -> Option<f64> {
     match adaptive {
         Adaptive::Off => None,
@@ -78,14 +80,14 @@ pub fn watch(adaptive: Adaptive, varies: f64) -> Option<f64> {
 
 /// P_2 for the rows that hold.
 pub struct Deflation {
-    /// What it cost.
+    /// Result and cost of the search.
     pub cost: Cost,
     graph: BodyGraph,
     balance: Balance,
-    /// M⁻¹ P_iᵀ F_i μ with all rows that the search knew.
+    /// M⁻¹ P_iᵀ F_i μ with all rows of the search.
     columns: Vec<Column>,
     matrices: Matrices,
-    /// Whether the last search found nothing above the bound: no iteration needs to be broken off for another one.
+    /// Whether the last search found nothing above the bound. No iteration is broken off for another search then.
     pub exhausted: bool,
 }
 
@@ -131,7 +133,7 @@ impl Deflation {
         }
         drop(pencil);
         cost.capped.sort_unstable();
-        // By body, whatever the colours are.
+        // Sort by body, so that the order does not depend on the colours.
         jumps.sort_by_key(|j| j.0);
         let jumps: Vec<Column> = jumps.into_iter().map(|j| j.1).collect();
         let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| {
@@ -150,7 +152,8 @@ impl Deflation {
         })
     }
 
-    /// Deflates what is still above `bound` in the whole problem, at most `most` vectors; returns how many there were. Collective.
+    /// Deflates the eigenvalues of the whole problem that are still above `bound`, at most `most` vectors. Returns the
+    /// number of vectors found. Collective.
     pub fn polish(
         &mut self,
         session: &Session,
@@ -180,7 +183,7 @@ impl Deflation {
         Ok(n)
     }
 
-    /// Masks W by the rows that hold now and renews what follows from it. Collective.
+    /// Masks W by the rows that hold now and rebuilds the matrices that depend on it. Collective.
     pub fn renew(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         if self.columns.is_empty() {
             return Ok(());
@@ -200,7 +203,7 @@ impl Deflation {
         Ok(())
     }
 
-    /// P_2 = I from now on.
+    /// Sets P_2 = I from now on.
     pub fn give_up(&mut self) {
         self.cost.given_up = true;
         self.columns.clear();

@@ -1,5 +1,5 @@
-//! Columns of multipliers as dense panels: those of one body touch the same rows, so that a product gathers these rows once and goes through
-//! all columns of the body at the speed of a dense matrix.
+//! Columns of multipliers as dense panels. The columns of one body touch the same rows: a product gathers these rows
+//! once and goes through all columns of the body at the speed of a dense matrix.
 
 use std::ops::Range;
 
@@ -93,7 +93,7 @@ impl Panels {
 impl Panel {
     fn new(first: usize, columns: &[Column]) -> Panel {
         let all = || columns.iter().flat_map(|c| &c.entries);
-        // Counting instead of sorting: the columns have thousands of entries and mostly the same rows.
+        // The rows are marked in a table, not sorted: the columns have thousands of entries and mostly the same rows.
         const NONE: u32 = u32::MAX;
         let end = all().map(|e| e.0 as usize + 1).max().unwrap_or(0);
         let mut place = vec![NONE; end];
@@ -117,7 +117,8 @@ impl Panel {
         }
     }
 
-    /// These rows of all columns, zero where the panel has no such row; without data where it has none of them.
+    /// These rows of all columns, with zeros in rows that the panel does not have. The matrix is empty if the panel has
+    /// none of the rows.
     fn gather(&self, rows: &[u32]) -> Dense {
         let mut pairs = Vec::new();
         let mut at = 0;

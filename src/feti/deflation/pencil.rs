@@ -5,9 +5,10 @@
 //!     P_i M_i⁻¹ P_iᵀ F_i μ = θ μ
 //! ```
 //!
-//! With v = S̃_i⁺ B_iᵀ μ this is B_iᵀ M⁻¹ B_i v = θ S̃_i v, v orthogonal to the kernel of S̃_i (docs/theory.md, section
-//! 12). Rows between two bodies belong to both pencils; bodies are coloured so that none is near two of one colour, and a
-//! vector of multipliers holds all bodies of a colour. F is one product for all colours, M⁻¹ one with several columns.
+//! With v = S̃_i⁺ B_iᵀ μ this is B_iᵀ M⁻¹ B_i v = θ S̃_i v (docs/theory.md, section 12), v orthogonal to the kernel of
+//! S̃_i. Rows between two bodies belong to both pencils. The bodies are coloured: no body is near two bodies of one
+//! colour. A vector of multipliers holds all bodies of a colour. F is one product for all colours, M⁻¹ one product with
+//! several columns.
 
 use std::ops::Range;
 
@@ -21,7 +22,7 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// All bodies. Vectors hold the rows of one body after those of the other, colour after colour.
+/// The pencils of all bodies. A vector holds the rows of one body after those of another, colour after colour.
 pub struct Pencil<'a> {
     session: &'a Session,
     dual: &'a Dual,

@@ -1,24 +1,25 @@
-//! The top of pencils that stand side by side: Krylov spaces of all bodies in step, each with its own Rayleigh–Ritz problem.
+//! The largest eigenvalues of several pencils at once. The Krylov spaces of all bodies grow in step, and each body has
+//! its own Rayleigh–Ritz problem.
 //!
-//! Bases are orthonormal in F_i. Two start vectors find eigenvalues of multiplicity two at once; others come out by and by. A body stops
-//! when what is left above τ is within what the deflation may leave there, see `settled`.
+//! Bases are orthonormal in F_i. Two start vectors find eigenvalues of multiplicity two at once; eigenvalues of higher
+//! multiplicity follow later. `settled` says when the search of a body stops.
 
 use std::ops::Range;
 
 use crate::Result;
 
-/// Pencils F, M⁻¹ on vectors that hold the entries of one after those of the other.
+/// Several pencils (F, M⁻¹). A vector holds the entries of the first pencil, then those of the second, and so on.
 pub trait Pencils {
-    /// This rank's entries of each.
+    /// The entries of each pencil on this rank.
     fn parts(&self) -> &[Range<usize>];
 
-    /// A number of entry `i` that no other entry of its pencil has on any rank.
+    /// A number that identifies entry `i` within its pencil over all ranks.
     fn row(&self, i: usize) -> u64;
 
     /// F v. Collective.
     fn f(&self, v: &[f64]) -> Result<Vec<f64>>;
 
-    /// P M⁻¹ v for v that [`jump_part`](Pencils::jump_part) has been through. Collective.
+    /// P M⁻¹ v. The vector v must be a result of [`jump_part`](Pencils::jump_part). Collective.
     fn m(&self, v: &[f64]) -> Result<Vec<f64>>;
 
     /// v ← Pᵀ v. Collective.
@@ -32,7 +33,7 @@ pub trait Pencils {
         self.parts().last().map_or(0, |p| p.end)
     }
 
-    /// This rank's share of aᵀ b for each.
+    /// This rank's share of aᵀ b for each pencil.
     fn dots(&self, a: &[f64], b: &[f64]) -> Vec<f64> {
         let dot = |part: &Range<usize>| {
             let pairs = a[part.clone()].iter().zip(&b[part.clone()]);
@@ -41,7 +42,7 @@ pub trait Pencils {
         self.parts().iter().map(dot).collect()
     }
 
-    /// y ← y + α x with an α for each.
+    /// y ← y + α x with one α for each pencil.
     fn add(&self, alpha: &[f64], x: &[f64], y: &mut [f64]) {
         for (part, &alpha) in self.parts().iter().zip(alpha) {
             if alpha != 0.0 {
@@ -52,26 +53,26 @@ pub trait Pencils {
     }
 }
 
-/// Start vectors.
+/// Number of start vectors.
 const STARTS: usize = 2;
 
-/// Vectors that are expanded before a body is judged for the first time.
+/// Number of vectors that are expanded before the Rayleigh–Ritz problem of a body is solved for the first time.
 const FIRST: usize = 5;
 
-/// Vectors that are expanded beyond three for each one that is kept.
+/// Largest number of expanded vectors of a body, besides three for each vector above τ.
 const PATIENCE: usize = 60;
 
-/// What is left of a vector after orthogonalisation, relative to the vector, that is rounding.
+/// A part of a vector below this, relative to the vector, is rounding after orthogonalisation.
 const ROUNDING: f64 = 1e-10;
 
-/// What the search has found for one body.
+/// Result of the search for one body.
 #[derive(Debug, Default, Clone)]
 pub struct TopOfPencil {
     /// Ritz values above τ, the largest first.
     pub theta: Vec<f64>,
-    /// Their vectors in terms of the basis.
+    /// Their coefficients in the basis.
     y: Vec<Vec<f64>>,
-    /// Whether there are more than the cap allows, or they would not settle.
+    /// Whether the cap cuts off vectors above τ, or the vectors have not settled.
     pub capped: bool,
     done: bool,
 }
@@ -80,11 +81,12 @@ pub struct TopOfPencil {
 struct Basis {
     q: Vec<Vec<f64>>,
     fq: Vec<Vec<f64>>,
-    /// h[s][k][body] = q_kᵀ F M⁻¹ F q_s for the expanded s, k up to what was there after the expansion.
+    /// h[s][k][body] = q_kᵀ F M⁻¹ F q_s for the expanded s, with k up to the number of vectors after the expansion.
     h: Vec<Vec<Vec<f64>>>,
 }
 
-/// The vectors above `tau` of every pencil: `visit(which, μ, F μ)`, the largest θ first. At most `most` of each. Collective.
+/// Finds the vectors above `tau` of every pencil, at most `most` of each, and calls `visit(which, μ, F μ)` for each of
+/// them, the largest θ first. Collective.
 pub fn top(
     pencil: &impl Pencils,
     tau: f64,
@@ -130,11 +132,11 @@ pub fn top(
 }
 
 impl Basis {
-    /// The image of the next vector, orthogonal to the others, becomes a new one.
+    /// Applies the operator to the next vector, orthogonalises the image and adds it to the basis.
     fn expand(&mut self, pencil: &impl Pencils, found: &[TopOfPencil]) -> Result<()> {
         let s = self.h.len();
         let mut v = self.fq[s].clone();
-        // Bodies that have settled rest.
+        // Bodies that have settled are not expanded further.
         for (part, _) in pencil.parts().iter().zip(found).filter(|p| p.1.done) {
             v[part.clone()].fill(0.0);
         }
@@ -208,10 +210,11 @@ impl Basis {
     }
 }
 
-/// Whether the vectors above τ may be taken as they are, from (θ, residual) in decreasing order of θ.
+/// Whether the Ritz vectors above τ are accurate enough to be deflated. `pairs` has (θ, residual) in decreasing order
+/// of θ.
 ///
-/// With the Ritz vectors deflated, the rest of the pencil is at most that of exact ones plus Σ r²/θ; and the largest one that is left has
-/// converged well enough to be believed.
+/// Deflation with Ritz vectors instead of exact ones leaves at most Σ r²/θ more in the rest of the pencil. The largest
+/// value below τ must have converged well enough to be trusted.
 fn settled(pairs: &[(f64, f64)], above: usize, tau: f64) -> bool {
     let rest: f64 = pairs[..above].iter().map(|(t, r)| r * r / t).sum();
     let next = pairs
@@ -220,7 +223,8 @@ fn settled(pairs: &[(f64, f64)], above: usize, tau: f64) -> bool {
     rest <= 0.1 * tau && next
 }
 
-/// A start vector: numbers without pattern that follow from rows alone, so that every distribution starts alike.
+/// A start vector: numbers without pattern that depend on the rows alone, so that every distribution over ranks starts
+/// alike.
 fn noise(pencil: &impl Pencils, start: usize) -> Vec<f64> {
     let value = |i: usize| {
         let mut x = (pencil.row(i) + 1) ^ ((start as u64 + 1) << 48);

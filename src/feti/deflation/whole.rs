@@ -1,6 +1,7 @@
-//! What the bodies' vectors leave above the bound: the pencil of the whole problem, deflated.
+//! The pencil of the whole problem, deflated: eigenvalues above the bound that the vectors of the bodies leave.
 //!
-//! Modes that several bodies share have eigenvalues up to the number of bodies that meet times τ. Where that shows, the top of
+//! Modes that several bodies share have eigenvalues up to τ times the number of bodies that meet. Where such
+//! eigenvalues show, the top of
 //!
 //! ```text
 //!     P_2 P M⁻¹ Pᵀ P_2ᵀ F μ = θ μ

@@ -1,7 +1,8 @@
-//! Which dofs may have copies: a cheap sieve before the copies themselves are looked for.
+//! Dofs that may have copies: a cheap sieve before the search for the copies themselves.
 //!
-//! Nearly all dofs of a subdomain are its own alone. Their numbers, and nothing else, go to the rendezvous rank; a table of two bits for each hash of a number says
-//! which hashes came more than once. Every dof that is shared passes, and one in twenty that is not.
+//! Nearly all dofs of a subdomain are its own alone. Their numbers, and nothing else, go to the rendezvous rank. A
+//! table with two bits for each hash of a number records which hashes came more than once. All shared dofs pass, and
+//! one in twenty of the others.
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -10,7 +11,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use crate::parallel::exchange::exchange_words;
 use crate::substructures::Substructures;
 
-/// Multiplicative hashing: dof numbers are no adversaries.
+/// Multiplicative hashing: dof numbers are not chosen by an adversary.
 #[derive(Debug, Default, Clone, Copy)]
 pub struct DofHasher(u64);
 
@@ -22,7 +23,7 @@ impl Hasher for DofHasher {
         self.0 = (self.0.rotate_left(5) ^ n).wrapping_mul(GOLDEN);
     }
     fn finish(&self) -> u64 {
-        // Tables take low bits, products mix high ones.
+        // Hash tables use the low bits, and products mix the high ones.
         self.0.rotate_left(26)
     }
 }
@@ -33,7 +34,7 @@ const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 /// A map from dofs.
 pub type DofMap<T> = std::collections::HashMap<u64, T, BuildHasherDefault<DofHasher>>;
 
-/// Bits of the table for each number that is to come.
+/// Bits of the table for each number that is expected.
 const BITS: usize = 16;
 
 /// Hashes that came once, and more than once.
@@ -65,7 +66,7 @@ impl Table {
         self.once[word] |= bit;
     }
 
-    /// It passes whether or not it came more than once.
+    /// Marks a dof so that it passes, whether or not it came more than once.
     fn mark(&mut self, dof: u64) {
         let (word, bit) = self.place(dof);
         self.more[word] |= bit;
@@ -77,8 +78,8 @@ impl Table {
     }
 }
 
-/// The local dofs of every local subdomain that another subdomain may have too or that may be in a row, increasing; `home` is the rendezvous rank of a dof.
-/// Collective.
+/// The local dofs of every local subdomain, increasing, that another subdomain may have too or that may be in a row.
+/// `home` is the rendezvous rank of a dof. Collective.
 pub fn candidates(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -115,7 +116,7 @@ pub fn candidates(
     let mut table = Table::new(held.iter().map(Vec::len).sum());
     held.iter().flatten().for_each(|&dof| table.see(dof));
     named.iter().flatten().for_each(|&dof| table.mark(dof));
-    // One bit for each dof that was asked about, in the order in which they were.
+    // One bit for each dof that was asked about, in the order of the questions.
     let answer = |asked: &Vec<u64>| {
         let word = |dofs: &[u64]| {
             let bits = dofs.iter().zip(0..);

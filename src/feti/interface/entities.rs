@@ -1,7 +1,7 @@
-//! Averages over edges and faces: which of the entities that subdomains list are primal constraints.
+//! Averages over edges and faces: the entities of the subdomains that become primal constraints.
 //!
-//! Every entity is reported to a rendezvous rank that follows from its key. That rank sees all subdomains that list it, compares
-//! what they say and tells them how many they are.
+//! Every entity is reported to a rendezvous rank that follows from its key. That rank sees all subdomains that list the
+//! entity, compares their lists and sends back the number of subdomains.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -14,26 +14,26 @@ use crate::parallel::exchange::exchange_words;
 use crate::substructures::{Entity, Subdomain, Substructures};
 use crate::{Error, Result};
 
-/// The mean over some dofs, or another functional of them, as a primal constraint that several subdomains of a body share.
+/// A primal constraint that several subdomains of a body share: the mean over some dofs, or another functional of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Average {
-    /// Key of the entity; of a functional that adaptivity added, a body dof that no other one has.
+    /// Key of the entity. A functional that adaptivity added has a body dof as key that no other functional has.
     pub key: u64,
     /// Local dofs, none of them a shared vertex.
     pub dofs: Vec<u32>,
-    /// Σ weights · u is the same in all these subdomains; `None` for the mean.
+    /// Weights of the functional: Σ weights · u is the same in all these subdomains; `None` for the mean.
     pub weights: Option<Vec<f64>>,
 }
 
 /// Words of a report: key, body, subdomain, number of dofs, hash of the body dofs.
 const WORDS: usize = 5;
 
-/// The entities of a subdomain that are chosen.
+/// The entities of a subdomain that the user's choice makes primal.
 pub fn chosen(sub: &Subdomain, primal: Primal) -> impl Iterator<Item = &Entity> {
     sub.entities.iter().filter(move |e| primal.takes(e.kind))
 }
 
-/// The averages of every local subdomain, those that other subdomains have too; the entities must have passed [`check`].
+/// The averages that each local subdomain shares with other subdomains. The entities must have passed [`check`].
 /// Collective.
 pub fn averages(
     comm: &SimpleCommunicator,
@@ -94,13 +94,14 @@ pub fn averages(
     Ok(out)
 }
 
-/// What can be said of the chosen entities of every local subdomain by itself: their dofs exist and belong to one entity each.
+/// Checks of each local subdomain by itself: the dofs of the chosen entities exist and belong to one entity each.
 pub fn check(problem: &Substructures, primal: Primal) -> Result<()> {
     let mut each = problem.local.iter();
     each.try_for_each(|sub| valid(problem, sub, primal))
 }
 
-/// The constraint that an entity of `count` subdomains is; `None` for one, or where all its dofs are vertices.
+/// The constraint of an entity that `count` subdomains share; `None` for one subdomain, or where all its dofs are
+/// vertices.
 fn average(
     problem: &Substructures,
     sharing: &Sharing,
@@ -169,7 +170,7 @@ fn valid(problem: &Substructures, sub: &Subdomain, primal: Primal) -> Result<()>
     Ok(())
 }
 
-/// What several subdomains list under one key is the same.
+/// Checks that the subdomains agree on an entity that they list under one key.
 fn agree(problem: &Substructures, group: &[&[u64]]) -> Result<()> {
     let first = group[0];
     let who = |r: &[u64]| name(problem, r[2] as usize, r[1] as usize);
@@ -195,7 +196,7 @@ fn agree(problem: &Substructures, group: &[&[u64]]) -> Result<()> {
 fn name(problem: &Substructures, subdomain: usize, body: usize) -> String {
     match problem.body_names.get(body) {
         Some(name) => format!("subdomain {subdomain} of body \"{name}\""),
-        // Whether bodies exist is seen later.
+        // A body that does not exist is found later.
         None => format!("subdomain {subdomain}"),
     }
 }

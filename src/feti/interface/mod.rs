@@ -1,4 +1,4 @@
-//! Who shares what: copies of dofs, candidates, and the edges and faces that subdomains have in common.
+//! Copies of dofs, candidates for contact, and the edges and faces that subdomains share.
 
 pub mod candidates;
 pub mod entities;

@@ -1,8 +1,8 @@
-//! Who shares what: the copies of every degree of freedom, found from the body dof numbers alone.
+//! The copies of every degree of freedom, found from the body dof numbers alone.
 //!
-//! A rank knows only its own subdomains. Every copy is reported to a rendezvous rank that follows from the body dof's
-//! number; that rank sees all copies of the dof and tells those who hold one. Memory and messages
-//! are proportional to the dofs that a rank holds, never to the whole problem.
+//! A rank knows only its own subdomains. Every copy is reported to a rendezvous rank that follows from the number of
+//! the body dof. That rank sees all copies of the dof and reports them to the ranks that hold one. Memory and messages
+//! are proportional to the dofs of a rank, never to the whole problem.
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -27,13 +27,13 @@ pub struct Copy {
     pub weight: f64,
 }
 
-/// The copies of the dofs that matter to this rank, and where every subdomain lives.
+/// The copies of the dofs that this rank needs, and the rank of every subdomain.
 #[derive(Debug, Default)]
 pub struct Sharing {
-    /// Copies, by increasing subdomain, of every dof that a subdomain of this rank shares with another one, and of every
-    /// dof in a row that this rank provides.
+    /// Copies, by increasing subdomain, of two sets of dofs: those that a subdomain of this rank shares with another
+    /// one, and those in rows that this rank provides.
     pub copies: DofMap<Vec<Copy>>,
-    /// The local dofs of each local subdomain that it shares with others, increasing.
+    /// For each local subdomain, the local dofs that it shares with others, increasing.
     pub shared_dofs: Vec<Vec<u32>>,
     /// Rank that holds each subdomain; length n_subdomains.
     pub rank_of: Vec<u32>,
@@ -69,8 +69,8 @@ impl Record for (u64, Copy) {
 }
 
 impl Sharing {
-    /// Finds the copies, and the averages among the chosen constraints. `weights[j]` holds D of local subdomain j, by local
-    /// dof. Collective.
+    /// Finds the copies, and the averages among the chosen constraints. `weights[j]` holds D of local subdomain j, by
+    /// local dof. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         problem: &Substructures,
@@ -102,7 +102,7 @@ impl Sharing {
         let mut all: Vec<(u64, Copy)> = exchange(comm, reports);
         all.sort_unstable_by_key(|(dof, c)| (*dof, c.subdomain, c.local));
 
-        // Shared dofs go back to all who hold a copy.
+        // Shared dofs go back to all ranks that hold a copy.
         let mut replies: Vec<Vec<(u64, Copy)>> = vec![Vec::new(); size];
         let mut ranks = Vec::new();
         for group in all.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1) {
@@ -124,7 +124,7 @@ impl Sharing {
         };
         sharing.absorb(exchange(comm, replies));
 
-        // The dofs in our rows, shared or not.
+        // The dofs in the rows of this rank, shared or not.
         let mut queries: Vec<Vec<u64>> = vec![Vec::new(); size];
         for dof in problem
             .rows
@@ -176,7 +176,7 @@ impl Sharing {
             .map_or(&[], |c| &c[..])
     }
 
-    /// A shared dof is primal when one of its subdomains says so.
+    /// Whether a shared dof is primal: one of its subdomains lists it as primal.
     pub fn is_primal(copies: &[Copy]) -> bool {
         copies.len() > 1 && copies.iter().any(|c| c.primal)
     }

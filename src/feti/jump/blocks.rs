@@ -1,4 +1,5 @@
-//! Blocks of B_gl: rows that share body dofs, whose scaling (B D⁻¹ Bᵀ)⁺ is found together, and what a change of Z^k does to them.
+//! Blocks of B_gl. A block is a set of rows that share body dofs; its scaling (B D⁻¹ Bᵀ)⁺ is computed as a whole. A
+//! change of Z^k is applied block by block.
 
 use std::ops::Range;
 
@@ -36,11 +37,11 @@ pub(crate) struct Entry {
     pub subdomain: u32,
     pub local: u32,
     pub contact: bool,
-    /// In B, whether or not the row holds.
+    /// Entry of B, whether or not the row holds.
     pub full: f64,
-    /// In Z B.
+    /// Entry of Z B.
     pub b: f64,
-    /// In Z B_D.
+    /// Entry of Z B_D.
     pub bd: f64,
 }
 
@@ -81,7 +82,7 @@ impl Entry {
 }
 
 impl Block {
-    /// Where the block is, if a subdomain of this rank knows.
+    /// The position of the block, if a subdomain of this rank knows it.
     pub fn place(&self, problem: &Substructures) -> Option<[f64; 3]> {
         self.copies.iter().flatten().find_map(|copy| {
             let index = |sub: &&crate::Subdomain| sub.index == copy.subdomain as usize;
@@ -90,15 +91,15 @@ impl Block {
         })
     }
 
-    /// The entries of B and B_D where the rows in `active` (one per row of the block) hold; `first` is the number of this rank's
-    /// first row.
+    /// The entries of B and B_D for the rows in `active` (one per row of the block). `first` is the number of this
+    /// rank's first row.
     pub(crate) fn entries(&self, first: usize, active: &[bool], send: &mut impl FnMut(Entry)) {
         let bd = scaling::block(&self.b, &self.weights, active);
         for (r, &on) in active.iter().enumerate() {
             let row = (first + self.rows.start + r) as u64;
             for (j, copies) in self.copies.iter().enumerate() {
-                // A row acts on the weighted average of the copies of one body (docs/theory.md,
-                // section 3); B_Dᵀ λ is then the same on all of them, as a function in W̃ must be.
+                // A row acts on the weighted average of the copies of one body (docs/theory.md, section 3). B_Dᵀ λ is
+                // then the same on all of them, as a function in W̃ must be.
                 for copy in copies {
                     let full = self.b.get(r, j) * copy.weight / self.weights[j];
                     let b = if on { full } else { 0.0 };
@@ -110,8 +111,8 @@ impl Block {
 }
 
 impl Block {
-    /// The right-hand sides nearest to `c` that the active rows can satisfy together: B B⁺ c over these rows, `c` on the others.
-    /// Where all candidates hold, gaps around a cross point and both sides of an obstacle contradict each other.
+    /// B B⁺ c over the active rows, the nearest right-hand side that they can satisfy together; `c` on the others.
+    /// Where all candidates hold, gaps around a cross point contradict each other, and so do both sides of an obstacle.
     fn consistent(&self, active: &[bool], c: &[f64]) -> Vec<f64> {
         let mut out = c.to_vec();
         let rows: Vec<usize> = (0..active.len()).filter(|&r| active[r]).collect();
@@ -132,7 +133,7 @@ impl Block {
                 .for_each(|(i, n)| *n += along * range[(i, l)]);
         }
         for (&r, n) in rows.iter().zip(&near) {
-            // What differs by rounding alone is meant to be the same.
+            // A difference of the size of rounding means that both values are the same.
             if (n - c[r]).abs() > 1e-12 * largest {
                 out[r] = *n;
             }
@@ -142,7 +143,8 @@ impl Block {
 }
 
 impl Block {
-    /// Rows that hold because the active ones do: they depend on them, and their right-hand side `c` is what follows.
+    /// Rows that follow from the active ones: they depend on them, and their right-hand side `c` is the same
+    /// combination.
     fn implied(&self, active: &[bool], c: &[f64]) -> Vec<usize> {
         let mut held = active.to_vec();
         let mut out = Vec::new();
@@ -168,7 +170,8 @@ impl Block {
     }
 }
 
-/// Sorts this rank's rows by block: (order of the rows, blocks with `rows` counted after `first` local rows).
+/// Sorts this rank's rows by block. Returns the order of the rows and the blocks, with `rows` counted after `first`
+/// local rows.
 pub(crate) fn collect(
     problem: &Substructures,
     sharing: &Sharing,
@@ -215,7 +218,8 @@ pub(crate) fn collect(
 }
 
 impl Jump {
-    /// Z^k with the inequality rows that hold because others do: around a cross point several sets of rows say the same.
+    /// Z^k, with the inequality rows that hold because they follow from others. Around a cross point several sets of
+    /// rows are equivalent.
     pub fn implied(&self) -> Vec<bool> {
         let mut out = self.active.clone();
         for block in self.blocks.iter().filter(|b| b.rows.len() > 1) {
@@ -231,7 +235,8 @@ impl Jump {
         out
     }
 
-    /// Right-hand sides that the rows that hold can satisfy together, from c and Z^k; of all blocks, or of those that `which` names.
+    /// Computes right-hand sides that the rows that hold can satisfy together, from c and Z^k, for the blocks that
+    /// `which` selects.
     pub(crate) fn reconcile(&mut self, which: impl Fn(&Block) -> bool) {
         for block in self.blocks.iter().filter(|b| which(b)) {
             let (active, c) = (
@@ -242,8 +247,8 @@ impl Jump {
         }
     }
 
-    /// Changes Z^k: `active` says for each owned row whether it holds (rows of B_loc always do). Only blocks in which a row
-    /// changes get a new B_D; everything else stays. Returns the number of rows that changed on this rank. Collective.
+    /// Changes Z^k. `active` says for each owned row whether it holds (rows of B_loc always do). Only blocks with a
+    /// changed row get a new B_D. Returns the number of rows that changed on this rank. Collective.
     pub fn set_active(&mut self, comm: &SimpleCommunicator, active: &[bool]) -> usize {
         debug_assert!(active[..self.n_owned_local].iter().all(|&on| on));
         let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();

@@ -1,13 +1,13 @@
 //! Deluxe scaling: inside a body the copies of an edge or face are averaged with their Schur complements as weights.
 //!
-//! A group is what the same subdomains share: a face with the edges in it, an edge. With
+//! A group is a set of dofs that the same subdomains share: an edge, or a face with the edges in it. With
 //!
 //! ```text
 //!     A_k = (Σ S)⁻¹ S_k,      E w = Σ_k A_k w_k,      B_D,locᵀ = (I − E) B_loc⁺
 //! ```
 //!
-//! B B_Dᵀ B = B holds as for weights that are numbers. Dofs that carry rows of B_gl keep those: B_gl acts on the weighted average of the copies,
-//! which B_D,locᵀ must not change.
+//! the identity B B_Dᵀ B = B holds as for weights that are numbers. Dofs that carry rows of B_gl keep weights that are
+//! numbers: B_gl acts on the weighted average of the copies, which B_D,locᵀ must not change.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -27,11 +27,11 @@ struct Group {
     sharers: Vec<u32>,
     /// Positions in Γ.
     at: Vec<usize>,
-    /// The lowest body dof: names the group.
+    /// The lowest body dof, which is the name of the group.
     name: u64,
 }
 
-/// Replaces the weights of B_loc. Entries of `jump` are on interface positions. Collective.
+/// Replaces the weights of B_loc in `jump`, whose entries are on interface positions. Collective.
 pub fn apply(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -75,7 +75,7 @@ pub fn apply(
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
             let schur = &received[&(sub.index as u64, group.name)];
-            // Every sharer adds the same numbers in the same order and comes to the same conclusion.
+            // All sharers add the same numbers in the same order, so that their results are identical.
             if let Some(weights) = group.weights(schur.values()) {
                 let own = group.sharers.binary_search(&(sub.index as u32));
                 group.replace(jump, j, own.expect("a sharer"), &weights);
@@ -119,7 +119,7 @@ fn groups(
 }
 
 impl Group {
-    /// (Σ S)⁻¹ S_k for every sharer; nothing where nothing holds the group.
+    /// (Σ S)⁻¹ S_k for every sharer; `None` if nothing holds the group.
     fn weights<'a>(&self, schur: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Option<Vec<Dense>> {
         let m = self.at.len();
         let mut l = Dense::zeros(m, m);
@@ -144,7 +144,7 @@ impl Group {
         Some(schur.map(solve).collect())
     }
 
-    /// B_D of the rows of this group on the copy number `c`, that of local subdomain `j`.
+    /// Replaces B_D in the rows of this group on copy number `c`, that of local subdomain `j`.
     fn replace(&self, jump: &mut Jump, j: usize, c: usize, weights: &[Dense]) {
         let (n, q) = (self.at.len(), self.sharers.len());
         let columns = &mut jump.columns[j];
@@ -180,7 +180,7 @@ impl Group {
         }
     }
 
-    /// B_Dᵀ of the rows (a, b) on copy c: Σ_k A_k (z_c − z_k) with z = B⁺ λ, added up without cancellation.
+    /// B_Dᵀ of the rows (a, b) on copy c: Σ_k A_k (z_c − z_k) with z = B⁺ λ, summed without cancellation.
     fn pair(&self, (a, b): (usize, usize), c: usize, weights: &[Dense]) -> Dense {
         let (n, q) = (self.at.len(), weights.len() as f64);
         let value = |k: usize| f64::from(u8::from(k == a)) - f64::from(u8::from(k == b));

@@ -1,4 +1,4 @@
-//! The jump operator B and its scaled companion B_D.
+//! The jump operator B and the scaled jump operator B_D.
 
 pub mod blocks;
 pub mod deluxe;

@@ -1,8 +1,8 @@
-//! The jump operator B = [B_loc; B_gl] and its scaled companion B_D, as every rank sees them.
+//! The jump operator B = [B_loc; B_gl] and the scaled jump operator B_D, distributed over the ranks.
 //!
-//! Rows (multipliers) are numbered rank after rank; the rank of a dof's lowest subdomain owns its local rows, the
-//! rank that provides a contact row owns that. A rank also sees *ghost* rows: all those that touch
-//! its subdomains. Entries are kept per subdomain on interface positions, B and B_D side by side.
+//! Rows (multipliers) are numbered rank after rank. A row of B_loc is owned by the rank of its dof's lowest subdomain,
+//! a contact row by the rank that provides it. A rank also sees *ghost* rows: all rows that touch its subdomains.
+//! Entries are stored per subdomain on interface positions, B and B_D side by side.
 
 use std::ops::Range;
 
@@ -23,11 +23,11 @@ pub struct JumpColumns {
     pub row: Vec<u32>,
     /// Interface position (index into Γ) of each entry; before [`Jump::place`], the local dof.
     pub at: Vec<u32>,
-    /// Entry of Z B (zero where only B_D has one, and in rows that do not hold).
+    /// Entry of Z B; zero where only B_D has one, and in rows that do not hold.
     pub b: Vec<f64>,
     /// Entry of Z B_D.
     pub bd: Vec<f64>,
-    /// Entries of B_gl: where they stand in the lists above, and their value in B, whether or not the row holds.
+    /// Entries of B_gl: (place in the lists above, value in B whether or not the row holds).
     pub contact: Vec<(u32, f64)>,
 }
 
@@ -40,7 +40,7 @@ impl JumpColumns {
         }
     }
 
-    /// v ← Bᵀ λ with all rows of B_gl, those that do not hold included.
+    /// v ← Bᵀ λ with all rows of B_gl, including those that do not hold.
     pub fn b_transpose_all(&self, ghost: &[f64], v: &mut [f64]) {
         self.b_transpose(ghost, v);
         for &(k, full) in &self.contact {
@@ -49,7 +49,7 @@ impl JumpColumns {
         }
     }
 
-    /// ghost ← ghost + B y on the rows of B_gl, those that do not hold included.
+    /// ghost ← ghost + B y on the rows of B_gl, including those that do not hold.
     pub fn add_contact(&self, y: &[f64], ghost: &mut [f64]) {
         for &(k, full) in &self.contact {
             let k = k as usize;
@@ -62,7 +62,7 @@ impl JumpColumns {
         self.bd_transpose_of(ghost, v, |_| true);
     }
 
-    /// v ← B_Dᵀ λ with some of the ghost rows.
+    /// v ← B_Dᵀ λ with the ghost rows that `rows` selects.
     pub fn bd_transpose_of(&self, ghost: &[f64], v: &mut [f64], rows: impl Fn(usize) -> bool) {
         v.fill(0.0);
         for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
@@ -90,24 +90,24 @@ impl JumpColumns {
 /// The dual space and its operators.
 #[derive(Debug, Default)]
 pub struct Jump {
-    /// Rows owned by this rank: first global number and count.
+    /// First global number of the rows that this rank owns.
     pub first: usize,
     /// Number of rows that this rank owns.
     pub n_owned: usize,
     /// Number of rows over all ranks, m.
     pub n_global: usize,
-    /// How many of the owned rows (the first ones) tie subdomains inside a body; the others are rows of B_gl.
+    /// Number of owned rows of B_loc. They come first; the others are rows of B_gl.
     pub(in crate::feti) n_owned_local: usize,
     /// Rows of B_loc over all ranks.
     pub n_local: usize,
     /// Global number of each ghost row, increasing.
     pub ghosts: Vec<u32>,
-    /// Which ghost rows are rows of B_gl.
+    /// Whether each ghost row is a row of B_gl.
     pub ghost_is_contact: Vec<bool>,
     /// Right-hand side c of each owned row.
     pub gap: Vec<f64>,
-    /// The right-hand side that each owned row is held to: c, or the nearest that the rows of its block that hold can satisfy
-    /// together.
+    /// The right-hand side that each owned row is solved with: c, or the nearest one that the holding rows of its block
+    /// can satisfy together.
     pub held: Vec<f64>,
     /// Whether each owned row may be switched off by the contact loop.
     pub inequality: Vec<bool>,
@@ -117,32 +117,32 @@ pub struct Jump {
     pub active: Vec<bool>,
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
-    /// For each owned row of B_gl, which of the rows that this rank provides it is.
+    /// For each owned row of B_gl, its index among the rows that this rank provides.
     pub(in crate::feti) order: Vec<usize>,
-    /// First owned local row of each local subdomain, and the end: a subdomain's rows are those of the dofs in which it is
-    /// the lowest.
+    /// First owned local row of each local subdomain, and the end. A subdomain has the rows of the dofs in which it is
+    /// the lowest subdomain.
     pub local_start: Vec<usize>,
     /// Rank that holds each subdomain.
     pub(crate) rank_of: Vec<u32>,
     /// Global indices of the local subdomains, increasing.
     pub(crate) subdomains: Vec<u32>,
-    /// Where the entries of B_gl stand: (ghost row, local subdomain, its dof, entry), increasing.
+    /// Places of the entries of B_gl: (ghost row, local subdomain, its dof, entry), increasing.
     pub(crate) places: Vec<(u32, u32, u32, u32)>,
     /// Entries by local subdomain.
     pub columns: Vec<JumpColumns>,
     /// Dual interface dofs of each local subdomain, increasing.
     pub delta: Vec<Vec<u32>>,
-    /// Primal interface dofs of each local subdomain: those shared with other subdomains of the body, then corners of the body
-    /// that may touch other bodies.
+    /// Primal interface dofs of each local subdomain: first those shared with other subdomains of the body, then
+    /// corners of the body that may touch other bodies.
     pub primal: Vec<Vec<u32>>,
-    /// How many of them are shared.
+    /// Number of shared primal dofs of each local subdomain.
     pub n_shared: Vec<usize>,
     /// Averages over dual dofs of each local subdomain that are primal too.
     pub averages: Vec<Vec<Average>>,
 }
 
 impl Jump {
-    /// The blocks of the owned rows of B_gl: the number that the scene gave each, and its rows among the owned ones.
+    /// The blocks of the owned rows of B_gl: the number that the scene gave to each, and its rows among the owned ones.
     pub fn numbered_blocks<'a>(
         &'a self,
         problem: &'a Substructures,
@@ -231,17 +231,17 @@ impl Jump {
         self.reconcile(|_| true);
     }
 
-    /// The owned rows of B_gl; those before them tie subdomains inside a body.
+    /// The owned rows of B_gl. The rows before them belong to B_loc.
     pub fn rows_between_bodies(&self) -> std::ops::Range<usize> {
         self.n_owned_local..self.n_owned
     }
 
-    /// Which of the rows that this rank provides is the owned row `i` of B_gl.
+    /// Index of owned row `i` of B_gl among the rows that this rank provides.
     pub fn given(&self, i: usize) -> usize {
         self.order[i - self.n_owned_local]
     }
 
-    /// What `owned` has for the owned rows of B_gl, in the order in which this rank provides them.
+    /// Values of `owned` on the owned rows of B_gl, in the order in which this rank provides them.
     pub fn in_given_order<T: Clone + Default>(&self, owned: &[T]) -> Vec<T> {
         let mut out = vec![T::default(); self.order.len()];
         for (&r, value) in self.order.iter().zip(&owned[self.n_owned_local..]) {
@@ -250,7 +250,7 @@ impl Jump {
         out
     }
 
-    /// Whether owned row `i` may hold at all: open rows of faces that are tied in part may not.
+    /// Whether owned row `i` may hold at all. Open rows of faces that are partly tied may not.
     pub fn is_candidate(&self, i: usize) -> bool {
         self.inequality[i] || self.initial[i]
     }
@@ -263,7 +263,7 @@ impl Jump {
         for &body in &sharing.body_of {
             subdomains_of[body as usize] += 1;
         }
-        // By subdomain, then by dof and row: what is sorted is small.
+        // Sorted by subdomain first, then by dof and row: each sort is small.
         let mut here = vec![u32::MAX; problem.n_subdomains];
         for (j, sub) in (0..).zip(&problem.local) {
             here[sub.index] = j;
@@ -277,8 +277,8 @@ impl Jump {
             let mut mine = std::mem::take(&mut dealt[j]);
             mine.sort_unstable();
             let mut columns = JumpColumns::default();
-            // Corners of a body of several subdomains are primal too, but not those of a solid: with ν near 1/2, holding a
-            // corner makes the coarse functions stiffer than the cut that it saves.
+            // Corners of a body with several subdomains are primal too, but not those of a solid. With ν near 1/2,
+            // holding a corner makes the coarse functions stiffer than the cut that it saves.
             let scalar = sub.near_kernel.as_ref().is_none_or(|n| n.len() < 2);
             let pinned = scalar && subdomains_of[sub.body] > 1;
             let mut dual = Vec::new();
@@ -318,7 +318,7 @@ impl Jump {
         self.places.sort_unstable();
     }
 
-    /// Which local subdomain has this global index.
+    /// The local subdomain with this global index.
     ///
     /// # Panics
     /// If none has.
@@ -338,13 +338,14 @@ impl Jump {
     }
 }
 
-/// The rows that entries are in, numbered upwards: a table for the rank's own ones, a list for the few others.
+/// The rows that have entries, numbered upwards: a table for the rank's own rows, a list for the few others.
 struct GhostRows {
     first: u32,
-    /// By owned row: its place among the owned rows that are seen, and whether it is one of B_gl; `None` where no entry is.
+    /// For each owned row, its place among the owned rows that are seen and whether it is a row of B_gl; `None` if it
+    /// has no entry.
     own: Vec<Option<(u32, bool)>>,
     n_own: u32,
-    /// The others, increasing, and how many of them come before the owned ones.
+    /// The other rows, increasing, and the number of them before the owned ones.
     others: Vec<(u32, bool)>,
     before: u32,
 }
@@ -378,7 +379,7 @@ impl GhostRows {
         }
     }
 
-    /// (row, whether it is one of B_gl), increasing.
+    /// (row, whether it is a row of B_gl), increasing.
     fn all(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
         let (below, above) = self.others.split_at(self.before as usize);
         let own = (self.first..).zip(&self.own);
@@ -390,10 +391,10 @@ impl GhostRows {
             .chain(above.iter().copied())
     }
 
-    /// Where a row stands among all.
+    /// The place of a row among all of them.
     ///
     /// # Panics
-    /// If no entry is in it.
+    /// If the row has no entry.
     fn place(&self, row: u32) -> u32 {
         let here = self.own.get(row.wrapping_sub(self.first) as usize);
         if let Some(seen) = here {
@@ -405,8 +406,8 @@ impl GhostRows {
     }
 }
 
-/// The dual dofs shared inside a body whose lowest subdomain lives here, in a reproducible order, and where the rows of each local
-/// subdomain start (and end).
+/// The dual dofs shared inside a body whose lowest subdomain lives on this rank, in a reproducible order, and the start
+/// (and end) of the rows of each local subdomain.
 fn local_groups<'a>(
     problem: &Substructures,
     sharing: &'a Sharing,

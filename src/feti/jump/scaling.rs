@@ -1,13 +1,13 @@
 //! The scaled jump operator B_D = (B D⁻¹ Bᵀ)⁺ B D⁻¹, block by block (docs/theory.md, section 3).
 //!
-//! With P_D the D-orthogonal projection along ker B, B_Dᵀ = P_D B⁺ holds. B⁺ does not see the weights and P_D is
-//! an average, so jumps of any size in the coefficients cost no digits; inverting B D⁻¹ Bᵀ would.
-//! B B_Dᵀ B = B follows from B P_D = B.
+//! B_Dᵀ = P_D B⁺ holds, with P_D the D-orthogonal projection along ker B. B⁺ does not depend on the weights, and P_D is
+//! an average: jumps of any size in the coefficients cost no digits. Inverting B D⁻¹ Bᵀ would cost digits. B B_Dᵀ B = B
+//! follows from B P_D = B.
 
 use crate::linalg::dense::Dense;
 
-/// Rows and columns of a block below this singular value, relative to the largest, are dependent: entries of B are of
-/// order one, so what is not zero is far above.
+/// Rank tolerance of a block: singular values below this, relative to the largest, are zero. Entries of B are of order
+/// one, and nonzero singular values are far larger.
 const RANK: f64 = 1e-10;
 
 /// B_D for the fully redundant ±1 pairs between q copies of one dof: entry of row (a, b) on copy c.
@@ -32,8 +32,8 @@ pub fn pair_entry(weights: &[f64], (a, b): (usize, usize), c: usize) -> f64 {
 
 /// B_D of one block of contact rows.
 ///
-/// `b` is rows × columns (columns are body dofs), `weights` has D of each column summed over its copies, `active` selects
-/// the rows that hold (Z^k). Rows that do not hold are zero in the result.
+/// `b` is rows × columns (columns are body dofs), `weights` has D of each column summed over its copies, `active`
+/// selects the rows that hold (Z^k). Rows that do not hold are zero in the result.
 pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
     let (m, n) = (b.rows, b.cols);
     let rows: Vec<usize> = (0..m).filter(|&r| active[r]).collect();
@@ -70,7 +70,7 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
     out
 }
 
-/// An orthonormal basis of range B for a few rows.
+/// An orthonormal basis of range B for a matrix of a few rows.
 pub fn range(b: &faer::Mat<f64>) -> faer::Mat<f64> {
     let svd = b.svd().expect("an SVD of a tiny finite matrix converges");
     let sigma = svd.S().column_vector();
@@ -78,8 +78,8 @@ pub fn range(b: &faer::Mat<f64>) -> faer::Mat<f64> {
     svd.U().subcols(0, rank.count()).to_owned()
 }
 
-/// The connected part of each column where the rows only take differences inside them, so that ker B is spanned by the
-/// parts' indicators; `None` for other rows.
+/// The connected component of each column if the rows only take differences within components. Indicators of the
+/// components then span ker B. `None` for other rows.
 fn connected_parts(b: &faer::Mat<f64>, rank: usize) -> Option<Vec<usize>> {
     let n = b.ncols();
     let mut part: Vec<usize> = (0..n).collect();
@@ -107,8 +107,8 @@ fn connected_parts(b: &faer::Mat<f64>, rank: usize) -> Option<Vec<usize>> {
     (differences && names.len() == n - rank).then_some(part)
 }
 
-/// P_D x with ker B spanned by indicators: x minus its weighted average over each part, formed from differences, so that the
-/// small values of heavy columns keep all their digits.
+/// P_D x if indicators span ker B: x minus its weighted average over each component. It is computed from differences,
+/// so that the small values of heavy columns keep all their digits.
 fn minus_average(part: &[usize], d: &[f64], x: &faer::Mat<f64>) -> faer::Mat<f64> {
     faer::Mat::from_fn(x.nrows(), x.ncols(), |j, c| {
         let together = (0..part.len()).filter(|&k| part[k] == part[j]);
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn cross_point_reproduces_the_papers_weights_on_jumps() {
-        // On λ = B v the paper's entries ±δ† and ours both give v minus its weighted average.
+        // On λ = B v the entries ±δ† of [Lee] and those of this code both give v minus its weighted average.
         let weights = [1e6, 1e-6, 2.0, 1e-6];
         let b = incidence(&CROSS, 4);
         let bd = block(&b, &weights, &[true; 6]);

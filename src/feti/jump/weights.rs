@@ -1,24 +1,28 @@
-//! D: what the copies of a dof weigh in averages.
+//! D: the weights of the copies of a dof in averages.
 
 use crate::feti::settings::{MethodSettings, Scaling};
 use crate::substructures::{Subdomain, Substructures};
 
-/// Noise: from dof to dof ln ρ changes by at least this part of its standard deviation. White noise has about 0.8, a field that varies over ten elements 0.2.
+/// ρ is noise if ln ρ changes from dof to dof by at least this part of its standard deviation. White noise has about
+/// 0.8, a field that varies over ten elements 0.2.
 const NOISE: f64 = 0.4;
 
-/// And from the mean over its neighbours by this part, as root mean square: 0.74 for white noise, 0.4 for a slope over three elements.
+/// Noise must also differ from the mean over the neighbours by this part, as root mean square. White noise has 0.74, a
+/// slope over three elements 0.4.
 const AWAY: f64 = 0.6;
 
-/// Fewer dofs are too few to tell noise from a slope.
+/// With fewer dofs, noise cannot be told from a slope.
 const SAMPLE: usize = 100;
 
-/// Largest ρ over smallest up to which noise is averaged away. Beyond that single stiff elements carry the stiffness of whole edges.
+/// Largest ratio of ρ up to which noise is averaged. Beyond it, single stiff elements carry the stiffness of whole
+/// edges.
 const MODERATE: f64 = 1e3;
 
 /// The diagonal of D for every local subdomain.
 ///
-/// ρ stands for what a copy resists with when it is moved together with its neighbours. Where ρ is noise, that is the mean: weights as rough as ρ itself would turn smooth jumps
-/// into rough averages, whose energy is larger by up to H/h.
+/// ρ stands for the resistance of a copy that is moved together with its neighbours. Where ρ is noise, that resistance
+/// is the mean. Weights as rough as ρ itself would turn smooth jumps into rough averages, whose energy is larger by up
+/// to H/h.
 pub fn weights(problem: &Substructures, settings: &MethodSettings) -> Vec<Vec<f64>> {
     let of = |sub: &Subdomain| -> Vec<f64> {
         match settings.scaling {
@@ -35,7 +39,7 @@ pub fn weights(problem: &Substructures, settings: &MethodSettings) -> Vec<Vec<f6
     problem.local.iter().map(of).collect()
 }
 
-/// Whether ρ changes from dof to dof without a pattern, by moderate factors.
+/// Whether ρ changes from dof to dof without a pattern and by moderate factors.
 fn is_noise(sub: &Subdomain) -> bool {
     let (low, high) = sub
         .rho
@@ -50,7 +54,7 @@ fn is_noise(sub: &Subdomain) -> bool {
     let deviation = (ln.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt();
     let (mut sum, mut pairs, mut away) = (0.0, 0.0, 0.0);
     for i in 0..sub.k.n() {
-        // Components of one node are no neighbours.
+        // Components of one node do not count as neighbours.
         let row = sub.k.row(i).0.iter().map(|&j| j as usize);
         let neighbours = row.filter(|&j| j != i && !same_place(sub, i, j));
         let (mut of_row, mut near, mut count) = (0.0, 0.0, 0.0);

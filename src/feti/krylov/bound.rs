@@ -1,4 +1,4 @@
-//! The spectrum, and the bound on it: when deflation is looked for, and how often.
+//! The spectrum and the bound on it: the conditions for deflation.
 
 use super::eigenvalues;
 use super::iterate::Watch;
@@ -8,17 +8,17 @@ use crate::feti::settings::Adaptive;
 use crate::feti::spectrum::Spectrum;
 use crate::Result;
 
-/// Where a bound τ is asked for, deflation of what bodies share sets in above `KEPT` τ and goes down to `SHARED` τ.
+/// If a bound τ is asked for, shared modes are deflated once an eigenvalue is above `KEPT` τ, down to `SHARED` τ.
 const KEPT: f64 = 1.45;
 const SHARED: f64 = 1.25;
 
-/// Iterations before the first look at the spectrum. A search costs about twenty; most steps of a loop that changes the rows
-/// take no more, and the matrices of the deflation would have to be renewed in each of them.
+/// Iterations before the first look at the spectrum. A search costs about twenty iterations. Most steps of a loop that
+/// changes the rows take no more than that, and each of them would have to rebuild the matrices of the deflation.
 const WATCHED_FROM: usize = 5;
 const WATCHED_FROM_IN_STEPS: usize = 20;
 
 impl LinearMethod {
-    /// When an iteration is to be broken off so that what is above τ can be deflated; `None`: it runs to its end.
+    /// The condition for breaking an iteration off to deflate eigenvalues above τ; `None` if it runs to its end.
     pub(super) fn watch(&self) -> Option<Watch> {
         let adaptive = self.settings().adaptive;
         let limit = match &*self.system().deflation() {
@@ -36,8 +36,8 @@ impl LinearMethod {
         limit.map(|limit| Watch { limit, from })
     }
 
-    /// Whether large eigenvalues are to be expected, or a bound is asked for, while only CG lets its Ritz values be seen: then
-    /// the search cannot wait for them.
+    /// Whether the search must come before the iteration: large eigenvalues are expected or a bound is asked for, and
+    /// the Krylov method is not CG, the only one whose Ritz values can be read.
     pub(super) fn is_blind(&self) -> Result<bool> {
         let expected = self.watch().is_some_and(|watch| {
             let bounded = matches!(self.settings().adaptive, Adaptive::Below(_));
@@ -46,13 +46,14 @@ impl LinearMethod {
         Ok(expected && !self.is_deflated() && self.ksp().type_name()? != "cg")
     }
 
-    /// Finds what of the spectrum is above τ and deflates it from now on, whatever the iterations have shown; with all rows
-    /// that may hold. Collective.
+    /// Finds the eigenvectors above τ with all candidate rows and deflates them from now on, whatever the spectrum of
+    /// the iterations. Collective.
     pub fn deflate(&self) -> Result<()> {
         self.deflate_candidates(None)
     }
 
-    /// The same with the rows that hold, unless rows come and go; `seen` is what the iterations have seen of the spectrum.
+    /// Searches with the rows that hold, or with all candidate rows if there are inequalities. `seen` is the spectrum
+    /// that the iterations have shown.
     pub(super) fn search(&self, seen: Option<Spectrum>) -> Result<()> {
         match self.facts().inequalities {
             0 => self.deflate_held(seen),
@@ -76,7 +77,7 @@ impl LinearMethod {
         found
     }
 
-    /// A first search body by body; modes that bodies share come second, and only where a bound is asked for.
+    /// A first search body by body. A second one for shared modes follows only if a bound is asked for.
     fn deflate_held(&self, before: Option<Spectrum>) -> Result<()> {
         let tau = match self.settings().adaptive {
             Adaptive::Below(tau) => tau,
@@ -97,7 +98,8 @@ impl LinearMethod {
         Ok(())
     }
 
-    /// Deflates what is above `bound` with the rows that hold; `false` where nothing is found, or deflation has been given up.
+    /// Deflates the eigenvalues above `bound` with the rows that hold. Returns `false` if none is found or deflation
+    /// has been given up.
     fn deflate_shared(&self, bound: f64) -> Result<bool> {
         let most = self.settings().adaptive_max;
         match self.system().change_deflation().as_mut() {
@@ -109,7 +111,8 @@ impl LinearMethod {
         }
     }
 
-    /// P_2 = I from now on, where rounding has made it useless; `false` where it is I already. What was found stays known.
+    /// Sets P_2 = I from now on, where rounding has made P_2 useless. Returns `false` if P_2 is I already. The report
+    /// of the search is kept.
     pub(super) fn give_deflation_up(&self) -> bool {
         let useful = |d: &Deflation| d.matrices().is_some();
         if !self.system().deflation().as_ref().is_some_and(useful) {
@@ -125,14 +128,14 @@ impl LinearMethod {
         self.system().deflation().is_some()
     }
 
-    /// What is deflated and what that has cost; `None` where nothing has been searched for.
+    /// Result and cost of the deflation; `None` if there was no search.
     pub fn deflated(&self) -> Option<Cost> {
         let deflation = self.system().deflation();
         deflation.as_ref().map(|d| d.cost.clone())
     }
 
-    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. Where a bound is asked for and
-    /// nothing has been deflated yet, that is done first. Collective.
+    /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. If a bound is asked for
+    /// and nothing has been deflated yet, deflation comes first. Collective.
     pub fn spectrum(&self) -> Result<Option<Spectrum>> {
         let bound = match self.settings().adaptive {
             Adaptive::Below(tau) => Some(tau),
@@ -142,7 +145,7 @@ impl LinearMethod {
             self.deflate()?;
         }
         let mut spectrum = self.present_spectrum()?;
-        // The rows that hold now may be fewer than those of the search: bodies may share modes that it did not see.
+        // Fewer rows may hold now than in the search. Bodies may then share modes that the search did not see.
         if let Some(tau) = bound {
             let too_large =
                 |s: &Option<Spectrum>| matches!(s, Some(s) if s.lambda_max > KEPT * tau);
@@ -153,7 +156,7 @@ impl LinearMethod {
         Ok(spectrum)
     }
 
-    /// The same without deflation. Collective.
+    /// [`spectrum`](Self::spectrum) without deflation. Collective.
     pub fn plain_spectrum(&self) -> Result<Option<Spectrum>> {
         let kept = self.system().change_deflation().take();
         let spectrum = self.present_spectrum();

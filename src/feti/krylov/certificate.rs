@@ -1,4 +1,5 @@
-//! The certificate: how well (u, λ) satisfies the optimality conditions of the whole problem, from K, f and B alone.
+//! The certificate measures how well (u, λ) satisfies the optimality conditions of the whole problem. It uses K, f and
+//! B alone.
 
 use crate::feti::jump::operator::JumpColumns;
 use crate::feti::operators::dual::Dual;
@@ -8,14 +9,14 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
-/// The certificate may be this many times the tolerance of the iteration, which measures another norm.
+/// The certificate may be this many times the tolerance of the iteration, because the iteration measures another norm.
 const CREDIBLE: f64 = 1e4;
 
 /// How well the optimality conditions hold, relative to the sizes of their terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kkt {
-    /// ‖K u − f + Bᵀ λ‖ / (‖f‖ + ‖Bᵀ λ‖) in the norm of diag(K)⁻¹, in which stiff and soft parts count alike; residuals of
-    /// primal dofs and averages are summed over their copies.
+    /// ‖K u − f + Bᵀ λ‖ / (‖f‖ + ‖Bᵀ λ‖) in the norm of diag(K)⁻¹, in which stiff and soft parts have the same weight.
+    /// Residuals of primal dofs and averages are summed over their copies.
     pub stationarity: f64,
     /// Largest violation of B u = c (≤ c) over the largest |u|; inequality rows count whether or not they hold.
     pub feasibility: f64,
@@ -26,26 +27,26 @@ pub struct Kkt {
 }
 
 impl Kkt {
-    /// Whether displacements and rows are a solution at this relative tolerance. NaN is none.
+    /// Whether displacements and rows are a solution at this relative tolerance. NaN never is.
     pub fn is_credible(&self, rtol: f64) -> bool {
         self.stationarity <= (CREDIBLE * rtol).clamp(1e-3, 0.5)
             && self.feasibility <= (CREDIBLE * rtol).clamp(1e-6, 0.1)
     }
 }
 
-/// What is known of a pair (u, λ).
+/// Optimality, energy and gaps of a pair (u, λ).
 pub struct Certificate {
     /// Optimality.
     pub kkt: Kkt,
-    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c), the value of the Lagrangian: equal to the energy at the solution, and stationary there,
-    /// so that its error is of second order.
+    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c), the value of the Lagrangian. At the solution it equals the energy and is
+    /// stationary; its error is therefore of second order.
     pub energy: f64,
-    /// B u − c on the owned rows, those that do not hold included.
+    /// B u − c on the owned rows, including those that do not hold.
     pub gaps: Vec<f64>,
 }
 
 impl Certificate {
-    /// Of displacements of each local subdomain and multipliers. Collective.
+    /// Computes the certificate from the displacements of each local subdomain and the multipliers. Collective.
     pub fn new(
         session: &Session,
         problem: &Substructures,
@@ -74,7 +75,7 @@ impl Certificate {
                 primal[at as usize] += r;
                 primal_d[at as usize] += d;
             }
-            // Fixing dofs take nothing over: no residual, any divisor.
+            // Fixing dofs take no force over from other copies: their residual is zero, and any divisor will do.
             part.fixing
                 .iter()
                 .for_each(|&at| primal_d[at as usize] = 1.0);
@@ -120,11 +121,11 @@ impl Certificate {
     }
 }
 
-/// What one subdomain adds to the certificate.
+/// The contribution of one subdomain to the certificate.
 struct Examined {
     /// Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d and the energy, with d = diag(K).
     sums: [f64; 4],
-    /// Residuals and d of primal dofs, to be summed over copies: (ghost, r, d).
+    /// Residuals and d of primal dofs, which are summed over copies: (ghost, r, d).
     primal: Vec<(u32, f64, f64)>,
     /// Ghosts of fixing dofs.
     fixing: Vec<u32>,
@@ -154,7 +155,7 @@ fn examine(
         sums[2] += v * v / d[i as usize];
     }
     let on = |x: &[f64]| -> Vec<f64> { local.interface().iter().map(|&i| x[i as usize]).collect() };
-    // What a copy takes over from another one: a force at a vertex, one along a functional on an edge or face.
+    // A copy takes forces over from other copies: at a vertex a force, on an edge or face a force along a functional.
     let (mut on_gamma, stiff) = (on(&r), on(&d));
     for (i, &at) in (local.n_delta()..local.n_gamma()).zip(places) {
         primal.push((at, std::mem::take(&mut on_gamma[i]), stiff[i]));
@@ -182,7 +183,7 @@ fn examine(
     }
 }
 
-/// A divisor: one in place of zero, for problems without load.
+/// The divisor x, or one if x is zero (problems without load).
 fn positive(x: f64) -> f64 {
     if x > 0.0 {
         x

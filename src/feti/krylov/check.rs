@@ -1,4 +1,4 @@
-//! Identities that the theory promises, as numbers that must be about rounding (`-fetifeti_check`).
+//! Identities of the theory, as relative defects that must be of the size of rounding (`-fetifeti_check`).
 
 use super::system::System;
 use crate::feti::operators::dual::Dual;
@@ -9,7 +9,7 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// (name, relative defect) of every identity that applies. Collective.
+/// (name, relative defect) of each identity that applies to the problem. Collective.
 pub(crate) fn identities(
     session: &Session,
     problem: &Substructures,
@@ -65,7 +65,7 @@ struct Check<'a> {
     dual: &'a Dual,
 }
 
-/// Numbers without pattern, the same for every number of ranks where `seed` is.
+/// Numbers without pattern. They do not depend on the number of ranks if `seed` does not.
 fn noise(seed: u64) -> f64 {
     let mut x = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
     x = (x ^ (x >> 31)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -73,7 +73,7 @@ fn noise(seed: u64) -> f64 {
 }
 
 impl Check<'_> {
-    /// work.y: a function in W̃, torn in the dual dofs, continuous in the vertices and averages.
+    /// work.y: a function in W̃, discontinuous in the dual dofs, continuous in the vertices and averages.
     fn torn(&self) -> Vec<Work> {
         let stiffness = &self.dual.stiffness;
         let mut work = stiffness.work();
@@ -94,7 +94,7 @@ impl Check<'_> {
         work
     }
 
-    /// What P_2 leaves of W in F P_2 M⁻¹ x for jumps x, relative to what it takes away.
+    /// Part of W that P_2 leaves in F P_2 M⁻¹ x for jumps x, relative to the part that it removes.
     fn complement(&self) -> Result<f64> {
         let dual = self.dual;
         let (x, y, image) = (
@@ -136,7 +136,7 @@ impl Check<'_> {
         Ok(x)
     }
 
-    /// S S̃⁺ (S w) = S w for w in W̃, subdomain by subdomain relative to its own size.
+    /// S S̃⁺ (S w) = S w for w in W̃; the defect of each subdomain is relative to its own size.
     fn generalised_inverse(&self) -> Result<f64> {
         let stiffness = &self.dual.stiffness;
         let mut work = self.torn();
@@ -267,7 +267,7 @@ impl Check<'_> {
         Ok(self.relative(largest(work), largest(size).max(scale)))
     }
 
-    /// Bᵀ P λ does no work on a rigid motion: R ᵀ Bᵀ P λ = 0, through B and not through G.
+    /// Bᵀ P λ does no work on rigid motions: Rᵀ Bᵀ P λ = 0, computed with B and not with G.
     fn admissible(&self) -> Result<f64> {
         let stiffness = &self.dual.stiffness;
         let x = self.multipliers(4)?;
@@ -301,7 +301,7 @@ impl Check<'_> {
         Ok(self.relative(jump.norm_inf()?, size))
     }
 
-    /// What M_C leaves of S Z_c x for a random x: nothing if A is Z_cᵀ S̃ Z_c and A⁺ its inverse on its range.
+    /// Part of S Z_c x that M_C leaves for a random x. It vanishes if A is Z_cᵀ S̃ Z_c and A⁺ its inverse on its range.
     fn removed(&self) -> Result<f64> {
         let Some(lifting) = self.dual.preconditioner.lifting() else {
             return Ok(0.0);
@@ -313,7 +313,7 @@ impl Check<'_> {
         for (w, z) in work.iter_mut().zip(combined) {
             w.v = z;
         }
-        // In double precision, whatever M⁻¹ does.
+        // This product is in double precision, whatever the precision of M⁻¹.
         let multiply = |work: &mut [Work]| {
             stiffness.team.for_each(work, |j, w| {
                 locals[j].apply_one(Operator::S, &w.v, &mut w.y);

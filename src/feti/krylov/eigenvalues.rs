@@ -9,15 +9,15 @@ use crate::feti::spectrum::Spectrum;
 use crate::petsc::{extreme_eigenvalues, Session};
 use crate::Result;
 
-/// Residual tolerance of the eigensolver, relative to the eigenvalue. An eigenvalue of a self-adjoint operator lies within the
-/// residual, so κ is good to 1e-6; in fact the error is about the residual's square. Asking for much less would
-/// mean to tell apart the members of the cluster at 1, which no one wants to know.
+/// Residual tolerance of the eigensolver, relative to the eigenvalue. An eigenvalue of a self-adjoint operator lies
+/// within the residual, so κ is good to 1e-6; in fact the error is about the residual's square. A much smaller
+/// tolerance would require to separate the members of the cluster at 1, which is of no use.
 const TOLERANCE: f64 = 4e-7;
 
 /// The extreme eigenvalues of P M⁻¹ Pᵀ F by SLEPc; `None` without multipliers. Collective.
 ///
-/// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range of G
-/// are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
+/// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range
+/// of G are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
 pub fn exact(session: &Session, system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
     if system.dual().stiffness.jump.n_global == 0 {
         return Ok(None);

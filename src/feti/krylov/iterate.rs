@@ -8,24 +8,24 @@ use crate::petsc::{Ksp, Vec as PetscVec};
 use crate::status::Status;
 use crate::Result;
 
-/// An iteration is not broken off any more when its residual is less than this many times what it is to end with.
+/// An iteration is no longer broken off if its residual is less than this many times its tolerance.
 const NEARLY: f64 = 30.0;
 
-/// What a run may do.
+/// Parameters of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct IterationControl {
     /// ‖r‖₂ to stop at.
     pub tolerance: f64,
-    /// ‖y‖₂ of the displacements that r comes from: what is less than [`ROUNDING`] times it is rounding.
+    /// ‖y‖₂ of the displacements that r is computed from. A residual below [`ROUNDING`] times this is rounding.
     pub size: f64,
-    /// Whether it is broken off where large eigenvalues show, to deflate them.
+    /// Whether the run is broken off at large eigenvalues in order to deflate them.
     pub watch: Option<Watch>,
     /// Whether monitors may ask for the displacements of the iterate.
     pub observed: bool,
 }
 
 impl IterationControl {
-    /// To this tolerance, come what may, unobserved.
+    /// A run to this tolerance that is neither broken off nor observed.
     pub fn to(tolerance: f64, size: f64) -> IterationControl {
         IterationControl {
             tolerance,
@@ -36,16 +36,16 @@ impl IterationControl {
     }
 }
 
-/// When a run is broken off because of large eigenvalues.
+/// The condition for breaking a run off because of large eigenvalues.
 #[derive(Debug, Clone, Copy)]
 pub struct Watch {
-    /// Eigenvalue above which it is.
+    /// The run is broken off above this eigenvalue.
     pub limit: f64,
     /// Iterations before the first look at the spectrum.
     pub from: usize,
 }
 
-/// What one run of the Krylov method did.
+/// Record of one run of the Krylov method.
 #[derive(Debug, Clone)]
 pub struct Run {
     /// Iterations.
@@ -56,7 +56,7 @@ pub struct Run {
     pub residuals: Vec<f64>,
     /// The method's own estimate of the spectrum.
     pub estimate: Option<Spectrum>,
-    /// Whether the run was broken off because of large eigenvalues that are to be deflated.
+    /// Whether the run was broken off to deflate large eigenvalues.
     pub broken_off: bool,
 }
 
@@ -71,7 +71,7 @@ impl Run {
         }
     }
 
-    /// Whether rounding ended the run after the residual had become less than `part` of what it was.
+    /// Whether rounding ended the run after the residual had fallen below `part` of its first value.
     pub fn broke_down(&self, part: f64) -> bool {
         let ends = (self.residuals.first(), self.residuals.last());
         let moved = matches!(ends, (Some(first), Some(last)) if *last < part * first);
@@ -79,7 +79,8 @@ impl Run {
         broken && moved
     }
 
-    /// This run, broken off, and the one that went on from it with another preconditioner: the spectrum is that of the latter.
+    /// This run, which was broken off, followed by a run with another preconditioner. The spectrum is that of the
+    /// second run.
     pub fn followed_by(self, more: Run) -> Run {
         let mut residuals = self.residuals;
         residuals.extend(&more.residuals);
@@ -90,8 +91,8 @@ impl Run {
         }
     }
 
-    /// Adds a further run of the same method: the longest one knows the spectrum best. One that stalls has met the rounding of
-    /// the operator; what was reached before stands.
+    /// Adds a further run of the same method. The spectrum is that of the longest run. A further run that stalls has
+    /// met the rounding of the operator; the earlier result stands.
     pub fn add(&mut self, more: Run) {
         if more.iterations > self.iterations {
             self.estimate = more.estimate;
@@ -104,7 +105,7 @@ impl Run {
     }
 }
 
-/// Adds the Krylov method's correction to `lambda`; `residual` is Pᵀ r on entry. Collective.
+/// Adds the Krylov method's correction to `lambda`. `residual` is Pᵀ r on entry. Collective.
 pub fn iterate(
     method: &LinearMethod,
     residual: &PetscVec,
@@ -112,15 +113,16 @@ pub fn iterate(
     control: &IterationControl,
 ) -> Result<Run> {
     let (system, ksp) = (method.system(), method.ksp());
-    // Once more: what the first projection of a large jump leaves behind by rounding is out of reach for the iteration, which
-    // would stall on it and go astray. Of the small residual that is left the second one leaves nothing to speak of.
+    // Project a second time. The first projection of a large jump leaves a part outside the range of Pᵀ by rounding.
+    // The iteration cannot reduce that part: it would stall on it and diverge. The second projection starts from a
+    // small residual and leaves a negligible part.
     system.dual().p_transpose(residual)?;
     let nothing = (ROUNDING * control.size).max(control.tolerance);
     let start = residual.norm2()?;
     if start <= nothing {
         return Ok(Run::nothing_to_do(start));
     }
-    // What range W has of the solution is known at once, and what earlier directions have of it.
+    // The part of the solution in range W, and in the span of earlier directions, is known before the iteration.
     for known_part in [
         super::system::System::deflated_part,
         super::system::System::recycled_part,
@@ -164,8 +166,8 @@ pub fn iterate(
     })
 }
 
-/// The ends of the spectrum by CG's Lanczos matrix. Other methods' singular values are not eigenvalues, and FCG of PETSc 3.18
-/// reads CG's data where it keeps its own.
+/// The ends of the spectrum from CG's Lanczos matrix. Singular values of other methods are not eigenvalues. FCG of
+/// PETSc 3.18 reads the data of CG in place of its own.
 fn estimate(ksp: &Ksp, iterations: usize) -> Result<Option<Spectrum>> {
     if ksp.type_name()? != "cg" || iterations == 0 {
         return Ok(None);

@@ -10,7 +10,7 @@ use crate::feti::projector::natural::KernelLoad;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
 
-/// What the right-hand side of the dual problem is made of.
+/// The data of the right-hand side of the dual problem.
 pub struct Loads {
     /// K_II⁻¹ f_I of each local subdomain, as
     /// [`LocalProblem::condense`](crate::feti::subdomain::problem::LocalProblem) leaves it.
@@ -19,7 +19,7 @@ pub struct Loads {
     pub g: Vec<Vec<f64>>,
     /// e = Rᵀ g.
     pub kernel: KernelLoad,
-    /// c on the owned rows in the place of the rows' own right-hand sides; `None`: their own.
+    /// Right-hand sides on the owned rows that replace c; `None` keeps c.
     pub jumps: Option<Vec<f64>>,
 }
 
@@ -30,7 +30,7 @@ impl Loads {
         Loads::of(session, dual, &f, None)
     }
 
-    /// Condenses given loads, one vector for each local subdomain, to be met with jumps B u = `jumps` if these are given.
+    /// Condenses given loads, one vector for each local subdomain. If `jumps` is given, the rows are B u = `jumps`.
     /// Collective.
     pub fn of(session: &Session, dual: &Dual, f: &[&[f64]], jumps: Option<Vec<f64>>) -> Loads {
         let stiffness = &dual.stiffness;

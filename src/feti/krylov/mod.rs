@@ -1,5 +1,5 @@
-//! The Krylov method at work: project, iterate, look at the spectrum, deflate, refine, certify, recover. [`solve`] is the
-//! page to begin with.
+//! The Krylov method: project, iterate, look at the spectrum, deflate, refine, certify, recover. [`solve`] is the
+//! module to read first.
 
 mod bound;
 pub mod certificate;

@@ -1,4 +1,4 @@
-//! The way back from multipliers to displacements.
+//! Recovery of the displacements from the multipliers.
 //!
 //! ```text
 //!     u_Γ = S̃⁺(g − Bᵀ λ) + R α               u_I by back substitution
@@ -18,20 +18,20 @@ use crate::feti::subdomain::scaled::Scaled;
 use crate::status::Status;
 use crate::Result;
 
-/// What the linear method returns; vectors are this rank's part.
+/// The solution of the linear method; vectors are this rank's part.
 #[derive(Debug, Clone)]
 pub struct LinearSolution {
     /// Displacements of each local subdomain, by local dof; copies inside a body agree.
     pub u: Vec<Vec<f64>>,
     /// Multipliers of the rows that this rank owns.
     pub lambda: Vec<f64>,
-    /// B u − c on these rows, those that do not hold included.
+    /// B u − c on these rows, including those that do not hold.
     pub gaps: Vec<f64>,
-    /// Whether each of these rows holds, those included that follow from others that do.
+    /// Whether each of these rows holds. Rows that follow from others that hold are included.
     pub active: Vec<bool>,
     /// Krylov iterations.
     pub iterations: usize,
-    /// Why the iterations stopped, or what the certificate says of their result.
+    /// The reason why the iterations stopped, or the verdict of the certificate on their result.
     pub status: Status,
     /// ‖r_n‖₂ for n = 0, 1, …
     pub residuals: Vec<f64>,
@@ -41,14 +41,15 @@ pub struct LinearSolution {
     pub kkt: Kkt,
     /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c).
     pub energy: f64,
-    /// Seconds of condensing, iterating.
+    /// Seconds of condensing and iterating.
     pub solve_seconds: f64,
-    /// Seconds of the way back.
+    /// Seconds of the recovery.
     pub recover_seconds: f64,
 }
 
 impl LinearMethod {
-    /// The solution at `at`, whose displacements are those of its λ with the rigid motions, after this run. Collective.
+    /// The solution of `at` after this run. The displacements of `at` must belong to its λ and include the rigid
+    /// motions. Collective.
     pub(crate) fn recover(
         &self,
         mut at: Iterate,
@@ -76,9 +77,8 @@ impl LinearMethod {
         })
     }
 
-    /// Displacements of each local subdomain for the iterate that has been reached, to be asked for by a monitor of the
-    /// Krylov method; `None` where no iteration runs, or one that monitors may not look into. Costs about as much as an
-    /// iteration. Collective.
+    /// Displacements of each local subdomain for the present iterate, for a monitor of the Krylov method. `None` if no
+    /// iteration is running that monitors may look into. The cost is about that of an iteration. Collective.
     ///
     /// # Errors
     /// PETSc's own.
@@ -99,14 +99,14 @@ impl LinearMethod {
     }
 }
 
-/// u of every local subdomain from the y of `residual`, rigid motions included; y is changed.
+/// u of every local subdomain from the y of `residual`, which must include the rigid motions; y is changed.
 pub(super) fn displacements(
     dual: &Dual,
     loads: &Loads,
     residual: &mut Residual,
 ) -> Result<Vec<Vec<f64>>> {
     let stiffness = &dual.stiffness;
-    // What is left of the jumps inside a body is averaged away: u ← u − B_D,locᵀ B_loc u.
+    // The remaining jumps inside a body are averaged: u ← u − B_D,locᵀ B_loc u.
     let work = &mut residual.work;
     let jump = &residual.r;
     stiffness.jump_of(work, jump)?;

@@ -1,15 +1,16 @@
-//! Directions of earlier iterations for the next load.
+//! Recycling: search directions of earlier iterations are used for the next load.
 //!
-//! CG's search directions p and A p = Pᵀ F P p are kept, A the operator of the dual problem. For another load, with the same rows holding, the Galerkin
-//! solution on their span is where the iteration begins:
+//! CG's search directions p and A p = Pᵀ F P p are kept, where A is the operator of the dual problem. For another load
+//! with the same active rows, the iteration begins at the Galerkin solution on the span W of the directions:
 //!
 //! ```text
 //!     x₀ = W (Wᵀ A W)⁺ Wᵀ r,      r ← r − A W (Wᵀ A W)⁺ Wᵀ r
 //! ```
 //!
-//! It costs m products of vectors each way and no application of F. For loads in proportion to earlier ones x₀ is the solution; in general it has what the loads have in
-//! common. A and with it A W change with the active set: then the directions are forgotten, since to renew A W would take an
-//! application of F for each, as many as the iteration takes itself.
+//! This costs m products of vectors for W and for A W each, and no application of F. For loads in proportion to earlier
+//! ones x₀ is the solution; in general it is the part that the loads have in common. A and A W change with the active
+//! set. The directions are then forgotten: to compute A W again would take an application of F for each direction, as
+//! many as the iteration itself.
 
 use mpi::topology::SimpleCommunicator;
 
@@ -19,21 +20,21 @@ use crate::parallel::exchange::sum_all;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
-/// Directions that others make up to this are left out.
+/// A direction is dropped if the others represent it up to this relative error.
 const DEPENDENT: f64 = 1e-12;
 
-/// What is kept from load to load.
+/// The directions that are kept from load to load.
 #[derive(Default)]
 pub struct Recycle {
     most: usize,
-    /// Entries of this rank, by columns.
+    /// This rank's entries of the directions, by columns.
     w: Vec<Vec<f64>>,
     aw: Vec<Vec<f64>>,
-    /// The rows of this rank that held.
+    /// The active rows of this rank when the directions were computed.
     active: Vec<bool>,
     /// Wᵀ A W, factored.
     gram: Option<Semidefinite>,
-    /// The direction that gives way to the next one when there is no room any more.
+    /// The direction that the next one replaces when the space is full.
     next: usize,
 }
 
@@ -51,7 +52,7 @@ impl Recycle {
         self.most > 0
     }
 
-    /// Whether there is none.
+    /// Whether there are no directions.
     pub fn is_empty(&self) -> bool {
         self.w.is_empty()
     }
@@ -64,7 +65,7 @@ impl Recycle {
         };
     }
 
-    /// Forgets what belongs to other active rows. The same on all ranks. Collective.
+    /// Forgets the directions if they belong to other active rows; all ranks decide alike. Collective.
     pub fn fit(&mut self, comm: &SimpleCommunicator, active: &[bool]) {
         if !self.is_on() {
             return;
@@ -77,7 +78,7 @@ impl Recycle {
         }
     }
 
-    /// Keeps a direction and what the operator makes of it.
+    /// Keeps a direction x and its image A x.
     pub fn keep(&mut self, x: &PetscVec, ax: &PetscVec) -> Result<()> {
         if !self.is_on() {
             return Ok(());

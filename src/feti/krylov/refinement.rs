@@ -1,14 +1,16 @@
-//! Iterative refinement of whole solutions.
+//! Iterative refinement of displacements and multipliers.
 //!
-//! S, T, Ψ and S_Π carry the rounding of their factorisations, which coefficients that jump inside subdomains, or supports of 1e-8, make large. K itself
-//! does not. What u and λ leave of the load is a problem with the same operators,
+//! S, T, Ψ and S_Π carry the rounding of their factorisations. This rounding is large where coefficients jump inside
+//! subdomains, or with supports of 1e-8. K itself does not carry it. The residual r of (u, λ) is the load of a
+//! correction problem with the same operators:
 //!
 //! ```text
 //!     r = f − K u − Bᵀ λ,    (du, dλ) solves it with load r and jumps c − B u,    u ← u + du,  λ ← λ + dλ
 //! ```
 //!
-//! and r is summed in twice the working precision. The set of rows that hold stays. Where more digits are asked for than [`TIGHT`], the first iteration
-//! stops there and corrections bring the others: a single iteration would stall on the rounding of the operators, or go astray.
+//! r is summed in twice the working precision. The set of rows that hold does not change. If the tolerance is below
+//! [`TIGHT`], the first iteration stops at `TIGHT` and corrections bring the remaining digits. A single iteration would
+//! stall on the rounding of the operators, or diverge.
 
 use super::certificate::{Certificate, Kkt};
 use super::iterate::{iterate, IterationControl};
@@ -23,26 +25,26 @@ use crate::status::Status;
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// Tolerances below this ask for more than the operators may have.
+/// Tolerances below this may be beyond the accuracy of the operators.
 pub const TIGHT: f64 = 1e-9;
 
-/// A certificate above this many times the tolerance is refined.
+/// A solution is refined if its certificate is above this many times the tolerance.
 const WORTH: f64 = 10.0;
 
-/// A certificate above this many times such a tolerance has missed it.
+/// Tolerances below `TIGHT` count as missed if the certificate is above this many times the tolerance.
 const MISSED: f64 = 1e4;
 
-/// A certificate below this misses nothing.
+/// A tolerance never counts as missed if the certificate is below this.
 const FLOOR: f64 = 1e-11;
 
-/// Above this, and a thousand times the tolerance, displacements are no solution yet.
+/// Displacements are not a solution yet if their stationarity is above this and above a thousand times the tolerance.
 const FAR: f64 = 1e-3;
 
-/// Steps at most; each must halve the certificate at least.
+/// Largest number of steps. Each step must at least halve the certificate.
 const STEPS: usize = 4;
 
 impl LinearMethod {
-    /// Refines a solution to the tolerance of the user, as far as that goes. Collective.
+    /// Refines a solution towards the tolerance of the user, as far as it helps. Collective.
     pub(crate) fn refine(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
         let rtol = self.ksp().tolerances()?.0;
         for _ in 0..STEPS {
@@ -52,7 +54,8 @@ impl LinearMethod {
             if !solution.status.converged() || !(asked || far) {
                 break;
             }
-            // No more digits than are missing; where the displacements are no solution yet, what is missing is not known.
+            // A step reduces the residual by no more digits than are missing. Where the displacements are not a
+            // solution yet, that number is not known.
             let most = if far { 1e-2 } else { 0.3 };
             let reduction = (rtol / now).clamp(1e-6, most);
             match self.refined(&solution, reduction)? {
@@ -104,12 +107,12 @@ impl LinearMethod {
     }
 }
 
-/// What refinement makes small.
+/// The measure that refinement reduces.
 fn distance(kkt: &Kkt) -> f64 {
     kkt.stationarity.max(kkt.feasibility)
 }
 
-/// r of every local subdomain, and what the rows still have to close. Collective.
+/// r of every local subdomain, and the remaining jumps c − B u of the rows. Collective.
 fn remainder(
     problem: &Substructures,
     dual: &Dual,
@@ -141,7 +144,7 @@ fn remainder(
     Ok((forces, jumps))
 }
 
-/// f − K u, products and sums in twice the working precision.
+/// f − K u, with products and sums in twice the working precision.
 fn less_product(k: &Csr, u: &[f64], mut f: Vec<f64>) -> Vec<f64> {
     for (i, f) in f.iter_mut().enumerate() {
         let (col, val) = k.row(i);

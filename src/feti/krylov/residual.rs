@@ -1,4 +1,4 @@
-//! λ, the displacements that belong to it, and what is left of the jumps.
+//! λ with its displacements and the remaining jumps.
 //!
 //! ```text
 //!     y = S̃⁺(g − Bᵀ λ),      r = B y − c
@@ -11,10 +11,11 @@ use crate::parallel::exchange::{max_all, sum_all};
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
-/// A residual below this fraction of the displacements it was formed from is rounding: nothing is left to iterate on.
+/// A residual below this fraction of the displacements it was formed from is rounding; there is nothing left to iterate
+/// on.
 pub const ROUNDING: f64 = 1e-14;
 
-/// Displacements that belong to a λ, and what is left of the jumps.
+/// The displacements of a λ and the remaining jumps.
 pub struct Residual {
     /// y = S̃⁺(g − Bᵀ λ) on every local subdomain.
     pub work: Vec<Work>,
@@ -25,7 +26,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Room for one.
+    /// Allocates the vectors.
     pub fn new(dual: &Dual) -> Result<Residual> {
         Ok(Residual {
             work: dual.stiffness.work(),
@@ -34,7 +35,7 @@ impl Residual {
         })
     }
 
-    /// Computes it for `lambda`. Collective.
+    /// Computes y and r for `lambda`. Collective.
     pub fn evaluate(
         &mut self,
         session: &Session,
@@ -88,7 +89,7 @@ impl Residual {
         }
     }
 
-    /// y ← y + R α with the rigid motions α that close the jumps of the rows that hold, as far as those allow. Collective.
+    /// y ← y + R α with the rigid motions α that close the jumps of the holding rows as far as possible. Collective.
     pub fn add_rigid_motion(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         let alpha = dual.natural.alpha(session.comm(), &self.r)?;
         self.shift(dual, &alpha); /*                          y ← y + R α       */
@@ -96,13 +97,13 @@ impl Residual {
     }
 }
 
-/// λ on its way to the solution, for one load.
+/// The multipliers λ during the solution for one load.
 pub struct Iterate {
     /// The load.
     pub loads: Loads,
     /// λ.
     pub lambda: PetscVec,
-    /// Displacements and jumps; they belong to λ where the last call says so.
+    /// Displacements and jumps. The last call says whether they belong to the present λ.
     pub residual: Residual,
 }
 
@@ -116,26 +117,27 @@ impl Iterate {
         })
     }
 
-    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): the forces on every floating body balance; λ₀ from λ = 0. Collective.
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.
+    /// Collective.
     pub fn balance(&self, session: &Session, dual: &Dual) -> Result<()> {
         let load = &self.loads.kernel;
         dual.natural.balance(session.comm(), load, &self.lambda)
     }
 
-    /// y and r of λ. Collective.
+    /// Computes y and r of λ. Collective.
     pub fn evaluate(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         self.residual
             .evaluate(session, dual, &self.loads, &self.lambda)
     }
 
-    /// y of λ and Pᵀ r, whose norm is returned. Collective.
+    /// Computes y of λ and Pᵀ r; returns the norm of Pᵀ r. Collective.
     pub fn evaluate_projected(&mut self, session: &Session, dual: &Dual) -> Result<f64> {
         self.evaluate(session, dual)?;
         dual.p_transpose(&self.residual.r)?;
         self.residual.r.norm2()
     }
 
-    /// y of λ with the rigid motions that close the jumps, and r before these. Collective.
+    /// Computes y of λ with the rigid motions that close the jumps, and r without these motions. Collective.
     pub fn place(&mut self, session: &Session, dual: &Dual) -> Result<()> {
         self.evaluate(session, dual)?;
         self.residual.add_rigid_motion(session, dual)

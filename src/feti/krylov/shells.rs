@@ -12,7 +12,7 @@ struct Operator(Rc<System>);
 /// P_2ᵀ Pᵀ F P P_2.
 struct Deflated(Rc<System>);
 
-/// P M⁻¹ Pᵀ, deflated where a part is.
+/// P M⁻¹ Pᵀ, with deflation if it is in use.
 struct Preconditioner(Rc<System>);
 
 /// E.
@@ -85,24 +85,24 @@ pub fn operator(session: &Session, system: &Rc<System>) -> Result<Mat> {
     shell(session, system, Box::new(Operator(system.clone())))
 }
 
-/// P_2ᵀ Pᵀ F P P_2 as a matrix: what CG works with where a part is deflated. Collective.
+/// P_2ᵀ Pᵀ F P P_2 as a matrix: the operator of CG with deflation. Collective.
 pub fn deflated_operator(session: &Session, system: &Rc<System>) -> Result<Mat> {
     shell(session, system, Box::new(Deflated(system.clone())))
 }
 
-/// P M⁻¹ Pᵀ, deflated where a part is, as a matrix. Collective.
+/// P M⁻¹ Pᵀ as a matrix, with deflation if it is in use. Collective.
 pub fn preconditioner(session: &Session, system: &Rc<System>) -> Result<Mat> {
     shell(session, system, Box::new(Preconditioner(system.clone())))
 }
 
-/// E = Π P as a matrix, Π the orthogonal projection onto range B: F (I − Π) = 0 and P (I − Π) = I − Π make E a projection
-/// with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. With deflation it is E P_2 E, whose range is the
-/// F-orthogonal complement of W in that space. Collective.
+/// E = Π P as a matrix, with Π the orthogonal projection onto range B. From F (I − Π) = 0 and P (I − Π) = I − Π it
+/// follows that E is a projection with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. With
+/// deflation the matrix is E P_2 E. Its range is the F-orthogonal complement of W in that space. Collective.
 pub fn range(session: &Session, system: &Rc<System>) -> Result<Mat> {
     shell(session, system, Box::new(Range(system.clone())))
 }
 
-/// P M⁻¹ Pᵀ as what a PCShell applies.
+/// P M⁻¹ Pᵀ as the operator of a PCShell.
 pub fn preconditioner_shell(system: &Rc<System>) -> Box<dyn ShellPc> {
     Box::new(Preconditioner(system.clone()))
 }

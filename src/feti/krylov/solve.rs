@@ -1,13 +1,13 @@
-//! The algorithm: the equations on the rows that hold, from λ₀ to a certified solution.
+//! The solver for equations on the rows that hold, from λ₀ to a certified solution.
 //!
 //! ```text
 //!     Pᵀ F λ = Pᵀ d,   Gᵀ λ = e                                   [Lee (2.11), (3.8)]
 //!     u = S̃⁺(g − Bᵀ λ) + R α
 //! ```
 //!
-//! With coefficients that jump by 10⁶ and more, P M⁻¹ Pᵀ and P_2 lose so many digits that CG may meet rᵀ z < 0 long before
-//! rounding ends the iteration as a whole. The λ that it has reached is good: a residual evaluated afresh and a new Krylov
-//! space lead further.
+//! With coefficients that jump by 10⁶ and more, P M⁻¹ Pᵀ and P_2 lose many digits. CG may then meet rᵀ z < 0 long
+//! before the accuracy of the operators is reached. The λ of that moment is good: a freshly evaluated residual and a
+//! new Krylov space lead further.
 
 use std::time::Instant;
 
@@ -20,24 +20,25 @@ use crate::feti::method::LinearMethod;
 use crate::status::Status;
 use crate::Result;
 
-/// A run that breaks down has got somewhere if the residual became less than this part of what it began with.
+/// A run that breaks down has made progress if the residual became less than this part of its first value.
 const PROGRESS: f64 = 0.5;
 
-/// New starts at most.
+/// Largest number of new starts.
 const STARTS: usize = 20;
 
-/// The judge is asked this many times at most.
+/// Largest number of calls of the judge.
 const ASKED: usize = 8;
 
-/// Looks at displacements that satisfy the tolerance; the factor by which the residual should fall further, or `None`.
+/// Judges displacements that satisfy the tolerance. Returns the factor by which the residual should fall further, or
+/// `None`.
 pub type Judge<'a> = dyn Fn(&[Vec<f64>]) -> Result<Option<f64>> + 'a;
 
 impl LinearMethod {
-    /// Solves with the rows that hold, as equations, until the tolerance is reached and `enough`, if there is one, is
-    /// satisfied. Collective.
+    /// Solves the equations on the rows that hold until the tolerance is reached and `enough`, if given, is satisfied.
+    /// Collective.
     ///
     /// # Errors
-    /// A load that moves a body which nothing holds; PETSc's own, and what `enough` returns.
+    /// A load that moves a body which nothing holds; PETSc's own errors, and those of `enough`.
     pub fn solve(&self, enough: Option<&Judge>) -> Result<LinearSolution> {
         let clock = Instant::now();
         let session = self.session();
@@ -54,11 +55,12 @@ impl LinearMethod {
             },
         )?;
 
-        // Until the displacements that come out have the accuracy that was asked for.
+        // Repeat until the resulting displacements have the accuracy of the user's tolerance.
         let (mut asked, mut idle, mut stalled) = (0, false, false);
         loop {
             at.place(session, &self.dual())?; /*              y ← S̃⁺(g − Bᵀ λ) + R α                     */
-            // An interface may come to rest altogether: what S̃⁺ made of the loads at first is the size of rounding.
+            // The interface may not move at all in the solution. Rounding then has the size of S̃⁺ applied to the loads
+            // at the start.
             size = size.max(at.residual.size);
             let wanted = target.of_displacements(at.residual.length(session), size);
             if stalled || !run.status.converged() {
@@ -71,12 +73,12 @@ impl LinearMethod {
                 let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
                 let Some(factor) = enough(&u)? else { break };
                 asked += 1;
-                // The last iteration may have gone far below its tolerance.
+                // The last iteration may have ended far below its tolerance.
                 tolerance = factor * tolerance.min(at.evaluate_projected(session, &self.dual())?);
             } else {
                 tolerance = wanted;
             }
-            // What follows is short, and no look at the spectrum may end it.
+            // The remaining iterations are few, and no look at the spectrum may end them.
             self.dual().p_transpose(&at.residual.r)?;
             let control = IterationControl {
                 observed: true,
@@ -84,7 +86,7 @@ impl LinearMethod {
             };
             let more = iterate(self, &at.residual.r, &at.lambda, &control)?;
             if more.iterations == 0 {
-                // It was there already: the next look is the last one, unless somebody asks for more.
+                // The target was reached already. The next pass is the last one, unless `enough` asks for more.
                 if std::mem::replace(&mut idle, true) {
                     break;
                 }
@@ -100,15 +102,16 @@ impl LinearMethod {
         let status = found.status.clone();
         let mut refined = self.refine(found)?; /*             K du + Bᵀ dλ = f − K u − Bᵀ λ              */
         if enough.is_some() {
-            // Digits that refinement was after and did not find are for `enough` to miss: a relative tolerance of zero
-            // asks for all there are.
+            // If refinement did not find the missing digits, `enough` decides whether they matter: a relative tolerance
+            // of zero asks for all possible digits.
             refined.status = status;
         }
         self.certify(refined) /*                              the certificate has the last word          */
     }
 
-    /// Iterates from λ, with Pᵀ r in its residual, to `control.tolerance`: looks at the spectrum, deflates what is far out,
-    /// starts anew where rounding has ended a run. On return the residual belongs to an earlier λ. Collective.
+    /// Iterates from λ to `control.tolerance`; the residual holds Pᵀ r on entry. Looks at the spectrum, deflates large
+    /// eigenvalues and starts anew where rounding has ended a run. On return the residual belongs to an earlier λ.
+    /// Collective.
     pub(crate) fn reach(&self, at: &mut Iterate, control: IterationControl) -> Result<Run> {
         let session = self.session();
         if self.is_blind()? {
@@ -136,8 +139,8 @@ impl LinearMethod {
             } else if again {
                 starts += 1;
             } else if self.give_deflation_up() {
-                // Where rounding has made P_2 useless (elements a thousand times as long as high), the plain iteration
-                // begins at λ₀.
+                // Rounding has made P_2 useless (elements a thousand times as long as high): the plain iteration begins
+                // at λ₀.
                 at.lambda.set(0.0)?;
                 at.balance(session, &self.dual())?;
             } else {
@@ -148,8 +151,8 @@ impl LinearMethod {
         }
     }
 
-    /// The certificate has the last word: whatever the iteration says, displacements that are far from equilibrium, or rows
-    /// that are far from holding, are no solution.
+    /// The certificate has the last word. Displacements far from equilibrium, or rows far from holding, are not a
+    /// solution, whatever the status of the iteration.
     pub(crate) fn certify(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
         let rtol = self.ksp().tolerances()?.0;
         if solution.status.converged() && !solution.kkt.is_credible(rtol) {

@@ -1,7 +1,7 @@
-//! The dual problem as the Krylov method works on it: A = Pᵀ P_2ᵀ F P and its preconditioner P_2 P M⁻¹ Pᵀ.
+//! The dual problem of the Krylov method: A = Pᵀ P_2ᵀ F P and its preconditioner P_2 P M⁻¹ Pᵀ.
 //!
-//! The projector stands on both sides of both, so that every Krylov method, flexible or pipelined, left or right
-//! preconditioned, works in the space V = ker Gᵀ without knowing of it. P_2 is I as long as nothing is deflated.
+//! The projector P stands on both sides of both operators. Every Krylov method, flexible or pipelined, left or right
+//! preconditioned, therefore works in the space V = ker Gᵀ without knowing of it. P_2 is I if nothing is deflated.
 
 use std::cell::{Cell, Ref, RefCell, RefMut};
 
@@ -22,22 +22,22 @@ pub struct System {
     deflation: RefCell<Option<Deflation>>,
     /// Directions of earlier iterations.
     recycled: RefCell<Recycle>,
-    /// The iteration that runs now.
+    /// The iteration that is running.
     running: RefCell<Option<Running>>,
-    /// What the iterations have sent and how long they took.
+    /// Communication and time of the iterations.
     tally: Cell<Tally>,
     /// Buffers for projected copies.
     x: PetscVec,
     y: PetscVec,
 }
 
-/// An iteration at work: its directions are kept.
+/// A running iteration. Its directions are kept.
 struct Running {
-    /// The λ that it corrects, where a monitor may ask for the displacements.
+    /// The λ that it corrects, if a monitor may ask for the displacements.
     start: Option<PetscVec>,
 }
 
-/// Ends the iteration when it goes.
+/// Marks the iteration as ended when it is dropped.
 pub struct RunningGuard<'a>(&'a System);
 
 impl Drop for RunningGuard<'_> {
@@ -47,7 +47,8 @@ impl Drop for RunningGuard<'_> {
 }
 
 impl System {
-    /// The problem of `dual`, without deflation; `recycle` directions at most are kept from load to load. Collective.
+    /// The dual problem of `dual`, without deflation. At most `recycle` directions are kept from load to load.
+    /// Collective.
     pub fn new(session: &Session, dual: Dual, recycle: usize) -> Result<System> {
         let x = dual.multipliers()?;
         Ok(System {
@@ -76,7 +77,7 @@ impl System {
         Ok(changed)
     }
 
-    /// Changes Z^k in B and B_D alone: see [`Dual::set_face`]. Collective.
+    /// Changes Z^k in B and B_D alone; see [`Dual::set_face`]. Collective.
     pub(crate) fn set_face(&self, free: &[bool]) {
         self.dual.borrow_mut().set_face(free);
     }
@@ -91,13 +92,13 @@ impl System {
         self.deflation.borrow()
     }
 
-    /// P_2 to be changed. Directions belong to the operator as it was: they are forgotten.
+    /// Access to P_2 for a change. Kept directions belong to the old operator and are forgotten.
     pub(crate) fn change_deflation(&self) -> RefMut<'_, Option<Deflation>> {
         self.recycled.borrow_mut().forget();
         self.deflation.borrow_mut()
     }
 
-    /// What the iterations of this rank have sent and how long they took.
+    /// Communication and time of the iterations on this rank.
     pub fn tally(&self) -> Tally {
         self.tally.get()
     }
@@ -109,14 +110,15 @@ impl System {
         self.tally.set(tally);
     }
 
-    /// Says that an iteration runs as long as the guard lives, and what it corrects if monitors may know.
+    /// Marks an iteration as running while the guard lives. `start` is the λ that it corrects, if monitors may ask for
+    /// it.
     pub(crate) fn run(&self, start: Option<&PetscVec>) -> RunningGuard<'_> {
         let start = start.cloned();
         self.running.replace(Some(Running { start }));
         RunningGuard(self)
     }
 
-    /// What the running iteration corrects, where one runs that monitors may look into.
+    /// The λ that the running iteration corrects; `None` if no iteration runs that monitors may look into.
     pub(crate) fn start(&self) -> Option<PetscVec> {
         self.running.borrow().as_ref()?.start.clone()
     }
@@ -142,11 +144,11 @@ impl System {
         }
     }
 
-    /// λ ← λ + W (Wᵀ F W)⁺ Wᵀ r and r ← P_2ᵀ r, where something is deflated. Collective.
+    /// λ ← λ + W (Wᵀ F W)⁺ Wᵀ r and r ← P_2ᵀ r, if something is deflated. Collective.
     pub(crate) fn deflated_part(&self, residual: &PetscVec, lambda: &PetscVec) -> Result<()> {
         if let Some(p2) = self.p2_matrices() {
-            // What is left in range F W stays there: the preconditioner does not see it. The second time removes the
-            // rounding of the first.
+            // A residual in range F W would stay there, because the preconditioner does not see it. The second pass
+            // removes the rounding of the first.
             for _ in 0..2 {
                 p2.solve(&self.session, residual, lambda)?;
                 p2.project_transpose(&self.session, residual)?;
@@ -157,7 +159,7 @@ impl System {
         Ok(())
     }
 
-    /// λ ← λ + x₀ and r ← r − A x₀ with what earlier iterations have left for the rows that hold. Collective.
+    /// λ ← λ + x₀ and r ← r − A x₀, with the directions that earlier iterations left for the active rows. Collective.
     pub(crate) fn recycled_part(&self, residual: &PetscVec, lambda: &PetscVec) -> Result<()> {
         let mut recycled = self.recycled.borrow_mut();
         let comm = self.session.comm();
@@ -177,7 +179,8 @@ impl System {
         }
     }
 
-    /// y ← A x = Pᵀ P_2ᵀ F P x. Residuals that this makes have no part in range F W, where the preconditioner would not see it.
+    /// y ← A x = Pᵀ P_2ᵀ F P x. The residuals of this operator have no part in range F W, where the preconditioner
+    /// would not see it.
     pub(super) fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.dual();
         if dual.natural.r == 0 {
@@ -193,7 +196,7 @@ impl System {
         self.keep(&self.x, y)
     }
 
-    /// y ← P_2 P M⁻¹ Pᵀ x for residuals x, which P_2ᵀ leaves as they are.
+    /// y ← P_2 P M⁻¹ Pᵀ x for residuals x with P_2ᵀ x = x.
     pub(super) fn precondition(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.dual();
         if dual.natural.r == 0 && self.deflation.borrow().is_none() {
@@ -206,7 +209,7 @@ impl System {
         self.p2(y) /*                   y ← P_2 y        */
     }
 
-    /// y ← Pᵀ P_2ᵀ F P_2 P x: what CG works with where a part is deflated.
+    /// y ← Pᵀ P_2ᵀ F P_2 P x: the operator of CG with deflation.
     pub(super) fn apply_deflated(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.dual();
         let inner = dual.multipliers()?;
@@ -218,7 +221,7 @@ impl System {
         dual.p_transpose(y) /*          y ← Pᵀ y         */
     }
 
-    /// y ← E x; E = Π P with the orthogonal projection Π onto range B, E P_2 E where something is deflated.
+    /// y ← E x. E = Π P with the orthogonal projection Π onto range B; E P_2 E if something is deflated.
     pub(super) fn to_range(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let dual = self.dual();
         self.x.copy_from(x)?;

@@ -1,4 +1,4 @@
-//! What the Krylov iterations of a solver have sent and how long they took, over all ranks.
+//! Communication and time of the Krylov iterations of a solver, over all ranks.
 
 use crate::parallel::clock::{self, Times};
 use crate::parallel::exchange::{max_all, sum_all};
@@ -7,20 +7,20 @@ use crate::petsc;
 use mpi::topology::SimpleCommunicator;
 use std::time::Instant;
 
-/// Iterations of this rank, added up.
+/// The iterations of this rank, added up.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Tally {
     /// Krylov iterations.
     pub iterations: usize,
-    /// What they sent.
+    /// Messages and reductions of the iterations.
     pub sent: Traffic,
-    /// Their seconds by phase.
+    /// Their seconds, by phase.
     pub times: Times,
-    /// All their seconds.
+    /// Their seconds in total.
     pub seconds: f64,
 }
 
-/// Readings at the start of an iteration.
+/// Readings of clocks and counters at the start of an iteration.
 pub struct Start {
     sent: Traffic,
     times: Times,
@@ -39,8 +39,8 @@ impl Start {
         }
     }
 
-    /// What `iterations` iterations since then have added. The all-reduces of the Krylov method itself, one number each, are PETSc's to
-    /// count; a build of PETSc without its log does not.
+    /// The tally of the `iterations` iterations since then. PETSc counts the all-reduces of the Krylov method itself,
+    /// one number each; a build of PETSc without its log does not count them.
     pub fn since(&self, iterations: usize) -> Tally {
         let seconds = self.clock.elapsed().as_secs_f64();
         let mut sent = traffic::sent() - self.sent;
@@ -74,27 +74,27 @@ impl Tally {
 /// A quantity per iteration.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PerIteration {
-    /// Over all ranks.
+    /// Sum over all ranks.
     pub sum: f64,
-    /// Of the rank that has most.
+    /// Largest value of a rank.
     pub max: f64,
 }
 
-/// What one Krylov iteration sends: means over the iterations, what starts and ends a run of them included.
+/// Communication per Krylov iteration: means over the iterations. The beginning and the end of a run are included.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Communication {
     /// Messages from rank to rank.
     pub messages: PerIteration,
-    /// Their bytes.
+    /// Bytes of the messages.
     pub bytes: PerIteration,
     /// All-reduces; every rank takes part in each.
     pub reductions: f64,
-    /// Bytes that a rank puts into them.
+    /// Bytes that a rank contributes to the all-reduces.
     pub reduced_bytes: f64,
 }
 
 impl Communication {
-    /// Of the iterations in `tally`, over all ranks; `None` where there were none. Collective.
+    /// The communication of the iterations in `tally`, over all ranks; `None` if there were none. Collective.
     pub(crate) fn of(comm: &SimpleCommunicator, tally: &Tally) -> Option<Communication> {
         if tally.iterations == 0 {
             return None;

@@ -1,4 +1,4 @@
-//! The residual to end with.
+//! The tolerance on the residual.
 
 use super::refinement::TIGHT;
 use super::residual::ROUNDING;
@@ -6,9 +6,10 @@ use crate::feti::method::LinearMethod;
 use crate::petsc::Ksp;
 use crate::Result;
 
-/// The norm of the residual on `rows` rows to end with: relative to `reference`, that of Pᵀ r at λ₀, or to displacements as
-/// large as `length`, 0 as long as they are not known, if that is less. Where stiff and soft bodies meet, λ₀ may stand for
-/// displacements far larger than those of the solution; jumps are to be small beside these.
+/// The norm of the residual, over `rows` rows, at which the iteration ends. It is relative to the smaller of two
+/// numbers: `reference`, the norm of Pᵀ r at λ₀, and the norm of displacements of size `length` (0 while they are not
+/// known). Where stiff and soft bodies meet, λ₀ may stand for displacements far larger than those of the solution.
+/// Jumps must be small relative to the displacements of the solution.
 pub fn target(ksp: &Ksp, reference: f64, length: f64, rows: usize) -> Result<f64> {
     let (rtol, atol, _, _) = ksp.tolerances()?;
     Ok(absolute(rtol, atol, reference, length, rows))
@@ -22,16 +23,16 @@ fn absolute(rtol: f64, atol: f64, reference: f64, length: f64, rows: usize) -> f
     (rtol * least).max(atol)
 }
 
-/// Whether a run down to `tolerance` was one to the end, where that turns out to be `target`.
+/// Whether a run to `tolerance` was a run to the end, now that the tolerance of the end is `target`.
 pub fn to_the_end(tolerance: f64, target: f64) -> bool {
     tolerance <= 1.01 * target
 }
 
-/// The same for the iterations of one solve: digits beyond [`TIGHT`] are for refinement.
+/// The tolerance of the iterations of one solve. Digits beyond [`TIGHT`] are left to refinement.
 pub struct Target {
     rtol: f64,
     atol: f64,
-    /// How many times larger than asked for.
+    /// Factor by which the tolerance is larger than the user's.
     ease: f64,
     /// ‖Pᵀ r‖ at λ₀.
     reference: f64,
@@ -39,7 +40,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// Relative to `reference`, with the tolerances of the KSP.
+    /// A tolerance relative to `reference`, with the tolerances of the KSP.
     pub fn new(method: &LinearMethod, reference: f64) -> Result<Target> {
         let (rtol, atol, _, _) = method.ksp().tolerances()?;
         Ok(Target {
@@ -54,12 +55,13 @@ impl Target {
         })
     }
 
-    /// As long as displacements are not known.
+    /// The tolerance while displacements are not known.
     pub fn at_first(&self) -> f64 {
         self.ease * absolute(self.rtol, self.atol, self.reference, 0.0, self.rows)
     }
 
-    /// For displacements with largest entry `length`; `size` is what they were formed from, and what rounding is relative to.
+    /// The tolerance for displacements with largest entry `length`. `size` is the norm of the terms that they were
+    /// formed from; rounding is relative to it.
     pub fn of_displacements(&self, length: f64, size: f64) -> f64 {
         let target = absolute(self.rtol, self.atol, self.reference, length, self.rows);
         (self.ease * target).max(ROUNDING * size)

@@ -1,4 +1,4 @@
-//! Z_c = E_D Ψ I as a product, where subdomains see many of its columns.
+//! Z_c = E_D Ψ I as a product, for subdomains that see many of its columns.
 
 use std::cell::RefCell;
 
@@ -23,7 +23,7 @@ pub(crate) struct Applied {
 }
 
 impl Applied {
-    /// Vectors of columns are laid out like `layout`. Collective.
+    /// Vectors of columns have the layout of `layout`. Collective.
     pub fn new(
         session: &Session,
         layout: &PetscVec,
@@ -47,7 +47,7 @@ impl Applied {
         })
     }
 
-    /// Z_c x on the interface of every local subdomain, x given by global column number. Collective.
+    /// Z_c x on the interface of every local subdomain; x is given by global column number. Collective.
     pub fn combine(&self, stiffness: &Stiffness, x: impl Fn(u32) -> f64) -> Result<Vec<Vec<f64>>> {
         let ghost: Vec<f64> = self.ghosts.iter().map(|&g| x(g)).collect();
         let mut out = vec![Vec::new(); stiffness.locals.len()];
@@ -55,7 +55,7 @@ impl Applied {
         Ok(out)
     }
 
-    /// w ← Z_c A⁺ Z_cᵀ w on the interface of every local subdomain, `solve` being A⁺. Collective.
+    /// w ← Z_c A⁺ Z_cᵀ w on the interface of every local subdomain; `solve` applies A⁺. Collective.
     pub fn project(
         &self,
         stiffness: &Stiffness,
@@ -84,7 +84,7 @@ impl Applied {
         self.spread(stiffness, ghost, w)
     }
 
-    /// w ← Z_c c, `c` at the ghost columns.
+    /// w ← Z_c c, with `c` given at the ghost columns.
     fn spread(&self, stiffness: &Stiffness, c: &[f64], w: &mut [Vec<f64>]) -> Result<()> {
         let (functions, locals, columns) = (&self.functions, &stiffness.locals, &self.columns);
         stiffness.team.for_each(w, |j, w| {

@@ -1,10 +1,11 @@
-//! E_D: copies of the dual dofs averaged inside the bodies, with the weights of D; zero where bodies may touch.
+//! E_D averages the copies of the dual dofs inside the bodies, with the weights of D, and is zero where bodies may
+//! touch.
 //!
 //! ```text
 //!     (E_D w)(x) = Σ_copies D w / Σ_copies D    on all copies of x
 //! ```
 //!
-//! Most copies of a dof are on one rank: only what several ranks share goes into messages.
+//! Most copies of a dof are on one rank. Messages contain only dofs that several ranks share.
 
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
@@ -20,11 +21,11 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// A dual dof of a subdomain that others of its body have, too.
+/// A dual dof of a subdomain that other subdomains of its body share.
 struct Place {
     /// Position in Γ.
     at: u32,
-    /// Where its sum is made.
+    /// Index of the sum over its copies.
     slot: u32,
     /// D over the sum of D.
     weight: f64,
@@ -36,14 +37,14 @@ pub(crate) struct Averaging {
     places: Vec<Vec<Place>>,
     /// Positions in Γ of shared vertices where bodies do not touch: they keep their values.
     vertices: Vec<Vec<u32>>,
-    /// Slots that several ranks add to, the first ones.
+    /// Number of slots that several ranks add to. They come first.
     shared: usize,
     halo: Halo,
     vector: PetscVec,
     sums: RefCell<Vec<f64>>,
 }
 
-/// Which of the two.
+/// The operator or its transpose.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Transposition {
     /// E_D.
@@ -86,7 +87,7 @@ impl Averaging {
             let held = local.n_delta()..local.n_delta() + jump.n_shared[j];
             vertices.push(held.filter(|&i| !candidate[i]).map(|i| i as u32).collect());
         }
-        // The rank of the lowest copy numbers a dof that others share with it.
+        // The rank of the lowest copy numbers a dof that several ranks share.
         let far: Vec<u64> = far.into_iter().collect();
         let owner = |dof: &u64| rank_of(&sharing.shared(*dof)[0]) as usize;
         let mut asked: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];

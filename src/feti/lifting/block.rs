@@ -1,7 +1,8 @@
-//! Z_cᵀ S Z_c of one subdomain whose Z_c has hundreds of columns: without most of its zeros.
+//! Z_cᵀ S Z_c of a subdomain whose Z_c has hundreds of columns, without most of its zeros.
 //!
-//! A function of a vertex that the subdomain does not have lives on one face or one edge of it. Columns with the same rows make a *group*, rows that
-//! the same groups have are put side by side, and only groups meet S:
+//! The coarse function of a vertex outside the subdomain lives on one face or one edge of the subdomain. Columns with
+//! the same nonzero rows form a *group*. Rows that belong to the same groups are placed side by side, and S is
+//! multiplied with groups only:
 //!
 //! ```text
 //!     Y_g = Σ_r S[:, r] Z[r, g],      A[g, :] = Σ_r Z[r, g]ᵀ Y[r, :],      r over the runs of rows of group g
@@ -19,9 +20,9 @@ use crate::linalg::dense::{multiply, Dense};
 struct Groups {
     /// Position in Γ of each row.
     rows: Vec<u32>,
-    /// Column of the recipe that each column is.
+    /// For each column, its column in the recipe.
     columns: Vec<u32>,
-    /// Columns and runs of rows of every group.
+    /// Columns, and runs of rows, of every group.
     members: Vec<(Range<usize>, Vec<Range<usize>>)>,
 }
 
@@ -30,12 +31,13 @@ impl Groups {
         let support = recipe.support();
         let mut by_rows: BTreeMap<&[u64], Vec<u32>> = BTreeMap::new();
         for (rows, c) in support.iter().zip(0..) {
-            // Columns that are zero make no group.
+            // Zero columns belong to no group.
             if rows.iter().any(|w| *w != 0) {
                 by_rows.entry(rows).or_default().push(c);
             }
         }
-        // Rows in the order of which groups have them, a bit for each of them; the last bit stands for all that are left.
+        // Rows are sorted by the groups that have them, with one bit for each group. The last bit stands for all groups
+        // beyond.
         let has = |rows: &[u64], i: usize| rows[i / 64] >> (i % 64) & 1 == 1;
         let mut owners: Vec<(u128, u32)> = (0..recipe.rows() as u32).map(|i| (0, i)).collect();
         for (set, g) in by_rows.keys().zip(0u32..) {
@@ -75,7 +77,7 @@ fn runs(inside: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
     out
 }
 
-/// Z_cᵀ S Z_c in the columns of the recipe; the lower triangle counts. `local` has a dense S.
+/// Z_cᵀ S Z_c in the columns of the recipe; only the lower triangle is valid. `local` has a dense S.
 pub(crate) fn block(local: &Scaled, recipe: &Recipe, functions: &[Functions]) -> Dense {
     let groups = Groups::new(recipe);
     let s = local.s_in_order(&groups.rows);
@@ -100,7 +102,7 @@ pub(crate) fn block(local: &Scaled, recipe: &Recipe, functions: &[Functions]) ->
     }
     let mut a = Dense::zeros(cols, cols);
     for (g, runs) in &groups.members {
-        // Columns after those of the group: the rest is there by symmetry.
+        // Only columns from those of the group on: the rest follows by symmetry.
         let rest = cols - g.start;
         for (k, rows) in runs.iter().enumerate() {
             let part = z.view().submatrix(rows.start, g.start, rows.len(), g.len());

@@ -1,7 +1,8 @@
-//! Z_c before anything is multiplied with it: copies of Ψ averaged inside the bodies.
+//! Z_c of one subdomain as a matrix: copies of Ψ averaged inside the bodies.
 //!
-//! On one subdomain Z_c has a column for every coarse function of the neighbourhood, six hundred in space: it is built where it is needed and thrown away, from a
-//! [`Recipe`] that says whose rows go where. Recipes that are the same, of subdomains in the same surroundings, are recognised by their
+//! On one subdomain Z_c has a column for every coarse function of the neighbourhood, six hundred in space. The matrix
+//! is built where it is needed and dropped afterwards. A [`Recipe`] says which rows of which subdomains it consists of.
+//! Subdomains in the same surroundings have equal recipes, which are recognised by their
 //! [signatures](Recipe::signature).
 
 use std::collections::BTreeMap;
@@ -18,24 +19,25 @@ use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::Substructures;
 
-/// How Z_c is made on one subdomain.
+/// The recipe of Z_c on one subdomain.
 pub(crate) struct Recipe {
     /// Order of Γ.
     rows: usize,
     /// Global numbers of the columns, increasing.
     pub columns: Vec<u32>,
     contributions: Vec<Contribution>,
-    /// (position in Γ, column): vertices where the function of the vertex is one.
+    /// (position in Γ, column) of the vertices at which the function of the vertex is one.
     vertices: Vec<(u32, u32)>,
 }
 
-/// What one subdomain contributes to the columns of another one: rows of D Ψ, D scaled to a sum of one over the copies.
+/// The contribution of one subdomain to the columns of another one: rows of D Ψ, with D scaled to a sum of one over the
+/// copies.
 struct Contribution {
-    /// The subdomain that it comes from.
+    /// The source subdomain.
     from: u64,
     /// Global numbers of its columns; later their places among the columns of the recipe.
     columns: Vec<u32>,
-    /// (position in Γ of the one that it goes to, row of the source, factor).
+    /// (position in Γ of the target, row of the source, factor).
     rows: Vec<(u32, u32, f64)>,
     source: Source,
 }
@@ -43,11 +45,11 @@ struct Contribution {
 enum Source {
     /// Functions of a subdomain of this rank.
     Local(usize),
-    /// Rows that another rank has sent, one of each contribution.
+    /// Rows that another rank has sent, those of one contribution.
     Remote(Dense),
 }
 
-/// What to do for every local subdomain; exchanges rows of Ψ between ranks.
+/// The recipes of every local subdomain; exchanges rows of Ψ between ranks.
 pub(crate) fn recipes(
     session: &Session,
     problem: &Substructures,
@@ -72,7 +74,7 @@ pub(crate) fn recipes(
     let candidate: Vec<Vec<bool>> = (0..locals.len())
         .map(|j| candidates(jump, &locals[j], j))
         .collect();
-    // (to, (local dof of that one, row, factor)) by subdomain.
+    // (target, (local dof of the target, row, factor)) by subdomain.
     let given = team.map(locals.len(), |j| {
         let (sub, local) = (&problem.local[j], &locals[j]);
         let mut lists: BTreeMap<u32, Vec<(u32, u32, f64)>> = BTreeMap::new();
@@ -143,7 +145,7 @@ pub(crate) fn recipes(
         }
     }
     let recipe = |(j, mut contributions): (usize, Vec<Contribution>)| {
-        // Added up in the same order whatever the ranks.
+        // Sorted, so that the order of additions does not depend on the ranks.
         contributions.sort_unstable_by_key(|c| c.from);
         let n_delta = locals[j].n_delta();
         let held = (0..jump.n_shared[j]).filter(|p| !candidate[j][n_delta + p]);
@@ -153,7 +155,7 @@ pub(crate) fn recipes(
     received.into_iter().enumerate().map(recipe).collect()
 }
 
-/// Which interface positions of local subdomain `j` may be in contact: those with an entry of B_gl.
+/// The interface positions of local subdomain `j` that may be in contact: those with an entry of B_gl.
 pub(crate) fn candidates(jump: &Jump, local: &Scaled, j: usize) -> Vec<bool> {
     let columns = &jump.columns[j];
     let mut out = vec![false; local.n_gamma()];
@@ -193,7 +195,7 @@ impl Recipe {
         self.rows
     }
 
-    /// For each column, the rows in which it may differ from zero: a bit of each.
+    /// For each column, the rows in which it may be nonzero, one bit for each row.
     pub fn support(&self) -> Vec<Vec<u64>> {
         let words = self.rows.div_ceil(64);
         let mut out = vec![vec![0; words]; self.columns.len()];
@@ -207,7 +209,7 @@ impl Recipe {
                 all.for_each(|(w, r)| *w |= r);
             }
         }
-        // Functions of its own vertices have all vertices in common with each other.
+        // Functions of the subdomain's own vertices have the same support in all vertices.
         let mut vertices = vec![0u64; words];
         for &(at, _) in &self.vertices {
             vertices[at as usize / 64] |= 1 << (at % 64);
@@ -240,7 +242,8 @@ impl Recipe {
         z
     }
 
-    /// Numbers that are the same for two subdomains only if Z_c is the same on both; `kind` tells functions of one subdomain from those of another.
+    /// A list of numbers that is the same for two subdomains only if Z_c is the same on both. `kind` identifies the
+    /// functions of a subdomain.
     pub fn signature(&self, kind: impl Fn(usize) -> u64) -> Vec<u64> {
         let pair = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
         let mut out = vec![self.rows as u64, self.columns.len() as u64];

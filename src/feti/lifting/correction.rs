@@ -1,18 +1,20 @@
 //! Z_c: coarse functions of the bodies that vanish where bodies may touch (docs/theory.md, section 4).
 //!
-//! Columns of Z_c are columns of Ψ at vertices and averages that subdomains of the body share, their copies averaged inside the body with the scaling weights, set to zero on
-//! candidate contact nodes: Z_c = E_D Ψ I, with I the identity or the interpolation of averages from vertices. Removing their span S̃-orthogonally from what
-//! B_Dᵀ lifts,
+//! Columns of Z_c come from columns of Ψ at vertices and averages that subdomains of the body share. Their copies are
+//! averaged inside the body with the scaling weights and set to zero on candidate contact nodes: Z_c = E_D Ψ I, where I
+//! is the identity or the interpolation of averages from vertices. Their span is removed S̃-orthogonally from the jumps
+//! that B_Dᵀ lifts:
 //!
 //! ```text
 //!     M_C⁻¹ = B_D S̃ ( I − Z_c A⁺ Z_cᵀ S̃ ) B_Dᵀ,      A = Z_cᵀ S̃ Z_c
 //! ```
 //!
-//! lets a jump on a body's face decay over the whole body instead of over the layer of subdomains beside it. B Z_c = 0 for
-//! every active set, so nothing here changes in a contact step.
+//! A jump on a body's face then decays over the whole body instead of over the layer of subdomains beside it. B Z_c = 0
+//! for every active set, so that Z_c does not change in a contact step.
 //!
-//! A subdomain in space sees hundreds of columns of Z_c, as many as its interface has dofs: there Z_c is never stored, and S is multiplied with
-//! twice. In the plane it sees a dozen for each component, and Y = S Z_c is kept: S̃ ( I − Z_c A⁺ Z_cᵀ S̃ ) = S̃ − Y A⁺ Yᵀ.
+//! A subdomain in space sees hundreds of columns of Z_c, as many as its interface has dofs. Z_c is not stored there,
+//! and M_C multiplies with S twice. In the plane a subdomain sees a dozen columns for each component, and Y = S Z_c is
+//! stored: S̃ ( I − Z_c A⁺ Z_cᵀ S̃ ) = S̃ − Y A⁺ Yᵀ.
 
 use mpi::traits::Communicator;
 
@@ -44,18 +46,18 @@ pub struct Lifting {
     pub products: f64,
 }
 
-/// What is kept of Z_c.
+/// The form in which Z_c is stored.
 enum Kept {
-    /// Matrices: few columns.
+    /// As matrices, where there are few columns.
     Stored(Box<Stored>),
-    /// What it is the product of.
+    /// As the factors of its product.
     Applied(Box<Applied>),
 }
 
-/// An entry of Y, which is read for one vector, takes so many times as long as one of S in a product with many.
+/// Time for an entry of Y, which is read for one vector, relative to an entry of S in a product with many vectors.
 const ALONE: f64 = 2.0;
 
-/// E_D and its transpose take as long as this many entries of a row of S.
+/// Time for E_D and its transpose per row of S, in entries of S.
 const AVERAGES: f64 = 30.0;
 
 impl Lifting {
@@ -73,7 +75,8 @@ impl Lifting {
             Functions::new(which, &problem.local[j], sharing, jump, &locals[j], j)
         });
         let recipes = recipes(session, problem, sharing, stiffness, &functions);
-        // What an application costs: Y twice, by itself; or S once more, which equal subdomains share, and averages.
+        // Cost of an application: Y twice, for one vector; or S once more, in a product that equal subdomains share,
+        // and E_D.
         let mut entries = [0.0; 2];
         for (recipe, local) in recipes.iter().zip(locals) {
             let n_gamma = local.n_gamma() as f64;
@@ -131,7 +134,8 @@ impl Lifting {
         }
     }
 
-    /// The first half of work.y ← S̃ (I − Z_c A⁺ Z_cᵀ S̃) work.v: what can be sent before work.y ← S work.v is there. Collective.
+    /// The first half of work.y ← S̃ (I − Z_c A⁺ Z_cᵀ S̃) work.v: sends the data that does not depend on S work.v.
+    /// Collective.
     pub fn begin(&self, stiffness: &Stiffness, work: &[Work]) -> Result<()> {
         match &self.z {
             Kept::Stored(stored) => stored.begin(stiffness, work, &self.vector),
@@ -139,7 +143,7 @@ impl Lifting {
         }
     }
 
-    /// The second half, after work.y ← S work.v, which `multiply` does, has been done. Collective.
+    /// The second half; work.y ← S work.v must have been computed. `multiply` computes this product. Collective.
     pub fn finish(
         &self,
         stiffness: &Stiffness,
@@ -161,7 +165,8 @@ impl Lifting {
         }
     }
 
-    /// Both halves for several columns of every local subdomain, after blocks.y ← S blocks.v, which `multiply` does. Collective.
+    /// Both halves for several columns of every local subdomain; blocks.y ← S blocks.v must have been computed.
+    /// `multiply` computes this product. Collective.
     pub fn finish_many(
         &self,
         stiffness: &Stiffness,
@@ -186,7 +191,7 @@ impl Lifting {
         }
     }
 
-    /// x ← A⁺ x on this rank's bodies.
+    /// x ← A⁺ x on the bodies of this rank.
     fn solve(&self, x: &mut [f64]) {
         clock::timed(Phase::Lifting, || {
             self.bodies.iter().for_each(|b| b.solve(x))

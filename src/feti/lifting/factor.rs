@@ -1,4 +1,5 @@
-//! A⁺ = (Z_cᵀ S̃ Z_c)⁺ of one body: sparse where it has many columns that see few others, dense where there are few or where they depend on each other.
+//! A⁺ = (Z_cᵀ S̃ Z_c)⁺ of one body. The factor is sparse if the body has many columns and each meets few others; it is
+//! dense if there are few columns or if they depend on each other.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,10 +10,10 @@ use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::{Semidefinite, DEPENDENT, ZERO};
 
-/// With fewer columns a dense factor stays in the cache.
+/// Number of columns below which a dense factor is used: it stays in the cache.
 const MANY: usize = 200;
 
-/// A is worth an ordering if no larger part of its entries is there.
+/// Largest fraction of nonzero entries of A at which a sparse factor is tried.
 const FILLED: f64 = 0.25;
 
 /// A of one body.
@@ -22,16 +23,17 @@ pub(crate) struct BodyFactor {
     factor: Factor,
 }
 
-/// How A⁺ is held.
+/// The form of A⁺.
 enum Factor {
-    /// Columns far from each other have nothing in common.
+    /// A sparse factor: columns far from each other do not interact.
     Sparse(PartialCholesky),
-    /// The rank is found.
+    /// A dense factor that determines the rank.
     Dense(Semidefinite),
 }
 
 impl BodyFactor {
-    /// A of the body with these primal dofs, of which this rank's begin at `first`, from what [`Sum::pack`] has written.
+    /// A of the body with the primal dofs `body`; those of this rank begin at `first`. `received` has the messages that
+    /// [`Sum::pack`] has written.
     pub fn new(received: &[Vec<u64>], body: Range<u32>, first: usize) -> BodyFactor {
         let mut columns = Vec::new();
         each(received, &body, |c, _| columns.extend_from_slice(c));
@@ -54,7 +56,7 @@ impl BodyFactor {
         }
     }
 
-    /// Rank of A and its order, columns that are zero left out.
+    /// Rank of A, and its order without zero columns.
     pub fn rank_and_order(&self) -> (usize, usize) {
         match &self.factor {
             Factor::Sparse(factor) => (factor.n(), factor.n()),
@@ -62,7 +64,7 @@ impl BodyFactor {
         }
     }
 
-    /// x ← A⁺ x at the columns; the body's other primal dofs stay as they are.
+    /// x ← A⁺ x at the columns; the entries at the body's other primal dofs do not change.
     pub fn solve(&self, x: &mut [f64]) {
         let mut part: Vec<f64> = self.at.iter().map(|&i| x[i]).collect();
         match &self.factor {
@@ -73,7 +75,7 @@ impl BodyFactor {
     }
 }
 
-/// Columns and lower triangle of every sum of one body.
+/// Columns and lower triangle of each sum that belongs to one body.
 fn each<'a>(
     received: &'a [Vec<u64>],
     body: &Range<u32>,
@@ -110,14 +112,14 @@ fn dense(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Dense {
     a
 }
 
-/// The sparse factor of the same, where it is regular and has many zeros.
+/// The sparse factor of the same sum if it is regular and has many zeros; `None` otherwise.
 fn sparse(n: usize, lists: &[Vec<u32>], blocks: &[&[u64]]) -> Option<PartialCholesky> {
     let full = |entries: usize| entries as f64 > FILLED * (n * n) as f64;
     if n < MANY || lists.iter().any(|l| full(l.len() * l.len())) {
         return None;
     }
     let entry = |b: usize, i: usize, j: usize| {
-        // Columns are packed one after the other, each from the diagonal down.
+        // The lower triangle is packed column by column, each column from the diagonal down.
         let (low, high) = (i.min(j), i.max(j));
         let start = low * lists[b].len() - low * low.saturating_sub(1) / 2;
         f64::from_bits(blocks[b][start + high - low])
@@ -169,7 +171,7 @@ mod tests {
         )
     }
 
-    /// K with row and column `to` being those of `from`, or zero.
+    /// K with row and column `to` replaced by those of `from`, or by zero.
     fn changed(k: &Csr, to: usize, from: Option<usize>) -> Csr {
         let source = |i: usize| if i == to { from } else { Some(i) };
         let entry = |i: usize, j: usize| Some(k.get(source(i)?, source(j)?));
@@ -194,7 +196,7 @@ mod tests {
         let far = distance(&x, &y);
         assert!(far < 1e-12, "{far:.1e}");
 
-        // A free body; two columns that are one; a column that is zero; few columns.
+        // A free body; two equal columns; a zero column; few columns.
         let refused = |k: &Csr| both(k).0.is_none();
         assert!(refused(&grid_laplacian(19, 17, 0.0).0));
         assert!(refused(&changed(&k, 5, Some(0))));

@@ -1,9 +1,11 @@
-//! Coarse functions of one subdomain: columns of Ψ, or functions of vertices alone that averages follow.
+//! Coarse functions of one subdomain: columns of Ψ, or functions of vertices alone with averages interpolated from
+//! them.
 //!
-//! A subdomain in space sees some six hundred vertices and edge averages of its neighbourhood, two of three of them averages. Let the value of an average
-//! be that combination of the values at its ends, the vertices whose subdomains include all of its own, that is right for the kernels
-//! (constants, rigid motions) and as small as possible: for a straight edge half the sum of both ends. Functions of vertices then are continuous,
-//! as smooth as linear ones, and a third in number. What Z_c spans shrinks, so that M_C comes nearer to M_D, and stays above it.
+//! A subdomain in space sees some six hundred vertices and edge averages of its neighbourhood, and two of three are
+//! averages. The value of an average can be interpolated from its ends, the vertices whose subdomains include all
+//! subdomains of the average. The combination is the smallest one that is exact for the kernels (constants, rigid
+//! motions); for a straight edge it is half the sum of both ends. Functions of vertices are then continuous, as smooth
+//! as linear ones, and a third in number. The span of Z_c shrinks: M_C comes nearer to M_D and stays above it.
 
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::feti::jump::operator::Jump;
@@ -13,27 +15,27 @@ use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::substructures::Subdomain;
 
-/// An average is not interpolated if kernels come out wrong by more than this part of them.
+/// An average is not interpolated if the kernels are wrong by more than this, relative to their size.
 const WRONG: f64 = 1e-8;
 
 /// Weights below this part of the largest are rounding.
 const NOTHING: f64 = 1e-10;
 
-/// Weights are multiples of one over this: equal subdomains have equal ones then, wherever they are.
+/// Weights are rounded to multiples of one over this. Equal subdomains then have equal weights at any position.
 const STEPS: f64 = (1u64 << 40) as f64;
 
 /// Coarse functions of one subdomain.
 pub(crate) struct Functions {
-    /// The primal dof of the subdomain that gives each column its name, vertices first.
+    /// For each column the primal dof of the subdomain that names it, vertices first.
     pub columns: Vec<usize>,
-    /// (primal dof, column, weight): the values of primal dofs in terms of those of columns.
+    /// (primal dof, column, weight): the values of the primal dofs as combinations of the columns' values.
     pub weights: Vec<(u32, u32, f64)>,
     /// Values on the dual dofs, n_Δ × columns.
     pub psi: Dense,
 }
 
 impl Functions {
-    /// The functions of local subdomain `j` at what it shares: vertices and averages.
+    /// The functions of local subdomain `j` at its shared vertices and averages.
     pub fn new(
         which: CoarseFunctions,
         sub: &Subdomain,
@@ -87,7 +89,7 @@ impl Functions {
         self.columns.push(p);
     }
 
-    /// p ← the primal values of the columns' values `c`.
+    /// p ← the primal values for the column values `c`.
     pub fn spread(&self, c: &[f64], p: &mut [f64]) {
         p.fill(0.0);
         for &(i, k, w) in &self.weights {
@@ -112,7 +114,8 @@ fn includes(many: &[Copy], few: &[Copy]) -> bool {
     })
 }
 
-/// The smallest weights of vertices with Σ weight · kernel(end) = mean of the kernel over `dofs`, for all kernels; `None` if there are none.
+/// The smallest weights of vertices with Σ weight · kernel(end) = mean of the kernel over `dofs`, for all kernels;
+/// `None` if there are none.
 fn combination(
     kernel: &[Vec<f64>],
     dofs: &[u32],
@@ -132,7 +135,8 @@ fn combination(
             })
     };
     let rounded = |v: usize, weight: f64| (v, (weight * STEPS).round() / STEPS);
-    // The smallest weights are those in the range of Nᵀ. On a straight edge a multiple of one column does: a translation.
+    // The smallest weights are those in the range of Nᵀ. On a straight edge they are a multiple of one column, a
+    // translation.
     for (c, n) in wanted.iter().enumerate() {
         let square: f64 = ends.iter().map(|&v| at(c, v).powi(2)).sum();
         if *n != 0.0 && square > 0.0 {

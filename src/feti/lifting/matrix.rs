@@ -1,4 +1,5 @@
-//! A = Z_cᵀ S̃ Z_c of every body: blocks of subdomains, of which those in the same surroundings share one, added up.
+//! A = Z_cᵀ S̃ Z_c of every body, assembled from blocks of its subdomains. Subdomains in the same surroundings share a
+//! block.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -13,34 +14,35 @@ use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::{multiply, Dense};
 use crate::substructures::Substructures;
 
-/// So many subdomains of a body are added up before their sum is sent to the one who factors A.
+/// Number of subdomains of a body whose blocks are added up before the sum is sent to the rank that factors A.
 const GROUP: usize = 32;
 
-/// So many blocks Z_cᵀ S Z_c are held at the same time.
+/// Number of blocks Z_cᵀ S Z_c that are in memory at the same time.
 const BLOCKS: usize = 32;
 
-/// Z_cᵀ S Z_c of some subdomains of a body.
+/// The sum of Z_cᵀ S Z_c over some subdomains of a body.
 pub(crate) struct Sum {
     pub body: usize,
     members: Vec<usize>,
     /// Global columns, increasing.
     columns: Vec<u32>,
-    /// Its lower triangle counts.
+    /// The matrix; only its lower triangle is valid.
     a: Dense,
 }
 
-/// What this rank adds to A.
+/// This rank's contributions to A.
 pub(crate) struct Sums {
-    /// By groups of subdomains of a body.
+    /// The sums of groups of subdomains of a body.
     pub sums: Vec<Sum>,
     /// Σ n_Γ² · columns over the blocks that were made.
     pub products: f64,
-    /// Z_c and S Z_c of every local subdomain, where they are to be kept; subdomains in the same surroundings share them.
+    /// Z_c and S Z_c of every local subdomain, if they are to be stored. Subdomains in the same surroundings share
+    /// them.
     pub kept: Vec<Arc<Pair>>,
 }
 
 impl Sums {
-    /// Collects the blocks of all local subdomains.
+    /// Computes and adds up the blocks of all local subdomains.
     pub fn new(
         problem: &Substructures,
         stiffness: &Stiffness,
@@ -103,7 +105,7 @@ impl Sums {
     }
 }
 
-/// The first local subdomain with the same Z_cᵀ S Z_c, for each.
+/// For each local subdomain, the first one with the same Z_cᵀ S Z_c.
 fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe]) -> Vec<usize> {
     let mut names: HashMap<Vec<u64>, u64> = HashMap::new();
     let mut name = |j: usize| {
@@ -127,7 +129,7 @@ fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe
     recipes.iter().enumerate().map(first).collect()
 }
 
-/// Z_cᵀ S Z_c of one subdomain, and what it is made of.
+/// Z_cᵀ S Z_c of one subdomain, and its factors Z_c and S Z_c.
 fn block(local: &Scaled, z: Dense) -> (Dense, Pair) {
     let mut y = Dense::zeros(z.rows, z.cols);
     local.apply(Operator::S, &z, &mut y);
@@ -136,7 +138,8 @@ fn block(local: &Scaled, z: Dense) -> (Dense, Pair) {
     (a, Pair { z, y })
 }
 
-/// Adds the lower triangle of `block`, of which `theirs` are the columns, to that of `a`. Columns are in the same order here and there.
+/// Adds the lower triangle of `block`, whose columns are `theirs`, to that of `a`. Both lists of columns are in the
+/// same order.
 fn add(a: &mut Dense, columns: &[u32], theirs: &[u32], block: &Dense) {
     let place = |g: &u32| columns.binary_search(g).expect("it was collected");
     let at: Vec<usize> = theirs.iter().map(place).collect();
@@ -149,7 +152,8 @@ fn add(a: &mut Dense, columns: &[u32], theirs: &[u32], block: &Dense) {
 }
 
 impl Sum {
-    /// Room for the sum over `members`, or for each by itself where columns of some do not meet those of others: less is sent then.
+    /// Zero sums for `members`: one for all of them, or one for each if the columns of some do not meet those of
+    /// others. In the latter case less data is sent.
     fn over(body: usize, members: &[usize], recipes: &[Recipe]) -> Vec<Sum> {
         let empty = |members: &[usize], columns: Vec<u32>| Sum {
             body,

@@ -1,4 +1,4 @@
-//! Z_c and M_C: jumps between bodies are lifted into whole bodies.
+//! Z_c and M_C: the lifting of jumps between bodies into whole bodies.
 
 pub mod applied;
 pub mod averaging;

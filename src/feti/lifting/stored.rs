@@ -1,4 +1,5 @@
-//! Z_c and Y = S Z_c as matrices, where subdomains see few columns of Z_c: in the plane a dozen for each component, where the interface has hundreds of dofs.
+//! Z_c and Y = S Z_c as matrices, for subdomains that see few columns of Z_c. In the plane they see a dozen for each
+//! component, while the interface has hundreds of dofs.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -16,9 +17,9 @@ pub(crate) struct Pair {
     pub y: Dense,
 }
 
-/// Both on every local subdomain, and whose columns they are.
+/// Z_c and Y on every local subdomain, with the numbers of their columns.
 pub(crate) struct Stored {
-    /// Subdomains in the same surroundings share one.
+    /// Z_c and Y of each local subdomain; those in the same surroundings share one pair.
     pairs: Vec<Arc<Pair>>,
     /// For each local subdomain, the ghost column behind each of its columns.
     columns: Vec<Vec<u32>>,
@@ -29,7 +30,8 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// `columns` has the global numbers of the columns of each pair; vectors of columns are laid out like `layout`. Collective.
+    /// `columns` has the global numbers of the columns of each pair. Vectors of columns have the layout of `layout`.
+    /// Collective.
     pub fn new(
         session: &Session,
         layout: &PetscVec,
@@ -46,7 +48,7 @@ impl Stored {
         })
     }
 
-    /// Z_c x on the interface of every local subdomain, x given by global column number.
+    /// Z_c x on the interface of every local subdomain; x is given by global column number.
     pub fn combine(&self, x: impl Fn(u32) -> f64) -> Vec<Vec<f64>> {
         let of = |(pair, columns): (&Arc<Pair>, &Vec<u32>)| {
             let c: Vec<f64> = columns
@@ -60,7 +62,7 @@ impl Stored {
         self.pairs.iter().zip(&self.columns).map(of).collect()
     }
 
-    /// Sends Yᵀ work.v on its way. Collective.
+    /// Starts sending Yᵀ work.v. Collective.
     pub fn begin(&self, stiffness: &Stiffness, work: &[Work], vector: &PetscVec) -> Result<()> {
         let mut ghost = self.ghost.borrow_mut();
         ghost.fill(0.0);
@@ -77,7 +79,7 @@ impl Stored {
         self.halo.sum_begin(&ghost, vector)
     }
 
-    /// work.y ← work.y − Y A⁺ Yᵀ work.v, after [`begin`](Self::begin), `solve` being A⁺. Collective.
+    /// work.y ← work.y − Y A⁺ Yᵀ work.v, after [`begin`](Self::begin); `solve` applies A⁺. Collective.
     pub fn finish(
         &self,
         stiffness: &Stiffness,
@@ -98,7 +100,7 @@ impl Stored {
         Ok(())
     }
 
-    /// The same for several columns of every local subdomain, y ← y − Y A⁺ Yᵀ v. Collective.
+    /// y ← y − Y A⁺ Yᵀ v for several columns of every local subdomain. Collective.
     pub fn remove_many(
         &self,
         stiffness: &Stiffness,

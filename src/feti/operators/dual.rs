@@ -1,7 +1,7 @@
 //! F, M⁻¹ and P of one problem, for the rows that hold.
 //!
-//! They are immutable but for Z^k: between the steps of the contact loop the set of rows that hold changes, and with it G and
-//! the touched blocks of B_D. Nothing that depends on K is touched.
+//! They are immutable except for Z^k. The rows that hold change between the steps of the contact loop, and with them G
+//! and some blocks of B_D. Nothing that depends on K changes.
 
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
@@ -20,14 +20,14 @@ pub struct Dual {
     /// G and P.
     pub natural: NaturalCoarse,
     session: Session,
-    /// Whether G belongs to other rows than those that hold.
+    /// Whether G belongs to an earlier set of rows.
     stale: bool,
     events: [Event; 3],
     like: PetscVec,
 }
 
 impl Dual {
-    /// Puts the operators together. Collective.
+    /// Builds the operators. Collective.
     pub fn new(
         session: &Session,
         stiffness: Stiffness,
@@ -51,8 +51,8 @@ impl Dual {
         })
     }
 
-    /// Changes Z^k to `active` (one per owned row): new blocks of B_D where rows changed, a new G. Returns the number of rows
-    /// that changed over all ranks, and whether G is another one. Collective.
+    /// Changes Z^k to `active` (one per owned row): blocks of B_D where rows changed, and G, are computed again.
+    /// Returns the number of rows that changed over all ranks, and whether G has changed. Collective.
     pub(crate) fn set_active(
         &mut self,
         problem: &Substructures,
@@ -71,13 +71,14 @@ impl Dual {
         Ok((changed[0] as usize, renewed))
     }
 
-    /// Changes Z^k in B and B_D alone and leaves G behind: enough for M⁻¹ in a face of a bound-constrained problem. Collective.
+    /// Changes Z^k in B and B_D alone and leaves G as it is. This is enough for M⁻¹ in a face of a bound-constrained
+    /// problem. Collective.
     pub(crate) fn set_face(&mut self, free: &[bool]) {
         self.stiffness.jump.set_active(self.session.comm(), free);
         self.stale = true;
     }
 
-    /// A vector of multipliers, zero.
+    /// A zero vector of multipliers.
     pub fn multipliers(&self) -> Result<PetscVec> {
         self.like.duplicate()
     }
@@ -112,7 +113,7 @@ impl Dual {
         self.natural.project_transpose(self.session.comm(), x)
     }
 
-    /// The operators in words, for `-fetifeti_ksp_view`.
+    /// Description of the operators for `-fetifeti_ksp_view`.
     pub fn describe(&self) -> String {
         let (jump, natural) = (&self.stiffness.jump, &self.natural);
         let lifted = match self.preconditioner.lifting() {

@@ -1,4 +1,4 @@
-//! F, M⁻¹ and P, as products and as PETSc sees them.
+//! F, M⁻¹ and P as products, and as PETSc operators.
 
 pub mod dual;
 pub mod preconditioner;

@@ -34,15 +34,16 @@ pub struct Preconditioner {
     lifting: Option<Lifting>,
     /// K_ΓΓ of each local subdomain in the order of Γ, for the lumped preconditioner.
     k_gamma: Vec<Rectangular>,
-    /// S of each local subdomain in single precision, where that is asked for and S is a dense matrix; equal subdomains share it.
+    /// S of each local subdomain in single precision; `None` unless that is asked for and S is a dense matrix. Equal
+    /// subdomains share it.
     single: Vec<Option<Arc<Single>>>,
-    /// S for subdomains that share it.
+    /// Products with S for subdomains that share it.
     products: Products,
     buffers: RefCell<(Vec<Work>, Vec<f64>)>,
 }
 
 impl Preconditioner {
-    /// A preconditioner of the given kind; `lifting` is needed by the coarse-corrected one alone. Collective.
+    /// A preconditioner of the given kind. Only the coarse-corrected one needs `lifting`. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         kind: PcType,
@@ -77,12 +78,12 @@ impl Preconditioner {
         }
     }
 
-    /// Local subdomains with S in single precision.
+    /// Number of local subdomains with S in single precision.
     pub fn in_single(&self) -> usize {
         self.single.iter().flatten().count()
     }
 
-    /// What it is.
+    /// Its kind.
     pub fn kind(&self) -> PcType {
         self.kind
     }
@@ -106,7 +107,7 @@ impl Preconditioner {
             columns[j].bd_transpose(received, &mut w.v); /*   v ← B_Dᵀ λ         */
         });
         let lifting = self.lifting.as_ref();
-        // Yᵀ v is on its way while S v is computed.
+        // Yᵀ v is sent while S v is computed.
         if let Some(lifting) = lifting {
             lifting.begin(stiffness, work)?;
         }
@@ -149,7 +150,7 @@ impl Preconditioner {
         });
     }
 
-    /// outs ← M⁻¹ λs. S is read once for all of them, and only for those that reach the subdomain. Collective.
+    /// outs ← M⁻¹ λs. S is read once for all columns, and only for columns that reach the subdomain. Collective.
     pub fn apply_many(
         &self,
         stiffness: &Stiffness,
@@ -195,11 +196,12 @@ impl Preconditioner {
     }
 }
 
-/// S is rounded to single precision as long as this bounds its condition number on Δ, from below by max T_ii max S_ii: its softest motions then keep
-/// two digits.
+/// S is rounded to single precision if its condition number on Δ, estimated from below by max T_ii max S_ii, is less
+/// than this. The softest motions then keep two digits.
 const ROUNDABLE: f64 = 1e5;
 
-/// Nor where the stiffness of subdomains differs by more: what rounding makes of the rigid motions of stiff ones is large beside soft ones.
+/// S is not rounded either if the stiffness of subdomains differs by a larger factor. The rounding of rigid motions of
+/// stiff subdomains would be large beside soft ones.
 const ALIKE: f64 = 1e3;
 
 /// S of every local subdomain in single precision, where that is safe. Collective.

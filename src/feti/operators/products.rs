@@ -1,7 +1,8 @@
-//! Products with operators that equal subdomains share: one matrix-matrix product, or one sweep through a sparse factor, for many of them.
+//! Products with operators that equal subdomains share. One matrix-matrix product, or one sweep through a sparse
+//! factor, serves many subdomains.
 //!
-//! A matrix-vector product reads an n × n operator to do 2 n² operations and waits for the cache; with thirty vectors side by side the same reading does thirty times
-//! the work.
+//! A matrix-vector product reads an n × n operator for 2 n² operations and waits for memory. With thirty vectors side
+//! by side, one reading of the operator serves thirty times the operations.
 
 use std::cell::{Ref, RefCell};
 
@@ -11,16 +12,17 @@ use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::Dense;
 use crate::parallel::team::Team;
 
-/// Vectors side by side: enough to keep the arithmetic busy, few enough to leave work for several threads.
+/// Number of vectors side by side: enough to keep the arithmetic units busy, few enough to leave work for several
+/// threads.
 const WIDTH: usize = 32;
 
-/// Operators of a smaller order are applied one by one: they are in the cache anyway.
+/// Operators of a smaller order are applied one by one; they are in the cache anyway.
 const WORTH_PACKING: usize = 48;
 
-/// Which subdomains go together, and room for their vectors.
+/// The batches of subdomains that share operators, and buffers for their vectors.
 pub struct Products {
     batches: Vec<Vec<usize>>,
-    /// (batch, column) of each local subdomain that goes with others.
+    /// (batch, column) of each local subdomain that belongs to a batch.
     place: Vec<Option<(usize, usize)>>,
     panels: RefCell<Vec<Panel>>,
 }
@@ -30,12 +32,12 @@ pub struct Products {
 pub struct Panel {
     v: Dense,
     y: Dense,
-    /// Columns that are in use: the others are zero and stay so.
+    /// Columns that are in use; the others stay zero.
     live: Vec<bool>,
 }
 
 impl Products {
-    /// `batches(n)` are the local subdomains in groups of at most n that share their operators.
+    /// `batches(n)` returns the local subdomains in groups of at most n that share their operators.
     pub fn new(locals: &[Scaled], batches: impl Fn(usize) -> Vec<Vec<usize>>) -> Products {
         let worth = |l: &Scaled| l.is_implicit() || l.n_delta() >= WORTH_PACKING;
         let together = |b: &Vec<usize>| b.len() > 1 && worth(&locals[b[0]]);
@@ -54,8 +56,9 @@ impl Products {
         }
     }
 
-    /// Computes A v for all that go together, v being the leading entries of the subdomain's `v`; [`results`](Self::results) has them. `apply` makes
-    /// y ← A v of the first columns, as many as it is told, for what local subdomain j shares with others.
+    /// Computes A v for all subdomains in batches, v being the leading entries of the subdomain's `v`. The products are
+    /// read with [`results`](Self::results). `apply(j, v, y, n)` computes the first n columns of y ← A v with the
+    /// operator that local subdomain j shares with others.
     pub fn multiply(
         &self,
         team: &Team,
@@ -84,7 +87,7 @@ impl Products {
         self.panels.borrow()
     }
 
-    /// What [`multiply`](Self::multiply) has computed, by local subdomain.
+    /// The products of the last [`multiply`](Self::multiply), by local subdomain.
     pub fn results<'a>(&'a self, panels: &'a [Panel], which: Operator) -> Results<'a> {
         Results {
             place: &self.place,
@@ -102,7 +105,8 @@ pub struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// y ← A v of local subdomain `j`, made by `alone` if it goes with no other; entries beyond the operator's order are set to zero.
+    /// y ← A v of local subdomain `j`. `alone` computes it if the subdomain is in no batch. Entries beyond the
+    /// operator's order are set to zero.
     pub fn take(&self, j: usize, local: &Scaled, y: &mut [f64], alone: impl Fn(&mut [f64])) {
         match self.place[j] {
             None => alone(y),

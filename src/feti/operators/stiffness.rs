@@ -23,7 +23,7 @@ use crate::parallel::team::Team;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
-/// Everything that depends on the matrices alone, with the jump operator on top.
+/// S̃⁺, which depends on the matrices alone, and the jump operator.
 pub struct Stiffness {
     /// B and B_D.
     pub jump: Jump,
@@ -31,13 +31,13 @@ pub struct Stiffness {
     pub locals: Vec<Scaled>,
     /// Numbering and kernels of the bodies.
     pub space: PrimalSpace,
-    /// The bodies' primal problem S_Π behind a KSP.
+    /// The bodies' primal problem S_Π with its solver.
     pub primal: PrimalProblem,
-    /// Moves multipliers to and from the subdomains.
+    /// Exchanges multipliers between their owners and the ranks of the subdomains.
     pub dual_halo: Halo,
     /// The threads of this rank.
     pub team: Team,
-    /// T for subdomains that share it.
+    /// Products with T for subdomains that share it.
     products: Products,
     /// Corrections of S_Π⁺, where coefficients jump inside bodies.
     refinement: Option<Refinement>,
@@ -51,7 +51,7 @@ struct Buffers {
 }
 
 impl Stiffness {
-    /// Puts the parts together.
+    /// Builds the operator from its parts.
     pub fn new(
         jump: Jump,
         locals: Vec<Scaled>,
@@ -78,12 +78,13 @@ impl Stiffness {
         }
     }
 
-    /// From now on S_Π⁺ is corrected by `refinement`.
+    /// Makes `refinement` correct S_Π⁺ from now on.
     pub fn refine(&mut self, refinement: Refinement) {
         self.refinement = Some(refinement);
     }
 
-    /// `c` (at this rank's ghosts): in, contributions to Ψᵀ v, which are on their way; out, S_Π⁺ of their sum. Collective.
+    /// Receives the contributions to Ψᵀ v that are under way and applies S_Π⁺. `c` (at this rank's ghosts) has this
+    /// rank's contributions on entry and S_Π⁺ of their sum on return. Collective.
     fn primal_finish(&self, c: &mut [f64]) -> Result<()> {
         let Some(refinement) = &self.refinement else {
             return self.primal.finish(&self.team, c);
@@ -106,7 +107,7 @@ impl Stiffness {
         Ok(sum)
     }
 
-    /// Ψᵀ work.v at this rank's ghosts, on its way to those who own them. Collective.
+    /// Ψᵀ work.v at this rank's ghosts; starts sending it to the owners. Collective.
     fn coarse_begin(&self, work: &mut [Work]) -> Result<Vec<f64>> {
         let locals = &self.locals;
         self.team.for_each(work, |j, w| {
@@ -138,7 +139,7 @@ impl Stiffness {
             locals[j].kind().apply(Operator::T, v, y, n)
         });
         let products = products.results(&panels, Operator::T);
-        // While the coarse values are on their way:
+        // These products overlap with the messages:
         self.team.for_each(work, |j, w| {
             products.take(j, &locals[j], &mut w.y, |y| {
                 locals[j].apply_one(Operator::T, &w.v, y)
@@ -164,8 +165,8 @@ impl Stiffness {
         self.jump_of(work, out) /*                        out ← B y      */
     }
 
-    /// outs ← F λs of each colour of bodies: λ and F λ of one colour are about the bodies of that colour alone, `colour` is that of each
-    /// local subdomain's body. One product with S̃⁺ serves all of them. Collective.
+    /// outs ← F λs for the bodies of each colour. λ and F λ of one colour belong to the bodies of that colour alone;
+    /// `colour` is that of each local subdomain's body. One product with S̃⁺ serves all colours. Collective.
     pub fn f_mult_coloured(
         &self,
         lambdas: &[PetscVec],
@@ -194,8 +195,8 @@ impl Stiffness {
         Ok(())
     }
 
-    /// outs ← F λs, several columns at once; `change` may change the loads Bᵀ λ of each before they act. T is read once for all of
-    /// them. Collective.
+    /// outs ← F λs, several columns at once. `change` may modify the loads Bᵀ λ of each column before S̃⁺ is applied. T
+    /// is read once for all columns. Collective.
     pub fn f_mult_many(
         &self,
         lambdas: &[PetscVec],
@@ -240,7 +241,7 @@ impl Stiffness {
         Ok(())
     }
 
-    /// out ← B S̃⁺ Bᵀ λ with all rows of B_gl, those that do not hold included. Collective.
+    /// out ← B S̃⁺ Bᵀ λ with all rows of B_gl, including those that do not hold. Collective.
     pub fn f_mult_all(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         self.dual_halo.fetch(lambda, ghost)?;
@@ -252,9 +253,10 @@ impl Stiffness {
         self.jump_of_all(work, out) /*                    out ← B y      */
     }
 
-    /// The orthogonal projection onto B W̃: on the rows of B_loc out ← B N B_Dᵀ λ, on those of B_gl out ← B B_Dᵀ λ. Redundant multipliers
-    /// are removed, and so is what functionals that are continuous in W̃ leave no work for (N takes them out of the jumps
-    /// inside bodies; B_gl sees weighted averages of the copies, with which N does not commute). Collective.
+    /// The orthogonal projection onto B W̃: out ← B N B_Dᵀ λ on the rows of B_loc, out ← B B_Dᵀ λ on those of B_gl. It
+    /// removes redundant multipliers, and multipliers that do no work because functionals are continuous in W̃. N
+    /// removes these functionals from the jumps inside bodies. It is not used for B_gl, which acts on weighted averages
+    /// of the copies: N does not commute with these averages. Collective.
     pub fn range_projection(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         self.dual_halo.fetch(lambda, ghost)?;
@@ -275,7 +277,7 @@ impl Stiffness {
         self.dual_halo.sum(&inside, out)
     }
 
-    /// out ← B y of the displacements in `work`. Collective.
+    /// out ← B y, with the displacements y in `work`. Collective.
     pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
         for (w, columns) in work.iter().zip(&self.jump.columns) {
@@ -284,7 +286,7 @@ impl Stiffness {
         self.dual_halo.sum(&sum, out)
     }
 
-    /// out ← B y with all rows of B_gl, those that do not hold included. Collective.
+    /// out ← B y with all rows of B_gl, including those that do not hold. Collective.
     pub fn jump_of_all(&self, work: &[Work], out: &PetscVec) -> Result<()> {
         let mut sum = vec![0.0; self.jump.ghosts.len()];
         for (w, columns) in work.iter().zip(&self.jump.columns) {
@@ -304,7 +306,7 @@ impl Stiffness {
         batches(&self.locals, most)
     }
 
-    /// `work` of every batch at once, the results by local subdomain.
+    /// Applies `work` to every batch at once; returns the results by local subdomain.
     pub fn by_batch<T: Send>(
         &self,
         batches: &[Vec<usize>],
@@ -333,7 +335,7 @@ fn batches(locals: &[Scaled], most: usize) -> Vec<Vec<usize>> {
         kinds.entry(Arc::as_ptr(local.kind())).or_default().push(j);
     }
     let mut kinds: Vec<Vec<usize>> = kinds.into_values().collect();
-    // Addresses are not the same from run to run.
+    // Addresses differ from run to run.
     kinds.sort_unstable();
     let chunks = kinds.iter().flat_map(|kind| kind.chunks(most));
     chunks.map(<[usize]>::to_vec).collect()

@@ -1,4 +1,4 @@
-//! Room for the vectors of one subdomain.
+//! Buffers for the vectors of one subdomain.
 
 use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::Dense;
@@ -24,7 +24,7 @@ pub struct Columns {
 }
 
 impl Work {
-    /// Zeros of the sizes of a subdomain.
+    /// Zeros in the sizes of this subdomain.
     pub fn for_subdomain(local: &Scaled) -> Work {
         Work {
             v: vec![0.0; local.n_gamma()],

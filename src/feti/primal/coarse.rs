@@ -1,7 +1,7 @@
 //! The bodies' primal problem S_Π.
 //!
-//! S_Π is block diagonal by body, and a body's rows live on one rank: a Cholesky factorisation per body, ours, solves it exactly without a
-//! message. With any option `-fetifeti_coarse_…` a PETSc KSP takes its place.
+//! S_Π is block diagonal by body, and the rows of a body live on one rank. The crate's own Cholesky factorisation of
+//! each body solves S_Π exactly and without a message. Any option `-fetifeti_coarse_…` selects a PETSc KSP instead.
 
 use super::matrix::PrimalMatrix;
 use super::space::PrimalSpace;
@@ -13,7 +13,7 @@ use crate::parallel::team::Team;
 use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
 
-/// S_Π, regularised, with its solver. Nothing at all where no body has primal dofs.
+/// S_Π, regularised, with its solver; empty if no body has primal dofs.
 pub struct PrimalProblem {
     parts: Option<Parts>,
 }
@@ -32,7 +32,7 @@ enum Solver {
 }
 
 impl PrimalProblem {
-    /// Assembles the matrix and sets its solver up; takes S_Π. Collective.
+    /// Assembles the matrix and sets its solver up; consumes S_Π. Collective.
     pub fn new(
         session: &Session,
         space: &mut PrimalSpace,
@@ -64,7 +64,8 @@ impl PrimalProblem {
         })
     }
 
-    /// `values` (at this rank's ghosts): in, every rank's contributions to Ψᵀ v; out, S_Π⁺ of their sum. Collective.
+    /// Applies S_Π⁺. `values` (at this rank's ghosts) has the rank's contributions to Ψᵀ v on entry and S_Π⁺ of their
+    /// sum on return. Collective.
     pub fn solve(&self, team: &Team, values: &mut [f64]) -> Result<()> {
         self.begin(values)?;
         self.finish(team, values)
@@ -78,7 +79,7 @@ impl PrimalProblem {
         }
     }
 
-    /// The second half: receives them, and solves. Collective.
+    /// The second half: receives the contributions and solves. Collective.
     pub fn finish(&self, team: &Team, values: &mut [f64]) -> Result<()> {
         let Some(p) = &self.parts else { return Ok(()) };
         p.halo.sum_end(&p.rhs)?;
@@ -113,7 +114,7 @@ impl PrimalProblem {
         p.halo.fetch(&p.solution, values)
     }
 
-    /// Σ r²/d of two vectors of which every rank has contributions at its ghosts. Collective.
+    /// Σ r²/d, where every rank has contributions to the vectors r and d at its ghosts. Collective.
     pub fn weighted_square(&self, r: &[f64], d: &[f64]) -> Result<f64> {
         let Some(p) = &self.parts else { return Ok(0.0) };
         p.halo.sum(r, &p.rhs)?;
@@ -124,7 +125,8 @@ impl PrimalProblem {
     }
 }
 
-/// A factor for each body of this rank; `None` where one of the matrices is too close to a singular one for it, the same on all ranks. Collective.
+/// A factor for each body of this rank; `None` on all ranks if one of the matrices is too close to singular for a
+/// Cholesky factorisation. Collective.
 fn own(
     session: &Session,
     space: &PrimalSpace,
@@ -139,7 +141,7 @@ fn own(
         Some((range.start, factor))
     });
     let factors: Option<Vec<_>> = factors.into_iter().collect();
-    // All ranks take the same way.
+    // All ranks make the same choice.
     let mut failed = [f64::from(u8::from(factors.is_none()))];
     crate::parallel::exchange::sum_all(session.comm(), &mut failed);
     factors.filter(|_| failed[0] == 0.0)
@@ -176,7 +178,7 @@ fn petsc(
     }
     ksp.set_from_options()?;
     ksp.setup()?;
-    // The blocks have read theirs; a host's database is not ours to keep things in.
+    // The blocks have read their options. The host's options database must not keep them.
     for name in lent {
         options.clear_value(name)?;
     }

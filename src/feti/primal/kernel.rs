@@ -1,23 +1,24 @@
 //! Floating bodies, found from their matrices.
 //!
-//! A body floats in the directions that every one of its subdomain matrices maps to zero. Where the possible
-//! directions N are known (constants; rigid body modes) the test is row by row: |K N c| against the size of
-//! the terms that should cancel in that row. It sees a boundary condition or a spring in the softest corner of a body
-//! with coefficient jumps of any size, where eigenvalues of the whole matrix would drown it.
-//! Where nothing is known, the kernel of the body's primal matrix S_Π tells.
+//! A body floats in the directions that every one of its subdomain matrices maps to zero. Where candidates N for these
+//! directions are known (constants; rigid body modes), the test is row by row: |K N c| is compared with the size of the
+//! terms that should cancel in that row. This test sees a boundary condition or a spring in the softest corner of a
+//! body with coefficient jumps of any size. Eigenvalues of the whole matrix would hide it. Without candidates, the
+//! kernel of the body's primal matrix S_Π decides.
 
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 
-/// Rows whose terms cancel to less than this are rows of a free body: rounding leaves 1e-15, a spring of 1e-8 of a
-/// row's stiffness leaves 1e-8.
+/// A row belongs to a free body if its terms cancel to less than this, relative to their size. Rounding leaves 1e-15, a
+/// spring of 1e-8 of a row's stiffness leaves 1e-8.
 const FREE: f64 = 1e-11;
 
 /// Eigenvalues of the scaled S_Π below this count as zero. S_Π carries the rounding of the local elimination, about
 /// 1e-14 times the subdomain's condition number.
 const FREE_SPECTRUM: f64 = 1e-10;
 
-/// The triangular factor of the row-scaled K N (k × k, column-major): what one subdomain has to say about its body's kernel.
+/// The triangular factor of the row-scaled K N (k × k, column-major): one subdomain's contribution to the kernel of its
+/// body.
 ///
 /// `columns` has the k columns of N, entries of order one.
 pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
@@ -25,7 +26,7 @@ pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
     let mut rows = faer::Mat::<f64>::zeros(n.max(m), m);
     let mut first = 0;
     for group in columns.chunks(SIDE) {
-        // The widths of a scalar, of plane and of solid elasticity.
+        // Numbers of candidates of a scalar field, of plane and of solid elasticity.
         match group.len() {
             1 => residuals::<1>(k, group, &mut rows, first),
             2..=3 => residuals::<3>(k, group, &mut rows, first),
@@ -50,17 +51,17 @@ pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
     out
 }
 
-/// So many columns meet an entry of K at once.
+/// Number of columns that meet an entry of K at once.
 const SIDE: usize = 6;
 
-/// Rows of K N over the sums of |K|, for at most `W` columns, into `rows` from column `first`.
+/// Rows of K N divided by the row sums of |K|, for at most `W` columns, into `rows` from column `first`.
 fn residuals<const W: usize>(
     k: &Csr,
     columns: &[Vec<f64>],
     rows: &mut faer::Mat<f64>,
     first: usize,
 ) {
-    // Rows of N side by side, filled up with zeros.
+    // The rows of N, filled up with zeros to the same length.
     let entry = |i: usize, c: usize| columns.get(c).map_or(0.0, |x| x[i]);
     let by_row: Vec<[f64; W]> = (0..k.n())
         .map(|i| std::array::from_fn(|c| entry(i, c)))
@@ -87,7 +88,7 @@ pub fn null_combinations(factors: &[Dense]) -> Dense {
         return Dense::default();
     };
     let stacked = faer::Mat::from_fn(factors.len() * k, k, |i, j| factors[i / k].get(i % k, j));
-    // Left singular vectors, as many as rows, are not wanted.
+    // Left singular vectors are not needed; there are as many as rows.
     let svd = stacked
         .thin_svd()
         .expect("an SVD of a small finite matrix converges");
@@ -103,14 +104,14 @@ pub fn null_combinations(factors: &[Dense]) -> Dense {
     out
 }
 
-/// Diagonal entries of S_Π below this fraction of the body's stiffness are rounding: what is left of a dof that nothing else holds.
+/// A diagonal entry of S_Π below this fraction of the body's stiffness is rounding: its dof is held by nothing else.
 const NOTHING: f64 = 1e-12;
 
-/// A basis of the kernel of the body's primal matrix (n × n, both triangles): n × defect. `stiffness` is the largest diagonal entry of K in
-/// the body, or one like it.
+/// A basis of the kernel of the body's primal matrix (n × n, both triangles): n × defect. `stiffness` is the largest
+/// diagonal entry of K in the body, or a number of that size.
 pub fn null_space(s_pi: &Dense, stiffness: f64) -> Dense {
     let n = s_pi.rows;
-    // A body with one primal dof and nothing else to hold it has a 1 × 1 matrix of rounding, which is small only beside K.
+    // A body with one primal dof that nothing holds has a 1 × 1 matrix of rounding. It is small only compared with K.
     let alone = if stiffness > 0.0 { stiffness } else { 1.0 };
     let safe = |i: usize| match s_pi.get(i, i) {
         d if d > NOTHING * stiffness => d.sqrt(),
@@ -133,8 +134,8 @@ pub fn null_space(s_pi: &Dense, stiffness: f64) -> Dense {
     out
 }
 
-/// Rows of `z` (n × defect) to hold so that the body is held: greedy, largest remaining row first (Gram–Schmidt on rows), which
-/// spreads them. As many as columns.
+/// The rows of `z` (n × defect) whose dofs are fixed to hold the body, as many as columns. The largest remaining row is
+/// taken first (Gram–Schmidt on rows), which spreads the dofs.
 pub fn fixing_rows(z: &Dense) -> Vec<usize> {
     let mut rest: Vec<Vec<f64>> = (0..z.rows)
         .map(|i| (0..z.cols).map(|j| z.get(i, j)).collect())

@@ -1,4 +1,4 @@
-//! S_Π of the bodies: the matrices Σ that subdomains have at their primal dofs, added up by the rank that owns them.
+//! S_Π of the bodies: the sum of the subdomains' matrices Σ, formed by the rank that owns the body.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::parallel::exchange::exchange_words;
 pub struct Outgoing(Vec<Vec<u64>>);
 
 impl Outgoing {
-    /// Room for so many words to each rank.
+    /// Reserves memory: a number of words for each rank.
     pub fn with_capacity(words: &[usize]) -> Outgoing {
         Outgoing(words.iter().map(|&n| Vec::with_capacity(n)).collect())
     }
@@ -22,7 +22,8 @@ impl Outgoing {
         1 + n + n * n
     }
 
-    /// Adds a block for rank `to`: `numbers` are those of its rows and columns. One without any is left out.
+    /// Adds a block for rank `to`. `numbers` are the global numbers of its rows and columns; a block without any is
+    /// left out.
     pub fn push(&mut self, to: usize, numbers: impl Iterator<Item = u32>, block: &Dense) {
         if block.rows == 0 {
             return;
@@ -36,17 +37,17 @@ impl Outgoing {
     }
 }
 
-/// The blocks of this rank's bodies, and what regularises them.
+/// The blocks of this rank's bodies, and the shifts that regularise them.
 #[derive(Debug, Default)]
 pub struct PrimalMatrix {
     /// First global number owned by this rank.
     first: usize,
     received: Vec<Vec<u64>>,
-    /// The blocks by their first owned dof: (that dof, sender, where its words start). Those of a body follow each other.
+    /// The blocks by their first owned dof: (that dof, sender, first word). The blocks of a body are consecutive.
     index: Vec<(u32, u32, usize)>,
     /// The diagonal of the sum, by owned dof.
     diagonal: Vec<f64>,
-    /// What is added to it.
+    /// Shifts added to the diagonal.
     shifts: Vec<f64>,
 }
 
@@ -91,7 +92,7 @@ impl PrimalMatrix {
         matrix
     }
 
-    /// Blocks of the body (or bodies) with these owned dofs; their dofs counted from its first one.
+    /// Blocks of the body (or bodies) with these owned dofs. Dofs are counted from the first one of the body.
     fn of_body<'a>(&'a self, body: &Range<usize>) -> impl Iterator<Item = Block<'a>> {
         let place = |dof: usize| self.index.partition_point(|b| (b.0 as usize) < dof);
         let offset = (self.first + body.start) as u32;
@@ -105,7 +106,7 @@ impl PrimalMatrix {
         })
     }
 
-    /// The sum of the diagonal entries of a body, without what regularises it.
+    /// The sum of the diagonal entries of a body, without the shifts.
     pub fn trace(&self, body: &Range<usize>) -> f64 {
         self.diagonal[body.clone()].iter().sum()
     }
@@ -136,7 +137,7 @@ impl PrimalMatrix {
         out
     }
 
-    /// The same, sparse.
+    /// S_Π of the body with these owned dofs, sparse.
     pub fn sparse(&self, body: &Range<usize>) -> Csr {
         let (lists, values): (Vec<Vec<u32>>, Vec<&[u64]>) = self.of_body(body).unzip();
         let value =
@@ -150,7 +151,7 @@ impl PrimalMatrix {
         out
     }
 
-    /// All entries as (global row, global column, value), repeated ones not added up.
+    /// All entries as (global row, global column, value); repeated ones are not added up.
     pub fn triplets(&self) -> Vec<(i32, i32, f64)> {
         let first = self.first as i32;
         let mut out = Vec::new();

@@ -1,8 +1,9 @@
-//! Primal problems of bodies whose coefficients jump: S_Π⁺ to the accuracy of the subdomains' own matrices.
+//! S_Π⁺ in bodies whose coefficients jump, to the accuracy of the subdomains' own matrices.
 //!
-//! A stiff subdomain in soft ones is held by the difference of large entries of the assembled S_Π: with jumps of 1e12 that difference has four
-//! digits left. Unassembled it has all: Σ_j annihilates the rigid motions of its subdomain, and made to do so exactly, it tells the forces on
-//! the subdomain as a whole from its neighbours alone. So the assembled matrix is solved with, and residuals are formed with the Σ_j:
+//! A stiff subdomain among soft ones is held by the difference of large entries of the assembled S_Π. With jumps of
+//! 1e12 that difference has four digits left. The unassembled Σ_j have all digits: Σ_j annihilates the rigid motions of
+//! its subdomain. Once it does so exactly, the total force on the subdomain comes from its neighbours alone. The system
+//! is therefore solved with the assembled matrix, and residuals are formed with the Σ_j:
 //!
 //! ```text
 //!     c ← c + S_Π⁺ ( b − Σ_j R_jᵀ Π_j Σ_j Π_j R_j c ),    Π_j = I − N_j N_jᵀ
@@ -13,16 +14,17 @@ use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::Dense;
 use crate::substructures::{Subdomain, Substructures};
 
-/// Largest ratio of coefficients in a body up to which the assembled matrix is good enough.
+/// Largest ratio of coefficients in a body up to which the assembled matrix is accurate enough.
 pub const PLAIN: f64 = 1e3;
 
-/// Corrections after the first solve; each leaves about (jump · 1e-14) of the error.
+/// Number of corrections after the first solve. Each reduces the error by a factor of about (jump · 1e-14).
 pub const STEPS: usize = 2;
 
-/// Σ_j N below this part of its terms is zero.
+/// An entry of Σ_j N below this part of its terms is zero.
 const FREE: f64 = 1e-9;
 
-/// N_j of each local subdomain: orthonormal, n_Π × its rigid motions (none where something holds it).
+/// N_j of each local subdomain: its rigid motions as orthonormal columns, n_Π rows; no columns if the subdomain is
+/// held.
 pub struct Refinement {
     motions: Vec<Dense>,
 }
@@ -53,7 +55,7 @@ impl Refinement {
     }
 }
 
-/// x ← x − N Nᵀ x, twice for the digits.
+/// x ← x − N Nᵀ x, applied twice for the digits.
 fn remove(n: &Dense, x: &mut [f64]) {
     for _ in 0..2 {
         for k in 0..n.cols {
@@ -74,7 +76,7 @@ fn motions(sub: &Subdomain, local: &Scaled) -> Dense {
         let before: f64 = x.iter().map(|v| v * v).sum();
         remove(&out, &mut x);
         let after: f64 = x.iter().map(|v| v * v).sum();
-        // Rigid motions that agree at the few primal dofs of a subdomain are one.
+        // Different rigid motions may agree at the few primal dofs of a subdomain. Such motions count once.
         if after <= 1e-12 * before {
             continue;
         }
@@ -87,7 +89,7 @@ fn motions(sub: &Subdomain, local: &Scaled) -> Dense {
     out
 }
 
-/// Whether Σ x is rounding in every entry.
+/// Whether every entry of Σ x is rounding.
 fn is_free(sigma: &Dense, x: &[f64]) -> bool {
     (0..sigma.rows).all(|i| {
         let terms = (0..sigma.cols).map(|j| sigma.get(i, j) * x[j]);

@@ -1,7 +1,7 @@
 //! The primal spaces of the bodies: numbering, the matrix S_Π, and the kernels it shows.
 //!
-//! All primal dofs of a body are owned by one rank, that of the body's lowest subdomain, so that S_Π is block diagonal
-//! by rank as well as by body. Primal dofs are numbered rank after rank, body after body.
+//! All primal dofs of a body are owned by one rank: that of the body's lowest subdomain. S_Π is therefore block
+//! diagonal by rank as well as by body. Primal dofs are numbered rank after rank, body after body.
 
 use std::ops::Range;
 
@@ -53,14 +53,15 @@ pub struct PrimalSpace {
     pub defect: Vec<usize>,
     /// Column of R at which each body's kernel starts; length n_bodies + 1.
     pub kernel_start: Vec<usize>,
-    /// Rows of the kernel basis at `ghosts`: length of the body's defect each.
+    /// For each ghost the row of the kernel basis; its length is the defect of the body.
     pub z_at_ghosts: Vec<Vec<f64>>,
     /// S_Π of the owned bodies, regularised at the fixing dofs of floating ones.
     pub matrix: PrimalMatrix,
 }
 
 impl PrimalSpace {
-    /// Numbers the primal dofs (`averages` are those of every local subdomain), assembles S_Π and finds the kernels. Collective.
+    /// Numbers the primal dofs, assembles S_Π and finds the kernels. `averages` are those of every local subdomain.
+    /// Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         problem: &Substructures,
@@ -89,7 +90,7 @@ impl PrimalSpace {
         space
     }
 
-    /// Rank after rank numbering; returns, for the owner, the numbers that every rank asked for.
+    /// Numbers the primal dofs rank after rank. Returns, for the owner, the numbers that every rank asked for.
     fn number(
         &mut self,
         comm: &SimpleCommunicator,
@@ -99,8 +100,8 @@ impl PrimalSpace {
     ) -> Vec<Vec<u32>> {
         let mut requests: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
-            // A vertex is known by its body dof, an average by its entity, another functional by a body dof; a fixing dof belongs to its
-            // subdomain alone.
+            // A vertex is identified by its body dof, an average by its entity, another functional by a body dof. A
+            // fixing dof belongs to its subdomain alone.
             let vertices = local.interface()[local.n_delta()..].iter();
             let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
             let averages = averages[j].iter();
@@ -176,7 +177,7 @@ impl PrimalSpace {
         locals: &[Scaled],
         asked: &[Vec<u32>],
     ) {
-        // What the subdomains say: [body, k, factor (k²)], and N at the primal dofs: [number, k values].
+        // Messages of the subdomains: [body, k, factor (k²)], and N at the primal dofs: [number, k values].
         let size = comm.size() as usize;
         let mut factors: Vec<Vec<u64>> = vec![Vec::new(); size];
         let mut values: Vec<Vec<u64>> = vec![Vec::new(); size];
@@ -211,8 +212,8 @@ impl PrimalSpace {
             body.fixing = kernel::fixing_rows(&body.z);
             defect[body.body] = body.z.cols as f64;
             let n = body.range.len() as f64;
-            // Any positive number makes S_Π regular; the mean diagonal keeps it as well conditioned as it was. A body held
-            // by nothing but its fixing dof has a diagonal of rounding: then one.
+            // Any positive number makes S_Π regular; the mean diagonal entry keeps its condition. If nothing but the
+            // fixing dof holds a body, its diagonal is rounding; the number is one then.
             let trace = self.matrix.trace(&body.range);
             let shift = if trace / n > 1e-10 * stiffness {
                 trace / n

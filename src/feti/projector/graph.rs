@@ -1,4 +1,4 @@
-//! Which bodies meet in which rows, and groups of bodies that do not feel each other.
+//! The bodies that meet in each row, and groups of bodies that do not interact.
 
 use mpi::topology::SimpleCommunicator;
 
@@ -38,11 +38,11 @@ impl Lists {
 pub struct BodyGraph {
     /// Number of bodies.
     pub n: usize,
-    /// Bodies with an entry of B in each owned row, whether or not it holds.
+    /// Bodies with an entry of B in each owned row, whether or not the row holds.
     pub terms: Lists,
-    /// Bodies with an entry of B_D there: those of the row's block.
+    /// Bodies with an entry of B_D in each owned row: those of the row's block.
     pub touched: Lists,
-    /// For every body itself and all that it shares a block of rows with, increasing.
+    /// For every body, the body itself and all bodies that it shares a block of rows with, increasing.
     pub near: Vec<Vec<u32>>,
 }
 
@@ -104,8 +104,8 @@ impl BodyGraph {
         out
     }
 
-    /// Groups of `bodies` such that no body is near two of one group: what M⁻¹ makes of a jump at one body does not reach the rows of
-    /// another one.
+    /// Groups of `bodies` such that no body is near two bodies of one group. M⁻¹ applied to a jump at one body of a
+    /// group then does not reach the rows of another one.
     pub fn colours(&self, bodies: &[u32]) -> Vec<Vec<u32>> {
         let mut colour = vec![usize::MAX; self.n];
         let mut groups: Vec<Vec<u32>> = Vec::new();

@@ -12,7 +12,7 @@ use crate::parallel::exchange::sum_all;
 use crate::petsc::{Comm, Ksp, Mat, Session, Vec as PetscVec};
 use crate::{Error, Result};
 
-/// Which of the two inverses.
+/// The inverse or its transpose.
 #[derive(Clone, Copy)]
 pub enum Side {
     /// (Gᵀ Q G)⁻¹
@@ -21,8 +21,8 @@ pub enum Side {
     Transposed,
 }
 
-/// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹ with D² its diagonal: with Q = M⁻¹ the rows of stiff and soft bodies differ by the square
-/// of the jump in ρ.
+/// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹; D² is the diagonal of Gᵀ Q G. The scaling is needed with Q = M⁻¹: the rows
+/// of stiff and soft bodies differ by the square of the jump in ρ.
 pub struct Gtg {
     /// The solver, on this rank alone.
     pub ksp: Ksp,
@@ -30,7 +30,7 @@ pub struct Gtg {
     scale: Vec<f64>,
     rhs: PetscVec,
     solution: PetscVec,
-    /// Combinations of kernel vectors that no row sees: rigid motions of bodies that nothing holds.
+    /// Combinations of kernel vectors on which all rows vanish: rigid motions that nothing holds.
     pub unheld: Vec<Vec<f64>>,
     /// The matrix, scaled.
     matrix: Mat,
@@ -51,10 +51,10 @@ impl Gtg {
                 a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
             }
         }
-        // Which bodies are held is a question to G alone: with Q = M⁻¹ two stiff bodies that soft ones hold look as if nothing did.
+        // G alone decides which bodies are held. With Q = M⁻¹ two stiff bodies that soft ones hold would look unheld.
         let (dropped, unheld) = dependent(session, r, g);
-        // Holding one dependent column of each unheld motion makes the matrix regular without changing what it does to
-        // right-hand sides in its range.
+        // One dependent column of each unheld motion is held. This makes the matrix regular and does not change the
+        // solution for right-hand sides in its range.
         for i in dropped {
             a.set(i, i, a.get(i, i) + 1.0);
         }
@@ -68,8 +68,8 @@ impl Gtg {
         ksp.set_operators(&matrix, &matrix)?;
         ksp.set_options_prefix(prefix)?;
         ksp.set_type("preonly")?;
-        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the same as
-        // long as it is this very matrix that is inverted: hence LU, and the transpose for Pᵀ.
+        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the
+        // same if this very matrix is inverted. That is why it is factored by LU and Pᵀ uses the transpose.
         ksp.pc()?.set_type("lu")?;
         ksp.set_from_options()?;
         ksp.setup()?;
@@ -84,10 +84,11 @@ impl Gtg {
         })
     }
 
-    /// The relative error of a vector that goes through the scaled matrix and back: about its condition number times rounding, and what P loses.
+    /// The relative error of a vector after multiplication with the scaled matrix and its inverse. It is about the
+    /// condition number times rounding, and it is the accuracy that P loses.
     pub fn defect(&self) -> Result<f64> {
         let x = self.rhs.duplicate()?;
-        // Neither smooth nor orthogonal to anything in particular.
+        // A test vector that is neither smooth nor orthogonal to anything in particular.
         for (i, x) in x.array_mut()?.iter_mut().enumerate() {
             *x = 1.0 + ((i * 7919) % 13) as f64 / 13.0;
         }

@@ -1,11 +1,11 @@
-//! The natural coarse problem of the floating bodies and the projector that comes with it.
+//! The natural coarse problem of the floating bodies and its projector.
 //!
 //! ```text
 //!     G = Z B R,   e = Rᵀ g,   P = I − Q G (Gᵀ Q G)⁻¹ Gᵀ,   λ₀ = Q G (Gᵀ Q G)⁻¹ e      [Lee (2.11)]
 //! ```
 //!
-//! Rows of G are sparse (the bodies at that node) and live with the row's owner; Gᵀ Q G is small and solved by every rank
-//! (prefix `fetifeti_gtg_`).
+//! A row of G is sparse: it has entries for the bodies at its node. It lives on the rank that owns the row. Gᵀ Q G is
+//! small, and every rank solves it (prefix `fetifeti_gtg_`).
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
@@ -27,11 +27,12 @@ use crate::{Error, Result};
 /// Entries of R below this part of their column's largest are rounding.
 const STILL: f64 = 1e-12;
 
-/// With Q = M⁻¹ a vector may lose this much on its way through Gᵀ Q G and back. Where stiff channels join bodies that only soft contact holds,
-/// Gᵀ M⁻¹ G is next to singular, and P is no projection any more.
+/// Largest relative error that a vector may have, with Q = M⁻¹, after multiplication with Gᵀ Q G and its inverse. Where
+/// stiff channels join bodies that only soft contact holds, Gᵀ M⁻¹ G is nearly singular and P is no longer a
+/// projection.
 const SOUND: f64 = 1e-10;
 
-/// G, Q G and the factored Gᵀ Q G; nothing where no body floats.
+/// G, Q G and the factored Gᵀ Q G; empty if no body floats.
 pub struct NaturalCoarse {
     /// Number of kernel vectors of all bodies, r.
     pub r: usize,
@@ -48,17 +49,18 @@ pub struct NaturalCoarse {
     prefix: String,
 }
 
-/// What the loads do on the kernels: e = Rᵀ g, and the size of what may cancel in it.
+/// The work of the loads on the kernels: e = Rᵀ g, and the size of the terms that may cancel in it.
 #[derive(Debug, Clone, Default)]
 pub struct KernelLoad {
     /// e, length r.
     pub e: Vec<f64>,
-    /// For each entry the largest |R| times Σ|f|: loads inside a subdomain cancel before they reach g.
+    /// For each entry of e the largest |R| times Σ|f|. Loads inside a subdomain may cancel before they reach g.
     pub size: Vec<f64>,
 }
 
 impl NaturalCoarse {
-    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body. Collective.
+    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body.
+    /// Collective.
     pub fn new(
         session: &Session,
         problem: &Substructures,
@@ -147,8 +149,8 @@ impl NaturalCoarse {
         g
     }
 
-    /// B R with all rows of B_gl, those that do not hold included; rows of B_loc are left out, kernels are continuous inside a
-    /// body. Collective.
+    /// B R with all rows of B_gl, including those that do not hold. Rows of B_loc are left out, because kernels are
+    /// continuous inside a body. Collective.
     pub fn all_rows(&self, comm: &SimpleCommunicator, stiffness: &Stiffness) -> Rows {
         let jump = &stiffness.jump;
         let starts: Vec<u32> = gather_all(comm, &[jump.first as u64])
@@ -162,12 +164,13 @@ impl NaturalCoarse {
             for &(e, full) in &columns.contact {
                 let (ghost, at) = (columns.row[e as usize], columns.at[e as usize]);
                 let row = jump.ghosts[ghost as usize];
-                // The last rank that starts at or before the row: ranks without rows start where the next one does.
+                // The last rank that starts at or before the row. A rank without rows starts where the next one does.
                 let to = starts.partition_point(|&s| s <= row) - 1;
                 for c in 0..kernel.cols {
                     let col = self.first_column[j] + c;
                     let value = kernel.get(at as usize, c);
-                    // A body that cannot move along a row's normal moves there by rounding: such a row would hold it.
+                    // A body that cannot move along a row's normal moves there by rounding, and the row would seem to
+                    // hold it.
                     if value.abs() > STILL * largest[col] {
                         outgoing[to].push(RowEntry {
                             row,
@@ -219,8 +222,9 @@ impl NaturalCoarse {
         q.to_vec()
     }
 
-    /// What Q has besides M⁻¹: the superlumped diagonal on rows of a single term, zero on the others. On the other side of such a
-    /// row stands something rigid, of which M⁻¹ knows nothing; for a floating body that touches nothing else M⁻¹ G vanishes.
+    /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, zero on the others. A
+    /// row of a single term has something rigid on its other side, which M⁻¹ does not contain. For a floating body that
+    /// touches nothing else, M⁻¹ G vanishes.
     fn rigid_rows(
         &self,
         session: &Session,
@@ -238,7 +242,7 @@ impl NaturalCoarse {
         Ok(out)
     }
 
-    /// Q G with Q = M⁻¹ + diag(`rigid`); columns of bodies that are far from each other go through M⁻¹ together.
+    /// Q G with Q = M⁻¹ + diag(`rigid`). Columns of bodies that are far from each other share a product with M⁻¹.
     fn probe(
         &self,
         session: &Session,
@@ -299,7 +303,7 @@ impl NaturalCoarse {
         }
     }
 
-    /// e = Rᵀ g for condensed loads g of the loads f. Collective.
+    /// e = Rᵀ g for the condensed loads g of the loads f. Collective.
     pub fn kernel_load(
         &self,
         comm: &SimpleCommunicator,
@@ -322,7 +326,7 @@ impl NaturalCoarse {
         KernelLoad { e, size }
     }
 
-    /// An error if the load moves a body that no row holds: e is not in the range of Gᵀ.
+    /// Returns an error if the load moves a body that no row holds: e is then not in the range of Gᵀ.
     pub fn check_held(
         &self,
         problem: &Substructures,
@@ -343,12 +347,13 @@ impl NaturalCoarse {
         Ok(())
     }
 
-    /// Combinations of kernel vectors that no row sees.
+    /// Combinations of kernel vectors on which all rows vanish.
     pub fn unheld(&self) -> &[Vec<f64>] {
         self.gtg.as_ref().map_or(&[], |gtg| &gtg.unheld)
     }
 
-    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): the forces on every floating body balance. λ₀ from λ = 0. Collective.
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.
+    /// Collective.
     pub fn balance(
         &self,
         comm: &SimpleCommunicator,
@@ -358,7 +363,7 @@ impl NaturalCoarse {
         let Some(solver) = &self.gtg else {
             return Ok(());
         };
-        // Once more for the digits that a badly conditioned Gᵀ Q G costs.
+        // The second pass recovers the digits that a badly conditioned Gᵀ Q G costs.
         for _ in 0..2 {
             let mut c = vec![0.0; self.r];
             self.g.add_transpose(&lambda.array()?, &mut c);
@@ -395,7 +400,7 @@ impl NaturalCoarse {
     }
 }
 
-/// The bodies that a combination of kernel vectors moves, as the start of a sentence: "body "a" is".
+/// The bodies that a combination of kernel vectors moves, as the beginning of a sentence: "body "a" is".
 pub fn moving(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> String {
     let largest = motion.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let moves = |b: &usize| {
@@ -413,7 +418,8 @@ pub fn moving(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -
     }
 }
 
-/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness, or coefficients jump inside them. Only called where some body floats.
+/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness, or coefficients jump inside them. It is called only if
+/// some body floats.
 fn choose(
     comm: &SimpleCommunicator,
     problem: &Substructures,
@@ -424,12 +430,13 @@ fn choose(
 ) -> ProjectorKind {
     if wanted != ProjectorKind::Auto {
         return match (wanted, preconditioner.kind()) {
-            // Q = M⁻¹ of no preconditioner is the identity.
+            // Without a preconditioner Q = M⁻¹ is the identity.
             (ProjectorKind::Preconditioner, PcType::None) => ProjectorKind::Identity,
             _ => wanted,
         };
     }
-    // Mean diagonal of K over each body's interface; with Q = I the rows of stiff and soft bodies are weighed alike.
+    // Mean diagonal entry of K over the interface of each body. With Q = I the rows of stiff and soft bodies have the
+    // same weight.
     let n = problem.n_bodies;
     let mut sums = vec![0.0; 2 * n];
     for (sub, local) in problem.local.iter().zip(&stiffness.locals) {
@@ -445,7 +452,7 @@ fn choose(
     let (low, high) = means.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), m| {
         (l.min(m), h.max(m))
     });
-    // A factor of two comes from corners and mesh sizes alone.
+    // Corners and mesh sizes alone cause a factor of two.
     let differ = high > 3.0 * low || varies > JUMPS;
     match (differ, preconditioner.kind()) {
         (false, _) => ProjectorKind::Identity,

@@ -1,8 +1,8 @@
-//! Sparse rows with few columns, such as G: a row of every multiplier that this rank owns.
+//! Sparse rows with few columns, such as those of G: one row for every multiplier that this rank owns.
 
 use crate::parallel::exchange::Record;
 
-/// An entry of such rows on its way to the rank that owns its row.
+/// An entry on its way to the rank that owns its row.
 #[derive(Debug, Clone, Copy)]
 pub struct RowEntry {
     /// Global row.

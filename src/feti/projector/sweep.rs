@@ -1,4 +1,5 @@
-//! An operator on many columns of multipliers that live near one body each: columns whose images do not meet go through it together.
+//! Application of an operator to many columns of multipliers that live near one body each. Columns whose images do not
+//! overlap share a product.
 
 use super::graph::BodyGraph;
 use super::rows::Rows;
@@ -10,13 +11,13 @@ use crate::Result;
 pub struct Column {
     /// (owned row, value), by increasing row.
     pub entries: Vec<(u32, f64)>,
-    /// Bodies whose rows the operator reaches from here: those that the column's rows touch. The same on every rank.
+    /// Bodies that the column's rows touch: the operator reaches the rows of these bodies. The same on every rank.
     pub reach: Vec<u32>,
 }
 
 /// Sets of columns that can share a product.
 fn groups(graph: &BodyGraph, columns: &[Column]) -> Vec<Vec<usize>> {
-    // Bodies at or next to those that the columns of each group reach.
+    // For each group, the bodies that its columns reach, and their neighbours.
     let mut taken: Vec<Vec<bool>> = Vec::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (c, column) in columns.iter().enumerate() {
@@ -34,11 +35,11 @@ fn groups(graph: &BodyGraph, columns: &[Column]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Products at a time.
+/// Number of products at a time.
 const TOGETHER: usize = 8;
 
-/// The images of all columns under `apply`, an operator on several vectors like `like` that leads from a row to rows of the bodies that it touches and
-/// no further. Collective.
+/// The images of all columns under `apply`, an operator on several vectors laid out like `like`. It must lead from a
+/// row to rows of the bodies that the row touches and no further. Collective.
 pub fn images(
     like: &PetscVec,
     graph: &BodyGraph,
@@ -84,7 +85,7 @@ pub fn images(
     Ok(out)
 }
 
-/// The columns of G or Q G, given by rows; `reach` says what bodies those of a body touch.
+/// The columns of G or Q G, which are given by rows. `reach` has, for each body, the bodies that it touches.
 pub fn kernel_columns(
     rows: &Rows,
     start: &[usize],

@@ -1,18 +1,20 @@
 //! A change of basis on Γ that makes functionals of the dual dofs coordinates.
 //!
-//! A functional c, normalised and with what it has in common with earlier ones removed, is the image of a unit vector e_p under a
-//! Householder reflection, up to sign. The product H = H_1 H_2 … of the reflections is orthogonal; entry p_k of û = Hᵀ u is functional k of u, the other
-//! entries are coordinates of what is left. Hᵀ S H has the functionals as rows and columns that can be made primal like
-//! vertices, and T and Ψ go back to the nodal dofs by the same H. For the average over n dofs, H e_1 = 1/√n · (1, …, 1).
+//! A functional c is orthogonalised against earlier ones and normalised. It is then the image of a unit vector e_p
+//! under a Householder reflection, up to sign. The product H = H_1 H_2 … of the reflections is orthogonal. Entry p_k of
+//! û = Hᵀ u is functional k of u; the other entries are coordinates of the orthogonal complement. In Hᵀ S H the
+//! functionals are rows and columns that can be made primal like vertices. T and Ψ go back to the nodal dofs by the
+//! same H. For the average over n dofs, H e_1 = 1/√n · (1, …, 1).
 
 use std::collections::HashMap;
 
 use crate::linalg::dense::Dense;
 
-/// A functional counts as dependent on earlier ones if less than this is left of it: it is rounding.
+/// A functional is dependent on earlier ones if less than this part of it is left after orthogonalisation. That part is
+/// rounding.
 const DEPENDENT: f64 = 1e-12;
 
-/// I − β v vᵀ on some positions, and the functional that it makes a coordinate.
+/// A reflection I − β v vᵀ on some positions, and the functional that it makes a coordinate.
 #[derive(Debug, Clone, PartialEq)]
 struct Reflection {
     /// Positions in Γ.
@@ -21,7 +23,8 @@ struct Reflection {
     beta: f64,
     /// The position that becomes the functional.
     pivot: usize,
-    /// The coordinate is so many times the functional's value; averages and weighted averages have values of the size of u.
+    /// The coordinate divided by the value of the functional. Averages and weighted averages have values of the size of
+    /// u.
     factor: f64,
 }
 
@@ -46,14 +49,14 @@ impl Reflection {
     }
 }
 
-/// The functionals of one subdomain that are primal.
+/// The primal functionals of one subdomain.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Basis {
     reflections: Vec<Reflection>,
 }
 
 impl Basis {
-    /// Adds the average over the dofs at these positions, none of which any other functional contains.
+    /// Adds the average over the dofs at these positions. No other functional may contain any of them.
     pub fn push_mean(&mut self, at: Vec<usize>) {
         let root = (at.len() as f64).sqrt();
         let mut v = vec![-1.0 / root; at.len()];
@@ -67,8 +70,8 @@ impl Basis {
         });
     }
 
-    /// Adds Σ weights · u over the dofs at these positions, which contain those of each functional that they have dofs in common with.
-    /// `false` if it depends on what is there.
+    /// Adds Σ weights · u over the dofs at these positions. An earlier functional must have all of its dofs among them,
+    /// or none. Returns `false` if the new functional depends on earlier ones.
     pub fn push(&mut self, at: Vec<usize>, weights: &[f64]) -> bool {
         let norm = |c: &[f64]| c.iter().map(|v| v * v).sum::<f64>().sqrt();
         let place: HashMap<usize, usize> = at.iter().copied().zip(0..).collect();
@@ -94,7 +97,8 @@ impl Basis {
             return false;
         }
         c.iter_mut().for_each(|c| *c /= left);
-        // The largest entry is the pivot: where stiff and soft dofs meet, the soft ones keep their own small rows in Hᵀ S H.
+        // The largest entry is the pivot: where stiff and soft dofs meet, the soft ones keep their own small rows in Hᵀ
+        // S H.
         let free = (0..c.len()).filter(|&i| !used[i]);
         let Some(p) = free.max_by(|&a, &b| c[a].abs().total_cmp(&c[b].abs()).then(b.cmp(&a)))
         else {
@@ -124,7 +128,7 @@ impl Basis {
         self.reflections.is_empty()
     }
 
-    /// Positions that stand for functionals after the change.
+    /// Positions that hold the functionals after the change of basis.
     pub fn pivots(&self) -> Vec<usize> {
         self.reflections.iter().map(|r| r.pivot).collect()
     }
@@ -134,7 +138,7 @@ impl Basis {
         self.reflections.iter().map(|r| &r.at[..])
     }
 
-    /// The coordinate of functional `k` is that many times its value.
+    /// Coordinate of functional `k` divided by its value.
     pub fn factor(&self, k: usize) -> f64 {
         self.reflections[k].factor
     }
@@ -198,7 +202,7 @@ impl Basis {
         self.to_nodes(u);
     }
 
-    /// u without what the functionals see.
+    /// Removes from u the part that the functionals see.
     pub fn remove(&self, u: &mut [f64]) {
         self.set_values(&vec![0.0; self.len()], u);
     }
@@ -247,7 +251,7 @@ mod tests {
     fn functionals_on_top_of_averages_become_coordinates() {
         let mut basis = averages(&[&[1, 4, 6], &[2, 3]]);
         let class = vec![1, 2, 3, 4, 6, 7];
-        // Two functionals over many decades, and a sum of what is there.
+        // Two functionals with entries over many decades, and a sum of earlier ones.
         let c = [
             [1e8, 1.0, -2.0, 3.0, 1e-3, 1.0],
             [1e8, 1.0, 5.0, 3.0, 2.0, -1.0],
@@ -266,7 +270,7 @@ mod tests {
             let dot = |q: &[f64]| q.iter().zip(&u).map(|(q, u)| q * u).sum::<f64>();
             assert!((h[pivot] - dot(&vectors[k])).abs() < 1e-14);
         }
-        // What the functionals do not see has no average and is not seen by c.
+        // The remaining part has no average, and c vanishes on it.
         let mut left = u.clone();
         basis.remove(&mut left);
         assert!((left[1] + left[4] + left[6]).abs() < 1e-14);

@@ -1,16 +1,18 @@
-//! The way from S to T, Ψ and Σ: a change of basis for averages and other functionals, dofs to hold where S_ΔΔ is singular, and back to the nodal dofs.
+//! T, Ψ and Σ from S: a change of basis for averages and other functionals, a choice of dofs to hold where S_ΔΔ is
+//! singular, and the change back to the nodal dofs.
 
 use super::problem::LocalProblem;
 use crate::cholesky::multifrontal::SingularInterior;
 use crate::linalg::dense::{self, Dense, Scratch};
 
-/// S_ΔΔ counts as singular where a pivot is below this fraction of the dof's diagonal entry of K: the dof is then held as a primal one of its own. Holding a dof that
-/// did not need it is harmless (the primal problem frees it exactly), so the bound is generous.
+/// S_ΔΔ counts as singular if a pivot is below this fraction of the dof's diagonal entry of K. The dof then becomes a
+/// primal dof of its own. A dof that did not need this does no harm, because the primal problem frees it exactly; the
+/// bound is generous for that reason.
 const WEAKLY_HELD: f64 = 1e-6;
 
 impl LocalProblem {
-    /// T, Ψ and Σ from S: in the basis in which averages are coordinates, in the order [Δ, vertices, functionals, fixing dofs], and
-    /// back to the nodal dofs.
+    /// Computes T, Ψ and Σ from S, in the basis in which averages are coordinates and in the order [Δ, vertices,
+    /// functionals, fixing dofs]; then changes back to the nodal dofs.
     pub(crate) fn condense_dual(&mut self) -> Result<(), SingularInterior> {
         let (n_delta, n_gamma) = (self.n_delta, self.n_gamma());
         let schur = self.s().clone();
@@ -29,7 +31,7 @@ impl LocalProblem {
         let mut l = match try_cholesky(s, &stiff, n, &mut scratch) {
             Some(l) => l,
             None => {
-                // Hold what keeps S_ΔΔ from being definite.
+                // Hold the dofs that keep S_ΔΔ from being definite.
                 let fixing = weakest(s, &stiff, n);
                 let moved = moved_to_the_end(n_gamma, n, &fixing);
                 self.fixing = fixing.iter().map(|&i| order[i]).collect();
@@ -72,7 +74,7 @@ impl LocalProblem {
         Ok(())
     }
 
-    /// T and Ψ on the nodal dofs of Δ, primal values in units of the functionals.
+    /// Changes T and Ψ to the nodal dofs of Δ, with primal values in units of the functionals.
     fn back_to_nodes(&mut self, t: &Dense, psi: &Dense, mut sigma: Dense, order: &[usize]) {
         let (n_delta, n) = (self.n_delta, t.rows);
         let mut nodal = Dense::zeros(n_delta, n_delta);
@@ -107,7 +109,7 @@ impl LocalProblem {
     }
 }
 
-/// L of S_ΔΔ = L Lᵀ, or nothing if a pivot is weak against the dof's diagonal entry of K (`stiff`).
+/// L of S_ΔΔ = L Lᵀ; `None` if a pivot is small against the dof's diagonal entry of K (`stiff`).
 fn try_cholesky(s: &Dense, stiff: &[f64], n_delta: usize, scratch: &mut Scratch) -> Option<Dense> {
     let mut l = Dense::zeros(n_delta, n_delta);
     for j in 0..n_delta {
@@ -118,8 +120,9 @@ fn try_cholesky(s: &Dense, stiff: &[f64], n_delta: usize, scratch: &mut Scratch)
     (0..n_delta).all(strong).then_some(l)
 }
 
-/// Dual dofs to hold so that the rest of S_ΔΔ is definite: those left with a weak pivot by Cholesky factorisation with
-/// diagonal pivoting (increasing); pivots are measured by the dofs' diagonal entries of K (`stiff`).
+/// The dual dofs to hold, increasing, so that S_ΔΔ on the others is definite. They are those that a Cholesky
+/// factorisation with diagonal pivoting leaves with a small pivot; pivots are relative to the dofs' diagonal entries of
+/// K (`stiff`).
 fn weakest(s: &Dense, stiff: &[f64], n: usize) -> Vec<usize> {
     let scale: Vec<f64> = stiff[..n].iter().map(|k| k.sqrt()).collect();
     let mut a = Dense::zeros(n, n);

@@ -1,8 +1,8 @@
 //! Equal subdomains share one factorisation.
 //!
-//! Two subdomains are equal when interface and averages are the same and one matrix is a multiple of the other, up to the rounding that comes with assembling them;
-//! where they lie does not matter. On a regular grid a handful of different ones remain, whatever the coefficients of the subdomains, and their dense
-//! operators stay in the cache.
+//! Two subdomains are equal if interface and averages are the same and one matrix is a multiple of the other, up to the
+//! rounding of assembly. Their position does not matter. On a regular grid a handful of different subdomains remain,
+//! whatever their coefficients, and the dense operators of these stay in the cache.
 
 use std::collections::hash_map::DefaultHasher;
 use std::collections::HashMap;
@@ -21,7 +21,7 @@ pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec
     for (j, &bucket) in buckets.iter().enumerate() {
         found.entry(bucket).or_insert_with(|| vec![j]);
     }
-    // Reading the matrices is what it costs: all at once, each beside the first of its bucket.
+    // Reading the matrices is the main cost. All are compared at once, each with the first of its bucket.
     let equal: Vec<Option<f64>> = team.map(n, |j| match found[&buckets[j]][0] {
         first if first == j => Some(1.0),
         first => multiple(problem, jump, first, j),
@@ -43,16 +43,16 @@ pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec
     out
 }
 
-/// Entries of a matrix that its hash looks at.
+/// Number of matrix entries that enter the hash.
 const SAMPLES: usize = 64;
 
-/// Ratios of entries go into the hash in these units: rounding must not show.
+/// Ratios of entries enter the hash as multiples of one over this, so that rounding does not change it.
 const UNIT: f64 = 1e6;
 
-/// Entries may differ by this fraction of √(k_ii k_jj): what a few additions in another order change.
+/// Entries may differ by this fraction of √(k_ii k_jj): a few additions in another order change them by as much.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Hash of some of what [`multiple`] compares: enough to tell most matrices apart.
+/// Hash of some of the data that [`multiple`] compares; it tells most matrices apart.
 fn hash(problem: &Substructures, jump: &Jump, j: usize) -> u64 {
     let k = &problem.local[j].k;
     let mut state = DefaultHasher::new();
@@ -64,7 +64,7 @@ fn hash(problem: &Substructures, jump: &Jump, j: usize) -> u64 {
     state.finish()
 }
 
-/// The entry that tells how stiff a matrix is.
+/// The entry that represents the stiffness of a matrix.
 fn reference(k: &Csr) -> f64 {
     if k.n() == 0 {
         return 1.0;
@@ -72,7 +72,7 @@ fn reference(k: &Csr) -> f64 {
     k.get(0, 0)
 }
 
-/// φ with K_j = φ K_i, where the subdomains are equal.
+/// φ with K_j = φ K_i if the subdomains are equal, `None` otherwise.
 fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<f64> {
     let averaged = |j: usize| jump.averages[j].iter().map(|a| &a.dofs);
     let same = jump.delta[i] == jump.delta[j]
@@ -89,7 +89,7 @@ fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<
     if !(ratio.is_finite() && ratio > 0.0) {
         return None;
     }
-    // Copies of one matrix that differ by rounding have no factor between them.
+    // Copies of one matrix that differ by rounding have φ = 1.
     let one = (ratio - 1.0).abs() <= ROUNDING;
     let ratio = if one { 1.0 } else { ratio };
     let diagonal = a.diagonal();

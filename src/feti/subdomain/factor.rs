@@ -1,4 +1,4 @@
-//! Factoring one of each kind of subdomain.
+//! Factorisation of one subdomain of each kind.
 
 use std::collections::hash_map::DefaultHasher;
 use std::collections::HashMap;
@@ -19,7 +19,7 @@ use crate::petsc::Session;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
-/// Factors one of each kind of subdomain.
+/// Factors one subdomain of each kind.
 pub(crate) fn factor(
     session: &Session,
     problem: &Substructures,
@@ -28,7 +28,7 @@ pub(crate) fn factor(
     settings: &MethodSettings,
     kind: PcType,
 ) -> Result<Vec<Scaled>> {
-    // What multiplies with S or looks into it before the iteration begins wants a matrix.
+    // A matrix S is needed by every user that multiplies with it or reads its entries before the iteration begins.
     let wants_s = kind == PcType::CoarseCorrected
         || settings.scaling == Scaling::Deluxe
         || matches!(settings.adaptive, Adaptive::Below(_));
@@ -83,14 +83,15 @@ pub(crate) fn factor(
     Ok(first.iter().map(of).collect())
 }
 
-/// Analyses of patterns that several kinds have.
+/// Symbolic analyses of patterns that several kinds share.
 struct Analyses {
     all: Vec<Box<dyn Analysis>>,
     /// The one of each kind.
     of: Vec<Option<usize>>,
 }
 
-/// One analysis for kinds with dense operators that have the same pattern and interface: coefficients and moved nodes change numbers alone.
+/// One symbolic analysis for all kinds with dense operators that have the same pattern and interface. Different
+/// coefficients and moved nodes change values only.
 fn analyses(kinds: &[Kind], forms: &[OperatorForm], team: &Team, solver: LocalSolver) -> Analyses {
     let mut found: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
     let hashes = team.map(kinds.len(), |k| pattern_hash(&kinds[k]));
@@ -106,7 +107,7 @@ fn analyses(kinds: &[Kind], forms: &[OperatorForm], team: &Team, solver: LocalSo
             }
         }
     }
-    // A pattern that one kind alone has is analysed where it is factored, and forgotten there.
+    // A pattern of a single kind is analysed during its factorisation and then dropped.
     let mut shared: Vec<Vec<usize>> = found
         .into_values()
         .flatten()
@@ -124,7 +125,7 @@ fn analyses(kinds: &[Kind], forms: &[OperatorForm], team: &Team, solver: LocalSo
         all: Vec::new(),
         of: vec![None; kinds.len()],
     };
-    // One that failed is tried again, and reported, for each of its kinds.
+    // A failed analysis is repeated, and reported, for each of its kinds.
     for (analysis, group) in made.into_iter().zip(&shared) {
         if let Some(analysis) = analysis {
             group.iter().for_each(|&k| out.of[k] = Some(out.all.len()));
@@ -146,7 +147,7 @@ fn same_pattern(a: &Kind, b: &Kind) -> bool {
     (a.delta, a.primal) == (b.delta, b.primal) && k.row_ptr == l.row_ptr && k.col == l.col
 }
 
-/// Why subdomain `sub` cannot be factored, for the user.
+/// The error for the user when subdomain `sub` cannot be factored.
 pub(crate) fn no_factor(problem: &Substructures, sub: &Subdomain, error: NoFactor) -> Error {
     match error {
         NoFactor::Interior(SingularInterior { dof }) | NoFactor::Indefinite(dof) => {

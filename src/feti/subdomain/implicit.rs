@@ -1,6 +1,6 @@
 //! S and T of one subdomain as sparse triangular solves, without a dense matrix.
 //!
-//! With K ordered [I, Γ] and, the vertices v aside, [r, v],
+//! K is ordered [I, Γ] for S. For T it is ordered [r, v], with v the vertices and r all other dofs:
 //!
 //! ```text
 //!     S y = K_ΓΓ y − K_ΓI K_II⁻¹ K_IΓ y
@@ -9,8 +9,9 @@
 //!     Σ   = [S_vv + AᵀM⁻¹A,  −AᵀM⁻¹D;  ·,  D M⁻¹ D]     A = Qᵀ Ψ₀
 //! ```
 //!
-//! where the columns of Q are the unit vectors behind the averages. Two sparse factorisations replace the dense ones; an application reads
-//! both factors twice. It pays in space, where S is nearly as large as a factor and takes many times as long to make.
+//! The columns of Q are the unit vectors behind the averages. Two sparse factorisations replace the dense matrices; an
+//! application reads both factors twice. This pays in space, where S is nearly as large as a factor and takes many
+//! times as long to compute.
 
 use std::sync::Arc;
 
@@ -22,7 +23,8 @@ use crate::linalg::csr::Csr;
 use crate::linalg::dense::{self, Dense, Scratch};
 use crate::linalg::rectangular::Rectangular;
 
-/// K_rr counts as singular where a pivot is below this fraction of its diagonal entry: the vertices alone do not hold the subdomain then.
+/// K_rr counts as singular if a pivot is below this fraction of its diagonal entry. The vertices alone do not hold the
+/// subdomain then.
 const WEAKLY_HELD: f64 = 1e-6;
 
 /// The operators of one subdomain.
@@ -38,7 +40,7 @@ pub struct Implicit {
     k_gamma: Rectangular,
     /// K_II.
     interior: PartialCholesky,
-    /// K_rr, the vertices kept.
+    /// K_rr, factored with the vertices kept.
     held: PartialCholesky,
     /// X, n_Δ × averages.
     x: Dense,
@@ -46,7 +48,7 @@ pub struct Implicit {
     m: Dense,
 }
 
-/// What comes with it: Ψ on Δ and Σ.
+/// Ψ on Δ and Σ, which come from the same factors.
 pub struct Coarse {
     /// n_Δ × n_Π.
     pub psi: Dense,
@@ -55,7 +57,7 @@ pub struct Coarse {
 }
 
 impl Implicit {
-    /// Factors K_II and K_rr; `None` where the vertices do not hold the subdomain.
+    /// Factors K_II and K_rr. Returns `None` if the vertices do not hold the subdomain.
     ///
     /// # Errors
     /// An interior that nothing holds.
@@ -107,7 +109,7 @@ impl Implicit {
                 m.set(a, b, dense::dot(q, x));
             }
         }
-        // Averages that the vertices already fix would make M singular.
+        // Averages that are determined by the vertices would make M singular.
         if dense::cholesky(m.view_mut(), &mut Scratch::default()).is_err() {
             return Ok(None);
         }
@@ -119,7 +121,7 @@ impl Implicit {
     fn coarse(&self, k: &Csr, q: &[&[f64]], s_vv: &Dense, basis: &Basis) -> Coarse {
         let vertices = &self.interface[self.n_delta..];
         let (n_v, n_q) = (vertices.len(), q.len());
-        // −K_rv: the vertices move, nothing else pulls.
+        // −K_rv: the load on r when one vertex moves.
         let pull = |&v: &u32| {
             let mut b = vec![0.0; self.n()];
             let (col, val) = k.row(v as usize);
@@ -174,7 +176,7 @@ impl Implicit {
         self.inside.len() + self.interface.len()
     }
 
-    /// A load on Δ as one on all dofs.
+    /// A load on Δ, extended by zero to all dofs.
     fn on_delta(&self, w: &[f64]) -> Vec<f64> {
         let mut b = vec![0.0; self.n()];
         let delta = self.interface[..self.n_delta].iter().zip(w);
@@ -259,7 +261,8 @@ impl Implicit {
         loads.iter().zip(&x).map(of).collect()
     }
 
-    /// Solutions from what [`condense`](Self::condense) has left in the interior, and from interface values, which `x` has in place.
+    /// Solutions from the interior part that [`condense`](Self::condense) has left and from the interface values. `x`
+    /// has both in place.
     pub fn recover(&self, x: &mut [Vec<f64>]) {
         let lift = |x: &Vec<f64>| {
             let u: Vec<f64> = self.interface.iter().map(|&i| x[i as usize]).collect();

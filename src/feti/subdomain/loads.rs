@@ -1,10 +1,10 @@
-//! Loads condensed to the interface, and solutions from their values there.
+//! Condensation of loads to the interface, and back substitution from interface values.
 
 use super::problem::{Inside, LocalProblem};
 
 impl LocalProblem {
-    /// The condensed load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ and `work` to be
-    /// handed to [`Scaled::recover_many`](super::scaled::Scaled::recover_many).
+    /// Condenses a load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ. `work` is for
+    /// [`Scaled::recover_many`](super::scaled::Scaled::recover_many).
     pub fn condense(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut both = self.condense_many(&[f]);
         both.pop().expect("one load")
@@ -28,8 +28,9 @@ impl LocalProblem {
         work.into_iter().map(with_gamma).collect()
     }
 
-    /// Solutions on all dofs, at most [`LANES`](crate::cholesky::lanes::LANES): `work` of [`condense`](Self::condense) and the interface values `u_gamma` of each. The matrix is so many
-    /// times as stiff as the one that is factored (`scales`).
+    /// Solutions on all dofs for at most [`LANES`](crate::cholesky::lanes::LANES) parts, each with `work` of
+    /// [`condense`](Self::condense) and the interface values `u_gamma`. The matrix of each part is the factored one
+    /// times its entry of `scales`.
     pub(crate) fn recover_many(&self, parts: &[(&[f64], &[f64])], scales: &[f64]) -> Vec<Vec<f64>> {
         let placed = |((work, u_gamma), scale): (&(&[f64], &[f64]), &f64)| {
             let mut x: Vec<f64> = match *scale {

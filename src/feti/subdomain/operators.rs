@@ -1,4 +1,4 @@
-//! S and T applied, whether they are dense matrices or sparse solves.
+//! Application of S and T, as dense matrices or as sparse solves.
 
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
@@ -10,13 +10,13 @@ use crate::linalg::dense::{multiply, Dense};
 use crate::linalg::symmetric::Symmetric;
 
 impl LocalProblem {
-    /// S and T are sparse solves.
+    /// Whether S and T are sparse solves.
     pub fn is_implicit(&self) -> bool {
         matches!(self.inside, Inside::Implicit(_))
     }
 
-    /// S as a dense matrix. From sparse solves it is made column by column, once: for checks and other rare uses. From its lower triangle
-    /// it is made every time.
+    /// S as a dense matrix. From sparse solves it is built column by column once, for checks and other rare uses. From
+    /// its lower triangle it is built at every call.
     pub fn s(&self) -> Arc<Dense> {
         match &self.packed {
             Some(packed) => Arc::new(packed.s.to_dense()),
@@ -24,7 +24,7 @@ impl LocalProblem {
         }
     }
 
-    /// T as a dense matrix, as [`s`](Self::s).
+    /// T as a dense matrix, built as [`s`](Self::s) is.
     pub fn t(&self) -> Cow<'_, Dense> {
         match &self.packed {
             Some(packed) => Cow::Owned(packed.t.to_dense()),
@@ -40,8 +40,9 @@ impl LocalProblem {
         self.t.get_or_init(|| self.assembled(Operator::T))
     }
 
-    /// Keeps the lower triangles of S and T alone. For subdomains with few copies: products wait for memory then. With many copies the
-    /// whole matrices are read once for all of them, and matrix-matrix products are faster.
+    /// Keeps only the lower triangles of S and T. This is for subdomains with few copies, whose products wait for
+    /// memory. With many copies each matrix is read once for all of them, and matrix-matrix products with the whole
+    /// matrix are faster.
     pub fn pack(&mut self) {
         if !self.is_implicit() && self.packed.is_none() {
             let s = Arc::new(Symmetric::new(self.whole_s()));
@@ -49,7 +50,7 @@ impl LocalProblem {
         }
     }
 
-    /// The same where the lower triangle of S is there already.
+    /// [`pack`](Self::pack) with a lower triangle of S that exists already.
     pub(crate) fn pack_beside(&mut self, s: Arc<Symmetric>) {
         let t = Symmetric::new(self.whole_t());
         self.packed = Some(Packed { s, t });
@@ -70,7 +71,7 @@ impl LocalProblem {
         }
     }
 
-    /// A diagonal entry of S, or of K on Γ where S is not at hand: a bound.
+    /// A diagonal entry of S. Where S is not available, it is that of K on Γ, an upper bound.
     pub(crate) fn s_diagonal(&self, i: usize) -> f64 {
         match (&self.packed, self.s.get()) {
             (Some(packed), _) => packed.s.get(i, i),
@@ -102,13 +103,13 @@ impl LocalProblem {
         (0..n).for_each(|i| unit.set(i, i, 1.0));
         let mut out = Dense::zeros(n, n);
         self.apply(which, &unit, &mut out, n);
-        // Both triangles alike, as those who read one of them expect.
+        // Both triangles are filled: callers may read either one.
         out.mirror_lower();
         out
     }
 
-    /// The first `n` columns of y ← A v, A one of the operators, v and y of its order. One matrix-matrix product with a dense matrix, sweeps with
-    /// several right-hand sides at once with sparse factors.
+    /// The first `n` columns of y ← A v, where A is one of the operators and v and y have its order. A dense matrix
+    /// takes one matrix-matrix product; sparse factors are swept with several right-hand sides at once.
     pub fn apply(&self, which: Operator, v: &Dense, y: &mut Dense, n: usize) {
         if n == 0 {
             return;
@@ -135,7 +136,7 @@ impl LocalProblem {
         }
     }
 
-    /// y ← A v, A one of the operators; only the leading entries of v count, later ones of y are set to zero.
+    /// y ← A v, A one of the operators. Only the leading entries of v are read; later entries of y are set to zero.
     pub fn apply_one(&self, which: Operator, v: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         let n = self.order(which);
@@ -168,7 +169,7 @@ impl LocalProblem {
         largest(Operator::T) * largest(Operator::S)
     }
 
-    /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
+    /// The largest diagonal entry of S, or of K on Γ where S is not available.
     pub(crate) fn stiffness(&self) -> f64 {
         let diagonal = (0..self.n_gamma()).map(|i| self.s_diagonal(i));
         diagonal.fold(0.0, f64::max)

@@ -1,7 +1,7 @@
 //! The operators of one subdomain on its interface: S, T, Ψ and Σ (docs/theory.md, section 2).
 //!
-//! The interface Γ is ordered [Δ, vertices]. Without averages the vertices are the primal dofs Π, and from the Schur complement S on Γ
-//! follow
+//! The interface Γ is ordered [Δ, vertices]. Without averages the vertices are the primal dofs Π, and the operators
+//! follow from the Schur complement S on Γ:
 //!
 //! ```text
 //!     T = S_ΔΔ⁻¹          local solve with the primal dofs held
@@ -9,11 +9,12 @@
 //!     Σ = Ψᵀ S Ψ = S_ΠΠ − S_ΠΔ T S_ΔΠ
 //! ```
 //!
-//! An average over dual dofs, or any other functional of them, is made a coordinate first ([`Basis`]), and so are the dofs that have to be held to make S_ΔΔ regular: the
-//! formulas hold in that basis, and only T and Ψ know of it. Everything outside sees nodal dofs.
+//! Averages and other functionals of dual dofs are made coordinates first ([`Basis`]); so are the fixing dofs that make
+//! S_ΔΔ regular. The formulas hold in that basis, which only the computation of T and Ψ uses. All other code works with
+//! nodal dofs.
 //!
-//! S and T are dense matrices or sparse solves, as the caller chooses ([`OperatorForm`]). What is here belongs to one matrix; subdomains with multiples of it
-//! share it as [`Scaled`](super::scaled::Scaled).
+//! S and T are dense matrices or sparse solves, as the caller chooses ([`OperatorForm`]). This type belongs to one
+//! matrix; subdomains with multiples of the matrix share it through [`Scaled`](super::scaled::Scaled).
 
 #[cfg(test)]
 mod tests;
@@ -30,14 +31,15 @@ use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::symmetric::Symmetric;
 
-/// So many motions of a subdomain that touches nothing are looked for: twice the rigid motions of a solid. A matrix that still
-/// has a bad pivot then is not semidefinite at all, and trying on would cost a factorisation per dof.
+/// Largest number of free motions that are searched in a subdomain that touches nothing: twice the rigid motions of a
+/// solid. A matrix that still has a bad pivot after that is not semidefinite, and every further attempt would cost a
+/// factorisation.
 const MOST_FREE: usize = 12;
 
 /// Factorisations in this process so far.
 static FACTORISATIONS: AtomicUsize = AtomicUsize::new(0);
 
-/// How many subdomains this process has factored so far: a contact loop must not add to it.
+/// Number of subdomains that this process has factored so far. A contact loop must not increase it.
 pub fn factorisations() -> usize {
     FACTORISATIONS.load(Ordering::Relaxed)
 }
@@ -49,34 +51,34 @@ pub struct LocalProblem {
     pub interface: Vec<u32>,
     /// Number of dual interface dofs. Those of averages and the fixing dofs are among them.
     pub n_delta: usize,
-    /// Functionals of dual dofs that are primal: averages, and what adaptivity added.
+    /// Primal functionals of dual dofs: averages, and those that adaptivity added.
     pub basis: Basis,
-    /// Positions in Γ of the coordinates that were added here to the primal dofs to make S_ΔΔ regular.
+    /// Positions in Γ of the fixing dofs: coordinates that were added to the primal dofs to make S_ΔΔ regular.
     pub fixing: Vec<usize>,
     /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
     pub psi: Dense,
     /// Σ, n_Π × n_Π.
     pub(crate) sigma: Dense,
-    /// S on Γ, n_Γ × n_Γ, both triangles; with sparse solves once it has been asked for.
+    /// S on Γ, n_Γ × n_Γ, both triangles. With sparse solves it is filled at the first request.
     pub(crate) s: OnceLock<Arc<Dense>>,
-    /// T, n_Δ × n_Δ, both triangles, as S.
+    /// T, n_Δ × n_Δ, both triangles, filled as S is.
     pub(crate) t: OnceLock<Dense>,
-    /// Both by their lower triangles, in the place of the dense matrices: see [`pack`](Self::pack).
+    /// The lower triangles of S and T, in place of the dense matrices: see [`pack`](Self::pack).
     pub(crate) packed: Option<Packed>,
     /// The diagonal of K on Γ.
     pub(crate) stiff: Vec<f64>,
     pub(crate) inside: Inside,
 }
 
-/// S and T by their lower triangles.
+/// The lower triangles of S and T.
 #[derive(Debug)]
 pub(crate) struct Packed {
-    /// Shared with those that have the same S and other primal dofs.
+    /// Shared with subdomains that have the same S and other primal dofs.
     pub s: Arc<Symmetric>,
     pub t: Symmetric,
 }
 
-/// What eliminates the interior.
+/// The factors that eliminate the interior.
 #[derive(Debug)]
 pub(crate) enum Inside {
     /// The factor that S came from.
@@ -85,11 +87,11 @@ pub(crate) enum Inside {
 }
 
 impl LocalProblem {
-    /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists dual dofs whose means
-    /// are primal. An analysis that comes with `condenser` is one for the interface [delta, primal].
+    /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists the dual dofs of
+    /// each primal average. An analysis inside `condenser` must belong to the interface [delta, primal].
     ///
     /// # Errors
-    /// A matrix that is no stiffness matrix; what the solver says.
+    /// A matrix that is no stiffness matrix, or an error of the solver.
     pub fn new(
         k: &Csr,
         delta: &[u32],
@@ -106,7 +108,7 @@ impl LocalProblem {
         FACTORISATIONS.fetch_add(1, Ordering::Relaxed);
         if form == OperatorForm::Implicit && condenser.solver.kind == Solver::Multifrontal {
             let interface = [delta, primal].concat();
-            // An interior that nothing holds is for the dense form to deal with.
+            // The dense form handles an interior that nothing holds.
             let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);
             if let Ok(Some((implicit, coarse))) = made {
                 return Ok(LocalProblem {
@@ -130,7 +132,7 @@ impl LocalProblem {
             let interface = [&delta[..], primal].concat();
             match condenser.condense(k, &interface, coordinates) {
                 Ok((factor, s)) => break (interface, factor, s),
-                // An interior that nothing holds: its free dof joins Γ, where it becomes a fixing dof.
+                // Nothing holds the interior: its free dof joins Γ and becomes a fixing dof there.
                 Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => {
                     delta.push(e.dof);
                     condenser.analysis = None;
@@ -155,8 +157,9 @@ impl LocalProblem {
         Ok(out)
     }
 
-    /// The same subdomain with more functionals primal, Σ weights · u over dual dofs each. S and the factor are shared with what is
-    /// there; only T, Ψ and Σ are computed again. Sparse solves become dense matrices; lower triangles stay lower triangles.
+    /// The same subdomain with more primal functionals, Σ weights · u over dual dofs each. S and the factor are shared
+    /// with this one; only T, Ψ and Σ are computed again. Sparse solves become dense matrices; lower triangles stay
+    /// lower triangles.
     pub fn constrained<'a>(
         &self,
         k: &Csr,
@@ -201,7 +204,7 @@ impl LocalProblem {
         self.interface.len()
     }
 
-    /// Number of vertices: the primal dofs that are single dofs of Γ, the first ones.
+    /// Number of vertices: the first primal dofs, each a single dof of Γ.
     pub fn n_vertices(&self) -> usize {
         self.interface.len() - self.n_delta
     }
@@ -222,10 +225,10 @@ impl LocalProblem {
         vertices.chain(self.basis.values(u)).chain(fixing).collect()
     }
 
-    /// A stiffness of each primal dof that does not vanish with Σ: what it takes to move its dofs alone.
+    /// A stiffness of each primal dof that is positive even where Σ vanishes: the energy of moving its dofs alone.
     pub(crate) fn primal_stiffness(&self) -> Vec<f64> {
         let n = self.n_gamma();
-        // The diagonal of K bounds that of S, where that one is not at hand.
+        // The diagonal of K bounds that of S where S is not available.
         let own = |i: usize| self.s_diagonal(i);
         let along = |(k, q): (usize, Vec<f64>)| {
             let terms = q.iter().enumerate().map(|(i, q)| q * q * own(i));
@@ -253,7 +256,7 @@ impl LocalProblem {
         }
     }
 
-    /// Bytes held by the factor and by the dense operators: (sparse, dense).
+    /// Bytes of the factor and of the dense operators: (sparse, dense).
     pub fn bytes(&self) -> (usize, usize) {
         let (sparse, more) = match &self.inside {
             Inside::Partial(factor) => (factor.bytes(), 0),
@@ -275,7 +278,7 @@ fn diagonal(k: &Csr, dofs: &[u32]) -> Vec<f64> {
         .collect()
 }
 
-/// Where the first dofs of Γ stand.
+/// Positions of the dual dofs in Γ.
 struct Positions(Vec<(u32, usize)>);
 
 fn positions(delta: &[u32]) -> Positions {

@@ -1,10 +1,11 @@
-//! A subdomain whose matrix is a multiple of one that is factored: K = φ K₀.
+//! A subdomain whose matrix is a multiple of a factored matrix: K = φ K₀.
 //!
 //! ```text
 //!     S = φ S₀     T = T₀ / φ     Ψ = Ψ₀     Σ = φ Σ₀     K_II⁻¹ = K₀,II⁻¹ / φ
 //! ```
 //!
-//! Subdomains of different coefficients share one factorisation that way; whatever has a stiffness in it goes through this type.
+//! Subdomains with different coefficients share one factorisation in this way. Every operator that depends on the
+//! stiffness is applied through this type.
 
 use std::sync::Arc;
 
@@ -21,7 +22,7 @@ pub struct Scaled {
 }
 
 impl Scaled {
-    /// `factor` times the matrix of `problem`.
+    /// The subdomain with `factor` times the matrix of `problem`.
     pub fn new(problem: Arc<LocalProblem>, factor: f64) -> Scaled {
         Scaled { problem, factor }
     }
@@ -31,12 +32,12 @@ impl Scaled {
         self.factor
     }
 
-    /// What it shares with others.
+    /// The operators that it shares with others.
     pub fn kind(&self) -> &Arc<LocalProblem> {
         &self.problem
     }
 
-    /// Whether both have the same matrix, up to a factor.
+    /// Whether both subdomains have the same matrix up to a factor.
     pub fn shares_with(&self, other: &Scaled) -> bool {
         Arc::ptr_eq(&self.problem, &other.problem)
     }
@@ -66,17 +67,17 @@ impl Scaled {
         self.problem.n_pi()
     }
 
-    /// Functionals of dual dofs that are primal.
+    /// The primal functionals of dual dofs.
     pub fn basis(&self) -> &Basis {
         &self.problem.basis
     }
 
-    /// Positions in Γ of the coordinates that were added to the primal dofs.
+    /// Positions in Γ of the fixing dofs: coordinates that were added to the primal dofs.
     pub fn fixing(&self) -> &[usize] {
         &self.problem.fixing
     }
 
-    /// S and T are sparse solves.
+    /// Whether S and T are sparse solves.
     pub fn is_implicit(&self) -> bool {
         self.problem.is_implicit()
     }
@@ -101,7 +102,7 @@ impl Scaled {
         self.problem.primal_values(u)
     }
 
-    /// The multiple of the operator of `problem` that is the one of this subdomain.
+    /// The factor by which this subdomain's operator differs from that of `problem`.
     pub fn multiple(&self, which: Operator) -> f64 {
         match which {
             Operator::S => self.factor,
@@ -109,7 +110,7 @@ impl Scaled {
         }
     }
 
-    /// y ← A v, A one of the operators; only the leading entries of v count, later ones of y are set to zero.
+    /// y ← A v, A one of the operators. Only the leading entries of v are read; later entries of y are set to zero.
     pub fn apply_one(&self, which: Operator, v: &[f64], y: &mut [f64]) {
         self.problem.apply_one(which, v, y);
         scale(self.multiple(which), y);
@@ -128,7 +129,7 @@ impl Scaled {
         out
     }
 
-    /// S with rows and columns in this order of the positions of Γ.
+    /// S with rows and columns in the given order of the positions of Γ.
     pub fn s_in_order(&self, order: &[u32]) -> Dense {
         let (s, factor) = (self.problem.s(), self.multiple(Operator::S));
         let mut out = Dense::zeros(order.len(), order.len());
@@ -150,20 +151,20 @@ impl Scaled {
         self.block(Operator::T, at)
     }
 
-    /// A stiffness of each primal dof that does not vanish with Σ: what it takes to move its dofs alone.
+    /// A stiffness of each primal dof that is positive even where Σ vanishes: the energy of moving its dofs alone.
     pub fn primal_stiffness(&self) -> Vec<f64> {
         let mut out = self.problem.primal_stiffness();
         scale(self.factor, &mut out);
         out
     }
 
-    /// The largest diagonal entry of S, or of K on Γ where S is not at hand.
+    /// The largest diagonal entry of S, or of K on Γ where S is not available.
     pub fn stiffness(&self) -> f64 {
         self.factor * self.problem.stiffness()
     }
 
-    /// Solutions of subdomains that share their operators, at most [`LANES`](crate::cholesky::lanes::LANES): what
-    /// [`LocalProblem::condense`] left, and the values on Γ, of each.
+    /// Solutions of subdomains that share their operators, at most [`LANES`](crate::cholesky::lanes::LANES). Each part
+    /// has the result of [`LocalProblem::condense`] and the values on Γ.
     pub fn recover_many(members: &[&Scaled], parts: &[(&[f64], &[f64])]) -> Vec<Vec<f64>> {
         let scales: Vec<f64> = members.iter().map(|m| m.factor).collect();
         match members {

@@ -1,11 +1,11 @@
-//! Which operator is meant, and how it is held.
+//! Names of the operators S and T, and of the two forms that they are stored in.
 
-/// How S and T are held.
+/// The form in which S and T are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OperatorForm {
     /// As dense matrices.
     Explicit,
-    /// As sparse solves; where the vertices alone do not hold the subdomain, dense matrices after all.
+    /// As sparse solves. If the vertices alone do not hold the subdomain, they become dense matrices.
     Implicit,
 }
 

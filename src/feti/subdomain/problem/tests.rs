@@ -1,4 +1,4 @@
-//! One subdomain against what its matrix says.
+//! The operators of one subdomain compared with its matrix.
 
 use super::*;
 use crate::feti::subdomain::which::Operator;
@@ -121,7 +121,7 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
     close(&dense.sigma.data, &sparse.sigma.data);
     close(&dense.s().data, &sparse.s().data);
     close(&dense.t().data, &sparse.t().data);
-    // More columns than go side by side, and a load.
+    // More columns than are processed side by side, and a load.
     let v = Dense {
         rows: dense.n_gamma(),
         cols: 11,
