@@ -1,8 +1,8 @@
 /*
    FETI-FETI for programs that run on PETSc: FETI-DP inside bodies, one-level FETI between bodies, contact between them.
 
-   Link with libfetifeti.so. All functions return a PETSc error code; errors go through PETSc's error handler as one sentence. "Collective" functions are
-   to be called by all ranks of the communicator of FetiFetiCreate(), the others by each as often as it likes.
+   Link with libfetifeti.so. All functions return a PETSc error code; errors go through PETSc's error handler as one sentence. All ranks of the
+   communicator of FetiFetiCreate() must call a "Collective" function; each rank may call the others as often as it likes.
 */
 #if !defined(FETIFETI_H)
 #define FETIFETI_H
@@ -15,8 +15,8 @@
    Level: beginner
 
    Notes:
-   All unknowns of all bodies have numbers in one numbering, that of the entries of the right-hand side and the solution. Two subdomains of one body
-   share an unknown when both list its number. Two of different bodies that do so are tied: one-level FETI between them.
+   The unknowns of all bodies have one numbering, the numbering of the entries of the right-hand side and the solution. Two subdomains of one body
+   share an unknown if both list its number. Two subdomains of different bodies that list the same number are tied: one-level FETI between them.
 
    Matrices that were assembled body by body need no common numbers: see FetiFetiAddMatIS().
 
@@ -64,7 +64,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiInitializePackage(void);
    Level: intermediate
 
    Note:
-   A rank without rows has no subdomain and need not call. All other ranks must, or none. The last of KSPFETIFETISetBody(), KSPFETIFETISetBodyIS() and
+   A rank without rows has no subdomain and need not call. Either all other ranks call, or none. The last of KSPFETIFETISetBody(), KSPFETIFETISetBodyIS() and
    KSPFETIFETISetBodyLabel() counts.
 
 .seealso: `KSPFETIFETISetBodyIS()`, `KSPFETIFETISetBodyLabel()`, `KSPFETIFETIGetInnerKSP()`
@@ -204,7 +204,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetOptionsPrefix(FetiFeti ff, const char pre
 .  ff - the solver
 
    Options Database Keys:
-+  -fetifeti_bodies <n>    - bodies to group subdomains into that were given none; 0: one for every eight subdomains
++  -fetifeti_bodies <n>    - number of bodies for subdomains that were given none; 0: one for every eight subdomains
 .  -fetifeti_view          - show the solver after set-up
 .  -fetifeti_ksp_rtol <r>  - relative tolerance of the iteration; all options of a KSP with this prefix
 -  -fetifeti_contact_...   - the contact loop; see docs/options.md
@@ -249,8 +249,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiView(FetiFeti ff, PetscViewer viewer);
    Level: beginner
 
    Note:
-   Without this function the layout is that of the matrix of FetiFetiSetMatIS(), or that of all matrices of FetiFetiAddMatIS() without numbers, one after the
-   other on each rank; else the one that PETSC_DECIDE gives for one more than the highest number of an unknown in a subdomain.
+   Without this function the layout comes from the matrix of FetiFetiSetMatIS(), or from all matrices of FetiFetiAddMatIS() without numbers, one after the
+   other on each rank. Otherwise N is one more than the highest number of an unknown in a subdomain, and n is that of PETSC_DECIDE.
 
 .seealso: `FetiFetiAddSubdomain()`, `FetiFetiSetBlockSize()`
 @*/
@@ -268,7 +268,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetSizes(FetiFeti ff, PetscInt n, PetscInt N
    Level: beginner
 
    Note:
-   Displacements in the plane have 2, in space 3. Constraints and bodies are found better with it.
+   Displacements in the plane have block size 2, in space 3. The block size improves the choice of constraints and bodies.
 
 .seealso: `FetiFetiSetCoordinates()`, `FetiFetiSetNearNullSpace()`
 @*/
@@ -281,7 +281,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetBlockSize(FetiFeti ff, PetscInt bs);
 
    Input Parameters:
 +  ff   - the solver
-.  body - number of the body that it belongs to, or PETSC_DECIDE: then say so for all subdomains, and bodies are found by a graph partition
+.  body - number of the body that it belongs to, or PETSC_DECIDE for all subdomains: a graph partition finds the bodies
 .  n    - rows of the matrix
 .  ia   - start of each row in ja and a, length n + 1, from 0
 .  ja   - columns, in any order; entries at the same place are added up
@@ -294,9 +294,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetBlockSize(FetiFeti ff, PetscInt bs);
    A rank may call this as often as it likes, or never. The arrays are copied. The matrix is that of the elements of the subdomain alone, without the
    contributions of its neighbours: the sum over all subdomains is the assembled matrix. It must be symmetric.
 
-   A row with its diagonal alone in all subdomains is taken as a boundary condition, u = b / diagonal, as MatZeroRowsColumns() leaves it; so is an empty one.
+   A row that has only its diagonal in all subdomains is taken as a boundary condition, u = b / diagonal, as MatZeroRowsColumns() leaves it. So is an empty row.
 
-   A body whose subdomains are not in one piece becomes several.
+   A body whose subdomains are not connected becomes several bodies.
 
 .seealso: `FetiFetiSetMatIS()`, `FetiFetiAddMatIS()`, `FetiFetiSetDirichletBoundaries()`
 @*/
@@ -403,7 +403,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetCoordinates(FetiFeti ff, PetscInt dim, Pe
    Level: beginner
 
    Notes:
-   As with PCBDDCSetDirichletBoundaries() the unknowns may be listed on any rank; but the matrices need not know of the conditions: rows and columns
+   As with PCBDDCSetDirichletBoundaries() the unknowns may be listed on any rank. The matrices need not contain the conditions: rows and columns
    of held unknowns are not used. Values are read at each FetiFetiSolve(), and may change between solves.
 
 .seealso: `FetiFetiSetNeumannBoundaries()`
@@ -411,7 +411,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetCoordinates(FetiFeti ff, PetscInt dim, Pe
 PETSC_EXTERN PetscErrorCode FetiFetiSetDirichletBoundaries(FetiFeti ff, IS dofs, Vec values);
 
 /*@
-   FetiFetiSetNeumannBoundaries - Accepted for the likeness to PCBDDCSetNeumannBoundaries(); has no effect
+   FetiFetiSetNeumannBoundaries - Has no effect; it exists for compatibility with PCBDDCSetNeumannBoundaries()
 
    Collective
 
@@ -422,7 +422,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetDirichletBoundaries(FetiFeti ff, IS dofs,
    Level: advanced
 
    Note:
-   PCBDDC classifies interface nodes by it. Here vertices, edges and faces follow from who shares what.
+   PCBDDC classifies interface nodes by these unknowns. Here vertices, edges and faces follow from the sets of subdomains that share each unknown.
 
 .seealso: `FetiFetiSetDirichletBoundaries()`, `FetiFetiSetPrimalDofs()`
 @*/
@@ -435,7 +435,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetNeumannBoundaries(FetiFeti ff, IS dofs);
 
    Input Parameters:
 +  ff   - the solver
--  dofs - unknowns, listed by any rank; NULL: none besides those that are chosen anyway
+-  dofs - unknowns, listed by any rank; NULL: only those that the solver chooses
 
    Level: advanced
 
@@ -531,7 +531,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetUp(FetiFeti ff);
 -  b  - the right-hand side, assembled over all subdomains
 
    Output Parameter:
-.  x - the solution; what it was before does not matter
+.  x - the solution; its entries on input are ignored
 
    Options Database Keys:
 +  -fetifeti_ksp_rtol <r>                      - relative tolerance of the iteration, and all other options of a KSP
@@ -543,8 +543,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetUp(FetiFeti ff);
    Notes:
    With matrices of FetiFetiAddMatIS() without numbers vectors may be of type VECNEST, with a part for each matrix.
 
-   A solve that follows another one with inequalities starts from its multipliers. An iteration that stops early is no error: ask
-   FetiFetiGetConvergedReason(). Rows that contradict each other, or a body that the load pushes away for ever, are.
+   A solve that follows another one with inequalities starts from its multipliers. An iteration that stops early is no error: see
+   FetiFetiGetConvergedReason(). Contradictory rows, and a floating body whose load no row balances, are errors.
 
 .seealso: `FetiFetiGetConvergedReason()`, `FetiFetiGetKKT()`, `FetiFetiGetMultipliers()`
 @*/
@@ -669,7 +669,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiGetMultipliers(FetiFeti ff, PetscInt n, Pets
    Level: advanced
 
    Note:
-   Tolerances and monitors may be set. A new set-up makes a new one.
+   Tolerances and monitors may be set. A new set-up makes a new KSP.
 
 .seealso: `FetiFetiSetUp()`
 @*/

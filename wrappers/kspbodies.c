@@ -1,8 +1,8 @@
-/* Which bodies a KSPFETIFETI has, as the host says: by rank, by rows, or by a label of the mesh. */
+/* The bodies of a KSPFETIFETI as the host names them: by rank, by rows, or by a label of the mesh. */
 #include "kspfetifeti.h"
 #include <petscdmplex.h>
 
-/* The value of the label that most of this rank's cells have, the lowest of several; -1 on a rank without cells. */
+/* The label value of most of this rank's cells, the lowest in a tie; -1 on a rank without cells. */
 PetscErrorCode ff_label_body(KSP ksp, Mat A, const char *name, PetscInt *body)
 {
   DM        dm = ksp->dm;
@@ -36,7 +36,7 @@ PetscErrorCode ff_label_body(KSP ksp, Mat A, const char *name, PetscInt *body)
   PetscFunctionReturn(0);
 }
 
-/* What was said before does not count any more. */
+/* Forgets the bodies that were named before. */
 static PetscErrorCode Forget(KSP_FETIFETI *ff)
 {
   PetscFunctionBegin;

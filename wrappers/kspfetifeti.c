@@ -1,11 +1,11 @@
 /*
-   KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. Everything that takes thought is in Rust
-   (src/embed, src/capi); this file is what a KSP needs to be one, kspbodies.c has its bodies.
+   KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. The method is in Rust (src/embed,
+   src/capi). This file has the functions that every KSP type must have; kspbodies.c has the functions for bodies.
 */
 #include "kspfetifeti.h"
 
 
-/* Turns what Rust returned into a PETSc error. */
+/* Converts a status of Rust to a PETSc error. */
 static PetscErrorCode Raise(KSP ksp, int status)
 {
   int         code;
@@ -16,7 +16,7 @@ static PetscErrorCode Raise(KSP ksp, int status)
   SETERRQ(status == FF_ALONE ? PETSC_COMM_SELF : PetscObjectComm((PetscObject)ksp), (PetscErrorCode)code, "FETI-FETI: %s", message);
 }
 
-/* The inner KSP iterates once or several times in a solve; whoever watches the outer one sees a single count. */
+/* The inner KSP runs once or several times in a solve; monitors of the outer KSP see a single iteration count. */
 static PetscErrorCode KSPMonitor_FETIFETI(KSP inner, PetscInt it, PetscReal rnorm, void *ctx)
 {
   KSP           ksp = (KSP)ctx;
@@ -153,7 +153,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   PetscCall(VecCopy(B, R));
   norm = size;
   if (!ksp->guess_zero) PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
-  /* The inner KSP stops by the jumps between subdomains; the residual of the host's equations is asked for besides. */
+  /* The inner KSP tests the jumps between subdomains; the residual of the host's equations is tested in addition. */
   if (ff->true_residual) wishes.goal = PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol);
   if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, R));
   if (!ksp->guess_zero && norm <= PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol)) { /* the guess is a solution */
@@ -163,7 +163,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   } else status = fetifeti_plugin_solve(ff->solver, A, &wishes, R, D, &result);
   if (!status) PetscCall(VecAXPY(ksp->vec_sol, 1.0, D)); /* x <- x + d */
   ff->running = PETSC_FALSE;
-  if (!status && ff->last < 0) { /* nothing to iterate on: those who watch see the beginning, which is the end */
+  if (!status && ff->last < 0) { /* nothing to iterate on: monitors see the initial residual, which is the final one */
     PetscCall(Residual(A, B, ksp->vec_sol, R, &norm));
     PetscCall(KSPMonitor_FETIFETI(NULL, 0, norm, ksp));
   }
@@ -174,7 +174,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   if (status) PetscCall(Raise(ksp, status));
   ff->largest  = result.largest;
   ff->smallest = result.smallest;
-  if (nullsp) { /* vectors that the operator does not map to zero are no kernel, whatever they are called */
+  if (nullsp) { /* vectors that the operator does not map to zero are no kernel, even if they are attached as one */
     PetscCall(MatNullSpaceTest(nullsp, A, &kernel));
     if (kernel) PetscCall(MatNullSpaceRemove(nullsp, ksp->vec_sol));
   }
@@ -237,7 +237,7 @@ static PetscErrorCode KSPView_FETIFETI(KSP ksp, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* The solution: what has been reached so far while the inner KSP iterates, for monitors. */
+/* The solution; the current iterate while the inner KSP runs, for monitors. */
 static PetscErrorCode KSPBuildSolution_FETIFETI(KSP ksp, Vec v, Vec *V)
 {
   KSP_FETIFETI *ff    = (KSP_FETIFETI *)ksp->data;
@@ -250,7 +250,7 @@ static PetscErrorCode KSPBuildSolution_FETIFETI(KSP ksp, Vec v, Vec *V)
     status = fetifeti_plugin_solution(ff->solver, now, &there);
     if (status) PetscCall(Raise(ksp, status));
   }
-  if (there) PetscCall(VecAXPY(now, 1.0, ksp->vec_sol)); /* iterations bring the correction of what there was */
+  if (there) PetscCall(VecAXPY(now, 1.0, ksp->vec_sol)); /* the iteration computes a correction of the initial guess */
   else PetscCall(VecCopy(ksp->vec_sol, now));
   if (v) {
     PetscCall(VecCopy(now, v));

@@ -6,22 +6,22 @@
 
 /* The data of a KSP of this type. */
 typedef struct {
-  void            *solver; /* of Rust; NULL before set-up, and after one that failed */
-  PetscObjectId    id;     /* the operator that the solver was made from, and its state then */
+  void            *solver; /* the solver in Rust; NULL before set-up, and after a failed set-up */
+  PetscObjectId    id;     /* the operator at the last set-up, and its state */
   PetscObjectState state;
-  PetscInt         body;   /* of this rank; -1: not said */
-  IS               bodies; /* of each row that this rank owns; NULL: not said */
-  char            *label;  /* of the mesh's cells that names bodies; NULL: none */
+  PetscInt         body;   /* body of this rank; -1: not given */
+  IS               bodies; /* body of each row that this rank owns; NULL: not given */
+  char            *label;  /* label of the mesh's cells that names the bodies; NULL: none */
   PetscBool        true_residual; /* go on until the residual of the host's equations is below the tolerance */
-  PetscBool        stale; /* set up again, whatever the operator says */
+  PetscBool        stale; /* set up again, even if the operator has not changed */
   PetscInt         base;  /* iterations of earlier runs of the inner KSP in this solve */
-  PetscInt         last;  /* iteration that the monitors have seen last; -1: none */
-  PetscBool        running; /* the inner KSP is at work */
-  PetscReal        largest, smallest; /* eigenvalues as the longest run of the inner KSP in the last solve saw them */
+  PetscInt         last;  /* last iteration that the monitors have seen; -1: none */
+  PetscBool        running; /* the inner KSP is running */
+  PetscReal        largest, smallest; /* eigenvalue estimates from the longest run of the inner KSP in the last solve */
   KSPConvergedReason failed; /* why there is no solver */
 } KSP_FETIFETI;
 
-/* What a function of Rust returns: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a sentence about a matrix
+/* The return value of a Rust function: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a sentence about a matrix
    that cannot be factored; FF_RAISED, after a PETSc error that has been reported; or FF_ALONE, a sentence that other ranks may not have. */
 #define FF_SENTENCE 1
 #define FF_UNFIT    2
@@ -31,7 +31,7 @@ typedef struct {
 typedef struct {
   int    body;     /* body of this rank, or -1 */
   IS     bodies;   /* body of each row that this rank owns, or NULL */
-  double goal;     /* norm of b - A x to end with, or -1: it does not matter */
+  double goal;     /* norm of b - A x to reach, or -1: no such test */
   double rtol, abstol, divtol;
   int    max_it;
 } FetiFetiWishes;

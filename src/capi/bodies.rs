@@ -1,4 +1,5 @@
-//! The functions of `wrappers/fetifeti.h` by which a program hands over its bodies: sizes, matrices, motions; their manual pages are there.
+//! The functions of `wrappers/fetifeti.h` that take the bodies of a program: sizes, matrices, rigid motions; their
+//! manual pages are there.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::coordinates::Coordinates;

@@ -1,4 +1,5 @@
-//! The functions of `wrappers/fetifeti.h` for conditions: held unknowns, primal ones, contact; their manual pages are there.
+//! The functions of `wrappers/fetifeti.h` for conditions: held unknowns, primal unknowns, contact; their manual pages
+//! are there.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::handle::{alone, array, list, not_null, starts, together, Handle};

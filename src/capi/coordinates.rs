@@ -8,11 +8,11 @@ use crate::Result;
 pub struct Coordinates {
     /// 1, 2 or 3.
     pub dim: usize,
-    /// Those of the nodes that this rank owns, node by node.
+    /// Coordinates of the nodes that this rank owns, node by node.
     pub of_node: Vec<f64>,
 }
 
-/// Translations and rotations where there are as many components as dimensions, one constant per component else.
+/// Translations and rotations if there are as many components as dimensions; otherwise one constant per component.
 pub fn rigid(layout: &PetscVec, bs: usize, c: &Coordinates) -> Result<Vec<PetscVec>> {
     let nodes = layout.local_len() / bs;
     if c.of_node.len() != nodes * c.dim {

@@ -1,4 +1,4 @@
-//! How a Rust error reaches C: a status, and the sentence on request.
+//! Rust errors as C sees them: a status, and a message on request.
 
 use crate::error::Fault;
 use crate::petsc::raw::{self, caught, settle};
@@ -7,13 +7,13 @@ use crate::{Error, Result};
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int, CStr, CString};
 
-/// An error with a sentence, the same on all ranks.
+/// An error with a message, the same on all ranks.
 const SENTENCE: c_int = 1;
 /// The same, about a matrix that cannot be factored.
 pub const UNFIT: c_int = 2;
-/// PETSc has reported the error already.
+/// PETSc has already reported the error.
 const RAISED: c_int = 3;
-/// An error with a sentence that this rank has and others may not.
+/// An error with a message that this rank has and others may not have.
 const ALONE: c_int = 4;
 
 /// PETSC_ERR_NOT_CONVERGED.
@@ -25,19 +25,19 @@ thread_local! {
     static LAST: RefCell<(CString, c_int)> = RefCell::default();
 }
 
-/// [`classified`] where errors of input are taken as [`Fault::Unsupported`].
+/// [`classified`] with errors of input taken as [`Fault::Unsupported`].
 pub fn status(what: &'static str, body: impl FnOnce(&mut Option<Session>) -> Result<()>) -> c_int {
     classified(what, Fault::Unsupported, body)
 }
 
-/// Runs `body`, on which all ranks of the session that it makes or has are at work, and turns what comes out into a status. A panic is an error like others.
-/// Errors of input, which are not about an argument, are taken as `input`.
+/// Runs `body` and converts its result to a status. All ranks of the session that it makes or has take part. A panic
+/// counts as an error. Errors of input that do not concern an argument are taken as `input`.
 pub fn classified(
     what: &'static str,
     input: Fault,
     body: impl FnOnce(&mut Option<Session>) -> Result<()>,
 ) -> c_int {
-    // A host that went on after an error has settled it.
+    // A host that continues after an error has dealt with it.
     settle();
     let mut session = None;
     let result = caught(what, || body(&mut session));
@@ -66,7 +66,8 @@ pub fn classified(
     status
 }
 
-/// Hands what [`status`] returned to the host's error handler; the PETSc error code. `comm` where all ranks of it are in the same call, and `None` else.
+/// Passes the error of a status of [`status`] to the host's error handler, and returns the PETSc error code. `comm` is
+/// given if all its ranks are in the same call, otherwise it is `None`.
 pub fn raise(status: c_int, name: &CStr, comm: Option<raw::MPI_Comm>) -> c_int {
     if status == 0 {
         return 0;
@@ -93,7 +94,7 @@ pub fn raise(status: c_int, name: &CStr, comm: Option<raw::MPI_Comm>) -> c_int {
     }
 }
 
-/// The last sentence, valid until the next one, and its PETSc error code.
+/// The last message, valid until the next one, and its PETSc error code.
 ///
 /// # Safety
 /// `code` can be written to.

@@ -1,4 +1,4 @@
-//! What C calls a `FetiFeti`, and the way into it and out again: checks of what C hands over, and one fence for all functions.
+//! The object behind a C `FetiFeti`: checks of the arguments from C, and a common guard for all functions.
 
 use super::error::{classified, raise};
 use super::object::Object;
@@ -7,7 +7,7 @@ use crate::petsc::{raw, Is, Session};
 use crate::Result;
 use std::ffi::{c_int, CStr};
 
-/// What a `FetiFeti` points to.
+/// The object that a `FetiFeti` points to.
 pub struct Held {
     magic: u64,
     comm: raw::MPI_Comm,
@@ -25,10 +25,10 @@ impl Held {
     }
 }
 
-/// Tells objects from other memory.
+/// Distinguishes valid objects from other memory.
 const MAGIC: u64 = 0x4645_5449_4645_5449;
 
-/// What C calls a `FetiFeti`.
+/// The pointer that C calls `FetiFeti`.
 pub(super) type Handle = *mut Held;
 
 fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
@@ -41,7 +41,7 @@ fn held<'a>(ff: Handle) -> Result<&'a mut Held> {
     Ok(held)
 }
 
-/// Gives up an object.
+/// Destroys an object.
 pub(super) fn destroy(ff: Handle) -> Result<()> {
     held(ff)?.magic = 0;
     // SAFETY: from Box::into_raw in FetiFetiCreate; whoever calls this forgets it.
@@ -49,7 +49,7 @@ pub(super) fn destroy(ff: Handle) -> Result<()> {
     Ok(())
 }
 
-/// A call in which all ranks of the object are.
+/// A call in which all ranks of the object take part.
 pub(super) fn together(
     ff: Handle,
     name: &'static CStr,
@@ -64,7 +64,7 @@ pub(super) fn together(
     raise(code, name, comm)
 }
 
-/// A call that ranks make for themselves.
+/// A call that each rank makes for itself.
 pub(super) fn alone(
     ff: Handle,
     name: &'static CStr,
@@ -74,7 +74,7 @@ pub(super) fn alone(
     raise(code, name, None)
 }
 
-/// An array of C.
+/// A C array as a slice.
 pub(super) fn array<'a, T>(data: *const T, n: c_int, what: &str) -> Result<&'a [T]> {
     let n = usize::try_from(n).map_err(|_| {
         Fault::OutOfRange.error(format!("the length of {what} is {n}, expected at least 0"))
@@ -103,7 +103,7 @@ pub(super) fn not_null<T>(object: *mut T, what: &str) -> Result<*mut T> {
     }
 }
 
-/// Row pointers of a CSR array, and how many entries they stand for.
+/// Checks the row pointers of a CSR array; returns the number of entries.
 pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
     let bad = ia.windows(2).position(|w| w[1] < w[0]);
     match (ia.first(), bad) {
@@ -119,7 +119,7 @@ pub(super) fn starts(ia: &[c_int]) -> Result<usize> {
     }
 }
 
-/// The numbers of an index set; none for NULL.
+/// The numbers of an index set; empty for NULL.
 pub(super) fn list(o: &Object, is: raw::IS) -> Result<Vec<i32>> {
     match is.is_null() {
         true => Ok(Vec::new()),

@@ -1,4 +1,4 @@
-//! The functions of `wrappers/fetifeti.h` for the life of a solver: made, set up, used, destroyed; their manual pages are there.
+//! The functions of `wrappers/fetifeti.h` that create, set up, use and destroy a solver; their manual pages are there.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::error::{classified, raise};
@@ -13,7 +13,8 @@ use std::ffi::{c_char, c_int, CStr};
 #[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
     let code = classified("FetiFetiCreate", Fault::Wrong, |at_work| {
-        // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin and end.
+        // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin
+        // and end.
         let session = unsafe { Session::borrowed(comm) }?;
         *at_work = Some(session.clone());
         if ff.is_null() {

@@ -1,6 +1,8 @@
-//! What C calls: the plug-in's registration and the functions behind KSPFETIFETI, and the functions of `wrappers/fetifeti.h` ([`life`], [`bodies`], [`conditions`], [`results`]).
+//! The C interface: the registration of the plug-in, the functions behind KSPFETIFETI, and the functions of
+//! `wrappers/fetifeti.h` ([`life`], [`bodies`], [`conditions`], [`results`]).
 //!
-//! Nothing unwinds into C, and an error is one sentence: [`plugin`] keeps it for the C side, which hands it to the host's error handler.
+//! No panic unwinds into C. An error is one sentence: [`plugin`] stores it for the C side, which passes it to the
+//! host's error handler.
 
 pub mod bodies;
 pub mod conditions;
@@ -34,15 +36,15 @@ pub extern "C" fn PetscDLLibraryRegister_fetifeti() -> c_int {
     unsafe { ff_plugin_register() }
 }
 
-/// The same for programs that link with the library: to be called once after PetscInitialize.
+/// The same for programs that link with the library: they call it once after PetscInitialize.
 #[no_mangle]
 pub extern "C" fn FetiFetiInitializePackage() -> c_int {
     // SAFETY: the caller has initialised PETSc.
     unsafe { ff_plugin_register() }
 }
 
-/// Says which body this rank's subdomain belongs to: ranks with the same number form a body. Takes effect at the next set-up; other types of
-/// KSP ignore it.
+/// Sets the body of this rank's subdomain: ranks with the same number form a body. The number takes effect at the next
+/// set-up; other types of KSP ignore it.
 ///
 /// # Safety
 /// `ksp` is a KSP.
@@ -52,8 +54,8 @@ pub unsafe extern "C" fn KSPFETIFETISetBody(ksp: raw::KSP, body: c_int) -> c_int
     unsafe { ff_plugin_set_body(ksp, body) }
 }
 
-/// Says which body each row of the operator belongs to, by an index set with one number for each row that this rank owns, such as
-/// MatPartitioningApply returns. A subdomain belongs to the body that most of its unknowns name.
+/// Sets the body of each row of the operator. The index set has one number for each row that this rank owns, as
+/// MatPartitioningApply returns it. A subdomain belongs to the body that most of its unknowns name.
 ///
 /// # Safety
 /// `ksp` is a KSP, `bodies` an index set.
@@ -63,7 +65,8 @@ pub unsafe extern "C" fn KSPFETIFETISetBodyIS(ksp: raw::KSP, bodies: raw::IS) ->
     unsafe { ff_plugin_set_body_is(ksp, bodies) }
 }
 
-/// Says that a label of the mesh's cells (DMPlex) names the bodies: a rank's subdomain belongs to the value that most of its cells have.
+/// Sets the label of the mesh's cells (DMPlex) that names the bodies. A rank's subdomain belongs to the value that most
+/// of its cells have.
 ///
 /// # Safety
 /// `ksp` is a KSP, `name` a string.

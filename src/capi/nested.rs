@@ -1,21 +1,20 @@
-//! Vectors of the host in the layout of all unknowns: plain ones, or nested ones with a part for each matrix.
+//! Vectors of the host in the layout of all unknowns: plain, or nested with a part for each matrix.
 
 use super::stack::{fits, Stack};
 use crate::error::Fault;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
-/// A vector of the host, checked.
+/// A vector of the host with the right layout.
 pub struct Given {
     whole: PetscVec,
     parts: Option<Vec<PetscVec>>,
 }
 
 impl Given {
-    /// Of the layout `layout`; `what` is its name in a sentence.
+    /// Checks a vector against `layout`; `what` is its name in messages.
     ///
-    /// # Errors
-    /// Another layout, or other parts than the matrices have; possibly on some ranks only.
+    /// # Errors Another layout, or parts that do not fit the matrices; possibly on some ranks only.
     pub fn new(
         session: &Session,
         v: &PetscVec,
@@ -48,7 +47,7 @@ impl Given {
         Ok(Given { whole, parts })
     }
 
-    /// The entries in a plain vector: the host's own one, or `work`. Collective.
+    /// A plain vector with the entries: the host's own vector, or `work`. Collective.
     pub fn plain(&self, work: impl FnOnce() -> Result<PetscVec>) -> Result<PetscVec> {
         let Some(parts) = &self.parts else {
             return Ok(self.whole.clone());
@@ -66,7 +65,7 @@ impl Given {
         Ok(work)
     }
 
-    /// Takes the entries over from what [`Given::plain`] returned. Collective.
+    /// Copies the entries back from the vector that [`Given::plain`] returned. Collective.
     pub fn take(&self, plain: &PetscVec) -> Result<()> {
         let Some(parts) = &self.parts else {
             return Ok(());

@@ -1,4 +1,4 @@
-//! The object behind `FetiFeti` of fetifeti.h: what the host has said so far, and the solver made of it.
+//! The object behind `FetiFeti` of fetifeti.h: the host's input, and the solver made from it.
 
 use super::coordinates::{rigid, Coordinates};
 use super::nested::Given as GivenVector;
@@ -15,31 +15,31 @@ use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, MethodSettings, Result};
 use std::collections::HashSet;
 
-/// A subdomain matrix as it was handed over.
+/// A subdomain matrix from the host.
 pub struct Given {
-    /// Rows and columns as the host numbers them.
+    /// The matrix in the host's order of rows and columns.
     pub k: Csr,
-    /// Global number of each row; negative: none.
+    /// Global number of each row; negative: the row has none.
     pub dofs: Vec<i32>,
-    /// The block size where a dof may be listed several times, once for each subdomain that has it.
+    /// The block size if a dof may be listed several times, once for each subdomain that has it.
     pub copies: Option<usize>,
-    /// The body; negative: not said.
+    /// The body; negative: not given.
     pub body: i32,
 }
 
-/// What a `FetiFeti` is.
+/// The data of a `FetiFeti`.
 pub struct Object {
     pub session: Session,
     pub prefix: String,
-    /// (local, global) numbers of unknowns, where they were said.
+    /// (local, global) numbers of unknowns, if given.
     pub sizes: Option<(Option<usize>, Option<usize>)>,
-    /// As it was said.
+    /// The block size, if given.
     pub block_size: Option<usize>,
-    /// Subdomains by numbers of all unknowns.
+    /// Subdomains in the numbering of all unknowns.
     pub subdomains: Vec<Given>,
     /// Matrices that are numbered one after the other; then there are no other subdomains.
     pub stack: Stack,
-    /// What the matrix of FetiFetiSetMatIS has told.
+    /// The data from the matrix of FetiFetiSetMatIS, besides its entries.
     pub matis: Option<Told>,
     /// The block size of a matrix that was added with numbers.
     pub block_size_of_added: usize,
@@ -48,7 +48,7 @@ pub struct Object {
     pub held: Vec<i32>,
     pub held_values: Option<PetscVec>,
     pub primal: Vec<i32>,
-    /// The rows that this rank gives, in this order.
+    /// The rows that this rank gives, in their order.
     pub rows: Vec<Row>,
     pub bodies: usize,
     pub view: bool,
@@ -60,7 +60,7 @@ pub struct Object {
     pub(super) work: [Option<PetscVec>; 3],
 }
 
-/// What a matrix of all unknowns tells besides its entries.
+/// The data of a matrix of all unknowns, besides its entries.
 pub struct Told {
     pub layout: PetscVec,
     pub block_size: usize,
@@ -108,7 +108,7 @@ impl Object {
         Options::new(&self.session, &format!("{}fetifeti_", self.prefix))
     }
 
-    /// Takes the local matrices of a MATIS of all unknowns, instead of everything before. Collective.
+    /// Replaces all subdomains by the local matrices of a MATIS of all unknowns. Collective.
     pub fn set_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
         let local = LocalMatrix::of(&self.session, a)?;
         self.stack.clear();
@@ -122,7 +122,7 @@ impl Object {
         Ok(())
     }
 
-    /// Puts the unknowns of a MATIS after those of the matrices before. Collective.
+    /// Appends the unknowns of a MATIS after those of the previous matrices. Collective.
     pub fn stack_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
         let others = !self.subdomains.is_empty() || self.matis.is_some();
         let others = others.then(|| self.mixed()).map_or(Ok(()), Err);
@@ -159,7 +159,7 @@ impl Object {
         self.stale = true;
     }
 
-    /// The error where subdomains are numbered in two ways.
+    /// The error if subdomains are numbered in two ways.
     pub fn mixed(&self) -> Error {
         Fault::WrongState.error(
             "some matrices were added without numbers, which follows their order, and other subdomains with numbers of unknowns, \
@@ -167,7 +167,8 @@ impl Object {
         )
     }
 
-    /// What `numbers`, by owned entries of vectors like `layout`, has for these entries; negative ones stay. Collective.
+    /// Maps each owned entry in `dofs` to its number in `numbers`, which has one for every owned entry of vectors like
+    /// `layout`. Negative entries stay. Collective.
     fn renumbered(&self, layout: &PetscVec, dofs: &[i32], numbers: &[i32]) -> Result<Vec<i32>> {
         let n = layout.local_len();
         let wrong = (numbers.len() != n).then(|| {
@@ -191,7 +192,7 @@ impl Object {
             .collect())
     }
 
-    /// Makes the solver, if there is none or something has changed. Collective.
+    /// Makes the solver if there is none, or if the input has changed. Collective.
     pub fn set_up(&mut self) -> Result<()> {
         let mut stale = [f64::from(u8::from(self.stale || self.solver.is_none()))];
         max_all(self.session.comm(), &mut stale);
@@ -218,7 +219,7 @@ impl Object {
         Ok(())
     }
 
-    /// Everything that was said, in one piece. Collective.
+    /// The whole input as a torn operator. Collective.
     fn torn(&self) -> Result<Torn> {
         let session = &self.session;
         let layout = self.vector()?;
@@ -250,7 +251,7 @@ impl Object {
         Ok(torn)
     }
 
-    /// Unknowns of a node.
+    /// Number of unknowns of a node.
     fn nodes(&self) -> usize {
         let of_matrices = match &self.matis {
             _ if !self.stack.is_empty() => self.stack.block_size(),
@@ -260,7 +261,8 @@ impl Object {
         self.block_size.unwrap_or(of_matrices)
     }
 
-    /// Motions that cost no energy: as they were given, else those of the matrices, else from the places of the nodes. Collective.
+    /// Motions without energy: the given ones, else those of the matrices, else those from the coordinates of the
+    /// nodes. Collective.
     fn modes(&self, layout: &PetscVec) -> Result<Option<Vec<PetscVec>>> {
         if let Some(near) = &self.near {
             let mut vectors = Vec::new();
@@ -295,7 +297,7 @@ impl Object {
         GivenVector::new(&self.session, v, what, layout, &self.stack)
     }
 
-    /// A vector of the layout of right-hand sides. Collective.
+    /// A vector with the layout of right-hand sides. Collective.
     pub fn vector(&self) -> Result<PetscVec> {
         let stacked = match self.stack.is_empty() {
             true => None,
@@ -342,7 +344,7 @@ impl Object {
         Ok(())
     }
 
-    /// Those of `ghosts` that some rank lists. Collective.
+    /// The entries of `ghosts` that some rank lists. Collective.
     fn marked(
         &self,
         layout: &PetscVec,

@@ -7,7 +7,7 @@ use crate::{Error, MethodSettings, Result};
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void, CStr};
 
-/// What the outer KSP wants.
+/// The requests of the outer KSP.
 #[repr(C)]
 pub struct Wishes {
     body: c_int,
@@ -19,7 +19,7 @@ pub struct Wishes {
     max_it: c_int,
 }
 
-/// What -ksp_view shows.
+/// The data that -ksp_view shows.
 #[repr(C)]
 pub struct Facts {
     bodies: c_int,
@@ -31,7 +31,7 @@ pub struct Facts {
     global_rows: f64,
 }
 
-/// What a solve did.
+/// The result of a solve.
 #[repr(C)]
 pub struct Report {
     iterations: c_int,
@@ -44,7 +44,8 @@ pub struct Report {
 /// Makes a solver for a MATIS. Collective.
 ///
 /// # Safety
-/// `comm` is the communicator of `a`, which is a matrix of the host; `prefix` is NULL or a string; `wishes` and `solver` are valid.
+/// `comm` is the communicator of `a`, which is a matrix of the host; `prefix` is NULL or a string; `wishes` and
+/// `solver` are valid.
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_setup(
     comm: raw::MPI_Comm,
@@ -62,7 +63,8 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
         // SAFETY: by the caller.
         let (wishes, prefix) = unsafe { (&*wishes, text(prefix)) };
         let made = setup(&session, &a, &prefix, wishes);
-        // What the host says wrongly stops it; a matrix that turns out not to be one of stiffness is for KSPGetConvergedReason.
+        // A wrong input stops the host with an error. A matrix that turns out to be no stiffness matrix is reported by
+        // KSPGetConvergedReason.
         unfit = matches!(&made, Err(Error::Unfit(_)));
         // SAFETY: by the caller.
         unsafe { *solver = Box::into_raw(Box::new(made?)).cast() };
@@ -75,7 +77,7 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
     }
 }
 
-/// Directions that a solve leaves to the next one with the same matrix.
+/// Number of search directions that a solve keeps for the next one with the same matrix.
 const DIRECTIONS: usize = 30;
 
 fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Embedded> {
@@ -102,7 +104,7 @@ fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
     Embedded::new(session, &torn, grouping, settings)
 }
 
-/// The entries of an index set, as long as this rank's part of the layout, as a vector.
+/// An index set, as long as this rank's part of the layout, converted to a vector.
 fn numbers(session: &Session, layout: &PetscVec, is: &Is) -> Result<PetscVec> {
     let (found, wanted) = (is.indices()?, layout.local_len());
     session.agree(if found.len() == wanted {
@@ -121,10 +123,11 @@ fn numbers(session: &Session, layout: &PetscVec, is: &Is) -> Result<PetscVec> {
     Ok(vector)
 }
 
-/// Solves A x = b from zero. Collective.
+/// Solves A x = b with initial guess zero. Collective.
 ///
 /// # Safety
-/// `solver` comes from [`fetifeti_plugin_setup`] for `a`; `b` and `x` are vectors of `a`, `wishes` and `report` are valid.
+/// `solver` comes from [`fetifeti_plugin_setup`] for `a`; `b` and `x` are vectors of `a`, `wishes` and `report` are
+/// valid.
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_solve(
     solver: *mut c_void,
@@ -153,7 +156,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
             a.mult(x, &r)?;
             r.aypx(-1.0, &b)?;
             let norm = r.norm2()?;
-            // What does not halve it any more is rounding.
+            // A residual that is no longer halved has reached the rounding errors.
             let hopeless = norm > 0.5 * best.replace(norm);
             let done = norm <= wishes.goal || hopeless || !norm.is_finite();
             Ok((!done).then_some(0.5 * wishes.goal.max(1e-4 * norm) / norm))
@@ -172,7 +175,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
     })
 }
 
-/// The outer KSP's tolerances hold where no option of the inner one says otherwise.
+/// Applies the outer KSP's tolerances, unless options of the inner KSP override them.
 fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
     let ksp = solver.solver().ksp().clone();
     let options = Options::new(solver.session(), &solver.solver().settings().method.prefix);
@@ -190,7 +193,7 @@ fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
     )
 }
 
-/// x ← what the running iteration has reached, where one is running. Collective.
+/// x ← the current iterate, if an iteration is running. Collective.
 ///
 /// # Safety
 /// As above; `there` is valid.
@@ -210,7 +213,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solution(
     })
 }
 
-/// The KSP that iterates on the multipliers, lent.
+/// The KSP that iterates on the multipliers, as a borrowed reference.
 ///
 /// # Safety
 /// As above.
@@ -220,7 +223,7 @@ pub unsafe extern "C" fn fetifeti_plugin_inner(solver: *mut c_void) -> raw::KSP 
     unsafe { &*solver.cast::<Embedded>() }.solver().ksp().raw()
 }
 
-/// What -ksp_view shows.
+/// The data that -ksp_view shows.
 ///
 /// # Safety
 /// As above; `facts` is valid.
@@ -243,7 +246,7 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
     };
 }
 
-/// Ends a solver. Collective.
+/// Destroys a solver. Collective.
 ///
 /// # Safety
 /// `solver` comes from [`fetifeti_plugin_setup`] and is not used any more.

@@ -1,4 +1,4 @@
-//! The functions of `wrappers/fetifeti.h` that tell what a solve has found.
+//! The functions of `wrappers/fetifeti.h` that return the results of a solve.
 #![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::handle::{alone, put, Handle};

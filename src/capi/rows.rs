@@ -1,4 +1,4 @@
-//! The rows that a rank gives, as it says them: terms by unknowns of all bodies, or by unknowns of one matrix.
+//! The rows that a rank gives: their terms refer to unknowns of all bodies, or to unknowns of one matrix.
 
 use super::object::Object;
 use crate::embed::GivenRow;
@@ -6,7 +6,7 @@ use crate::error::Fault;
 use crate::substructures::RowKind;
 use crate::Result;
 
-/// Which function gave a row.
+/// The function that gave a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
     /// FetiFetiSetContactRows.
@@ -15,16 +15,16 @@ pub enum Origin {
     Pairs,
 }
 
-/// Whose numbering a number belongs to.
+/// The numbering that a number belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Numbering {
-    /// That of all unknowns.
+    /// The numbering of all unknowns.
     All,
-    /// That of a matrix, in the order in which they were added.
+    /// The numbering of one matrix; the index counts the matrices in the order in which they were added.
     Matrix(usize),
 }
 
-/// A row as it was said.
+/// A row as the host gave it.
 pub struct Row {
     pub origin: Origin,
     /// Unknowns and coefficients.
@@ -33,7 +33,7 @@ pub struct Row {
     pub kind: RowKind,
 }
 
-/// What C calls a FetiFetiRowKind.
+/// The row kind of a C FetiFetiRowKind.
 pub fn row_kind(number: i32, whose: impl FnOnce() -> String) -> Result<RowKind> {
     match number {
         0 => Ok(RowKind::Equality),
@@ -45,17 +45,16 @@ pub fn row_kind(number: i32, whose: impl FnOnce() -> String) -> Result<RowKind> 
     }
 }
 
-/// The numbers on one side of pairs, and whose they are.
+/// The unknowns on one side of the pairs, and their numbering.
 pub struct Side {
     pub numbering: Numbering,
     pub dofs: Vec<i32>,
 }
 
 impl Side {
-    /// `matrix` as C says it: negative for the numbering of all unknowns.
+    /// `matrix` is the index from C: negative for the numbering of all unknowns.
     ///
-    /// # Errors
-    /// A matrix that there is not, a number that it does not have.
+    /// # Errors A matrix that does not exist, or a number that it does not have.
     pub fn new(o: &Object, matrix: i32, dofs: Vec<i32>) -> Result<Side> {
         let (numbering, n) = match usize::try_from(matrix) {
             Err(_) => (Numbering::All, None),
@@ -121,10 +120,9 @@ pub fn pairs(
 }
 
 impl Object {
-    /// This rank's rows, by unknowns of all bodies.
+    /// This rank's rows in the numbering of all unknowns.
     ///
-    /// # Errors
-    /// Rows of matrices that are not there any more.
+    /// # Errors Rows of matrices that no longer exist.
     pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
         let number = |&(whose, dof, c): &(Numbering, u32, f64)| {
             let Numbering::Matrix(k) = whose else {
@@ -153,7 +151,7 @@ impl Object {
         self.rows.iter().map(row).collect()
     }
 
-    /// Unknowns of a matrix: of those that were stacked, or of the one of FetiFetiSetMatIS.
+    /// Number of unknowns of a matrix, stacked or from FetiFetiSetMatIS.
     fn size_of(&self, k: usize) -> Result<usize> {
         let there = match (&self.matis, self.stack.len()) {
             (Some(matis), 0) if k == 0 => return Ok(matis.layout.global_len()),

@@ -1,4 +1,4 @@
-//! Solving with the object behind `FetiFeti`, and what it tells afterwards.
+//! The solve of the object behind `FetiFeti`, and its results.
 
 use super::nested::Given;
 use super::object::Object;
@@ -29,7 +29,7 @@ impl Object {
         Ok(())
     }
 
-    /// Right-hand side, solution and, where there are some, held values.
+    /// Right-hand side, solution, and the held values if there are any.
     fn vectors(&self, b: &PetscVec, x: &PetscVec, layout: &PetscVec) -> Result<Vec<Given>> {
         let named = [("the right-hand side", b), ("the solution", x)];
         let held = self
@@ -40,10 +40,9 @@ impl Object {
         all.map(|(name, v)| self.checked(v, name, layout)).collect()
     }
 
-    /// What the last solve did.
+    /// The result of the last solve.
     ///
-    /// # Errors
-    /// There was none.
+    /// # Errors There was no solve.
     pub fn outcome(&self) -> Result<&Outcome> {
         let none = || {
             Fault::WrongState.error("nothing has been solved yet, expected FetiFetiSolve before")
@@ -53,15 +52,14 @@ impl Object {
 
     /// The solver.
     ///
-    /// # Errors
-    /// There is none yet.
+    /// # Errors There is no solver yet.
     pub fn solver(&self) -> Result<&Embedded> {
         let none =
             || Fault::WrongState.error("there is no solver yet, expected FetiFetiSetUp before");
         self.solver.as_ref().ok_or_else(none)
     }
 
-    /// What FetiFetiView shows.
+    /// The text that FetiFetiView shows.
     pub fn text(&self) -> String {
         let Some(solver) = &self.solver else {
             return "FetiFeti Object: not set up\n".into();
@@ -90,7 +88,7 @@ impl Object {
         text
     }
 
-    /// Shows the solver on the standard output of the first rank.
+    /// Prints the solver to the standard output of the first rank.
     pub fn print(&self) {
         if self.session.rank() == 0 {
             print!("{}", self.text());

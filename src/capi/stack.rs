@@ -1,6 +1,7 @@
-//! Matrices of bodies that were discretised by themselves, and one numbering of all their unknowns.
+//! Matrices of separately discretised bodies, and one numbering of all their unknowns.
 //!
-//! On each rank come its rows of the first matrix, then those of the second, and so on: as DMComposite numbers, and as nested vectors lie.
+//! Each rank has its rows of the first matrix, then its rows of the second, and so on. This is the numbering of
+//! DMComposite and the layout of nested vectors.
 
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::{modes, unassembled};
@@ -15,12 +16,12 @@ use crate::Result;
 pub struct Member {
     /// This rank's local matrix.
     k: Csr,
-    /// Number of each of its rows in the matrix; negative: none.
+    /// Number in the matrix of each local row; negative: the row has none.
     map: Vec<i32>,
     copies: Option<usize>,
     body: i32,
     block_size: usize,
-    /// A vector that fits the matrix.
+    /// A vector with the layout of the matrix.
     layout: PetscVec,
     /// The first row of each rank.
     starts: Vec<u32>,
@@ -31,20 +32,20 @@ pub struct Member {
 #[derive(Default)]
 pub struct Stack(Vec<Member>);
 
-/// The local matrix of a MATIS, the number of each of its rows, and what the matrix tells besides.
+/// The local matrix of a MATIS, the number of each of its rows, and the other data of the matrix.
 pub struct LocalMatrix {
     pub k: Csr,
     pub map: Vec<i32>,
-    /// The block size where the map may name a dof several times, once for each subdomain that has it.
+    /// The block size if the map may list a dof several times, once for each subdomain that has it.
     pub copies: Option<usize>,
     pub layout: PetscVec,
     pub block_size: usize,
-    /// Motions that cost no energy, where the near-null space or the null space has them.
+    /// Motions without energy, if the near-null space or the null space has them.
     pub modes: Option<Vec<PetscVec>>,
 }
 
 impl LocalMatrix {
-    /// Takes the matrix apart. Collective.
+    /// Extracts the local data of the matrix. Collective.
     pub fn of(session: &Session, a: &Mat) -> Result<LocalMatrix> {
         unassembled(a).map_err(|e| Fault::Unsupported.error(e.to_string()))?;
         let (rows, cols) = a.size()?;
@@ -75,7 +76,7 @@ impl LocalMatrix {
     }
 }
 
-/// An error where a vector has not the layout of another one.
+/// Returns an error if a vector does not have the layout of another one.
 pub fn fits(session: &Session, v: &PetscVec, layout: &PetscVec, what: &str) -> Result<()> {
     let (found, wanted) = (v.ownership_range(), layout.ownership_range());
     if found == wanted {
@@ -100,7 +101,7 @@ impl Stack {
         self.0.clear();
     }
 
-    /// Puts a matrix after the others. Collective.
+    /// Appends a matrix. Collective.
     pub fn push(&mut self, session: &Session, local: LocalMatrix, body: i32) {
         let first = local.layout.ownership_range().start as u64;
         let starts = gather_all(session.comm(), &[first]);
@@ -116,7 +117,7 @@ impl Stack {
         });
     }
 
-    /// Unknowns of a matrix.
+    /// Number of unknowns of a matrix.
     pub fn size_of(&self, matrix: usize) -> usize {
         self.0[matrix].layout.global_len()
     }
@@ -132,10 +133,10 @@ impl Stack {
         self.0.iter().fold(0, |bs, m| common(bs, m.block_size))
     }
 
-    /// The number among all unknowns of an unknown of a matrix.
+    /// The number of a matrix's unknown in the numbering of all unknowns.
     pub fn number(&self, matrix: usize, dof: u32) -> u32 {
         let own = &self.0[matrix];
-        // Of ranks that begin at the same row all but the last one have none.
+        // Among ranks that start at the same row, only the last one has rows.
         let rank = own.starts.partition_point(|&s| s <= dof) - 1;
         let end = |m: &Member| match m.starts.get(rank + 1) {
             Some(&next) => next,
@@ -149,18 +150,18 @@ impl Stack {
         before + above + dof - own.starts[rank]
     }
 
-    /// A vector with one entry for each unknown. Collective.
+    /// A vector of all unknowns. Collective.
     pub fn vector(&self, session: &Session) -> Result<PetscVec> {
         let n = self.layouts().map(PetscVec::local_len).sum();
         PetscVec::over_ranks(session, Some(n), None)
     }
 
-    /// Vectors that fit the matrices.
+    /// A vector with the layout of each matrix.
     pub fn layouts(&self) -> impl Iterator<Item = &PetscVec> {
         self.0.iter().map(|m| &m.layout)
     }
 
-    /// Local matrices cut into pieces, by numbers among all unknowns.
+    /// The local matrices cut into pieces, in the numbering of all unknowns.
     pub fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
         let number = |k: usize, d: i32| match u32::try_from(d) {
             Ok(dof) => self.number(k, dof) as i32,
@@ -173,7 +174,7 @@ impl Stack {
         self.0.iter().enumerate().flat_map(one)
     }
 
-    /// Vectors over all unknowns whose parts are the motions of the matrices; `None` where a matrix has none. Collective.
+    /// Vectors over all unknowns that combine the motions of the matrices; `None` if some matrix has none. Collective.
     pub fn modes(&self, whole: &PetscVec) -> Result<Option<Vec<PetscVec>>> {
         let each: Option<Vec<&Vec<PetscVec>>> = self.0.iter().map(|m| m.modes.as_ref()).collect();
         let Some(each) = each else {

@@ -1,11 +1,13 @@
-//! The smallest vertex cover of a bipartite graph: the smallest separator that a cut of a graph allows.
+//! The smallest vertex cover of a bipartite graph. It gives the smallest separator that a cut of a graph allows.
 //!
-//! By König's theorem it has as many vertices as a largest matching has edges. With Z all vertices that are reached from free left ones by
-//! paths that take edges of the matching from right to left alone, it is (left \ Z) ∪ (right ∩ Z).
+//! By König's theorem a smallest cover has as many vertices as a largest matching has edges. Let Z be the set of
+//! vertices that alternating paths reach from unmatched left vertices; an alternating path goes from right to left
+//! along matched edges only. Then (left \ Z) ∪ (right ∩ Z) is a smallest cover.
 
 const FREE: u32 = u32::MAX;
 
-/// Marks the cover on both sides; `edges` has the right neighbours of each left vertex. Without free left vertices it is the left side.
+/// Marks the cover on both sides; `edges` has the right neighbours of each left vertex. The cover is the left side
+/// where every left vertex is matched.
 pub fn smallest(edges: &[Vec<u32>], n_right: usize) -> (Vec<bool>, Vec<bool>) {
     let mut matching = Matching {
         edges,
@@ -14,7 +16,7 @@ pub fn smallest(edges: &[Vec<u32>], n_right: usize) -> (Vec<bool>, Vec<bool>) {
         visited: vec![FREE; n_right],
         round: 0,
     };
-    // What can be matched at once mostly is; the rest along augmenting paths.
+    // A greedy matching takes most vertices; augmenting paths add the rest.
     for (l, of) in edges.iter().enumerate() {
         let free = |r: &&u32| matching.of_right[**r as usize] == FREE;
         if let Some(&r) = of.iter().find(free) {
@@ -44,11 +46,12 @@ impl Matching<'_> {
         self.of_right[r as usize] = l as u32;
     }
 
-    /// Looks for a path from the free left vertex `start` to a free right one, breadth first, and swaps its edges.
+    /// Looks breadth first for an augmenting path from the unmatched left vertex `start`, and swaps its edges.
     fn augment(&mut self, start: usize) {
         let round = self.round;
         self.round += 1;
-        // Edges of paths: (left, right, edge before), and left vertices with the edge before them.
+        // The edges of the paths, as (left, right, previous edge), and the left vertices with the edge that led to
+        // them.
         let mut steps: Vec<(usize, u32, u32)> = Vec::new();
         let mut queue = vec![(start, FREE)];
         let mut head = 0;
@@ -68,7 +71,7 @@ impl Matching<'_> {
         }
     }
 
-    /// Matches along the path that ends with the last step.
+    /// Swaps matched and unmatched edges along the path that ends with the last step.
     fn swap(&mut self, steps: &[(usize, u32, u32)]) {
         let mut at = steps.len() - 1;
         loop {
@@ -90,7 +93,7 @@ impl Matching<'_> {
             left[l] = false;
             for &r in &self.edges[l] {
                 if !std::mem::replace(&mut right[r as usize], true) {
-                    // Matched, or there would be an augmenting path.
+                    // The vertex is matched, or there would be an augmenting path.
                     queue.push(self.of_right[r as usize] as usize);
                 }
             }

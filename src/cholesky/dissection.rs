@@ -1,10 +1,10 @@
 //! Nested dissection: the elimination tree of a subdomain's interior.
 //!
-//! The tree's nodes are the supernodes of the factorisation. A leaf is a small set eliminated as one dense front;
-//! an inner node is the separator of its two children. Cutting at the median of a coordinate gives orderings of
-//! METIS quality on boxes at no cost; without coordinates the breadth-first distance from a
-//! far node takes the coordinate's place. The separator is the smallest one that the cut allows (`cover.rs`): a layer of
-//! nodes, even if they have been moved and the cut runs to and fro between two layers.
+//! The tree's nodes are the supernodes of the factorisation. A leaf is a small set eliminated as one dense front; an
+//! inner node is the separator of its two children. Sets are cut at the median of a coordinate, which gives orderings
+//! of METIS quality on boxes at no cost. Without coordinates, sets are cut by the breadth-first distance from a far
+//! node. The separator is the smallest one that the cut allows (`cover.rs`): it is one layer of nodes, even where the
+//! mesh is distorted and the cut runs to and fro between two layers.
 
 use super::cover;
 use crate::linalg::csr::Csr;
@@ -65,7 +65,7 @@ impl Cutting<'_> {
             Some(cut) => cut,
             None => match self.cut_by_distance(&set) {
                 Some(cut) => cut,
-                // Nothing can be cut off (a dense block): one front for all.
+                // A dense block cannot be cut: the whole set is one front.
                 None => return self.finish(set),
             },
         };
@@ -77,9 +77,9 @@ impl Cutting<'_> {
         }
     }
 
-    /// Takes the fewest dofs out of both sides so that no edge goes from one to the other: (lower, upper, separator).
+    /// Takes the fewest dofs out of both sides such that no edge joins the two: (lower, upper, separator).
     fn separate(&mut self, lower: Vec<u32>, upper: Vec<u32>) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
-        // Dofs of `upper` that `lower` sees get numbers as they turn up.
+        // Dofs of `upper` that are neighbours of `lower` get numbers in the order in which they are found.
         let (unseen, first) = (self.next_part, self.next_part + 1);
         upper.iter().for_each(|&i| self.part[i as usize] = unseen);
         let (mut edges, mut layer, mut seen) = (Vec::new(), Vec::new(), Vec::new());
@@ -123,7 +123,7 @@ impl Cutting<'_> {
         self.out.supernodes.push(set);
     }
 
-    /// Halves the set at the median of its longest extent; `None` without coordinates or when all coincide.
+    /// Halves the set at the median of its longest extent; `None` without coordinates, or when all positions coincide.
     fn cut_by_coordinate(&self, set: &[u32]) -> Option<(Vec<u32>, Vec<u32>)> {
         let x = self.coordinates?;
         let axis_of = |axis: usize| {
@@ -161,7 +161,7 @@ impl Cutting<'_> {
         let far = *first.last().expect("the start itself is reached");
         let order = self.breadth_first(set, far);
         if order.len() < set.len() {
-            // Not connected: the component that was reached against the rest needs no separator.
+            // The set is not connected: no separator is needed between the component that was reached and the rest.
             let (reached, rest) = set
                 .iter()
                 .partition(|&&i| self.distance[i as usize] != NONE);

@@ -1,12 +1,13 @@
-//! Forward and backward substitution for several right-hand sides at once: what equal subdomains share.
+//! Forward and backward substitution for up to eight right-hand sides at once. Equal subdomains share a factor, and
+//! solve together.
 //!
-//! A single right-hand side waits for the factor to come from memory and uses each entry once. Here eight of them stand side by side, row by row,
-//! so that an entry of the factor meets eight numbers in one vector register after the other.
+//! With a single right-hand side, each entry of the factor is read from memory and used once. Here eight right-hand
+//! sides are stored side by side, row by row: each entry of the factor multiplies eight numbers in a vector register.
 
 use super::multifrontal::PartialCholesky;
 use super::panel;
 
-/// Right-hand sides that go together.
+/// Number of right-hand sides that are solved together.
 pub const LANES: usize = 8;
 
 type Lane = [f64; LANES];
@@ -22,21 +23,21 @@ fn scale(y: &mut Lane, by: f64) {
 }
 
 impl PartialCholesky {
-    /// [`forward`](Self::forward) of at most [`LANES`] vectors, each of length n, by dof.
+    /// Applies [`forward`](Self::forward) to at most [`LANES`] vectors, each of length n, by dof.
     pub fn forward_many(&self, columns: &mut [Vec<f64>]) {
         let mut x = self.gather(columns);
         self.lower_lanes(&mut x);
         self.scatter(&x, columns);
     }
 
-    /// [`backward`](Self::backward) of at most [`LANES`] vectors, each of length n, by dof.
+    /// Applies [`backward`](Self::backward) to at most [`LANES`] vectors, each of length n, by dof.
     pub fn backward_many(&self, columns: &mut [Vec<f64>]) {
         let mut x = self.gather(columns);
         self.upper_lanes(&mut x);
         self.scatter(&x, columns);
     }
 
-    /// [`solve`](Self::solve) of any number of vectors, each of length n, by dof.
+    /// Applies [`solve`](Self::solve) to any number of vectors, each of length n, by dof.
     pub fn solve_many(&self, columns: &mut [Vec<f64>]) {
         for lanes in columns.chunks_mut(LANES) {
             if let [one] = lanes {
@@ -119,7 +120,7 @@ impl PartialCholesky {
         }
     }
 
-    /// Rows in the order of elimination, columns side by side; unused lanes are zero.
+    /// Gathers the columns side by side, rows in the order of elimination; unused lanes are zero.
     fn gather(&self, columns: &[Vec<f64>]) -> Vec<Lane> {
         debug_assert!(columns.len() <= LANES);
         let mut x = vec![[0.0; LANES]; self.symbolic.n()];

@@ -1,4 +1,4 @@
-//! Sparse Cholesky factorisation with an interface that is kept: K = L Lᵀ down to the Schur complement S.
+//! Partial sparse Cholesky factorisation: the interior of a subdomain is eliminated, the Schur complement S is kept.
 //!
 //! ```text
 //!     pattern of K, interface ──dissection, cover──> order ──symbolic──> Symbolic (fronts)

@@ -7,9 +7,9 @@
 //!         [ L_ΓI   I  ] [     S ] [          I   ]
 //! ```
 //!
-//! The multifrontal method (Duff and Reid 1983): the elimination tree's nodes are dense fronts, a front's
-//! Schur complement is added into its parent's front, and what reaches the root is S itself. S is never
-//! factored here, so a singular (floating) subdomain needs no special treatment.
+//! The multifrontal method (Duff and Reid 1983): each node of the elimination tree is a dense front, and a front's
+//! Schur complement is added into its parent's front. The sum that reaches the root is S itself. S is never factored
+//! here, hence a singular (floating) subdomain needs no special treatment.
 
 use std::sync::Arc;
 
@@ -18,11 +18,11 @@ use super::symbolic::{Front, Symbolic};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::{self, Dense, Scratch};
 
-/// A pivot below this fraction of the diagonal entry it came from counts as zero: rounding leaves about 1e-16 times
-/// the number of updates, while a body held by a spring of 1e-8 of its stiffness still shows 1e-8.
+/// A pivot below this fraction of the diagonal entry it came from counts as zero. Rounding leaves about 1e-16 times the
+/// number of updates; a body held by a spring of 1e-8 of its stiffness has pivots of 1e-8.
 pub(crate) const SINGULAR: f64 = 1e-13;
 
-/// The interior block is singular: part of the subdomain touches neither a boundary condition nor the interface.
+/// The interior block is singular: part of the subdomain touches neither a Dirichlet boundary nor the interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SingularInterior {
     /// The dof whose pivot vanished.
@@ -43,7 +43,8 @@ impl PartialCholesky {
         Ok((PartialCholesky { symbolic, panels }, s))
     }
 
-    /// The same, but of the factor only what `inside` has, the inside of `symbolic`: it can [`solve`](Self::solve), not more.
+    /// The same, but stores only the part of the factor that `inside` lists: this part can
+    /// [`solve`](Self::solve), but not condense.
     pub fn inside(
         k: &Csr,
         symbolic: &Symbolic,
@@ -83,7 +84,7 @@ impl PartialCholesky {
     }
 }
 
-/// The panels that `kept` has room for, and S.
+/// Returns S and the panels of the fronts in `kept`.
 fn factor(k: &Csr, sym: &Symbolic, kept: &Symbolic) -> Result<(Vec<f64>, Dense), SingularInterior> {
     let mut s = schur_start(k, sym);
     let mut panels = vec![0.0; kept.storage];
@@ -148,7 +149,7 @@ fn factor(k: &Csr, sym: &Symbolic, kept: &Symbolic) -> Result<(Vec<f64>, Dense),
     Ok((panels, s))
 }
 
-/// K_ΓΓ on the lower triangle.
+/// The lower triangle of K_ΓΓ, where S starts.
 fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
     let n = sym.interface.len();
     let offset = sym.n_interior() as u32;
@@ -165,7 +166,7 @@ fn schur_start(k: &Csr, sym: &Symbolic) -> Dense {
     s
 }
 
-/// Adds a child's update (lower triangle) into its parent's front, split into panel and update.
+/// Adds a child's update (lower triangle) into its parent's front, which consists of a panel and an update.
 fn extend_add(panel: &mut Dense, update: &mut Dense, map: &[u32], child: &[f64]) {
     let n = map.len();
     let width = panel.cols;
@@ -197,7 +198,7 @@ fn add_lower(s: &mut Dense, map: &[u32], update: &[f64]) {
     }
 }
 
-/// Factors the pivot block, scales the rows below it and updates the rest; `Err(j)` where pivot j vanishes.
+/// Factors the pivot block, scales the rows below it and updates the rest; returns `Err(j)` if pivot j vanishes.
 fn factor_front(
     panel: &mut Dense,
     update: &mut Dense,

@@ -1,9 +1,10 @@
-//! How the panel of a front lies in memory: columns in groups of four, each group from its first pivot's row on.
+//! The memory layout of a front's panel: columns come in groups of four, and each group starts with the row of its
+//! first pivot.
 //!
-//! What is above the pivots is zero and not stored, but for the triangles inside the groups; columns of a group are equally long, so that the
-//! four go through memory side by side.
+//! Entries above the pivots are zero and are not stored, except for the triangles inside the groups. The columns of a
+//! group have equal length: the kernels read four columns side by side.
 
-/// Columns that go together.
+/// Number of columns in a group.
 pub const COLUMNS: usize = 4;
 
 /// Start of the group whose first column is `j`, a multiple of four, in a panel of `size` rows.

@@ -1,12 +1,13 @@
 //! Forward and backward substitution for one right-hand side.
 //!
-//! Every front works on one dense vector [x; w]: x at its pivots, w at the rows below them. Four columns of the panel at a time meet the whole
-//! of what is below their own rows, so that the vector is read and written once for four, and the panel once at all.
+//! Every front works on one dense vector [x; w]: x at its pivots, w at the rows below them. Four columns of the panel
+//! are applied together to all rows below them. The vector is read and written once for four columns, the panel is read
+//! once.
 
 use super::multifrontal::PartialCholesky;
 use super::panel::{self, COLUMNS};
 
-/// Partial sums of a product: two vector registers for each column.
+/// Number of partial sums of a product: two vector registers for each column.
 const SUMS: usize = 8;
 
 impl PartialCholesky {
@@ -139,7 +140,7 @@ fn substitute(panel: &[f64], width: usize, work: &mut [f64]) {
     }
 }
 
-/// Of the `n` pivots of a group: divisions that do not wait for each other.
+/// The reciprocals of the `n` pivots of a group, computed first: these divisions do not depend on each other.
 fn reciprocals(group: &[f64], rows: usize, n: usize) -> [f64; COLUMNS] {
     let mut out = [0.0; COLUMNS];
     for (k, out) in out.iter_mut().enumerate().take(n) {
@@ -148,14 +149,14 @@ fn reciprocals(group: &[f64], rows: usize, n: usize) -> [f64; COLUMNS] {
     out
 }
 
-/// Entries that go together: two vector registers.
+/// A fixed number of entries that are processed together: two vector registers.
 type Lot = [f64; SUMS];
 
 fn lot(values: &[f64], at: usize) -> &Lot {
     values[at..at + SUMS].try_into().expect("as long")
 }
 
-/// y ← y + Σ x_k column_k. Written by lots of a fixed length, which the compiler turns into vector instructions.
+/// y ← y + Σ x_k column_k, in lots of fixed length, which the compiler vectorises.
 fn add_columns([l0, l1, l2, l3]: [&[f64]; COLUMNS], x: [f64; COLUMNS], y: &mut [f64]) {
     let whole = y.len() - y.len() % SUMS;
     for at in (0..whole).step_by(SUMS) {
@@ -199,7 +200,7 @@ mod tests {
     use super::*;
     use crate::linalg::testing::random;
 
-    /// Columns of a panel of `width` columns and `size` rows, their diagonal large.
+    /// The columns of a panel with `width` columns and `size` rows and a large diagonal.
     fn columns(width: usize, size: usize) -> Vec<f64> {
         let mut columns = random(width * size, (width + 31 * size) as u64);
         (0..width).for_each(|j| columns[j * size + j] += 3.0);

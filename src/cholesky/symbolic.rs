@@ -4,23 +4,24 @@ use super::dissection::nested_dissection;
 use super::panel;
 use crate::linalg::csr::Csr;
 
-/// What is kept of [L_II; L_ΓI].
+/// The part of [L_II; L_ΓI] that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
-    /// All of it: condensing a load and recovering a solution are half a solve each.
+    /// All of it: condensing a load and recovering a solution each cost half a solve.
     Boundary,
-    /// L_II: they are a whole solve each, in three quarters of the memory in the plane and in a quarter of it in space.
+    /// L_II alone: they each cost a whole solve, in three quarters of the memory in the plane and a quarter of it in
+    /// space.
     Interior,
 }
 
-/// What depends on the pattern alone: elimination order, fronts, index maps.
+/// The symbolic factorisation, which depends on the pattern alone: elimination order, fronts, index maps.
 #[derive(Debug)]
 pub struct Symbolic {
     /// Interior dofs in elimination order.
     pub(crate) interior: Vec<u32>,
     /// Interface dofs in the order of S.
     pub(crate) interface: Vec<u32>,
-    /// Position of each dof in [interior, interface]: what a factorisation reads; empty where solves alone are asked for.
+    /// Position of each dof in [interior, interface]. The factorisation needs it; empty if the factor only solves.
     pub(crate) position: Vec<u32>,
     pub(crate) fronts: Vec<Front>,
     /// Length of all panels together.
@@ -34,7 +35,7 @@ pub(crate) struct Front {
     pub(crate) end: usize,
     /// Positions below the pivot block, increasing.
     pub(crate) below: Vec<u32>,
-    /// The front that takes this one's update; `None`: S does.
+    /// The front that receives this one's update; `None`: S receives it.
     pub(crate) parent: Option<usize>,
     /// Place of each entry of `below` in the parent's front (or in S).
     pub(crate) into_parent: Vec<u32>,
@@ -52,7 +53,7 @@ impl Front {
 }
 
 impl Symbolic {
-    /// Analyses the pattern of `k`; `interface` lists the dofs that are kept, in the order wanted for S.
+    /// Analyses the pattern of `k`; `interface` lists the interface dofs in the order wanted for S.
     pub fn new(k: &Csr, interface: &[u32], coordinates: Option<&[[f64; 3]]>) -> Symbolic {
         let n = k.n();
         let mut kept = vec![false; n];
@@ -62,7 +63,7 @@ impl Symbolic {
         Symbolic::with_supernodes(k, interface, &supernodes)
     }
 
-    /// The same for a given order of the interior: sets of dofs in the order of elimination, each to be one front.
+    /// The same for a given order of the interior: each set of dofs becomes one front, in the order of elimination.
     pub fn with_supernodes(k: &Csr, interface: &[u32], supernodes: &[Vec<u32>]) -> Symbolic {
         let n = k.n();
         let interior: Vec<u32> = supernodes.iter().flatten().copied().collect();
@@ -139,8 +140,8 @@ impl Symbolic {
         }
     }
 
-    /// Of a factor that was made elsewhere: fronts as (first column, number of columns, rows below), the columns of all of them together
-    /// being the interior. Good for solves alone.
+    /// The structure of a factor that another library computed. Each front is given as (first column, number of
+    /// columns, rows below); the columns of all fronts form the interior. It serves solves only.
     pub(crate) fn of_factor(
         interior: Vec<u32>,
         interface: &[u32],
@@ -170,7 +171,7 @@ impl Symbolic {
         }
     }
 
-    /// The same without the rows of the interface: what is left of a factor that solves with K_II alone.
+    /// The same without the rows of the interface: the structure of a factor that solves with K_II alone.
     pub(crate) fn inside(&self) -> Symbolic {
         let n = self.n_interior() as u32;
         let fronts = self.fronts.iter().map(|front| {
@@ -204,7 +205,7 @@ impl Symbolic {
         self.fronts.iter().map(of).sum()
     }
 
-    /// Entries of the factor.
+    /// Number of entries of the factor.
     pub fn factor_entries(&self, keep: Keep) -> usize {
         let n = self.n_interior() as u32;
         let of = |front: &Front| {

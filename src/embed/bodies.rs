@@ -1,4 +1,5 @@
-//! Bodies: subdomains that are held together, grouped as the user says or by a partition of their graph ([`partition`](super::partition)).
+//! Bodies: groups of subdomains that are connected by primal constraints. The user names the groups, or a partition of
+//! the subdomain graph finds them ([`partition`](super::partition)).
 
 use super::hold::Bond;
 use super::parts::Part;
@@ -9,10 +10,10 @@ use crate::{Error, Result};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-/// Subdomains per body that a partition aims at where nothing is said.
+/// Default number of subdomains per body of a partition.
 const USUAL: usize = 8;
 
-/// How subdomains become bodies.
+/// How subdomains are grouped into bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grouping {
     /// One body for every eight subdomains.
@@ -22,7 +23,7 @@ pub enum Grouping {
 }
 
 impl Grouping {
-    /// The number of bodies that `n` subdomains are to form.
+    /// The number of bodies for `n` subdomains.
     pub fn bodies(self, n: usize) -> usize {
         match self {
             Grouping::Auto => n.div_ceil(USUAL),
@@ -31,10 +32,11 @@ impl Grouping {
     }
 }
 
-/// Gives every part the body that most of its dofs name, the lowest of several. `numbers` has the body of each global dof. Collective.
+/// Assigns to every part the body that most of its dofs name; in a tie, the lowest. `numbers` has the body of each
+/// global dof. Collective.
 ///
 /// # Errors
-/// A number that no body has.
+/// A body number that is not valid.
 pub fn by_most_dofs(
     session: &Session,
     numbers: &PetscVec,
@@ -62,10 +64,9 @@ pub fn by_most_dofs(
     Ok(())
 }
 
-/// The groups that the host named; `None` where it named none.
+/// The groups that the host named; `None` if it named none.
 ///
-/// # Errors
-/// Bodies named for some subdomains and not for others.
+/// # Errors The host named bodies for some subdomains but not for all.
 pub fn named_groups(named: &[Option<u64>]) -> Result<Option<Vec<u64>>> {
     if named.iter().all(Option::is_none) {
         return Ok(None);
@@ -87,7 +88,7 @@ pub fn named_groups(named: &[Option<u64>]) -> Result<Option<Vec<u64>>> {
 
 /// The body of every subdomain, numbered from 0 by lowest subdomain.
 ///
-/// A group that is not in one piece becomes several bodies: it takes bonds that hold to make one.
+/// A group that is not connected through bonds that hold becomes several bodies.
 pub fn bodies(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
     let mut sets = UnionFind::new(group.len());
     let joins = |b: &&Bond| b.holds && group[b.low] == group[b.high];
@@ -97,7 +98,7 @@ pub fn bodies(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
     let mut next = 0..;
     let mut body_of: Vec<usize> = Vec::with_capacity(group.len());
     for s in 0..group.len() {
-        // The lowest of a set names it, and stands before the others.
+        // The representative of a set is its lowest member, which comes before the others.
         let body = match sets.find(s) {
             lowest if lowest < s => body_of[lowest],
             _ => next.next().expect("numbers do not end"),

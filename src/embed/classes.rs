@@ -1,7 +1,7 @@
-//! Vertices, edges and faces: dofs of one component that the same subdomains hold, in connected pieces.
+//! Vertices, edges and faces. A class is a connected set of dofs of one component that the same subdomains share.
 //!
-//! Two dofs are connected where the matrix of some subdomain connects their nodes. A subdomain sees only its own side of a face: the
-//! sides are put together by a rank that follows from the list of subdomains.
+//! Two dofs are connected if the matrix of some subdomain couples their nodes. A subdomain sees only its own side of a
+//! face; one rank, determined by the list of subdomains, merges the sides.
 
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -17,21 +17,21 @@ use mpi::traits::Communicator;
 /// A connected piece of interface, as one of its subdomains sees it.
 #[derive(Debug, Clone)]
 pub struct Class {
-    /// The lowest global dof of it; no other class has that.
+    /// The lowest global dof of the class, which identifies it.
     pub root: u32,
-    /// The subdomains that hold it, of all bodies, increasing.
+    /// The subdomains that share it, of all bodies, increasing.
     pub sharers: Vec<u32>,
     /// Local dofs, increasing.
     pub dofs: Vec<u32>,
 }
 
 impl Class {
-    /// A single dof where three subdomains or more meet.
+    /// Whether the class is a single dof shared by three or more subdomains.
     pub fn is_vertex(&self) -> bool {
         self.dofs.len() == 1 && self.sharers.len() > 2
     }
 
-    /// What it is otherwise. In the plane, lines are all there is, and they count as edges.
+    /// The kind of a class that is no vertex. In the plane, the interfaces between two subdomains count as edges.
     pub fn kind(&self, space: bool) -> EntityKind {
         if space && self.sharers.len() == 2 {
             EntityKind::Face
@@ -50,7 +50,7 @@ pub fn classes(
 ) -> Vec<Vec<Class>> {
     let comm = session.comm();
     let size = comm.size() as usize;
-    // Local guesses: lists of (dofs of a locally connected piece, where to ask).
+    // Local candidates: lists of (rank that merges the sides, dofs of a locally connected piece).
     let mut guesses: Vec<Vec<(usize, Vec<u32>)>> = Vec::new();
     let mut asked: Vec<Vec<u64>> = vec![Vec::new(); size];
     for part in parts {
@@ -106,7 +106,8 @@ pub fn classes(
     out
 }
 
-/// Whether the subdomains lie in space, as far as the interfaces tell: somewhere three or more of them meet along a line. Collective.
+/// Whether the problem is three-dimensional, judged from the interfaces: somewhere three or more subdomains share a
+/// line of dofs. Collective.
 pub fn in_space(session: &Session, classes: &[Vec<Class>]) -> bool {
     let line = |c: &Class| c.sharers.len() > 2 && c.dofs.len() > 1;
     let mut found = [f64::from(u8::from(classes.iter().flatten().any(line)))];
@@ -130,7 +131,7 @@ fn connected(torn: &Torn, part: &Part, sharers: &Sharers) -> Vec<Vec<u32>> {
         let mut dofs = Vec::new();
         while let Some(i) = stack.pop() {
             dofs.push(i as u32);
-            // Any component may connect two nodes: go by the dofs of this node to those of the next.
+            // Nodes are coupled if any of their components are: checks all dofs of this node.
             for k in of_node(torn, part, i) {
                 for &j in part.k.row(k).0 {
                     for l in of_node(torn, part, j as usize) {
@@ -167,7 +168,7 @@ fn find(above: &mut HashMap<u32, u32>, dof: u32) -> u32 {
     while let Some(&up) = above.get(&root).filter(|&&up| up != root) {
         root = up;
     }
-    // Shortens the way for the next one.
+    // Path compression.
     above.insert(dof, root);
     root
 }

@@ -1,7 +1,8 @@
-//! Rows that the host adds to what it assembled: contact between bodies, obstacles, equations.
+//! Rows that the host adds to the assembled problem: contact between bodies, obstacles, equations.
 //!
-//! The host names global dofs, the method names dofs of bodies, and wants rows that share one on the same rank. So all ranks see all
-//! rows (there are few: they live on surfaces), find the blocks, and the rank that follows from a block's lowest dof takes it.
+//! The host numbers global dofs, the method numbers body dofs. The method also wants rows that share a dof on the same
+//! rank. Therefore all ranks see all rows (there are few, as they belong to surfaces) and find the blocks of connected
+//! rows; the lowest dof of a block determines the rank that takes it.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -18,25 +19,25 @@ use crate::{Error, Result};
 struct Taken {
     /// The rank that gave it, and its number among the rows given there.
     from: (usize, usize),
-    /// What the method gets.
+    /// The row as the method gets it.
     row: InterfaceRow,
-    /// (global dof, coefficient) of its terms that are known beforehand.
+    /// (global dof, coefficient) pairs of its terms at known dofs.
     known: Vec<(u32, f64)>,
 }
 
-/// The host's rows, dealt out.
+/// The host's rows, distributed over the ranks.
 #[derive(Default)]
 pub struct Contact {
     taken: Vec<Taken>,
-    /// The block of every unknown that rows touch, by global dof: its lowest dof.
+    /// The block of every unknown that appears in a row, by global dof. A block is named by its lowest dof.
     block: HashMap<u32, u32>,
     /// Rows that this rank gave.
     n_given: usize,
-    /// Whether some row anywhere has a known term.
+    /// Whether a row on any rank has a term at a known dof.
     some_known: bool,
-    /// Rows over all ranks.
+    /// Number of rows over all ranks.
     n_global: usize,
-    /// Whether one of them is an inequality.
+    /// Whether any row is an inequality.
     inequalities: bool,
 }
 
@@ -48,14 +49,14 @@ struct Seen {
     terms: Vec<(u32, f64)>,
 }
 
-/// A known dof among those that rows touch.
+/// Marks a known dof among the dofs of rows.
 const KNOWN: u64 = u64::MAX;
 
 impl Contact {
-    /// Deals the rows out; `body_of` has the body of every local part. Collective.
+    /// Distributes the rows; `body_of` has the body of every local part. Collective.
     ///
     /// # Errors
-    /// A row that names a dof of no subdomain; the same on all ranks.
+    /// A row with a dof that no subdomain has; the same error on all ranks.
     pub fn new(
         session: &Session,
         torn: &Torn,
@@ -88,7 +89,7 @@ impl Contact {
         for row in seen {
             type Terms = Vec<(u32, f64)>;
             let (unknown, known): (Terms, Terms) = row.terms.iter().partition(|t| free(&t.0));
-            // A row without unknowns holds or does not: nothing here can change that.
+            // A row without unknowns is left out: the solver cannot influence whether it holds.
             let Some(first) = unknown.first() else {
                 continue;
             };
@@ -114,12 +115,12 @@ impl Contact {
         Ok(out)
     }
 
-    /// The block of a global dof that rows touch.
+    /// The block of a global dof, if a row contains the dof.
     pub fn block(&self, dof: u32) -> Option<u32> {
         self.block.get(&dof).copied()
     }
 
-    /// Rows over all ranks.
+    /// Number of rows over all ranks.
     pub fn n_global(&self) -> usize {
         self.n_global
     }
@@ -139,7 +140,8 @@ impl Contact {
         self.taken.iter().map(|t| t.row.clone())
     }
 
-    /// Right-hand sides of this rank's rows for given values of the known dofs (by global dof; those of this rank's subdomains). Collective.
+    /// Right-hand sides of this rank's rows, with the terms at known dofs moved there. `values` has the values of the
+    /// known dofs of this rank's subdomains, by global dof. Collective.
     pub fn gaps(&self, session: &Session, values: &HashMap<u32, f64>) -> Vec<f64> {
         if !self.some_known {
             return self.taken.iter().map(|t| t.row.gap).collect();
@@ -161,7 +163,7 @@ impl Contact {
         self.taken.iter().map(gap).collect()
     }
 
-    /// What belongs to this rank's rows, brought back to the ranks that gave them; zero for rows without unknowns. Collective.
+    /// Returns one number per row, `mine`, to the ranks that gave the rows; zero for rows without unknowns. Collective.
     pub fn back(&self, session: &Session, mine: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
         for (t, v) in self.taken.iter().zip(mine) {
@@ -178,7 +180,7 @@ impl Contact {
     }
 }
 
-/// What is known of the row with number `number`: the bodies and the unknowns on its sides.
+/// The label of row `number`: its bodies and the unknowns on its two sides.
 fn label(number: usize, unknown: &[(u32, f64)], owner: &HashMap<u32, u64>) -> RowLabel {
     let nodes = unknown.iter().map(|&(dof, _)| BodyNode {
         body: owner[&dof] as usize,
@@ -231,7 +233,7 @@ fn everywhere(session: &Session, torn: &Torn) -> Vec<Seen> {
     seen
 }
 
-/// For every dof that rows touch the lowest body that holds it (others are tied to that one), or [`KNOWN`].
+/// For every dof in a row, the lowest body that has it (the other bodies are tied to that one), or [`KNOWN`].
 fn lowest_bodies(
     session: &Session,
     seen: &[Seen],
@@ -261,7 +263,7 @@ fn lowest_bodies(
     lowest
 }
 
-/// The lowest dof of each set of unknowns that rows connect.
+/// Maps every unknown in a row to the lowest dof of its block of connected rows.
 fn blocks(seen: &[Seen], free: impl Fn(&u32) -> bool) -> HashMap<u32, u32> {
     let unknowns = |row: &Seen| row.terms.iter().map(|t| t.0).filter(&free).collect();
     let rows: Vec<Vec<u32>> = seen.iter().map(unknowns).collect();

@@ -1,8 +1,9 @@
-//! Constraints enough: no subdomain may move against a neighbour in its body while vertices and averages agree.
+//! Additional primal constraints: enough that no subdomain can move rigidly against a neighbour in its body.
 //!
-//! The motions in question are those that cost no energy. Where two subdomains share a face, its vertices and the averages over its edges must see all of
-//! them; where they do not, the average over the face itself becomes a constraint, and after that nodes of the face, each the one that sees most of what is
-//! still loose (which spreads them).
+//! Only motions without energy matter. If two subdomains share a face, its vertices and the averages over its edges
+//! must detect all of these motions. If they do not, the average over the face becomes a constraint. If that is still
+//! not enough, nodes of the face are added one by one; each is the node that moves most in the motions not yet
+//! detected, which spreads the nodes.
 
 use std::collections::BTreeSet;
 
@@ -24,34 +25,36 @@ pub struct Bond {
     pub high: usize,
     /// Dofs in common.
     pub shared: usize,
-    /// Whether the common dofs leave no motion between them.
+    /// Whether equality at the common dofs excludes every rigid motion between the two.
     pub holds: bool,
 }
 
-/// What a constraint must see of a motion of order one to count.
+/// An average counts as a constraint if it detects at least this much of a motion (of order one) that the
+/// constraints before it do not detect.
 const SEEN: f64 = 0.1;
 
-/// Where the constraints see less than this of what a motion does to the face, one more node of it is held.
+/// A motion of the face is poorly detected if no constraint sees this fraction of its largest value. Then one more node
+/// is constrained.
 const WELL_SEEN: f64 = 0.5;
 
-/// What is less than this cannot be seen.
+/// Values below this count as zero.
 const LOOSE: f64 = 1e-6;
 
-/// More motions than this are no rigid ones.
+/// With more motions than this, they are not taken for rigid body motions.
 const MANY: usize = 12;
 
-/// The motions of the subdomains, and what holds them.
+/// The motions without energy of the subdomains, and the number of nodes that exclude them.
 pub struct Motions {
     /// An orthogonal basis in every part, entries of order one.
     bases: Vec<Columns>,
     /// Components of the field.
     components: usize,
-    /// Nodes that hold a motion besides, where rotations are possible but not known.
+    /// Number of nodes needed to exclude all motions: more than one where rotations are possible but not known.
     nodes: usize,
 }
 
 impl Motions {
-    /// From the motions that are known, or from what the number of components suggests.
+    /// Takes the known motions, else the constants of each component.
     pub fn new(torn: &Torn, parts: &[Part], known: Option<&[Columns]>) -> Motions {
         let constants = |part: &Part| -> Columns {
             let one = |c: usize| {
@@ -121,8 +124,8 @@ impl Motions {
         words.chunks_exact(2).map(bond).collect()
     }
 
-    /// What has to be constrained besides vertices and the averages of `primal`: pairs of subdomains whose common faces are averaged, the
-    /// same on every rank, and dofs of every local subdomain. Collective.
+    /// The constraints needed besides vertices and the averages of `primal`: pairs of subdomains whose common faces are
+    /// averaged (the same on every rank), and dofs of every local subdomain. Collective.
     pub fn missing(
         &self,
         session: &Session,
@@ -202,7 +205,8 @@ impl Motions {
         (averaged.iter().map(pair).collect(), nodes)
     }
 
-    /// Where rotations are known: the dof of `dofs` that moves most in the motion that `held` sees least of, if that is little.
+    /// Finds the motion that the constraints `held` detect worst. If they detect it poorly, returns the dof of `dofs`
+    /// that moves most in it. Applies only if rotations are known.
     fn badly_seen(&self, j: usize, dofs: &[u32], held: &[Vec<f64>]) -> Option<u32> {
         let k = self.bases[j].len();
         if k <= self.components || k > MANY {
@@ -217,7 +221,7 @@ impl Motions {
                 }
             }
         }
-        // Motions of unit size on the face, and what is seen of them.
+        // Motions of unit size on the face, and the value of a constraint for a motion.
         let motions = combinations(&gram, k);
         let seen =
             |row: &Vec<f64>, c: &[f64]| -> f64 { row.iter().zip(c).map(|(r, c)| r * c).sum() };
@@ -248,7 +252,7 @@ impl Motions {
         (most < WELL_SEEN * moves(&best)).then_some(best)
     }
 
-    /// What dof `i` of part `j` sees of the motions.
+    /// The values of all motions at dof `i` of part `j`.
     fn row(&self, j: usize, i: u32) -> Vec<f64> {
         self.bases[j].iter().map(|x| x[i as usize]).collect()
     }
@@ -262,17 +266,17 @@ impl Motions {
     }
 }
 
-/// What is decided before constraints are chosen.
+/// Decisions that precede the choice of constraints.
 pub struct Shape {
     /// Body of every subdomain.
     pub body_of: Vec<usize>,
-    /// Whether faces are more than lines.
+    /// Whether the problem is three-dimensional.
     pub space: bool,
     /// Constraints that the user wants.
     pub primal: Primal,
 }
 
-/// An orthonormal basis of the motions that are seen.
+/// An orthonormal basis of the detected motions.
 #[derive(Default)]
 struct Span(Vec<Vec<f64>>);
 
@@ -312,12 +316,13 @@ fn same_node(torn: &Torn, part: &Part, i: u32, j: u32) -> bool {
     torn.node(part.dofs[i as usize]) == torn.node(part.dofs[j as usize])
 }
 
-/// Nodes among increasing global dofs.
+/// Number of nodes among increasing global dofs.
 fn n_nodes(torn: &Torn, dofs: &[u32]) -> usize {
     dofs.chunk_by(|a, b| torn.node(*a) == torn.node(*b)).count()
 }
 
-/// Dofs of `dofs` to add to `points` until there are `wanted`, each as far as can be, by the graph of the matrix, from those that are there.
+/// Adds dofs of `dofs` to `points` until there are `wanted`. Each is as far as possible from the previous ones, in the
+/// graph of the matrix.
 fn spread(torn: &Torn, part: &Part, dofs: &[u32], points: &[u32], wanted: usize) -> Vec<u32> {
     let mut there: Vec<u32> = points.to_vec();
     there.dedup_by(|a, b| same_node(torn, part, *a, *b));

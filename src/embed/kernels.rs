@@ -1,4 +1,5 @@
-//! Motions that cost no energy: the host's vectors on the subdomains, checked, and a good basis of them for every body.
+//! Motions without energy: the host's vectors restricted to subdomains, checked, and an orthogonal basis for every
+//! body.
 
 use super::parts::Part;
 use crate::parallel::exchange::{max_all, sum_all};
@@ -6,17 +7,18 @@ use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
-/// Rows whose terms cancel to less than this are rows of a free subdomain.
+/// A row annihilates a vector if its terms cancel to less than this fraction.
 const CANCELS: f64 = 1e-9;
 
-/// Vectors that are this much shorter after orthogonalisation depend on the others.
+/// A vector is linearly dependent if orthogonalisation shortens it to less than this fraction.
 const DEPENDENT: f64 = 1e-8;
 
 /// Columns of one subdomain, by local dof.
 pub type Columns = Vec<Vec<f64>>;
 
-/// The host's vectors at the dofs of every part; `None` where there are none, or where they are no kernels: a part without boundary
-/// conditions whose matrix does not map them to zero (rotations across the seam of a periodic body, a term of order zero). Collective.
+/// The host's vectors at the dofs of every part; `None` if there are none or if they are not kernels. They are not if
+/// some part without boundary conditions has a matrix that does not map them to zero (rotations across the seam of a
+/// periodic body, a term of order zero). Collective.
 pub fn modes(
     session: &Session,
     vectors: Option<&[PetscVec]>,
@@ -55,7 +57,7 @@ fn annihilates(part: &Part, columns: &Columns) -> bool {
     })
 }
 
-/// An orthogonal basis of the span of columns, entries of order one.
+/// An orthogonal basis of the span of the columns, with entries of order one.
 pub fn orthogonal(columns: &Columns) -> Columns {
     let mut rest = columns.clone();
     let mut out: Columns = Vec::new();
@@ -75,7 +77,7 @@ pub fn orthogonal(columns: &Columns) -> Columns {
         };
         let length = norm(&rest[best]);
         let q: Vec<f64> = rest[best].iter().map(|v| v / length).collect();
-        // Twice is enough.
+        // Two passes of Gram-Schmidt are enough.
         for _ in 0..2 {
             for x in &mut rest {
                 let part: f64 = x.iter().zip(&q).map(|(x, q)| x * q).sum();
@@ -89,8 +91,8 @@ pub fn orthogonal(columns: &Columns) -> Columns {
     out
 }
 
-/// Replaces the columns of every part by combinations that are orthogonal over the whole body, entries of order one; the same combinations in
-/// all parts of a body. Collective.
+/// Replaces the columns of every part by combinations that are orthogonal over the whole body, with entries of order
+/// one. All parts of a body use the same combinations. Collective.
 pub fn over_bodies(session: &Session, body_of: &[usize], n_bodies: usize, columns: &mut [Columns]) {
     let mut k = [columns.iter().map(Vec::len).max().unwrap_or(0) as f64];
     max_all(session.comm(), &mut k);
@@ -113,7 +115,7 @@ pub fn over_bodies(session: &Session, body_of: &[usize], n_bodies: usize, column
     }
 }
 
-/// Columns c with cᵀ (Gram matrix) c = 1, orthogonal in it.
+/// Coefficient vectors c that are orthonormal in the Gram matrix: cᵀ (Gram matrix) c = 1.
 pub(super) fn combinations(gram: &[f64], k: usize) -> Columns {
     let length = |a: usize| match gram[a + a * k] {
         d if d > 0.0 => d.sqrt(),

@@ -1,12 +1,13 @@
-//! From matrices that other programs assembled, subdomain by subdomain, to [`Substructures`](crate::Substructures), and back.
+//! From subdomain matrices that other programs assembled to [`Substructures`](crate::Substructures), and back.
 //!
 //! ```text
 //! MATIS ─> Torn ─> states ─> parts ─> sharing ─> bodies ─> classes, hold ─> Substructures ─> FetiFeti
 //! ```
 //!
-//! A host program knows dofs by their global numbers and has one matrix per subdomain. What the method wants besides is
-//! found here from the matrices and the numbers: which dofs are held (`states`), who shares what (`sharing`), which subdomains form a body
-//! (`bodies`), rows between bodies and the host's own (`rows`, `contact`), vertices, edges and faces (`classes`), and constraints enough that no subdomain is loose (`hold`).
+//! A host program knows dofs by their global numbers and has one matrix per subdomain. The other data of the method are
+//! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), bodies (`bodies`),
+//! the rows of B_gl that tie bodies (`rows`) and those of the host (`contact`), vertices, edges and faces (`classes`),
+//! and enough primal constraints that no subdomain floats in its body (`hold`).
 
 pub(crate) mod bodies;
 pub(crate) mod classes;

@@ -1,7 +1,7 @@
-//! Groups of subdomains where the host names none: a partition of their graph, whose edges are the dofs in common.
+//! Groups of subdomains where the host names none: a partition of the subdomain graph, weighted by common dofs.
 //!
-//! The graph is small, one vertex for each subdomain, and known to all ranks: the first one partitions it, so that the groups do not depend on how
-//! subdomains are spread over ranks.
+//! The graph is small (one vertex for each subdomain) and known to all ranks. The first rank partitions it: the groups
+//! do not depend on the distribution of subdomains over ranks.
 
 use super::bodies::bodies;
 use super::hold::Bond;
@@ -9,9 +9,10 @@ use crate::parallel::exchange::sum_all;
 use crate::petsc::{partition as by_petsc, Options, Session};
 use crate::Result;
 
-/// `parts` groups of about equal size: by PETSc's MatPartitioning of the type that `-<prefix>mat_partitioning_type` names. Without this option there are three
-/// candidates, that of PT-Scotch (where PETSc has it) and two that are grown here; the one with the right number of connected groups and the least in common
-/// between them is taken, since long groups are held badly by their neighbours. Collective.
+/// `parts` groups of about equal size. If the option `-<prefix>mat_partitioning_type` is set, PETSc's MatPartitioning
+/// of this type makes them. Otherwise there are three candidates: PT-Scotch (where PETSc has it), and two that grow
+/// groups here. Among candidates with the right number of connected groups, the one with the fewest dofs in common
+/// between groups is taken, since neighbours constrain an elongated group only weakly. Collective.
 ///
 /// # Errors
 /// PETSc's own.
@@ -41,7 +42,7 @@ pub fn partition(
         (n_bodies.abs_diff(parts), cut.map(|b| b.shared).sum())
     };
     let best = candidates.into_iter().min_by_key(score);
-    // The other ranks have candidates of their own, and take the first one's choice.
+    // The other ranks also have candidates, but take the first rank's choice.
     let mut words: Vec<f64> = match best {
         Some(group) if session.rank() == 0 => group.iter().map(|&g| g as f64).collect(),
         _ => vec![0.0; n],
@@ -68,7 +69,8 @@ fn graph(n: usize, bonds: &[Bond]) -> (Vec<i32>, Vec<i32>, Vec<i32>) {
     (row, col, weight)
 }
 
-/// Groups grown one after the other from a corner of what is left: by what has most in common with the group, or in rings around its first.
+/// Grows groups one after the other from a corner of the remaining graph. The next subdomain is the one with most dofs
+/// in common with the group, or with `rings` the one nearest to the group's first.
 fn grown(n: usize, bonds: &[Bond], parts: usize, rings: bool) -> Vec<u64> {
     let mut near: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
     for bond in bonds.iter().filter(|b| b.holds) {
@@ -83,7 +85,8 @@ fn grown(n: usize, bonds: &[Bond], parts: usize, rings: bool) -> Vec<u64> {
         let mut steps = vec![usize::MAX; n];
         for _ in 0..size {
             let open = (0..n).filter(|&s| group[s] == u64::MAX);
-            // Reached at all, or a new start; the ring; many dofs in common with the group, few with the rest; the lowest number.
+            // Sort key: reached or a new start; the ring; many dofs in common with the group, few with the rest; the
+            // lowest number.
             let rank = |&s: &usize| {
                 let free = near[s].iter().filter(|(t, _)| group[*t] == u64::MAX);
                 let rest: usize = free.map(|(_, w)| w).sum();
@@ -153,7 +156,7 @@ mod tests {
 
     #[test]
     fn groups_are_round() {
-        // Also where corners hold nothing, as in elasticity.
+        // The partition must also succeed if corners hold nothing, as in elasticity.
         let mut bonds = grid(4, 4);
         bonds.iter_mut().for_each(|b| b.holds = b.shared > 1);
         let group = parted(16, &bonds, 4);

@@ -1,4 +1,4 @@
-//! Subdomains: the connected parts of the pieces, without known dofs.
+//! Subdomains: the connected parts of the pieces, restricted to unknown dofs.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ use super::torn::Torn;
 use crate::linalg::csr::Csr;
 use crate::{Error, Result};
 
-/// Entries (i, j) and (j, i) may differ by this much of the diagonal.
+/// Largest difference of entries (i, j) and (j, i), relative to the diagonal.
 const SYMMETRIC: f64 = 1e-9;
 
 /// The number of a global dof as one body sees it.
@@ -16,25 +16,25 @@ pub fn body_dof(n_global: usize, body: usize, dof: u32) -> u64 {
     body as u64 * n_global as u64 + u64::from(dof)
 }
 
-/// A subdomain to be.
+/// A future subdomain.
 #[derive(Debug, Clone)]
 pub struct Part {
-    /// The body that the host says it belongs to.
+    /// The body that the host named, if any.
     pub body: Option<u64>,
-    /// Its matrix, unknowns only.
+    /// Its matrix, restricted to unknowns.
     pub k: Csr,
     /// Global dof of each row, strictly increasing.
     pub dofs: Vec<u32>,
-    /// Entries in columns of known dofs: (row, global dof, value).
+    /// Its entries in columns of known dofs: (row, global dof, value).
     pub known: Vec<(u32, u32, f64)>,
-    /// Whether its piece has known dofs: then its matrix need not map rigid motions to zero.
+    /// Whether its piece has known dofs. Its matrix then need not map rigid motions to zero.
     pub touched: bool,
 }
 
 /// The parts of this rank's pieces.
 ///
 /// # Errors
-/// A matrix that is not symmetric or has a diagonal that no stiffness matrix has.
+/// A matrix that is not symmetric, or whose diagonal is not that of a stiffness matrix.
 pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
     let mut out = Vec::new();
     for piece in &torn.pieces {
@@ -83,8 +83,8 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
     Ok(out)
 }
 
-/// The part of each dof of a piece, numbered by lowest dof; `None` for known dofs and for copies that the piece has no stiffness for.
-/// Components of a node belong together.
+/// The part of each dof of a piece; parts are numbered by lowest dof. `None` for known dofs and for dofs without
+/// stiffness in the piece. All components of a node belong to the same part.
 fn components(torn: &Torn, piece: &Piece, states: &HashMap<u32, State>) -> Vec<Option<u32>> {
     let n = piece.dofs.len();
     let unknown = |i: usize| states[&piece.dofs[i]].is_free() && !piece.k.row(i).0.is_empty();
@@ -115,7 +115,7 @@ fn components(torn: &Torn, piece: &Piece, states: &HashMap<u32, State>) -> Vec<O
     label
 }
 
-/// An error where the matrix between unknowns is not symmetric, or its diagonal not positive.
+/// Returns an error if the matrix of the unknowns is not symmetric or its diagonal is not positive.
 fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
     let free = |i: usize| states[&piece.dofs[i]].is_free();
     for i in (0..piece.dofs.len()).filter(|&i| free(i)) {

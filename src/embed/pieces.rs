@@ -1,4 +1,4 @@
-//! Local matrices as the host stores them, and the subdomain matrices in them.
+//! Local matrices as the host stores them, and the subdomain matrices extracted from them.
 
 use crate::linalg::csr::Csr;
 use std::collections::HashMap;
@@ -10,13 +10,14 @@ pub struct Piece {
     pub k: Csr,
     /// Global number of each of its dofs, strictly increasing.
     pub dofs: Vec<u32>,
-    /// The body that the host says it belongs to.
+    /// The body that the host named, if any.
     pub body: Option<u64>,
-    /// Whether known dofs may have been cut off it: then its matrix need not map rigid motions to zero.
+    /// Whether known dofs may have been removed from it. Its matrix then need not map rigid motions to zero.
     pub cut: bool,
 }
 
-/// The pieces of a local matrix; `copies` is the block size where its map may name a dof several times, once for each subdomain that has it.
+/// The pieces of a local matrix. `copies` is the block size if the map may list a dof several times, once for each
+/// subdomain that has it.
 pub fn torn_from(k: &Csr, map: &[i32], copies: Option<usize>, body: Option<u64>) -> Vec<Piece> {
     match copies {
         Some(block_size) => pieces(k, map, block_size, body),
@@ -24,8 +25,8 @@ pub fn torn_from(k: &Csr, map: &[i32], copies: Option<usize>, body: Option<u64>)
     }
 }
 
-/// A local matrix by increasing global dofs: rows that stand for the same dof are added up (a periodic mesh on one rank has such),
-/// rows without a dof are left out; `None` for a rank without any.
+/// A local matrix by increasing global dofs. Rows of the same dof are added (a periodic mesh on one rank has such
+/// rows), rows without a dof are left out. `None` if no row is left.
 fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
     let mut dofs: Vec<u32> = map.iter().filter(|&&g| g >= 0).map(|&g| g as u32).collect();
     dofs.sort_unstable();
@@ -54,8 +55,9 @@ fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
     })
 }
 
-/// The pieces of a local matrix whose map may name a dof several times, once for each subdomain that has it: the connected parts of the matrix, whose
-/// `block_size` consecutive rows belong together. Rows that are coupled with nothing (boundary conditions) can be of any of them and make a piece of their own.
+/// Splits a local matrix whose map may list a dof several times, once for each subdomain that has it. The pieces are
+/// the connected parts of the matrix, where `block_size` consecutive rows belong together. Rows without off-diagonal
+/// entries (boundary conditions) cannot be assigned to a subdomain and form a piece of their own.
 fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Piece> {
     let n = k.n();
     let node = |i: usize| i / block_size;
@@ -87,7 +89,7 @@ fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Pie
         }
         n_parts += 1;
     }
-    // Rows that are alone come last, together.
+    // The uncoupled rows form the last piece.
     let loose = label.iter().any(Option::is_none);
     let mut rows: Vec<Vec<usize>> = vec![Vec::new(); n_parts + usize::from(loose)];
     for (i, l) in label.iter().enumerate() {
@@ -119,7 +121,8 @@ fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Pie
 mod tests {
     use super::*;
 
-    /// Springs of stiffness one between rows, two components a node: the first rows of the nodes are coupled, and so are the second ones.
+    /// Springs of stiffness one between rows, two components a node: the first rows of the nodes are coupled, and so
+    /// are the second ones.
     fn springs(n: usize, pairs: &[(u32, u32)]) -> Csr {
         let mut triplets = Vec::new();
         for &(a, b) in pairs {

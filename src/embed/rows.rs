@@ -1,4 +1,4 @@
-//! Ties: where several bodies hold a global dof, their displacements are equal.
+//! Ties between bodies: where several bodies share a global dof, their displacements are equal.
 
 use super::contact::Contact;
 use super::parts::{body_dof, Part};
@@ -7,8 +7,8 @@ use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
 
-/// u_a − u_b = 0 for every pair of bodies a < b at every dof; provided by the rank of the dof's lowest subdomain, or, where rows of the host
-/// touch the dof, by the rank that has those. Collective.
+/// The rows u_a − u_b = 0 for every pair of bodies a < b at every dof. The rank of the dof's lowest subdomain provides
+/// them, or the rank that holds the host's rows with this dof. Collective.
 pub fn rows(
     session: &Session,
     n_global: usize,

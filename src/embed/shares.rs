@@ -1,4 +1,4 @@
-//! Global vectors to subdomains and back: loads torn apart, known dofs, solutions put together.
+//! Global vectors to subdomains and back: splits loads, sets known dofs, assembles solutions.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -13,21 +13,21 @@ use crate::{Error, Result};
 struct Share {
     /// Place of each local dof among the ghosts.
     ghost: Vec<u32>,
-    /// Part of the load that each copy gets, and of the solution that it gives; copies add up to one.
+    /// Weight of each local dof when loads are split and solutions averaged; the weights of all copies sum to one.
     weight: Vec<f64>,
-    /// (local dof, ghost, value) of the columns of known dofs.
+    /// (local dof, ghost, value) of the entries in columns of known dofs.
     known: Vec<(u32, u32, f64)>,
 }
 
-/// A dof that its own row or the host determines.
+/// A known dof: its own row or the host determines the value.
 struct Fixed {
     ghost: u32,
     dof: u32,
-    /// The row's diagonal over all copies; 0 for an empty row.
+    /// The row's diagonal entry, summed over all copies; 0 for an empty row.
     diagonal: f64,
-    /// This rank's part of the value.
+    /// This rank's weight of the value.
     weight: f64,
-    /// Held by the host, whatever the row says.
+    /// Whether the host holds it; its row is then ignored.
     held: bool,
 }
 
@@ -65,7 +65,7 @@ impl Shares {
                 .map(|(i, dof, v)| (*i, place(dof), *v))
                 .collect(),
         };
-        // This rank's part of the diagonal of every known dof.
+        // This rank's contribution to the diagonal of every known dof.
         let mut found: BTreeMap<u32, f64> = BTreeMap::new();
         for piece in &torn.pieces {
             for (i, &dof) in piece.dofs.iter().enumerate() {
@@ -74,7 +74,7 @@ impl Shares {
                 }
             }
         }
-        // Where the diagonal is zero, all ranks that have the dof give the same part of it.
+        // Where the diagonal is zero, all ranks that have the dof get equal weights.
         let mut ranks = vec![0.0; ghosts.len()];
         found
             .keys()
@@ -104,7 +104,7 @@ impl Shares {
         session.agree(Ok(shares))
     }
 
-    /// Values of the known dofs for a load and the values that the host gives, both by ghost.
+    /// Values of the known dofs, from a load and the values that the host gives, both by ghost.
     ///
     /// # Errors
     /// A load on an empty row.
@@ -147,8 +147,8 @@ impl Shares {
         self.shares.iter().map(torn).collect()
     }
 
-    /// This rank's part of the solution by ghost, from displacements of its subdomains; where bodies still differ by what the tolerance
-    /// allows, the stiffer copy counts for more.
+    /// This rank's part of the solution by ghost, from the displacements of its subdomains. Within the tolerance,
+    /// copies in different bodies may differ; the average weights them by stiffness.
     pub fn together(&self, u: &[Vec<f64>], values: &Values) -> Vec<f64> {
         let mut ghost = vec![0.0; self.n_ghosts];
         for (share, u) in self.shares.iter().zip(u) {

@@ -1,4 +1,4 @@
-//! Who shares what, over all bodies: the subdomains that hold each dof.
+//! Shared dofs over all bodies: the subdomains that hold each of them.
 
 use std::collections::HashMap;
 
@@ -7,20 +7,20 @@ use crate::parallel::exchange::{exchange_words, gather_all, offsets};
 use crate::petsc::Session;
 use mpi::traits::Communicator;
 
-/// The subdomains of all ranks, and those that hold the dofs of this rank's.
+/// The subdomains of all ranks, and for each dof of this rank the subdomains that hold it.
 pub struct Sharers {
-    /// Index of this rank's first subdomain; the others follow.
+    /// Index of this rank's first subdomain; its other subdomains follow.
     pub first: usize,
     /// Subdomains over all ranks.
     pub n_subdomains: usize,
-    /// For each shared dof of this rank's subdomains, who holds it, increasing.
+    /// For each shared dof of this rank's subdomains, the subdomains that hold it, increasing.
     pub of: HashMap<u32, Vec<u32>>,
-    /// Neighbours of each local subdomain, increasing, and the local dofs that both hold.
+    /// For each local subdomain, its neighbours (increasing) and the local dofs shared with each.
     pub neighbours: Vec<Vec<(u32, Vec<u32>)>>,
 }
 
 impl Sharers {
-    /// Finds them. Collective.
+    /// Finds the shared dofs. Collective.
     pub fn new(session: &Session, parts: &[Part]) -> Sharers {
         let comm = session.comm();
         let size = comm.size() as usize;
@@ -73,7 +73,7 @@ impl Sharers {
         sharers
     }
 
-    /// Who holds a dof, where more than one does.
+    /// The subdomains that hold a dof; empty if only one does.
     pub fn of(&self, dof: u32) -> &[u32] {
         self.of.get(&dof).map_or(&[], |list| &list[..])
     }
@@ -92,7 +92,7 @@ impl Sharers {
     }
 }
 
-/// Concatenates what every subdomain has to say, in the order of the subdomains; all ranks get all of it. Collective.
+/// Concatenates the words of all subdomains in the order of the subdomains, on all ranks. Collective.
 pub fn gather_per_subdomain(session: &Session, mine: &[u64]) -> Vec<u64> {
     gather_all(session.comm(), mine).concat()
 }

@@ -1,4 +1,4 @@
-//! The solver of a torn operator: substructures out of it, and global vectors in and out.
+//! The solver for a torn operator: makes the substructures, and maps global vectors to and from subdomains.
 
 use std::cell::{Ref, RefCell};
 
@@ -24,16 +24,16 @@ use crate::status::Status;
 use crate::substructures::Substructures;
 use crate::{Error, FetiFeti, Result, Solution};
 
-/// What one solve did.
+/// The result of a solve.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Iterations.
     pub iterations: usize,
     /// Why it stopped.
     pub status: Status,
-    /// (largest, smallest) eigenvalue of the preconditioned operator as the iteration saw them.
+    /// (largest, smallest) eigenvalue of the preconditioned operator, as the iteration estimated them.
     pub spectrum: Option<(f64, f64)>,
-    /// How well the optimality conditions hold.
+    /// Residuals of the optimality conditions.
     pub kkt: Kkt,
     /// Steps of the contact loop.
     pub steps: usize,
@@ -45,14 +45,14 @@ pub struct Embedded {
     halo: Halo,
     n_ghosts: usize,
     shares: Shares,
-    /// Monitors look into it while it solves.
+    /// The solver; monitors borrow it during a solve.
     solver: RefCell<FetiFeti>,
     /// Known dofs of the present load, by ghost.
     values: RefCell<Values>,
     contact: Contact,
-    /// Rows that tie bodies; those of the host come after them.
+    /// Number of rows that tie bodies; the host's rows come after them.
     n_ties: usize,
-    /// Where the next contact loop starts, and the multipliers of the rows that this rank gave.
+    /// Start of the next contact loop, and the multipliers of the rows that this rank gave.
     reached: RefCell<Option<(ContactState, Vec<f64>)>>,
 }
 
@@ -60,7 +60,7 @@ impl Embedded {
     /// Finds substructures and sets the solver up. Collective.
     ///
     /// # Errors
-    /// What the operator must not be (unsymmetric, indefinite, empty rows among others), and PETSc's own.
+    /// An operator that is not admissible (unsymmetric, indefinite, with empty rows among others), and PETSc's own.
     pub fn new(
         session: &Session,
         torn: &Torn,
@@ -152,11 +152,10 @@ impl Embedded {
         })
     }
 
-    /// x ← the solution for the right-hand side b. `enough` is asked whenever x satisfies the tolerance of the multipliers' equations: by which
-    /// factor the residual should fall further, or `None`. Collective.
+    /// Solves for the right-hand side b. Whenever x satisfies the tolerance of the dual problem, `enough` is called: it
+    /// returns the factor by which the residual should fall further, or `None`. Collective.
     ///
-    /// # Errors
-    /// A load that nothing balances or that acts on an empty row; PETSc's own, and what `enough` returns.
+    /// # Errors A load that is not balanced, or that acts on an empty row; PETSc's own errors and those of `enough`.
     pub fn solve(
         &self,
         b: &PetscVec,
@@ -172,11 +171,11 @@ impl Embedded {
         Ok(outcome(&solution))
     }
 
-    /// x ← the solution for the right-hand side b with the rows that the host gave; `held` has the values of the dofs that it holds, zero where
-    /// there is none. A contact loop starts from where the last one ended. Collective.
+    /// Solves for the right-hand side b with the rows that the host gave. `held` has the values of the dofs that the
+    /// host holds, and zero elsewhere. A contact loop starts from the result of the last one. Collective.
     ///
     /// # Errors
-    /// As [`Embedded::solve`], and rows that contradict each other.
+    /// As [`Embedded::solve`]; also rows that contradict each other.
     pub fn solve_with_rows(
         &self,
         b: &PetscVec,
@@ -196,24 +195,24 @@ impl Embedded {
         Ok(outcome(&solution))
     }
 
-    /// Rows of the host over all ranks.
+    /// Number of the host's rows over all ranks.
     pub fn n_given_rows(&self) -> usize {
         self.contact.n_global()
     }
 
-    /// The multipliers of the rows that this rank gave, in its order, after [`Embedded::solve_with_rows`].
+    /// After [`Embedded::solve_with_rows`]: the multipliers of the rows that this rank gave, in their order.
     pub fn multipliers(&self) -> Option<Vec<f64>> {
         self.reached.borrow().as_ref().map(|(_, l)| l.clone())
     }
 
-    /// The multipliers of the rows of the host, on the ranks that gave them. Collective.
+    /// The multipliers of the host's rows, on the ranks that gave them. Collective.
     fn of_given_rows(&self, solution: &Solution) -> Vec<f64> {
         let rows = solution.rows();
         let given = rows[self.n_ties..].iter().map(|r| r.multiplier);
         self.contact.back(&self.session, given)
     }
 
-    /// Hands loads and gaps to the solver. Collective.
+    /// Passes loads and gaps to the solver. Collective.
     fn load(&self, b: &PetscVec, held: Option<&PetscVec>) -> Result<()> {
         let mut load = vec![0.0; self.n_ghosts];
         self.halo.fetch(b, &mut load)?;
@@ -231,7 +230,7 @@ impl Embedded {
         Ok(())
     }
 
-    /// x ← what the running iteration has reached, for monitors; `false` where none is running. Collective.
+    /// x ← the current iterate, for monitors; returns `false` if no iteration is running. Collective.
     ///
     /// # Errors
     /// PETSc's own.
@@ -253,7 +252,8 @@ impl Embedded {
         &self.session
     }
 
-    /// x from displacements of the subdomains; where bodies still differ by what the tolerance allows, the stiffer copy counts for more.
+    /// x ← the solution assembled from the displacements of the subdomains. Within the tolerance, copies in different
+    /// bodies may differ; the average weights them by stiffness.
     fn put_together(&self, u: &[Vec<f64>], x: &PetscVec) -> Result<()> {
         let ghost = self.shares.together(u, &self.values.borrow());
         self.halo.sum(&ghost, x)

@@ -1,6 +1,7 @@
-//! Which dofs are unknown: those whose row of the assembled operator has only its diagonal are known beforehand.
+//! Known and unknown dofs. A dof is known if its row of the assembled operator has only a diagonal entry.
 //!
-//! MatZeroRowsColumns and MatZeroRows leave such rows behind for boundary conditions, u = b / diagonal. So are those that the host says are held.
+//! MatZeroRowsColumns and MatZeroRows leave such rows for boundary conditions, u = b / diagonal. The dofs that the host
+//! holds are known too.
 
 use std::collections::HashMap;
 
@@ -9,17 +10,17 @@ use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use mpi::traits::Communicator;
 
-/// What a global dof is.
+/// The state of a global dof.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
-    /// An unknown; Σ of the diagonal entries of its copies.
+    /// An unknown, with the sum of the diagonal entries of its copies.
     Free(f64),
-    /// Known by its own row: Σ of the diagonal entries, 0 for an empty row.
+    /// Known from its own row, with the sum of the diagonal entries; 0 for an empty row.
     Fixed(f64),
 }
 
 impl State {
-    /// Σ of the diagonal entries.
+    /// The sum of the diagonal entries.
     pub fn diagonal(self) -> f64 {
         match self {
             State::Free(d) | State::Fixed(d) => d,

@@ -1,4 +1,4 @@
-//! Subdomains of [`Substructures`](crate::Substructures) from parts, their classes and what holds them.
+//! Subdomains of [`Substructures`](crate::Substructures), from parts, classes and additional constraints.
 
 use super::classes::Class;
 use super::hold::Shape;
@@ -7,17 +7,17 @@ use super::parts::{body_dof, Part};
 use crate::substructures::{Entity, EntityKind, Subdomain};
 use std::collections::BTreeSet;
 
-/// What is known of a part besides its matrix.
+/// Properties of a part besides its matrix.
 pub struct Known<'a> {
-    /// Its number among all subdomains.
+    /// Its number among the subdomains of all ranks.
     pub index: usize,
-    /// Motions that cost no energy.
+    /// Motions without energy.
     pub near_kernel: Option<Columns>,
     /// Vertices, edges and faces.
     pub classes: &'a [Class],
-    /// Pairs of subdomains whose common faces are averaged like edges.
+    /// Pairs of subdomains whose common faces get an average, as edges do.
     pub averaged: &'a BTreeSet<(u32, u32)>,
-    /// Local dofs that are primal besides the vertices.
+    /// Local dofs that are primal in addition to the vertices.
     pub nodes: &'a BTreeSet<u32>,
 }
 

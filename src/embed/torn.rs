@@ -1,4 +1,4 @@
-//! What a host program hands over: matrices of subdomains, as yet without a shape.
+//! The input of a host program: subdomain matrices, not yet grouped or classified.
 
 use super::pieces::{torn_from, Piece};
 use crate::parallel::halo::Halo;
@@ -7,7 +7,7 @@ use crate::substructures::RowKind;
 use crate::{Error, Result};
 use std::collections::HashSet;
 
-/// A row that the host adds: Σ coefficient · u(global dof) = or ≤ gap.
+/// A row of the host: Σ coefficient · u(global dof) = or ≤ gap.
 #[derive(Debug, Clone)]
 pub struct GivenRow {
     /// (global dof, coefficient) pairs.
@@ -18,9 +18,9 @@ pub struct GivenRow {
     pub kind: RowKind,
 }
 
-/// The operator Σ Rᵀ K R, torn.
+/// The operator Σ Rᵀ K R as a sum of subdomain matrices.
 pub struct Torn {
-    /// Global dofs.
+    /// Number of global dofs.
     pub n_global: usize,
     /// Consecutive global dofs that belong to one node: the components of the field.
     pub block_size: usize,
@@ -28,20 +28,21 @@ pub struct Torn {
     pub pieces: Vec<Piece>,
     /// A vector of the host's layout.
     pub layout: PetscVec,
-    /// Vectors that span every kernel that a subdomain without boundary conditions may have.
+    /// Vectors that span every kernel a subdomain matrix may have without boundary conditions.
     pub modes: Option<Vec<PetscVec>>,
-    /// Those of this rank's global dofs that are held at given values, whatever their rows say.
+    /// This rank's global dofs that are held at given values; their rows are ignored.
     pub held: HashSet<u32>,
-    /// Those of this rank's global dofs that are to be primal where subdomains of a body share them.
+    /// This rank's global dofs that are to be primal where subdomains of a body share them.
     pub primal: HashSet<u32>,
-    /// The rows that this rank gives besides.
+    /// The rows that this rank adds.
     pub rows: Vec<GivenRow>,
-    /// The body of each global dof where the host names bodies by dofs: a subdomain belongs to the one that most of its dofs name.
+    /// The body of each global dof, if the host names bodies by dofs. A subdomain belongs to the body that most of its
+    /// dofs name.
     pub named: Option<PetscVec>,
 }
 
 impl Torn {
-    /// The pieces of a MATIS, one on every rank; `body` is that of this rank. Collective.
+    /// The pieces of a MATIS, one on every rank; `body` is the body of this rank's piece. Collective.
     ///
     /// # Errors
     /// A matrix of another type, or one that is not square.
@@ -70,7 +71,7 @@ impl Torn {
         })
     }
 
-    /// Number of nodes' components.
+    /// The component of a global dof.
     pub fn component(&self, dof: u32) -> usize {
         dof as usize % self.block_size
     }
@@ -90,7 +91,7 @@ impl Torn {
     }
 }
 
-/// An error where the matrix is no MATIS.
+/// Returns an error if the matrix is no MATIS.
 pub fn unassembled(a: &Mat) -> Result<()> {
     let kind = a.type_name()?;
     if kind == "is" {
@@ -102,7 +103,7 @@ pub fn unassembled(a: &Mat) -> Result<()> {
     )))
 }
 
-/// The vectors of a null space, the constants among them.
+/// The vectors of a null space, including the constants.
 pub fn spanned(layout: &PetscVec, attached: Attached) -> Result<Vec<PetscVec>> {
     let mut modes = attached.vectors;
     if attached.constants {
@@ -113,7 +114,8 @@ pub fn spanned(layout: &PetscVec, attached: Attached) -> Result<Vec<PetscVec>> {
     Ok(modes)
 }
 
-/// The host's own idea of the kernel: its near-null space, or a null space rich enough to hold all motions of a subdomain.
+/// The kernel that the host attached: its near-null space, or a null space rich enough to hold all rigid motions of a
+/// subdomain.
 pub fn modes(layout: &PetscVec, block_size: usize, a: &Mat) -> Result<Option<Vec<PetscVec>>> {
     let attached = match a.attached_near_null_space()? {
         Some(near) => Some(near),
@@ -123,7 +125,7 @@ pub fn modes(layout: &PetscVec, block_size: usize, a: &Mat) -> Result<Option<Vec
         return Ok(None);
     };
     let modes = spanned(layout, attached)?;
-    // In elasticity the translations alone, all that a periodic body has, are not all that its subdomains have.
+    // In elasticity the translations alone are too few: a periodic body has no others, but its subdomains have.
     let least = match block_size {
         2 => 3,
         3 => 6,

@@ -11,10 +11,10 @@ type Stencil<const C: usize> = [[[f64; C]; C]; 27];
 
 /// K^(ij) on the free dofs, and the load with the prescribed values eliminated: f_F − K_FD u_D.
 ///
-/// Springs stand in the diagonal: ∫ k u·v by the rule that takes values at the nodes.
+/// Springs add to the diagonal: ∫ k u·v with nodal quadrature.
 ///
-/// `load` has an entry per degree of freedom. A node's rows are the sum over the elements around it, so the rows come out in order and
-/// sorted, and nothing has to be searched.
+/// `load` has an entry per degree of freedom. The rows of a node are the sum over the elements around it: they come out
+/// in order and sorted, and no search is needed.
 pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
     match mesh.components() {
         1 => rows::<1>(mesh, load),
@@ -23,8 +23,8 @@ pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
     }
 }
 
-/// The columns of K that meet given values other than zero: a row for each free degree of freedom, columns by degree of freedom of the mesh.
-/// They stay the same when given values are scaled.
+/// The columns of K at nonzero given values: a row for each free degree of freedom, columns by degree of freedom of the
+/// mesh. They do not change when given values are scaled.
 pub fn given_columns(mesh: &SubdomainMesh) -> Csr {
     match mesh.components() {
         1 => columns::<1>(mesh),
@@ -33,7 +33,7 @@ pub fn given_columns(mesh: &SubdomainMesh) -> Csr {
     }
 }
 
-/// The load of [`assemble`] alone, to the last bit: f less the [`given_columns`] times the given values.
+/// The load of [`assemble`] alone, to the last bit: f minus the [`given_columns`] times the given values.
 pub fn free_load(mesh: &SubdomainMesh, columns: &Csr, load: &[f64]) -> Vec<f64> {
     let free = (0..load.len()).filter(|&k| mesh.dof[k] != SubdomainMesh::PRESCRIBED);
     let rows = free.enumerate().map(|(i, k)| {
@@ -98,7 +98,7 @@ fn columns<const C: usize>(mesh: &SubdomainMesh) -> Csr {
     };
     let empty = [[[0.0; C]; C]; 27];
     for (node, place) in places(mesh.nodes()).enumerate() {
-        // The stencil is wanted beside given values only.
+        // The stencil is needed only at neighbours of given values.
         let beside = neighbours(mesh, &empty, place).any(|(_, other)| {
             (0..C).any(|j| given(C * other + j) && mesh.prescribed[C * other + j] != 0.0)
         });

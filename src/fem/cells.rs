@@ -1,4 +1,4 @@
-//! Element matrices of one subdomain: as few as there are different ones.
+//! Element matrices of one subdomain; equal elements share one matrix.
 
 use super::cell::{self, Element};
 use super::q1;
@@ -12,14 +12,15 @@ pub struct Cells<'m> {
 }
 
 enum Kind {
-    /// Equal boxes: one matrix with coefficient 1 for each Poisson's ratio, and which of them each element has (empty: the first).
+    /// Equal boxes: one matrix with coefficient 1 for each Poisson's ratio, and the index of each element's matrix
+    /// (empty: the first).
     Boxes { unit: Vec<Vec<f64>>, of: Vec<u32> },
-    /// Curved bodies: every element its own, one after the other.
+    /// Curved bodies: one matrix for each element, one after the other.
     Each { n: usize, all: Vec<f64> },
 }
 
 impl<'m> Cells<'m> {
-    /// Computes them.
+    /// Computes the matrices.
     pub fn new(mesh: &'m SubdomainMesh) -> Cells<'m> {
         let n = mesh.corners() * mesh.components();
         let kind = match mesh.step {
@@ -29,7 +30,7 @@ impl<'m> Cells<'m> {
         Cells { mesh, kind }
     }
 
-    /// Element `e`: its matrix by rows and the factor that belongs to it.
+    /// The matrix of element `e` by rows, and the factor that multiplies it.
     #[inline]
     pub fn at(&self, e: usize) -> (&[f64], f64) {
         match &self.kind {

@@ -1,4 +1,4 @@
-//! What is solved, and by which elements.
+//! The equation of a scene and its finite elements.
 
 use super::cell::{Cure, Element, Material, Plane};
 
@@ -18,9 +18,9 @@ pub enum Physics {
     Scalar,
     /// −∇·σ(u) = f, linear elasticity.
     Elasticity {
-        /// Plane strain or plane stress; of no account in three dimensions.
+        /// Plane strain or plane stress; ignored in three dimensions.
         plane: Plane,
-        /// What is done against volumetric locking.
+        /// The cure of volumetric locking.
         cure: Cure,
     },
 }
@@ -57,7 +57,7 @@ impl Form {
         }
     }
 
-    /// Whether displacements are looked for.
+    /// Whether the unknowns are displacements.
     pub fn is_elastic(&self) -> bool {
         self.physics != Physics::Scalar
     }

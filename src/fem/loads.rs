@@ -7,15 +7,15 @@ use super::SubdomainMesh;
 /// How loads are integrated over an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Quadrature {
-    /// One point in the middle: regions that follow element borders are exact.
+    /// One point in the middle: exact for regions whose borders follow the elements.
     #[default]
     Midpoint,
     /// The 2 × 2 (× 2) Gauss rule.
     Gauss,
 }
 
-/// The nodal load ∫ f N_a over the subdomain, an entry per degree of freedom; `f` is given element and point and returns as many components
-/// as the field has.
+/// The nodal load ∫ f N_a over the subdomain, an entry per degree of freedom. `f` gets an element and a point and
+/// returns one value per component of the field.
 pub fn load_vector<F>(mesh: &SubdomainMesh, quadrature: Quadrature, mut f: F) -> Vec<f64>
 where
     F: FnMut([usize; 3], [f64; 3]) -> [f64; 3],
@@ -57,7 +57,7 @@ where
     out
 }
 
-/// ∫ f N_a over a box; `f` is given the point of the unit cell.
+/// ∫ f N_a over a box; `f` gets a point of the unit cell.
 fn box_load(
     dim: usize,
     components: usize,
@@ -98,8 +98,8 @@ fn box_load(
     }
 }
 
-/// Adds ∫ t N_a over the part of side `side` of the body in which the subdomain has elements to the nodal load `out`; `f` is given
-/// the point and the unit normal out of the body. The subdomain must reach that side.
+/// Adds ∫ t N_a over a side to the nodal load `out`: the part of side `side` of the body where the subdomain has
+/// elements, which must not be empty. `f` gets the point and the unit normal out of the body.
 pub fn add_side_load<F>(mesh: &SubdomainMesh, side: usize, mut f: F, out: &mut [f64])
 where
     F: FnMut([f64; 3], [f64; 3]) -> [f64; 3],

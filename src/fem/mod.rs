@@ -1,4 +1,5 @@
-//! Finite elements: cells of two and three dimensions, scalar and elastic; assembly of one subdomain, loads, error norms.
+//! Finite elements: cells of two and three dimensions, scalar and elastic; assembly of one subdomain, loads, error
+//! norms.
 
 mod assemble;
 pub mod cell;

@@ -22,9 +22,11 @@ impl ErrorNorms {
     }
 }
 
-/// Squares of the L² norm, the H¹ seminorm and the energy norm of the error on one subdomain, by four Gauss points in each direction.
+/// Squares of the L² norm, the H¹ seminorm and the energy norm of the error on one subdomain, by four Gauss points in
+/// each direction.
 ///
-/// `nodal` has an entry per degree of freedom; `exact` returns u and ∇u at a point: row i of the gradient belongs to component i.
+/// `nodal` has an entry per degree of freedom; `exact` returns u and ∇u at a point: row i of the gradient belongs to
+/// component i.
 pub fn error_squares<F>(mesh: &SubdomainMesh, nodal: &[f64], mut exact: F) -> [f64; 3]
 where
     F: FnMut([f64; 3]) -> ([f64; 3], [[f64; 3]; 3]),

@@ -1,4 +1,4 @@
-//! The mesh of one subdomain as assembly, error norms and output see it.
+//! The mesh of one subdomain, for assembly, error norms and output.
 
 use super::cell::Material;
 use super::Form;
@@ -6,8 +6,8 @@ use crate::mesh::places;
 
 /// A grid of nodes with the state of every degree of freedom: free, or prescribed by a Dirichlet condition.
 ///
-/// Nodes and elements are numbered layer by layer and row by row, x running fastest. Degree of freedom c of node k has the
-/// index C k + c, with C components of the field.
+/// Nodes and elements are numbered layer by layer and row by row, x running fastest. Degree of freedom c of node k has
+/// the index C k + c, with C components of the field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SubdomainMesh {
     /// Global index of the subdomain.
@@ -16,7 +16,7 @@ pub struct SubdomainMesh {
     pub body: usize,
     /// Dimension, 2 or 3.
     pub dim: usize,
-    /// What is solved, and by which elements.
+    /// The equation and its finite elements.
     pub form: Form,
     /// Elements in x, y and z (0 in the plane).
     pub elements: [usize; 3],
@@ -65,7 +65,8 @@ impl SubdomainMesh {
         self.dof.iter().filter(|&&d| d != Self::PRESCRIBED).count()
     }
 
-    /// The value of every degree of freedom for the local solution `u` (length n): `u` where free, the given value elsewhere.
+    /// The value of every degree of freedom for the local solution `u` (length n): `u` where free, the given value
+    /// elsewhere.
     pub fn nodal(&self, u: &[f64]) -> Vec<f64> {
         self.dof
             .iter()
@@ -100,8 +101,8 @@ impl SubdomainMesh {
         places(self.elements.map(|n| n.max(1)))
     }
 
-    /// The nodes of the element at a place in lexicographic order: corner a lies at (a, a/2, a/4) mod 2. In the plane the
-    /// last four repeat the first.
+    /// The nodes of the element at a place in lexicographic order: corner a lies at (a, a/2, a/4) mod 2. In the plane
+    /// the last four repeat the first.
     pub fn element_nodes(&self, [i, j, k]: [usize; 3]) -> [usize; 8] {
         let [nx, ny, _] = self.nodes();
         let first = (k * ny + j) * nx + i;
@@ -114,13 +115,14 @@ impl SubdomainMesh {
         self.element_nodes(place).map(|n| self.points[n])
     }
 
-    /// What element `e` is made of.
+    /// The material of element `e`.
     pub fn material(&self, e: usize) -> Material {
         self.form
             .material(self.rho[e], self.poisson.get(e).copied().unwrap_or(0.0))
     }
 
-    /// The corners of every element as VTK numbers a quadrilateral (counter-clockwise) or a hexahedron, one after the other.
+    /// The corners of every element as VTK numbers a quadrilateral (counter-clockwise) or a hexahedron, one after the
+    /// other.
     pub fn cells(&self) -> Vec<usize> {
         const ORDER: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
         let n = self.corners();

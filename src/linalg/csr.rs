@@ -71,8 +71,8 @@ impl Csr {
         out
     }
 
-    /// The sum of dense blocks: block b has rows and columns `lists[b]` and entries `value(b, i, j)`, i and j being places in its list. They are
-    /// added up in the order of the blocks.
+    /// The sum of dense blocks: block b has rows and columns `lists[b]` and entries `value(b, i, j)`, where i and j are
+    /// positions in its list. The blocks are added in their order.
     pub fn from_blocks(
         n: usize,
         lists: &[Vec<u32>],
@@ -88,7 +88,7 @@ impl Csr {
             row_ptr: vec![0],
             ..Csr::default()
         };
-        // The last row that a column was seen in, and its place there.
+        // The last row in which each column was found, and its place in that row.
         let mut seen = vec![u32::MAX; n];
         let mut place = vec![0; n];
         for (i, blocks) in (0..).zip(&rows) {
@@ -118,8 +118,8 @@ impl Csr {
 
     /// The matrix with the given (row, column, value) entries, repeated ones added up.
     ///
-    /// Entries are summed in the order in which they come, so that the result does not depend on how the
-    /// sort treats equal keys.
+    /// Repeated entries are summed in the order in which they are given: the result does not depend on how the sort
+    /// treats equal keys.
     pub fn from_triplets(n: usize, entries: &[(u32, u32, f64)]) -> Csr {
         let order = match entries.len() / n.max(1) {
             ..LONG => rows_sorted(n, entries),
@@ -146,14 +146,15 @@ impl Csr {
     }
 }
 
-/// Rows with more entries than this are ordered by counting: it costs two passes through memory, sorting about log₂ of their length.
+/// Rows with more entries than this are sorted by counting. Counting passes twice through memory; comparison sorting
+/// makes about log₂(length) passes.
 const LONG: usize = 64;
 
-/// Entries by row and column, those of one place in the order in which they come.
+/// Entries by row and column; entries at the same place keep their given order.
 struct Ordered {
     /// Start of each row; length n + 1.
     start: Vec<usize>,
-    /// (column, which entry).
+    /// Pairs (column, index of the entry).
     entries: Vec<(u32, u32)>,
 }
 
@@ -167,7 +168,7 @@ fn rows_sorted(n: usize, entries: &[(u32, u32, f64)]) -> Ordered {
     out
 }
 
-/// Entries by column first: taken in that order, those of each row come by column.
+/// Orders the entries by column, then deals them out to rows: each row is then sorted by column.
 fn rows_counted(n: usize, entries: &[(u32, u32, f64)]) -> Ordered {
     let mut next = starts(n, entries.iter().map(|e| e.1));
     let mut by_column = vec![0u32; entries.len()];
@@ -184,7 +185,7 @@ fn rows_counted(n: usize, entries: &[(u32, u32, f64)]) -> Ordered {
 }
 
 impl Ordered {
-    /// Deals `all` of the entries, with their rows, out to the rows.
+    /// Deals the entries listed in `all` out to their rows.
     fn by_row(
         n: usize,
         entries: &[(u32, u32, f64)],
@@ -205,7 +206,7 @@ impl Ordered {
     }
 }
 
-/// Where the entries of each of `n` lists start, and where the last one ends, from the list of each entry.
+/// Start of each of `n` lists, and the end of the last one, from the list number of each entry.
 fn starts(n: usize, lists: impl Iterator<Item = u32>) -> Vec<usize> {
     let mut start = vec![0usize; n + 1];
     lists.for_each(|l| start[l as usize + 1] += 1);

@@ -1,4 +1,4 @@
-//! Dense kernels on column-major slices: thin covers of faer's, always sequential.
+//! Dense kernels on column-major slices: thin wrappers of faer's, always sequential.
 //!
 //! Subdomains are the unit of parallel work; a kernel that spawned tasks of its own would fight with them.
 
@@ -56,12 +56,12 @@ impl Dense {
         self.data[i + j * self.rows] = value;
     }
 
-    /// The matrix as faer sees it.
+    /// The matrix as a faer view.
     pub fn view(&self) -> MatRef<'_, f64> {
         MatRef::from_column_major_slice(&self.data, self.rows, self.cols)
     }
 
-    /// The matrix as faer sees it, to write.
+    /// The matrix as a mutable faer view.
     pub fn view_mut(&mut self) -> MatMut<'_, f64> {
         MatMut::from_column_major_slice_mut(&mut self.data, self.rows, self.cols)
     }
@@ -69,7 +69,7 @@ impl Dense {
     /// Copies the lower triangle onto the upper one.
     pub fn mirror_lower(&mut self) {
         let n = self.rows;
-        // By blocks, so that the transposed writes stay in the cache.
+        // Copies block by block, which keeps the transposed writes in the cache.
         const BLOCK: usize = 32;
         for jb in (0..n).step_by(BLOCK) {
             for ib in (jb..n).step_by(BLOCK) {
@@ -87,7 +87,7 @@ impl Dense {
         gemv(&self.data, self.rows, x, y);
     }
 
-    /// Y ← Y + A X, columns of zeros left out.
+    /// Y ← Y + A X; zero columns of X are skipped.
     pub fn add_mul_columns(&self, x: &Dense, y: &mut Dense) {
         match live(x) {
             few if few.len() < 2 => few
@@ -97,7 +97,7 @@ impl Dense {
         }
     }
 
-    /// Y ← Y + Aᵀ X, columns of zeros left out.
+    /// Y ← Y + Aᵀ X; zero columns of X are skipped.
     pub fn add_mul_transpose_columns(&self, x: &Dense, y: &mut Dense) {
         match live(x) {
             few if few.len() < 2 => few
@@ -118,12 +118,12 @@ impl Dense {
     }
 }
 
-/// Columns that are not zero.
+/// The columns of `x` that are not zero.
 fn live(x: &Dense) -> Vec<usize> {
     (0..x.cols).filter(|&c| !is_zero(x.col(c))).collect()
 }
 
-/// Y ← Y + A X for the columns listed.
+/// Y ← Y + A X for the columns in `live`.
 fn add_packed(a: MatRef<'_, f64>, x: &Dense, live: &[usize], y: &mut Dense) {
     let mut packed = Dense::zeros(x.rows, live.len());
     for (p, &c) in live.iter().enumerate() {
@@ -137,13 +137,13 @@ fn add_packed(a: MatRef<'_, f64>, x: &Dense, live: &[usize], y: &mut Dense) {
     }
 }
 
-/// Deflation vectors and coarse columns touch a few subdomains and pass by all of them.
+/// Whether a column is zero. Deflation vectors and coarse columns are nonzero on a few subdomains only.
 fn is_zero(x: &[f64]) -> bool {
     x.iter().all(|x| *x == 0.0)
 }
 
-/// y ← y + A x for a column-major A with `rows` rows: four columns at a time, so that y is read once for four; columns that meet
-/// nothing but zeros are not read.
+/// y ← y + A x for a column-major A with `rows` rows. Four columns are applied at a time, and y is read once for them;
+/// columns whose entries in x are zero are not read.
 pub fn gemv<T>(a: &[T], rows: usize, x: &[T], y: &mut [T])
 where
     T: Copy + Default + PartialEq + AddAssign + Add<Output = T> + Mul<Output = T>,
@@ -208,7 +208,7 @@ impl Scratch {
     }
 }
 
-/// What a Cholesky factorisation met where a pivot was not positive.
+/// The error of a Cholesky factorisation: a pivot was not positive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotPositive {
     /// Column of the failing pivot.
@@ -266,7 +266,7 @@ pub fn multiply(c: MatMut<'_, f64>, add: bool, alpha: f64, a: MatRef<'_, f64>, b
     faer::linalg::matmul::matmul(c, beta, a, b, alpha, Par::Seq);
 }
 
-/// C ← A B in single precision; A is square of the first order, B and C have the second one's number of columns; all by columns.
+/// C ← A B in single precision, all stored by columns. A is n × n, B and C are n × cols.
 pub fn multiply_single(a: &[f32], b: &[f32], c: &mut [f32], (n, cols): (usize, usize)) {
     let a = MatRef::from_column_major_slice(a, n, n);
     let b = MatRef::from_column_major_slice(b, n, cols);

@@ -1,13 +1,13 @@
-//! Nonnegative least squares by Lawson and Hanson (1974), for the small questions of feasibility.
+//! Nonnegative least squares by Lawson and Hanson (1974), for small feasibility problems.
 
 use super::dense::Dense;
 
 /// Gradients below this, relative to ‖b‖ and the column, are zero.
 const TOLERANCE: f64 = 1e-12;
 
-/// min ‖A x − b‖₂ with x_j ≥ 0 where `free[j]` is false. Returns x and the residual b − A x, which is what Farkas' lemma asks for:
-/// it is orthogonal to the free columns, has no positive product with the others, and is zero if and only if b is in
-/// the cone.
+/// Minimises ‖A x − b‖₂ with x_j ≥ 0 where `free[j]` is false. Returns x and the residual b − A x. The residual is a
+/// certificate in the sense of Farkas' lemma: it is orthogonal to the free columns, has no positive product with the
+/// others, and is zero if and only if b is in the cone.
 pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
     let (m, n) = (a.rows, a.cols);
     let mut passive: Vec<usize> = (0..n).filter(|&j| free[j]).collect();
@@ -26,7 +26,7 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
         let z = least_squares(a, b, &passive);
         passive.iter().zip(&z).for_each(|(&j, &z)| x[j] = z);
     }
-    // Each round lowers the residual and no passive set comes back; rounding alone could turn the rounds into a circle.
+    // Each round lowers the residual, hence no passive set comes back; the bound on the rounds guards against rounding.
     for _ in 0..3 * (m + n) + 10 {
         let r = residual(&x);
         let gain = |j: usize| dot(a.col(j), &r) / norm(a.col(j)).max(f64::MIN_POSITIVE);
@@ -66,7 +66,7 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
     (x, r)
 }
 
-/// min ‖A z − b‖ over the given columns; the shortest z where they are dependent.
+/// Minimises ‖A z − b‖ over the given columns; returns the shortest minimiser where they are dependent.
 fn least_squares(a: &Dense, b: &[f64], columns: &[usize]) -> Vec<f64> {
     let part = faer::Mat::from_fn(a.rows, columns.len(), |i, k| a.get(i, columns[k]));
     let svd = part

@@ -2,7 +2,7 @@
 
 use super::csr::Csr;
 
-/// Compressed rows; columns are positions in the list that the block was made with.
+/// Compressed rows; a column index is a position in the list of columns from which the block was made.
 #[derive(Debug, Clone, Default)]
 pub struct Rectangular {
     row_ptr: Vec<usize>,
@@ -58,7 +58,7 @@ impl Rectangular {
         }
     }
 
-    /// Bytes held.
+    /// Number of bytes held.
     pub fn bytes(&self) -> usize {
         8 * self.row_ptr.len() + 12 * self.col.len()
     }

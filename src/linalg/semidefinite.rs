@@ -1,7 +1,7 @@
 //! Symmetric positive semidefinite dense systems with rank detection.
 //!
-//! Used where columns of a basis may depend on each other (Z_cᵀ S̃ Z_c, Gᵀ Q G): dependent ones are dropped, which gives a
-//! generalised inverse on the span of the others.
+//! They arise where columns of a basis may be linearly dependent (Z_cᵀ S̃ Z_c, Gᵀ Q G). Dependent columns are dropped,
+//! which gives a generalised inverse on the span of the others.
 
 use super::dense::{self, Dense, Scratch};
 
@@ -9,7 +9,8 @@ use super::dense::{self, Dense, Scratch};
 /// sums of many subdomains' contributions leaves about 1e-14.
 pub const DEPENDENT: f64 = 1e-10;
 
-/// Columns with less than this part of the largest diagonal entry are zero: far below any scaling by coefficients.
+/// A column whose diagonal entry is below this fraction of the largest one is zero: no coefficient scaling is that
+/// small.
 pub const ZERO: f64 = 1e-30;
 
 /// A factored semidefinite matrix A (n × n).
@@ -37,11 +38,11 @@ impl Semidefinite {
         Semidefinite::above(a, DEPENDENT)
     }
 
-    /// The same with columns dropped whose pivots, relative to their diagonal entries, are below `dependent`.
+    /// The same; drops columns whose pivots are below `dependent` relative to their diagonal entries.
     pub fn above(a: &Dense, dependent: f64) -> Semidefinite {
         let n = a.rows;
         let largest = (0..n).map(|i| a.get(i, i)).fold(0.0, f64::max);
-        // Columns of size zero are no columns.
+        // Zero columns are dropped first.
         let nonzero: Vec<usize> = (0..n).filter(|&i| a.get(i, i) > ZERO * largest).collect();
         let known = |out: Semidefinite| Semidefinite {
             nonzero: nonzero.len(),
@@ -52,7 +53,7 @@ impl Semidefinite {
         }
         let mut kept = independent(a, &nonzero, dependent);
         kept.sort_unstable();
-        // The order differs from the pivoted one, so a pivot may come out slightly smaller: only its sign matters now.
+        // This order differs from the pivoted one, which may make a pivot slightly smaller: only its sign matters now.
         loop {
             if let Some(out) = Self::factor(a, &kept, 0.0) {
                 return known(out);

@@ -1,7 +1,7 @@
-//! S in single precision, for the preconditioner alone.
+//! A dense matrix in single precision, for S in the preconditioner only.
 //!
-//! M⁻¹ only steers the iteration: an operator with seven digits costs it nothing that is seen above a κ of 10⁵, and half the memory
-//! traffic of the largest product. Residuals, F and everything that decides stay in double precision.
+//! M⁻¹ only steers the iteration: seven digits do not change the number of iterations visibly below a κ of 10⁵, and
+//! halve the memory traffic of the largest product. Residuals and F stay in double precision.
 
 use super::dense::{gemv, multiply_single, Dense};
 
@@ -11,7 +11,7 @@ pub struct Single {
     n: usize,
     /// Entries, relative to `scale`.
     data: Vec<f32>,
-    /// The largest entry: stiffness may have any unit.
+    /// The largest entry. Dividing by it makes the format independent of the unit of stiffness.
     scale: f64,
 }
 
@@ -29,7 +29,8 @@ impl Single {
         }
     }
 
-    /// y ← factor A x; x is scaled to a largest entry of one before it is rounded, so that no size leaves the range of single precision.
+    /// y ← factor A x. x is scaled to a largest entry of one before it is rounded, which keeps it in the range of
+    /// single precision.
     pub fn mul(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         let largest = x.iter().fold(0.0f64, |a, v| a.max(v.abs()));
@@ -44,7 +45,7 @@ impl Single {
         }
     }
 
-    /// The first `n` columns of y ← A x, one product for all of them.
+    /// The first `n` columns of Y ← A X, in one product.
     pub fn mul_columns(&self, x: &Dense, y: &mut Dense, n: usize) {
         let mut largest = vec![0.0f64; n];
         let mut scaled = vec![0.0f32; self.n * n];

@@ -1,8 +1,8 @@
-//! Symmetric matrices by their lower triangle: half the memory, and half of what a product has to read.
+//! Symmetric matrices by their lower triangle: this halves the memory, and the data that a product reads.
 //!
-//! The triangle is stored in squares of 4 × 4, one below the other, column after column, so that a product reads the whole matrix as one stream. What is
-//! read serves twice while it is in registers: y_I ← y_I + A_IJ x_J and y_J ← y_J + A_IJᵀ x_I. Squares on the diagonal hold both triangles, and the last
-//! ones are filled up with zeros.
+//! The triangle is stored in squares of 4 × 4, one below the other, column after column: a product reads the matrix as
+//! one stream. Each square is used twice while it is in registers: y_I ← y_I + A_IJ x_J and y_J ← y_J + A_IJᵀ x_I.
+//! Squares on the diagonal hold both triangles; the last squares are padded with zeros.
 
 use super::dense::{multiply, Dense};
 
@@ -12,7 +12,8 @@ const SIDE: usize = 4;
 /// Entries of a square.
 const SQUARE: usize = SIDE * SIDE;
 
-/// With so many vectors a matrix-matrix product with both triangles is faster than reading one of them for each vector.
+/// From this number of vectors on, a matrix-matrix product with both triangles is faster than reading one triangle per
+/// vector.
 const MANY: usize = 8;
 
 /// A symmetric n × n matrix.
@@ -36,7 +37,7 @@ impl Symmetric {
                 for (j, to) in columns.clone().zip(square.chunks_exact_mut(SIDE)) {
                     to[..rows.len()].copy_from_slice(&a.col(j)[rows.clone()]);
                     if ib == jb {
-                        // Above the diagonal what is below it.
+                        // The entries above the diagonal mirror those below it.
                         (rows.start..j).for_each(|i| to[i - rows.start] = a.get(j, i));
                     }
                 }
@@ -85,7 +86,7 @@ impl Symmetric {
         }
     }
 
-    /// y ← A x for the first `n` columns.
+    /// The first `n` columns of Y ← A X.
     pub fn mul_columns(&self, x: &Dense, y: &mut Dense, n: usize) {
         if n >= MANY {
             let y = y.view_mut().subcols_mut(0, n);
@@ -130,10 +131,10 @@ impl Symmetric {
     }
 }
 
-/// Entries that go with one square.
+/// The entries of a vector that belong to one square.
 type Lot = [f64; SIDE];
 
-/// A vector in lots, filled up with zeros.
+/// A vector in lots, padded with zeros.
 fn lots(x: &[f64]) -> Vec<Lot> {
     let lot = |c: &[f64]| std::array::from_fn(|i| c.get(i).copied().unwrap_or(0.0));
     x.chunks(SIDE).map(lot).collect()

@@ -1,11 +1,11 @@
-//! Sums in twice the working precision.
+//! Sums in twice the working precision (compensated summation).
 
 /// A sum with the rounding errors of its terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Twice {
-    /// The sum as it was rounded.
+    /// The rounded sum.
     pub high: f64,
-    /// What rounding has taken from it.
+    /// The accumulated rounding error.
     pub low: f64,
 }
 

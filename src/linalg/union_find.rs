@@ -20,7 +20,7 @@ impl UnionFind {
         self.parent.len() - 1
     }
 
-    /// The representative of the set of `k`.
+    /// The representative of the set that contains `k`.
     pub fn find(&mut self, mut k: usize) -> usize {
         while self.parent[k] != k {
             self.parent[k] = self.parent[self.parent[k]];
@@ -29,7 +29,7 @@ impl UnionFind {
         k
     }
 
-    /// Makes the sets of `a` and `b` one.
+    /// Merges the sets of `a` and `b`.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.find(a), self.find(b));
         self.parent[a.max(b)] = a.min(b);

@@ -4,10 +4,11 @@
 
 use std::ops::RangeInclusive;
 
-/// A box of `elements[0]` × `elements[1]` (× `elements[2]`) equal cells in `subdomains[0]` × `subdomains[1]` (× `subdomains[2]`)
-/// equal blocks.
+/// A box of `elements[0]` × `elements[1]` (× `elements[2]`) equal cells in `subdomains[0]` × `subdomains[1]` (×
+/// `subdomains[2]`) equal blocks.
 ///
-/// Nodes are numbered layer by layer and row by row from the lower left corner, x running fastest; so are elements and subdomains.
+/// Nodes are numbered layer by layer and row by row from the lower left corner, x running fastest; so are elements and
+/// subdomains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoxMesh {
     /// Lower left corner; z is 0 in the plane.
@@ -131,7 +132,7 @@ impl BoxMesh {
         [node % nx, node / nx % ny, node / (nx * ny)]
     }
 
-    /// Position of the node at a place. The last ones lie on the box's far sides exactly.
+    /// Position of the node at a place; the last nodes lie on the box's far sides exactly.
     pub fn position(&self, place: [usize; 3]) -> [f64; 3] {
         [0, 1, 2].map(|d| match self.elements[d] {
             0 => self.origin[d],
@@ -172,9 +173,9 @@ impl BoxMesh {
         (0..3).map(|d| self.touching(d, place[d]).count()).product()
     }
 
-    /// Whether the node is a corner of a subdomain: the ends of subdomain edges on the body's boundary and the corners of
-    /// the body included. Continuity inside the body is primal where [`BoxMesh::multiplicity`] > 1; a corner of the body belongs
-    /// to one subdomain only, but matters where bodies meet.
+    /// Whether the node is a corner of a subdomain. This includes the ends of subdomain edges on the body's boundary
+    /// and the corners of the body. Inside the body, continuity is primal where [`BoxMesh::multiplicity`] > 1. A corner
+    /// of the body belongs to one subdomain only, but matters where bodies meet.
     pub fn is_vertex(&self, place: [usize; 3]) -> bool {
         let each = self.block_elements();
         (0..self.dim()).all(|d| place[d] % each[d] == 0)

@@ -1,12 +1,14 @@
-//! Seconds of this rank by phase, summed up where they are spent.
+//! Seconds of this rank by phase.
 //!
-//! PETSc's events (`-log_view`) time F, M and P as a whole; these clocks run around what grows differently with bodies and ranks: local
-//! factorisations, the three coarse problems, messages. Waiting for a slower rank counts as message.
+//! PETSc's events (`-log_view`) time F, M and P as a whole. These clocks time the phases whose cost depends on the
+//! number of bodies and ranks: local factorisations, the three coarse problems, messages. Waiting for a slower rank
+//! counts as message.
 
 use std::cell::Cell;
 use std::time::Instant;
 
-/// What takes time apart from the work inside the subdomains. Phases of one half never run inside each other.
+/// The timed phases: everything but the work inside the subdomains during the iteration. Phases of the set-up never run
+/// inside each other, nor do phases of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// Set-up: factors, S, T and Ψ of the subdomains.
@@ -41,7 +43,7 @@ impl Times {
         self.0[phase as usize]
     }
 
-    /// What has been spent since an earlier reading.
+    /// The seconds spent since an earlier reading.
     pub fn since(&self, before: &Times) -> Times {
         let mut out = *self;
         out.0.iter_mut().zip(before.0).for_each(|(t, b)| *t -= b);

@@ -1,6 +1,7 @@
 //! Irregular messages during set-up: every rank sends every rank a list of records.
 //!
-//! Records travel as 64-bit words. Iterations never come here: they use PETSc's scatters, which are set up once.
+//! Records travel as 64-bit words. The iteration does not use this module: it uses PETSc's scatters, which are set up
+//! once.
 
 use mpi::collective::SystemOperation;
 use mpi::datatype::{Partition, PartitionMut};
@@ -9,7 +10,7 @@ use mpi::traits::{Communicator, CommunicatorCollectives};
 
 use super::traffic::{self, Traffic};
 
-/// Something that travels as a fixed number of words.
+/// A value that is sent as a fixed number of words.
 pub trait Record: Sized {
     /// Words of one record.
     const WORDS: usize;
@@ -19,10 +20,11 @@ pub trait Record: Sized {
     fn unpack(words: &[u64]) -> Self;
 }
 
-/// Sends `outgoing[r]` to rank r and returns what all ranks sent here, one after the other by rank of the sender. Collective.
+/// Sends `outgoing[r]` to rank r and returns what all ranks sent here, one after the other by rank of the sender.
+/// Collective.
 pub fn exchange<T: Record>(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<T>>) -> Vec<T> {
     let rank = comm.rank() as usize;
-    // What stays here is not packed: most of it does.
+    // Records for this rank itself are the majority; they are not packed.
     let mut own = Some(std::mem::take(&mut outgoing[rank]));
     let pack = |list: &Vec<T>| {
         let mut words = Vec::with_capacity(list.len() * T::WORDS);
@@ -42,7 +44,8 @@ pub fn exchange<T: Record>(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<T>>)
     all
 }
 
-/// Sends `outgoing[r]`, words and lists of any length, to rank r and returns what every rank sent here, by rank of the sender. Collective.
+/// Sends `outgoing[r]`, words and lists of any length, to rank r and returns what every rank sent here, by rank of the
+/// sender. Collective.
 pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
     let (size, rank) = (comm.size() as usize, comm.rank() as usize);
     debug_assert_eq!(outgoing.len(), size);
@@ -60,7 +63,7 @@ pub fn exchange_words(comm: &SimpleCommunicator, mut outgoing: Vec<Vec<u64>>) ->
     all
 }
 
-/// Where each list begins when they lie one behind the other.
+/// Start of each list when the lists are stored one after the other.
 fn starts(counts: &[i32]) -> Vec<i32> {
     let mut sum = 0;
     let before = counts.iter().map(|&c| {
@@ -70,7 +73,7 @@ fn starts(counts: &[i32]) -> Vec<i32> {
     before.collect()
 }
 
-/// So many words from each rank, as `receive` gets them.
+/// Views the received words, given the number of words from each rank.
 fn received(
     counts: &[i32],
     receive: impl FnOnce(&mut PartitionMut<[u64], &[i32], &[i32]>),
@@ -84,7 +87,7 @@ fn received(
         .collect()
 }
 
-/// MPI counts are C ints: 2³¹ words to one rank would be 16 GB of interface.
+/// Converts to a C int, the type of MPI counts: 2³¹ words to one rank would be 16 GB of interface.
 fn count(n: usize) -> i32 {
     i32::try_from(n).expect("fewer than 2^31 words go to one rank")
 }

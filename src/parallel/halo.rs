@@ -1,4 +1,4 @@
-//! A distributed vector seen by a rank with the entries that its subdomains touch.
+//! The ghost entries of a distributed vector: those that the subdomains of a rank touch.
 
 use std::cell::RefCell;
 
@@ -14,14 +14,14 @@ use crate::Result;
 /// Moves entries between a distributed vector and this rank's ghost list, both ways.
 pub struct Halo {
     scatter: Scatter,
-    /// Sequential vector that holds the ghost entries on their way.
+    /// Sequential vector through which the ghost entries are sent.
     buffer: RefCell<PetscVec>,
     n_ghosts: usize,
-    /// What this rank sends in [`fetch`](Self::fetch) and in [`sum`](Self::sum).
+    /// The traffic of this rank in one [`fetch`](Self::fetch) and in one [`sum`](Self::sum).
     sent: (Traffic, Traffic),
 }
 
-/// The numbers in all lists, increasing, and the place of each among them: ghosts, and what refers to them.
+/// The union of the lists, increasing (the ghosts), and for every list the positions of its numbers in the union.
 pub fn numbered<L: AsRef<[u32]>>(lists: &[L]) -> (Vec<u32>, Vec<Vec<u32>>) {
     let each = || lists.iter().map(|l| l.as_ref());
     let mut ghosts: Vec<u32> = each().flatten().copied().collect();
@@ -48,7 +48,7 @@ impl Halo {
         })
     }
 
-    /// What this rank sends in one [`fetch`](Self::fetch) and in one [`sum`](Self::sum).
+    /// The traffic of this rank in one [`fetch`](Self::fetch) and in one [`sum`](Self::sum).
     pub fn sent(&self) -> (Traffic, Traffic) {
         self.sent
     }
@@ -75,8 +75,8 @@ impl Halo {
         self.sum_end(y)
     }
 
-    /// Starts the messages of [`sum`](Self::sum): local work goes on while they are on their way. Nothing else may use this halo or `y` until
-    /// [`sum_end`](Self::sum_end). Collective.
+    /// Starts the messages of [`sum`](Self::sum), which overlap with local work. Nothing else may use this halo or `y`
+    /// until [`sum_end`](Self::sum_end). Collective.
     pub fn sum_begin(&self, ghost: &[f64], y: &PetscVec) -> Result<()> {
         traffic::count(self.sent.1);
         clock::timed(Phase::Exchange, || {
@@ -95,8 +95,8 @@ impl Halo {
     }
 }
 
-/// What this rank sends to move the ghosts once: (owners to ghosts, ghosts to owners). `first` is the first entry that this rank owns.
-/// Collective.
+/// The traffic of this rank when the ghosts are sent once: (owners to ghosts, ghosts to owners). `first` is the first
+/// entry that this rank owns. Collective.
 fn of_ghosts(comm: &SimpleCommunicator, first: usize, ghosts: &[u32]) -> (Traffic, Traffic) {
     let (size, rank) = (comm.size() as usize, comm.rank() as usize);
     if size == 1 {
@@ -105,7 +105,8 @@ fn of_ghosts(comm: &SimpleCommunicator, first: usize, ghosts: &[u32]) -> (Traffi
     let starts: Vec<u64> = gather_all(comm, &[first as u64]).concat();
     let mut wanted = vec![0u64; size];
     for &g in ghosts {
-        // The last rank that starts at or before the entry: ranks without entries start where the next one does.
+        // The owner is the last rank that starts at or before the entry: a rank without entries starts where the next
+        // one does.
         wanted[starts.partition_point(|&s| s <= u64::from(g)) - 1] += 1;
     }
     wanted[rank] = 0;

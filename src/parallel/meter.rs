@@ -1,4 +1,4 @@
-//! What a piece of work costs all ranks together: seconds and memory.
+//! Seconds and memory of a piece of work, over all ranks.
 
 use std::time::Instant;
 
@@ -6,7 +6,7 @@ use super::exchange::{max_all, sum_all};
 use crate::petsc::{max_memory, Session};
 use crate::Result;
 
-/// Wall-clock seconds of some work, from when the first rank begins to when the last one ends. Collective.
+/// Wall-clock seconds of some work, from the first rank's begin to the last rank's end. Collective.
 pub(crate) fn timed<T>(session: &Session, work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
     session.agree(Ok(()))?;
     let clock = Instant::now();
@@ -16,15 +16,15 @@ pub(crate) fn timed<T>(session: &Session, work: impl FnOnce() -> Result<T>) -> R
     Ok((result, seconds[0]))
 }
 
-/// Largest resident memory of all ranks, in bytes, without the segments through which ranks of one machine pass messages: they show up in
-/// every rank that has them mapped, and are MPI's.
+/// Largest resident memory of all ranks, in bytes. It excludes the shared segments through which ranks of one machine
+/// exchange messages: these belong to MPI, and would be counted in every rank that has mapped them.
 pub(crate) fn memory(session: &Session) -> f64 {
     let mut bytes = [max_memory() - shared_memory()];
     sum_all(session.comm(), &mut bytes);
     bytes[0]
 }
 
-/// Resident memory that this process shares with others, in bytes; zero where the system does not tell.
+/// Resident memory that this process shares with others, in bytes; zero if the system does not report it.
 fn shared_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("RssShmem:"));

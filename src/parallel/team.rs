@@ -4,15 +4,15 @@ use rayon::prelude::*;
 
 use crate::{Error, Result};
 
-/// A pool of threads, or none: subdomains are then worked off one after the other.
+/// A pool of threads, or none: subdomains are then processed one after the other.
 pub struct Team {
     pool: Option<rayon::ThreadPool>,
-    /// Whether the work of one iteration is worth waking threads for.
+    /// Whether one iteration has enough work to be worth waking threads.
     iterates: bool,
 }
 
-/// Entries of the dense operators below which one thread applies them faster than two can be woken: waking costs some
-/// ten microseconds, in which a core reads about this many numbers.
+/// If the dense operators have fewer entries than this, one thread applies them faster than two can be woken. Waking
+/// takes some ten microseconds; a core reads about this many numbers in that time.
 const WORTH_WAKING: usize = 100_000;
 
 impl Team {
@@ -39,7 +39,7 @@ impl Team {
         self.pool.as_ref().map_or(1, |p| p.current_num_threads())
     }
 
-    /// Says how many entries the dense operators of one application have.
+    /// Sets the number of entries of the dense operators that one iteration applies.
     pub fn set_load(&mut self, entries: usize) {
         self.iterates = entries > WORTH_WAKING;
     }
@@ -60,7 +60,7 @@ impl Team {
         }
     }
 
-    /// `work` of every index below `n`, in order.
+    /// Calls `work` for every index below `n`; results are in order.
     pub fn map<T: Send>(&self, n: usize, work: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         match &self.pool {
             Some(pool) => pool.install(|| (0..n).into_par_iter().map(work).collect()),

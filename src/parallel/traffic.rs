@@ -1,12 +1,12 @@
-//! What this rank sends, counted where it is sent: messages of the halos and all-reduces.
+//! Counters of the messages and all-reduces that this rank sends.
 //!
-//! A halo knows from its ghost list and from who owns what how many ranks hear from this one in each direction; the counts
-//! are those that PETSc's own counters show (`-log_view`), without a build of PETSc that has them.
+//! A halo computes its messages from the ghost list and the ownership ranges. The counts equal those of PETSc's own
+//! counters (`-log_view`), but do not need a build of PETSc with logging.
 
 use std::cell::Cell;
 use std::ops::{AddAssign, Sub};
 
-/// Bytes of a number.
+/// Bytes of a double.
 const NUMBER: u64 = 8;
 
 /// What one rank has sent.
@@ -18,7 +18,7 @@ pub struct Traffic {
     pub bytes: u64,
     /// All-reduces that this rank took part in.
     pub reductions: u64,
-    /// Bytes that it put into them.
+    /// Bytes that this rank contributed to them.
     pub reduced_bytes: u64,
 }
 
@@ -66,16 +66,16 @@ impl Sub for Traffic {
 }
 
 thread_local! {
-    /// One thread of a rank sends, that which runs PETSc.
+    /// The counter of this thread: only the thread that runs PETSc sends.
     static SENT: Cell<Traffic> = const { Cell::new(Traffic { messages: 0, bytes: 0, reductions: 0, reduced_bytes: 0 }) };
 }
 
-/// What this rank has sent since it started; take differences.
+/// The traffic of this rank since it started; take differences.
 pub fn sent() -> Traffic {
     SENT.get()
 }
 
-/// Counts something as sent.
+/// Adds to the counter.
 pub fn count(more: Traffic) {
     let mut all = SENT.get();
     all += more;

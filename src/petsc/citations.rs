@@ -1,4 +1,4 @@
-//! What `-citations` prints.
+//! Entries of `-citations`.
 
 use super::error::c_string;
 use super::Session;

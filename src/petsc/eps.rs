@@ -10,13 +10,13 @@ use petsc_sys::Flag;
 /// The kind of eigenvalue problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProblemType {
-    /// A x = θ x, A symmetric.
+    /// A x = θ x with symmetric A.
     Hep,
-    /// A x = θ B x, A symmetric, B symmetric positive (semi)definite.
+    /// A x = θ B x with symmetric A and symmetric positive (semi)definite B.
     Ghep,
-    /// A x = θ x, A general.
+    /// A x = θ x with general A.
     Nhep,
-    /// A x = θ B x, both symmetric, B indefinite.
+    /// A x = θ B x with symmetric A and indefinite symmetric B.
     Ghiep,
 }
 
@@ -133,10 +133,9 @@ impl Eps {
         petsc!(EPSSetFromOptions(self.0.raw()))
     }
 
-    /// Computes; ask [`Eps::converged`] how many eigenvalues came out. Collective.
+    /// Solves the eigenvalue problem; [`Eps::converged`] has the number of converged eigenvalues. Collective.
     ///
-    /// # Errors
-    /// The error of a shell operator if one failed; else SLEPc's.
+    /// # Errors The error of a shell operator if one failed; otherwise SLEPc's.
     pub fn solve(&self) -> Result<()> {
         petsc!(EPSSolve(self.0.raw()))
     }
@@ -157,7 +156,7 @@ impl Eps {
         Ok(ConvergedReason { code, name })
     }
 
-    /// Restarts of the last solve.
+    /// Number of restarts of the last solve.
     pub fn iterations(&self) -> Result<usize> {
         let mut n = 0;
         petsc!(EPSGetIterationNumber(self.0.raw(), &mut n))?;
@@ -191,7 +190,7 @@ impl Eps {
 }
 
 impl Eps {
-    /// The solver for B of the spectral transformation.
+    /// The solver for B in the spectral transformation.
     pub fn st_ksp(&self) -> Result<Ksp> {
         let (mut st, mut ksp) = (std::ptr::null_mut(), std::ptr::null_mut());
         petsc!(EPSGetST(self.0.raw(), &mut st))?;

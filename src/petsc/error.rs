@@ -1,8 +1,8 @@
-//! How failures cross the border between Rust and C, in both directions.
+//! Errors across the border between Rust and C, in both directions.
 //!
-//! From C: PETSc's error handler is replaced by one that collects the frames, and [`check`] turns a code into
-//! [`Error::Petsc`] with that trace. To C: [`guard`] runs a callback, keeps its error or panic in a slot of this
-//! thread and gives PETSc a code; the call that started it all finds the slot filled and returns what is in it.
+//! From C: PETSc's error handler is replaced by one that collects the stack frames, and [`check`] turns an error code
+//! into [`Error::Petsc`] with this trace. To C: [`guard`] runs a callback, stores its error or panic in a slot of this
+//! thread and returns an error code to PETSc. The outer call finds the slot filled and returns the stored error.
 
 use crate::{Error, Result};
 use petsc_sys as sys;
@@ -12,18 +12,19 @@ use std::ffi::{c_char, c_int, CStr, CString};
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
 thread_local! {
-    /// The first error of a callback that PETSc is carrying out as a code.
+    /// The first error of a callback, while PETSc returns its code to the outer call.
     static PENDING: RefCell<Option<Error>> = const { RefCell::new(None) };
-    /// PETSc's frames for the present error, innermost first.
+    /// PETSc's stack frames for the current error, innermost first.
     static TRACE: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
-    /// A call failed on this rank and the other ranks may not know.
+    /// Whether a call failed on this rank and the other ranks may not know.
     static FAILED: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Calls a PETSc function and turns its code into a `Result`.
 ///
-/// The macro holds the `unsafe` of the whole layer in one place. Whoever writes a call owes: handles that are alive
-/// (they come from [`Handle`](super::handle::Handle)s in scope), out-pointers to live locals, and slices whose lengths are the ones passed.
+/// The macro contains the `unsafe` of the whole layer in one place. A caller must pass handles that are alive (they
+/// come from [`Handle`](super::handle::Handle)s in scope), out-pointers to live locals, and slices of the lengths
+/// passed.
 macro_rules! petsc {
     ($function:ident ( $($argument:expr),* $(,)? )) => {
         // SAFETY: see the macro's documentation; arguments are valid for the duration of the call.
@@ -31,7 +32,7 @@ macro_rules! petsc {
     };
 }
 
-/// `Ok` for code 0; else the error that a callback left behind, or PETSc's own with its trace.
+/// `Ok` for code 0; otherwise the stored error of a callback, or PETSc's own error with its trace.
 pub(crate) fn check(code: c_int, call: &'static str) -> Result<()> {
     if code == 0 {
         return Ok(());
@@ -41,7 +42,8 @@ pub(crate) fn check(code: c_int, call: &'static str) -> Result<()> {
     Err(PENDING.take().unwrap_or(Error::Petsc { code, call, trace }))
 }
 
-/// The error for an option value that PETSc refused while it read the options with `prefix`: it is the user's, and one sentence.
+/// The error for an option value that PETSc refused while it read the options with `prefix`: a user error in one
+/// sentence.
 pub(crate) fn refused_option(error: Error, prefix: &str) -> Error {
     match error {
         Error::Petsc { trace, .. } if !trace.is_empty() => {
@@ -55,17 +57,17 @@ pub(crate) fn refused_option(error: Error, prefix: &str) -> Error {
     }
 }
 
-/// Did a PETSc call fail on this rank without the other ranks having been told?
+/// Whether a PETSc call failed on this rank without the other ranks knowing.
 pub(crate) fn failed() -> bool {
     FAILED.get()
 }
 
-/// The ranks agreed on what happened: objects may be destroyed collectively again.
+/// Records that all ranks know of the failure: objects may be destroyed collectively again.
 pub(crate) fn settled() {
     FAILED.set(false);
 }
 
-/// Runs a callback for PETSc: no unwinding crosses C, and the error is kept for the outer call.
+/// Runs a callback for PETSc: a panic does not unwind into C, and the error is stored for the outer call.
 pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_int {
     let error = match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(())) => return 0,
@@ -89,7 +91,7 @@ pub(crate) fn guard(what: &'static str, body: impl FnOnce() -> Result<()>) -> c_
             message.as_ptr(),
         )
     };
-    // After ff_error, which empties the slot as every new error does.
+    // The slot is filled after ff_error, since every new error empties it.
     PENDING.set(Some(error));
     code
 }
@@ -100,7 +102,7 @@ pub(crate) fn caught(what: &'static str, body: impl FnOnce() -> Result<()>) -> R
         .unwrap_or_else(|payload| Err(panicked(what, payload.as_ref())))
 }
 
-/// The error that stands for a panic.
+/// Converts a panic to an error.
 pub(crate) fn panicked(what: &str, payload: &(dyn Any + Send)) -> Error {
     let text = payload
         .downcast_ref::<&str>()

@@ -58,8 +58,8 @@ impl<T> Clone for Handle<T> {
 
 impl<T> Drop for Handle<T> {
     fn drop(&mut self) {
-        // Destroying is collective. After a failure that the other ranks have not heard of they are elsewhere, and waiting
-        // for them would hang the run that is about to be ended; leaking the object is the lesser evil.
+        // Destroying is collective. After a failure that the other ranks have not heard of they are elsewhere, and
+        // waiting for them would hang the run that is about to be ended; leaking the object is the lesser evil.
         if (failed() || std::thread::panicking()) && self.is_parallel() {
             return;
         }

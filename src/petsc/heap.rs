@@ -1,13 +1,15 @@
-//! The C library's heap, in programs of our own.
+//! The C library's heap in our own programs.
 
-/// What a thread's heap grows by: a whole segment of glibc's at once.
+/// Amount by which a thread's heap grows: one segment of glibc.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const SEGMENT: std::ffi::c_int = 64 << 20;
 
-/// Lets the heaps of threads grow by whole segments. For programs, at their start: hosts of the library decide for themselves.
+/// Lets the heaps of threads grow by whole segments. Programs call it at their start; a host of the library makes this
+/// choice itself.
 ///
-/// glibc lets the heap of every thread but the first grow page by page, a system call each, in which all threads of the process wait for each
-/// other: two threads set up no faster than one. Address space is taken, not memory. Elsewhere nothing is done.
+/// By default glibc lets the heap of every thread but the first grow page by page. Each page takes a system call, in
+/// which all threads of the process wait for each other: set-up with two threads is then no faster than with one.
+/// Larger segments take address space, not memory. The function does nothing without glibc.
 pub fn let_threads_allocate() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
@@ -17,7 +19,7 @@ pub fn let_threads_allocate() {
         // From malloc.h.
         const M_TOP_PAD: std::ffi::c_int = -2;
         const M_MMAP_THRESHOLD: std::ffi::c_int = -3;
-        // Setting one ends the adaptation of the other, whose final value is this one.
+        // Setting one parameter ends the adaptation of the other; this is the final value of the adaptation.
         const LARGEST: std::ffi::c_int = 32 << 20;
         // SAFETY: mallopt takes two integers and may be called at any time; a value that it refuses changes nothing.
         unsafe {

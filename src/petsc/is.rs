@@ -10,7 +10,7 @@ use petsc_sys as sys;
 pub struct Is(pub(crate) Handle<sys::_p_IS>);
 
 impl Is {
-    /// This rank's part is `indices`, in this order.
+    /// An index set whose part on this rank is `indices`, in this order.
     pub fn general(session: &Session, comm: Comm, indices: &[i32]) -> Result<Is> {
         let mut raw = std::ptr::null_mut();
         petsc!(ISCreateGeneral(

@@ -7,7 +7,7 @@ use crate::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;
 
-/// The residual norm that convergence is judged by.
+/// The residual norm of the convergence test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NormType {
     /// None: run a fixed number of iterations.
@@ -32,17 +32,17 @@ pub struct ConvergedReason {
 impl ConvergedReason {
     /// The relative tolerance was reached.
     pub const RTOL: i32 = sys::KSP_CONVERGED_RTOL;
-    /// There were as many iterations as there may be.
+    /// The maximum number of iterations was reached.
     pub const ITS: i32 = sys::KSP_DIVERGED_ITS;
     /// The preconditioner cannot be used.
     pub const PC_FAILED: i32 = sys::KSP_DIVERGED_PC_FAILED;
 
-    /// Did the solver converge?
+    /// Whether the solver converged.
     pub fn converged(&self) -> bool {
         self.code > 0
     }
 
-    /// Did it meet numbers that exact arithmetic does not have?
+    /// Whether the solver met numbers that cannot occur in exact arithmetic.
     pub fn broke_down(&self) -> bool {
         [
             sys::KSP_DIVERGED_BREAKDOWN,
@@ -90,14 +90,15 @@ impl Ksp {
         petsc!(KSPSetType(self.raw(), c_string(name).as_ptr()))
     }
 
-    /// The type's name; empty where none is set.
+    /// The type's name; empty if none is set.
     pub fn type_name(&self) -> Result<String> {
         let mut name = std::ptr::null();
         petsc!(KSPGetType(self.raw(), &mut name))?;
         Ok(rust_string(name))
     }
 
-    /// Relative, absolute and divergence tolerance and the largest number of iterations; `None` keeps what is set.
+    /// Relative, absolute and divergence tolerance and the maximum number of iterations; `None` keeps the current
+    /// value.
     pub fn set_tolerances(
         &self,
         rtol: Option<f64>,
@@ -115,7 +116,7 @@ impl Ksp {
         ))
     }
 
-    /// (rtol, atol, dtol, max_it) as set now, options included.
+    /// The current (rtol, atol, dtol, max_it), options included.
     pub fn tolerances(&self) -> Result<(f64, f64, f64, usize)> {
         let (mut rtol, mut atol, mut dtol, mut max_it) = (0.0, 0.0, 0.0, 0);
         petsc!(KSPGetTolerances(
@@ -128,7 +129,7 @@ impl Ksp {
         Ok((rtol, atol, dtol, max_it as usize))
     }
 
-    /// The norm that convergence is judged by.
+    /// Sets the norm of the convergence test.
     pub fn set_norm_type(&self, norm: NormType) -> Result<()> {
         let norm = match norm {
             NormType::None => sys::KSP_NORM_NONE,
@@ -139,31 +140,30 @@ impl Ksp {
         petsc!(KSPSetNormType(self.raw(), norm))
     }
 
-    /// Asks for the norm that convergence is judged by, which a method may not support.
+    /// Checks that the method supports the norm of the convergence test.
     ///
-    /// # Errors
-    /// PETSc's, where it does not.
+    /// # Errors PETSc's, if it does not.
     pub fn check_norm_type(&self) -> Result<()> {
         let mut norm = sys::KSP_NORM_NONE;
         petsc!(KSPGetNormType(self.raw(), &mut norm))
     }
 
-    /// Keep what [`Ksp::eigenvalues`] needs.
+    /// Stores the data that [`Ksp::eigenvalues`] needs.
     pub fn set_compute_eigenvalues(&self, on: bool) -> Result<()> {
         petsc!(KSPSetComputeEigenvalues(self.raw(), Flag::of(on)))
     }
 
-    /// Keep what [`Ksp::extreme_singular_values`] needs.
+    /// Stores the data that [`Ksp::extreme_singular_values`] needs.
     pub fn set_compute_singular_values(&self, on: bool) -> Result<()> {
         petsc!(KSPSetComputeSingularValues(self.raw(), Flag::of(on)))
     }
 
-    /// Start from what the solution vector holds instead of zero.
+    /// Starts from the entries of the solution vector instead of zero.
     pub fn set_initial_guess_nonzero(&self, on: bool) -> Result<()> {
         petsc!(KSPSetInitialGuessNonzero(self.raw(), Flag::of(on)))
     }
 
-    /// Keep the preconditioner although the matrix has changed.
+    /// Keeps the preconditioner although the matrix has changed.
     pub fn set_reuse_preconditioner(&self, on: bool) -> Result<()> {
         petsc!(KSPSetReusePreconditioner(self.raw(), Flag::of(on)))
     }
@@ -193,22 +193,22 @@ impl Ksp {
         })
     }
 
-    /// Builds what the solver and its preconditioner need. Collective.
+    /// Sets up the solver and its preconditioner. Collective.
     pub fn setup(&self) -> Result<()> {
         petsc!(KSPSetUp(self.raw()))
     }
 
-    /// Solves A x = b; ask [`Ksp::converged_reason`] whether it did. Collective.
+    /// Solves A x = b; [`Ksp::converged_reason`] says whether it converged. Collective.
     ///
-    /// # Errors
-    /// The error of a shell operator or preconditioner if one failed; else PETSc's. Divergence is no error.
+    /// # Errors The error of a shell operator or preconditioner if one failed; otherwise PETSc's. Divergence is no
+    /// error.
     pub fn solve(&self, b: &Vec, x: &Vec) -> Result<()> {
         let (b, x) = (b.read()?, x.write()?);
         petsc!(KSPSolve(self.raw(), b, x))
     }
 
-    /// The same for CG, but from iteration `first` on it stops where the largest eigenvalue that it has seen is above `limit` while the
-    /// residual is above `rest`. Returns whether it did. Collective.
+    /// Solves A x = b by CG, and may stop early: from iteration `first` on, if the largest eigenvalue estimate is above
+    /// `limit` while the residual is above `rest`. Returns whether it stopped early. Collective.
     pub fn solve_watched(
         &self,
         b: &Vec,
@@ -237,7 +237,7 @@ impl Ksp {
         petsc!(KSPSolveTranspose(self.raw(), b, x))
     }
 
-    /// Forgets the operators and what was built from them.
+    /// Removes the operators and everything built from them.
     pub fn reset(&self) -> Result<()> {
         petsc!(KSPReset(self.raw()))
     }
@@ -253,20 +253,20 @@ impl Ksp {
         })
     }
 
-    /// x ← what has been reached so far, for monitors. Collective.
+    /// x ← the current iterate, for monitors. Collective.
     pub fn current_solution(&self, x: &Vec) -> Result<()> {
         let mut same = std::ptr::null_mut();
         petsc!(KSPBuildSolution(self.raw(), x.write()?, &mut same))
     }
 
-    /// Iterations of the last solve.
+    /// Number of iterations of the last solve.
     pub fn iterations(&self) -> Result<usize> {
         let mut n = 0;
         petsc!(KSPGetIterationNumber(self.raw(), &mut n))?;
         Ok(n as usize)
     }
 
-    /// The last residual norm, of the kind that convergence is judged by.
+    /// The last residual norm, in the norm of the convergence test.
     pub fn residual_norm(&self) -> Result<f64> {
         let mut norm = 0.0;
         petsc!(KSPGetResidualNorm(self.raw(), &mut norm))?;
@@ -294,10 +294,10 @@ impl Ksp {
         Ok(unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec())
     }
 
-    /// (largest, smallest) singular value of the preconditioned operator as the last solve saw them.
+    /// (largest, smallest) singular value of the preconditioned operator, as estimated in the last solve.
     ///
-    /// # Errors
-    /// Where the method keeps none: PETSc's fcg hands its data to a routine that expects those of cg, and crashes.
+    /// # Errors The method does not estimate them. (For fcg, PETSc passes its data to a routine that expects those of
+    /// cg, and crashes.)
     pub fn extreme_singular_values(&self) -> Result<(f64, f64)> {
         if self.type_name()? == "fcg" {
             return Err(Error::environment("fcg keeps no estimate of the spectrum"));
@@ -311,7 +311,7 @@ impl Ksp {
         Ok((large, small))
     }
 
-    /// Real parts of the eigenvalues of the preconditioned operator as the last solve saw them, ascending for CG.
+    /// Real parts of the eigenvalues of the preconditioned operator, as estimated in the last solve; ascending for CG.
     pub fn eigenvalues(&self) -> Result<std::vec::Vec<f64>> {
         let n = self.iterations()?;
         if n == 0 {
@@ -336,14 +336,14 @@ impl Ksp {
         Ok(Pc(Handle::share(raw, self.0.session())?))
     }
 
-    /// KSPFETIDP: the solver for the multipliers, which holds the iterations and the spectrum.
+    /// KSPFETIDP: the inner solver for the multipliers, which has the iteration count and the spectrum.
     pub fn fetidp_inner_ksp(&self) -> Result<Ksp> {
         let mut raw = std::ptr::null_mut();
         petsc!(KSPFETIDPGetInnerKSP(self.raw(), &mut raw))?;
         Ok(Ksp(Handle::share(raw, self.0.session())?))
     }
 
-    /// KSPFETIDP: the PCBDDC that it is built from.
+    /// KSPFETIDP: its inner PCBDDC.
     pub fn fetidp_inner_bddc(&self) -> Result<Pc> {
         let mut raw = std::ptr::null_mut();
         petsc!(KSPFETIDPGetInnerBDDC(self.raw(), &mut raw))?;

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 
 thread_local! {
-    /// What was registered on this thread: registering a name twice would list it twice.
+    /// The names registered on this thread: registering a name twice would list it twice.
     static KNOWN: RefCell<HashMap<(bool, String), i32>> = RefCell::default();
 }
 
@@ -26,7 +26,7 @@ fn register(stage: bool, name: &str, make: impl FnOnce() -> Result<i32>) -> Resu
 pub struct Event(i32);
 
 impl Event {
-    /// The event of this name; the same one for the same name.
+    /// The event of this name; repeated calls return the same event.
     pub fn register(_session: &Session, name: &str) -> Result<Event> {
         let class = register(false, "", || {
             let mut id = 0;
@@ -67,7 +67,7 @@ impl Event {
 pub struct Stage(i32);
 
 impl Stage {
-    /// The stage of this name; the same one for the same name.
+    /// The stage of this name; repeated calls return the same stage.
     pub fn register(_session: &Session, name: &str) -> Result<Stage> {
         let id = register(true, name, || {
             let mut id = 0;
@@ -77,24 +77,25 @@ impl Stage {
         Ok(Stage(id))
     }
 
-    /// Makes this the present stage.
+    /// Makes this the current stage.
     pub fn push(&self) -> Result<()> {
         petsc!(PetscLogStagePush(self.0))
     }
 
-    /// Back to the stage before.
+    /// Returns to the previous stage.
     pub fn pop(&self) -> Result<()> {
         petsc!(PetscLogStagePop())
     }
 
-    /// Makes this the present stage until the guard is dropped.
+    /// Makes this the current stage until the guard is dropped.
     pub fn scope(&self) -> Result<Scope> {
         self.push()?;
         Ok(Scope::Stage(*self))
     }
 }
 
-/// What PETSc has sent on this rank since it started, as `-log_view` counts it; MPI calls of other libraries are not in it.
+/// The messages that PETSc has sent on this rank since it started, as `-log_view` counts them. MPI calls of other
+/// libraries are not included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counters {
     /// Messages to single ranks.
@@ -105,7 +106,7 @@ pub struct Counters {
     pub reductions: f64,
 }
 
-/// The counters; `None` where PETSc was built without its log.
+/// The counters; `None` if PETSc was built without logging.
 pub fn counters() -> Option<Counters> {
     let mut counts = [0.0; 3];
     // SAFETY: the shim writes three numbers.
@@ -118,12 +119,12 @@ pub fn counters() -> Option<Counters> {
     })
 }
 
-/// Ends an event or a stage when dropped.
+/// A guard that ends an event or a stage when dropped.
 #[must_use = "the clock stops when the scope is dropped"]
 pub enum Scope {
-    /// An event whose clock runs.
+    /// A running event.
     Event(Event),
-    /// A stage that is the present one.
+    /// The current stage.
     Stage(Stage),
 }
 

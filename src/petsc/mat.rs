@@ -1,4 +1,4 @@
-//! Matrices: assembled ones (AIJ) and what all matrices share.
+//! Matrices: assembled matrices (AIJ), and the functions common to all types.
 
 use super::handle::Handle;
 use super::{Comm, Session, Vec};
@@ -7,10 +7,10 @@ use crate::{Error, Result};
 use petsc_sys as sys;
 use petsc_sys::Flag;
 
-/// What a matrix is known to be.
+/// A property of a matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MatFlag {
-    /// Symmetric: Aᵀ = A, and it stays so.
+    /// Symmetric: Aᵀ = A, also after changes.
     Symmetric,
     /// Symmetric positive definite.
     Spd,
@@ -37,7 +37,7 @@ impl Mat {
         self.0.session()
     }
 
-    /// An AIJ matrix of this size, without room for entries.
+    /// An AIJ matrix of this size, without preallocation.
     fn empty_aij(session: &Session, comm: Comm, rows: usize, cols: usize) -> Result<Mat> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatCreate(session.raw_comm(comm), &mut raw))?;
@@ -53,8 +53,8 @@ impl Mat {
         Ok(mat)
     }
 
-    /// An AIJ matrix with `rows` rows and `cols` columns on this rank, from (global row, global column, value) entries that any rank
-    /// may give for any row; repeated entries are added up. Collective.
+    /// An AIJ matrix with `rows` rows and `cols` columns on this rank, from (global row, global column, value) entries
+    /// that any rank may give for any row; repeated entries are added up. Collective.
     pub fn from_triplets(
         session: &Session,
         comm: Comm,
@@ -100,8 +100,8 @@ impl Mat {
         Ok(mat)
     }
 
-    /// An empty AIJ matrix with room for `d_nnz[i]` entries in row i in the columns of this rank and `o_nnz[i]` in the others'
-    /// (`o_nnz` is not looked at with [`Comm::Own`]). Fill it by [`Mat::add_values`] and [`Mat::assemble`].
+    /// An empty AIJ matrix with room in row i for `d_nnz[i]` entries in the columns of this rank and `o_nnz[i]` entries
+    /// in the other columns (`o_nnz` is ignored with [`Comm::Own`]). [`Mat::add_values`] and [`Mat::assemble`] fill it.
     pub fn preallocated(
         session: &Session,
         comm: Comm,
@@ -132,7 +132,7 @@ impl Mat {
         Ok(mat)
     }
 
-    /// Adds a dense block (by rows) at these global rows and columns; call [`Mat::assemble`] when done.
+    /// Adds a dense block (by rows) at these global rows and columns; [`Mat::assemble`] must follow.
     pub fn add_values(&self, rows: &[i32], cols: &[i32], block: &[f64]) -> Result<()> {
         if rows.len() * cols.len() != block.len() {
             return Err(Error::Environment(format!(
@@ -153,7 +153,7 @@ impl Mat {
         ))
     }
 
-    /// Sets all entries of these rows (global numbers of rows of this rank) to zero; their places are kept. Collective.
+    /// Sets all entries of these rows (global numbers of rows of this rank) to zero and keeps the pattern. Collective.
     pub fn zero_rows(&self, rows: &[i32]) -> Result<()> {
         let raw = self.raw();
         petsc!(MatSetOption(
@@ -239,14 +239,14 @@ impl Mat {
         petsc!(MatGetDiagonal(self.raw(), d))
     }
 
-    /// A vector x that fits A x.
+    /// A vector x with the layout of the columns.
     pub fn right_vec(&self) -> Result<Vec> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatCreateVecs(self.raw(), &mut raw, std::ptr::null_mut()))?;
         Ok(Vec::own(raw, self.session()))
     }
 
-    /// A vector y that fits y = A x.
+    /// A vector y with the layout of the rows.
     pub fn left_vec(&self) -> Result<Vec> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatCreateVecs(self.raw(), std::ptr::null_mut(), &mut raw))?;
@@ -267,18 +267,18 @@ impl Mat {
         Ok(())
     }
 
-    /// Tells PETSc that rows come in blocks of this size; every rank's share must be a multiple of it.
+    /// Tells PETSc that rows come in blocks of this size; it must divide every rank's number of rows.
     pub fn set_block_size(&self, size: usize) -> Result<()> {
         petsc!(MatSetBlockSize(self.raw(), count(size)?))
     }
 
-    /// Attaches the constants as the kernel of the matrix.
+    /// Attaches the constants as the null space of the matrix.
     pub fn set_constant_null_space(&self) -> Result<()> {
         let space = self.null_space(true, &[])?;
         petsc!(MatSetNullSpace(self.raw(), space.raw()))
     }
 
-    /// Attaches the constants and orthonormal vectors as near-kernel, for multigrid.
+    /// Attaches the constants and orthonormal vectors as the near-null space, for multigrid.
     pub fn set_near_null_space(&self, constants: bool, vectors: &[Vec]) -> Result<()> {
         let space = self.null_space(constants, vectors)?;
         petsc!(MatSetNearNullSpace(self.raw(), space.raw()))
@@ -300,7 +300,7 @@ impl Mat {
     }
 }
 
-/// A count or index that PETSc with 32-bit indices can hold.
+/// A count or index as a 32-bit PETSc integer.
 pub(super) fn count(n: usize) -> Result<i32> {
     i32::try_from(n).map_err(|_| {
         Error::Input(format!(

@@ -9,8 +9,8 @@ use petsc_sys as sys;
 use petsc_sys::Flag;
 
 impl Mat {
-    /// The square matrix Σ Rᵀ A_local R over the ranks; `local_to_global[i]` is the global number of local dof i and `owned` the number of
-    /// global dofs whose rows this rank owns in vectors. Collective.
+    /// The square matrix Σ Rᵀ A_local R over the ranks. `local_to_global[i]` is the global number of local dof i, and
+    /// `owned` is the number of global dofs that this rank owns. Collective.
     pub fn unassembled(
         session: &Session,
         owned: usize,
@@ -47,7 +47,7 @@ impl Mat {
         Ok(mat)
     }
 
-    /// The matrix in another format of PETSc (`"aij"`, `"is"`, …). Collective.
+    /// Converts the matrix to another PETSc format (`"aij"`, `"is"`, …). Collective.
     pub fn convert(&self, format: &str) -> Result<Mat> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatConvert(
@@ -64,7 +64,7 @@ impl Mat {
 pub struct Attached {
     /// Whether the constants belong to it.
     pub constants: bool,
-    /// The others.
+    /// The other vectors.
     pub vectors: std::vec::Vec<Vec>,
 }
 
@@ -76,18 +76,18 @@ impl Mat {
         Ok(super::error::rust_string(name))
     }
 
-    /// The block size: how many rows belong to a node.
+    /// The block size: the number of rows of a node.
     pub fn block_size(&self) -> Result<usize> {
         let mut size = 1;
         petsc!(MatGetBlockSize(self.raw(), &mut size))?;
         Ok(size.max(1) as usize)
     }
 
-    /// For a MATIS: this rank's local matrix, entry by entry as it is stored, and the global number of each local row; a negative
-    /// number means none.
+    /// For a MATIS: this rank's local matrix with its stored entries, and the global number of each local row
+    /// (negative: none).
     ///
-    /// # Errors
-    /// [`Error::Input`] for different maps of rows and columns; PETSc's own where the local matrix has no rows to ask for.
+    /// # Errors [`Error::Input`] if rows and columns have different maps; PETSc's own if the rows of the local matrix
+    /// cannot be read.
     pub fn local_part(&self) -> Result<(Csr, std::vec::Vec<i32>)> {
         let rows = self.local_to_global()?;
         let mut raw = std::ptr::null_mut();
@@ -99,7 +99,8 @@ impl Mat {
         Ok((csr?, rows))
     }
 
-    /// For a MATIS: whether its map may name a dof several times, once for each of several subdomains on this rank (MatISSetAllowRepeated).
+    /// For a MATIS: whether its map may list a dof several times, once for each of several subdomains on this rank
+    /// (MatISSetAllowRepeated).
     pub fn is_repeated(&self) -> Result<bool> {
         let mut repeated = 0;
         petsc!(ff_is_repeated(self.raw(), &mut repeated))?;
@@ -143,14 +144,14 @@ impl Mat {
         Ok(list)
     }
 
-    /// What MatSetNullSpace attached.
+    /// The null space that MatSetNullSpace attached.
     pub fn attached_null_space(&self) -> Result<Option<Attached>> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatGetNullSpace(self.raw(), &mut raw))?;
         self.attached(raw)
     }
 
-    /// What MatSetNearNullSpace attached.
+    /// The near-null space that MatSetNearNullSpace attached.
     pub fn attached_near_null_space(&self) -> Result<Option<Attached>> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatGetNearNullSpace(self.raw(), &mut raw))?;
@@ -163,7 +164,7 @@ impl Mat {
 }
 
 impl Attached {
-    /// What a null space consists of; `None` for none.
+    /// The vectors of a null space; `None` for NULL.
     pub(crate) fn of(raw: sys::MatNullSpace, session: &Session) -> Result<Option<Attached>> {
         if raw.is_null() {
             return Ok(None);

@@ -2,7 +2,7 @@
 //!
 //! - A [`Session`] stands for an initialised PETSc. Every object keeps it alive, so nothing outlives `PetscFinalize`.
 //! - Objects are reference counted by PETSc: `clone` counts up, `drop` counts down.
-//! - PETSc owns what a shell ([`ShellMat`], [`ShellPc`], [`ShellOp`]) captures and drops it with the object.
+//! - PETSc owns the captured data of a shell ([`ShellMat`], [`ShellPc`], [`ShellOp`]) and drops it with the object.
 //! - An error or a panic in a callback travels through PETSc's C frames as an error code and comes out of the outer
 //!   call ([`Ksp::solve`], [`Mat::mult`], …) as the original Rust error.
 //! - Nothing that is PETSc's is `Send`: PETSc is not thread safe. The libraries of `ordering`, which come with it, are
@@ -48,14 +48,14 @@ pub use shell::{ShellMat, ShellOp, ShellPc};
 pub use spectrum::extreme_eigenvalues;
 pub use vec::{Array, ArrayMut, Vec};
 
-/// For `capi`, which takes objects from C: PETSc's own types, and the fence against unwinding.
+/// PETSc's own types and the guard against unwinding, for `capi`, which takes objects from C.
 pub(crate) mod raw {
     pub(crate) use super::error::{caught, settled as settle};
     pub(crate) use petsc_sys::{
         ff_comm_f2c, ff_comm_self, ff_error, MPI_Comm, Mat, MatNullSpace, PetscViewer, Vec, IS, KSP,
     };
 
-    /// Prints to a viewer, if it is one for text.
+    /// Prints to a viewer if it is a text viewer.
     pub(crate) fn show(viewer: PetscViewer, text: &str) -> crate::Result<()> {
         let mut ascii = 0;
         petsc!(ff_viewer_is_ascii(viewer, &mut ascii))?;

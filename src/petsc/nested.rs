@@ -1,14 +1,13 @@
-//! Vectors that consist of others (VECNEST), as host programs have them.
+//! Nested vectors (VECNEST) of host programs.
 
 use super::{Session, Vec};
 use crate::{Error, Result};
 use petsc_sys::Flag;
 
 impl Vec {
-    /// The vectors that a nested one consists of, in order; those of nested parts in their place. `None` for any other vector.
+    /// The parts of a nested vector in order; the parts of nested parts replace them. `None` for any other vector.
     ///
-    /// # Errors
-    /// [`Error::Input`] for a part that has not been made.
+    /// # Errors [`Error::Input`] for a part that does not exist yet.
     pub fn parts(&self) -> Result<Option<std::vec::Vec<Vec>>> {
         let mut nested = Flag::of(false);
         petsc!(PetscObjectTypeCompare(
@@ -44,7 +43,8 @@ impl Vec {
         Ok(())
     }
 
-    /// Tells PETSc that the entries of a nested vector have changed through its parts: norms that it remembers are void. Collective.
+    /// Tells PETSc that the entries of a nested vector have changed through its parts, which invalidates cached norms.
+    /// Collective.
     pub fn parts_changed(&self) -> Result<()> {
         petsc!(VecAssemblyBegin(self.raw()))?;
         petsc!(VecAssemblyEnd(self.raw()))

@@ -12,8 +12,8 @@ use std::str::FromStr;
 /// The options that begin with one prefix (`"fetifeti_"`; `""` for all).
 ///
 /// Names are written without the dash and without the prefix: with the prefix `fetifeti_`, the name `ksp_rtol` is
-/// `-fetifeti_ksp_rtol`. Reading an option marks it as used. The `get_*` methods return `None` where the option is not set; those
-/// named after a type take a default and a line of help, which `-help` lists.
+/// `-fetifeti_ksp_rtol`. Reading an option marks it as used. The `get_*` methods return `None` where the option is not
+/// set; those named after a type take a default and a line of help, which `-help` lists.
 #[derive(Clone)]
 pub struct Options {
     session: Session,
@@ -39,7 +39,7 @@ impl Options {
         format!("-{}{name}", self.prefix)
     }
 
-    /// Is the option set, with or without a value?
+    /// Whether the option is set, with or without a value.
     pub fn has(&self, name: &str) -> Result<bool> {
         Ok(self.get_string(name)?.is_some())
     }
@@ -200,7 +200,7 @@ impl Options {
         petsc!(PetscOptionsClearValue(null_mut(), full.as_ptr()))
     }
 
-    /// The options with this prefix that nobody has read yet: (name with its dash, value).
+    /// The unread options with this prefix: (name with its dash, value).
     pub fn left(&self) -> Result<Vec<(String, String)>> {
         let mut count = 0;
         let (mut names, mut values): (*mut *mut c_char, *mut *mut c_char) =

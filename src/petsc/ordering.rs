@@ -1,14 +1,14 @@
 //! Fill-reducing orderings of graphs by METIS and Scotch.
 //!
-//! Both keep their random numbers in variables of the process: one call at a time, each from the same start, so that an ordering depends on
-//! its graph alone.
+//! Both libraries keep the state of their random numbers in global variables. Calls are serialised and start from the
+//! same state: an ordering depends on its graph alone.
 
 use std::os::raw::c_int;
 use std::sync::{Mutex, PoisonError};
 
 use petsc_sys as sys;
 
-/// One caller at a time.
+/// Serialises the calls.
 static ALONE: Mutex<()> = Mutex::new(());
 
 /// A symmetric graph without loops in compressed rows, both directions of every edge.
@@ -34,16 +34,14 @@ pub fn have_scotch() -> bool {
 
 /// METIS's nested dissection: the vertices in the order of elimination.
 ///
-/// # Errors
-/// What failed, in one sentence without a full stop.
+/// # Errors The reason of a failure, one sentence without a full stop.
 pub fn metis(graph: &Graph) -> Result<Vec<u32>, String> {
     order(graph, "METIS", sys::ff_metis_order)
 }
 
 /// Scotch's nested dissection: the vertices in the order of elimination.
 ///
-/// # Errors
-/// What failed, in one sentence without a full stop.
+/// # Errors The reason of a failure, one sentence without a full stop.
 pub fn scotch(graph: &Graph) -> Result<Vec<u32>, String> {
     order(graph, "Scotch", sys::ff_scotch_order)
 }
@@ -57,9 +55,10 @@ fn order(graph: &Graph, library: &str, call: Order) -> Result<Vec<u32>, String> 
         return Ok(Vec::new());
     }
     let mut found: Vec<c_int> = vec![0; n];
-    // What a panic elsewhere left behind does not matter: the lock guards no data of ours.
+    // A poisoned lock does not matter: it guards no data of ours.
     let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    // SAFETY: the arrays have n + 1, row[n] and n entries, live until the call returns, and nobody else is in the library.
+    // SAFETY: the arrays have n + 1, row[n] and n entries, live until the call returns, and nobody else is in the
+    // library.
     let code = unsafe {
         call(
             n as c_int,
@@ -75,7 +74,7 @@ fn order(graph: &Graph, library: &str, call: Order) -> Result<Vec<u32>, String> 
     Ok(found.into_iter().map(|i| i as u32).collect())
 }
 
-/// What the code of a wrapper says, in one sentence without a full stop.
+/// The meaning of a wrapper's error code, one sentence without a full stop.
 fn complaint(library: &str, code: c_int) -> String {
     match code {
         sys::FF_ABSENT => format!("this build has no {library}"),

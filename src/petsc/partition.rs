@@ -5,8 +5,9 @@ use super::Session;
 use crate::Result;
 use std::os::raw::c_int;
 
-/// The part, from 0 to below `parts`, of every vertex of a symmetric graph in compressed rows with edge weights, on this rank alone. The type is the one that
-/// `-<prefix>mat_partitioning_type` names, and PT-Scotch where nothing is named; `None` where PETSc was built without that.
+/// The part (0 ≤ part < `parts`) of every vertex of a symmetric graph in compressed rows with edge weights, computed on
+/// this rank alone. The option `-<prefix>mat_partitioning_type` sets the type; the default is PT-Scotch. `None` if the
+/// default is used and PETSc was built without it.
 ///
 /// # Errors
 /// PETSc's own, for a type that it does not know among others.

@@ -6,7 +6,7 @@ use super::{Is, Vec};
 use crate::Result;
 use petsc_sys as sys;
 
-/// A preconditioner, usually that of a [`Ksp`](super::Ksp). [`Pc::set_shell`] makes one of Rust code.
+/// A preconditioner, usually of a [`Ksp`](super::Ksp). [`Pc::set_shell`] makes one from Rust code.
 #[derive(Clone)]
 pub struct Pc(pub(super) Handle<sys::_p_PC>);
 
@@ -16,7 +16,7 @@ impl Pc {
         petsc!(PCSetType(self.0.raw(), c_string(name).as_ptr()))
     }
 
-    /// The type's name; empty where none is set.
+    /// The type's name; empty if none is set.
     pub fn type_name(&self) -> Result<String> {
         let mut name = std::ptr::null();
         petsc!(PCGetType(self.0.raw(), &mut name))?;
@@ -41,7 +41,7 @@ impl Pc {
         petsc!(PCSetFromOptions(self.0.raw()))
     }
 
-    /// Builds what the preconditioner needs. Collective.
+    /// Sets up the preconditioner. Collective.
     pub fn setup(&self) -> Result<()> {
         petsc!(PCSetUp(self.0.raw()))
     }
@@ -65,7 +65,7 @@ impl Pc {
         petsc!(PCBDDCSetNeumannBoundariesLocal(self.0.raw(), dofs.0.raw()))
     }
 
-    /// Positions of the rows that this rank owns, the first `dim` entries of each. Collective.
+    /// Sets the coordinates of the rows that this rank owns: the first `dim` entries of each point. Collective.
     pub fn set_coordinates(&self, dim: usize, points: &[[f64; 3]]) -> Result<()> {
         let flat: std::vec::Vec<f64> = points.iter().flat_map(|p| p[..dim].to_vec()).collect();
         let (dim, n) = (dim as i32, points.len() as i32);
@@ -87,7 +87,7 @@ impl Pc {
         ))
     }
 
-    /// PCBDDC: local dofs that are primal beside those it finds itself. Collective.
+    /// PCBDDC: local dofs that are primal in addition to those that PCBDDC selects. Collective.
     pub fn bddc_set_primal_local(&self, dofs: &Is) -> Result<()> {
         petsc!(PCBDDCSetPrimalVerticesLocalIS(self.0.raw(), dofs.0.raw()))
     }

@@ -37,7 +37,8 @@ impl Scatter {
         petsc!(VecScatterEnd(scatter, x, y, insert, sys::SCATTER_FORWARD))
     }
 
-    /// global ← global + entries of local, on every rank: starts the messages. (`local` is the `to` of [`Scatter::new`].)
+    /// global ← global + entries of local, on every rank: starts the messages. (`local` is the `to` of
+    /// [`Scatter::new`].)
     pub fn reverse_add_begin(&self, local: &Vec, global: &Vec) -> Result<()> {
         let (x, y) = (local.read()?, global.write()?);
         let (scatter, add) = (self.0.raw(), sys::ADD_VALUES);

@@ -36,31 +36,32 @@ struct Inner {
     world: sys::MPI_Comm,
     /// PETSc's inner communicator of `world`, held so that destroying the last object frees no communicator.
     held: sys::MPI_Comm,
-    /// Ours for messages of the method, apart from PETSc's.
+    /// Our communicator for messages of the method, apart from PETSc's.
     comm: ManuallyDrop<SimpleCommunicator>,
-    /// For [`Session::agree`].
+    /// The communicator of [`Session::agree`].
     agreement: ManuallyDrop<SimpleCommunicator>,
-    /// For the end of [`Session::run`] only: its one operation must not meet any other.
+    /// The communicator of the end of [`Session::run`] only: its one operation must not meet any other.
     ending: ManuallyDrop<SimpleCommunicator>,
     rank: usize,
     size: usize,
-    /// We initialised PETSc, so we finalise it.
+    /// Whether we initialised PETSc, and therefore finalise it.
     owned: bool,
-    /// We initialised SLEPc, so we finalise it.
+    /// Whether we initialised SLEPc, and therefore finalise it.
     began_slepc: Cell<bool>,
     /// Options that `-help` has listed.
     pub(super) listed: RefCell<HashSet<String>>,
 }
 
 impl Session {
-    /// Initialises PETSc (and MPI, unless the program did) with these command-line arguments, without the program's name.
+    /// Initialises PETSc (and MPI, unless the program did) with these command-line arguments, without the program's
+    /// name.
     ///
-    /// PETSc reads its options from `args`, PETSC_OPTIONS, `-options_file` and .petscrc; `help` is printed first under `-help`.
-    /// PETSc's printed stacks are replaced by [`Error::Petsc`], its signal handler is left out.
+    /// PETSc reads its options from `args`, PETSC_OPTIONS, `-options_file` and .petscrc; `help` is printed first under
+    /// `-help`. PETSc's printed stacks are replaced by [`Error::Petsc`], its signal handler is left out.
     ///
     /// # Errors
-    /// [`Error::Environment`] when PETSc is already initialised or finalised, is another version than the one compiled against,
-    /// or refuses to start.
+    /// [`Error::Environment`] when PETSc is already initialised or finalised, is another version than the one compiled
+    /// against, or refuses to start.
     pub fn new(args: &[String], help: &str) -> Result<Session> {
         check_version()?;
         let (mut begun, mut ended) = (Flag::of(false), Flag::of(false));
@@ -76,7 +77,7 @@ impl Session {
                 "PETSc was finalised in this process and cannot start again.",
             ));
         }
-        // Before PetscInitialize, so that what is wrong with the options comes back as an error, too.
+        // This precedes PetscInitialize: errors in the options are then returned as errors, too.
         collect_traces()?;
         // Rust reports panics and stack overflows itself. Options set before PetscInitialize are kept by it.
         petsc!(PetscOptionsSetValue(
@@ -109,8 +110,8 @@ impl Session {
         Session::on(world, true)
     }
 
-    /// A session inside a program that initialised PETSc itself, on one of its communicators. PETSc is not finalised at the end
-    /// and its error handler stays the host's.
+    /// A session inside a program that initialised PETSc itself, on one of its communicators. PETSc is not finalised at
+    /// the end and its error handler stays the host's.
     ///
     /// # Errors
     /// [`Error::Environment`] when PETSc is not initialised or is another version than the one compiled against.
@@ -189,8 +190,8 @@ impl Session {
 
     /// Collective: `Ok` on all ranks, or the same error on all: that of the lowest failing rank.
     ///
-    /// To be called at points that every rank reaches whatever happened to it, so that a failure of one rank (a file, a factorisation,
-    /// a bad number) becomes a common error instead of a hang.
+    /// Every rank must reach the call, also after a failure. A failure of one rank (a file, a factorisation, a bad
+    /// number) then becomes a common error instead of a hang.
     ///
     /// # Errors
     /// The error of the lowest rank that passed one.
@@ -223,8 +224,8 @@ impl Session {
         }
     }
 
-    /// At the end of a piece of work that every rank does: the result, or an error with whether all ranks return it. An error that only some
-    /// ranks have while the others are still at work is not waited for any longer than a second.
+    /// Ends a piece of work of all ranks: returns the result, or the error and whether all ranks return it. If only
+    /// some ranks fail while the others are still at work, the failed ranks wait for them for about a second at most.
     pub(crate) fn conclude<T>(&self, result: Result<T>) -> std::result::Result<T, (Error, bool)> {
         if self.size() == 1 {
             return result.map_err(|error| (error, true));
@@ -241,8 +242,9 @@ impl Session {
 
     /// Runs the program's work and returns its exit code: 0, or the error's.
     ///
-    /// An error that every rank returns is printed once. An error of some ranks only, while the others are still at work, is printed with its rank
-    /// and ends all ranks through MPI_Abort: they may be waiting for the failed one. Panics count as errors.
+    /// An error that every rank returns is printed once. An error of some ranks only, while the others are still at
+    /// work, is printed with its rank and ends all ranks through MPI_Abort: they may be waiting for the failed one.
+    /// Panics count as errors.
     pub fn run(&self, work: impl FnOnce(&Session) -> Result<()>) -> i32 {
         let result = catch_unwind(AssertUnwindSafe(|| work(self)))
             .unwrap_or_else(|payload| Err(panicked("the program", payload.as_ref())));
@@ -258,7 +260,7 @@ impl Session {
         let first = self.first_failure(result.is_err());
         match (first, result) {
             (Some(first), result) if first < self.size() => {
-                // Every rank has come here; the lowest failing one speaks.
+                // All ranks have arrived; the lowest failing one reports.
                 let own = result.is_err();
                 let result = self.agree(result);
                 let error = result.expect_err("a rank failed");
@@ -281,12 +283,12 @@ impl Session {
         self.0.comm.abort(code)
     }
 
-    /// The lowest failing rank (the number of ranks if none), or `None` when this rank failed and the others did not come
-    /// within the grace time.
+    /// The lowest failing rank (the number of ranks if none), or `None` if this rank failed and the others did not
+    /// arrive within the grace time.
     fn first_failure(&self, failed: bool) -> Option<usize> {
         use mpi::ffi;
         use mpi::raw::AsRaw;
-        // Of several failing ranks the lowest gives up first, so that one of them speaks and the others are ended.
+        // Of several failing ranks the lowest gives up first: it reports, and ends the others.
         let grace = Duration::from_millis(1000 + 200 * self.rank().min(20) as u64);
         let mine = if failed { self.rank() } else { self.size() } as c_int;
         // The buffers must outlive an operation that may never finish: then they are leaked.
@@ -320,7 +322,7 @@ impl Session {
             if failed && start.elapsed() > grace {
                 return None;
             }
-            // The others are usually here, or nearly.
+            // The others have usually arrived, or are about to.
             if start.elapsed() > Duration::from_millis(1) {
                 std::thread::sleep(Duration::from_millis(2));
             } else {
@@ -355,8 +357,8 @@ pub fn max_memory() -> f64 {
     unsafe { sys::ff_max_memory() }
 }
 
-/// Ends MPI after a PetscInitialize that failed half-way. With several ranks this does not return: the others may be waiting for
-/// what the failed rank was about to read to them.
+/// Ends MPI after a PetscInitialize that failed half-way. With several ranks this function does not return: the others
+/// may be waiting for data that the failed rank was to read.
 fn end_mpi(error: &Error) {
     use mpi::ffi;
     let (mut begun, mut ended) = (0, 0);
@@ -374,7 +376,7 @@ fn end_mpi(error: &Error) {
             ffi::MPI_Finalize();
             return;
         }
-        // The lowest failing rank speaks first and ends the others.
+        // The lowest failing rank reports first and ends the others.
         std::thread::sleep(Duration::from_millis(200 * rank.min(20) as u64));
         eprintln!("Error on rank {rank}: {error}");
         ffi::MPI_Abort(ffi::RSMPI_COMM_WORLD, error.exit_code());

@@ -42,12 +42,12 @@ use petsc_sys as sys;
 use std::ffi::{c_int, c_void, CStr};
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
-/// A matrix by its action.
+/// A matrix defined by its action.
 pub trait ShellMat {
     /// y ← A x.
     fn mult(&self, x: &Vec, y: &Vec) -> Result<()>;
 
-    /// y ← Aᵀ x; by default that of a symmetric operator, else an error.
+    /// y ← Aᵀ x; by default A x if the operator is symmetric, otherwise an error.
     fn mult_transpose(&self, x: &Vec, y: &Vec) -> Result<()> {
         if self.symmetric() {
             return self.mult(x, y);
@@ -57,35 +57,35 @@ pub trait ShellMat {
         ))
     }
 
-    /// Is Aᵀ = A?
+    /// Whether Aᵀ = A.
     fn symmetric(&self) -> bool {
         false
     }
 
-    /// d ← diagonal of A; an error by default.
+    /// d ← diagonal of A; by default an error.
     fn diagonal(&self, _d: &Vec) -> Result<()> {
         Err(Error::environment(
             "This shell matrix does not provide its diagonal.",
         ))
     }
 
-    /// What `-ksp_view` says about the operator.
+    /// The description of the operator for `-ksp_view`.
     fn view(&self) -> String {
         String::new()
     }
 }
 
-/// A preconditioner by its action.
+/// A preconditioner defined by its action.
 pub trait ShellPc {
     /// y ← M⁻¹ x.
     fn apply(&self, x: &Vec, y: &Vec) -> Result<()>;
 
-    /// y ← M⁻ᵀ x; by default M⁻¹ is taken as symmetric.
+    /// y ← M⁻ᵀ x; by default M⁻¹ is assumed symmetric.
     fn apply_transpose(&self, x: &Vec, y: &Vec) -> Result<()> {
         self.apply(x, y)
     }
 
-    /// What `-ksp_view` says about the preconditioner.
+    /// The description of the preconditioner for `-ksp_view`.
     fn view(&self) -> String {
         String::new()
     }
@@ -97,7 +97,7 @@ pub trait ShellOp {
     fn apply(&self, x: &Vec, y: &Vec) -> Result<()>;
 }
 
-/// The name under which a context hangs at its object.
+/// The name under which a context is composed with its object.
 const KEY: &CStr = c"fetifeti_shell";
 
 struct Context<T: ?Sized> {
@@ -149,7 +149,7 @@ unsafe fn with_context<T: ?Sized>(
     })
 }
 
-/// The common shape of all products: lends both vectors and calls the operator.
+/// Common code of all products: borrows both vectors and calls the operator.
 ///
 /// # Safety
 /// As for [`with_context`]; `x` and `y` are alive.
@@ -317,8 +317,9 @@ impl Pc {
 impl Eps {
     /// Makes the spectral transformation an operator OP written in Rust.
     ///
-    /// The search space is built with OP and [`Eps::set_which`] is about its eigenvalues; those that come out are the Rayleigh quotients of A.
-    /// STSHELL of 3.18 takes no generalised problem (it knows no bilinear form): see `extreme_eigenvalues` for the way round.
+    /// The search space is built with OP, and [`Eps::set_which`] refers to eigenvalues of OP; the eigenvalues returned
+    /// are the Rayleigh quotients of A. STSHELL of PETSc 3.18 does not support generalised problems (it has no bilinear
+    /// form); see `extreme_eigenvalues` for a workaround.
     pub fn set_st_shell(&self, op: Box<dyn ShellOp>) -> Result<()> {
         let mut st = std::ptr::null_mut();
         petsc!(EPSGetST(self.0.raw(), &mut st))?;

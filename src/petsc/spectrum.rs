@@ -1,15 +1,15 @@
 //! Extreme eigenvalues of a product of two symmetric positive semidefinite operators.
 //!
-//! The non-zero eigenvalues of C A are wanted, where A is P^T F P and C is P M^-1 P^T, say. C A is self-adjoint in the inner product of A, but
-//! that one is only semidefinite: what a Krylov method carries along in ker A is invisible to it, grows like the Lanczos
-//! polynomials at zero, and in the end swamps the vectors. So the kernel is made visible. With a projection E, A E = A, and N = I - E,
-//!
+//! The goal is the non-zero eigenvalues of C A, for example with A = P^T F P and C = P M^-1 P^T. C A is self-adjoint in
+//! the inner product of A, but this inner product is only semidefinite. It does not see the components of the Krylov
+//! vectors in ker A. These grow like the Lanczos polynomials at zero, and in the end swamp the vectors. Therefore the
+//! operator and the inner product are extended to the kernel. With a projection E, A E = A, and N = I - E,
 //! ```text
 //! OP = E C Eᵀ A + σ N          has the non-zero eigenvalues of C A on range E, and σ on range N ⊂ ker A
 //! B  = A + s NᵀN               is positive definite, and B OP is symmetric, for A N = 0 and N E = 0
 //! ```
 //!
-//! σ is a Rayleigh quotient of C A: it lies between the extremes and never is one that C A does not have.
+//! σ is a Rayleigh quotient of C A: it lies between the extreme eigenvalues, and does not extend the spectrum.
 
 use super::{Comm, Eps, Mat, ProblemType, Session, ShellMat, Vec, Which};
 use crate::{Error, Result};
@@ -88,8 +88,8 @@ impl ShellMat for InnerProduct {
     }
 }
 
-/// Vectors between restarts, which is when SLEPc looks whether it is done. The largest eigenvalue stands alone and is there after some
-/// tens of them; the smallest ones lie close together at the lower end.
+/// Number of vectors between restarts; SLEPc tests convergence at restarts only. The largest eigenvalue is well
+/// separated and converges after some tens of vectors; the smallest ones are clustered at the lower end.
 fn subspace(which: Which) -> usize {
     match which {
         Which::LargestReal => 40,
@@ -99,9 +99,10 @@ fn subspace(which: Which) -> usize {
 
 /// The smallest and the largest eigenvalue of C A on range A.
 ///
-/// `a` and `c` are symmetric positive semidefinite, of the same shape and distribution. `e` is a projection with A E = A and range E ∩ ker A = {0} that also
-/// provides its transposed product; `None` stands for the identity and is right only for a positive definite A. `start` is any vector that A does not
-/// annihilate. `tol` bounds the residual relative to the eigenvalue; the error of the eigenvalue is of the order of its square where the eigenvalue is well separated,
+/// `a` and `c` are symmetric positive semidefinite, of the same shape and distribution. `e` is a projection with A E =
+/// A and range E ∩ ker A = {0} that also provides its transposed product; `None` stands for the identity and is right
+/// only for a positive definite A. `start` is any vector that A does not annihilate. `tol` bounds the residual relative
+/// to the eigenvalue; the error of the eigenvalue is of the order of its square where the eigenvalue is well separated,
 /// and never larger than `tol`. Options with `prefix` go to SLEPc's solver. Collective.
 ///
 /// # Errors
@@ -155,7 +156,8 @@ pub fn extreme_eigenvalues(
 
     let end = |which: Which| -> Result<f64> {
         let eps = Eps::new(session, Comm::World)?;
-        // SLEPc takes (OP, B) as a pencil and wants B⁻¹ of it. OP has that factor already, so the solve with B is the identity.
+        // SLEPc takes (OP, B) as a pencil and wants B⁻¹ of it. OP has that factor already, so the solve with B is the
+        // identity.
         eps.set_operators(&operator, Some(&inner_product))?;
         eps.set_problem_type(ProblemType::Ghep)?;
         eps.set_which(which)?;

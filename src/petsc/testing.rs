@@ -8,7 +8,7 @@ use std::thread;
 
 type Job = Box<dyn FnOnce(&Session) + Send>;
 
-/// Runs a test on the thread that owns PETSc and returns (or panics with) what it did.
+/// Runs a test on the thread that owns PETSc; returns its result, or panics as it did.
 ///
 /// PETSc can be initialised once per process and is not thread safe, while the test harness runs tests on many threads.
 /// So one thread owns the session for the life of the process, and tests take turns on it.

@@ -11,17 +11,18 @@ use std::ops::{Deref, DerefMut};
 use std::path::Path;
 
 thread_local! {
-    /// Vectors whose entries are lent out: the number of readers, or -1 for one writer.
+    /// The borrow state of vectors whose entries are lent out: the number of readers, or -1 for one writer.
     ///
-    /// Handles are shared and PETSc writes through them, so that the borrow rules are checked when the program runs, as in a `RefCell`.
+    /// Handles are shared and PETSc writes through them: the borrow rules are therefore checked at run time, as in a
+    /// `RefCell`.
     static LENT: RefCell<HashMap<usize, isize>> = RefCell::default();
 }
 
 /// A vector of real numbers, distributed over the ranks of a session or of this rank alone.
 ///
-/// Clones are handles to the same vector; [`Vec::duplicate`] makes a new one. Methods that write take `&self`, as PETSc does.
-/// While entries are lent out by [`Vec::array`] nothing may write to the vector, and while they are lent out by [`Vec::array_mut`] nothing may
-/// use it: such calls return an error.
+/// Clones are handles to the same vector; [`Vec::duplicate`] makes a new one. Methods that write take `&self`, as PETSc
+/// does. While entries are lent out by [`Vec::array`] nothing may write to the vector, and while they are lent out by
+/// [`Vec::array_mut`] nothing may use it: such calls return an error.
 #[derive(Clone)]
 pub struct Vec(pub(super) Handle<sys::_p_Vec>);
 
@@ -46,7 +47,8 @@ impl Vec {
         Vec::sized(session, Comm::World, sys::PETSC_DECIDE, count(global)?)
     }
 
-    /// A zero vector over all ranks with these numbers of entries; PETSc decides what is left open. Collective.
+    /// A zero vector over all ranks with these numbers of entries; PETSc chooses a number that is not given.
+    /// Collective.
     pub fn over_ranks(
         session: &Session,
         local: Option<usize>,

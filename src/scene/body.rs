@@ -7,7 +7,7 @@ use crate::mesh::BoxMesh;
 /// A body of a checked scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// What was written about it.
+    /// Its specification as written.
     pub spec: BodySpec,
     /// Number C of components of the field.
     pub components: usize,
@@ -15,8 +15,8 @@ pub struct Body {
     pub first_dof: u64,
     /// Global index of its subdomain 0.
     pub first_subdomain: usize,
-    /// Degrees of freedom C k + c with a given value, in increasing order: Dirichlet sides, and nodes that are tied to such a node of
-    /// another body. Values are those before any factor of a load step.
+    /// Degrees of freedom C k + c with a given value, in increasing order: Dirichlet sides, and nodes that are tied to
+    /// such a node of another body. The values do not include the factors of load steps.
     pub prescribed: Vec<(usize, f64)>,
     /// Least and greatest coordinates of its nodes.
     pub bounds: [[f64; 3]; 2],

@@ -1,4 +1,4 @@
-//! A checked scene: what was written, with every default filled in.
+//! A checked scene, with every default filled in.
 
 use super::body::{bounds_of, Body};
 use super::geometry::interface::Interface;
@@ -44,7 +44,7 @@ use std::path::Path;
 pub struct Scene {
     /// Title for reports.
     pub title: String,
-    /// What is solved, and by which elements.
+    /// The equation and its finite elements.
     pub form: Form,
     /// The bodies.
     pub bodies: Vec<Body>,

@@ -1,4 +1,4 @@
-//! Fields at points of a subdomain; coefficients by element, the weights that follow from them, how far they range.
+//! Coefficients by element, the weights of ρ-scaling, coefficient ranges, and fields at points of a subdomain.
 
 use super::body::Body;
 use super::checked::Scene;
@@ -9,8 +9,8 @@ use crate::fem::SubdomainMesh;
 use crate::mesh::Block;
 
 impl Scene {
-    /// Least and greatest ρ (Young's modulus in elasticity) by body, over the subdomains for which `owns` holds; ∞ and −∞ for bodies without
-    /// any of them.
+    /// Least and greatest ρ (Young's modulus in elasticity) by body, over the subdomains for which `owns` holds. A body
+    /// without such subdomains gets ∞ and −∞.
     ///
     /// # Errors
     /// As [`Scene::subdomain_mesh`].
@@ -72,8 +72,8 @@ pub(super) fn by_element(
     mesh.element_places().map(value).collect()
 }
 
-/// The largest coefficient in the elements around the node at a place of the subdomain: its weight in ρ-scaling. Elements of a node act
-/// in parallel, so that the stiffest of them says how it moves.
+/// The largest coefficient in the elements around a node of the subdomain, which is its weight in ρ-scaling. The
+/// elements around a node act in parallel: the stiffest one determines its motion.
 pub(super) fn stiffest(mesh: &SubdomainMesh, place: [usize; 3]) -> f64 {
     let counts = mesh.elements.map(|n| n.max(1));
     let range = |d: usize| place[d].saturating_sub(1)..=place[d].min(counts[d] - 1);
@@ -90,7 +90,7 @@ pub(super) fn stiffest(mesh: &SubdomainMesh, place: [usize; 3]) -> f64 {
     largest
 }
 
-/// Where fields are evaluated: a point of a subdomain.
+/// A point of a subdomain, with the variables on which fields depend.
 pub(super) fn at(body: &Body, block: &Block, point: [f64; 3]) -> At {
     At {
         variables: Variables {

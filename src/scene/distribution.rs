@@ -1,4 +1,4 @@
-//! Which rank holds which subdomain, and this rank's part of a scene.
+//! The distribution of subdomains over ranks, and this rank's part of a scene.
 
 use std::path::Path;
 
@@ -15,8 +15,8 @@ pub(crate) fn load(session: &Session, path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Does `work` with the options of the scene in the database, below those of the user; afterwards they are gone. For programs
-/// that take one scene after the other.
+/// Calls `work` with the options of the scene in the database, below those of the user, and removes them afterwards. It
+/// serves programs that process several scenes.
 pub(crate) fn with_options<T>(
     session: &Session,
     scene: &Scene,
@@ -52,7 +52,7 @@ pub(crate) enum Distribution {
 }
 
 impl Distribution {
-    /// As the options say.
+    /// Reads the option `-fetifeti_distribution`.
     pub(crate) fn from_options(session: &Session) -> Result<Distribution> {
         let help = "how subdomains are dealt to ranks";
         let names = ["block", "cyclic"];
@@ -73,7 +73,7 @@ impl Distribution {
     }
 }
 
-/// Which subdomains belong to this rank, as the options deal them.
+/// A predicate: whether this rank owns a subdomain, according to the options.
 pub(crate) fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -> bool> {
     let deal = Distribution::from_options(session)?;
     let (n, rank, size) = (scene.n_subdomains(), session.rank(), session.size());

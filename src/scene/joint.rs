@@ -20,7 +20,8 @@ impl Scene {
     /// [`Error::Input`](crate::Error::Input) for ρ ≤ 0 or a value that is not finite, with body and point.
     pub fn substructures(&self, owns: &dyn Fn(usize) -> bool) -> Result<Substructures> {
         let mine: Vec<usize> = (0..self.n_subdomains()).filter(|&s| owns(s)).collect();
-        // All first, then the first error: which one a parallel search meets first is chance.
+        // Assembles all subdomains, then reports the first error in their order: the first error in time would be
+        // random.
         let local: Vec<Result<Subdomain>> = mine.par_iter().map(|&s| self.subdomain(s)).collect();
         let local: Result<Vec<Subdomain>> = local.into_iter().collect();
         Ok(Substructures {
@@ -68,7 +69,7 @@ impl Scene {
                     continue;
                 }
                 dofs.push(first + component as u64);
-                // All blocks of a body are equal, so that vertices of the body's partition are corners of its blocks.
+                // All blocks of a body are equal, hence vertices of the body's partition are corners of its blocks.
                 if whole.is_vertex(place) {
                     primal.push(dof);
                 }
@@ -95,7 +96,7 @@ impl Scene {
     }
 
     /// Squares of the error norms (L², H¹ seminorm, energy) of the nodal values on `mesh` against the exact solution;
-    /// `None` where the scene has none.
+    /// `None` if the scene has no exact solution.
     pub fn error_squares(&self, mesh: &SubdomainMesh, nodal: &[f64]) -> Option<[f64; 3]> {
         let exact = self.exact.as_ref()?;
         let (body, block) = self.place(mesh.index);

@@ -12,8 +12,8 @@ use crate::fem::{self, SubdomainMesh};
 use crate::linalg::csr::Csr;
 use crate::linalg::vec3::{cross, minus};
 
-/// Subdomains over the load steps. Their meshes, and the entries of K that given values meet, are built once; a step evaluates loads and
-/// scales given values.
+/// The loads of some subdomains over the load steps. The meshes, and the columns of K at given values, are built once;
+/// each step evaluates loads and scales given values.
 pub struct Stepping<'a> {
     scene: &'a Scene,
     subdomains: Vec<Stepped>,
@@ -21,7 +21,7 @@ pub struct Stepping<'a> {
 
 struct Stepped {
     mesh: SubdomainMesh,
-    /// Given values before any factor.
+    /// Given values without the factors of load steps.
     given: Vec<f64>,
     columns: Csr,
 }
@@ -50,8 +50,8 @@ impl<'a> Stepping<'a> {
         })
     }
 
-    /// The loads of the subdomains at load step `step` (0 is the only one without `[steps]`), given values eliminated; at the last step
-    /// those of [`Scene::subdomain`] to the last bit.
+    /// The loads of the subdomains at load step `step` (without `[steps]` the only step is 0), with given values
+    /// eliminated. At the last step they are those of [`Scene::subdomain`] to the last bit.
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a load that is not finite, or a step that the scene does not have.
@@ -70,7 +70,7 @@ impl<'a> Stepping<'a> {
 }
 
 impl Scene {
-    /// The load f of subdomain `index` at load step `step`; for many of either see [`Stepping`].
+    /// The load f of subdomain `index` at load step `step`; for many subdomains or steps use [`Stepping`].
     ///
     /// # Errors
     /// As [`Stepping::loads`].
@@ -78,8 +78,8 @@ impl Scene {
         Ok(Stepping::new(self, [index])?.loads(step)?.remove(0))
     }
 
-    /// The sum of all loads on subdomain `index` at load step `step`, by components, those of its sides included, and their moment
-    /// about `centre`.
+    /// The resultant force on subdomain `index` at load step `step`, by components and including its side loads, and
+    /// the resultant moment about `centre`.
     ///
     /// # Errors
     /// As [`Scene::loads`].
@@ -119,7 +119,7 @@ impl Scene {
         self.steps.as_ref().map_or(1, |s| s.times.len())
     }
 
-    /// The nodal load, checked: what acts inside, and on the sides of the body.
+    /// The nodal load from volume and side loads; an error if a value is not finite.
     pub(super) fn nodal_load(
         &self,
         mesh: &SubdomainMesh,

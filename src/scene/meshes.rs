@@ -77,7 +77,7 @@ impl Scene {
         Ok(mesh)
     }
 
-    /// Nodes of a body that springs hold.
+    /// The nodes of a body that springs support.
     pub(crate) fn sprung(&self, body: &Body) -> Vec<[usize; 3]> {
         let mesh = body.mesh();
         let held = |stiffness: &Field, place: &[usize; 3]| {

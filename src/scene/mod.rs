@@ -1,4 +1,4 @@
-//! Scenes: what the user writes, and everything that follows from it before a matrix is solved with.
+//! Scenes: the problem as the user writes it, and its preparation up to the subdomain matrices.
 //!
 //! ```text
 //! TOML ── read ──> SceneSpec ── Scene::new ──> Scene ──┬─> Substructures   (the method)
@@ -7,9 +7,9 @@
 //!                                                      └─> Plan            (what will be built)
 //! ```
 //!
-//! A [`SceneSpec`] is unchecked data, a [`Scene`] is checked and has every default filled in. A scene is small: it holds
-//! what happens on the boundaries of bodies, O(boundary nodes), and is the same on every rank; matrices are made
-//! subdomain by subdomain, on the rank that owns the subdomain. Coefficients from arrays in files are read there, too.
+//! A [`SceneSpec`] is unchecked data, a [`Scene`] is checked and has every default filled in. A scene is small and is
+//! the same on every rank: it holds data on the boundaries of bodies only, O(boundary nodes). Matrices are assembled
+//! subdomain by subdomain, on the rank that owns the subdomain. Coefficients in array files are read there, too.
 
 mod body;
 mod checked;

@@ -1,10 +1,10 @@
-//! The assembled problem's numbering: one unknown where tied bodies have several copies, none where u is given.
+//! The numbering of the assembled problem: tied copies share an unknown, given values have none.
 //!
 //! Baselines that work on the assembled matrix need it; the method itself does not. Every rank computes the same
-//! numbering from the scene alone, with memory in proportion to the nodes on boundaries of bodies: inside a subdomain
-//! numbers are counted, and only the exceptions (given nodes, and nodes that share a number of another body) are stored.
-//! Unknowns are numbered by subdomain (the lowest that contains the node), so that a contiguous share of
-//! subdomains is a contiguous range of unknowns.
+//! numbering from the scene alone. The memory is proportional to the number of nodes on boundaries of bodies: numbers
+//! inside a subdomain are counted, and only the exceptions are stored (given nodes, and nodes that share a number of
+//! another body). Each unknown belongs to the lowest subdomain that contains its node, and unknowns are numbered by
+//! subdomain: a contiguous range of subdomains has a contiguous range of unknowns.
 
 use super::checked::Scene;
 use crate::mesh::BoxMesh;
@@ -20,9 +20,9 @@ pub struct Numbering {
     starts: Vec<u64>,
     /// Number C of components.
     components: usize,
-    /// Body dofs without an own number, as (owning subdomain, rank among the dofs it owns), sorted.
+    /// Body dofs without a number of their own, as (owning subdomain, rank among the dofs it owns), sorted.
     holes: Vec<(usize, usize)>,
-    /// Where the holes of every subdomain start in `holes`.
+    /// Start of every subdomain's part of `holes`.
     hole_starts: Vec<usize>,
     /// The body dof whose number a tied body dof shares.
     shared: HashMap<u64, u64>,
@@ -106,8 +106,8 @@ impl Numbering {
         self.starts[subdomains.start]..self.starts[subdomains.end]
     }
 
-    /// The unknown of a body dof that is free (one that a [`Subdomain`](crate::substructures::Subdomain) lists).
-    /// The answer for a given node means nothing.
+    /// The unknown of a free body dof (one that a [`Subdomain`](crate::substructures::Subdomain) lists). The result for
+    /// a given node is meaningless.
     pub fn global(&self, body_dof: u64) -> u64 {
         let dof = self.shared.get(&body_dof).copied().unwrap_or(body_dof);
         let body = self.bodies.partition_point(|b| b.1 <= dof) - 1;
@@ -131,7 +131,7 @@ impl Numbering {
     pub fn place(&self, global: u64) -> (usize, [usize; 3], usize) {
         let s = self.starts.partition_point(|&start| start <= global) - 1;
         let holes = &self.holes[self.hole_starts[s]..self.hole_starts[s + 1]];
-        // The rank r with r − (holes below r) = number, r itself no hole.
+        // Finds the rank r, no hole itself, with r − (holes below r) = number.
         let mut rank = (global - self.starts[s]) as usize;
         for &(_, hole) in holes {
             if hole <= rank {
@@ -147,8 +147,8 @@ impl Numbering {
     }
 }
 
-/// First node, and the numbers of nodes along each direction, that subdomain `s` owns: its lower ends belong to the
-/// neighbours of lower number.
+/// The box of nodes that subdomain `s` owns: its first node and the numbers of nodes along each direction. Nodes at its
+/// lower ends belong to the neighbours of lower number.
 fn owned_box(mesh: &BoxMesh, s: usize) -> ([usize; 3], [usize; 3]) {
     let block = mesh.block(s);
     let (mut first, mut count) = ([0; 3], [0; 3]);
@@ -160,7 +160,7 @@ fn owned_box(mesh: &BoxMesh, s: usize) -> ([usize; 3], [usize; 3]) {
     (first, count)
 }
 
-/// The owning subdomain of a node and the node's rank among those it owns.
+/// The owning subdomain of a node, and the node's rank among the nodes of this owner.
 fn owned_rank(mesh: &BoxMesh, place: [usize; 3]) -> (usize, usize) {
     let owner = mesh.owner(place);
     let (first, [width, height, _]) = owned_box(mesh, owner);

@@ -1,4 +1,4 @@
-//! What will be built for a scene, counted without building it.
+//! The sizes of the problem that a scene describes, counted without assembling it.
 
 use super::body::Body;
 use super::checked::Scene;
@@ -26,7 +26,7 @@ pub struct BodyPlan {
     pub dofs: usize,
     /// Degrees of freedom with a given value.
     pub prescribed: usize,
-    /// Free degrees of freedom at vertices that subdomains share: primal constraints. Those of edges come on top.
+    /// Free degrees of freedom at vertices that subdomains share: primal constraints. Edges add further constraints.
     pub primal: usize,
     /// Edges with free degrees of freedom that subdomains share, by component: primal averages of a solid.
     pub edges: usize,
@@ -39,11 +39,11 @@ pub struct BodyPlan {
 pub struct InterfacePlan {
     /// The bodies.
     pub bodies: [usize; 2],
-    /// Whether they have only a corner in common.
+    /// Whether they meet in a corner only.
     pub corner: bool,
-    /// Nodes at which both have one.
+    /// Number of common nodes.
     pub nodes: usize,
-    /// Nodes of one without a partner in the other.
+    /// Nodes of one body without a partner in the other.
     pub unmatched: usize,
     /// Nodes that are tied.
     pub tied: usize,
@@ -72,15 +72,15 @@ pub struct Plan {
     pub primal: usize,
     /// Rows of B_loc.
     pub local_multipliers: usize,
-    /// Rows of B_gl that hold to begin with, inequalities included.
+    /// Rows of B_gl that hold initially, inequalities included.
     pub global_multipliers: usize,
-    /// Rows of B_gl that do not hold: candidate contact nodes of faces that are tied in part.
+    /// Rows of B_gl that do not hold initially: candidate contact nodes of faces that are tied in part.
     pub open_rows: usize,
     /// Pairs of bodies in contact.
     pub contact_pairs: usize,
     /// Rows u_a − u_b ≤ g: candidate contact nodes.
     pub contact_rows: usize,
-    /// Obstacles: sides of bodies with a bound, lower and upper ones counted apart.
+    /// Obstacles: sides of bodies with a bound; lower and upper bounds count separately.
     pub obstacles: usize,
     /// Rows of obstacles.
     pub obstacle_rows: usize,
@@ -89,7 +89,7 @@ pub struct Plan {
 }
 
 impl Scene {
-    /// Counts what will be built.
+    /// Counts the sizes.
     pub fn plan(&self) -> Plan {
         let bodies: Vec<BodyPlan> = (0..self.n_bodies()).map(|b| self.body_plan(b)).collect();
         let interfaces = self
@@ -158,7 +158,7 @@ impl Scene {
     }
 }
 
-/// What is shared inside a body.
+/// Numbers of shared entities inside a body.
 #[derive(Default)]
 struct Counts {
     primal: usize,
@@ -193,7 +193,7 @@ impl Counts {
             if let (3, &[along]) = (mesh.dim(), &inner[..]) {
                 let mut edge = place;
                 edge[along] = place[along] / each[along] * each[along];
-                // Edges along different directions may start at one vertex.
+                // The direction is part of the key: edges along different directions may start at one vertex.
                 edge[along] = edge[along] * 3 + along;
                 self.edges.insert((edge, c));
             }
@@ -201,7 +201,7 @@ impl Counts {
     }
 }
 
-/// The places of a body on lines (planes) between subdomains.
+/// The nodes of a body on lines (planes) between subdomains.
 fn mesh_lines(mesh: &BoxMesh) -> impl Iterator<Item = [usize; 3]> + '_ {
     let each = mesh.block_elements();
     places(mesh.nodes()).filter(move |p| (0..mesh.dim()).any(|d| p[d] % each[d] == 0))

@@ -10,7 +10,7 @@ use crate::fem::Form;
 use crate::mesh::{places, BoxMesh};
 use std::collections::HashMap;
 
-/// Largest number of bodies: a scene keeps a record for each of them.
+/// Largest number of bodies; the scene stores a record for each.
 pub(super) const MOST_BODIES: usize = 1 << 18;
 
 /// Largest number of subdomains.
@@ -138,7 +138,7 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
     Ok(())
 }
 
-/// Values that do not depend on the point.
+/// Checks values that do not depend on the point.
 fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
     check_coefficient(body, coefficient(form), &body.rho, is_coefficient, POSITIVE)?;
     if form.is_elastic() {
@@ -190,7 +190,7 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
     Ok(())
 }
 
-/// A coefficient as far as its values are written down.
+/// Checks the values of a coefficient that are known without evaluation.
 fn check_coefficient(
     body: &BodySpec,
     name: &str,
@@ -257,7 +257,7 @@ fn is_ratio(value: f64) -> bool {
     value > -1.0 && value < 0.5
 }
 
-/// What the coefficient is called.
+/// The name of the coefficient in messages.
 fn coefficient(form: &Form) -> &'static str {
     match form.is_elastic() {
         true => "E",
@@ -316,7 +316,7 @@ pub(super) fn bad_spring<T>(body: &BodySpec, value: f64, point: [f64; 3]) -> Res
     )
 }
 
-/// Degrees of freedom with a value given by a side, in increasing order: C k + c for component c of node k.
+/// Degrees of freedom with a value that a side gives, in increasing order: C k + c for component c of node k.
 ///
 /// # Errors
 /// A value that is not finite, or two sides that disagree where they meet.

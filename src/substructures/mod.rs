@@ -1,7 +1,7 @@
-//! The joint between problems and the method: subdomain matrices and the rows that tie bodies together.
+//! The interface between problems and the method: subdomain matrices, and the rows of B_gl that connect bodies.
 //!
-//! A scene and a MATIS both end here, and nothing to the right of this module knows where the matrices came
-//! from. Everything is distributed: a rank holds its own subdomains and provides its own rows.
+//! Scenes and MATIS matrices both become [`Substructures`]; the method does not know where the matrices come from. All
+//! data are distributed: a rank holds its own subdomains and provides its own rows.
 
 mod rows;
 
@@ -25,21 +25,23 @@ pub struct Subdomain {
     /// Body dof of each local dof, length n. Two subdomains of one body share a degree of freedom exactly when
     /// both list the same number here; numbers of different bodies never coincide. Holes are allowed.
     pub dofs: Vec<u64>,
-    /// Coefficient ρ as this subdomain sees it at each local dof, length n, > 0: the weight of ρ-scaling.
+    /// Coefficient ρ of this subdomain at each local dof, length n, > 0: the weight of ρ-scaling.
     pub rho: Vec<f64>,
-    /// Local dofs at subdomain vertices (strictly increasing). Continuity inside the body is primal at those that subdomains
-    /// share; corners of the body count too, they matter where bodies meet.
+    /// Local dofs at subdomain vertices (strictly increasing). Continuity inside the body is primal at the vertices
+    /// that subdomains share. Corners of the body are listed too, as they matter where bodies meet.
     pub primal: Vec<u32>,
-    /// Edges and faces that this subdomain shares with others of its body, for primal averages; see [`Entity`]. Empty: there are none.
+    /// Edges and faces that this subdomain shares with others of its body, for primal averages; see [`Entity`]. May be
+    /// empty.
     pub entities: Vec<Entity>,
-    /// Columns that span every kernel that this subdomain's matrix could have before it is held (constants; rigid
-    /// body modes about the body's own centre), entries of order one, each of length n. `None`: nothing is known, kernels are found from the matrices alone.
+    /// Columns that span every kernel that this subdomain's matrix could have without boundary conditions (constants;
+    /// rigid body modes about the body's own centre), with entries of order one, each of length n. `None`: nothing is
+    /// known, and kernels are found from the matrices alone.
     pub near_kernel: Option<Vec<Vec<f64>>>,
     /// Position of each local dof, if known: used for nested dissection. Length n.
     pub coordinates: Option<Vec<[f64; 3]>>,
 }
 
-/// What an [`Entity`] is: the constraints are chosen by kind.
+/// The kind of an [`Entity`], by which constraints are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EntityKind {
     /// An open edge: without the vertices at its ends.
@@ -48,12 +50,13 @@ pub enum EntityKind {
     Face,
 }
 
-/// An edge or a face of a subdomain, one component of the field on it: the body may be held together in the average over its dofs.
+/// An edge or a face of a subdomain, for one component of the field. The average over its dofs may become a primal
+/// constraint of the body.
 ///
-/// Every subdomain of the body that holds the dofs lists the entity with the same key and its dofs in the same order of body dof; a
-/// face that another kind of edge or vertex lies in has been cut before. The edges in which the face between two subdomains meets
-/// the surface of their body are entities too, held dofs left out. Entities of a subdomain have no dof in common. What one subdomain
-/// alone lists ties nothing.
+/// Every subdomain of the body that holds the dofs lists the entity with the same key, and its dofs in the same order
+/// of body dof. A face that contains an edge or vertex of another kind has been cut there. Edges where the face between
+/// two subdomains meets the surface of their body are entities too, without held dofs. Entities of a subdomain have no
+/// dof in common. An entity that only one subdomain lists constrains nothing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entity {
     /// Edge or face.

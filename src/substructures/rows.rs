@@ -1,11 +1,11 @@
-//! Rows of B_gl on both sides of the method: as a problem gives them, and as a solution gives them back.
+//! Rows of B_gl: as the problem gives them to the method, and as a solution returns them.
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use crate::parallel::exchange::{exchange, gather_all, Record};
 
-/// How a row holds: as an equation, or as an inequality that the contact loop may switch off.
+/// The kind of a row: an equation, or an inequality that the contact loop may switch off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowKind {
     /// (B u)_r = c_r.
@@ -23,53 +23,53 @@ pub struct InterfaceRow {
     pub gap: f64,
     /// Equation or inequality.
     pub kind: RowKind,
-    /// Z⁰: whether the row holds to begin with. A row that does not hold marks candidate contact nodes: the bodies are apart
-    /// there, but preconditioner and interface are prepared for them to meet.
+    /// Z⁰: whether the row holds initially. A row that does not hold marks candidate contact nodes: the bodies are
+    /// apart there, but the preconditioner and the interface are prepared for contact.
     pub holds: bool,
-    /// Rows that share a body dof carry the same block number (unique over all ranks) and are provided by the same rank: the
-    /// scaling B D⁻¹ Bᵀ is inverted block by block.
+    /// Rows that share a body dof carry the same block number (unique over all ranks) and are provided by the same
+    /// rank: the scaling B D⁻¹ Bᵀ is inverted block by block.
     pub block: u64,
-    /// What the row is about; the method does not look at it.
+    /// The origin of the row, for reports; the method does not use it.
     pub label: RowLabel,
 }
 
-/// A node of a body, by the numbers of whoever made the problem.
+/// A node of a body, in the numbering of the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BodyNode {
     /// The body.
     pub body: usize,
-    /// Its node; where a program gives matrices without nodes, its unknown.
+    /// Its node; its unknown if a program gives matrices without nodes.
     pub node: usize,
 }
 
-/// What a row comes from, by a number of whoever made the problem.
+/// The origin of a row, in the numbering of the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RowSource {
     /// Two bodies that meet; in a scene the index into [`Scene::interfaces`](crate::scene::Scene::interfaces).
     Interface(usize),
-    /// A body beside something rigid; in a scene the index into [`Scene::obstacles`](crate::scene::Scene::obstacles).
+    /// A body beside a rigid obstacle; in a scene the index into [`Scene::obstacles`](crate::scene::Scene::obstacles).
     Obstacle(usize),
 }
 
-/// What a row is about.
+/// The origin of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RowLabel {
-    /// What it comes from.
+    /// The interface or obstacle of the row.
     pub source: RowSource,
-    /// The nodes in the order of the row, also those whose value is given; an obstacle has one.
+    /// The nodes in the order of the row, including nodes with a given value; an obstacle has one node.
     pub members: [Option<BodyNode>; 2],
-    /// Position of the first; 0 where it is not known.
+    /// Position of the first node; 0 if it is not known.
     pub point: [f64; 3],
     /// Parameters along the common face or the side, 0 ≤ t ≤ 1; the second is 0 in the plane.
     pub t: [f64; 2],
-    /// The unit vector n along which the row takes differences, out of the first body; 0 where it is not known.
+    /// The unit vector n along which the row takes differences, out of the first body; 0 if it is not known.
     pub normal: [f64; 3],
-    /// The area of the first body's side that belongs to the node; 0 where it has none or none is known.
+    /// The nodal area on the first body's side; 0 if it has none or none is known.
     pub area: f64,
 }
 
 impl RowLabel {
-    /// Of a row of which no more is known.
+    /// The label of a row without geometric data.
     pub fn new(source: RowSource, members: [Option<BodyNode>; 2]) -> RowLabel {
         RowLabel {
             source,
@@ -82,21 +82,21 @@ impl RowLabel {
     }
 }
 
-/// What has become of a row.
+/// The state of a row after a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowState {
-    /// An inequality that holds as an equation: the sides touch.
+    /// An inequality that holds as an equation: the sides are in contact.
     Holds,
-    /// The sides are free of each other.
+    /// The row does not hold: the sides are apart.
     Open,
     /// An equation.
     Tied,
 }
 
-/// A row of B_gl as a solve has left it.
+/// A row of B_gl after a solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolvedRow {
-    /// What it is about.
+    /// Its origin.
     pub label: RowLabel,
     /// Equation or inequality.
     pub kind: RowKind,
@@ -104,14 +104,14 @@ pub struct SolvedRow {
     pub state: RowState,
     /// λ: the force along the normal with which the first body presses on the other side.
     pub multiplier: f64,
-    /// c − B u: how far the sides are apart, negative where they overlap.
+    /// c − B u: the remaining gap; negative where the sides overlap.
     pub gap: f64,
-    /// The block of the row: rows of several ranks, put in order of their blocks, are those of one rank.
+    /// The block of the row. Rows of several ranks, sorted by block, have the order that one rank gives.
     pub block: u64,
 }
 
 impl SolvedRow {
-    /// The row with this multiplier, B u − c = `excess`, and whether it holds.
+    /// The row with this multiplier and B u − c = `excess`; `holds` is its state.
     pub(crate) fn new(row: &InterfaceRow, multiplier: f64, excess: f64, holds: bool) -> SolvedRow {
         SolvedRow {
             label: row.label,
@@ -132,7 +132,7 @@ impl SolvedRow {
         self.label.members[0].map(|m| m.body)
     }
 
-    /// Its node, if it is known.
+    /// The node of the first body, if it is known.
     pub fn node(&self) -> Option<usize> {
         self.label.members[0].map(|m| m.node)
     }

@@ -122,7 +122,7 @@ fn mpi_include() -> Vec<PathBuf> {
     }
 }
 
-/// One sentence instead of pages of type errors for scalar and index types that fetifeti does not support.
+/// Refuses scalar and index types that fetifeti does not support, with one sentence instead of pages of type errors.
 fn refuse_unusable(include: &[PathBuf]) {
     let Some(path) = include
         .iter()
@@ -166,7 +166,7 @@ fn shim(include: &[PathBuf]) {
         .compile("fetifeti_shim");
 }
 
-/// Compiles the wrappers of the C libraries that are there; the others say that they are absent.
+/// Compiles the wrappers of the ordering libraries; the wrapper of an absent library returns FF_ABSENT.
 fn orderings(include: &[PathBuf], lib: &[PathBuf], out: &Path) {
     let mut build = cc::Build::new();
     build.includes(include).flag("-Wno-unused-parameter");
@@ -180,7 +180,7 @@ fn orderings(include: &[PathBuf], lib: &[PathBuf], out: &Path) {
     build
         .files(ORDERINGS.iter().filter(|file| file.ends_with(".c")))
         .compile("fetifeti_ordering");
-    // Behind the archive that needs them.
+    // Libraries come after the archive that needs them.
     for name in found.iter().flat_map(|l| l.names) {
         println!("cargo:rustc-link-lib={name}");
     }
@@ -190,7 +190,7 @@ fn orderings(include: &[PathBuf], lib: &[PathBuf], out: &Path) {
 struct Library {
     define: &'static str,
     names: &'static [&'static str],
-    /// A program that uses it; the headers lie in a directory of their own in some systems and in none in others.
+    /// A program that uses it; some systems put its headers into a directory of their own, others do not.
     program: &'static str,
 }
 

@@ -32,7 +32,7 @@ int ff_scotch_order(int n, const int *row, const int *col, int *order)
   int          result;
 
   if (!ff_have_scotch()) return FF_ABSENT;
-  /* The same numbers for every graph, whatever was ordered before it. */
+  /* Resets the random numbers: the result does not depend on earlier calls. */
   SCOTCH_randomReset();
   if (SCOTCH_graphInit(&graph)) return FF_NO_MEMORY;
   if (SCOTCH_graphBuild(&graph, 0, n, (const SCOTCH_Num *)row, NULL, NULL, NULL, row[n], (const SCOTCH_Num *)col, NULL)) {
@@ -40,7 +40,7 @@ int ff_scotch_order(int n, const int *row, const int *col, int *order)
     return FF_FAILED;
   }
   #if SCOTCH_VERSION >= 7
-  /* Scotch 7 would start a thread per core, and what comes out would depend on them. */
+  /* Without this Scotch 7 starts a thread per core, and the result depends on their number. */
   SCOTCH_Context context;
   SCOTCH_Graph   bound;
 

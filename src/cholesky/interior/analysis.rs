@@ -1,4 +1,4 @@
-//! What a pattern is analysed for: factors of matrices that have it.
+//! The analysis of a sparsity pattern, from which matrices with this pattern are factored.
 
 use std::fmt::Debug;
 
@@ -8,14 +8,14 @@ use crate::cholesky::symbolic::Keep;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 
-/// Why there is no factor.
+/// Why a matrix could not be factored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NoFactor {
-    /// A pivot of the interior is not positive: nothing holds it, or K is no stiffness matrix.
+    /// A pivot of the interior is not positive: part of the subdomain is not held, or K is no stiffness matrix.
     Interior(SingularInterior),
     /// K is not positive semidefinite at this dof of the interface.
     Indefinite(u32),
-    /// The library failed, in one sentence without a full stop.
+    /// The library failed; the reason is one sentence without a full stop.
     Failed(String),
 }
 
@@ -25,7 +25,8 @@ impl From<SingularInterior> for NoFactor {
     }
 }
 
-/// What depends on the pattern of K alone: one analysis serves matrices of equal pattern.
+/// The part of a factorisation that depends on the pattern of K alone: one analysis serves all matrices of this
+/// pattern.
 pub trait Analysis: Debug + Send + Sync {
     /// L Lᵀ of the whole matrix.
     ///
@@ -36,7 +37,7 @@ pub trait Analysis: Debug + Send + Sync {
     /// If the analysis was made with an interface.
     fn factor(&self, k: &Csr) -> Result<Box<dyn SparseCholesky>, NoFactor>;
 
-    /// Eliminates the interior: the factor and S, both triangles, in the order of the interface.
+    /// Eliminates the interior; returns the factor and S (both triangles, in the order of the interface).
     ///
     /// # Errors
     /// [`NoFactor`].

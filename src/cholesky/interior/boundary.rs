@@ -1,4 +1,4 @@
-//! Interface last: what a Cholesky factor of K + diag(0, D) says about the interior and about S.
+//! The factor of the interior and S, from a Cholesky factor of K + diag(0, D) in which the interface comes last.
 //!
 //! ```text
 //!     K + diag(0, D) = [ L_II        ] [ L_IIᵀ  L_ΓIᵀ ]        S = L_ΓΓ L_ΓΓᵀ − D
@@ -28,7 +28,7 @@ pub struct Panel<'a> {
     pub values: &'a [f64],
 }
 
-/// The factor of the interior, and S, from the supernodes of L. `diagonal` is that of K in the interior.
+/// Splits the supernodes of L into the factor of the interior and S. `diagonal` is the diagonal of K in the interior.
 pub fn split(
     triangle: &Triangle,
     keep: Keep,
@@ -42,7 +42,7 @@ pub fn split(
     let inside = |p: &Panel| (p.start + p.width).min(interior).saturating_sub(p.start);
     let size = |p: &Panel| p.width + p.below.len();
 
-    // The rows after the columns of the interior that are kept.
+    // The rows below the interior columns of a supernode, as far as they are kept.
     let below = |p: &Panel| -> Vec<u32> {
         let rest = (p.start + inside(p)..p.start + p.width).map(|r| r as u32);
         let all = rest.chain(p.below.iter().copied());
@@ -101,7 +101,7 @@ fn row_of(panel: &Panel, r: usize) -> usize {
     }
 }
 
-/// Says which pivot of L vanishes against the diagonal entry it came from.
+/// Returns an error for the first pivot of L that vanishes relative to the diagonal entry it came from.
 pub fn held(
     diagonal: impl Iterator<Item = f64>,
     pivots: &[f64],

@@ -1,4 +1,4 @@
-//! From loads to the interface and back, whoever factored the interior.
+//! Condensed loads and interior solutions, for the factor of any solver.
 
 use std::fmt::Debug;
 
@@ -21,18 +21,19 @@ pub trait SparseCholesky: Debug + Send + Sync {
 
 /// The factored interior of a subdomain.
 ///
-/// [`forward`](Factor::forward) turns a load f into [work; g] with the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I; [`backward`](Factor::backward)
-/// turns [work; u_Γ] into the solution with u_I = K_II⁻¹ (f_I − K_IΓ u_Γ). What `work` is, is the factor's own affair.
+/// [`forward`](Factor::forward) turns a load f into [work; g] with the condensed load g = f_Γ − K_ΓI K_II⁻¹ f_I;
+/// [`backward`](Factor::backward) turns [work; u_Γ] into the solution with u_I = K_II⁻¹ (f_I − K_IΓ u_Γ). The meaning
+/// of `work` depends on the kind of factor.
 #[derive(Debug)]
 pub enum Factor {
-    /// [L_II; L_ΓI] by fronts, whoever made them: half a solve each way.
+    /// [L_II; L_ΓI] by fronts, from either solver: each direction costs half a solve.
     Fronts(PartialCholesky),
-    /// Solves with K_II: a whole one each way.
+    /// Solves with K_II: each direction costs a whole solve.
     Solves(Condensation),
 }
 
 impl Factor {
-    /// The fronts of `k` with the rows of the interface or without them.
+    /// The fronts of `k`; `keep` says whether they have the rows of the interface.
     pub(crate) fn new(k: &Csr, interface: &[u32], fronts: PartialCholesky, keep: Keep) -> Factor {
         match keep {
             Keep::Boundary => Factor::Fronts(fronts),
@@ -40,7 +41,7 @@ impl Factor {
         }
     }
 
-    /// Condenses `b` (length n, by dof).
+    /// Condenses the load `b` (length n, by dof).
     pub fn forward(&self, b: &mut [f64]) {
         match self {
             Factor::Fronts(f) => f.forward(b),
@@ -48,7 +49,7 @@ impl Factor {
         }
     }
 
-    /// Solves in the interior for the values on the interface in `b`.
+    /// Solves in the interior for given values on the interface; `b` holds both.
     pub fn backward(&self, b: &mut [f64]) {
         match self {
             Factor::Fronts(f) => f.backward(b),
@@ -56,7 +57,7 @@ impl Factor {
         }
     }
 
-    /// [`forward`](Factor::forward) of at most [`LANES`](crate::cholesky::lanes::LANES) vectors.
+    /// Applies [`forward`](Factor::forward) to at most [`LANES`](crate::cholesky::lanes::LANES) vectors.
     pub fn forward_many(&self, columns: &mut [Vec<f64>]) {
         match self {
             Factor::Fronts(f) => f.forward_many(columns),
@@ -64,7 +65,7 @@ impl Factor {
         }
     }
 
-    /// [`backward`](Factor::backward) of at most [`LANES`](crate::cholesky::lanes::LANES) vectors.
+    /// Applies [`backward`](Factor::backward) to at most [`LANES`](crate::cholesky::lanes::LANES) vectors.
     pub fn backward_many(&self, columns: &mut [Vec<f64>]) {
         match self {
             Factor::Fronts(f) => f.backward_many(columns),
@@ -72,7 +73,7 @@ impl Factor {
         }
     }
 
-    /// Bytes held.
+    /// Number of bytes held.
     pub fn bytes(&self) -> usize {
         match self {
             Factor::Fronts(f) => f.bytes(),
@@ -81,13 +82,13 @@ impl Factor {
     }
 }
 
-/// Solves with K_II, and K_ΓI.
+/// A solver for K_II, and the block K_ΓI.
 #[derive(Debug)]
 pub struct Condensation {
     /// x ← [K_II⁻¹ x_I; 0].
     interior: Box<dyn SparseCholesky>,
     interface: Vec<u32>,
-    /// Rows of K_ΓI, interface after interface dof.
+    /// Rows of K_ΓI, one for each interface dof.
     ptr: Vec<usize>,
     col: Vec<u32>,
     val: Vec<f64>,
@@ -119,7 +120,7 @@ impl Condensation {
         out
     }
 
-    /// All of `k` factored and nothing kept.
+    /// The factor of the whole of `k`, without an interface.
     pub fn of_all(k: &Csr, factor: Box<dyn SparseCholesky>) -> (Factor, Dense) {
         (
             Factor::Solves(Condensation::new(k, &[], factor)),
@@ -127,14 +128,14 @@ impl Condensation {
         )
     }
 
-    /// The dofs of the interface with their rows of K_ΓI.
+    /// The interface dofs, each with its row of K_ΓI.
     fn rows(&self) -> impl Iterator<Item = (usize, &[u32], &[f64])> {
         let row =
             |(&i, w): (&u32, &[usize])| (i as usize, &self.col[w[0]..w[1]], &self.val[w[0]..w[1]]);
         self.interface.iter().zip(self.ptr.windows(2)).map(row)
     }
 
-    /// g ← f_Γ − K_ΓI K_II⁻¹ f_I; f_I stays.
+    /// g ← f_Γ − K_ΓI K_II⁻¹ f_I; f_I is left as it is.
     fn forward(&self, columns: &mut [Vec<f64>]) {
         if self.interface.is_empty() {
             return;
@@ -149,7 +150,7 @@ impl Condensation {
         }
     }
 
-    /// u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ); u_Γ stays.
+    /// u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ); u_Γ is left as it is.
     fn backward(&self, columns: &mut [Vec<f64>]) {
         let on_interface =
             |b: &Vec<f64>| -> Vec<f64> { self.interface.iter().map(|&i| b[i as usize]).collect() };
@@ -169,7 +170,7 @@ impl Condensation {
         }
     }
 
-    /// One vector as several.
+    /// Applies `work` to a single vector.
     fn one(&self, b: &mut [f64], work: impl Fn(&Condensation, &mut [Vec<f64>])) {
         let mut columns = [b.to_vec()];
         work(self, &mut columns);

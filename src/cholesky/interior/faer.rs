@@ -30,7 +30,7 @@ pub struct Faer {
 }
 
 impl Faer {
-    /// Supernodes where the number of operations is worth it, or where an interface is to be found in them.
+    /// Chooses supernodes where the number of operations is worth it, or where S has to be read off the factor.
     pub fn new(k: &Csr, order: Elimination) -> Result<Faer, NoFactor> {
         let triangle = Triangle::new(k, &order);
         let threshold = if order.interface.is_empty() {
@@ -52,7 +52,7 @@ impl Faer {
         })
     }
 
-    /// L by faer's layout.
+    /// The entries of L in faer's layout.
     fn numeric(&self, values: &[f64]) -> Result<Vec<f64>, NoFactor> {
         let (triangle, symbolic) = (&*self.triangle, &*self.symbolic);
         let mut l = vec![0.0; symbolic.len_val()];
@@ -71,7 +71,7 @@ impl Faer {
         match done {
             Ok(_) => Ok(l),
             Err(LltError::NonPositivePivot { index }) => {
-                // Counted from one without supernodes.
+                // The simplicial factorisation counts columns from one.
                 let column = match symbolic.raw() {
                     SymbolicCholeskyRaw::Simplicial(_) => index - 1,
                     SymbolicCholeskyRaw::Supernodal(_) => index,
@@ -152,7 +152,8 @@ impl Analysis for Faer {
     }
 }
 
-/// No pivot can be positive where the diagonal is not: asked before faer sees the matrix, as NaN is none of its errors.
+/// Refuses a diagonal entry that is not positive: no pivot can be positive there. The test comes before faer, which
+/// does not report NaN as an error.
 fn positive_diagonal(k: &Csr, interior: &[u32]) -> Result<(), SingularInterior> {
     let positive = |&i: &u32| {
         let d = k.get(i as usize, i as usize);

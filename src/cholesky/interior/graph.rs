@@ -32,7 +32,7 @@ pub fn neighbours(graph: &Graph, v: u32) -> &[i32] {
     &graph.col[graph.row[v] as usize..graph.row[v + 1] as usize]
 }
 
-/// The elimination tree (Liu 1990) of an order of the vertices; all by position in the order.
+/// The elimination tree (Liu 1990) of an order of the vertices; its entries are positions in this order.
 pub struct Tree {
     /// The parent, `NONE` at a root.
     pub parent: Vec<u32>,
@@ -54,7 +54,7 @@ impl Tree {
             let p = p as u32;
             for &w in neighbours(graph, v) {
                 let mut q = place[w as usize];
-                // Up to the root, with the path shortened behind us.
+                // Walks up to the root and shortens the path on the way.
                 while q < p {
                     let next = std::mem::replace(&mut ancestor[q as usize], p);
                     if next == NONE {
@@ -72,12 +72,12 @@ impl Tree {
         }
     }
 
-    /// The same elimination with every subtree in one piece: same fill, but columns of like pattern stand side by side.
+    /// The same tree in postorder: the fill is the same, and columns of similar pattern are adjacent.
     pub fn postordered(self, graph: &Graph) -> Tree {
         let n = self.order.len();
         let (mut first, mut next) = (vec![NONE; n], vec![NONE; n]);
         let mut roots = NONE;
-        // From the last to the first, so that lists of children increase.
+        // Goes from the last position to the first, which makes the lists of children increase.
         for p in (0..n).rev() {
             let head = match self.parent[p] {
                 NONE => &mut roots,
@@ -89,7 +89,7 @@ impl Tree {
         let mut path = Vec::new();
         let mut at = roots;
         loop {
-            // Down to a leaf, then back up over all that is done.
+            // Goes down to a leaf, then back up past all finished vertices.
             while at != NONE {
                 path.push(at);
                 at = first[at as usize];

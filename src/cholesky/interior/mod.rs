@@ -1,16 +1,18 @@
-//! Who eliminates the interior of a subdomain, and in which order.
+//! The solvers that eliminate the interior of a subdomain, and their orderings.
 //!
-//! Two things are asked of a solver: K = L Lᵀ with solves ([`SparseCholesky`]), and elimination of the interior alone, which leaves the Schur
-//! complement S on the interface and a [`Factor`] for condensed loads and interior solutions:
+//! A solver has two tasks. The first is to factor K = L Lᵀ and to solve with it ([`SparseCholesky`]). The second is to
+//! eliminate the interior alone: this gives the Schur complement S on the interface, and a [`Factor`] for condensed
+//! loads and interior solutions:
 //!
 //! | solver | S | factor of the interior |
 //! |---|---|---|
 //! | own multifrontal | what reaches the root | its fronts |
 //! | faer | interface last in L Lᵀ = K + diag(0, D): S = L_ΓΓ L_ΓΓᵀ − D | the supernodes of L, without those of Γ |
 //!
-//! D, the diagonal of K_ΓΓ, makes K of a floating subdomain definite; S loses no more than rounding errors of K_ΓΓ.
+//! Adding D, the diagonal of K_ΓΓ, makes K of a floating subdomain definite; S loses no more than rounding errors of
+//! K_ΓΓ.
 //!
-//! A pivot that is not positive, or below 1e-13 of the diagonal entry it came from, is an error for both.
+//! With both solvers, a pivot is an error if it is not positive, or is below 1e-13 of the diagonal entry it came from.
 
 mod analysis;
 mod boundary;
@@ -34,7 +36,7 @@ pub use analysis::{Analysis, NoFactor};
 pub use factor::{Factor, SparseCholesky};
 pub use order::{Elimination, Ordering};
 
-/// Who factors.
+/// The solver that factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Solver {
     /// Our multifrontal method on faer's dense kernels.
@@ -45,35 +47,35 @@ pub enum Solver {
 }
 
 impl Solver {
-    /// All of them.
+    /// All solvers.
     pub const ALL: [Solver; 2] = [Solver::Multifrontal, Solver::Faer];
 
-    /// Names as the option takes them.
+    /// The names as the option spells them.
     pub const NAMES: &'static [&'static str] = &["multifrontal", "faer"];
 
-    /// The name as the option takes it.
+    /// The name as the option spells it.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
 }
 
-/// Names that the option took before 0.2.
+/// Names that the option accepted before 0.2.
 const REMOVED: [&str; 2] = ["cholmod", "mumps"];
 
 /// How subdomains are factored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LocalSolver {
-    /// Who factors.
+    /// The solver.
     pub kind: Solver,
-    /// In which order.
+    /// The order of elimination.
     pub ordering: Ordering,
 }
 
 impl LocalSolver {
-    /// What the options `local_solver` and `local_ordering` say, `self` where they are not given.
+    /// Reads the options `local_solver` and `local_ordering`; the values of `self` are the defaults.
     ///
-    /// # Errors
-    /// A name that there is not, or not any more; [`Error::Environment`] for an ordering that this build does not have.
+    /// # Errors A name that does not exist, or no longer exists; [`Error::Environment`] for an ordering that this build
+    /// does not have.
     pub fn from_options(self, o: &Options) -> Result<LocalSolver> {
         let name = o.get_string("local_solver")?.unwrap_or_default();
         if REMOVED.iter().any(|r| r.eq_ignore_ascii_case(&name)) {
@@ -120,19 +122,19 @@ impl LocalSolver {
     ) -> std::result::Result<Box<dyn Analysis>, NoFactor> {
         let ordering = self.ordering.taken();
         if (self.kind, ordering) == (Solver::Multifrontal, Ordering::Nd) {
-            // Nested dissection knows its fronts: no elimination tree is needed.
+            // Nested dissection yields the fronts directly: no elimination tree is needed.
             return Ok(Box::new(own::Own::nested(k, interface, coordinates)));
         }
         let order =
             Elimination::new(k, interface, coordinates, ordering).map_err(NoFactor::Failed)?;
         Ok(match self.kind {
             Solver::Faer if !order.interior.is_empty() => Box::new(faer::Faer::new(k, order)?),
-            // Or there is nothing to factor.
+            // This arm also serves an empty interior.
             _ => Box::new(own::Own::new(k, &order)),
         })
     }
 
-    /// Condenses with an analysis for each matrix.
+    /// A condenser that analyses each matrix anew.
     pub fn condenser(self, keep: Keep) -> Condenser<'static> {
         Condenser {
             solver: self,
@@ -145,16 +147,16 @@ impl LocalSolver {
 /// How the interior of one subdomain is eliminated.
 #[derive(Debug, Clone, Copy)]
 pub struct Condenser<'a> {
-    /// By whom.
+    /// The solver and the ordering.
     pub solver: LocalSolver,
-    /// The analysis of a matrix with the same pattern and interface, where there is one.
+    /// The analysis of a matrix with the same pattern and interface, if there is one.
     pub analysis: Option<&'a dyn Analysis>,
-    /// What is kept.
+    /// The part of the factor that is kept.
     pub keep: Keep,
 }
 
 impl Condenser<'_> {
-    /// The factor and S of `k`, which is analysed if it has not been.
+    /// Returns the factor and S of `k`; analyses `k` first where there is no analysis yet.
     ///
     /// # Errors
     /// [`NoFactor`].

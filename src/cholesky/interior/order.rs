@@ -1,4 +1,4 @@
-//! The order in which the interior is eliminated, and which of its columns make one front.
+//! The order in which the interior is eliminated, and the partition of its columns into fronts.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::amd;
@@ -9,13 +9,13 @@ use crate::cholesky::dissection::nested_dissection;
 use crate::linalg::csr::Csr;
 use crate::petsc::ordering::{have_metis, have_scotch, metis, scotch, Graph};
 
-/// In which order.
+/// The order of elimination.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Ordering {
-    /// The best one as measured: [`Ordering::Nd`].
+    /// The ordering that measured best: [`Ordering::Nd`].
     #[default]
     Auto,
-    /// Nested dissection: by coordinates where there are any, else by distance in the graph.
+    /// Nested dissection, by coordinates if they are known, otherwise by distance in the graph.
     Nd,
     /// Approximate minimum degree (faer's).
     Amd,
@@ -26,7 +26,7 @@ pub enum Ordering {
 }
 
 impl Ordering {
-    /// Those that differ.
+    /// All distinct orderings.
     pub const ALL: [Ordering; 4] = [
         Ordering::Nd,
         Ordering::Amd,
@@ -34,15 +34,15 @@ impl Ordering {
         Ordering::Scotch,
     ];
 
-    /// Names as the option takes them.
+    /// The names as the option spells them.
     pub const NAMES: &'static [&'static str] = &["auto", "nd", "amd", "metis", "scotch"];
 
-    /// The name as the option takes it.
+    /// The name as the option spells it.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
 
-    /// The one that is taken.
+    /// The ordering that is used: `Auto` resolved.
     pub fn taken(self) -> Ordering {
         match self {
             Ordering::Auto => Ordering::Nd,
@@ -50,7 +50,7 @@ impl Ordering {
         }
     }
 
-    /// Whether this build has it.
+    /// Whether this build has the ordering.
     pub fn available(self) -> bool {
         match self {
             Ordering::Auto | Ordering::Nd | Ordering::Amd => true,
@@ -65,17 +65,17 @@ impl Ordering {
 pub struct Elimination {
     /// Interior dofs by front, in the order of elimination.
     pub supernodes: Vec<Vec<u32>>,
-    /// Interior dofs in an order with the same fill in which every subtree of the elimination tree is in one piece.
+    /// Interior dofs in an equivalent order, with the same fill, in which every subtree of the elimination tree is
+    /// contiguous.
     pub interior: Vec<u32>,
-    /// The dofs that are kept, in the order wanted.
+    /// The interface dofs, in the order wanted for S.
     pub interface: Vec<u32>,
 }
 
 impl Elimination {
     /// Orders the dofs of `k` that are not in `interface`; `coordinates`, if given, has one position per dof.
     ///
-    /// # Errors
-    /// One sentence without a full stop where the library of the ordering fails.
+    /// # Errors If the library of the ordering fails: the reason, one sentence without a full stop.
     pub fn new(
         k: &Csr,
         interface: &[u32],
@@ -133,15 +133,16 @@ fn minimum_degree(graph: &Graph) -> Vec<u32> {
     order
 }
 
-/// Whether two fronts become one: small ones, where the dense kernels' overhead outweighs some zeros, and others where zeros are few.
+/// Whether two fronts are worth merging. Small fronts are, because the dense kernels' overhead outweighs some zeros;
+/// larger fronts are if the merged front has few zeros.
 fn worth_merging(columns: usize, zeros: usize, entries: usize) -> bool {
     let share = zeros as f64 / entries as f64;
     columns <= 8 || (columns <= 24 && share < 0.5) || (columns <= 48 && share < 0.2) || share < 0.05
 }
 
-/// A front that grows.
+/// A front under construction.
 struct Growing {
-    /// Positions, in the order of elimination.
+    /// Positions of its columns, in the order of elimination.
     columns: Vec<u32>,
     below: usize,
     zeros: usize,
@@ -155,8 +156,8 @@ impl Growing {
     }
 }
 
-/// The vertices of a postordered tree by front: columns of one pattern, and children merged into their parents where that is worth it
-/// (relaxed supernodes, Ashcraft and Grimes 1989).
+/// Groups the vertices of a postordered tree into fronts: columns of equal pattern form a front, and children are
+/// merged into their parents where that is worth it (relaxed supernodes, Ashcraft and Grimes 1989).
 fn fronts(tree: &Tree, counts: &[u32]) -> Vec<Vec<u32>> {
     let mut all: Vec<Growing> = Vec::new();
     let mut front_of = vec![0usize; counts.len()];
@@ -187,7 +188,7 @@ fn fronts(tree: &Tree, counts: &[u32]) -> Vec<Vec<u32>> {
     }
     for f in 0..all.len() {
         let mut kept = Vec::new();
-        // From the last child on: its pattern is the nearest as a rule.
+        // Starts with the last child: its pattern is usually the nearest to the parent's.
         for c in std::mem::take(&mut all[f].children).into_iter().rev() {
             let (child, front) = (&all[c], &all[f]);
             let (width, columns) = (
@@ -209,7 +210,7 @@ fn fronts(tree: &Tree, counts: &[u32]) -> Vec<Vec<u32>> {
         }
         all[f].children = kept;
     }
-    // A front comes behind all fronts below it, merged or not: those had lower numbers.
+    // A front comes after all fronts below it, including merged ones, since those had lower numbers.
     let sets = all.iter().filter(|f| !f.columns.is_empty());
     sets.map(|f| f.columns.iter().map(|&p| tree.order[p as usize]).collect())
         .collect()

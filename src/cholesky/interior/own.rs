@@ -1,4 +1,4 @@
-//! Our multifrontal method behind the common face.
+//! Our multifrontal method as an [`Analysis`].
 
 use std::sync::{Arc, OnceLock};
 
@@ -15,12 +15,12 @@ use crate::linalg::dense::Dense;
 pub struct Own {
     symbolic: Arc<Symbolic>,
     interface: Vec<u32>,
-    /// The fronts without the rows of the interface, once they have been asked for.
+    /// The fronts without the rows of the interface, built on first use.
     inside: OnceLock<Arc<Symbolic>>,
 }
 
 impl Own {
-    /// Fronts as they are ordered.
+    /// One front for each set of the given order.
     pub fn new(k: &Csr, order: &Elimination) -> Own {
         let symbolic = Symbolic::with_supernodes(k, &order.interface, &order.supernodes);
         Own::with(symbolic, &order.interface)

@@ -8,7 +8,7 @@ use crate::linalg::csr::Csr;
 use crate::linalg::testing::{grid_laplacian, random};
 use crate::scene::Scene;
 
-/// A subdomain that touches no side: K is singular, Γ its whole surface.
+/// A subdomain that touches no side of its body: K is singular, and Γ is its whole surface.
 struct Case {
     name: &'static str,
     k: Csr,
@@ -158,7 +158,7 @@ fn s_is_the_dense_schur_complement_and_the_factor_condenses_and_recovers() {
     });
 }
 
-/// The condensed load of K u is S u_Γ, and from u_Γ comes u again.
+/// Checks that the condensed load of K u is S u_Γ, and that back substitution from u_Γ gives u.
 fn check(
     factor: &Factor,
     case: &Case,

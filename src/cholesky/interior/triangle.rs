@@ -1,4 +1,4 @@
-//! The matrix as faer takes it: in the order of elimination, one triangle.
+//! The upper triangle of a matrix in the order of elimination, as faer expects it.
 
 use super::order::Elimination;
 use crate::linalg::csr::Csr;
@@ -11,7 +11,8 @@ pub struct Triangle {
     /// Row of each entry.
     pub row: Vec<u32>,
     source: Vec<usize>,
-    /// Place of each diagonal entry in the values, and what is added there: nothing in the interior, K_ii on the interface.
+    /// Place of each diagonal entry in the values, and the shift that is added there: zero in the interior, K_ii on the
+    /// interface.
     diagonal: Vec<usize>,
     interior: usize,
     /// The dofs in the order of elimination.
@@ -48,7 +49,7 @@ impl Triangle {
             column.sort_unstable();
             out.row.extend(column.iter().map(|e| e.0));
             out.source.extend(column.iter().map(|e| e.1));
-            // The largest row of the upper triangle's column.
+            // The diagonal entry is the last of its column.
             out.diagonal.push(out.row.len().wrapping_sub(1));
             out.ptr.push(out.row.len() as u32);
         }
@@ -61,7 +62,7 @@ impl Triangle {
         self.dofs.len()
     }
 
-    /// Number of rows that are eliminated.
+    /// Number of interior rows.
     pub fn n_interior(&self) -> usize {
         self.interior
     }
@@ -77,7 +78,7 @@ impl Triangle {
         let largest = self.diagonal.iter().map(|&e| values[e]);
         let largest = largest.fold(0.0, f64::max);
         let shift = self.diagonal[self.interior..].iter().map(|&e| {
-            // A dof without stiffness may have any shift that is not lost beside the others'.
+            // A dof without stiffness may have any shift that is not too small compared with the other shifts.
             let d = if values[e] > 0.0 { values[e] } else { largest };
             values[e] += d;
             d
@@ -91,14 +92,14 @@ impl Triangle {
         self.diagonal[..self.interior].iter().map(|&e| values[e])
     }
 
-    /// A solve by dof around `solve`, which works in the order of elimination.
+    /// Applies `solve`, which works in the order of elimination, to a vector by dof.
     pub fn solve(&self, x: &mut [f64], solve: impl FnOnce(&mut [f64])) {
         let mut b: Vec<f64> = self.gather(x).collect();
         solve(&mut b);
         self.scatter(&b, x);
     }
 
-    /// The same for several vectors, which `solve` gets one after the other in one slice.
+    /// The same for several vectors; `solve` gets them in one slice, one after the other.
     pub fn solve_many(&self, x: &mut [Vec<f64>], solve: impl FnOnce(&mut [f64])) {
         if x.is_empty() || self.n() == 0 {
             return;

@@ -5,11 +5,12 @@ use super::material::Moduli;
 use super::reference::Rule;
 use super::{Element, Material};
 
-/// Squares of the L² norm, the H¹ seminorm (∫ |∇e|², all components) and the energy norm of e = u_h − u, by the rule for errors of
-/// [the table](super).
+/// Squares of the L² norm, the H¹ seminorm (∫ |∇e|², all components) and the energy norm of e = u_h − u, by the rule
+/// for errors of [the table](super).
 ///
-/// `nodal` has the cell's degrees of freedom; `exact` returns u and its gradient, `[i][j]` = ∂u_i/∂x_j, at a point. The energy
-/// is the stiffness' own, for e: ∫ ρ|∇e|², or ∫ 2μ ε:ε + λ(∇·e)² where [`Cure`](super::Cure) replaces ∇·e by its mean.
+/// `nodal` has the cell's degrees of freedom; `exact` returns u and its gradient, `[i][j]` = ∂u_i/∂x_j, at a point. The
+/// energy is the stiffness' own, for e: ∫ ρ|∇e|², or ∫ 2μ ε:ε + λ(∇·e)² where [`Cure`](super::Cure) replaces ∇·e by its
+/// mean.
 ///
 /// # Panics
 /// When `dim` is not 2 or 3, a length is wrong, or the material is refused by [`Material::check`] for its cure.
@@ -187,7 +188,8 @@ mod tests {
     }
 
     impl Manufactured {
-        /// The factor of u_i in direction d (or its derivative of order `order`), with phases so that nothing vanishes by symmetry.
+        /// The factor of u_i in direction d (or its derivative of order `order`), with phases so that nothing vanishes
+        /// by symmetry.
         fn factor(i: usize, d: usize, x: f64, order: u32) -> f64 {
             let w = 1.0 + 0.4 * ((i + 2 * d) % 3) as f64;
             let phase = 0.3 + 0.5 * (i + d) as f64 + f64::from(order) * std::f64::consts::FRAC_PI_2;

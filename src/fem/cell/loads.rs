@@ -7,9 +7,9 @@ use crate::fem::Quadrature;
 
 /// The nodal forces ∫ f_i N_a of a force per volume `f`, into `out`, of length 2^`dim` · `components`.
 ///
-/// [`Quadrature::Gauss`] is the rule for loads of [the table](super). [`Quadrature::Midpoint`] evaluates `f` once, at the mean of
-/// the corners, and multiplies by ∫ N_a: on a box each corner gets an equal share. The total of a constant force is exact
-/// with both.
+/// [`Quadrature::Gauss`] is the rule for loads of [the table](super). [`Quadrature::Midpoint`] evaluates `f` once, at
+/// the mean of the corners, and multiplies by ∫ N_a: on a box each corner gets an equal share. The total of a constant
+/// force is exact with both.
 ///
 /// # Panics
 /// When `dim` is not 2 or 3, or a length is wrong.

@@ -114,8 +114,8 @@ fn invert<const D: usize>(j: &[[f64; D]; D]) -> (f64, [[f64; D]; D]) {
     (det, adjugate)
 }
 
-/// Whether det J is positive (and finite) wherever it is evaluated, and at the corners: a cell that fails is folded, flat or
-/// numbered the wrong way round. For P1 all simplices must have positive volume.
+/// Whether det J is positive (and finite) wherever it is evaluated, and at the corners: a cell that fails is folded,
+/// flat or numbered the wrong way round. For P1 all simplices must have positive volume.
 ///
 /// # Panics
 /// When `dim` is not 2 or 3, or there are not 2^`dim` points.

@@ -2,7 +2,7 @@
 
 use super::Element;
 
-/// What a 2D elastic cell stands for.
+/// The three-dimensional situation that a 2D elastic cell models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Plane {
     /// A slice of a long body: ε_zz = 0.
@@ -20,10 +20,12 @@ pub enum Cure {
     /// Full integration of everything.
     #[default]
     None,
-    /// Selective reduced integration: the term λ (∇·u)² takes the mean dilatation. On quadrilaterals and parallelepipeds this is the
-    /// one-point rule; on other hexahedra the one-point rule fails the patch test and the mean does not.
+    /// Selective reduced integration: the term λ (∇·u)² takes the mean dilatation. On quadrilaterals and
+    /// parallelepipeds this is the one-point rule; on other hexahedra the one-point rule fails the patch test and the
+    /// mean does not.
     Selective,
-    /// B-bar: the volumetric part of the strain, (∇·u)/3 in every normal direction (also in plane strain), takes the mean dilatation.
+    /// B-bar: the volumetric part of the strain, (∇·u)/3 in every normal direction (also in plane strain), takes the
+    /// mean dilatation.
     BBar,
 }
 
@@ -65,7 +67,7 @@ impl Material {
         }
     }
 
-    /// The Lamé constants (λ, μ); in plane stress λ is Eν/(1 − ν²), which plays its part there. (0, ρ) for a scalar.
+    /// The Lamé constants (λ, μ). In plane stress λ is replaced by Eν/(1 − ν²). For a scalar problem (0, ρ).
     pub fn lame(&self, dim: usize) -> (f64, f64) {
         match *self {
             Material::Scalar { rho } => (0.0, rho),
@@ -119,7 +121,7 @@ impl Material {
         }
     }
 
-    /// Of an elastic material.
+    /// The moduli of an elastic material.
     ///
     /// # Panics
     /// When [`Material::check`] would refuse a cure.

@@ -1,9 +1,9 @@
 //! One cell: quadrilaterals and hexahedra, scalar and elastic, from the corner points alone.
 //!
-//! A cell of dimension D = 2 or 3 has 2^D corners in lexicographic order, x fastest: corner a is the image of
-//! (a mod 2, a div 2 mod 2, a div 4) of the unit cell. Its points are given with three coordinates, z being ignored in 2D.
-//! The cell may be any quadrilateral or hexahedron whose map has a positive Jacobian ([`jacobian_is_positive`]); a box takes the
-//! same path. Degrees of freedom are numbered node by node: component i of node a is C·a + i, where C is
+//! A cell of dimension D = 2 or 3 has 2^D corners in lexicographic order, x fastest: corner a is the image of (a mod 2,
+//! a div 2 mod 2, a div 4) of the unit cell. Its points are given with three coordinates, z being ignored in 2D. The
+//! cell may be any quadrilateral or hexahedron whose map has a positive Jacobian ([`jacobian_is_positive`]); a box
+//! takes the same path. Degrees of freedom are numbered node by node: component i of node a is C·a + i, where C is
 //! [`Material::components`].
 //!
 //! Quadrature, by purpose and element:
@@ -13,8 +13,8 @@
 //! | [`Element::Q1`] | 2 Gauss points per direction | 2 per direction | 4 per direction |
 //! | [`Element::P1`], per simplex | 1 point (exact) | D + 1 points, exact for degree 2 | 4 per direction, collapsed |
 //!
-//! Units: lengths as the points, stresses as Young's modulus; a 2D cell has thickness one. The strain is ε = (∇u + ∇uᵀ)/2,
-//! so that the shear strain is half the engineering one.
+//! Units: lengths as the points, stresses as Young's modulus; a 2D cell has thickness one. The strain is ε = (∇u +
+//! ∇uᵀ)/2, so that the shear strain is half the engineering one.
 
 // Tensors are written by their indices, as on paper.
 #![allow(clippy::needless_range_loop)]

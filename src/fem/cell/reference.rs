@@ -13,7 +13,7 @@ pub enum Element {
     P1,
 }
 
-/// What an integral is for, and with it the order of the quadrature.
+/// The purpose of an integral, which determines the order of the quadrature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rule {
     Stiffness,
@@ -98,8 +98,8 @@ pub(super) fn q1_point<const D: usize, const N: usize>(
     }
 }
 
-/// The simplices of the unit cell: in that of `order` the coordinates s_order\[0\] ≥ s_order\[1\] ≥ … fall, and its vertices
-/// are met when one walks from corner 0 to the last corner along the axes in that order.
+/// The simplices of the unit cell. The simplex of `order` has coordinates s_order\[0\] ≥ s_order\[1\] ≥ …; its vertices
+/// lie on the walk from corner 0 to the last corner along the axes in this order.
 fn orders(dim: usize) -> &'static [[usize; 3]] {
     match dim {
         1 => &[[0, 1, 2]],
@@ -125,7 +125,7 @@ fn simplex<const D: usize>(rule: Rule, mut f: impl FnMut([f64; D], f64)) {
             let centroid = std::array::from_fn(|k| (D - k) as f64 / vertices);
             f(centroid, volume);
         }
-        // D + 1 points, each of barycentric coordinates β, but near one vertex: exact for quadratic functions.
+        // D + 1 points with the same value of all barycentric coordinates but one: exact for quadratic functions.
         Rule::Load => {
             let beta = (vertices + 1.0 - (vertices + 1.0).sqrt()) / (vertices * (vertices + 1.0));
             let peak = 1.0 - (D + 1) as f64 * beta;

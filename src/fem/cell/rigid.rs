@@ -5,10 +5,11 @@ pub fn rigid_count(dim: usize) -> usize {
     dim * (dim + 1) / 2
 }
 
-/// The displacements at `point` in the rigid motions: translations along the axes, then rotations (in 2D one; in 3D about x, y, z).
+/// The displacements at `point` in the rigid motions: translations along the axes, then rotations (in 2D one; in 3D
+/// about x, y, z).
 ///
-/// Rotations are (infinitesimal) about `centre` and divided by `scale`, a length like the body's radius, so that all entries are of
-/// order one. Only the first [`rigid_count`] motions and the first `dim` components are meant.
+/// Rotations are (infinitesimal) about `centre` and divided by `scale`, a length like the body's radius, so that all
+/// entries are of order one. Only the first [`rigid_count`] motions and the first `dim` components are meant.
 pub fn rigid_motions(dim: usize, centre: [f64; 3], scale: f64, point: [f64; 3]) -> [[f64; 3]; 6] {
     let [x, y, z] = std::array::from_fn(|i| (point[i] - centre[i]) / scale);
     let mut motions = [[0.0; 3]; 6];

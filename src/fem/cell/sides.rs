@@ -28,15 +28,17 @@ impl Side {
         (0..2 * dim).map(Side::of_index)
     }
 
-    /// The cell's corners on the side, 2 or 4, in lexicographic order of the other axes: the order in which the functions of
-    /// this module take a side's points.
+    /// The cell's corners on the side, 2 or 4, in lexicographic order of the other axes: the order in which the
+    /// functions of this module take a side's points.
     pub fn corners(self, dim: usize) -> impl Iterator<Item = usize> {
         (0..1 << dim).filter(move |a| (a >> self.axis & 1 == 1) == self.upper)
     }
 
-    /// The orientation that makes normals point out of the cell when the side's points are in the order of [`Side::corners`].
+    /// The orientation that makes normals point out of the cell when the side's points are in the order of
+    /// [`Side::corners`].
     pub fn outward(self, dim: usize) -> f64 {
-        // The right-hand side of the edge, or the cross product of the two directions, points along +x, −y, +z; in 2D +x, −y.
+        // The right-hand side of the edge, or the cross product of the two directions, points along +x, −y, +z; in 2D
+        // +x, −y.
         debug_assert!(self.axis < dim);
         if self.upper == (self.axis != 1) {
             1.0
@@ -57,8 +59,8 @@ pub struct SideWeights {
 
 /// Nodal areas and area-weighted normals of a side with the 2 or 4 `points`, `outward` (±1) being [`Side::outward`].
 ///
-/// Sums over the sides around a node give its averaged normal; a nodal force divided by its area is a pressure. The normals
-/// are exact, the areas too where the side is flat.
+/// Sums over the sides around a node give its averaged normal; a nodal force divided by its area is a pressure. The
+/// normals are exact, the areas too where the side is flat.
 ///
 /// # Panics
 /// When `dim` is not 2 or 3, or there are not 2^(`dim` − 1) points.
@@ -83,9 +85,9 @@ pub fn side_weights(
 
 /// The nodal forces ∫ f_i N_a of a force per area on a side, into `out`, of length 2^(`dim` − 1) · `components`.
 ///
-/// `f` gets the point and the unit normal: a traction ignores the normal, a pressure p returns −p n. The rule is that
-/// for loads of [the table](super) in dimension `dim` − 1: a constant traction has its exact total, a constant pressure
-/// on a closed surface none.
+/// `f` gets the point and the unit normal. A traction ignores the normal, a pressure p returns −p n. The quadrature is
+/// the rule for loads of [the table](super) in dimension `dim` − 1: the total of a constant traction is exact, and a
+/// constant pressure on a closed surface has total zero.
 ///
 /// # Panics
 /// When `dim` is not 2 or 3, or a length is wrong.

@@ -37,8 +37,8 @@ impl CellStress {
 
 /// Strain and stress at the centre of a cell; with P1 their mean over the simplices.
 ///
-/// The dilatation in the stress is what the stiffness takes: with a cure its mean over the cell, so that the pressure does not
-/// oscillate by λ times an error.
+/// The dilatation in the stress is the one of the stiffness: with a cure its mean over the cell, which keeps the
+/// pressure from oscillating by λ times an error.
 ///
 /// # Panics
 /// When `dim` is not 2 or 3, a length is wrong, or the material is refused by [`Material::check`] for its cure.
@@ -109,7 +109,7 @@ fn centre<const D: usize, const N: usize>(
     out
 }
 
-/// Adds `weight` ∇u, `[i][j]` = ∂u_i/∂x_j.
+/// Adds `weight` times ∇u, `[i][j]` = ∂u_i/∂x_j.
 fn add_gradient<const D: usize, const N: usize>(
     s: &Sample<D, N>,
     weight: f64,
@@ -199,7 +199,8 @@ mod tests {
         assert!((got.pressure() + 1.0 / 3.0).abs() < 1e-13);
     }
 
-    /// The patch test to its end: the linear displacement given on the boundary, solved for inside, constant stress everywhere.
+    /// The patch test to its end: the linear displacement given on the boundary, solved for inside, constant stress
+    /// everywhere.
     #[test]
     fn a_patch_under_constant_strain_has_constant_stress() {
         use super::super::testing::solve;

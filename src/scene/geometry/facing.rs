@@ -1,4 +1,4 @@
-//! Where sides of bodies meet node by node, whatever their shapes: those that coincide, and those that face each other.
+//! Node pairs on sides of bodies of any shape: sides that coincide, and sides that face each other.
 
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::normals::{of_side, parameters};
@@ -8,7 +8,7 @@ use crate::scene::model::profile::Limits;
 use crate::scene::model::spec::BodySpec;
 use std::collections::HashMap;
 
-/// Where sides of two bodies with different maps meet: interfaces of the nodes that coincide, by pairs of sides; a single node is a
+/// The interfaces of two bodies with different maps: the coinciding nodes, by pairs of sides. A single common node is a
 /// corner.
 pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
     let [a, b] = pair.map(|k| &bodies[k]);
@@ -50,7 +50,7 @@ pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
             }
         }
     }
-    // Corners and edges that also belong to a face say nothing new; nor do they twice.
+    // Removes nodes of corners and edges that a face, or another corner, already has.
     for i in out.iter_mut().filter(|i| i.shape == Shape::Corner) {
         i.shared.retain(|s| seen.insert(s.nodes));
         i.normals.truncate(i.shared.len());
@@ -123,7 +123,7 @@ fn interface(
         .map(|(n, m)| {
             let sum = minus(*n, *m);
             let length = norm(sum);
-            // Sides that do not face each other have no common normal: that of the first will do.
+            // Sides that do not face each other have no common normal; the first body's normal is used.
             if length > 1e-3 {
                 sum.map(|v| v / length)
             } else {

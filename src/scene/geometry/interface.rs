@@ -1,8 +1,8 @@
-//! Where two bodies meet: the nodes at which both have one, and how these are joined.
+//! The interface of two bodies: pairs of nodes, and how each pair is joined.
 
 use crate::scene::model::profile::Limits;
 
-/// Relative to the smaller element, how far two positions may lie apart and still be the same.
+/// Two positions are equal if they differ by less than this fraction of the smaller element.
 pub(crate) const TOLERANCE: f64 = 1e-6;
 
 /// How two coinciding nodes are joined.
@@ -10,7 +10,7 @@ pub(crate) const TOLERANCE: f64 = 1e-6;
 pub enum Link {
     /// Not at all.
     Free,
-    /// Not now, but the nodes belong to a face on which bodies may be joined: candidate contact nodes.
+    /// Not joined to begin with, on a face where the bodies may be joined: candidate contact nodes.
     Open,
     /// u is continuous.
     Tied,
@@ -28,12 +28,12 @@ impl Link {
     }
 }
 
-/// What two bodies have in common.
+/// The shape of the common part of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// A part of their sides: a stretch in the plane, an area in three dimensions.
     Face,
-    /// Less: a corner point, or an edge of a solid.
+    /// A part of lower dimension: a corner point, or an edge of a solid.
     Corner,
 }
 
@@ -42,7 +42,8 @@ pub enum Shape {
 pub struct SharedNode {
     /// The node in the first and in the second body.
     pub nodes: [usize; 2],
-    /// Parameters along the common face, 0 ≤ t ≤ 1: one in the plane (the other is 0), two in three dimensions; 0 at a corner.
+    /// Parameters along the common face, 0 ≤ t ≤ 1: one in the plane (the other is 0), two in three dimensions; 0 at a
+    /// corner.
     pub t: [f64; 2],
     /// How they are joined.
     pub link: Link,
@@ -53,19 +54,20 @@ pub struct SharedNode {
 pub struct Interface {
     /// The bodies, the lower number first.
     pub bodies: [usize; 2],
-    /// What they have in common.
+    /// The shape of the common part.
     pub shape: Shape,
-    /// The sides of the bodies that meet; of no account at corners.
+    /// The sides of the bodies that meet; meaningless at corners.
     pub sides: [usize; 2],
-    /// The nodes at which both have one, by increasing t.
+    /// The pairs of nodes, by increasing t.
     pub shared: Vec<SharedNode>,
     /// Nodes of one body on the common face where the other has none, as (t, 0 or 1 for the body that has it, node).
     pub unmatched: Vec<([f64; 2], usize, usize)>,
-    /// Which of `bodies` is the first and which the second in u_first − u_second ≤ g: the second lies above the first.
+    /// The bodies in the order of the inequality u_first − u_second ≤ g, as indices into `bodies`: the second lies
+    /// above the first.
     pub order: [usize; 2],
     /// The unit normal at each shared node, out of the first of `bodies`.
     pub normals: Vec<[f64; 3]>,
-    /// Whether a contact named the sides: the bodies need not touch.
+    /// Whether a contact names the sides explicitly; the bodies then need not touch.
     pub apart: bool,
     /// The distance of the two nodes along the normal; zero where they coincide.
     pub distances: Vec<f64>,

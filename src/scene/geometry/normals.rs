@@ -4,8 +4,8 @@ use crate::fem::cell::Element;
 use crate::linalg::vec3::norm;
 use crate::scene::model::spec::BodySpec;
 
-/// The unit normals at nodes of a side, out of the body: that of a flat side exactly, else the mean over the elements around the node,
-/// weighted by their areas.
+/// The unit normals at nodes of a side, out of the body. A flat side has its exact normal; on other sides the normals
+/// of the elements around the node are averaged, weighted by area.
 pub(crate) fn of_side(
     body: &BodySpec,
     side: usize,
@@ -16,7 +16,7 @@ pub(crate) fn of_side(
         normal[side / 2] = if side % 2 == 0 { -1.0 } else { 1.0 };
         return nodes.map(|_| normal).collect();
     }
-    // Triangles of P1 elements would turn the normals towards their diagonals.
+    // Q1 is used for P1 too, as the triangles of P1 elements would turn the normals towards their diagonals.
     let sums = body.side_normals(side, Element::Q1);
     let unit = |sum: [f64; 3]| {
         let length = norm(sum);

@@ -1,4 +1,4 @@
-//! Sides of bodies, element by element: what belongs to their nodes.
+//! Sides of bodies by element faces: nodal areas and normals.
 
 use std::collections::HashMap;
 

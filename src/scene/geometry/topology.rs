@@ -1,4 +1,4 @@
-//! What a subdomain says about itself besides its matrix: edges and faces, and the rigid motions of its body.
+//! Edges and faces of a subdomain, and the rigid motions of its body.
 
 use crate::fem::cell;
 use crate::fem::SubdomainMesh;
@@ -7,8 +7,9 @@ use crate::scene::body::Body;
 use crate::substructures::{Entity, EntityKind};
 use std::collections::BTreeMap;
 
-/// The open edges and faces of a subdomain of a solid, by component, their free dofs in increasing order; in the plane there are none to list:
-/// vertices suffice. `dofs` has the body dof of each local one: the first of an entity names it.
+/// The open edges and faces of a subdomain of a solid, by component, with their free dofs in increasing order. The list
+/// is empty in the plane, where vertices suffice. `dofs` has the body dof of each local dof; the first body dof of an
+/// entity is its key.
 pub(crate) fn entities(mesh: &SubdomainMesh, dofs: &[u64]) -> Vec<Entity> {
     if mesh.dim < 3 {
         return Vec::new();
@@ -43,8 +44,8 @@ pub(crate) fn entities(mesh: &SubdomainMesh, dofs: &[u64]) -> Vec<Entity> {
     found.into_iter().map(entity).collect()
 }
 
-/// The rigid motions of a body on the free dofs of one of its subdomains: translations, and rotations about the body's centre, all of order
-/// one over the body. 3 columns in the plane, 6 in space.
+/// The rigid motions of a body on the free dofs of one of its subdomains: translations, and rotations about the body's
+/// centre, all of order one over the body. 3 columns in the plane, 6 in space.
 pub(crate) fn rigid_motions(body: &Body, mesh: &SubdomainMesh) -> Vec<Vec<f64>> {
     let [low, high] = body.bounds;
     let size = (0..3).fold(0.0_f64, |a, d| a.max(0.5 * (high[d] - low[d])));

@@ -1,4 +1,4 @@
-//! Where boxes touch: common faces, edges and corners, and the nodes at which both have one.
+//! The interfaces of boxes that touch: common faces, edges and corners, and the node pairs on them.
 
 use super::facing::coinciding;
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
@@ -8,7 +8,7 @@ use crate::mesh::BoxMesh;
 use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
 
-/// Pairs that touch, in order of their numbers, found by a sweep in x.
+/// Pairs of bodies that touch, in order of their numbers, found by a sweep in x.
 pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
     let mut order: Vec<usize> = (0..bodies.len()).collect();
     let left = |b: usize| bodies[b].bounds[0][0];
@@ -41,7 +41,7 @@ struct Lines {
     alone: [Vec<(f64, usize)>; 2],
 }
 
-/// What boxes `a` and `b`, unbent or bent by the same map, have in common.
+/// The interface of boxes `a` and `b`, unbent or bent by the same map.
 fn common(bodies: &[Body], a: usize, b: usize) -> Result<Option<Interface>> {
     let meshes = [bodies[a].mesh(), bodies[b].mesh()];
     let dim = meshes[0].dim();
@@ -72,7 +72,7 @@ fn common(bodies: &[Body], a: usize, b: usize) -> Result<Option<Interface>> {
     let lines = [0, 1, 2].map(|d| match stretches[d] {
         true => match_lines(meshes, d, low[d], high[d]),
         false => {
-            // The first body lies before the second exactly when its end is where they meet.
+            // The boxes touch across this direction: the first one lies before the second if its origin is lower.
             let first_before = meshes[0].origin[d] < meshes[1].origin[d];
             let line = |body: usize| match (body == 0) == first_before {
                 true => meshes[body].elements[d],
@@ -125,7 +125,7 @@ fn common(bodies: &[Body], a: usize, b: usize) -> Result<Option<Interface>> {
     }))
 }
 
-/// Nodes of one body where the other has none, by body and increasing t.
+/// Nodes of one body without a partner in the other, by body and increasing t.
 fn unmatched(
     meshes: [&BoxMesh; 2],
     lines: &[Lines; 3],
@@ -136,7 +136,7 @@ fn unmatched(
         return out;
     }
     for (body, mesh) in meshes.iter().enumerate() {
-        // (position, line, whether the other body has none)
+        // Tuples (position, line, whether the other body has no such line).
         let all = [0, 1, 2].map(|d| {
             let Lines { pairs, alone } = &lines[d];
             let mut list: Vec<(f64, usize, bool)> = pairs

@@ -3,7 +3,7 @@
 use super::cells::Cells;
 use super::expr::{Expr, Variables};
 
-/// What an alternation or a table follows.
+/// The index of an alternation or a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
     /// The place of the body in its grid.
@@ -34,17 +34,18 @@ pub enum Field {
     Checkerboard {
         /// The two values.
         values: [f64; 2],
-        /// What they follow.
+        /// The index that they follow.
         by: By,
     },
-    /// `layers[k][j][i]` in column i, row j and layer k of bodies or subdomains, j counted upwards; one layer in the plane.
+    /// `layers[k][j][i]` in column i, row j and layer k of bodies or subdomains, j counted upwards; one layer in the
+    /// plane.
     Table {
         /// The values, layer by layer and row by row from the lower left corner.
         layers: Vec<Vec<Vec<f64>>>,
-        /// Whether the place is that of the body in its grid or of the subdomain in its body.
+        /// The index: the place of the body in its grid, or of the subdomain in its body.
         by: By,
     },
-    /// The last region that contains the point, `otherwise` where none does.
+    /// The value of the last region that contains the point; `otherwise` outside all regions.
     Regions {
         /// The regions.
         list: Vec<Region>,
@@ -70,7 +71,7 @@ impl Field {
         Field::Expression(Expr::constant(value))
     }
 
-    /// The value at `at`; NaN for [`Field::Cells`], which know elements and no points.
+    /// The value at `at`; NaN for [`Field::Cells`], which have values by element, not by point.
     pub fn eval(&self, at: &At) -> f64 {
         let v = &at.variables;
         match self {
@@ -89,7 +90,8 @@ impl Field {
                     By::Body => v.body,
                     By::Subdomain => v.subdomain,
                 };
-                // The shape was checked against the grid; NaN is reported as a bad value if it ever was not.
+                // The shape was checked against the grid; should the check fail to hold, NaN is reported as a bad
+                // value.
                 layers
                     .get(k)
                     .and_then(|rows| rows.get(j))
@@ -107,7 +109,7 @@ impl Field {
         }
     }
 
-    /// The value, if it is the same everywhere.
+    /// The value, if it is the same constant everywhere.
     pub fn as_constant(&self) -> Option<f64> {
         match self {
             Field::Expression(e) => e.as_constant(),
@@ -115,7 +117,7 @@ impl Field {
         }
     }
 
-    /// Whether the value is the same at all points of a subdomain, so that one evaluation serves.
+    /// Whether the value is constant in each subdomain, such that one evaluation suffices.
     pub fn is_constant_by_subdomain(&self) -> bool {
         match self {
             Field::Expression(e) => e.as_constant().is_some(),
@@ -124,7 +126,7 @@ impl Field {
         }
     }
 
-    /// The values that are written down as such, for checks before anything is assembled.
+    /// The values that are known without evaluation, for early checks.
     pub fn known_values(&self) -> Vec<f64> {
         match self {
             Field::Expression(e) => e.as_constant().into_iter().collect(),
@@ -140,7 +142,7 @@ impl Field {
         }
     }
 
-    /// The same field for the bodies of a grid: cells cover all of it.
+    /// The same field for a grid of bodies: cells cover the whole grid.
     pub(crate) fn over(&self, bodies: [usize; 3]) -> Field {
         match self {
             Field::Cells(cells) => Field::Cells(cells.over(bodies)),

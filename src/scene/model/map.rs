@@ -1,4 +1,5 @@
-//! Curved bodies: maps that bend a box into shape. Only nodes are mapped; elements stay bilinear (trilinear) between them.
+//! Curved bodies: maps that bend a box into shape. Only nodes are mapped; elements stay bilinear (trilinear) between
+//! them.
 
 use super::expr::{Expr, Variables};
 
@@ -9,17 +10,17 @@ pub struct Map {
     pub origin: [f64; 3],
     /// Its edge lengths; 0 in z in the plane.
     pub size: [f64; 3],
-    /// What becomes of it.
+    /// The shape into which the box is bent.
     pub shape: BodyShape,
 }
 
-/// What a box becomes. Angles are in radians.
+/// The shape of a bent box. Angles are in radians.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BodyShape {
     /// The new coordinates as expressions in the old ones.
     Expressions([Expr; 3]),
-    /// A sector of an annulus: x runs from the inner to the outer radius, y along the angle, counter-clockwise; z stays, so that
-    /// a solid box becomes a sector of a hollow cylinder.
+    /// A sector of an annulus: x runs from the inner to the outer radius, y along the angle, counter-clockwise; z
+    /// stays, so that a solid box becomes a sector of a hollow cylinder.
     Annulus {
         /// Centre in x and y.
         centre: [f64; 2],
@@ -28,8 +29,9 @@ pub enum BodyShape {
         /// First and last angle.
         angles: [f64; 2],
     },
-    /// A round body that stands on its pole: half a disc in the plane (half a cylinder along z as a solid), half a ball. The side
-    /// `bottom` (`top` where the pole is the highest point) and the parts of the others beside it become its surface.
+    /// A round body that stands on its pole: half a disc in the plane (half a cylinder along z as a solid), or half a
+    /// ball. Its curved surface consists of the side `bottom` (`top` if the pole is the highest point) and the adjacent
+    /// parts of the other sides.
     Round(Round),
 }
 
@@ -40,26 +42,26 @@ pub struct Round {
     pub centre: [f64; 3],
     /// Its radius, > 0.
     pub radius: f64,
-    /// Only x ≥ 0 (and z ≥ 0 of a ball).
+    /// Whether only x ≥ 0 (and z ≥ 0 of a ball) is meshed.
     pub quarter: bool,
     /// A ball; otherwise a disc, or a cylinder along z.
     pub ball: bool,
     /// The pole is the highest point, not the lowest.
     pub upwards: bool,
-    /// Elements shrink towards the pole with this power of the distance; 1: not at all.
+    /// Grading: node distances from the pole are raised to this power, and elements shrink towards it; 1: no grading.
     pub grading: f64,
-    /// Width w of a zone around the pole, as a fraction of the radius, in which elements are of about equal size, after the grading: beyond
-    /// they grow in proportion to the distance. `None`: they do not.
+    /// Width w of a zone around the pole, as a fraction of the radius, in which elements have about equal size (after
+    /// the grading). Beyond it they grow in proportion to the distance. `None`: no such zone.
     pub focus: Option<f64>,
-    /// How far out the box reaches, as a fraction: 1 is the whole half. On the rim of the whole two or three sides of the box meet at
-    /// angles of 180°, and elements degenerate there; below 1 flanks are cut off instead.
+    /// The fraction of the half body that the box covers; 1 is all of it. At 1, two or three sides of the box meet at
+    /// angles of 180° on the rim, where elements degenerate; below 1 the flanks are cut off.
     pub trim: f64,
 }
 
 impl Map {
-    /// Where a point of the box goes.
+    /// The image of a point of the box.
     pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
-        // Where in the box: 0 to 1 in each direction.
+        // The relative position in the box: 0 to 1 in each direction.
         let s = [0, 1, 2].map(|d| match self.size[d] {
             0.0 => 0.0,
             size => (point[d] - self.origin[d]) / size,
@@ -91,14 +93,15 @@ impl Map {
 }
 
 impl Round {
-    /// A square is mapped onto a disc by (u √(1 − v²/2), v √(1 − u²/2)), a cube onto a ball alike; half of it is used.
+    /// A square is mapped onto a disc by (u √(1 − v²/2), v √(1 − u²/2)), a cube onto a ball by the analogous formula;
+    /// half of the image is used.
     fn apply(&self, s: [f64; 3], z: f64) -> [f64; 3] {
         let across = |s: f64| {
             let u = if self.quarter { s } else { 2.0 * s - 1.0 };
-            // Exact at the axis and the rim.
+            // This form is exact at the axis and the rim.
             u.signum() * self.trim * self.spread(u.abs())
         };
-        // Mirrored in the box and in space, elements keep their orientation.
+        // The mirror image is taken in the box and in space, which preserves the orientation of elements.
         let up = if self.upwards { 1.0 - s[1] } else { s[1] };
         let (u, v) = (across(s[0]), self.spread(up) - 1.0);
         let w = if self.ball { across(s[2]) } else { 0.0 };
@@ -114,7 +117,8 @@ impl Round {
         ]
     }
 
-    /// How far from the pole a line of nodes goes, 0 to 1: w sinh(s arsinh(1/w)) is linear below w and geometric above.
+    /// Relative distance of a node line from the pole, 0 to 1: w sinh(s arsinh(1/w)) is linear below w, geometric
+    /// above.
     fn spread(&self, s: f64) -> f64 {
         let s = s.powf(self.grading);
         match self.focus {
@@ -186,7 +190,7 @@ mod tests {
         let from_centre = [corner[0] - 1.0, corner[1] - 2.0, corner[2] - 3.0];
         let distance = from_centre.iter().map(|v| v * v).sum::<f64>().sqrt();
         assert!((distance - 2.0).abs() < 1e-14, "{distance}");
-        // Edges of the box meet there at an angle well below 180°, also in a fine mesh.
+        // The sides of the box meet there at an angle well below 180°, also in a fine mesh.
         let to = |s: [f64; 3]| {
             let p = map.apply(s);
             [0, 1, 2].map(|d| p[d] - corner[d])

@@ -33,19 +33,20 @@ impl Profile {
     }
 }
 
-/// Bounds g of the rows at the nodes of a face or side, entry by entry of the scene: a node that several entries select has
-/// several, and all of them hold.
+/// Bounds g of the rows at the nodes of a face or side. Each entry of the scene that selects a node adds a bound, and
+/// all bounds hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Limits(Vec<Limit>);
 
 /// One bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// The node: for a face the index into [`Interface::shared`](crate::scene::Interface::shared), for a side the node of the body.
+    /// The node: for a face the index into [`Interface::shared`](crate::scene::Interface::shared), for a side the node
+    /// of the body.
     pub node: usize,
-    /// g before any factor of a load step.
+    /// g without the factors of load steps.
     pub value: f64,
-    /// Number of the entry that it comes from, contacts before obstacles; `None`: from the default.
+    /// Number of its entry, contacts before obstacles; `None`: the default.
     pub entry: Option<usize>,
 }
 

@@ -26,8 +26,8 @@ pub enum Rigid {
 }
 
 impl Rigid {
-    /// Distance of a point from the surface (negative inside the obstacle) and the unit normal of the nearest point of the surface, towards
-    /// the free side; `None` where no point is the nearest (on an axis or in a centre).
+    /// Distance of a point from the surface (negative inside the obstacle) and the unit normal of the nearest point of
+    /// the surface, towards the free side; `None` where no point is the nearest (on an axis or in a centre).
     pub fn distance(&self, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
         match *self {
             Rigid::Plane { point, normal } => Some((dot(minus(x, point), normal), normal)),

@@ -14,7 +14,7 @@ use crate::mesh::{places, BoxMesh};
 /// The load of a body: a source, or a force per volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
-    /// f(x, y, z), one field per component; one alone stands for the first component.
+    /// f(x, y, z), one field per component; a single field stands for the first component.
     pub fields: Vec<Field>,
     /// How ∫ f N_a is computed.
     pub quadrature: Quadrature,
@@ -35,7 +35,7 @@ impl Load {
     }
 }
 
-/// What acts on a side of a body: a flux, or a force per area.
+/// A load on a side of a body: a flux, or a force per area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceLoad {
     /// Index into [`SIDES`].
@@ -47,14 +47,14 @@ pub struct SurfaceLoad {
 /// A force per area.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Force {
-    /// By components; of a scalar problem the flux into the body.
+    /// By components; in a scalar problem the flux into the body.
     Traction(Vec<Field>),
     /// Against the outer normal.
     Pressure(Field),
 }
 
-/// Given values on the sides left, right, bottom, top, back, front, by component; `None`: this component is free there. A scalar
-/// has the first component only.
+/// Given values on the sides left, right, bottom, top, back, front, by component; `None`: the component is free there.
+/// A scalar problem uses the first component only.
 pub type Sides = [[Option<Field>; 3]; 6];
 
 /// Names of the sides, in the order of [`Sides`]; the last two only in three dimensions.
@@ -81,15 +81,16 @@ pub struct BodySpec {
     pub map: Option<Map>,
     /// Coefficient ρ, in elasticity Young's modulus, > 0; taken at element midpoints.
     pub rho: Field,
-    /// Poisson's ratio, between −1 and ½; of no account in scalar problems.
+    /// Poisson's ratio, between −1 and ½; ignored in scalar problems.
     pub poisson: Field,
     /// Load f.
     pub load: Load,
     /// Loads on its sides.
     pub surface: Vec<SurfaceLoad>,
-    /// Elastic foundations: k on a side (an index into [`SIDES`]) adds ∫ k u·v to the energy's form, a force −k u per area.
+    /// Elastic foundations: k on a side (an index into [`SIDES`]) adds ∫ k u·v to the bilinear form, a force −k u per
+    /// area.
     pub springs: Vec<(usize, Field)>,
-    /// Factor of the loads over the load steps; `None`: that of all loads.
+    /// Factor of the loads over the load steps; `None`: the factor of all loads of the scene.
     pub ramp: Option<Ramp>,
     /// Dirichlet conditions.
     pub dirichlet: Sides,
@@ -124,12 +125,12 @@ impl BodySpec {
         self.map.as_ref().map_or(point, |map| map.apply(point))
     }
 
-    /// The position of the node at a place as messages name it: "(x, y)" or "(x, y, z)".
+    /// The position of a node in the notation of messages: "(x, y)" or "(x, y, z)".
     pub(crate) fn spot(&self, place: [usize; 3]) -> String {
         self.spot_at(self.position(place))
     }
 
-    /// A point as messages name it.
+    /// A point in the notation of messages.
     pub(crate) fn spot_at(&self, [x, y, z]: [f64; 3]) -> String {
         match self.mesh.dim() {
             2 => format!("({x}, {y})"),
@@ -168,7 +169,7 @@ pub struct GridSpec {
     pub surface: Vec<SurfaceLoad>,
     /// Elastic foundations on the outer sides of the whole grid.
     pub springs: Vec<(usize, Field)>,
-    /// Factor of the loads over the load steps; `None`: that of all loads.
+    /// Factor of the loads over the load steps; `None`: the factor of all loads of the scene.
     pub ramp: Option<Ramp>,
     /// Dirichlet conditions on the outer sides of the whole grid.
     pub dirichlet: Sides,
@@ -211,7 +212,7 @@ impl GridSpec {
 
     /// Its bodies, layer by layer and row by row.
     pub fn expand(&self) -> Vec<BodySpec> {
-        // The same bits for every body: equal subdomains then have equal matrices.
+        // The size is the same to the last bit for every body: equal subdomains then have equal matrices.
         let size = [0, 1, 2].map(|d| self.size[d] / self.bodies[d] as f64);
         let solid = self.elements[2] > 0;
         let body = |place: [usize; 3]| {
@@ -262,7 +263,7 @@ impl GridSpec {
     }
 }
 
-/// Which pairs of bodies an entry speaks of.
+/// The pairs of bodies to which an entry applies.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Pair {
     /// All pairs that touch.
@@ -271,11 +272,11 @@ pub enum Pair {
     Named(String, String),
 }
 
-/// Which nodes of a common face (or of a side) an entry speaks of. The parameters run from 0 to 1 along the common face, in the
-/// directions of increasing x, y or z: one (t) in the plane, two in three dimensions.
+/// The nodes of a common face (or of a side) to which an entry applies. The parameters run from 0 to 1 along the common
+/// face, in the directions of increasing x, y or z: one (t) in the plane, two in three dimensions.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Extent {
-    /// All nodes, and corners at which bodies only meet in a point.
+    /// All nodes, and corners where bodies meet only in a point.
     All,
     /// None.
     None,
@@ -298,19 +299,20 @@ pub struct TieSpec {
     pub written: String,
 }
 
-/// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the first; in
-/// elasticity n·(u_first − u_second) ≤ g with the normal n that points out of the first body.
+/// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the
+/// first; in elasticity n·(u_first − u_second) ≤ g with the normal n that points out of the first body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSpec {
-    /// The bodies; the order of the names is that of the inequality, the lower number is first where none are named.
+    /// The bodies, in the order of the inequality. With [`Pair::All`] the lower number comes first.
     pub pair: Pair,
-    /// The sides that face each other, in the order of the names, where the bodies do not touch; `None`: their common faces.
+    /// The sides that face each other, in the order of the names, if the bodies do not touch; `None`: their common
+    /// faces.
     pub sides: Option<[usize; 2]>,
     /// The part of their common face.
     pub extent: Extent,
     /// The gap g, of either sign; it adds to the distance of the sides.
     pub gap: Profile,
-    /// Factor of the gap over the load steps; `None`: that of all gaps.
+    /// Factor of the gap over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, or empty.
     pub written: String,
@@ -331,15 +333,15 @@ pub struct ObstacleSpec {
     pub above: Option<Profile>,
     /// In elasticity, the rigid body that the sides cannot enter.
     pub rigid: Option<Rigid>,
-    /// What is added to the distance from the rigid body.
+    /// The gap that is added to the distance from the rigid body.
     pub gap: Profile,
-    /// Factor of the bounds over the load steps; `None`: that of all gaps.
+    /// Factor of the bounds over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, or empty.
     pub written: String,
 }
 
-/// What becomes of bodies that touch and that no entry speaks of.
+/// The joint of touching bodies that no entry mentions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ByDefault {
     /// They are tied, in corners too.
@@ -356,16 +358,16 @@ pub enum ByDefault {
 pub struct SceneSpec {
     /// A title for reports.
     pub title: String,
-    /// What is solved, and by which elements.
+    /// The equation and its finite elements.
     pub form: Form,
     /// The bodies, in the order of their numbers.
     pub bodies: Vec<BodySpec>,
-    /// Bodies that touch and that no entry of `ties` or `contacts` speaks of.
+    /// The joint of touching bodies that no entry of `ties` or `contacts` mentions.
     pub default: ByDefault,
     /// Entries for single pairs; entries for the same pair add up, and together they replace the default.
     pub ties: Vec<TieSpec>,
-    /// Unilateral contacts. An entry that names a pair beats the contacts of all pairs, and a contact that names it beats
-    /// the ties of all pairs.
+    /// Unilateral contacts. An entry that names a pair overrides the contacts of all pairs; a contact that names a pair
+    /// overrides the ties of all pairs.
     pub contacts: Vec<ContactSpec>,
     /// Rigid obstacles.
     pub obstacles: Vec<ObstacleSpec>,
@@ -378,7 +380,7 @@ pub struct SceneSpec {
 }
 
 impl SceneSpec {
-    /// Bodies that are tied wherever they touch.
+    /// A scene whose bodies are tied wherever they touch.
     pub fn tied(title: impl Into<String>, bodies: Vec<BodySpec>) -> SceneSpec {
         SceneSpec {
             title: title.into(),
@@ -404,8 +406,8 @@ pub enum Faces {
     MiddleThird,
 }
 
-/// The experiment of Table 1 of \[Lee\]: the unit square, held all round, of `bodies`² bodies of `subdomains`² subdomains of
-/// `elements`² elements, with the load of (3.3) rescaled: −3 on x < 1/2, y > 3/4; −1 on x > 1/2, y < 1/4.
+/// The experiment of Table 1 of \[Lee\]: the unit square, held all round, of `bodies`² bodies of `subdomains`²
+/// subdomains of `elements`² elements, with the load of (3.3) rescaled: −3 on x < 1/2, y > 3/4; −1 on x > 1/2, y < 1/4.
 pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> SceneSpec {
     let mut grid = GridSpec::unit_square([bodies; 2], [subdomains; 2], [subdomains * elements; 2]);
     let region = |x, y, value| Region {
@@ -432,7 +434,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
     let mut spec = SceneSpec::tied(title, grid.expand());
     if faces == Faces::MiddleThird {
         spec.default = ByDefault::Free;
-        // With a single body there is no pair to tie, and nothing to select from.
+        // A single body has no pair to tie and no nodes to select from.
         if bodies > 1 {
             spec.ties.push(TieSpec {
                 pair: Pair::All,

@@ -83,7 +83,7 @@ pub(crate) struct Factors<'a> {
 }
 
 impl<'a> Factors<'a> {
-    /// The factors of every step, one of all ones where there are no steps.
+    /// The factors of every step; a single step with factors 1 if the scene has no steps.
     pub fn every(steps: &'a Option<Steps>) -> Vec<Factors<'a>> {
         match steps {
             None => vec![Factors::none()],
@@ -95,12 +95,12 @@ impl<'a> Factors<'a> {
         }
     }
 
-    /// All ones.
+    /// Factors that are all 1.
     pub fn none() -> Factors<'a> {
         Factors { at: None }
     }
 
-    /// Those of the last step.
+    /// The factors of the last step.
     pub fn last(steps: &'a Option<Steps>) -> Factors<'a> {
         let at = steps.as_ref();
         Factors {
@@ -108,7 +108,7 @@ impl<'a> Factors<'a> {
         }
     }
 
-    /// Those of step `step`.
+    /// The factors of step `step`.
     pub fn of(steps: &'a Option<Steps>, step: usize) -> Result<Factors<'a>> {
         let every = steps.as_ref().map_or(1, |s| s.times.len());
         if step >= every {
@@ -121,12 +121,12 @@ impl<'a> Factors<'a> {
         })
     }
 
-    /// Of the load of a body with the ramp `own`.
+    /// The factor of the load of a body with the ramp `own`.
     pub fn load(&self, own: Option<&Ramp>) -> f64 {
         self.at.map_or(1.0, |(s, t)| own.unwrap_or(&s.load).at(t))
     }
 
-    /// Of given values.
+    /// The factor of given values.
     pub fn dirichlet(&self) -> f64 {
         self.at.map_or(1.0, |(s, t)| s.dirichlet.at(t))
     }
@@ -142,7 +142,7 @@ impl<'a> Factors<'a> {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The tightest of the bounds of an inequality, which has some.
+    /// The tightest of the bounds of an inequality; there must be at least one.
     pub fn bound(&self, limits: &[Limit]) -> (f64, Option<usize>) {
         self.tightest(limits)
             .expect("a row of an inequality has a bound")

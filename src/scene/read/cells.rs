@@ -40,7 +40,7 @@ impl<'a> Reader<'a> {
         cells.or_else(|e| self.error(item, e))
     }
 
-    /// A picture. The outer error is one of the scene, the inner one of the file.
+    /// Reads a picture. The outer error concerns the scene, the inner one the file.
     fn picture(&self, section: &mut Section<'a>, path: &Path) -> Result<Result<Cells>> {
         if let Some(item) = section.entry("shape") {
             return self.error(
@@ -60,7 +60,7 @@ impl<'a> Reader<'a> {
         Ok(Cells::picture(path, values, tone))
     }
 
-    /// Numbers, as many as elements unless there is a `shape`.
+    /// Reads numbers: one for each element, unless there is a `shape`.
     fn numbers(
         &self,
         section: &mut Section<'a>,
@@ -90,7 +90,7 @@ impl<'a> Reader<'a> {
         Ok(Cells::read(path, counts, format))
     }
 
-    /// A path as it is written in the scene: from the scene's own directory on.
+    /// Resolves a path in the scene relative to the scene's own directory.
     fn path(&self, written: &str) -> PathBuf {
         match Path::new(self.source.file).parent() {
             Some(directory) => directory.join(written),

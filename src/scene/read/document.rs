@@ -1,7 +1,7 @@
-//! Reading TOML: values with the line they stand on, and tables that know which keys were used.
+//! Reads TOML: values with their lines, and tables that know which keys were used.
 //!
-//! A thin layer over the parser instead of derived deserialisation, because every message must name the line, what
-//! was found there and what was expected, also where a key takes a number, a list or a table.
+//! This is a thin layer over the parser, not derived deserialisation: every message must name the line, the value found
+//! there and the value expected, also where a key takes a number, a list or a table.
 
 use crate::error::{Error, Result};
 use toml::de::{DeTable, DeValue};
@@ -34,7 +34,7 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    /// What it is, with its article.
+    /// The type of the value, with its article.
     pub fn kind(&self) -> String {
         match self {
             Value::Text(text) => format!("the text \"{text}\""),
@@ -80,7 +80,7 @@ impl Source<'_> {
             let line = self.line(key.span().start);
             entries.push((key.get_ref().to_string(), line, self.item(value)?));
         }
-        // In the order of the file, so that the first mistake is the first one reported.
+        // The order of the file: the first mistake is then reported first.
         entries.sort_by_key(|(_, line, _)| *line);
         Ok(Value::Table(entries))
     }
@@ -114,10 +114,10 @@ impl Source<'_> {
     }
 }
 
-/// A table being read: keys are taken one by one, and what is left over at the end is unknown.
+/// A table that is read key by key; the keys left over at the end are unknown.
 pub(crate) struct Section<'a> {
     source: &'a Source<'a>,
-    /// What the table is, for messages: "[[body]]", "the scene", ….
+    /// The name of the table in messages: "[[body]]", "the scene", ….
     what: &'a str,
     /// Line of the table.
     pub line: usize,
@@ -132,7 +132,7 @@ impl<'a> Section<'a> {
             Value::Table(entries) => Ok(Section {
                 source,
                 what,
-                // The header of [[x]] has no span of its own value: its first key is the nearest line.
+                // The header of [[x]] has no span of its own: the line of the first key is the nearest.
                 line: item.line,
                 entries,
                 known: Vec::new(),
@@ -151,7 +151,7 @@ impl<'a> Section<'a> {
         self.entry(key)
     }
 
-    /// As [`Section::take`], of a key that does not belong here.
+    /// As [`Section::take`], for a key that is not allowed here.
     pub fn entry(&self, key: &str) -> Option<&'a Item> {
         self.entries
             .iter()
@@ -170,7 +170,7 @@ impl<'a> Section<'a> {
         })
     }
 
-    /// An error for every key that nothing asked for.
+    /// Returns an error for every key that was not read.
     pub fn finish(self) -> Result<()> {
         match self
             .entries
@@ -187,7 +187,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// All entries, for tables whose keys are free.
+    /// All entries, for tables with arbitrary keys.
     pub fn entries(&self) -> &'a [(String, usize, Item)] {
         self.entries
     }

@@ -7,9 +7,9 @@ use crate::fem::Quadrature;
 use crate::scene::model::expr::Expr;
 use crate::scene::model::field::{By, Field, Region};
 
-/// What tables of values are checked against.
+/// The sizes against which tables of values are checked.
 pub(super) struct Shape {
-    /// What a bare list of lists follows.
+    /// The index of a bare list of lists.
     pub bare: By,
     /// Bodies of the grid, `None` outside a grid.
     pub bodies: Option<[usize; 3]>,
@@ -20,7 +20,7 @@ pub(super) struct Shape {
 }
 
 impl<'a> Reader<'a> {
-    /// A field in any of its forms, with the quadrature if the table form names one.
+    /// A field in any of its forms, and the quadrature if a table names one.
     pub(super) fn field(
         &self,
         item: &'a Item,
@@ -178,7 +178,8 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// One field for each component: a scalar has one; displacements a list, or a table with the keys x, y (and z).
+    /// One field for each component. A scalar problem has one field; elasticity has a list, or a table with the keys x,
+    /// y (and z).
     pub(super) fn vector_field(
         &self,
         item: &'a Item,

@@ -1,4 +1,4 @@
-//! What is solved: dimension, physics, elements; the exact solution.
+//! Dimension, physics and elements of a scene; the exact solution.
 
 use super::document::{Item, Section, Source, Value};
 use super::Reader;
@@ -8,7 +8,7 @@ use crate::fem::{Form, Physics};
 use crate::scene::model::expr::Expr;
 
 impl<'a> Reader<'a> {
-    /// Reads the keys of the scene that everything else depends on.
+    /// Reads the keys of the scene on which all others depend.
     pub(super) fn new(source: &'a Source<'a>, scene: &mut Section<'a>) -> Result<Reader<'a>> {
         let mut reader = Reader {
             source,

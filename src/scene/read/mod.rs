@@ -98,11 +98,11 @@ struct Reader<'a> {
     source: &'a Source<'a>,
     /// The dimension of the scene.
     dim: usize,
-    /// What is solved.
+    /// The equation and its finite elements.
     form: Form,
 }
 
-/// What bodies and grids have in common.
+/// Data that bodies and grids have in common.
 struct Data {
     rho: Field,
     poisson: Field,

@@ -1,4 +1,4 @@
-//! `shape` of a body, and the rigid bodies that obstacles are.
+//! `shape` of a body, and the rigid bodies of obstacles.
 
 use super::document::{Item, Section, Value};
 use super::Reader;
@@ -91,7 +91,7 @@ impl<'a> Reader<'a> {
         Ok(BodyShape::Annulus {
             centre,
             radii: [inner, outer],
-            // The other way round would turn elements inside out: x runs outwards.
+            // The reverse order would turn elements inside out: x runs outwards.
             angles: [from.to_radians(), to.to_radians()],
         })
     }
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The rigid body of an obstacle, if it is one: `plane`, `cylinder` or `sphere`.
+    /// The rigid body of an obstacle, if it has one: `plane`, `cylinder` or `sphere`.
     pub(super) fn rigid(&self, section: &mut Section<'a>, entry: &Item) -> Result<Option<Rigid>> {
         let mut found = Vec::new();
         if let Some(item) = section.take("plane") {
@@ -163,7 +163,7 @@ impl<'a> Reader<'a> {
             let radius = self.positive(round.need("radius", "the radius")?)?;
             let axis = match (key, self.dim) {
                 ("sphere", 3) => None,
-                // A sphere in the plane is a disc, too.
+                // In the plane a sphere is a disc, too.
                 (_, 2) => Some([0.0, 0.0, 1.0]),
                 _ => Some(self.direction(round.need("axis", "the direction of its axis")?)?),
             };
@@ -192,7 +192,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A unit vector along the one that is written.
+    /// The unit vector in the given direction.
     fn direction(&self, item: &'a Item) -> Result<[f64; 3]> {
         let v = self.vector(item, "a direction")?;
         let length = norm(v);

@@ -1,4 +1,4 @@
-//! What is written for sides of bodies: given values, fluxes, tractions, pressures.
+//! Conditions on sides of bodies: given values, fluxes, tractions, pressures.
 
 use super::document::{Item, Section, Value};
 use super::Reader;

@@ -1,4 +1,4 @@
-//! Single values: numbers, texts, counts, sizes, each with a message for what is found instead.
+//! Single values (numbers, texts, counts, sizes), each with a message for a value of the wrong kind.
 
 use super::document::{Item, Value};
 use super::Reader;
@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::scene::model::expr::Expr;
 use crate::scene::model::spec::SIDES;
 
-/// Largest number of elements or subdomains along one side of a body: a slip of the pen must not exhaust the memory
-/// before anything can be said about it.
+/// Largest number of elements or subdomains along one side of a body: a typing error must not exhaust the memory before
+/// it can be reported.
 pub(super) const MOST: usize = 1 << 22;
 
 impl<'a> Reader<'a> {
@@ -115,7 +115,7 @@ impl<'a> Reader<'a> {
         Ok(out)
     }
 
-    /// What to do about a list that fits the other dimension.
+    /// A hint for a list whose length fits the other dimension.
     fn hint(&self, n: usize) -> &'static str {
         match (self.dim, n) {
             (2, 3) => " (`dimension = 3` at the top makes the scene solid)",

@@ -12,7 +12,7 @@ impl Scene {
         self.dim() == 3 || self.form.is_elastic()
     }
 
-    /// The side of a body that rows from `source` lie on; none where bodies meet in less than a side.
+    /// The side of a body on which rows from `source` lie; `None` if the interface is no face.
     pub fn side_of(&self, source: RowSource, body: usize) -> Option<usize> {
         match source {
             RowSource::Obstacle(k) => Some(self.obstacles[k].side),
@@ -28,7 +28,7 @@ impl Scene {
 /// Nodal areas of the sides that have inequalities, each found once.
 pub(super) struct Areas<'a> {
     scene: &'a Scene,
-    /// By what the rows come from and the body: the area of each node.
+    /// The area of each node, by source of the rows and body.
     known: HashMap<(RowSource, usize), HashMap<usize, f64>>,
 }
 
@@ -40,7 +40,8 @@ impl<'a> Areas<'a> {
         }
     }
 
-    /// The area of a node; 0 where nothing may touch, where bodies meet in less than a side, and where pressures are not spoken of.
+    /// The area of a node; 0 on interfaces without contact, on interfaces that are no faces, and in problems without
+    /// pressures.
     pub fn at(&mut self, source: RowSource, BodyNode { body, node }: BodyNode) -> f64 {
         let may_touch = match source {
             RowSource::Interface(k) => self.scene.interfaces[k].has_contact(),
@@ -55,8 +56,8 @@ impl<'a> Areas<'a> {
     }
 }
 
-/// Areas by node, from the cells of the side with nodes on the interface only: where a body reaches beyond its neighbour, the rest of its
-/// side carries nothing.
+/// Areas by node, summed over the cells of the side that have all nodes on the interface. Where a body reaches beyond
+/// its neighbour, the rest of its side carries no pressure.
 fn areas(scene: &Scene, source: RowSource, body: usize) -> HashMap<usize, f64> {
     let mut areas: HashMap<usize, f64> = HashMap::new();
     let Some(side) = scene.side_of(source, body) else {

@@ -1,4 +1,4 @@
-//! Inequalities at points: obstacles get their rows, and what is decided by given values or by ties is checked and dropped.
+//! Inequalities at points: adds the rows of obstacles; checks and drops inequalities that given values or ties decide.
 
 use super::obstacles::Obstacle;
 use super::points::{Inequality, Point, PointRow};
@@ -10,21 +10,21 @@ use crate::scene::model::steps::{Factors, Steps};
 use crate::substructures::{BodyNode, RowSource};
 use std::collections::HashMap;
 
-/// What inequalities are checked against.
+/// The data against which inequalities are checked.
 pub(crate) struct Checks<'a> {
     pub bodies: &'a [Body],
     pub obstacles: &'a [Obstacle],
-    /// Where every contact and obstacle was written, by number of the entry.
+    /// Where every contact and obstacle was written, by number of its entry.
     pub written: Vec<&'a str>,
     /// The factors of every load step.
     pub factors: Vec<Factors<'a>>,
 }
 
-/// A bound of one step and what it stands on.
+/// The tightest bound at one step, and the number of the entry that it comes from.
 type Tightest = (f64, Option<usize>);
 
 impl<'a> Checks<'a> {
-    /// Those of a scene.
+    /// The checks of a scene.
     pub fn new(
         bodies: &'a [Body],
         obstacles: &'a [Obstacle],
@@ -41,10 +41,9 @@ impl<'a> Checks<'a> {
         }
     }
 
-    /// Drops the contact rows that ties or given values decide, and gives obstacles their rows.
+    /// Drops the contact rows that ties or given values decide, and adds the rows of obstacles.
     ///
-    /// # Errors
-    /// [`Error::Input`] where they decide against the inequality, or where two bounds leave nothing between them.
+    /// # Errors [`Error::Input`] if ties or given values violate an inequality, or if two bounds contradict each other.
     pub fn apply(&self, points: &mut Vec<Point>) -> Result<()> {
         for point in points.iter_mut() {
             let mut rows = std::mem::take(&mut point.rows);
@@ -63,7 +62,7 @@ impl<'a> Checks<'a> {
         Ok(())
     }
 
-    /// Whether ties or given values decide a row. Notes what is given on both sides of a contact.
+    /// Whether ties or given values decide a row. Stores the given values on both sides of a contact.
     fn is_decided(&self, point: &Point, row: &mut PointRow) -> Result<bool> {
         let (Some(inequality), [Some(a), Some(b)]) = (&mut row.inequality, row.members) else {
             return Ok(false);
@@ -98,7 +97,7 @@ impl<'a> Checks<'a> {
         Ok(tied || fixed)
     }
 
-    /// The tightest bound at a step, which must be finite with its factor.
+    /// The tightest bound at a step; an error if the bound times its factor is not finite.
     fn finite(
         &self,
         factors: &Factors<'_>,
@@ -118,13 +117,13 @@ impl<'a> Checks<'a> {
         )))
     }
 
-    /// Where to look: the entry, or the body where the default made the contact.
+    /// The place for messages: the entry, or the body if the default made the contact.
     fn place(&self, entry: Option<usize>, member: BodyNode) -> &str {
         let written = entry.and_then(|e| self.written.get(e).copied());
         written.unwrap_or(&self.bodies[member.body].spec.written)
     }
 
-    /// Gives every free node beside an obstacle its row, in a point of its own where it has none yet.
+    /// Adds a row at every free node beside an obstacle, in a new point if the node has none yet.
     fn add_bounds(&self, points: &mut Vec<Point>) -> Result<()> {
         if self.obstacles.is_empty() {
             return Ok(());
@@ -150,7 +149,7 @@ impl<'a> Checks<'a> {
                     (points.len() - 1, 0)
                 });
                 let rows = &mut points[p].rows;
-                // At corners and edges the sides of a body have a row in common.
+                // Sides of a body that meet at a corner or edge share a row there.
                 let before = rows.iter_mut().find(|row| {
                     let other = self.obstacle(row);
                     row.members[0] == Some(m)
@@ -207,7 +206,7 @@ impl<'a> Checks<'a> {
         for factors in &self.factors {
             let (bound, entry) = self.finite(factors, obstacle.limits.at(member.node), member)?;
             let bound = bound + distance;
-            // `given` is along the row's direction already; messages speak of u.
+            // `given` is the value along the row's direction; messages report u itself.
             let signed = given * factors.dirichlet();
             let value = if obstacle.upper { signed } else { 0.0 - signed };
             if exceeds(signed, bound) {
@@ -234,7 +233,7 @@ impl<'a> Checks<'a> {
         Ok(())
     }
 
-    /// The lower bound of a node must not lie above its upper bound.
+    /// Checks that the lower bound of a node does not lie above its upper bound.
     fn check_between(&self, point: &Point) -> Result<()> {
         let mut below: Option<&PointRow> = None;
         for row in &point.rows {

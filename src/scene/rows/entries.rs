@@ -1,4 +1,4 @@
-//! How the nodes where bodies touch are joined: the default, and the entries of [[tie]] and [[contact]].
+//! The joints between touching bodies: the default, and the entries of [[tie]] and [[contact]].
 
 use super::entry::{some_names, Contact, Entry};
 use super::links::Links;
@@ -45,7 +45,7 @@ pub(crate) fn find(
     Ok(interfaces)
 }
 
-/// Pairs of which a contact names the sides that face each other: these sides take the place of what touches.
+/// Interfaces of facing sides that a contact names; they replace the interface of the touching pair.
 fn facing(
     bodies: &[Body],
     contacts: &[ContactSpec],
@@ -57,7 +57,7 @@ fn facing(
         };
         let find = |name: &String| bodies.iter().position(|b| b.spec.name == *name);
         let (Some(a), Some(b)) = (find(first), find(second)) else {
-            // Reported with the entries that name bodies.
+            // The check of entries that name bodies reports this error.
             continue;
         };
         let (pair, sides) = match a < b {
@@ -81,8 +81,8 @@ fn facing(
     Ok(())
 }
 
-/// Corner pairs in `weak` are tied only because all pairs are. Where one of the two is in contact there, this is not what
-/// was meant: it would tie together what lies on both sides of the contact.
+/// Removes unwanted corner ties. The corner pairs in `weak` are tied only because an entry ties all pairs. If one of
+/// the two nodes is in contact elsewhere, the tie would close that contact and is removed.
 fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
     let mut in_contact: HashSet<(usize, usize)> = HashSet::new();
     for i in interfaces.iter() {
@@ -105,9 +105,9 @@ fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
 
 /// The entries by pair.
 struct Entries<'a> {
-    /// Those of all pairs, each with whether it has selected a node or was beaten.
+    /// Entries for all pairs, each with a flag: it has selected a node, or another entry overrides it.
     all: Vec<(Entry<'a>, bool)>,
-    /// Those of single pairs, each with the pair's order in the file.
+    /// Entries for single pairs, each with the pair's order in the file.
     named: HashMap<[usize; 2], Vec<(Entry<'a>, [usize; 2])>>,
 }
 
@@ -167,8 +167,8 @@ impl<'a> Entries<'a> {
         named.into_iter().any(|(e, _)| e.contact.is_none())
     }
 
-    /// Sets the links of one interface. Entries replace the default and add up; those that name the pair beat contacts of all
-    /// pairs, and a contact that names it beats ties of all pairs.
+    /// Sets the links of one interface. Entries replace the default and add up. Entries that name the pair override
+    /// contacts of all pairs; a contact that names the pair overrides ties of all pairs.
     fn apply(
         &mut self,
         bodies: &[Body],
@@ -184,11 +184,11 @@ impl<'a> Entries<'a> {
             None => !contact_named,
             Some(_) => named.is_empty(),
         };
-        // Ties first: contacts find out what is tied already.
+        // Ties come first: contacts need to know which nodes are tied.
         for contact in [false, true] {
             for (entry, used) in &mut self.all {
                 if entry.contact.is_some() == contact {
-                    // An entry that is beaten everywhere is no mistake.
+                    // An entry that is overridden everywhere is no mistake.
                     *used |= !speaks(entry) || links.add(*entry, None)? > 0;
                 }
             }
@@ -212,7 +212,7 @@ impl<'a> Entries<'a> {
         links.finish(last)
     }
 
-    /// Every entry must have found a pair that touches, and an entry for all pairs at least one node.
+    /// Checks that every entry found a pair that touches, and that an entry for all pairs selects at least one node.
     fn check_used(&self, interfaces: &[Interface]) -> Result<()> {
         let touching: HashSet<[usize; 2]> = interfaces.iter().map(|i| i.bodies).collect();
         let mut apart: Vec<&Entry<'_>> = self

@@ -1,20 +1,20 @@
-//! An entry of [[tie]] or [[contact]], and how messages speak of it.
+//! An entry of [[tie]] or [[contact]], and its name in messages.
 
 use crate::scene::body::Body;
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{ContactSpec, Extent, Pair, TieSpec};
 
-/// One entry, of either kind.
+/// One entry, a tie or a contact.
 #[derive(Clone, Copy)]
 pub(crate) struct Entry<'a> {
     pub pair: &'a Pair,
     pub extent: &'a Extent,
     pub written: &'a str,
-    /// `None`: a tie.
+    /// The data of a contact; `None`: a tie.
     pub contact: Option<Contact<'a>>,
 }
 
-/// What a contact says beyond its nodes.
+/// The data of a contact beyond its nodes.
 #[derive(Clone, Copy)]
 pub(crate) struct Contact<'a> {
     pub gap: &'a Profile,
@@ -52,7 +52,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Where it was written, for the middle of a sentence.
+    /// The place where it was written, for the middle of a sentence.
     pub fn line(&self) -> &str {
         match self.written.trim_end_matches(": ") {
             "" => "another entry",

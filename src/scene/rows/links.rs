@@ -1,4 +1,4 @@
-//! The links of one interface: what its nodes are after every entry has had its say.
+//! The links of one interface: the state of its nodes after all entries.
 
 use super::entry::{Contact, Entry};
 use super::select::{is_end, selected, Parameters};
@@ -11,13 +11,13 @@ use crate::scene::model::spec::Extent;
 use crate::scene::model::steps::Factors;
 use std::collections::HashMap;
 
-/// The links of one interface as entry after entry sets them.
+/// The links of one interface while entries are added.
 pub(crate) struct Links<'i, 'b, 'e> {
     bodies: &'b [Body],
     interface: &'i mut Interface,
-    /// Entries that spoke of the pair.
+    /// Number of entries that apply to the pair.
     pub entries: usize,
-    /// The entry that ties each node that is tied.
+    /// The entry that ties each tied node.
     tied: HashMap<usize, Entry<'e>>,
     limits: Vec<Limit>,
     /// The first contact and its order.
@@ -42,13 +42,13 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
             .map(|k| self.bodies[k].spec.name.as_str())
     }
 
-    /// Adds what `entry` says and returns how many nodes it selects; `order`: the bodies as it names them.
+    /// Adds the links of `entry` and returns the number of nodes that it selects; `order` has the bodies in its order.
     pub fn add(&mut self, entry: Entry<'e>, order: Option<[usize; 2]>) -> Result<usize> {
         self.entries += 1;
         let nodes = selected(self.bodies, self.interface, &entry)?;
         let Some(contact) = entry.contact else {
             if *entry.extent != Extent::None {
-                // Of a face that is tied in part, the rest is a candidate for contact: [Lee]'s Γ_gl around his Γ_gl^k.
+                // The rest of a face that is tied in part is a candidate for contact: [Lee]'s Γ_gl around his Γ_gl^k.
                 let shared = self.interface.shared.iter_mut();
                 for node in shared.filter(|s| s.link == Link::Free) {
                     node.link = Link::Open;
@@ -56,7 +56,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
             }
             for &k in &nodes {
                 self.interface.shared[k].link = Link::Tied;
-                // Where two ties share a node, the end of both ranges is the weaker claim.
+                // If two ties share a node, the one for which it is an end of the range yields to the other.
                 let t = self.interface.shared[k].t;
                 let place = self.tied.entry(k).or_insert(entry);
                 if is_end(place.extent, t) {
@@ -70,7 +70,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
             let t = self.interface.shared[k].t;
             if let Some(tie) = self.tied.get(&k) {
                 if is_end(tie.extent, t) && is_end(entry.extent, t) {
-                    // Two ranges side by side: their common end is tied.
+                    // The ranges are adjacent: their common end stays tied.
                     continue;
                 }
                 let [a, b] = self.names();
@@ -92,7 +92,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         Ok(nodes.len())
     }
 
-    /// All contacts of a pair must name it in the same order: the order is that of the inequality.
+    /// Checks that all contacts of a pair name it in the same order, which is the order of the inequality.
     fn put_in_order(&mut self, entry: Entry<'e>, order: Option<[usize; 2]>) -> Result<()> {
         let order = order.unwrap_or(self.interface.bodies);
         match &self.ordered {

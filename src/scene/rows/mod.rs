@@ -1,6 +1,6 @@
-//! From where bodies touch to the rows of B_gl.
+//! From interfaces of bodies to the rows of B_gl.
 //!
-//! A row has five forms, each made once from the one before, and one way back:
+//! A row has five forms, each made from the one before, and a solved form that leads back:
 //!
 //! ```text
 //!     1  TieSpec, ContactSpec, ObstacleSpec   what the user writes, for whole faces
@@ -12,10 +12,11 @@
 //!     SolvedRow                               label, gap, multiplier, pressure, state
 //! ```
 //!
-//! [`entries`] and [`links`] make the second form (an [`entry::Entry`] is a view of the first, [`select`] says which nodes it means),
-//! [`obstacles`] that of obstacles, [`points`] and [`bounds`] the third, [`table`] the fourth. Normals and distances are found with the second
-//! form, areas ([`areas`]) with the label, and nothing finds them again: reports, studies and C read them in the solved row. Of a load step
-//! only the right-hand sides of the third form are evaluated ([`points::PointRow::right_hand_side`]).
+//! [`entries`] and [`links`] make the second form: an [`entry::Entry`] is a view of the first, and [`select`] finds the
+//! nodes that it means. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
+//! [`table`] the fourth. Normals and distances are computed once, with the second form, and areas ([`areas`]) with the
+//! label; reports, studies and C read them in the solved row. A load step evaluates only the right-hand sides of the
+//! third form ([`points::PointRow::right_hand_side`]).
 
 pub mod areas;
 pub mod bounds;

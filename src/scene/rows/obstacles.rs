@@ -11,7 +11,7 @@ use crate::scene::model::rigid::Rigid;
 use crate::scene::model::spec::{Extent, ObstacleSpec, SIDES};
 use std::collections::BTreeMap;
 
-/// One bound beside one side of a body.
+/// One bound on one side of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     /// The body.
@@ -24,7 +24,7 @@ pub struct Obstacle {
     pub name: String,
     /// Right-hand sides of the rows u ≤ above and −u ≤ −below, by node of the body.
     pub limits: Limits,
-    /// In elasticity the body that cannot be entered: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
+    /// In elasticity, the rigid body: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
     pub rigid: Option<Rigid>,
 }
 
@@ -34,25 +34,25 @@ impl Obstacle {
         parameters(&body.spec, self.side, body.mesh().place(node))
     }
 
-    /// The distance of a node from the rigid body and the direction in which the body must not move further. Where the obstacle bounds u
-    /// itself there is no distance: u ≤ g and −u ≤ −g are rows along ±1.
+    /// The distance of a node from the rigid body, and the direction towards it. An obstacle that bounds u itself has
+    /// distance 0: u ≤ g and −u ≤ −g are rows along ±1.
     pub(crate) fn ahead(&self, body: &Body, node: usize) -> (f64, [f64; 3]) {
         let nearest = |rigid: Rigid| rigid.distance(body.spec.position(body.mesh().place(node)));
         match self.rigid.and_then(nearest) {
             Some((distance, normal)) => (distance, normal.map(|v| 0.0 - v)),
-            // Nodes of rigid bodies without a nearest point were refused.
+            // A rigid body always has a nearest point here: other nodes were refused. This case bounds u itself.
             None => (0.0, [if self.upper { 1.0 } else { -1.0 }, 0.0, 0.0]),
         }
     }
 }
 
-/// The obstacles of a scene, by body, side and bound; `first` is the number of the first entry.
+/// The obstacles of a scene, by body, side and bound; `first` is the number of the first obstacle entry.
 pub(crate) fn find(
     bodies: &[Body],
     entries: &[ObstacleSpec],
     first: usize,
 ) -> Result<Vec<Obstacle>> {
-    // Bounds on u from several entries add up; every rigid body stands for itself.
+    // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
     let mut found: BTreeMap<(usize, usize, usize, bool), Vec<Limit>> = BTreeMap::new();
     for (k, entry) in entries.iter().enumerate() {
         let fail = |message: String| Err(Error::Input(format!("{}{message}", entry.written)));

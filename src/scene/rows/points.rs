@@ -1,4 +1,4 @@
-//! Points at which bodies meet: which copies of u are one there, which are given, and the rows that follow.
+//! Points at which bodies meet: which copies of u are tied, which are given, and the rows that follow.
 
 use crate::error::{Error, Result};
 use crate::linalg::union_find::UnionFind;
@@ -19,28 +19,28 @@ pub struct Point {
     pub subdomain: usize,
     /// The nodes, by increasing body.
     pub members: Vec<BodyNode>,
-    /// Lowest member (index into `members`) to which each member is tied, itself where it is tied to none lower.
+    /// Lowest member (index into `members`) to which each member is tied; the member itself if there is no lower one.
     pub tied_to: Vec<usize>,
-    /// The rows: pairs of members, then members beside obstacles. No equality where u is given, and no inequality where given values or
-    /// ties decide it.
+    /// The rows: pairs of members first, then members beside obstacles. There are no equalities where u is given, and
+    /// no inequalities that given values or ties decide.
     pub rows: Vec<PointRow>,
 }
 
-/// A row at a point: u_a − u_b = 0, in contact u_a − u_b ≤ g, beside an obstacle u_a ≤ g, each along a direction.
+/// A row at a point: u_a − u_b = 0 (tie), u_a − u_b ≤ g (contact) or u_a ≤ g (obstacle), each along a direction.
 ///
-/// Pairs that share a face have a row where the face is tied or in contact, or open in a face that is tied elsewhere. Pairs
-/// that only meet in the corner have one where ties join them, so that the rows are fully redundant at cross points.
+/// A pair that shares a face has a row if the face is tied or in contact there, or is open there but tied elsewhere. A
+/// pair that meets only in a corner has a row if ties connect it: the rows are fully redundant at cross points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointRow {
-    /// Indices a, b into [`Point::members`]: the lower first in an equality, in the order of the inequality in contact; beside an obstacle
-    /// there is no b.
+    /// Indices a, b into [`Point::members`]. An equality has the lower index first, a contact the order of its
+    /// inequality; a row beside an obstacle has no b.
     pub members: [Option<usize>; 2],
-    /// The unit vector along which the row looks: a component, or the normal out of a.
+    /// The unit vector along which u is taken: a component, or the normal out of a.
     pub direction: [f64; 3],
-    /// Whether the row holds to begin with; an equality that does not only marks candidate contact nodes, and of two bounds at one node
-    /// only the lower one can.
+    /// Whether the row holds initially. An equality that does not hold marks candidate contact nodes; of two bounds at
+    /// one node only the lower one can hold.
     pub holds: bool,
-    /// What makes it an inequality; `None`: an equality.
+    /// The data of an inequality; `None`: an equality.
     pub inequality: Option<Box<Inequality>>,
     /// The interface or obstacle that it comes from.
     pub source: RowSource,
@@ -48,14 +48,14 @@ pub struct PointRow {
     pub node: usize,
 }
 
-/// The right-hand side of an inequality: the tightest of its limits, the distance, and what is given on either side.
+/// The right-hand side of an inequality: the tightest of its limits, the initial distance, and the given values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inequality {
     /// The bounds of all entries that select the node.
     pub limits: Vec<Limit>,
-    /// The distance that there is to begin with.
+    /// The initial distance.
     pub distance: f64,
-    /// The part of u along the direction that is given at a and at b, before any factor of a load step.
+    /// The given values of u along the direction at a and at b, without the factors of load steps.
     pub given: [f64; 2],
 }
 
@@ -89,21 +89,22 @@ pub(crate) fn collect(bodies: &mut [Body], interfaces: &[Interface]) -> Result<V
     Ok(out)
 }
 
-/// What u does at a member along a direction: the free degrees of freedom with their coefficients, and the sum of the given ones.
+/// u at a member along a direction: the free degrees of freedom with their coefficients, and the sum of the given
+/// terms.
 pub(crate) struct Along {
     pub terms: Vec<(u64, f64)>,
     pub given: f64,
 }
 
 impl PointRow {
-    /// c at a load step; 0 in an equality.
+    /// The right-hand side c at a load step; 0 for an equality.
     pub(crate) fn right_hand_side(&self, factors: &Factors<'_>) -> f64 {
         let Some(inequality) = &self.inequality else {
             return 0.0;
         };
         let (mut g, _) = factors.bound(&inequality.limits);
         g += inequality.distance;
-        // u_a ≤ g + u_b, −u_b ≤ g − u_a
+        // The row is u_a ≤ g + u_b, or −u_b ≤ g − u_a.
         let [a, b] = inequality.given.map(|given| given * factors.dirichlet());
         g -= a;
         if self.members[1].is_some() {
@@ -112,7 +113,7 @@ impl PointRow {
         g
     }
 
-    /// The bounds of an inequality; none of an equality.
+    /// The bounds of an inequality; empty for an equality.
     pub(crate) fn limits(&self) -> &[Limit] {
         self.inequality.as_ref().map_or(&[], |i| &i.limits)
     }
@@ -138,7 +139,7 @@ impl BodyNode {
             given: 0.0,
         };
         for (c, n) in direction.into_iter().enumerate() {
-            // Normals of curved sides come with the rounding of their computation.
+            // Components of this size are rounding errors in the normals of curved sides.
             if c >= bodies[self.body].components || n.abs() < 1e-14 {
                 continue;
             }
@@ -174,7 +175,7 @@ impl BodyNode {
         spec.spot(spec.mesh.place(self.node))
     }
 
-    /// The point of this node alone.
+    /// The point that has this node as its only member.
     pub(crate) fn alone(self, bodies: &[Body]) -> Point {
         BodyNode::point(vec![self], bodies)
     }
@@ -255,7 +256,7 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Shar
     out
 }
 
-/// Finds what is tied to what, and the pairs that get a row; contacts that say nothing are dropped later.
+/// Finds the tied members and the pairs that get a row; contacts without effect are dropped later.
 fn close(point: &mut Point, pairs: &mut [Shared], interfaces: &[Interface], components: usize) {
     let link = |p: &Shared| interfaces[p.interface].shared[p.node].link;
     let joined = |counts: &dyn Fn(Link) -> bool| {
@@ -276,7 +277,7 @@ fn close(point: &mut Point, pairs: &mut [Shared], interfaces: &[Interface], comp
         let corner = interface.shape == Shape::Corner && !contact;
         let by = |sets: &[usize]| corner && sets[a] == sets[b];
         let holds = link == Link::Tied || by(&point.tied_to) || contact;
-        // Where other faces tie the two anyway, an open row would say nothing.
+        // If other faces tie the two members, an open row would be redundant.
         let open = (link == Link::Open || by(&may_join)) && point.tied_to[a] != point.tied_to[b];
         if !(holds || open) {
             continue;
@@ -304,7 +305,7 @@ fn close(point: &mut Point, pairs: &mut [Shared], interfaces: &[Interface], comp
     }
 }
 
-/// A node that is tied to a given value is given itself: adds it to `inherited`.
+/// Adds a node to `inherited` if it is tied to a given value: the node is then given itself.
 fn prescribe(
     bodies: &[Body],
     point: &Point,

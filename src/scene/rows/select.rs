@@ -1,4 +1,4 @@
-//! Which nodes of a common face, or of a side, an entry selects.
+//! The selection of nodes of a common face, or of a side, by an entry.
 
 use super::entry::Entry;
 use crate::error::{Error, Result};
@@ -9,7 +9,7 @@ use crate::scene::model::spec::{Extent, Pair};
 /// Tolerance of the parameter t at the ends of a range.
 const T_TOLERANCE: f64 = 1e-9;
 
-/// What an entry asks for and a face or side does not have.
+/// A node that an entry asks for and that the face or side does not have.
 pub(crate) enum Missing {
     /// A node at this t.
     At([f64; 2]),
@@ -32,7 +32,7 @@ fn inside(t: [f64; 2], range: [[f64; 2]; 2]) -> bool {
         .all(|(t, [low, high])| low - T_TOLERANCE <= t && t <= high + T_TOLERANCE)
 }
 
-/// Parameters along a face as a user writes them: one number in the plane.
+/// Parameters along a face in the user's notation: one number in the plane.
 pub(crate) struct Parameters(pub [f64; 2]);
 
 impl std::fmt::Display for Parameters {
@@ -94,7 +94,7 @@ pub(crate) fn selected(
 ) -> Result<Vec<usize>> {
     let extent = entry.extent;
     if interface.shape == Shape::Corner {
-        // A contact of all pairs means faces: in a corner it has to be asked for by name.
+        // A contact of all pairs applies to faces only: a contact in a corner must name the pair.
         let meant = entry.contact.is_none() || *entry.pair != Pair::All;
         return Ok(if *extent == Extent::All && meant {
             (0..interface.shared.len()).collect()
@@ -106,7 +106,7 @@ pub(crate) fn selected(
         Extent::None | Extent::Points(_) => None,
         Extent::All => interface.unmatched.first(),
         Extent::Range(range) => interface.unmatched.iter().find(|u| inside(u.0, *range)),
-        // Numbers count the nodes of the common face; they make sense only where both bodies have the same.
+        // Node numbers refer to the common face; they make sense only if both bodies have the same nodes there.
         Extent::Nodes(_) => interface.unmatched.first(),
     };
     if let Some(lone) = lone {
@@ -140,7 +140,7 @@ fn unmatched(
     let other = &bodies[interface.bodies[1 - side]];
     let at = has.spec.spot(has.mesh().place(node));
     let t = Parameters(t);
-    // The later of the two bodies is the one that was put beside the other.
+    // Messages name the body that was written later.
     let later = &bodies[interface.bodies[1]].spec.written;
     let place = if entry.written.is_empty() {
         later

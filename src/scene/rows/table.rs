@@ -1,4 +1,4 @@
-//! B_gl: ties, contacts and obstacles row by row, and what they are about.
+//! The rows of B_gl for ties, contacts and obstacles, with their labels.
 
 use super::areas::Areas;
 use super::points::{Point, PointRow};
@@ -8,10 +8,10 @@ use crate::scene::model::steps::Factors;
 use crate::substructures::{InterfaceRow, RowKind, RowLabel, RowSource};
 
 impl Scene {
-    /// The rows of B_gl at points whose lowest subdomain satisfies `owns`, with the right-hand sides of the last load step:
-    /// u_a − u_b = 0 for every tied pair of bodies a < b, open rows at the candidate contact nodes of faces that are tied in
-    /// part, u_a − u_b ≤ g in contact (a is the first body of the pair), u ≤ g and −u ≤ −g beside obstacles. A given value
-    /// goes to the right-hand side.
+    /// The rows of B_gl at points whose lowest subdomain satisfies `owns`, with the right-hand sides of the last load
+    /// step. There are rows u_a − u_b = 0 for every tied pair of bodies a < b, open rows at the candidate contact nodes
+    /// of faces that are tied in part, rows u_a − u_b ≤ g in contact (a is the first body of the pair), and rows u ≤ g
+    /// and −u ≤ −g beside obstacles. Given values are moved to the right-hand side.
     pub fn rows(&self, owns: &dyn Fn(usize) -> bool) -> Vec<InterfaceRow> {
         let last = Factors::last(&self.steps);
         let mut areas = Areas::new(self);
@@ -34,7 +34,7 @@ impl Scene {
         self.each_row(owns).map(row).collect()
     }
 
-    /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (0 is the only one without `[steps]`).
+    /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (without `[steps]` the only step is 0).
     ///
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a step that the scene does not have.
@@ -44,13 +44,13 @@ impl Scene {
         Ok(rows.map(|(_, row)| row.right_hand_side(&factors)).collect())
     }
 
-    /// Whether there is an inequality, and with it an outer loop.
+    /// Whether there is an inequality; the solver then runs an outer loop.
     pub fn has_contact(&self) -> bool {
         self.each_row(|_| true)
             .any(|(_, row)| row.inequality.is_some())
     }
 
-    /// The rows in their order: by point, pairs before obstacles.
+    /// The rows in order: by point, pairs before obstacles.
     pub(crate) fn each_row(
         &self,
         owns: impl Fn(usize) -> bool,

@@ -1,11 +1,11 @@
 //! Coefficients from data: values on a grid of equal cells that covers a body, or a whole grid of bodies.
 //!
-//! An element takes the value of the cell that its midpoint lies in, counted in elements and cells and not in coordinates:
-//! with as many cells as elements each element has its own, whatever the shape of the body. A midpoint between two cells
-//! belongs to the right or upper one.
+//! An element takes the value of the cell in which its midpoint lies. The cell follows from element and cell numbers,
+//! not from coordinates: with as many cells as elements each element has its own, whatever the shape of the body. A
+//! midpoint between two cells belongs to the right or upper one.
 //!
-//! Arrays of numbers stay on disk and are read where a subdomain needs them, so that a rank holds no more of a large field than its own
-//! part. Pictures and text are small, and are kept.
+//! Arrays of numbers stay on disk. Each rank reads only the part of its own subdomains, which bounds the memory for
+//! large fields. Pictures and text files are small, and are kept in memory.
 
 mod numbers;
 mod picture;
@@ -24,13 +24,13 @@ pub use picture::Tone;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
     data: Arc<Data>,
-    /// Bodies of the grid that they cover, in x, y and z.
+    /// Number of bodies in x, y and z that the cells cover.
     bodies: [usize; 3],
 }
 
 #[derive(Debug, PartialEq)]
 struct Data {
-    /// The file, or what else messages call it.
+    /// The name in messages: the file, or another description.
     name: String,
     /// Cells in x, y and z.
     counts: [usize; 3],
@@ -39,7 +39,7 @@ struct Data {
     values: Values,
 }
 
-/// Where the values are: those of the lowest row first, x running fastest.
+/// The values; the lowest row comes first, x runs fastest.
 #[derive(Debug, PartialEq)]
 enum Values {
     Listed(Vec<f64>),
@@ -48,9 +48,10 @@ enum Values {
 }
 
 impl Cells {
-    /// `counts[0]` × `counts[1]` (× `counts[2]`, 1 in the plane) cells with these values, x running fastest and from the lowest row and layer on.
+    /// `counts[0]` × `counts[1]` (× `counts[2]`, 1 in the plane) cells with these values. x runs fastest; the lowest
+    /// row and layer come first.
     ///
-    /// # Errors
+    /// # Errors [`Error::Input`] if the number of values differs.
     /// [`Error::Input`] when the number of values is another one.
     pub fn new(name: impl Into<String>, counts: [usize; 3], values: Vec<f64>) -> Result<Cells> {
         let name = name.into();
@@ -65,8 +66,8 @@ impl Cells {
         Ok(Cells::of(name, counts, range, Values::Listed(values)))
     }
 
-    /// The numbers in the file `path`, in the order of [`Cells::new`]; `format: None` is text in files `*.txt` and `*.csv`, else f32 or f64 as their
-    /// number of bytes tells.
+    /// The numbers in the file `path`, in the order of [`Cells::new`]. With `format: None`, files `*.txt` and `*.csv`
+    /// are text; other files are f32 or f64, depending on their size.
     ///
     /// # Errors
     /// [`Error::Input`] when the file cannot be read, or holds another number of numbers.
@@ -81,11 +82,12 @@ impl Cells {
         Ok(Cells::of(name, counts, range, Values::Stored(array)))
     }
 
-    /// The grey values of a PNG picture, its top row at the top of the body: `values[0]` where it is black, `values[1]` where it is white, and
-    /// in between as `tone` says. In space the picture is the same in all layers.
+    /// The grey values of a PNG picture, its top row at the top of the body: `values[0]` where it is black, `values[1]`
+    /// where it is white, and in between as `tone` says. In space the picture is the same in all layers.
     ///
     /// # Errors
-    /// [`Error::Input`] when the file is no PNG picture, has colours or transparent pixels, or for values that the tone does not fit.
+    /// [`Error::Input`] when the file is no PNG picture, has colours or transparent pixels, or for values that the tone
+    /// does not fit.
     pub fn picture(path: &Path, values: [f64; 2], tone: Tone) -> Result<Cells> {
         let (picture, counts) = Picture::read(path, values, tone)?;
         let range = range(picture.values());
@@ -110,7 +112,7 @@ impl Cells {
         numbers::has_extension(path, "png")
     }
 
-    /// The file, or what else messages call it.
+    /// The name in messages: the file, or another description.
     pub fn name(&self) -> &str {
         &self.data.name
     }
@@ -133,7 +135,7 @@ impl Cells {
         }
     }
 
-    /// The values of the elements of a subdomain; `place` is that of the body in its grid.
+    /// The values of the elements of a subdomain; `place` is the place of the body in its grid.
     pub(crate) fn sample(
         &self,
         place: [usize; 3],
@@ -173,7 +175,7 @@ impl Cells {
         Ok(out)
     }
 
-    /// The first cell with a value that is `wrong`: the value, and the cell as messages name it.
+    /// The first cell whose value is `wrong`: the value, and the name of the cell in messages.
     pub(crate) fn find(&self, wrong: impl Fn(f64) -> bool) -> Result<Option<(f64, String)>> {
         let [nx, ny, nz] = self.data.counts;
         let mut reader = self.data.reader()?;
@@ -212,7 +214,7 @@ impl Data {
     }
 }
 
-/// Reads pieces of rows.
+/// Reads parts of rows.
 enum Reader<'a> {
     Listed(&'a [f64]),
     Painted(&'a Picture),
@@ -220,7 +222,7 @@ enum Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Puts the `n` values from number `first` on into `out`.
+    /// Appends the `n` values from number `first` on to `out`.
     fn row(&mut self, first: usize, n: usize, out: &mut Vec<f64>) -> Result<()> {
         out.clear();
         match self {
@@ -238,7 +240,7 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 fn widen([low, high]: [f64; 2], value: f64) -> [f64; 2] {
-    // `min` and `max` forget a NaN.
+    // `min` and `max` ignore a NaN.
     match value.is_nan() || low.is_nan() {
         true => [f64::NAN; 2],
         false => [low.min(value), high.max(value)],
@@ -266,7 +268,8 @@ mod tests {
         for n in [1, 2, 7, 100] {
             assert!((0..n).all(|e| cell(e, n, n) == e));
         }
-        // Three elements a cell; two cells an element: the midpoint is their common end and belongs to the right one.
+        // With three elements per cell; then with two cells per element, where the midpoint is their common end and
+        // belongs to the right one.
         let coarse: Vec<usize> = (0..6).map(|e| cell(e, 6, 2)).collect();
         assert_eq!(coarse, [0, 0, 0, 1, 1, 1]);
         let fine: Vec<usize> = (0..3).map(|e| cell(e, 3, 6)).collect();

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// How numbers are written in a file.
+/// The format of numbers in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberFormat {
     /// As text, with blanks, line ends, commas or semicolons between them; `#` begins a comment.
@@ -17,19 +17,19 @@ pub enum NumberFormat {
     F64,
 }
 
-/// What the name of a file says about it.
+/// The format that the name of a file implies.
 pub(crate) fn format_of(path: &Path) -> Option<NumberFormat> {
     let text = ["txt", "csv"].iter().any(|e| has_extension(path, e));
     text.then_some(NumberFormat::Text)
 }
 
-/// Whether the name of a file ends so, in capitals or not.
+/// Whether the name of a file has this extension, in upper or lower case.
 pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
-/// The file, opened; its length in bytes.
+/// Opens the file; returns it with its length in bytes.
 pub(crate) fn open(path: &Path) -> Result<(File, u64)> {
     let file = path.display();
     let fail = |e: std::io::Error| Error::Input(format!("{file} cannot be read: {e}"));
@@ -81,7 +81,7 @@ pub(crate) struct Array {
 const PIECE: usize = 1 << 16;
 
 impl Array {
-    /// Checks the length of the file.
+    /// Opens the file and checks its length.
     pub fn open(path: &Path, counts: [usize; 3], format: Option<NumberFormat>) -> Result<Array> {
         let (_, bytes) = open(path)?;
         let all = shape(counts);
@@ -142,7 +142,7 @@ pub(crate) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Hands over the `n` numbers from number `first` on.
+    /// Calls `each` with the `n` numbers from number `first` on.
     pub fn read(&mut self, first: usize, n: usize, mut each: impl FnMut(f64)) -> Result<()> {
         let width = if self.array.double { 8 } else { 4 };
         let path = &self.array.path;

@@ -7,17 +7,17 @@ use std::io::BufReader;
 use std::ops::Range;
 use std::path::Path;
 
-/// What a grey between black and white means.
+/// The interpolation between the values of black and white.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// The value is linear in the grey.
     #[default]
     Linear,
-    /// Its logarithm is.
+    /// The logarithm of the value is linear in the grey.
     Log,
 }
 
-/// Greys, the lowest row first.
+/// Grey levels; the lowest row comes first.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Picture {
     levels: Vec<u16>,
@@ -41,7 +41,7 @@ impl Picture {
         let table = (0..=white)
             .map(|level| value(f64::from(level) / f64::from(white), values, tone))
             .collect();
-        // Pictures begin at the top.
+        // Pictures store the top row first.
         let rows = pixels.chunks_exact(size[0]).rev();
         let levels = rows.flatten().copied().collect();
         Ok((Picture { levels, table }, [size[0], size[1], 1]))
@@ -69,7 +69,7 @@ fn value(t: f64, [black, white]: [f64; 2], tone: Tone) -> f64 {
     }
 }
 
-/// The greys of a picture row by row from the top, its width and height, and the grey that is white.
+/// The grey levels of a picture, row by row from the top; its width and height; and the level of white.
 fn grey(path: &Path) -> Result<(Vec<u16>, [usize; 2], u16)> {
     let file = path.display();
     let (opened, _) = numbers::open(path)?;
@@ -82,7 +82,7 @@ fn grey(path: &Path) -> Result<(Vec<u16>, [usize; 2], u16)> {
     };
     let limits = Limits { bytes: 1 << 30 };
     let mut decoder = Decoder::new_with_limits(BufReader::new(opened), limits);
-    // Palettes become colours and fewer bits than eight become eight.
+    // The decoder expands palettes to colours and fewer than eight bits to eight.
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(fail)?;
     let size = [reader.info().width, reader.info().height];
@@ -110,7 +110,7 @@ fn grey(path: &Path) -> Result<(Vec<u16>, [usize; 2], u16)> {
             true => u16::from_be_bytes([pixel[2 * c], pixel[2 * c + 1]]),
             false => u16::from(pixel[c]),
         };
-        // Counted from the upper left corner, as programs for pictures do.
+        // Messages count from the upper left corner, as image programs do.
         let bad = |what: String| {
             let (i, j) = (k % size[0], k / size[0]);
             Err(Error::Input(format!(

@@ -1,9 +1,9 @@
-//! Numbers that carry their gradient: forward differentiation of what the user writes.
+//! Numbers with gradients: forward differentiation of expressions.
 //!
 //! An exact solution is given as one expression; its gradient, which the error norms need, follows from
 //! evaluating the same expression on [`WithGradient`] numbers, exact to rounding.
 
-/// What an expression may be evaluated on.
+/// A number type on which expressions are evaluated.
 pub trait Real: Copy {
     /// The constant `value`.
     fn constant(value: f64) -> Self;

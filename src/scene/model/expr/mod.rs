@@ -1,7 +1,7 @@
 //! Expressions in a scene: parsing and evaluation.
 //!
-//! Written here and not taken from a library because a scene needs the usual precedence (−x² is −(x²)),
-//! comparisons and `if`, numbers such as `1e-3`, and gradients of what was written.
+//! The parser is written here and not taken from a library. A scene needs the usual precedence (−x² is −(x²)),
+//! comparisons and `if`, numbers such as `1e-3`, and gradients of expressions.
 
 pub(crate) mod gradient;
 mod parse;
@@ -13,7 +13,7 @@ use std::fmt;
 /// Names of the variables, in the order of [`Variables`].
 const VARIABLES: [&str; 9] = ["x", "y", "z", "bi", "bj", "bk", "si", "sj", "sk"];
 
-/// Where an expression is evaluated.
+/// The variables at the point of evaluation.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Variables {
     /// The point (x, y, z).
@@ -228,7 +228,7 @@ fn sign(v: f64) -> f64 {
 }
 
 fn power(v: f64, w: f64) -> f64 {
-    // Whole exponents by repeated multiplication: exact for negative bases and for squares.
+    // Small whole exponents use repeated multiplication: exact for negative bases and for squares.
     if w == w.round() && w.abs() <= 64.0 {
         v.powi(w as i32)
     } else {

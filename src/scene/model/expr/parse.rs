@@ -14,10 +14,10 @@
 use super::tokens::{tokenise, Token};
 use super::{Ast, Binary, Unary};
 
-/// Nesting allowed in one expression: the parser recurses, and a scene must not be able to overflow the stack.
+/// Largest nesting depth of an expression: the parser recurses, and a scene must not overflow the stack.
 const MAX_DEPTH: usize = 64;
 
-/// The tree of the expression `text` in `variables`, or one clause that says what is wrong with it.
+/// Parses `text` as an expression in `variables`; the error is one clause that says what is wrong with it.
 pub(crate) fn parse(text: &str, variables: &[&str]) -> Result<Ast, String> {
     let mut parser = Parser {
         variables,
@@ -85,7 +85,7 @@ impl Parser<'_> {
         let mut left = operand(self)?;
         let mut length = 0;
         while let Some(symbol) = self.accept(&symbols) {
-            // A long chain is a deep tree on the left, and evaluation recurses.
+            // A long chain is a deep tree on the left, and evaluation recurses: the length is limited too.
             length += 1;
             if length > 1000 {
                 return Err(format!("more than 1000 terms joined by `{symbol}`"));
@@ -198,7 +198,7 @@ impl Parser<'_> {
                     "pi" | "PI" | "π" => Ok(Ast::Number(std::f64::consts::PI)),
                     "e" | "E" => Ok(Ast::Number(std::f64::consts::E)),
                     _ => {
-                        // Empty names hold the places of variables that there are only in space.
+                        // Empty names are placeholders for variables that exist only in space.
                         let known = self.variables.iter().filter(|v| !v.is_empty());
                         let known: Vec<&str> = known.copied().collect();
                         Err(format!(
