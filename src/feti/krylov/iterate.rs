@@ -34,6 +34,14 @@ impl IterationControl {
             observed: false,
         }
     }
+
+    /// The same run, and monitors may ask for the displacements.
+    pub fn observed(self) -> IterationControl {
+        IterationControl {
+            observed: true,
+            ..self
+        }
+    }
 }
 
 /// The condition for breaking a run off because of large eigenvalues.

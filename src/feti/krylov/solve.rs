@@ -42,71 +42,22 @@ impl LinearMethod {
     pub fn solve(&self, enough: Option<&Judge>) -> Result<LinearSolution> {
         let clock = Instant::now();
         let session = self.session();
-        let mut at = self.start()?; /*                        λ₀ = Q G (Gᵀ Q G)⁻¹ e                      */
-        let r0 = at.evaluate_projected(session, &self.dual())?; /*   r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)       */
-        let target = Target::new(self, r0)?;
-        let mut tolerance = target.at_first();
-        let mut size = at.residual.size;
-        let mut run = self.reach(
-            &mut at,
-            IterationControl {
-                observed: true,
-                ..IterationControl::to(tolerance, size)
-            },
-        )?;
-
-        // Repeat until the resulting displacements have the accuracy of the user's tolerance.
-        let (mut asked, mut idle, mut stalled) = (0, false, false);
-        loop {
-            at.place(session, &self.dual())?; /*              y ← S̃⁺(g − Bᵀ λ) + R α                     */
-            // The interface may not move at all in the solution. Rounding then has the size of S̃⁺ applied to the loads
-            // at the start.
-            size = size.max(at.residual.size);
-            let wanted = target.of_displacements(at.residual.length(session), size);
-            if stalled || !run.status.converged() {
-                break;
-            }
-            if to_the_end(tolerance, wanted) {
-                let Some(enough) = enough.filter(|_| asked < ASKED) else {
-                    break;
-                };
-                let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
-                let Some(factor) = enough(&u)? else { break };
-                asked += 1;
-                // The last iteration may have ended far below its tolerance.
-                tolerance = factor * tolerance.min(at.evaluate_projected(session, &self.dual())?);
-            } else {
-                tolerance = wanted;
-            }
-            // The remaining iterations are few, and no look at the spectrum may end them.
-            self.dual().p_transpose(&at.residual.r)?;
-            let control = IterationControl {
-                observed: true,
-                ..IterationControl::to(tolerance, size)
-            };
-            let more = iterate(self, &at.residual.r, &at.lambda, &control)?;
-            if more.iterations == 0 {
-                // The target was reached already. The next pass is the last one, unless `enough` asks for more.
-                if std::mem::replace(&mut idle, true) {
-                    break;
-                }
-                continue;
-            }
-            idle = false;
-            stalled = !more.status.converged();
-            run.add(more);
-        }
-
+        let mut at = self.start()?; /*                                  λ₀ = Q G (Gᵀ Q G)⁻¹ e            */
+        let r = at.evaluate_projected(session, &self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
+        let target = Target::new(self, r)?;
+        let control = IterationControl::to(target.at_first(), at.residual.size).observed();
+        let run = self.reach(&mut at, control)?; /*                     Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x */
+        let run = self.meet(&mut at, run, control, &target, enough)?; /* y ← S̃⁺(g − Bᵀ λ) + R α          */
         let seconds = clock.elapsed().as_secs_f64();
-        let found = self.recover(at, run, seconds)?; /*       u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ)              */
+        let found = self.recover(at, run, seconds)?; /*                 u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ)    */
         let status = found.status.clone();
-        let mut refined = self.refine(found)?; /*             K du + Bᵀ dλ = f − K u − Bᵀ λ              */
+        let mut refined = self.refine(found)?; /*                       K du + Bᵀ dλ = f − K u − Bᵀ λ    */
         if enough.is_some() {
             // If refinement did not find the missing digits, `enough` decides whether they matter: a relative tolerance
             // of zero asks for all possible digits.
             refined.status = status;
         }
-        self.certify(refined) /*                              the certificate has the last word          */
+        self.certify(refined)
     }
 
     /// Iterates from λ to `control.tolerance`; the residual holds Pᵀ r on entry. Looks at the spectrum, deflates large
@@ -149,6 +100,62 @@ impl LinearMethod {
             so_far = Some(all);
             at.evaluate_projected(session, &self.dual())?;
         }
+    }
+
+    /// Iterates further, after `run` with this `control`, until the displacements have the accuracy of the user's tolerance
+    /// and `enough` asks for no more. On return the displacements are those of λ, rigid motions included. Collective.
+    fn meet(
+        &self,
+        at: &mut Iterate,
+        mut run: Run,
+        control: IterationControl,
+        target: &Target,
+        enough: Option<&Judge>,
+    ) -> Result<Run> {
+        let session = self.session();
+        let IterationControl {
+            mut tolerance,
+            mut size,
+            ..
+        } = control;
+        let (mut asked, mut idle, mut stalled) = (0, false, false);
+        loop {
+            at.place(session, &self.dual())?; /*              y ← S̃⁺(g − Bᵀ λ) + R α                     */
+            // The interface may not move at all in the solution. Rounding then has the size of S̃⁺ applied to the loads
+            // at the start.
+            size = size.max(at.residual.size);
+            let wanted = target.of_displacements(at.residual.length(session), size);
+            if stalled || !run.status.converged() {
+                break;
+            }
+            if to_the_end(tolerance, wanted) {
+                let Some(enough) = enough.filter(|_| asked < ASKED) else {
+                    break;
+                };
+                let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
+                let Some(factor) = enough(&u)? else { break };
+                asked += 1;
+                // The last iteration may have ended far below its tolerance.
+                tolerance = factor * tolerance.min(at.evaluate_projected(session, &self.dual())?);
+            } else {
+                tolerance = wanted;
+            }
+            // The remaining iterations are few, and no look at the spectrum may end them.
+            self.dual().p_transpose(&at.residual.r)?;
+            let control = IterationControl::to(tolerance, size).observed();
+            let more = iterate(self, &at.residual.r, &at.lambda, &control)?;
+            if more.iterations == 0 {
+                // The target was reached already. The next pass is the last one, unless `enough` asks for more.
+                if std::mem::replace(&mut idle, true) {
+                    break;
+                }
+                continue;
+            }
+            idle = false;
+            stalled = !more.status.converged();
+            run.add(more);
+        }
+        Ok(run)
     }
 
     /// The certificate has the last word. Displacements far from equilibrium, or rows far from holding, are not a
