@@ -3,10 +3,11 @@
 //!     cargo run --release --example custom_substructures
 //!     mpirun -n 2 target/release/examples/custom_substructures -fetifeti_spectrum
 //!
-//! A sheet of resistors, 13 × 4 nodes. It is cut into three boards (the bodies) that overlap in a column of nodes, and each
-//! board into two halves (the subdomains). The matrix of a half is its graph Laplacian. Wires tie the boards together, and
-//! between the second and the third there is a battery in every wire: u_2 − u_3 = 1.5. One node of the first board is
-//! earthed, the other boards float, which the solver has to find out by itself: `near_kernel` is `None`.
+//! A sheet of resistors, 13 × 4 nodes. It is cut into three boards (the bodies) that overlap in a column of nodes, and
+//! each board into two halves (the subdomains). The matrix of a half is its graph Laplacian. Wires tie the boards
+//! together, and between the second and the third there is a battery in every wire: u_2 − u_3 = 1.5. One node of the
+//! first board is earthed, the other boards float, and the solver has to detect that by itself: `near_kernel` is
+//! `None`.
 
 use std::process::ExitCode;
 
@@ -91,13 +92,13 @@ fn run(session: &Session) -> Result<()> {
     Ok(())
 }
 
-/// Conductance of the edge from (x, y) to the right or upwards: anything positive.
+/// Conductance of the edge from (x, y) to the right or upwards; any positive function will do.
 fn conductance(x: usize, y: usize, upwards: bool) -> f64 {
     1.0 + ((7 * x + 3 * y + 5 * usize::from(upwards)) % 11) as f64
 }
 
-/// All edges between columns x0 and x1: (node, node, conductance). An upward edge in an inner border column is a pair of
-/// parallel resistors, one on either side of the cut.
+/// All edges between columns x0 and x1: (node, node, conductance). An upward edge in an inner border column is a pair
+/// of parallel resistors, one on either side of the cut.
 fn edges(x0: usize, x1: usize) -> Vec<([usize; 2], [usize; 2], f64)> {
     let mut out = Vec::new();
     for x in x0..=x1 {
@@ -115,7 +116,7 @@ fn edges(x0: usize, x1: usize) -> Vec<([usize; 2], [usize; 2], f64)> {
     out
 }
 
-/// Current fed into a node: 2 A into the last column, all of it leaves through earth.
+/// Current fed into a node: 2 A into the last column; all of it leaves through earth.
 fn current(x: usize) -> f64 {
     if x + 1 == COLUMNS {
         2.0 / HEIGHT as f64
@@ -128,7 +129,7 @@ fn earthed(node: [usize; 2]) -> bool {
     node == [0, 0]
 }
 
-/// Halves of one board share the nodes with the same number; other boards have others.
+/// Global number of a node. Both halves of a board number their common nodes alike; nodes of different boards differ.
 fn dof(board: usize, [x, y]: [usize; 2]) -> u64 {
     ((board * HEIGHT + y) * COLUMNS + x) as u64
 }
@@ -137,7 +138,7 @@ fn dof(board: usize, [x, y]: [usize; 2]) -> u64 {
 fn half(index: usize) -> Subdomain {
     let board = index / HALVES;
     let (x0, x1) = (index * WIDTH, (index + 1) * WIDTH);
-    // The earthed node has a given value and is no unknown.
+    // The earthed node has a prescribed value and is no unknown.
     let nodes: Vec<[usize; 2]> = (x0..=x1)
         .flat_map(|x| (0..HEIGHT).map(move |y| [x, y]))
         .filter(|&node| !earthed(node))
@@ -152,8 +153,8 @@ fn half(index: usize) -> Subdomain {
             triplets.extend([(i, j, -c), (j, i, -c)]);
         }
     }
-    // The ends of the cut between the halves are primal: the board stays in one piece there. Without a primal dof a half
-    // would be singular, and the solver would have to hold one by itself (it would).
+    // The ends of the cut between the halves are primal. Without a primal dof a half would be singular, and the solver
+    // would have to choose fixing dofs (it could).
     let ends = [0, HEIGHT - 1].map(|y| [(2 * board + 1) * WIDTH, y]);
     let mut primal: Vec<u32> = ends.into_iter().filter_map(unknown).collect();
     primal.sort_unstable();
@@ -185,7 +186,7 @@ fn wires() -> Vec<InterfaceRow> {
                 holds: true,
                 // No two wires end in the same node: every row is a block of its own.
                 block: rows.len() as u64,
-                // Which boards the wire joins: solutions give it back with the row.
+                // The label says which boards the wire joins; solutions return it with the row.
                 label: RowLabel::new(RowSource::Interface(left), [None; 2]),
             });
         }
@@ -193,7 +194,7 @@ fn wires() -> Vec<InterfaceRow> {
     rows
 }
 
-/// How far the batteries lower the voltage of a board.
+/// The voltage of a board relative to the first one, as lowered by the batteries.
 fn battery(board: usize) -> f64 {
     if board == 2 {
         VOLTS

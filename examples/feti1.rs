@@ -3,8 +3,8 @@
 //!     cargo run --release --example feti1
 //!     mpirun -n 2 target/release/examples/feti1 -fetifeti_check
 //!
-//! −Δu = 1 on the unit square, u = 0 at its left and right end, nothing at top and bottom; u = x(1 − x)/2.
-//! Nothing is switched to get FETI: without subdomains there is no jump inside a body and no primal vertex.
+//! −Δu = 1 on the unit square, u = 0 at its left and right end, natural conditions at top and bottom; u = x(1 − x)/2.
+//! FETI needs no special setting: without subdomains there is no jump inside a body and no primal vertex.
 
 use std::process::ExitCode;
 
@@ -58,7 +58,7 @@ fn run(session: &Session) -> Result<()> {
         println!("iterations    {}", solution.iterations);
         println!("largest nodal difference to x(1 - x)/2: {:.1e}", worst[0]);
     }
-    // The two middle columns of bodies touch no held side. The solver found that from the matrices.
+    // The two middle columns of bodies touch no held side; the solver has detected this from the matrices.
     assert_eq!(facts.floating_bodies, 8);
     assert_eq!(facts.multipliers_local, 0);
     assert!(worst[0] < 1e-9, "not the solution");

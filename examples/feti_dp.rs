@@ -3,9 +3,9 @@
 //!     cargo run --release --example feti_dp
 //!     mpirun -n 2 target/release/examples/feti_dp -fetifeti_ksp_view
 //!
-//! −∇·(ρ∇u) = 0 on the unit square, u = 0 at the left, u = 1 at the right, nothing at top and bottom. ρ is constant in the
-//! four columns of subdomains, which are resistors in series: u is piecewise linear with the slope q/ρ.
-//! Nothing is switched to get FETI-DP: with one body there are no multipliers between bodies.
+//! −∇·(ρ∇u) = 0 on the unit square, u = 0 at the left, u = 1 at the right, natural conditions at top and bottom. ρ is
+//! constant in the four columns of subdomains, which are resistors in series: u is piecewise linear with the slope q/ρ.
+//! FETI-DP needs no special setting: with one body there are no multipliers between bodies.
 
 use std::process::ExitCode;
 
@@ -68,7 +68,7 @@ fn run(session: &Session) -> Result<()> {
     }
     assert_eq!(facts.multipliers_global, 0);
     assert!(worst[0] < 1e-9, "not the solution");
-    // Scaling with ρ: jumps between subdomains do not enter the condition number.
+    // With ρ-scaling the condition number does not depend on jumps between subdomains.
     assert!(spectrum.kappa() < 5.0, "kappa {}", spectrum.kappa());
     Ok(())
 }

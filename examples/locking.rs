@@ -31,7 +31,7 @@ impl Block {
         }
     }
 
-    /// A beam of length 8 with a square cross-section of n × n cells, cells being twice as long as high.
+    /// A beam of length 8 with a square cross-section of n × n cells; cells are twice as long as high.
     fn beam(n: usize) -> Block {
         let corner = |a: usize| [8.0 * (a & 1) as f64, (a >> 1 & 1) as f64, (a >> 2) as f64];
         Block {
@@ -60,7 +60,7 @@ impl Block {
         out
     }
 
-    /// The mean vertical displacement of the right end under a shear force of total 1 there, the left end being held.
+    /// The mean vertical displacement of the right end under a total shear force of 1 there; the left end is held.
     fn deflection(&self, element: Element, material: &Material) -> f64 {
         let dim = self.dim;
         let [nx, ny, nz] = self.cells;

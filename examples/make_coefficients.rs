@@ -2,8 +2,8 @@
 //!
 //!     cargo run --release --example make_coefficients [DIRECTORY]
 //!
-//! The files are committed; this program says what is in them, and makes others from other numbers. It writes the same
-//! in every run: the random numbers are its own.
+//! The files are committed. This program documents their content, and can write others for other parameters. Every run
+//! writes the same files: the program has its own random number generator.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -90,7 +90,7 @@ fn channels() -> Vec<u8> {
     })
 }
 
-/// Discs of random place, size and grey on black; later ones lie above.
+/// Discs of random position, size and grey on black; later ones cover earlier ones.
 fn inclusions() -> Vec<u8> {
     let mut random = Random(2);
     let discs: Vec<([f64; 2], f64, u8)> = (0..34)
@@ -119,8 +119,9 @@ fn pixels(side: usize, grey: impl Fn(f64, f64) -> u8) -> Vec<u8> {
         .collect()
 }
 
-/// Permeabilities in the manner of the tenth SPE comparative solution project, 24 x 24 x 12 cells, as f32: six layers of two cells. The upper
-/// three are smooth with a level of their own each, the lower three tight rock with channels of sand.
+/// Permeabilities in the manner of the tenth SPE comparative solution project, 24 x 24 x 12 cells, as f32: six layers
+/// of two cells. The upper three layers are smooth, each with its own level; the lower three are tight rock with
+/// channels of sand.
 fn layers() -> Vec<u8> {
     let mut random = Random(10);
     let mut out = Vec::new();
@@ -178,7 +179,7 @@ impl Waves {
     }
 }
 
-/// A linear congruential generator (Knuth's multiplier), of which the upper bits are used.
+/// A linear congruential generator (Knuth's multiplier); only the upper bits are used.
 struct Random(u64);
 
 impl Random {
@@ -191,7 +192,7 @@ impl Random {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Nearly normal, of mean 0 and variance 1: a sum of twelve.
+    /// Nearly normal, of mean 0 and variance 1: a sum of twelve uniform numbers.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }

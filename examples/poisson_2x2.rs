@@ -31,7 +31,7 @@ fn run(session: &Session) -> Result<()> {
     spec.exact = Some(vec![expression("sin(pi*x)*sin(pi*y)")?]);
     let scene = Scene::new(spec)?;
 
-    // Each rank assembles its own subdomains; which ones they are is free.
+    // Each rank assembles its own subdomains; any distribution is possible.
     let mine = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| mine.contains(&s))?;
 
@@ -45,8 +45,8 @@ fn run(session: &Session) -> Result<()> {
     let solution = solver.solve()?;
     assert!(solution.converged(), "{}", solution.status);
 
-    // Bilinear elements on a uniform grid have sin πx sin πy as an eigenvector: the discrete solution is a known multiple
-    // of it, so that every nodal value can be checked to rounding and not only to the discretisation error.
+    // Bilinear elements on a uniform grid have sin πx sin πy as an eigenvector: the discrete solution is a known
+    // multiple of it, so that every nodal value can be checked to rounding and not only to the discretisation error.
     let factor = discrete_amplitude();
     let mut worst = [0.0f64];
     let mut squares = [0.0; 3];
@@ -88,8 +88,8 @@ fn run(session: &Session) -> Result<()> {
     Ok(())
 }
 
-/// c in u_h = c sin πx sin πy: the load's factor over the eigenvalue of the stiffness matrix. Both are tensor products of
-/// 1D rules, for s_j = sin πjh has s_{j−1} + s_{j+1} = 2 cos(πh) s_j.
+/// c in u_h = c sin πx sin πy: the load's factor over the eigenvalue of the stiffness matrix. Both are tensor products
+/// of 1D rules, for s_j = sin πjh has s_{j−1} + s_{j+1} = 2 cos(πh) s_j.
 fn discrete_amplitude() -> f64 {
     let h = 1.0 / N as f64;
     let stiffness = 2.0 * (1.0 - (PI * h).cos()) / h;

@@ -1,37 +1,40 @@
-//! The coordinates of u at a node in contact: w = M u, so that every row there is a difference of two unknowns, or one alone.
+//! The coordinates w = M u at a node in contact. In them every contact row at the node is a difference of two unknowns,
+//! or one unknown alone.
 //!
-//! The directions of the rows at the node are rows of M, unit vectors orthogonal to them the others. Directions need not be
-//! orthogonal to each other, but independent.
+//! The first rows of M are the directions of the contact rows; the remaining ones are unit vectors orthogonal to them.
+//! Directions must be linearly independent, but need not be orthogonal to each other.
 
 use crate::linalg::vec3::{dot, norm};
 
-/// A direction that is less than this off the span of those before it (its sine) cannot be told from them.
+/// Two directions count as dependent where the sine of the angle between one and the span of the earlier ones is below
+/// this.
 const INDEPENDENT: f64 = 0.05;
 
-/// Directions that differ by less are one.
+/// Directions that differ by less than this are equal.
 const SAME: f64 = 1e-10;
 
-/// w = M u and u = T w at one node; what lies beyond the components of the field is that of the identity.
+/// w = M u and u = T w at one node. Rows beyond the number of components are those of the identity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
-    /// M.
+    /// M, from u to w.
     pub to: [[f64; 3]; 3],
-    /// T = M⁻¹.
+    /// T = M⁻¹, from w to u.
     pub from: [[f64; 3]; 3],
 }
 
 impl Frame {
-    /// w = u.
+    /// The identity: w = u.
     pub const IDENTITY: Frame = Frame {
         to: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         from: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 
-    /// A frame with these directions; each has entries in the `free` components only. `None` where they are not independent.
+    /// A frame with these directions; each has entries in the `free` components only. `None` where they are not
+    /// independent.
     pub fn new(directions: &[[f64; 3]], free: [bool; 3]) -> Option<Frame> {
         let mut to = Frame::IDENTITY.to;
         let mut open = free;
-        // Orthonormal, spanning what M has so far.
+        // An orthonormal basis of the rows of M found so far.
         let mut span: Vec<[f64; 3]> = Vec::new();
         for d in directions {
             let rest = beside(&span, *d);
@@ -49,7 +52,8 @@ impl Frame {
             let axes = (0..3)
                 .filter(|&c| free[c])
                 .map(|c| beside(&span, Frame::IDENTITY.to[c]));
-            // The own axis if it will do: frames of directions along axes are the identity.
+            // The axis with this number is taken where it is independent: frames of directions along axes are the
+            // identity.
             let own = beside(&span, Frame::IDENTITY.to[slot]);
             let best = axes.max_by(|a, b| norm(*a).total_cmp(&norm(*b)))?;
             let rest = if norm(own) > 0.3 { own } else { best };
@@ -66,7 +70,8 @@ impl Frame {
         *self == Frame::IDENTITY
     }
 
-    /// The place of a direction in w, and 1 or −1 where it is that of the place or its opposite.
+    /// The component of w that a direction is, with the sign 1, or −1 where it is the opposite of that component's
+    /// direction.
     pub fn place(&self, direction: [f64; 3]) -> Option<(usize, f64)> {
         [1.0, -1.0].into_iter().find_map(|sign| {
             let same = |row: &[f64; 3]| (0..3).all(|c| (sign * row[c] - direction[c]).abs() < SAME);
@@ -75,7 +80,7 @@ impl Frame {
     }
 }
 
-/// Whether two directions are one or each other's opposite.
+/// Whether two directions are equal or opposite.
 pub fn parallel(a: [f64; 3], b: [f64; 3]) -> bool {
     [1.0, -1.0]
         .iter()

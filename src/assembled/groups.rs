@@ -1,4 +1,5 @@
-//! Active rows as equations: unknowns that they join form groups, in which every unknown is the group's one plus an offset.
+//! Active rows as equations. Unknowns that active rows join form a group; every unknown of a group is the group's
+//! unknown plus an offset.
 //!
 //! ```text
 //!     u = T v + u₀,   Tᵀ K T v = Tᵀ (f − K u₀)        T: one column per group, none for a group that hangs on ground
@@ -10,23 +11,24 @@ use super::rows::Inequalities;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 
-/// Gaps that differ by less, relative to the largest, are meant to be the same.
+/// Gaps that differ by less than this, relative to the largest, are equal.
 const SAME: f64 = 1e-12;
 
 /// The groups of one active set.
 #[derive(Debug, Clone)]
 pub struct Groups {
-    /// For every unknown of [`Inequalities::unknowns`] the lowest one of its group; `None` where the group hangs on ground.
+    /// For every unknown of [`Inequalities::unknowns`] the lowest unknown of its group; `None` where the group is tied to
+    /// ground.
     pub lead: Vec<Option<usize>>,
-    /// u less u of that one; u itself in a group that hangs on ground.
+    /// u minus u at the group's lowest unknown; u itself in a group that is tied to ground.
     pub offset: Vec<f64>,
-    /// Rows that hold: the active ones and those that follow from them.
+    /// Rows that hold as equations: the active ones, and those implied by them.
     pub holds: Vec<bool>,
 }
 
 impl Groups {
-    /// Joins the unknowns of the active rows, in the order of `priority`. A row that contradicts those before it is taken out of
-    /// `active`.
+    /// Joins the unknowns of the active rows, in the order of `priority`. A row that contradicts those before it is
+    /// taken out of `active`.
     pub fn new(rows: &Inequalities, active: &mut [bool], priority: &[usize]) -> Groups {
         let largest = rows.rows.iter().fold(0.0f64, |a, r| a.max(r.gap.abs()));
         let n = rows.ground();
@@ -63,12 +65,12 @@ impl Groups {
         }
     }
 
-    /// Whether unknown `k` is neither led by another one nor given.
+    /// Whether unknown `k` is the lowest one of a group that is not tied to ground.
     pub fn is_free(&self, k: usize) -> bool {
         self.lead[k] == Some(k)
     }
 
-    /// Tᵀ x at the unknowns in rows: sums over groups, at their first unknown.
+    /// Tᵀ x at the unknowns in rows: the sum over each group, stored at its lowest unknown.
     pub fn fold(&self, x: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; x.len()];
         for (lead, x) in self.lead.iter().zip(x) {
@@ -86,7 +88,7 @@ impl Groups {
             .collect()
     }
 
-    /// The v whose T v + u₀ is nearest to u with these weights.
+    /// The v that minimises the weighted distance of T v + u₀ from u.
     pub fn nearest(&self, u: &[f64], weight: &[f64]) -> Vec<f64> {
         let apart = u.iter().zip(&self.offset).zip(weight);
         let sum = self.fold(&apart.map(|((u, o), w)| w * (u - o)).collect::<Vec<_>>());
@@ -96,10 +98,11 @@ impl Groups {
     }
 }
 
-/// The shortest multipliers of the active rows with Bᵀ λ = r, as nearly as they can; `r` at the unknowns in rows. Zero on the others.
+/// The multipliers of smallest norm of the active rows that satisfy Bᵀ λ = r, or come nearest to it; zero on the other
+/// rows. `r` is given at the unknowns in rows.
 pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64]) -> Vec<f64> {
     let ground = rows.ground();
-    // Ground passes on no force: groups that hang on it stay apart.
+    // Ground transmits no force: groups that are tied to it stay separate.
     let mut sets = Potentials::new(ground);
     let on = || (0..rows.len()).filter(|&k| active[k]);
     for row in on().map(|k| rows.rows[k]) {
@@ -122,7 +125,7 @@ pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64]) -> Vec<f64> 
         unknowns.dedup();
         let floats = ends.clone().all(|e| e < ground);
         let place = |e: usize| unknowns.binary_search(&e).ok();
-        // λ = B w with Bᵀ B w = r; what the rows cannot carry, a force on the whole group, is taken off.
+        // λ = B w with Bᵀ B w = r. The rows cannot carry a net force on the whole group, so it is subtracted from r.
         let n = unknowns.len();
         let mut laplacian = Dense::zeros(n, n);
         for row in members.iter().map(|&k| rows.rows[k]) {
@@ -225,7 +228,7 @@ mod tests {
         for (c, f) in carried.iter().zip(&force) {
             assert!((c - f).abs() < 1e-14, "{carried:?}");
         }
-        // The shortest one has nothing along the ring.
+        // The multipliers of smallest norm have no component along the ring.
         let along = lambda[0] + lambda[2] - lambda[1] - lambda[3];
         assert!(along.abs() < 1e-14, "{lambda:?}");
         assert_eq!(lambda[4], 4.0);

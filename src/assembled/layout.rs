@@ -1,12 +1,13 @@
-//! The unknowns of a scene as the assembled problem has them: node by node, C components each.
+//! The unknowns w of the assembled problem of a scene: node by node, C components each.
 //!
 //! ```text
 //!     Numbering (free dofs) ── blocks of C ──> u ── w = M u at nodes in contact ──> w, what systems and files hold
 //! ```
 //!
-//! A node with some components given keeps a place for them, in which w = 0 with a row of its own (*void*): multigrid for elasticity
-//! needs to know nodes from one another. So do supports that the scene does not have: rigid motions that ties, springs, values and
-//! inequalities together leave free are taken away by as many dofs set to zero, which bear no force where the load is balanced.
+//! A node with some components prescribed keeps places for them, in which w = 0 with a row of its own (*void* places):
+//! multigrid for elasticity needs all components of a node. Supports are void, too: where ties, springs, prescribed
+//! values and inequalities together leave rigid motions free, as many dofs are set to zero. Under a balanced load these
+//! supports bear no force.
 
 use std::collections::BTreeMap;
 
@@ -20,31 +21,31 @@ use crate::substructures::{InterfaceRow, RowKind};
 use crate::Result;
 use std::ops::Range;
 
-/// Layout of w.
+/// The layout of w.
 pub struct Layout<'a> {
     scene: &'a Scene,
-    /// The free dofs.
+    /// The numbering of the free dofs.
     numbering: Numbering,
     components: usize,
-    /// Where in the numbering places for given components are put in, increasing.
+    /// Positions in the numbering at which places for prescribed components are inserted, increasing.
     inserted: Vec<u64>,
-    /// The places put in, increasing.
+    /// The inserted places, increasing.
     filled: Vec<u64>,
-    /// Those and the supports, increasing.
+    /// The void places, increasing: those inserted and the supports.
     void: Vec<u64>,
-    /// Supports with their forms.
+    /// Supports with their linear forms in the rigid motions.
     supports: Vec<(u64, Functional)>,
-    /// Nodes at which w is not u.
+    /// The frames of nodes at which w is not u.
     frames: BTreeMap<u64, Frame>,
-    /// The rigid motions.
+    /// The rigid motions of the bodies.
     pub motions: Motions,
-    /// What ties, springs and given values hold of them.
+    /// The equations in the rigid motions that ties, springs and prescribed values give.
     pub held: Echelon,
-    /// The forms of the inequalities.
+    /// The linear forms of the inequalities in the rigid motions.
     pub forms: Vec<Functional>,
-    /// All of that with the supports' forms left out.
+    /// The equations of `held` and `forms` together, without the supports.
     all_held: Echelon,
-    /// Why the inequalities have no frames, if they have none.
+    /// Why the inequalities cannot be written in frames; `None` where they can.
     pub trouble: Option<String>,
 }
 
@@ -84,13 +85,13 @@ impl<'a> Layout<'a> {
         layout
     }
 
-    /// Puts in places for the given components of nodes that are not given altogether.
+    /// Inserts places for the prescribed components of nodes that are only partly prescribed.
     fn fill(&mut self) {
         let c = self.components;
         if c == 1 {
             return;
         }
-        // (a free dof's number in the numbering, given components)
+        // (number of a free dof of the node, its prescribed components)
         let mut nodes: Vec<(u64, Vec<usize>)> = Vec::new();
         for (b, body) in self.scene.bodies.iter().enumerate() {
             for given in body.prescribed.chunk_by(|p, q| p.0 / c == q.0 / c) {
@@ -129,7 +130,7 @@ impl<'a> Layout<'a> {
         self.void.clone_from(&self.filled);
     }
 
-    /// Finds the frames of nodes in inequalities.
+    /// Computes the frames of the nodes in inequalities.
     fn turn(&mut self, rows: &[&InterfaceRow]) {
         let mut directions: BTreeMap<u64, Vec<[f64; 3]>> = BTreeMap::new();
         for row in rows {
@@ -175,7 +176,7 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Supports for the rigid motions that nothing holds.
+    /// Chooses supports for the rigid motions that nothing holds.
     fn support(&mut self, rows: &[&InterfaceRow]) {
         let loose = self.motions.len() - self.all_held.rank();
         if loose == 0 {
@@ -209,7 +210,7 @@ impl<'a> Layout<'a> {
         self.void.sort_unstable();
     }
 
-    /// Centre and radius of a ball around the scene.
+    /// Centre and radius of a ball that contains the scene.
     pub fn ball(&self) -> ([f64; 3], f64) {
         let bounds = self.scene.bodies.iter().map(|b| b.bounds);
         let bounds = bounds.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |a, b| {
@@ -224,14 +225,15 @@ impl<'a> Layout<'a> {
         self.supports.len()
     }
 
-    /// The places that are set to zero to take them away, increasing.
+    /// The supports: places that are set to zero to remove free rigid motions, increasing.
     pub fn supports(&self) -> Vec<u64> {
         let mut places: Vec<u64> = self.supports.iter().map(|s| s.0).collect();
         places.sort_unstable();
         places
     }
 
-    /// The nodes of a row with the vectors that it takes the products of u with, divided by the length of the first; that length.
+    /// The nodes of a row, each with the vector whose product with u the row takes. All vectors are divided by the
+    /// length of the first, which is returned as well.
     pub fn ends(&self, row: &InterfaceRow) -> (Vec<(u64, [f64; 3])>, f64) {
         let mut ends: Vec<(u64, [f64; 3])> = Vec::new();
         let c = self.components as u64;
@@ -247,14 +249,14 @@ impl<'a> Layout<'a> {
                 }
             }
         }
-        // Ties may leave nothing of it.
+        // A row may vanish once ties are applied.
         ends.retain(|e| norm(e.1) > 1e-12);
         let scale = ends.first().map_or(1.0, |e| norm(e.1));
         ends.iter_mut().for_each(|e| e.1 = e.1.map(|v| v / scale));
         (ends, scale)
     }
 
-    /// A row as w_plus − w_minus ≤ gap / scale: (plus, minus, scale). `None` if it is nothing of the kind.
+    /// A row as w_plus − w_minus ≤ gap / scale: (plus, minus, scale). `None` if it does not have this form.
     pub fn bound(&self, row: &InterfaceRow) -> Option<([Option<u64>; 2], f64)> {
         let (ends, scale) = self.ends(row);
         let mut out = [None; 2];
@@ -287,12 +289,12 @@ impl<'a> Layout<'a> {
         number + self.inserted.partition_point(|&p| p <= number) as u64
     }
 
-    /// The place of a free body dof.
+    /// The place in w of a free body dof.
     pub fn index(&self, body_dof: u64) -> u64 {
         self.moved(self.numbering.global(body_dof))
     }
 
-    /// The places of the nodes that subdomains `share` own.
+    /// The places of the nodes that the subdomains `share` own.
     pub fn range(&self, share: Range<usize>) -> Range<usize> {
         let numbers = self.numbering.range(share);
         self.block_start(numbers.start)..self.block_start(numbers.end)
@@ -305,18 +307,18 @@ impl<'a> Layout<'a> {
         self.moved(number) as usize / self.components * self.components
     }
 
-    /// The places of a rank in equal shares of nodes.
+    /// The places of a rank if nodes are dealt out in equal shares.
     pub fn share(&self, ranks: usize, rank: usize) -> Range<usize> {
         let nodes = crate::mesh::contiguous_share(self.len() / self.components, ranks, rank);
         nodes.start * self.components..nodes.end * self.components
     }
 
-    /// Places without an unknown, increasing.
+    /// Void places, increasing.
     pub fn void(&self) -> &[u64] {
         &self.void
     }
 
-    /// The void places of the node that `index` is in.
+    /// The void places of the node of place `index`.
     pub fn void_beside(&self, index: u64) -> &[u64] {
         let c = self.components as u64;
         let first = index / c * c;
@@ -341,7 +343,7 @@ impl<'a> Layout<'a> {
         self.scene.bodies[body].spec.position(place)
     }
 
-    /// Body and place of a node.
+    /// Body and grid place of a node.
     fn node(&self, block: u64) -> (usize, [usize; 3]) {
         let first = block * self.components as u64;
         let at = (first..).find(|i| self.filled.binary_search(i).is_err());
@@ -351,7 +353,8 @@ impl<'a> Layout<'a> {
         (body, place)
     }
 
-    /// The rigid motions of all bodies together as values of w at place `index`, void or not. `centre`, `scale`: as in `rigid_motions`.
+    /// The six rigid motions of the whole scene as values of w at place `index`, void or not. `centre`, `scale`: as in
+    /// `rigid_motions`.
     pub fn motions_at(&self, index: u64, centre: [f64; 3], scale: f64) -> [f64; 6] {
         let c = self.components as u64;
         let x = self.position(index / c);
@@ -360,8 +363,8 @@ impl<'a> Layout<'a> {
         motions.map(|m| (0..3).map(|k| row[k] * m[k]).sum())
     }
 
-    /// Takes u, as a method without supports and frames has found it, to w: without the motions that the supports take away, and
-    /// along the frames. Collective.
+    /// Converts u, found by a method without supports and frames, to w: subtracts the rigid motions that the supports
+    /// exclude, and changes to the coordinates of the frames. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -410,7 +413,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// The direction or its opposite: that with a positive first entry.
+/// Of a direction and its opposite, the one whose first nonzero entry is positive.
 fn upright(d: [f64; 3]) -> [f64; 3] {
     let first = d.iter().find(|v| v.abs() > 1e-6).copied().unwrap_or(1.0);
     d.map(|v| v * first.signum() + 0.0)

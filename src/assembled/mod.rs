@@ -1,4 +1,5 @@
-//! The assembled problem of a scene: one matrix, one unknown where tied bodies have several copies, inequalities as bounds of differences.
+//! The assembled problem of a scene: one matrix, one unknown where tied bodies have several copies, inequalities as
+//! bounds of differences.
 //!
 //! ```text
 //! Scene ──> Layout (unknowns w, frames, supports) ──> Unknowns ──> System (A, b) ──> Reduced (Tᵀ K T of changing active sets)

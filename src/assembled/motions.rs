@@ -1,27 +1,29 @@
-//! Rigid motions of bodies, and which of them ties, springs, given values and rows leave free.
+//! Rigid motions of bodies, and which of them ties, springs, prescribed values and rows leave free.
 //!
-//! A body moves by α ∈ Rᵐ, m = 1 (scalars), 3 or 6; all bodies by one long vector. A row that holds, a tie or a given value is a linear form
-//! in it that vanishes. Forms are collected in echelon form: whether one more is independent of them tells whether it holds
-//! anything that was loose.
+//! A body moves by α ∈ Rᵐ, m = 1 (scalars), 3 or 6; the α of all bodies form one long vector. A row that holds, a tie
+//! or a prescribed value is a linear form that vanishes on this vector. Forms are collected in echelon form: a form
+//! that is independent of the earlier ones holds a motion that was free.
 
 use std::collections::{BTreeMap, HashMap};
 
 use crate::fem::cell::{rigid_count, rigid_motions};
 use crate::scene::{Body, Scene};
 
-/// What is left of a dependent form, relative to its largest entry, is below this.
+/// A form is dependent if its remainder, relative to its largest entry, is below this.
 const DEPENDENT: f64 = 1e-9;
 
-/// A form that completes equations must have this part of itself left when it is chosen; where none has, half of it, and so on.
+/// A form is chosen to complete the equations only if this part of it remains after elimination. Where no candidate
+/// reaches the bound, the bound is halved, again and again.
 const FIRM: f64 = 0.3;
 
-/// A linear form, or an equation: (place, coefficient), increasing.
+/// A linear form, or the left-hand side of an equation: (index, coefficient), indices increasing.
 pub type Functional = Vec<(usize, f64)>;
 
 /// Independent equations in echelon form.
 #[derive(Debug, Clone, Default)]
 pub struct Echelon {
-    /// Equations with their pivots; no pivot of an earlier one is in a later one.
+    /// Equations with their pivots: (pivot, form, right-hand side). The pivot of an earlier equation does not occur in
+    /// a later one.
     rows: Vec<(usize, BTreeMap<usize, f64>, f64)>,
     of_pivot: HashMap<usize, usize>,
 }
@@ -32,7 +34,8 @@ impl Echelon {
         self.rows.len()
     }
 
-    /// What is left of a form once the equations are used, the largest entry of it, and the right-hand side.
+    /// Eliminates the pivots from a form. Returns the remainder, the largest entry of the form, and the remaining
+    /// right-hand side.
     fn reduce(&self, form: &Functional, mut rhs: f64) -> (BTreeMap<usize, f64>, f64) {
         let mut rest: BTreeMap<usize, f64> = BTreeMap::new();
         form.iter()
@@ -48,7 +51,7 @@ impl Echelon {
         (rest, rhs)
     }
 
-    /// The part of a form that the equations leave, relative to the form: 0 if it depends on them.
+    /// The remainder of a form after elimination, relative to the form: 0 if it depends on the equations.
     pub fn left(&self, form: &Functional) -> f64 {
         let largest = |m: f64, v: f64| m.max(v.abs());
         let size = form.iter().map(|t| t.1).fold(0.0, largest);
@@ -73,7 +76,7 @@ impl Echelon {
         if value.abs() <= DEPENDENT * size {
             return false;
         }
-        // What rounding has left would fill the rows.
+        // Entries that are rounding would fill the rows.
         rest.retain(|_, v| v.abs() > 1e-14 * size);
         rest.values_mut().for_each(|v| *v /= value);
         rhs /= value;
@@ -82,7 +85,8 @@ impl Echelon {
         true
     }
 
-    /// Those of the candidates that, set to zero, hold all n motions with these equations; the firm ones first.
+    /// The candidates that, set to zero, hold all n motions together with these equations; those with the largest
+    /// remainders are preferred.
     pub fn complete(&self, n: usize, candidates: &[(u64, Functional)]) -> Vec<(u64, Functional)> {
         let (mut now, mut chosen) = (self.clone(), Vec::new());
         let mut firm = FIRM;
@@ -97,7 +101,7 @@ impl Echelon {
         chosen
     }
 
-    /// The α of length n that satisfies the equations and has no other entries.
+    /// The α of length n that satisfies the equations and is zero elsewhere.
     pub fn solve(&self, n: usize) -> Vec<f64> {
         let mut alpha = vec![0.0; n];
         for (pivot, row, rhs) in self.rows.iter().rev() {
@@ -113,14 +117,14 @@ impl Echelon {
 pub struct Motions {
     dim: usize,
     components: usize,
-    /// Motions of one body.
+    /// Number of motions of one body.
     count: usize,
-    /// Centre and radius by body.
+    /// Centre and radius of every body.
     bodies: Vec<([f64; 3], f64)>,
 }
 
 impl Motions {
-    /// Those of `scene`.
+    /// The rigid motions of the bodies of `scene`.
     pub fn new(scene: &Scene) -> Motions {
         let (dim, components) = (scene.dim(), scene.components());
         Motions {
@@ -136,7 +140,7 @@ impl Motions {
         self.count * self.bodies.len()
     }
 
-    /// Component `component` of u at a point of a body.
+    /// The form of component `component` of u at a point of a body.
     pub fn form(&self, body: usize, point: [f64; 3], component: usize) -> Functional {
         let first = body * self.count;
         if self.components == 1 {
@@ -168,7 +172,7 @@ impl Motions {
         self.form(body, spec.position(place), inside % self.components)
     }
 
-    /// What ties, springs and given values hold.
+    /// The equations of ties, springs and prescribed values.
     pub fn held(&self, scene: &Scene) -> Echelon {
         let mut out = Echelon::default();
         for (b, body) in scene.bodies.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What multigrid and domain decompositions are told of elasticity: rigid motions, and which rows are of one node.
+//! The near-kernel for multigrid and domain decompositions: rigid motions, and the number of rows per node.
 
 use super::unknowns::Unknowns;
 use crate::fem::cell::rigid_count;
@@ -6,26 +6,26 @@ use crate::petsc::{Mat, Vec as PetscVec};
 use crate::scene::Scene;
 use crate::Result;
 
-/// The rigid motions that a method wants to know.
+/// The rigid motions that a method is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Near {
     /// None.
     None,
-    /// Rotations: what interpolates every component by itself keeps translations anyway.
+    /// Rotations only: interpolation that treats every component by itself reproduces translations anyway.
     Rotations,
     /// All.
     Motions,
 }
 
-/// Rigid motions of the whole scene on the unknowns of a problem; none for scalars.
+/// Rigid motions of the whole scene on the unknowns of a problem; empty for scalars.
 pub struct NearKernel {
     vectors: Vec<PetscVec>,
-    /// Rows per node, where all nodes have as many.
+    /// Rows per node, where all nodes have the same number.
     block: usize,
 }
 
 impl NearKernel {
-    /// For vectors laid out as `like`, the entries of v = `unknowns`. Collective.
+    /// The motions on the unknowns `unknowns`, as vectors distributed like `like`. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -67,12 +67,12 @@ impl NearKernel {
         Ok(NearKernel { vectors, block })
     }
 
-    /// Whether there is nothing to tell.
+    /// Whether there are no vectors to attach.
     pub fn is_empty(&self) -> bool {
         self.vectors.is_empty()
     }
 
-    /// Attaches all to a matrix. Collective.
+    /// Attaches the vectors and the block size to a matrix. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -80,7 +80,7 @@ impl NearKernel {
         self.attach_where(a, |_| Ok(()))
     }
 
-    /// The same with vectors that `clear` has had a look at. Collective.
+    /// As `attach`, with `clear` applied to every vector first. Collective.
     ///
     /// # Errors
     /// PETSc's, and those of `clear`.
@@ -102,7 +102,7 @@ impl NearKernel {
                 q.axpy(-q.dot(other)?, other)?;
             }
             let left = q.norm2()?;
-            // Few nodes may not tell all motions from each other.
+            // On few nodes some motions may coincide with others.
             if left > 1e-8 * size {
                 q.scale(1.0 / left)?;
                 basis.push(q);

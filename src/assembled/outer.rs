@@ -1,12 +1,13 @@
-//! The primal-dual active set on the assembled problem: the loop of [`contact::active_set`](crate::contact::active_set) around solvers
-//! of PETSc, with the same rules.
+//! The primal-dual active set on the assembled problem: the loop of [`contact::active_set`](crate::contact::active_set)
+//! with the same rules, around solvers of PETSc.
 //!
 //! ```text
 //!     solve Tᵀ K T v = Tᵀ(f − K u₀) on A_k,   Bᵀ λ = f − K u,   A_{k+1} = { j : λ_j > 0 on A_k, (B u − c)_j > 0 off it }
 //! ```
 //!
-//! It starts from all candidates. While the set changes, problems are solved loosely and u goes on from where it was; a set that
-//! stays is solved to the end. A set that comes back makes the loop careful: exact solves first, then one row at a time.
+//! The loop starts from all candidates. While the set changes, problems are solved loosely, and u is the start of the
+//! next solve; once the set stays, its problem is solved to the final tolerance. If a set comes back, the loop becomes
+//! careful: exact solves first, then one row at a time.
 
 use std::collections::HashSet;
 use std::time::Instant;
@@ -19,16 +20,18 @@ use crate::parallel::meter::timed;
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::Result;
 
-/// Multipliers above minus this, relative to the largest, do not pull; gaps below it, relative to the largest u, are closed.
+/// A multiplier above minus this, relative to the largest one, counts as not pulling; a gap below this, relative to the
+/// largest u, counts as closed.
 const ROUNDING: f64 = 1e-14;
 
-/// A row that is kept so that no body comes loose may pull by this much of the largest multiplier: nothing drives the body away.
+/// Some rows are kept active only so that no body comes loose. Such a row may pull by this part of the largest
+/// multiplier: then no force drives the body away.
 const IDLE: f64 = 1e-8;
 
-/// What a refined solution must satisfy.
+/// The certificate of a refined solution must be below this.
 const CERTIFIED: f64 = 1e-9;
 
-/// Steps at most.
+/// Maximal number of steps.
 const STEPS: usize = 200;
 
 /// Tolerances.
@@ -38,22 +41,22 @@ pub struct Tolerances {
     pub rtol: f64,
     /// Reduction of the residual in a step while the set still changes.
     pub inner: f64,
-    /// The preconditioner stays while at most this part of all rows has changed since it was built.
+    /// The preconditioner is kept until more than this part of all rows has changed since it was built.
     pub lag: f64,
 }
 
 /// How the equations of one active set are solved.
 #[derive(Clone, Copy)]
 pub enum Solve<'a> {
-    /// By one solve.
+    /// One solve.
     Once,
-    /// By so many solves, of which all but the first refine a direct solution.
+    /// This many solves, of which all but the first refine a direct solution.
     Repeated(usize),
-    /// By a direct solution that is refined in twice the working precision.
+    /// A direct solution that is refined in twice the working precision.
     Refined(&'a Refiner<'a>),
 }
 
-/// What the loop has found.
+/// The result of the loop.
 pub struct ActiveSetEnd {
     /// The solution.
     pub u: PetscVec,
@@ -63,49 +66,50 @@ pub struct ActiveSetEnd {
     pub lambda: Vec<f64>,
     /// B u − c.
     pub gaps: Vec<f64>,
-    /// Sets that were solved for.
+    /// Number of active sets that were solved for.
     pub steps: usize,
     /// Inner iterations of all steps.
     pub iterations: usize,
     /// Seconds for matrices and preconditioners.
     pub setup: f64,
-    /// Seconds for the rest.
+    /// Seconds for everything else.
     pub solve: f64,
     /// Residual, relative to the load.
     pub residual: f64,
     /// How well the conditions of optimality hold.
     pub certificate: Certificate,
-    /// Whether the set has settled and the residual was met, or the certificate where the solution is refined.
+    /// Whether the set has settled and the residual is small enough; where the solution is refined, whether the
+    /// certificate holds.
     pub converged: bool,
-    /// Why it ended.
+    /// Why the loop ended.
     pub reason: String,
 }
 
 /// How well the conditions of optimality hold, each relative to the size of its terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Certificate {
-    /// The last correction of a refinement over the solution, in the energy norm and by the largest displacement, whichever is larger:
-    /// what residuals of the assembled problem mean for u, also where they are small against the terms that make them up.
+    /// The last correction of a refinement relative to the solution, in the energy norm or by the largest displacement,
+    /// whichever is larger. It bounds the error in u even where the residual is small against its terms.
     pub correction: f64,
-    /// Largest violation over the largest |u|.
+    /// Largest violation of an inequality over the largest |u|.
     pub feasibility: f64,
     /// Largest pull, over the largest multiplier.
     pub pull: f64,
 }
 
 impl Certificate {
-    /// The largest of them.
+    /// The largest of the three.
     pub fn largest(&self) -> f64 {
         self.correction.max(self.feasibility).max(self.pull)
     }
 
-    /// Whether a refined solution is one.
+    /// Whether the certificate is small enough for a refined solution.
     pub fn holds(&self) -> bool {
         self.largest() < CERTIFIED
     }
 }
 
-/// How carefully the loop goes on.
+/// How carefully the loop changes the set.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Caution {
     Loose,
@@ -113,11 +117,11 @@ enum Caution {
     Single,
 }
 
-/// Where the loop has its solver from: called whenever a preconditioner is built, to give the solver of before or a new one, with its
-/// options, but without operator and set-up.
+/// The source of the loop's solvers. It is called whenever a preconditioner is built, and returns the previous solver
+/// or a new one, with options, but without operator and set-up.
 pub type Solvers<'a> = dyn FnMut() -> Result<Ksp> + 'a;
 
-/// Runs the loop; with a set that is given, only its equations are solved. Collective.
+/// Runs the loop. Where a set is given, only its equations are solved. Collective.
 ///
 /// # Errors
 /// PETSc's.
@@ -137,7 +141,7 @@ pub fn solve(
     let mut visited: HashSet<Vec<bool>> = HashSet::new();
     let mut caution = Caution::Loose;
     let (mut steps, mut iterations, mut tight) = (0, 0, given.is_some());
-    // The set that the preconditioner was built for.
+    // The active set for which the preconditioner was built.
     let mut built: Vec<bool> = Vec::new();
     let mut groups: Option<Groups> = None;
     let mut ksp = solvers()?;
@@ -218,7 +222,7 @@ pub fn solve(
         let stays = next == active;
         let to_the_end = stop <= target;
         let refined = matches!(solve, Solve::Refined(_));
-        // Sets that come back differ in rows that rounding moves.
+        // Sets that come back differ only in rows that rounding decides.
         let settled = stays || (refined && caution != Caution::Loose && certificate.holds());
         let met = match refined {
             true => certificate.holds(),
@@ -279,16 +283,16 @@ fn residual_of(reduced: &Reduced, b: &PetscVec, v: &PetscVec, r: &PetscVec) -> R
     r.norm2()
 }
 
-/// Rows on the wrong side, and the set without them.
+/// The rows with multipliers or gaps of the wrong sign, and the set that follows.
 struct Judged {
     lambda: Vec<f64>,
     gaps: Vec<f64>,
     next: Vec<bool>,
-    /// How wrong each row is; 0: it is right.
+    /// How wrong each row is; 0 where it is right.
     wrong: Vec<f64>,
-    /// λ + ρ (B u − c) with the ρ that makes both alike.
+    /// λ + ρ (B u − c), with ρ such that both terms are of the same size.
     score: Vec<f64>,
-    /// Largest |λ|, largest |u|.
+    /// Largest |λ| and largest |u|.
     largest: [f64; 2],
 }
 
@@ -322,7 +326,7 @@ impl Judged {
         out
     }
 
-    /// With the last correction of u.
+    /// The certificate, given the last correction of u.
     fn certificate(&self, correction: f64) -> Certificate {
         let most = |list: &[f64], sign: f64| list.iter().fold(0.0f64, |a, v| a.max(sign * v));
         Certificate {
@@ -332,7 +336,7 @@ impl Judged {
         }
     }
 
-    /// Of all changes only the worst stays.
+    /// Undoes all changes of the set but that of the worst row.
     fn keep_worst(&self, active: &[bool], next: &mut [bool]) {
         let by_size = |a: &usize, b: &usize| {
             let by_size = self.wrong[*a].total_cmp(&self.wrong[*b]);
@@ -344,7 +348,7 @@ impl Judged {
         }
     }
 
-    /// The order in which rows are made to hold: those that were violated, then by multiplier.
+    /// The order in which rows are made to hold: violated rows first, then by multiplier.
     fn priority(&self, active: &[bool], next: &[bool]) -> Vec<usize> {
         let mut order: Vec<usize> = (0..next.len()).collect();
         let entered = |r: usize| next[r] && !active[r];

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone)]
 pub struct Potentials {
     parent: Vec<usize>,
-    /// u of the member less u of its parent.
+    /// u of a member minus u of its parent.
     above: Vec<f64>,
 }
 
@@ -17,7 +17,7 @@ impl Potentials {
         }
     }
 
-    /// The representative of the set of `k`, and u_k less u there.
+    /// The representative of the set of `k`, and u_k minus u there.
     pub fn find(&mut self, k: usize) -> (usize, f64) {
         let (mut root, mut sum) = (k, 0.0);
         while self.parent[root] != root {
@@ -28,7 +28,7 @@ impl Potentials {
         (root, sum)
     }
 
-    /// Makes u_a − u_b = c. Where both are in one set already: by how much the difference there misses c.
+    /// Imposes u_a − u_b = c. Where both are in the same set already, returns by how much their difference misses c.
     pub fn join(&mut self, a: usize, b: usize, c: f64) -> Option<f64> {
         let ((root_a, u_a), (root_b, u_b)) = (self.find(a), self.find(b));
         if root_a == root_b {

@@ -1,4 +1,4 @@
-//! K, f and the inequalities of a scene in one place, and how far vectors are from satisfying them.
+//! K, f and the inequalities of a scene, and how far vectors are from satisfying them.
 
 use super::groups::Groups;
 use super::rows::Inequalities;
@@ -14,7 +14,7 @@ pub struct Problem {
     pub system: System,
     /// The inequalities; none where the scene has no contact.
     pub rows: Inequalities,
-    /// Entries of vectors at the unknowns in rows.
+    /// Access to the entries of vectors at the unknowns in rows.
     pub trace: Trace,
 }
 
@@ -42,13 +42,15 @@ impl Problem {
         })
     }
 
-    /// The groups of a set, whose rows hold in their order; those that contradict others are taken out of it.
+    /// The groups of an active set. Rows are imposed in their order; a row that contradicts earlier ones is removed
+    /// from the set.
     pub fn groups(&self, active: &mut [bool]) -> Groups {
         let in_order: Vec<usize> = (0..self.rows.len()).collect();
         Groups::new(&self.rows, active, &in_order)
     }
 
-    /// ‖Tᵀ(f − K u)‖₂ relative to the load: what multipliers of the active rows cannot carry. Collective.
+    /// ‖Tᵀ(f − K u)‖₂ relative to the load: the part of the residual that multipliers of the active rows cannot
+    /// balance. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -64,7 +66,7 @@ impl Problem {
         if self.system.reference > 0.0 {
             return Ok(self.system.relative(norm));
         }
-        // Without a load: relative to Tᵀ K u₀.
+        // Without a load the norm is relative to Tᵀ K u₀.
         let given = u.duplicate()?;
         self.trace.set(&given, &groups.offset)?;
         let size = folded(&given)?;

@@ -1,8 +1,8 @@
-//! Tᵀ K T of changing active sets as one matrix of fixed size and pattern.
+//! Tᵀ K T of changing active sets, as one matrix of fixed size and pattern.
 //!
-//! Unknowns that another one leads, and those that hang on ground, keep a row with a diagonal entry alone and the value zero. Only
-//! rows at and beside the unknowns in inequalities ever change; the pattern has room for all sets, so that a direct solver analyses it
-//! once.
+//! An unknown that is not the lowest of its group, or whose group is tied to ground, keeps a row with a diagonal entry
+//! alone and has the value zero. Only rows at the unknowns in inequalities, and at their neighbours, ever change. The
+//! pattern has room for all sets, so that a direct solver analyses it once.
 
 use mpi::topology::SimpleCommunicator;
 
@@ -22,30 +22,30 @@ struct KRow {
     vals: Vec<f64>,
 }
 
-/// The equality-constrained problems of one scene. Vectors of u and v have one entry per unknown of the scene.
+/// The equality-constrained problems of one scene. Vectors u and v have one entry per unknown of the scene.
 pub struct Reduced {
     session: Session,
     /// Tᵀ K T.
     pub a: Mat,
-    /// Entries at the unknowns in rows.
+    /// Access to the entries at the unknowns in rows.
     pub trace: Trace,
-    /// What residuals are relative to; 0: nothing is known yet.
+    /// The norm that residuals are relative to; 0: not known yet.
     reference: f64,
     f: PetscVec,
     /// The unknowns in rows.
     unknowns: Vec<i32>,
-    /// Rows of K, on this rank, that change with the set: (index among the unknowns in rows, row).
+    /// Rows of K on this rank that change with the set: (index among the unknowns in rows, row).
     touched: Vec<(Option<usize>, KRow)>,
-    /// The columns of those rows, and the plan that brings u there.
+    /// The columns of those rows, and the plan that communicates u there.
     near: Vec<i32>,
     scatter: Scatter,
     near_u: PetscVec,
-    /// The rigid motions for the method's preconditioner.
+    /// The rigid motions for the preconditioner.
     kernel: NearKernel,
 }
 
 impl Reduced {
-    /// From K (assembled) and the rows. Collective.
+    /// Takes K (assembled) and the rows. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -78,7 +78,7 @@ impl Reduced {
             let own = own.count();
             all.push([own as i32, (cols.len() - own) as i32]);
         }
-        // Without inequalities there is one set, and K its matrix.
+        // Without inequalities there is one set only, and its matrix is K.
         let a = match rows.len() {
             0 => system.a.clone(),
             _ => pattern(session, system, rows, &trace, &touched, &all)?,
@@ -133,7 +133,7 @@ impl Reduced {
     pub fn update(&self, groups: &Groups) -> Result<()> {
         let mine: Vec<i32> = self.touched.iter().map(|(_, row)| row.row).collect();
         self.a.zero_rows(&mine)?;
-        // The unknown that leads this one.
+        // The lowest unknown of the group of this one.
         let lead = |g: i32| match self.unknowns.binary_search(&g) {
             Ok(k) => groups.lead[k].map(|lead| self.unknowns[lead]),
             Err(_) => Some(g),
@@ -152,7 +152,7 @@ impl Reduced {
             self.a.add_values(&[to], &cols, &vals)?;
         }
         self.a.assemble()?;
-        // At an unknown that is led there is nothing but its diagonal.
+        // The row of an unknown that is not the lowest of its group has only its diagonal.
         self.kernel.attach_where(&self.a, |x| {
             let free = |k: usize, v: f64| if groups.is_free(k) { v } else { 0.0 };
             let at = self.trace.get(self.comm(), x)?;
@@ -161,7 +161,7 @@ impl Reduced {
         })
     }
 
-    /// Whether the preconditioner knows rigid motions, which change with the set.
+    /// Whether the preconditioner is given rigid motions, which change with the set.
     pub fn has_near_kernel(&self) -> bool {
         !self.kernel.is_empty()
     }
@@ -213,7 +213,7 @@ impl Reduced {
         Ok(out)
     }
 
-    /// v that starts where u is nearest, zero at unknowns that are led. Collective.
+    /// The initial v: the one whose u is nearest, zero at unknowns that are not the lowest of their group. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -236,7 +236,7 @@ impl Reduced {
         self.trace.set(u, &groups.spread(&at))
     }
 
-    /// ‖f‖₂, or what stands for it where there is no load: the norm of the right-hand side `b`. Collective.
+    /// ‖f‖₂, or without a load the norm of the right-hand side `b`. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -248,7 +248,7 @@ impl Reduced {
     }
 }
 
-/// The matrix with room for all sets: every row of K that no set changes, zeros in the others. Collective.
+/// The matrix with room for all sets: rows of K that no set changes, and zeros in the others. Collective.
 fn pattern(
     session: &Session,
     system: &System,
@@ -271,7 +271,7 @@ fn pattern(
         o[i] = most.min(n - range.len()) as i32;
     }
     let a = Mat::preallocated(session, Comm::World, range.len(), range.len(), &d, &o)?;
-    // The columns in which a row may get entries: those of K, and what leads them.
+    // The columns in which a row may get entries: those of K, and the lowest unknowns of their groups.
     for (k, row) in touched {
         let mut cols: Vec<i32> = Vec::new();
         for &c in &row.cols {
@@ -304,11 +304,11 @@ fn pattern(
     Ok(a)
 }
 
-/// How many entries a row that changes may get.
+/// Bounds for the number of entries of a row that changes.
 struct Room {
-    /// Entries of the rows of K that may be added to the row of each unknown.
+    /// For each unknown, the entries of all rows of K that may be added to its row.
     sum: Vec<usize>,
-    /// Unknowns in one group at most.
+    /// Largest possible number of unknowns in a group.
     most: usize,
 }
 

@@ -1,7 +1,7 @@
-//! The reference: a direct solution that shares nothing with the method but the matrices of the subdomains.
+//! The reference solution: a direct solution that shares nothing with the method but the matrices of the subdomains.
 //!
-//! MUMPS factors the assembled matrix, an active set stands around it where there are inequalities, and every solution is refined, by default
-//! in twice the working precision. On any number of ranks.
+//! MUMPS factors the assembled matrix; with inequalities, an active-set loop surrounds it. Every solution is refined,
+//! by default with residuals in twice the working precision. It runs on any number of ranks.
 
 use super::layout::Layout;
 use super::near::{Near, NearKernel};
@@ -18,21 +18,21 @@ use crate::scene::Scene;
 use crate::substructures::Subdomain;
 use crate::{Error, Result};
 
-/// Residual that a solution in working precision must have; refined, it has what rounding leaves.
+/// Residual that a solution in working precision must reach. A refined solution is judged by its certificate instead.
 const TARGET: f64 = 1e-8;
 
-/// Solves with one factor in working precision, of which all but the first refine.
+/// Solves with one factor in working precision; all but the first refine.
 const SOLVES: usize = 3;
 
-/// Supports that the scene does not have may bear this much of the load.
+/// The supports added by the layout may bear this part of the load.
 const BALANCED: f64 = 1e-8;
 
-/// With which precision residuals are summed up.
+/// The precision in which residuals are summed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
-    /// That of the matrix: what MUMPS with iterative refinement attains.
+    /// Working precision: the accuracy of MUMPS with iterative refinement.
     Working,
-    /// Twice that: what errors are measured against.
+    /// Twice the working precision: for the reference solution that errors are measured against.
     Twice,
 }
 
@@ -47,8 +47,8 @@ pub struct Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    /// Solves `scene`, whose layout this is; where a set is `given`, its equations only. Whether it has found a solution, `found` says.
-    /// Collective.
+    /// Solves `scene`, whose layout is given. Where a set is `given`, only its equations are solved. `found` says
+    /// whether there is a solution. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] where the inequalities have no frames; those of the scene, and PETSc's.
@@ -82,7 +82,7 @@ impl<'a> Reference<'a> {
         };
         let mut solver = || Ok(ksp.clone());
         let rows = &problem.rows;
-        // Without inequalities there is one set, the empty one.
+        // Without inequalities there is one set only, the empty one.
         let given = given.or((rows.len() == 0).then_some(&[]));
         let found = outer::solve(
             session,
@@ -106,10 +106,12 @@ impl<'a> Reference<'a> {
         Ok(out)
     }
 
-    /// The same where nothing but a solution will do, with residuals in twice the working precision. Collective.
+    /// As [`Reference::new`] with residuals in twice the working precision; it is an error if no solution is found.
+    /// Collective.
     ///
     /// # Errors
-    /// As [`Reference::new`]; [`Error::NotConverged`] where no solution satisfies the conditions, such as where nothing holds a body.
+    /// As [`Reference::new`]; [`Error::NotConverged`] where no solution satisfies the conditions, such as where nothing
+    /// holds a body.
     pub fn certified(
         session: &Session,
         scene: &Scene,
@@ -127,12 +129,12 @@ impl<'a> Reference<'a> {
         Ok(out)
     }
 
-    /// u of these subdomains by local dof. Collective.
+    /// The solution on these subdomains by local dof. Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn values(&self, subdomains: &[Subdomain]) -> Result<Vec<Vec<f64>>> {
-        // Along the frames of contact: u = Σ coefficient · w.
+        // In the coordinates of the contact frames: u = Σ coefficient · w.
         let dofs = || subdomains.iter().flat_map(|s| &s.dofs);
         let terms: Vec<Vec<(u64, f64)>> = dofs()
             .map(|&dof| self.layout.terms(self.layout.index(dof)))
@@ -150,8 +152,9 @@ impl<'a> Reference<'a> {
         Ok(subdomains.iter().map(of).collect())
     }
 
-    /// How far u of these subdomains, all of the scene on some rank, is away: in the energy norm, and the largest displacement, each relative to the
-    /// solution. Copies of an unknown count by their mean in the first. Collective.
+    /// The distance of the u of these subdomains from the solution: in the energy norm, and by the largest
+    /// displacement, each relative to the solution. The subdomains of all ranks together are those of the scene. In the
+    /// energy norm the mean of the copies of an unknown counts. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -173,7 +176,7 @@ impl<'a> Reference<'a> {
         Ok([energy, over(largest[0], largest[1])])
     }
 
-    /// The energy norm of d, over that of the solution. Collective.
+    /// The energy norm of d, relative to that of the solution. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -186,7 +189,7 @@ impl<'a> Reference<'a> {
         ))
     }
 
-    /// The largest force on a support that the scene does not have, over the load. Collective.
+    /// The largest force on a support added by the layout, relative to the load. Collective.
     fn pushed(&self, scene: &Scene) -> Result<f64> {
         let share = contiguous_share(
             scene.n_subdomains(),
@@ -215,7 +218,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// MUMPS, without options.
+/// MUMPS, without options of the user.
 fn mumps(session: &Session) -> Result<Ksp> {
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_type("preonly")?;
@@ -261,7 +264,7 @@ mod tests {
             );
             assert!(found.active.iter().all(|on| *on) && found.active.len() == 5);
             assert!((found.lambda.iter().sum::<f64>() - 1.0).abs() < 1e-14);
-            // −u'' = −1 above, 0 below; values at nodes are exact.
+            // −u'' = −1 in the upper square, 0 in the lower one; nodal values are exact.
             let u = |y: f64| {
                 if y > 1.0 {
                     -1.0 + ((y - 2.0).powi(2) - 1.0) / 2.0
@@ -280,7 +283,7 @@ mod tests {
                 let away = direct.distance(&parts, &exact, copies).expect("a distance");
                 assert!(away.iter().all(|d| *d < 1e-15), "{away:?}");
             }
-            // A percent more is a percent away.
+            // A solution that is larger by one percent has a distance of one percent.
             let more: Vec<Vec<f64>> = exact
                 .iter()
                 .map(|u| u.iter().map(|u| 1.01 * u).collect())

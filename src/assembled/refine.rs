@@ -4,7 +4,8 @@
 //!     r = Tᵀ (f − K u) in twice the precision,   Tᵀ K T d = r,   v ← v + d,   u = T v + u₀
 //! ```
 //!
-//! What a factor in working precision leaves in u is gone after a few rounds: then u is the solution of the assembled problem, rounded once.
+//! A few rounds remove the error that a factor in working precision leaves in u: then u is the solution of the
+//! assembled problem, rounded once.
 
 use super::groups::Groups;
 use super::system::System;
@@ -13,40 +14,40 @@ use crate::linalg::twice::Twice;
 use crate::petsc::{Ksp, Scatter, Session, Vec as PetscVec};
 use crate::Result;
 
-/// Rounds at most.
+/// Maximal number of rounds.
 const ROUNDS: usize = 60;
 
 /// A correction below this is rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// A round that does not bring the correction below this part of the smallest one so far has gained nothing.
+/// A round has gained nothing unless it brings the correction below this part of the smallest one so far.
 const GAIN: f64 = 0.5;
 
-/// What products with K in twice the precision need.
+/// The data for products with K in twice the precision.
 pub struct Refiner<'a> {
     session: Session,
     system: &'a System,
     trace: &'a Trace,
-    /// Columns of this rank's rows that other ranks own, increasing, and the plan that brings u there.
+    /// Columns of this rank's rows that other ranks own, increasing, and the plan that communicates u there.
     ghosts: Vec<i32>,
     scatter: Scatter,
     near: PetscVec,
 }
 
-/// What refinement has come to.
+/// The result of a refinement.
 pub struct Refined {
     /// ‖r‖₂ of the last round.
     pub residual: f64,
-    /// The last correction over the solution, in the energy norm and by the largest entry, whichever is larger.
+    /// The last correction relative to the solution, in the energy norm or by the largest entry, whichever is larger.
     pub correction: f64,
-    /// Rounds.
+    /// Number of rounds.
     pub rounds: usize,
-    /// PETSc's name for why the last solve ended, and whether it failed.
+    /// PETSc's name for the reason why the last solve ended, and whether it failed.
     pub reason: (String, bool),
 }
 
 impl<'a> Refiner<'a> {
-    /// For an assembled system; `trace` takes its unknowns in rows. Collective.
+    /// Prepares refinement for an assembled system; `trace` gives access to its unknowns in rows. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -92,7 +93,7 @@ impl<'a> Refiner<'a> {
         Ok(out)
     }
 
-    /// r ← the residual, and its two halves at the unknowns in rows. Collective.
+    /// Sets r to the residual, rounded, and returns its high and low halves at the unknowns in rows. Collective.
     fn halves(&self, u: &PetscVec, r: &PetscVec) -> Result<[Vec<f64>; 2]> {
         let sums = self.residual(u)?;
         let half = |part: fn(&Twice) -> f64| -> Result<Vec<f64>> {
@@ -117,7 +118,7 @@ impl<'a> Refiner<'a> {
         Ok(high.iter().zip(&low).map(|(h, l)| h + l).collect())
     }
 
-    /// Refines v, where `ksp` solves with Tᵀ K T. Collective.
+    /// Refines v; `ksp` solves with Tᵀ K T. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -133,7 +134,7 @@ impl<'a> Refiner<'a> {
         while out.rounds < ROUNDS {
             self.spread(groups, v, &u)?;
             let [high, low] = self.halves(&u, &r)?;
-            // Forces on both ends of a row cancel: their halves are summed apart.
+            // The forces on the two ends of a row cancel: their high and low halves are summed separately.
             let [high, low] = [groups.fold(&high), groups.fold(&low)];
             let both: Vec<f64> = high.iter().zip(&low).map(|(h, l)| h + l).collect();
             self.trace.set(&r, &both)?;
@@ -174,7 +175,7 @@ impl<'a> Refiner<'a> {
     }
 }
 
-/// `x` relative to `size`, or itself where that is zero.
+/// `x` relative to `size`; `x` itself where `size` is zero.
 pub fn over(x: f64, size: f64) -> f64 {
     if size > 0.0 {
         x / size

@@ -1,8 +1,9 @@
 //! The inequalities of a scene on the unknowns of the assembled problem.
 //!
-//! Every row bounds a difference, w_p − w_m ≤ g, where p or m may be *ground*, on which w = 0: rows of contact pairs have two
-//! nodes, rows beside an obstacle or a given value one. Along normals that no axis follows, w are the coordinates of u along
-//! them (see [`Frame`](super::frame::Frame)). There are few rows, and every rank knows all.
+//! Every row bounds a difference, w_p − w_m ≤ g, where p or m may be *ground*, at which w = 0. Rows of contact pairs
+//! have two nodes, rows beside an obstacle or a prescribed value one. Along normals that are not parallel to an axis, w
+//! are the coordinates of u in a frame (see [`Frame`](super::frame::Frame)). There are few rows, and every rank has all
+//! of them.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use super::potentials::Potentials;
 use crate::scene::Scene;
 use crate::substructures::RowKind;
 
-/// u_plus − u_minus ≤ gap. Indices into [`Inequalities::unknowns`]; their number stands for ground.
+/// u_plus − u_minus ≤ gap. Unknowns are indices into [`Inequalities::unknowns`]; the length of that list stands for ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Index of the unknown with coefficient 1.
@@ -30,18 +31,18 @@ pub struct Inequalities {
     pub unknowns: Vec<u64>,
     /// The rows.
     pub rows: Vec<Row>,
-    /// Whether each row holds to begin with.
+    /// Whether each row is active at the start.
     pub initial: Vec<bool>,
-    /// What ties, springs and given values hold of the rigid motions.
+    /// The equations in the rigid motions that ties, springs and prescribed values give.
     pub(super) held: Echelon,
-    /// The forms of the rows on them.
+    /// The linear forms of the rows in the rigid motions.
     pub(super) forms: Vec<Functional>,
-    /// For every row of the scene its subdomain, and its place in `rows` if it is an inequality.
+    /// For every row of the scene its subdomain, and its index in `rows` if it is an inequality.
     pub(super) from: Vec<(usize, Option<usize>)>,
 }
 
 impl Inequalities {
-    /// The inequalities of `scene`; those of a layout that has no frames for them mean nothing.
+    /// The inequalities of `scene`. The rows are meaningless where `layout.trouble` is set.
     pub fn new(scene: &Scene, layout: &Layout) -> Inequalities {
         let all = scene.rows(&|_| true);
         let subdomains = scene
@@ -82,7 +83,7 @@ impl Inequalities {
             };
             [row.plus, row.minus] = ends.map(place);
         }
-        // Ties may leave nothing of a row.
+        // A row may vanish once ties are applied.
         for (initial, row) in out.initial.iter_mut().zip(&out.rows) {
             *initial &= row.plus != row.minus;
         }
@@ -95,14 +96,14 @@ impl Inequalities {
         self.rows.len()
     }
 
-    /// The set of these rows.
+    /// The set of these rows, as flags.
     pub fn set(&self, active: &[usize]) -> Vec<bool> {
         let mut set = vec![false; self.len()];
         active.iter().for_each(|&r| set[r] = true);
         set
     }
 
-    /// The rows of a set.
+    /// The rows of a set, as a list.
     pub fn list(&self, active: &[bool]) -> Vec<usize> {
         (0..self.len()).filter(|&r| active[r]).collect()
     }
@@ -112,7 +113,8 @@ impl Inequalities {
         self.unknowns.len()
     }
 
-    /// For every row of the scene that the owner of the subdomains `owns` provides its place here, if it is an inequality.
+    /// For every row of the scene that the owner of the subdomains `owns` provides, its index here; `None` if it is not
+    /// an inequality.
     pub fn provided(&self, owns: &dyn Fn(usize) -> bool) -> Vec<Option<usize>> {
         let mine = self.from.iter().filter(|(s, _)| owns(*s));
         mine.map(|&(_, place)| place).collect()
@@ -125,7 +127,7 @@ impl Inequalities {
         self.rows.iter().map(gap).collect()
     }
 
-    /// Sets of unknowns that rows may join, by unknown: those of lower number and itself.
+    /// For each unknown, the unknowns that rows may join to it: those of lower number, and itself.
     pub fn lower_partners(&self) -> Vec<Vec<usize>> {
         let mut sets = Potentials::new(self.unknowns.len());
         for row in &self.rows {
@@ -143,8 +145,9 @@ impl Inequalities {
         out
     }
 
-    /// Puts rows into `active` until nothing is loose that the rows together hold: in the order of their scores those that take away
-    /// a rigid motion which ties, springs, given values and the rows before them leave. Returns the rows that were put in.
+    /// Adds rows to `active` until they hold every rigid motion that all rows together can hold. Rows are tried in the
+    /// order of their scores; one is added if it removes a motion that ties, springs, prescribed values and the active
+    /// rows leave free. Returns the added rows.
     pub fn restore(&self, active: &mut [bool], score: &[f64]) -> Vec<usize> {
         let mut held = self.held.clone();
         let (mut on, mut off): (Vec<usize>, Vec<usize>) = (0..self.len()).partition(|&r| active[r]);

@@ -1,7 +1,7 @@
-//! A u = b of a scene as PETSc's solvers take it: one unknown where tied bodies have several copies.
+//! A u = b of a scene for PETSc's solvers: one unknown in the place of the copies of tied bodies.
 //!
-//! With inequalities A is K without them, which bodies that only contact holds make singular; or, on the unknowns of an active set,
-//! Tᵀ K T v = Tᵀ(f − K u₀).
+//! With inequalities, A is K without them; it is singular where only contact holds a body. On the unknowns of an active
+//! set the system is Tᵀ K T v = Tᵀ(f − K u₀).
 
 use crate::mesh::contiguous_share;
 use crate::petsc::{Comm, Mat, MatFlag, Scatter, Session, Vec as PetscVec};
@@ -12,7 +12,7 @@ use crate::Result;
 use super::layout::Layout;
 use super::unknowns::Unknowns;
 
-/// The matrix that a method works on.
+/// The format of the matrix that a method takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// One assembled matrix (AIJ), rows in equal shares.
@@ -21,12 +21,12 @@ pub enum Format {
     Unassembled,
 }
 
-/// How copies of an unknown that differ are weighted.
+/// The weights in the mean of the copies of an unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Copies {
-    /// With ρ, as the method's own scaling has it.
+    /// By ρ, as in the method's own scaling.
     ByCoefficient,
-    /// All alike.
+    /// All equal.
     Alike,
 }
 
@@ -36,15 +36,15 @@ pub struct System {
     pub a: Mat,
     /// b, length N.
     pub b: PetscVec,
-    /// ‖f‖₂ over the unknowns of the scene, or ‖b‖₂ where that is zero: what residuals are relative to.
+    /// ‖f‖₂ over the unknowns of the scene, or ‖b‖₂ where that is zero: residuals are relative to it.
     pub reference: f64,
-    /// Of this rank's local unknowns in the unassembled format the component that each is of.
+    /// The component of each local unknown of this rank in the unassembled format.
     pub fields: Vec<usize>,
 }
 
 impl System {
-    /// Assembles the scene. Each rank holds a contiguous share of the subdomains, merged into one local matrix;
-    /// the assembled format follows from the unassembled one. Collective.
+    /// Assembles the scene. Each rank holds a contiguous share of the subdomains, merged into one local matrix; the
+    /// assembled format is converted from the unassembled one. Collective.
     ///
     /// # Errors
     /// As [`Scene::subdomain`], and PETSc's.
@@ -102,7 +102,7 @@ impl System {
         r.aypx(-1.0, &self.b)
     }
 
-    /// ‖b − A u‖₂ / ‖f‖₂ (‖A u‖₂ where all is zero). Collective.
+    /// ‖b − A u‖₂ / ‖f‖₂; relative to ‖A u‖₂ where f and b are zero. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -130,8 +130,8 @@ impl System {
         Ok(u.dot(&au)?.max(0.0).sqrt())
     }
 
-    /// The assembled form of subdomain vectors whose copies may differ by what the iteration has left: at each unknown of the scene the
-    /// mean of the copies, taken to w; and the sum of the weights. Collective.
+    /// Assembles subdomain vectors whose copies may differ by the error of the iteration: at each unknown of the scene
+    /// the weighted mean of the copies, converted to w; and the sum of the weights. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -179,17 +179,17 @@ fn norm_f(session: &Session, subdomains: &[Subdomain], layout: &Layout) -> Resul
     f.norm2()
 }
 
-/// The subdomains of one rank, merged: what a domain decomposition of PETSc sees as one subdomain.
+/// The subdomains of one rank, merged into one: the subdomain of PETSc's domain decompositions.
 struct Part {
     /// Global unknown of each local one, increasing.
     unknowns: Vec<i32>,
-    /// The component that each is of.
+    /// The component of each unknown.
     fields: Vec<usize>,
     k: Mat,
     f: PetscVec,
 }
 
-/// What u at the dofs of a subdomain is in local unknowns: (unknown, coefficient) and an offset.
+/// u at the dofs of a subdomain in terms of local unknowns: (unknown, coefficient) pairs and an offset.
 type RankRows = Vec<(Vec<(i32, f64)>, f64)>;
 
 impl Part {
@@ -240,7 +240,7 @@ impl Part {
                     }
                     k.add_values(&[*row], &cols, &vals)?;
                 }
-                // Rows of void places are of the size of those beside them.
+                // The diagonal entries of void places are of the size of those of the same node.
                 let (void, itself) = all.void_beside(s.dofs[i]);
                 let diagonal = || entries_at(col, val, i);
                 if itself {

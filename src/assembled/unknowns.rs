@@ -1,4 +1,4 @@
-//! The unknowns of an assembled problem: those of the scene's layout, or what an active set leaves of them.
+//! The unknowns of an assembled problem: those of the scene's layout, or those that remain for an active set.
 
 use super::groups::Groups;
 use super::layout::Layout;
@@ -10,16 +10,16 @@ use mpi::topology::SimpleCommunicator;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Where the value at an unknown comes from: an entry of the vector of unknowns, or none, and an offset.
+/// The value at an unknown: an entry of the vector of unknowns, if any, plus an offset.
 pub type Place = (Option<u64>, f64);
 
-/// Unknowns with active rows as further ties: w = T v + w₀ (see [`Groups`]).
+/// Unknowns v in which active rows are further ties: w = T v + w₀ (see [`Groups`]).
 pub struct Unknowns<'a> {
     /// The unknowns w of the scene.
     pub layout: &'a Layout<'a>,
-    /// Places of w that are none of v, increasing.
+    /// Places of w that are not in v, increasing.
     gone: Vec<u64>,
-    /// Unknowns in rows: the unknown that leads them, and the offset.
+    /// For unknowns in rows, the lowest unknown of their group and the offset.
     led: HashMap<u64, Place>,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Unknowns<'a> {
         }
     }
 
-    /// Those of w that are not void.
+    /// The unknowns w without the void places.
     pub fn dense(layout: &'a Layout<'a>) -> Unknowns<'a> {
         Unknowns {
             layout,
@@ -42,7 +42,7 @@ impl<'a> Unknowns<'a> {
         }
     }
 
-    /// One v per group, and none at void places.
+    /// One unknown per group, and none at void places.
     pub fn merged(layout: &'a Layout<'a>, rows: &Inequalities, groups: &Groups) -> Unknowns<'a> {
         let each = rows.unknowns.iter().enumerate();
         let led = each.clone().filter(|(k, _)| !groups.is_free(*k));
@@ -81,13 +81,13 @@ impl<'a> Unknowns<'a> {
         self.after(all.start as u64)..self.after(all.end as u64)
     }
 
-    /// The entries of v of a rank in about equal shares, without cutting a node.
+    /// The entries of v of a rank in about equal shares; no node is split.
     pub fn share(&self, ranks: usize, rank: usize) -> Range<usize> {
         let all = self.layout.share(ranks, rank);
         self.after(all.start as u64)..self.after(all.end as u64)
     }
 
-    /// u at a body dof: Σ coefficient · v, and an offset.
+    /// u at a body dof as Σ coefficient · v plus an offset.
     pub fn terms(&self, body_dof: u64) -> (Vec<(u64, f64)>, f64) {
         let mut out = (Vec::new(), 0.0);
         for (unknown, coefficient) in self.layout.terms(self.layout.index(body_dof)) {
@@ -98,7 +98,8 @@ impl<'a> Unknowns<'a> {
         out
     }
 
-    /// The void places, as entries of v if they are any, from the node of a body dof, and whether the dof itself is one of them.
+    /// The void places of the node of a body dof, and whether the dof is one of them. The list is empty where v leaves
+    /// out places of w.
     pub fn void_beside(&self, body_dof: u64) -> (&[u64], bool) {
         if !self.gone.is_empty() {
             return (&[], false);
@@ -124,7 +125,7 @@ impl<'a> Unknowns<'a> {
         unknown as usize - self.gone.partition_point(|&g| g < unknown)
     }
 
-    /// The places in w of entries `range` of v.
+    /// The places in w of the entries `range` of v.
     pub fn places(&self, range: Range<usize>) -> Vec<u64> {
         let mut at = 0;
         let mut next = self.gone.iter().peekable();
@@ -166,16 +167,17 @@ impl<'a> Unknowns<'a> {
     }
 }
 
-/// The entries of distributed vectors at the unknowns in rows, which every rank gets to know.
+/// Access to the entries of distributed vectors at the unknowns in rows; every rank gets all of them.
 pub struct Trace {
     /// Number of them.
     len: usize,
-    /// Index among them, and in this rank's part of the vector.
+    /// For each such unknown on this rank: its index among the unknowns in rows, and its index in this rank's part of
+    /// the vector.
     mine: Vec<(usize, usize)>,
 }
 
 impl Trace {
-    /// For vectors that are laid out as `like`.
+    /// For vectors distributed like `like`.
     pub fn new(rows: &Inequalities, like: &PetscVec) -> Trace {
         let range = like.ownership_range();
         let unknowns = rows.unknowns.iter().enumerate();
@@ -186,7 +188,7 @@ impl Trace {
         }
     }
 
-    /// (index among the unknowns in rows, index in this rank's part) of those of this rank.
+    /// For each unknown in rows on this rank: (index among the unknowns in rows, index in this rank's part).
     pub fn mine(&self) -> &[(usize, usize)] {
         &self.mine
     }

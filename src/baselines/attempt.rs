@@ -1,4 +1,4 @@
-//! One solve, and the repetitions that it takes to meet a residual which is not the method's own.
+//! One solve, and its repetition with smaller tolerances until a given residual of the assembled problem is met.
 
 use super::task::{ContactOutcome, Outcome};
 use crate::petsc::Vec as PetscVec;
@@ -16,21 +16,21 @@ pub struct Attempt {
     pub iterations: Option<usize>,
     /// Wall-clock time.
     pub seconds: f64,
-    /// The part of `seconds` for the way from multipliers to displacements, where there is one.
+    /// The part of `seconds` for the recovery of displacements from multipliers, where there is one.
     pub recover: Option<f64>,
-    /// Of set-ups in between, which `seconds` does not count.
+    /// Seconds of set-ups between solves; `seconds` does not include them.
     pub setup: f64,
-    /// What a contact loop has found.
+    /// The result of the contact loop, if there was one.
     pub contact: Option<ContactOutcome>,
     /// Whether the method's own tolerance was reached.
     pub converged: bool,
-    /// PETSc's name for why it ended.
+    /// PETSc's name for the reason why the solve ended.
     pub reason: String,
 }
 
 impl Outcome {
-    /// From the solve that counts, its own tolerance, what there is to say if the target was missed, and the seconds of assembly and set-up and
-    /// the memory.
+    /// Takes the solve that counts, its own tolerance, a message if the target was missed, the seconds of assembly and
+    /// set-up, and the memory.
     pub(super) fn new(
         attempt: Attempt,
         rtol: f64,
@@ -56,11 +56,11 @@ impl Outcome {
     }
 }
 
-/// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers measure another
-/// residual; methods that iterate on u meet it at once, or drift from it by rounding. What is reported is one solve alone: the one that met
-/// it, or the one that came closest.
+/// Repeats the solve with a smaller tolerance until the assembled residual is met. Methods that iterate on multipliers
+/// measure another residual; methods that iterate on u meet it at once, or drift from it by rounding. Only one solve is
+/// reported: the one that met the residual, or the one that came closest.
 ///
-/// Returns the solve, the tolerance of the method's own residual in it, and what there is to say if the target was missed.
+/// Returns the solve, the tolerance of the method's own residual in it, and a message if the target was missed.
 ///
 /// # Errors
 /// Those of `solve`.
@@ -70,7 +70,7 @@ pub fn solve_to(
     mut solve: impl FnMut(f64) -> Result<Attempt>,
 ) -> Result<(Attempt, f64, Option<String>)> {
     const SMALLEST: f64 = 1e-16;
-    // A residual counts as smaller below this fraction of the one before.
+    // A residual counts as smaller below this fraction of the previous one.
     const GAIN: f64 = 0.9;
     let mut rtol = first;
     let mut best: Option<(Attempt, f64)> = None;
@@ -83,7 +83,7 @@ pub fn solve_to(
             let message = format!("did not converge: {}", now.reason);
             return Ok((now, rtol, Some(message)));
         }
-        // More iterations that gain nothing, or none that could be spent.
+        // Stuck: further iterations gain nothing, or none are left.
         let stuck = best.as_ref().is_some_and(|(best, _)| {
             let more = now.iterations.is_none() || now.iterations > best.iterations;
             !now.converged || (more && now.residual > GAIN * best.residual)
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::petsc::testing::with_session;
 
-    /// What is left of an attempt without its vector.
+    /// The end of an attempt, without its vector.
     #[derive(Debug)]
     struct End {
         residual: f64,
@@ -117,8 +117,8 @@ mod tests {
         converged: bool,
     }
 
-    /// An iteration that gains a digit a step in its own residual; the assembled one is `factor` times that, but not below
-    /// `floor`, and tolerances from `breaks_at` down break it.
+    /// Simulates an iteration that gains a digit a step in its own residual. The assembled residual is `factor` times
+    /// that, but at least `floor`; tolerances from `breaks_at` down make the iteration fail.
     fn drive(target: f64, factor: f64, floor: f64, breaks_at: f64) -> (End, Option<String>) {
         with_session(move |session| {
             let (end, _, message) = solve_to(target, target, |rtol| {
@@ -163,7 +163,7 @@ mod tests {
         let (end, message) = drive(1e-6, 300.0, 1e-5, 0.0);
         assert_eq!(end.residual, 1e-5);
         assert!(message.is_some_and(|m| m.contains("stays at 1.0e-5")));
-        // A later attempt that breaks down does not take back what was reached.
+        // An attempt that fails later does not discard what was reached.
         let (end, message) = drive(1e-6, 300.0, 0.0, 1e-7);
         assert!(end.converged && end.residual < 1e-3, "{end:?}");
         assert!(message.is_some_and(|m| m.contains("stays at")));

@@ -17,7 +17,7 @@ use crate::report::tables::compare;
 use crate::scene::{distribution, Numbering, Scene};
 use crate::{Error, Result};
 
-/// What is compared, and where the results go.
+/// The arguments of a comparison: what is compared, and where the results go.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Comparison {
     /// The scene file.
@@ -26,7 +26,7 @@ pub struct Comparison {
     pub with: Vec<String>,
     /// Where results go; the directory gets CSV and JSON.
     pub destination: Destination,
-    /// PETSc's arguments, which the jobs get, too.
+    /// PETSc's arguments, which are passed on to the jobs.
     pub petsc: Vec<String>,
 }
 
@@ -35,9 +35,9 @@ pub struct Comparison {
 /// Jobs are started with the running executable, which must be the `fetifeti` program.
 ///
 /// # Errors
-/// [`Error::Input`] for what can be known before anything runs, and where the first job (ours) finds the problem
-/// unsolvable; [`Error::NotConverged`] when ours does not converge; [`Error::Environment`] without mpirun. A baseline that fails
-/// is no error but a row with a message.
+/// [`Error::Input`] for mistakes that are found before anything runs, and where the first job (ours) finds the problem
+/// unsolvable; [`Error::NotConverged`] when ours does not converge; [`Error::Environment`] without mpirun. A baseline
+/// that fails is no error but a row with a message.
 pub fn compare(session: &Session, wanted: &Comparison) -> Result<()> {
     let scene = distribution::load(session, &wanted.scene)?;
     let baselines = session.agree(table::select(&wanted.with))?;
@@ -51,7 +51,7 @@ pub fn compare(session: &Session, wanted: &Comparison) -> Result<()> {
     on_first_rank(session, || run(wanted, &scene, &plan))
 }
 
-/// Does `work` on rank 0; the others sleep until it is done, for the cores belong to the jobs. Collective.
+/// Does `work` on rank 0; the other ranks sleep until it is done, to leave the cores to the jobs. Collective.
 ///
 /// # Errors
 /// Those of `work`, on all ranks.
@@ -85,7 +85,7 @@ fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
     let file = std::fs::canonicalize(&wanted.scene).unwrap_or_else(|_| wanted.scene.clone());
     let mut methods = Methods::new(&launcher, plan, scene, file);
     let mut rows = Vec::new();
-    // Numbers of the rows that have a solution; the solutions.
+    // Numbers of the rows with a solution, and these solutions.
     let (mut solved, mut solutions) = (Vec::new(), Vec::new());
     for (k, run) in plan.runs.iter().enumerate() {
         progress(&run.title());
@@ -93,7 +93,7 @@ fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
         if !ran.printed.trim().is_empty() {
             destination.print(&format!("{}:\n{}\n", run.title(), ran.printed))?;
         }
-        // What ours cannot solve is a mistake in the scene or here, and the comparison ends.
+        // If ours fails, there is a mistake in the scene or in this program, and the comparison ends.
         if run.baseline.is_none() {
             let outcome = ran.outcome.map_err(Failure::into_error)?;
             ran = Ran {
@@ -129,7 +129,7 @@ fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
         compare::csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
         Ok(vec!["compare.csv".into()])
     })?;
-    // An assembled residual that rounding keeps away from its target is said in the table; the method itself has converged.
+    // Where rounding keeps the assembled residual above its target, the table says so; the method itself has converged.
     let stopped =
         |r: &&CompareRow| r.method == "fetifeti" && !r.converged_reason.starts_with("CONVERGED");
     match report.rows.iter().find(stopped) {

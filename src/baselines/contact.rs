@@ -1,4 +1,4 @@
-//! A row of the table that solves contact scenes: the active-set loop around a solver of the assembled problem.
+//! A baseline on a contact scene: the active-set loop around a solver of the assembled problem.
 
 use std::path::Path;
 
@@ -47,14 +47,14 @@ pub fn baseline(
     let mut last = ksp;
     let first = krylov.tolerances()?.0;
     let direct = krylov.type_name()? == "preonly";
-    // Seconds of set-ups and of the rest are apart in what it returns.
+    // The loop's result separates the seconds of set-ups from the rest.
     let mut find = |reduced: &Reduced, rtol: f64| {
         let tolerances = Tolerances {
             rtol,
             inner: if direct { 0.0 } else { job.inner },
             lag: row.lag,
         };
-        // GAMG keeps the rigid motions that it saw first, and they change with the set.
+        // GAMG keeps the rigid motions of its first set-up, and they change with the set.
         let mut solvers = || {
             if reduced.has_near_kernel() {
                 (last, krylov) = solver(session, row, &reduced.a)?;

@@ -1,7 +1,7 @@
-//! What one process group of a comparison does: one method on one scene, or the judgement of all solutions.
+//! The job of one process group of a comparison: one method on one scene, or the judgement of all solutions.
 //!
-//! A method leaves its solution in a file, in the order of [`Layout`](crate::assembled::layout::Layout); the judge holds all of them against
-//! one assembled matrix and one direct solution, so that nobody measures himself.
+//! A method writes its solution to a file, in the order of [`Layout`](crate::assembled::layout::Layout). The judge
+//! compares all solutions with one assembled matrix and one direct solution, so that no method measures its own error.
 
 use std::path::Path;
 

@@ -1,4 +1,5 @@
-//! The judge: a direct solution, and how far every method's solution is from it and from the conditions that it must satisfy.
+//! The judge: a direct solution, the distance of every method's solution from it, and the residuals of the optimality
+//! conditions.
 
 use std::path::PathBuf;
 
@@ -13,26 +14,26 @@ use crate::petsc::{Session, Vec as PetscVec};
 use crate::scene::Scene;
 use crate::Result;
 
-/// A row of which both force and gap are below this, relative to the largest force and displacement, touches without a force: methods may
-/// count it or not.
+/// A row counts as idle where both its force and its gap are below this, relative to the largest force and
+/// displacement. It touches without a force, and methods may count it as active or not.
 const IDLE: f64 = 1e-8;
 
-/// What the judge says.
+/// The result of the judge.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The direct solution.
+    /// The judgement of the direct solution.
     pub reference: Option<Judgement>,
-    /// Active sets that it took; `None` without inequalities.
+    /// Number of active sets on the way to the direct solution; `None` without inequalities.
     pub steps: Option<usize>,
-    /// Rows that hold in it.
+    /// Number of active rows in the direct solution.
     pub active: usize,
-    /// Inequalities.
+    /// Number of inequalities.
     pub rows: usize,
-    /// Every solution.
+    /// The judgement of every solution.
     pub solutions: Vec<Judgement>,
 }
 
-/// What there is to say about one solution.
+/// The judgement of one solution.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// Relative error in the energy norm; zero for the reference.
@@ -43,11 +44,12 @@ pub struct Judgement {
     pub feasibility: Option<f64>,
     /// With inequalities: the smallest multiplier, relative to the largest; 0 where none pulls.
     pub min_multiplier: Option<f64>,
-    /// With inequalities: rows that hold in one of solution and reference only.
+    /// With inequalities: the number of rows that are active in either the solution or the reference solution, but not
+    /// in both.
     pub differ: Option<usize>,
 }
 
-/// Judges solutions in these files with these rows active. Collective.
+/// Judges the solutions in these files, each with its active rows. Collective.
 ///
 /// # Errors
 /// Those of the scene, PETSc's, and those of the disk.
@@ -95,15 +97,15 @@ pub fn judge(
     Ok(verdict)
 }
 
-/// What solutions are held against.
+/// The data that solutions are compared with.
 struct Court<'a> {
     session: &'a Session,
     problem: &'a Problem,
 }
 
 impl Court<'_> {
-    /// Everything but the error; `holds` receives the rows that hold, `reference` those of the direct solution and which of them
-    /// count. Collective.
+    /// Everything but the error. `holds` receives the rows that hold; `reference` contains the rows of the direct
+    /// solution, and which rows count. Collective.
     fn judge(
         &self,
         u: &PetscVec,
@@ -128,7 +130,7 @@ impl Court<'_> {
         let r = u.duplicate()?;
         system.residual(u, &r)?;
         let lambda = multipliers(rows, &active, &trace.get(comm, &r)?);
-        // fold starts at zero: nothing that is not violated and nothing that does not pull counts.
+        // The folds start at zero: only violated rows and pulling multipliers count.
         let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
         let least = lambda.iter().fold(0.0f64, |a, l| a.min(*l));
         let violation = gaps.iter().fold(0.0f64, |a, g| a.max(*g));

@@ -39,7 +39,7 @@ impl Workspace {
         Ok(Workspace { dir })
     }
 
-    /// Where it is.
+    /// The path of the directory.
     pub fn dir(&self) -> &Path {
         &self.dir
     }
@@ -52,22 +52,22 @@ impl Workspace {
 
 impl Drop for Workspace {
     fn drop(&mut self) {
-        // What cannot be removed stays in the system's directory for temporary files.
+        // Files that cannot be removed stay in the system's directory for temporary files.
         let _ = std::fs::remove_dir_all(&self.dir);
     }
 }
 
-/// How jobs are run.
+/// Starts jobs, with the settings common to all of them.
 pub struct Launcher {
-    /// Where files go.
+    /// Directory for the files of the jobs.
     pub workspace: Workspace,
     /// A job that takes longer is ended.
     pub limit: Duration,
-    /// PETSc's arguments that every job gets.
+    /// PETSc's arguments for every job.
     pub petsc: Vec<String>,
 }
 
-/// Why a job has no result.
+/// The reason why a job has no result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
     /// The exit code of the program, if it had one.
@@ -77,7 +77,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// As an error of this process, with the kind that the exit code names.
+    /// This failure as an error of this process, of the kind that the exit code names.
     pub fn into_error(self) -> Error {
         match self.code {
             Some(1) => Error::NotConverged(self.message),
@@ -96,15 +96,16 @@ pub struct Finished {
 }
 
 impl Launcher {
-    /// Runs a job on `ranks` ranks and waits for it.
+    /// Runs a job on `ranks` ranks and waits until it ends.
     ///
     /// # Errors
-    /// [`Error::Environment`] where the machine refuses to start it at all: no disk, no mpirun.
+    /// [`Error::Environment`] where the job cannot be started at all: no disk, no mpirun.
     pub fn run(&self, name: &str, job: &Job, ranks: usize) -> Result<Finished> {
         self.run_task(name, ("baseline", job), &job.result, ranks)
     }
 
-    /// The same for a command of the program and any task that it reads; `result` is the file in which it leaves its record.
+    /// As `run`, for any command of the program with a task file. `result` is the file in which the command leaves its
+    /// record.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -141,7 +142,7 @@ impl Launcher {
             ))
         })?;
         let clock = Instant::now();
-        // mpirun ends itself after the limit; if it hangs in that, it is ended from here.
+        // mpirun ends itself after the limit; if it hangs, it is killed from here.
         let patience = self.limit + Duration::from_secs(20);
         let status = loop {
             match child.try_wait() {
@@ -162,7 +163,7 @@ impl Launcher {
             let bytes = std::fs::read(path).unwrap_or_default();
             String::from_utf8_lossy(&bytes).into_owned()
         };
-        // The record is a job's last act: trouble in the farewell of hundreds of ranks does not take it back.
+        // The record is the last act of a job: if hundreds of ranks fail while they finalise, it remains valid.
         let record = match std::fs::read_to_string(result) {
             Ok(text) => Ok(text),
             Err(e) if status.success() => Err(Failure {
@@ -197,16 +198,17 @@ impl Launcher {
     }
 }
 
-/// A record that a process has left.
+/// Reads a record that a process has left.
 pub fn read<T: DeserializeOwned>(text: &str) -> Result<T> {
     serde_json::from_str(text)
         .map_err(|e| Error::environment(format!("a process has left an unreadable result: {e}")))
 }
 
-/// On all ranks of a process that the program has started: the task that `file` describes, which should be `what`. Collective.
+/// Reads the task in `file` in a process that the program has started; `what` names the expected task. On all ranks.
+/// Collective.
 ///
 /// # Errors
-/// [`Error::Input`] for a file that is none.
+/// [`Error::Input`] for a file that is no such task.
 pub fn task<T: DeserializeOwned>(session: &Session, file: &Path, what: &str) -> Result<T> {
     let read = || -> std::result::Result<T, String> {
         let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
@@ -218,7 +220,7 @@ pub fn task<T: DeserializeOwned>(session: &Session, file: &Path, what: &str) -> 
     }))
 }
 
-/// Leaves a record on rank 0. Collective.
+/// Writes a record on rank 0. Collective.
 ///
 /// # Errors
 /// [`Error::Environment`] with the path.
@@ -229,7 +231,7 @@ pub fn leave<T: Serialize>(session: &Session, file: &Path, record: &T) -> Result
     })
 }
 
-/// The program's own error among what mpirun and other ranks say, or what mpirun says first.
+/// The program's own error message among the output of mpirun and other ranks, or else the first message of mpirun.
 fn spoken(stderr: &str) -> Option<String> {
     // mpirun frames its messages with dashes and hard line breaks.
     let is_frame = |l: &str| l.starts_with("---") || l.starts_with("===");
@@ -246,7 +248,7 @@ fn spoken(stderr: &str) -> Option<String> {
         .split_once(": ")
         .map_or(first, |(_, rest)| rest)
         .to_string();
-    // PETSc's own reason is the first line below.
+    // PETSc's own reason is in the first line below.
     if text.contains("failed with PETSc error") {
         if let Some(why) = lines.next() {
             return Some(format!("{text}: {why}"));
@@ -255,18 +257,19 @@ fn spoken(stderr: &str) -> Option<String> {
     Some(text)
 }
 
-/// This program's file.
+/// The path of this program's executable.
 ///
 /// # Errors
-/// [`Error::Environment`] where the system does not tell.
+/// [`Error::Environment`] where the system does not know it.
 pub fn own() -> Result<PathBuf> {
     let own = std::env::current_exe();
     own.map_err(|e| Error::environment(format!("the program's own path is unknown: {e}")))
 }
 
-/// Leaves out what this process has inherited from an mpirun around it, which would lead another one astray.
+/// Removes environment variables that this process has inherited from an mpirun around it; they would mislead another
+/// mpirun.
 pub fn without_mpi(command: &mut Command) {
-    // What a user may have set about transports stays.
+    // Settings about transports that a user may have made are kept.
     const KEPT: [&str; 6] = ["btl_", "btl", "pml", "mtl", "coll_", "opal_"];
     for (name, _) in std::env::vars_os() {
         let text = name.to_string_lossy();
@@ -282,7 +285,7 @@ pub fn without_mpi(command: &mut Command) {
     }
 }
 
-/// The environment of mpirun: there may be more ranks than cores.
+/// Sets the environment of mpirun: there may be more ranks than cores.
 fn environment(command: &mut Command, limit: Duration) {
     without_mpi(command);
     command

@@ -1,5 +1,6 @@
-//! A row of the table on a problem without inequalities, or on the equations of an active set that is given: its rows tie unknowns
-//! together as faces do. PCBDDC and KSPFETIDP are set up for a mesh and its parts; an outer loop would begin anew in every step.
+//! A baseline on a problem without inequalities, or on the equations of a given active set, whose rows tie unknowns
+//! together as faces do. PCBDDC and KSPFETIDP need the latter: they are set up for a mesh and its parts, and an outer
+//! loop would have to set them up again in every step.
 
 use std::path::Path;
 
@@ -18,7 +19,8 @@ use crate::petsc::{Comm, Is, Ksp, Mat, Session};
 use crate::scene::Scene;
 use crate::Result;
 
-/// The solver of a row with its operator and options, and the solver that iterates: KSPFETIDP hands over to one inside.
+/// The solver of a baseline with its operator and options, and the solver that iterates. The two differ for KSPFETIDP,
+/// which iterates in an inner solver.
 ///
 /// # Errors
 /// PETSc's, and those of the options.
@@ -31,13 +33,13 @@ pub fn solver(session: &Session, row: &Baseline, a: &Mat) -> Result<(Ksp, Ksp)> 
         "fetidp" => ksp.fetidp_inner_ksp()?,
         _ => ksp.clone(),
     };
-    // KSPFETIDP hands this on when it is set up, over what the inner solver was told.
+    // At set-up KSPFETIDP passes this on to the inner solver and overwrites the inner solver's own setting.
     ksp.set_compute_singular_values(true)?;
     krylov.set_compute_singular_values(true)?;
     Ok((ksp, krylov))
 }
 
-/// Tells PCBDDC, alone or inside KSPFETIDP, which component each local unknown is of, and where the unknowns are.
+/// Gives PCBDDC, alone or inside KSPFETIDP, the component and the position of each local unknown.
 fn tell(
     session: &Session,
     scene: &Scene,
@@ -78,11 +80,11 @@ pub fn kappa(krylov: &Ksp) -> Result<Option<f64>> {
         return Ok(None);
     }
     let (large, small) = krylov.extreme_singular_values()?;
-    // An iteration that goes on after it has found the solution sees rounding as an eigenvalue.
+    // An iteration that continues after it has found the solution reports rounding as an eigenvalue.
     Ok((small > 1e-13 * large).then(|| large / small))
 }
 
-/// A row of the table on the unassembled or the assembled matrix. `active`: the rows that hold, in scenes with inequalities.
+/// A baseline on the unassembled or the assembled matrix. `active`: the rows that hold, in scenes with inequalities.
 ///
 /// # Errors
 /// Those of the scene, PETSc's, and those of the disk.
@@ -125,8 +127,8 @@ pub fn baseline(
         let ((), mut seconds) = timed(session, || ksp.solve(&system.b, &u))?;
         let mut reason = krylov.converged_reason()?;
         if !reason.converged() && !row.krylov.is_empty() {
-            // Parts that mirror each other need no multipliers: the first residual is rounding, and iterating on it goes astray.
-            // Whether that is so, the assembled residual tells.
+            // Parts that mirror each other need no multipliers: then the first residual is rounding, and the iteration
+            // would diverge. The assembled residual tells whether this is the case.
             let zero = krylov.residual_history()?.first().map(|r| 2.0 * r);
             krylov.set_tolerances(None, zero, None, None)?;
             let trial = u.duplicate()?;

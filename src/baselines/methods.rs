@@ -1,4 +1,4 @@
-//! Running the methods of a plan on one scene, one job each, and the rows of tables that come of it.
+//! Runs the methods of a plan on one scene, one job each, and makes the rows of tables from the results.
 
 use std::path::PathBuf;
 
@@ -12,39 +12,39 @@ use crate::report::json::{CompareContact, CompareInequalities, CompareRow, Compa
 use crate::scene::Scene;
 use crate::Result;
 
-/// The methods on one scene.
+/// The methods of a plan on one scene.
 pub struct Methods<'a> {
     launcher: &'a Launcher,
     plan: &'a Plan,
     /// The scene file.
     file: PathBuf,
-    /// Where the unknowns are.
+    /// The layout of the unknowns.
     pub layout: Layout<'a>,
-    /// Whether there are inequalities.
+    /// Whether the scene has inequalities.
     contact: bool,
     /// Whether every method solves once more for another load.
     pub again: bool,
-    /// The active set of the last contact loop of ours: methods that solve equations only take it. `None`: there is none so far.
+    /// The active set of our last contact loop, for methods that solve equations only. `None`: there is none yet.
     active: Option<Vec<usize>>,
 }
 
 /// A solution that a method has left: the file, and the rows that are active in it.
 pub type Left = (PathBuf, Vec<usize>);
 
-/// What one method has done.
+/// The result of one run of a method.
 pub struct Ran {
-    /// What it reports, or why it does not.
+    /// The report of the method, or the reason why there is none.
     pub outcome: std::result::Result<Outcome, Failure>,
     /// Options of the second try, if there was one.
     pub rescue: Option<String>,
-    /// What the ranks have printed.
+    /// Output of the ranks.
     pub printed: String,
     /// The solution, if there is one.
     pub solution: Option<Left>,
 }
 
 impl Ran {
-    /// Nothing, for this reason.
+    /// A run without a result, for this reason.
     fn not(message: String) -> Ran {
         let code = None;
         Ran {
@@ -75,11 +75,11 @@ impl<'a> Methods<'a> {
         }
     }
 
-    /// Runs number `k` of the plan; with a second try where the first one breaks down, or with the options of the second try at once where
-    /// `rescued` says that it has needed them before.
+    /// Runs number `k` of the plan. If the method breaks down, it is tried once more with the options of the second
+    /// try; where `rescued` says that it has needed them before, they are used at once.
     ///
     /// # Errors
-    /// [`crate::Error::Environment`] where the machine refuses to start a job at all.
+    /// [`crate::Error::Environment`] where a job cannot be started at all.
     pub fn run(&mut self, k: usize, rescued: bool) -> Result<Ran> {
         let run = &self.plan.runs[k];
         if let (Some(_), Some(trouble)) = (run.baseline, &self.layout.trouble) {
@@ -129,7 +129,7 @@ impl<'a> Methods<'a> {
         let run = &self.plan.runs[k];
         let name = format!("{k}-{rescue}");
         let result = self.launcher.workspace.file(&format!("{name}.json"));
-        // What the same method has left in a round before must not be taken for the result of this one.
+        // The result of an earlier round must not be taken for that of this one.
         let _ = std::fs::remove_file(&result);
         let active = self.active.as_deref().unwrap_or_default();
         let job = Job {
@@ -148,7 +148,7 @@ impl<'a> Methods<'a> {
         Ok((outcome, finished.printed))
     }
 
-    /// The direct solution's verdict on solutions; an empty one when it cannot be had.
+    /// The judge's verdict on solutions; an empty one where there is no direct solution.
     ///
     /// # Errors
     /// As [`Methods::run`].
@@ -180,7 +180,7 @@ impl<'a> Methods<'a> {
     }
 }
 
-/// Whether a method broke down, rather than took too long or met the limits of rounding.
+/// Whether a method broke down, as opposed to a time limit or the limits of rounding.
 fn worth_a_second_try(outcome: &std::result::Result<Outcome, Failure>) -> bool {
     match outcome {
         Ok(outcome) => !outcome.reason.starts_with("CONVERGED"),
@@ -188,7 +188,7 @@ fn worth_a_second_try(outcome: &std::result::Result<Outcome, Failure>) -> bool {
     }
 }
 
-/// PETSc's arguments for the jobs: what asks for a text about the whole program is for the parent.
+/// PETSc's arguments for the jobs. Arguments that ask for a text about the whole program are left to the parent.
 pub fn forwarded(petsc: &[String]) -> Vec<String> {
     const PARENTS: [&str; 4] = ["-help", "-h", "-options_left", "-version"];
     let mut forwarded = Vec::new();
@@ -205,7 +205,7 @@ pub fn forwarded(petsc: &[String]) -> Vec<String> {
     forwarded
 }
 
-/// The row of a table for a run and what came of it.
+/// The row of a table for a run and its result.
 pub fn row(run: &Run, ran: Ran) -> CompareRow {
     let blank = CompareRow {
         method: run.name().to_string(),
@@ -246,7 +246,7 @@ pub fn row(run: &Run, ran: Ran) -> CompareRow {
     }
 }
 
-/// Writes into a row what the judge says.
+/// Enters a judgement into a row.
 pub fn sentence(row: &mut CompareRow, judgement: &Judgement) {
     row.error = judgement.error;
     row.residual = judgement.residual;
@@ -257,7 +257,7 @@ pub fn sentence(row: &mut CompareRow, judgement: &Judgement) {
     }
 }
 
-/// What the direct solution says of the inequalities; `None` without any.
+/// The state of the inequalities in the direct solution; `None` without any.
 pub fn inequalities(scene: &Scene, verdict: &Verdict) -> Option<CompareInequalities> {
     let reference = verdict.reference;
     scene.has_contact().then(|| CompareInequalities {

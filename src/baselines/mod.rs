@@ -6,12 +6,14 @@
 //!                                             all solutions ──> judge (direct solution) ─────> Verdict
 //! ```
 //!
-//! The assembled problem is that of [`assembled`](crate::assembled): in elasticity u is taken in blocks of nodes, along the normals of
-//! contact, and solvers are told the rigid motions. With inequalities the solvers of the assembled problem stand inside an active-set loop;
-//! the domain decompositions of PETSc solve the equations of the last active set.
+//! The assembled problem is that of [`assembled`](crate::assembled): in elasticity u is taken in blocks of nodes, in
+//! coordinates along the normals of contact, and solvers are given the rigid motions. With inequalities the solvers of
+//! the assembled problem run inside an active-set loop; the domain decompositions of PETSc solve the equations of the
+//! last active set.
 //!
-//! Every method runs in a process group of its own, started by mpirun, so that neither its memory nor its time is another's. All are
-//! driven to the same relative residual of the assembled problem. `methods` runs them; `compare` does so once, `bench` in rounds.
+//! Every method runs in a process group of its own, started by mpirun, so that memory and time of the methods are
+//! separate. All are driven to the same relative residual of the assembled problem. `methods` runs them; `compare` does
+//! so once, `bench` in rounds.
 
 mod attempt;
 mod bench;

@@ -1,4 +1,4 @@
-//! Ours as one of the jobs, measured on the assembled problem like the others.
+//! Our method as one of the jobs, measured on the assembled problem like the others.
 
 use std::path::Path;
 
@@ -33,12 +33,12 @@ pub fn solve(
     let (substructures, assemble) = timed(session, || distribution::substructures(session, scene))?;
     let settings = MethodSettings {
         rtol: job.rtol,
-        // Directions of one attempt would shorten the next one, which is the one that is timed.
+        // Recycled directions of one attempt would shorten the next one, which is the one that is timed.
         recycle: 0,
         ..MethodSettings::default()
     };
     let (mut solver, setup) = timed(session, || FetiFeti::new(session, substructures, settings))?;
-    // The assembled matrix is for the residual only: what it needs does not count.
+    // The assembled matrix serves for the residual only: its time and memory do not count.
     let layout = Layout::new(scene);
     let unknowns = Unknowns::all(&layout);
     let mut problem: Option<Problem> = None;
@@ -66,7 +66,7 @@ pub fn solve(
                 };
                 let residual = match layout.trouble {
                     None => close(session, problem, active, &u, &weight)?,
-                    // There is no assembled problem to have a residual.
+                    // Without an assembled problem there is no residual.
                     Some(_) => 0.0,
                 };
                 (residual, Some(outcome))
@@ -102,7 +102,8 @@ pub fn solve(
     Ok(outcome)
 }
 
-/// Seconds of a solve for another load with all that is set up; the contact loop begins from the beginning. Collective.
+/// Seconds of a solve for another load with the existing set-up; the contact loop starts from its initial set.
+/// Collective.
 fn again(session: &Session, solver: &mut FetiFeti, layout: &Layout, rtol: f64) -> Result<f64> {
     let second = SecondLoad::new(layout);
     let problem = solver.problem();
@@ -117,14 +118,14 @@ fn again(session: &Session, solver: &mut FetiFeti, layout: &Layout, rtol: f64) -
     solver.set_loads(loads, &gaps);
     solver.ksp().set_tolerances(Some(rtol), None, None, None)?;
     let solution = solver.solve()?;
-    // As the first one is measured: without the certificate.
+    // Measured as the first solve: without the certificate.
     let mut seconds = [solution.solve_seconds + solution.recover_seconds];
     max_all(session.comm(), &mut seconds);
     Ok(seconds[0])
 }
 
-/// Closes what the iteration has left of the jumps on the active rows, as the weighted mean of both sides does on tied faces,
-/// and returns the residual. Collective.
+/// Closes the jumps on the active rows that the iteration has left, by the weighted mean of both sides as on tied
+/// faces, and returns the residual. Collective.
 fn close(
     session: &Session,
     problem: &Problem,
@@ -139,7 +140,7 @@ fn close(
     problem.stationarity(session, &groups, u)
 }
 
-/// Which of the scene's inequalities are active, the same on every rank. Collective.
+/// The active inequalities of the scene, the same on every rank. Collective.
 fn active(
     session: &Session,
     scene: &Scene,

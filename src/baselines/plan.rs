@@ -1,4 +1,4 @@
-//! Which methods run in which layout, and to which residual.
+//! The plan of a comparison: which methods run, in which layout, and to which residual.
 
 use std::path::Path;
 use std::time::Duration;
@@ -18,7 +18,8 @@ const INNER: f64 = 0.1;
 pub struct Run {
     /// `None`: ours.
     pub baseline: Option<&'static Baseline>,
-    /// How it uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or `subdomain`.
+    /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
+    /// `subdomain`.
     pub layout: &'static str,
     /// MPI ranks.
     pub ranks: usize,
@@ -29,17 +30,17 @@ pub struct Run {
 }
 
 impl Run {
-    /// The method.
+    /// The method's name.
     pub fn name(&self) -> &'static str {
         self.baseline.map_or("fetifeti", |b| b.name)
     }
 
-    /// Method and ranks, for progress.
+    /// Method and ranks, for progress messages.
     pub fn title(&self) -> String {
         format!("{} on {}", self.name(), ranks(self.ranks))
     }
 
-    /// The job; `active`: rows of the last active set that is known.
+    /// The job; `active`: rows of the last known active set.
     pub fn task(&self, solution: &Path, rescue: bool, active: &[usize]) -> Task {
         let solution = solution.to_path_buf();
         match self.baseline {
@@ -57,16 +58,16 @@ impl Run {
     }
 }
 
-/// In which layouts domain decompositions of PETSc run.
+/// The layouts in which domain decompositions of PETSc run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layouts {
-    /// On the subdomains and on a part per core.
+    /// A part per subdomain, and a part per core.
     Two,
-    /// Also on a part per body.
+    /// Also a part per body.
     Three,
 }
 
-/// What is run, and to which residual.
+/// The runs, and the residual they have to reach.
 pub struct Plan {
     /// Relative residual.
     pub rtol: f64,
@@ -74,14 +75,14 @@ pub struct Plan {
     pub inner: f64,
     /// Cores that every method may use.
     pub cores: usize,
-    /// How long one method may take.
+    /// Time limit of one method.
     pub limit: Duration,
     /// The methods.
     pub runs: Vec<Run>,
 }
 
 impl Plan {
-    /// From the options.
+    /// The plan according to the options.
     ///
     /// # Errors
     /// [`Error::Input`] for a value out of range.
@@ -124,8 +125,8 @@ impl Plan {
     }
 }
 
-/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on fewer parts; the others on all
-/// cores.
+/// Ours with threads and with ranks; domain decompositions of PETSc on the same subdomains and on fewer parts; the
+/// others on all cores.
 fn runs(
     scene: &Scene,
     cores: usize,

@@ -1,12 +1,12 @@
-//! A second load for the same matrix, to see what a solve costs when everything is set up: the first one times a factor that
-//! is linear in the coordinates, so that contact zones move.
+//! A second load for the same matrix, to measure a solve with everything set up. It is the first load times a factor
+//! that is linear in the coordinates, so that contact zones move.
 
 use crate::assembled::layout::Layout;
 use crate::assembled::unknowns::Unknowns;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
-/// How much the factor changes along x and y over half the size of the scene.
+/// Slopes of the factor along x and y, relative to half the size of the scene.
 const SLOPE: [f64; 2] = [0.3, -0.2];
 
 /// The factor 1 + a·(x − centre) / radius.
@@ -22,7 +22,7 @@ impl SecondLoad {
         SecondLoad { centre, radius }
     }
 
-    /// At a place of w.
+    /// The factor at a place of w.
     pub fn at(&self, layout: &Layout, place: u64) -> f64 {
         self.value(layout.position(place / layout.components() as u64))
     }

@@ -1,4 +1,4 @@
-//! One row of the table as a job of its own, for studies.
+//! One baseline as a job of its own, for studies.
 
 use std::path::Path;
 use std::time::Duration;
@@ -7,8 +7,9 @@ use super::launch::{read, Launcher, Workspace};
 use super::task::{Job, Outcome, Task};
 use crate::Result;
 
-/// Runs the row `name` of the table on `ranks` ranks with these options of PETSc, to a relative residual of `rtol` of the assembled problem and for
-/// at most `seconds`. Where there are inequalities it solves the equations of the rows `active`. The inner `Err` is one sentence.
+/// Runs the baseline `name` on `ranks` ranks with these options of PETSc, to a relative residual of `rtol` of the
+/// assembled problem and for at most `seconds`. Where there are inequalities it solves the equations of the rows
+/// `active`. The inner `Err` is one sentence.
 ///
 /// # Errors
 /// [`Error::Environment`] without mpirun or disk.

@@ -1,7 +1,8 @@
 //! The baselines: rows of option strings on the same problem, to the same residual.
 //!
 //! Every row has a prefix of its own, so that a researcher can tune it on the command line of `compare`:
-//! `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_use_deluxe_scaling`, `-fetidp_fetidp_ksp_monitor`. Ours keeps `-fetifeti_`.
+//! `-gamg_pc_gamg_threshold 0.05`, `-bddc_pc_bddc_use_deluxe_scaling`, `-fetidp_fetidp_ksp_monitor`. Ours keeps
+//! `-fetifeti_`.
 
 use crate::assembled::near::Near;
 use crate::assembled::system::Format;
@@ -12,28 +13,28 @@ use crate::{Error, Result};
 /// One of PETSc's solvers.
 #[derive(Debug, PartialEq)]
 pub struct Baseline {
-    /// Its name for `--with`, and with an underscore the prefix of its options.
+    /// The name for `--with`; followed by an underscore, the prefix of its options.
     pub name: &'static str,
-    /// What it is.
+    /// A description.
     pub description: &'static str,
     /// The matrix it takes.
     pub format: Format,
-    /// Where the options of the Krylov method are found behind the prefix: KSPFETIDP iterates in a solver inside.
+    /// The prefix of the Krylov method's options behind the row's own prefix: KSPFETIDP iterates in an inner solver.
     pub krylov: &'static str,
     /// Options (without the prefix) that hold unless the user says otherwise.
     pub options: &'static [(&'static str, &'static str)],
-    /// Further options in space.
+    /// Further options in three dimensions.
     pub space: &'static [(&'static str, &'static str)],
-    /// Further options in elasticity, over those in space.
+    /// Further options in elasticity; they override those in three dimensions.
     pub elastic: &'static [(&'static str, &'static str)],
-    /// The rigid motions that it is told.
+    /// The rigid motions that the solver is given.
     pub near: Near,
-    /// Further options in contact loops, in which the matrix changes and has entries that are zero.
+    /// Further options in contact loops, where the matrix changes and has entries that are zero.
     pub contact: &'static [(&'static str, &'static str)],
-    /// In contact loops the preconditioner stays while at most this part of the inequalities has changed since it was built: what is
-    /// fastest on the model problem.
+    /// In contact loops the preconditioner is kept until more than this part of the inequalities has changed since it
+    /// was built. The value is the fastest one on the model problem.
     pub lag: f64,
-    /// Further options for a second try where the first one does not converge.
+    /// Further options for a second try, where the first one does not converge.
     pub rescue: &'static [(&'static str, &'static str)],
 }
 
@@ -58,7 +59,7 @@ impl Baseline {
             .join(" ")
     }
 
-    /// Puts its options into the database, below those of the user, and lists them under `-help`.
+    /// Puts the options into the database, where those of the user override them, and lists them under `-help`.
     ///
     /// # Errors
     /// PETSc's.
@@ -90,21 +91,21 @@ impl Baseline {
     }
 }
 
-/// What options depend on.
+/// The properties of a run that its options depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Case {
-    /// Three dimensions.
+    /// Whether the problem is three-dimensional.
     pub space: bool,
-    /// Elasticity.
+    /// Whether it is elasticity.
     pub elastic: bool,
-    /// Inequalities.
+    /// Whether there are inequalities.
     pub contact: bool,
-    /// The second try.
+    /// Whether this is the second try.
     pub rescue: bool,
 }
 
 impl Case {
-    /// The first try on `scene`.
+    /// The properties of `scene`, for the first try.
     pub fn of(scene: &Scene) -> Case {
         Case {
             space: scene.dim() == 3,
@@ -126,7 +127,7 @@ pub const BASELINES: [Baseline; 5] = [
             ("ksp_type", "cg"),
             ("ksp_norm_type", "unpreconditioned"),
             ("pc_type", "bddc"),
-            // Scaling by the stiffness follows jumps of the coefficient; PETSc's default is the multiplicity.
+            // Scaling by the stiffness follows jumps of the coefficient; PETSc's default scales by multiplicity.
             ("pc_is_use_stiffness_scaling", "true"),
             ("pc_bddc_dirichlet_pc_type", "cholesky"),
             ("pc_bddc_dirichlet_pc_factor_mat_solver_type", "cholmod"),
@@ -134,13 +135,13 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_bddc_neumann_pc_factor_mat_solver_type", "cholmod"),
         ],
         space: &[("pc_bddc_use_faces", "true")],
-        // Parts have too few vertices to be held by them: PETSc picks more by their positions. To make averages over edges and faces
-        // unknowns instead took sixteen times as long on large faces.
+        // Parts have too few vertices to have no kernel: PETSc picks more by their positions. Making averages over
+        // edges and faces unknowns instead took sixteen times as long on large faces.
         elastic: &[("pc_bddc_corner_selection", "true")],
         near: Near::Motions,
         contact: &[],
         lag: 0.0,
-        // A part that floats and has no vertex gets a singular local problem unless averages become unknowns, which costs
+        // A floating part without a vertex gets a singular local problem unless averages become unknowns, which costs
         // the other problems time and memory.
         rescue: &[("pc_bddc_use_change_of_basis", "true")],
     },
@@ -187,7 +188,7 @@ pub const BASELINES: [Baseline; 5] = [
         space: &[],
         elastic: &[],
         near: Near::Motions,
-        // Unknowns that a step has let go need a place on the coarse grids, and zeros are no connections.
+        // Unknowns that a step has released need a place on the coarse grids, and zero entries are no connections.
         contact: &[
             ("pc_gamg_reuse_interpolation", "false"),
             ("pc_gamg_threshold", "0"),
@@ -206,8 +207,9 @@ pub const BASELINES: [Baseline; 5] = [
             ("pc_type", "hypre"),
             ("pc_hypre_type", "boomeramg"),
         ],
-        // What hypre's manual advises in space. In elasticity every component by itself, connected through the smoother
-        // only (the block size tells): nodal coarsening with rotations in the interpolation took ten times as long.
+        // The recommendation of hypre's manual in three dimensions. In elasticity every component is coarsened by
+        // itself, and components are connected through the smoother only (the block size makes it so): nodal coarsening
+        // with rotations in the interpolation took ten times as long.
         space: &[
             ("pc_hypre_boomeramg_coarsen_type", "HMIS"),
             ("pc_hypre_boomeramg_interp_type", "ext+i"),

@@ -1,5 +1,5 @@
-//! What processes of a comparison say to each other. The parent writes a [`Job`], starts `mpirun -n R fetifeti baseline JOB` and reads an
-//! [`Outcome`] or a [`Verdict`](super::judge::Verdict).
+//! The messages between the processes of a comparison. The parent writes a [`Job`], starts `mpirun -n R fetifeti
+//! baseline JOB` and reads an [`Outcome`] or a [`Verdict`](super::judge::Verdict).
 
 use std::path::PathBuf;
 
@@ -12,18 +12,19 @@ pub struct Job {
     pub scene: PathBuf,
     /// Where the result goes, as JSON.
     pub result: PathBuf,
-    /// ‖b − A u‖₂ / ‖f‖₂ to be reached.
+    /// The bound for ‖b − A u‖₂ / ‖f‖₂.
     pub rtol: f64,
-    /// Reduction of the residual in a contact step while the active set changes, for solvers that iterate on the assembled problem.
+    /// Reduction of the residual in a contact step while the active set changes, for solvers that iterate on the
+    /// assembled problem.
     pub inner: f64,
-    /// Whether a method, when it is done, solves once more for another load, with what it has set up.
+    /// Whether a method solves once more for another load afterwards, with the same set-up.
     #[serde(default)]
     pub again: bool,
-    /// What to do.
+    /// The task.
     pub task: Task,
 }
 
-/// What to do.
+/// The kinds of task.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Task {
     /// Solve by the FETI-FETI method.
@@ -33,25 +34,25 @@ pub enum Task {
         /// Where the solution goes.
         solution: PathBuf,
     },
-    /// Solve by a row of the table.
+    /// Solve by a baseline.
     Baseline {
         /// Its name.
         name: String,
         /// Whether this is the second try.
         rescue: bool,
-        /// Rows of the active set for which a method that solves equations only does so.
+        /// The active rows, for methods that solve equations only.
         active: Vec<usize>,
         /// Where the solution goes.
         solution: PathBuf,
     },
     /// Solve directly and compare these solutions with it.
     Judge {
-        /// Solutions that methods have left, and the rows active in them.
+        /// Solution files of methods, and the rows active in them.
         solutions: Vec<(PathBuf, Vec<usize>)>,
     },
 }
 
-/// What a method reports of itself.
+/// A method's report on its run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// κ by CG.
@@ -64,31 +65,31 @@ pub struct Outcome {
     pub setup: f64,
     /// Seconds of the solve.
     pub solve: f64,
-    /// The part of `solve` for the way from multipliers to displacements, where there is one.
+    /// The part of `solve` for the recovery of displacements from multipliers, where there is one.
     pub recover: Option<f64>,
-    /// Seconds of the solve for a second load, where one was asked for: with all that was set up for the first.
+    /// Seconds of the solve for a second load with the set-up of the first, where one was asked for.
     pub again: Option<f64>,
     /// Largest resident memory, summed over the ranks, in bytes.
     pub memory: f64,
-    /// The same when PETSc had started and the problem was not read yet.
+    /// Resident memory, summed over the ranks, in bytes, when PETSc had started and the problem was not read yet.
     pub memory_at_start: f64,
     /// Relative tolerance with which the iteration reached the residual; `None` for a direct solver.
     pub rtol: Option<f64>,
     /// ‖b − A u‖₂ / ‖f‖₂.
     pub residual: Option<f64>,
-    /// In scenes with inequalities, how they came out.
+    /// In scenes with inequalities, the result of the contact loop.
     pub contact: Option<ContactOutcome>,
     /// PETSc's name for why the iteration ended.
     pub reason: String,
-    /// One sentence when the residual was not reached.
+    /// One sentence if the residual was not reached.
     pub message: Option<String>,
 }
 
-/// How inequalities came out.
+/// The result of the contact loop.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactOutcome {
-    /// Active sets that were solved for; `None` where the last one was given.
+    /// Number of active sets that were solved for; `None` where the set was given.
     pub steps: Option<usize>,
-    /// The rows of the last one, by their place among the inequalities of the scene.
+    /// The active rows at the end, by their index among the inequalities of the scene.
     pub active: Vec<usize>,
 }

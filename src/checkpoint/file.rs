@@ -4,8 +4,8 @@
 //!     "fetifeti checkpoint\n"   version u32   length of the content u64   content   hash of all before u64
 //! ```
 //!
-//! The content is a [`Checkpoint`] in the postcard format; the numbers around it are little-endian. Nothing is believed
-//! before the file has the length that it announces and its hash is right. A file is replaced as a whole or not at all.
+//! The content is a [`Checkpoint`] in the postcard format; the numbers around it are little-endian. The content is not
+//! read before length and hash are found right. A file is replaced as a whole or not at all.
 
 use std::fs::File;
 use std::io::Read;
@@ -16,9 +16,9 @@ use crate::report::output;
 use crate::{Error, Result};
 
 const MAGIC: &[u8] = b"fetifeti checkpoint\n";
-/// Changes when the content or its meaning does.
+/// Version of the format; it changes with the content or its meaning.
 const VERSION: u32 = 2;
-/// Bytes in front of the content, and behind it.
+/// Bytes in front of the content; bytes behind it.
 const HEAD: usize = MAGIC.len() + 4 + 8;
 const TAIL: usize = 8;
 
@@ -42,14 +42,14 @@ pub fn read(path: &Path) -> Result<Checkpoint> {
     let mut bytes = Vec::new();
     let mut start = (&mut file).take(MAGIC.len() as u64);
     start.read_to_end(&mut bytes).map_err(refused)?;
-    // What is no checkpoint may be of any size.
+    // A file that is no checkpoint may be of any size.
     if MAGIC.starts_with(&bytes) {
         file.read_to_end(&mut bytes).map_err(refused)?;
     }
     from_bytes(&bytes).map_err(|what| Error::input(format!("{name}: {what}")))
 }
 
-/// FNV-1a: differs for sure where one byte does.
+/// The FNV-1a hash. It always changes when a single byte does.
 pub(super) fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &byte| {
         (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)

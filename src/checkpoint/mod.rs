@@ -1,13 +1,13 @@
 //! Checkpoints of the contact loop: `--checkpoint FILE` and `--resume FILE` of `fetifeti solve`.
 //!
-//! A file says in which load step the run is, where the contact loop stands in it, and what came before. It belongs to
-//! a scene, not to a run: ranks, tolerances and methods may be others.
+//! A file holds the current load step, the state of the contact loop in it, and the records of everything before. It
+//! belongs to a scene, not to a run: the run that resumes may have other ranks, tolerances and methods.
 //!
-//! | file | what it does |
+//! | file | task |
 //! |---|---|
-//! | [`rows`] | takes the ranks out of a state and deals it out again |
-//! | [`mod@file`] | writes a checkpoint and reads it, with all that a file on a disk needs |
-//! | this one | decides whether a checkpoint belongs to a scene, and goes on from it |
+//! | [`rows`] | removes the ranks from a state, and distributes it again |
+//! | [`mod@file`] | writes a checkpoint file, and checks and reads it |
+//! | this one | decides whether a checkpoint belongs to a scene, and resumes from it |
 
 use std::path::{Path, PathBuf};
 
@@ -24,73 +24,73 @@ use rows::{GlobalState, Layout};
 pub mod file;
 pub mod rows;
 
-/// Everything that a run needs to go on.
+/// The content of a checkpoint: everything that a run needs to resume.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// Title of the scene, for messages.
     pub title: String,
     /// Fingerprint of the scene.
     pub scene: u64,
-    /// The load step that is under way.
+    /// The current load step.
     pub load_step: usize,
-    /// The [`Records`] of the time before this state, as JSON.
+    /// The [`Records`] up to this state, as JSON.
     pub records: String,
-    /// Where the load step stands.
+    /// The state of the contact loop in the load step.
     pub state: GlobalState,
 }
 
-/// What was asked for, checked before the work.
+/// The files that the command line names, checked before the solve.
 pub struct Checkpoints {
     /// File to write.
     file: Option<PathBuf>,
-    /// File that was read.
+    /// File to resume from.
     resume: Option<PathBuf>,
     title: String,
     scene: u64,
-    /// What was read; rank 0 has the state.
+    /// The checkpoint that was read; only rank 0 has the state.
     found: Option<Checkpoint>,
     /// Its load step and records, on every rank.
     before: Option<(usize, String)>,
 }
 
-/// The same with a solver to take states from and to give one to.
+/// [`Checkpoints`] with a solver that provides and takes states.
 pub struct Attached {
     asked: Checkpoints,
     layout: Option<Layout>,
     start: Option<State>,
 }
 
-/// Where to go on; a run that starts afresh goes on at the beginning.
+/// The point at which a run resumes; without a checkpoint, the beginning.
 #[derive(Debug, Default)]
 pub struct Resumed {
     /// Load step, from 0.
     pub load_step: usize,
-    /// What was done before.
+    /// The records of everything before.
     pub records: Records,
-    /// Where the load step stands.
+    /// The state of the contact loop in this load step.
     pub state: Option<State>,
 }
 
-/// What the report of a run says of the time before a checkpoint.
+/// The part of a run's report that was made before a checkpoint.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Records {
     /// Steps of the contact loop.
     pub outer: Vec<OuterStep>,
-    /// Load steps that are finished.
+    /// Finished load steps.
     pub load_steps: Vec<LoadStep>,
-    /// Krylov iterations of each outer step of the load steps that are finished.
+    /// Krylov iterations of each outer step of the finished load steps.
     pub iterations: Vec<usize>,
 }
 
 impl Records {
-    /// Takes out the outer steps of the load step that is under way.
+    /// Removes and returns the outer steps of the current load step.
     pub fn take(&mut self, load_step: usize) -> Vec<OuterStep> {
         let finished = self.outer.iter().take_while(|s| s.load_step != load_step);
         let n = finished.count();
         self.outer.split_off(n)
     }
 
-    /// With the outer steps of the load step that is under way.
+    /// These records followed by the outer steps of the current load step.
     pub fn followed_by(&self, outer: &[OuterStep]) -> Records {
         let mut all = self.clone();
         all.outer.extend_from_slice(outer);
@@ -99,7 +99,8 @@ impl Records {
 }
 
 impl Checkpoints {
-    /// Proves that `file` can be written and reads the one to resume from; `path` is the file of the scene. Collective.
+    /// Tests that `file` can be written, and reads the checkpoint to resume from; `path` is the file of the scene.
+    /// Collective.
     ///
     /// # Errors
     /// A scene without an outer loop, a place that cannot be written, a file that is no checkpoint of this scene.
@@ -134,7 +135,7 @@ impl Checkpoints {
         Ok(out)
     }
 
-    /// What rank 0 does alone.
+    /// The part on rank 0: reads the checkpoint and compares it with the scene.
     fn read(&mut self, path: &Path, scene: &Scene) -> Result<()> {
         if !scene.has_contact() {
             let flag = if self.resume.is_some() {
@@ -187,7 +188,7 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Finds out who owns what in this run. Collective.
+    /// Determines the owners of rows in this run. Collective.
     ///
     /// # Errors
     /// A checkpoint whose rows are not those of the solver.
@@ -210,10 +211,10 @@ impl Checkpoints {
 }
 
 impl Attached {
-    /// Where the run goes on. Collective.
+    /// The point at which the run resumes. Collective.
     ///
     /// # Errors
-    /// Records that are not ours.
+    /// Records that this program has not written.
     pub fn resume(&self, session: &Session) -> Result<Resumed> {
         let (Some((load_step, records)), Some(file)) = (&self.asked.before, &self.asked.resume)
         else {
@@ -232,8 +233,8 @@ impl Attached {
         })
     }
 
-    /// Writes where load step `load_step` stands and what was done so far; nothing where no file was asked for. Between
-    /// two load steps that is the beginning of the next one. Collective.
+    /// Writes the state of load step `load_step` and the records so far; does nothing where no file was asked for.
+    /// Between two load steps the state is the beginning of the next one. Collective.
     ///
     /// # Errors
     /// [`Error::Environment`] when the disk refuses; the old file is then untouched.
@@ -263,7 +264,7 @@ impl Attached {
     }
 }
 
-/// Tells scenes apart by what is solved: comments, layout, title and PETSc options do not count.
+/// A hash of what is solved: comments, layout, title and PETSc options do not change it.
 fn fingerprint(text: &str) -> u64 {
     match text.parse::<toml::Table>() {
         Ok(mut table) => {
@@ -272,7 +273,7 @@ fn fingerprint(text: &str) -> u64 {
             }
             file::hash(table.to_string().as_bytes())
         }
-        // Not reached: the scene was read from this text.
+        // Unreachable: the scene was read from this text.
         Err(_) => file::hash(text.as_bytes()),
     }
 }

@@ -1,9 +1,9 @@
-//! The state of the contact loop without the ranks: gathered in an order that only the problem decides, and dealt out
-//! again to any number of ranks.
+//! The state of the contact loop without the ranks: gathered in a canonical order that depends on the problem only, and
+//! distributed again to any number of ranks.
 //!
-//! Rows of B_loc belong to the lowest subdomain of their dof and follow its local dofs; rows of B_gl belong to a block
-//! and stand in it as the scene provides them. Neither depends on who owns what, so that (subdomain, position) and
-//! (block, position) name a row in every run of the problem:
+//! Rows of B_loc belong to the lowest subdomain of their dof and follow its local dofs. Rows of B_gl belong to a block
+//! and keep the order in which the scene provides them. Neither depends on the owners, so that (subdomain, position)
+//! and (block, position) identify a row in every run of the problem:
 //!
 //! ```text
 //!     λ = [ rows of subdomain 0 | rows of subdomain 1 | … | rows of the lowest block | of the next | … ]
@@ -30,9 +30,9 @@ pub struct GlobalState {
     pub blocks: Vec<(u64, u64)>,
     /// Multipliers: rows of B_loc, then of B_gl.
     pub lambda: Vec<f64>,
-    /// Which rows of B_gl are to hold in the next step.
+    /// Rows of B_gl that are active in the next step.
     pub active: Vec<bool>,
-    /// Which of them held in the step before.
+    /// Rows of B_gl that were active in the step before.
     pub before: Vec<bool>,
     /// As [`State::reference`].
     pub reference: f64,
@@ -47,7 +47,7 @@ pub struct GlobalState {
 }
 
 impl GlobalState {
-    /// Whether the lists are as long as the numbers of rows say.
+    /// Whether the lengths of the lists agree with the numbers of rows.
     pub(super) fn is_consistent(&self) -> bool {
         let contact = checked_sum(self.blocks.iter().map(|b| b.1));
         let all = checked_sum(self.local.iter().copied().chain(contact));
@@ -61,28 +61,28 @@ fn checked_sum(mut numbers: impl Iterator<Item = u64>) -> Option<u64> {
     numbers.try_fold(0u64, |sum, n| sum.checked_add(n))
 }
 
-/// Consecutive rows on one rank that stay together.
+/// Consecutive rows on one rank that are moved together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Chunk {
     /// Subdomain or block.
     key: u64,
     rank: usize,
-    /// First row among those that the rank owns.
+    /// First of these rows among those that the rank owns.
     first: usize,
     n: usize,
 }
 
 impl Chunk {
-    /// Its rows among those that the rank owns.
+    /// These rows as indices among those that the rank owns.
     fn rows(&self) -> Range<usize> {
         self.first..self.first + self.n
     }
 }
 
-/// Who owns which rows: known to rank 0.
+/// The owners of the rows, known to rank 0.
 #[derive(Debug)]
 pub struct Layout {
-    /// Z⁰ and whether it may change, on the owned rows.
+    /// On the owned rows: Z⁰, and whether it may change.
     initial: Vec<bool>,
     inequality: Vec<bool>,
     /// Length of μ.
@@ -95,7 +95,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The layout of this run. Collective.
+    /// The owners in this run. Collective.
     pub fn new(solver: &LinearMethod) -> Layout {
         let (session, problem) = (solver.session(), solver.problem());
         let dual = solver.dual();
@@ -166,7 +166,7 @@ impl Layout {
         })
     }
 
-    /// This rank's part of what rank 0 has read from `file`. Collective.
+    /// This rank's part of the state that rank 0 has read from `file`. Collective.
     ///
     /// # Errors
     /// [`Error::Input`] that names the file if its rows are not those of this run.
@@ -178,7 +178,7 @@ impl Layout {
     ) -> Result<State> {
         session.agree(global.map_or(Ok(()), |global| self.fits(file, global)))?;
         let mut state: State = from_first(session, global.map(|global| self.deal(global)));
-        // Equations stay what they are.
+        // Equations are always active.
         for set in [&mut state.active, &mut state.before] {
             for (r, on) in set.iter_mut().enumerate() {
                 if !self.inequality[r] {
@@ -189,7 +189,7 @@ impl Layout {
         Ok(state)
     }
 
-    /// The state of every rank.
+    /// The states of all ranks.
     fn deal(&self, global: &GlobalState) -> Vec<State> {
         let owned = self.owned.iter();
         let mut out: Vec<State> = owned
@@ -248,7 +248,7 @@ impl Layout {
     }
 }
 
-/// Every rank's value on rank 0; nothing on the others. Collective.
+/// The values of all ranks on rank 0; empty on the others. Collective.
 fn to_first<T: Serialize + DeserializeOwned>(session: &Session, mine: &T) -> Vec<T> {
     let mut outgoing = vec![Vec::new(); session.size()];
     outgoing[0] = to_words(mine);
@@ -259,7 +259,7 @@ fn to_first<T: Serialize + DeserializeOwned>(session: &Session, mine: &T) -> Vec
     }
 }
 
-/// The value that rank 0, which has one for every rank, has for this one. Collective.
+/// Sends each rank its value from rank 0, which has one for every rank. Collective.
 pub(super) fn from_first<T: Serialize + DeserializeOwned>(
     session: &Session,
     values: Option<Vec<T>>,

@@ -1,4 +1,5 @@
-//! Equilibrium of every body: loads, forces on interfaces and obstacles, reactions; in elasticity by components and with moments.
+//! Equilibrium of every body: loads, forces on interfaces and obstacles, and reactions. In elasticity it is by
+//! components, and with moments.
 
 use crate::linalg::vec3::{cross, minus, norm};
 use crate::parallel::exchange::sum_all;
@@ -8,7 +9,7 @@ use crate::scene::{Body, Scene};
 use crate::substructures::{BodyNode, SolvedRow};
 use crate::{FetiFeti, Result};
 
-/// What acts on a body. Moments are about its centre.
+/// The forces and moments on a body. Moments are about its centre.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     load: [f64; 3],
@@ -16,7 +17,7 @@ struct Sums {
     /// Σ |multiplier|.
     size: f64,
     moment: [f64; 3],
-    /// Sizes of the moments that the forces on rows and the load make.
+    /// Sizes of the moments of the forces on rows, and of the load.
     moment_size: [f64; 2],
 }
 
@@ -60,7 +61,7 @@ pub(super) fn bodies(
         }
         to.moment_size[1] += norm(moment);
     }
-    // Rank 0 has all rows, those of the others are empty.
+    // Rank 0 has all rows; the lists of the other ranks are empty.
     for row in rows {
         let members = row.label.members.into_iter().flatten();
         for (sign, BodyNode { body: b, node }) in [-1.0, 1.0].into_iter().zip(members) {
@@ -113,8 +114,8 @@ fn scalar(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
     }
 }
 
-/// Reactions are what is missing in the components that are given somewhere; in the others forces must balance, and moments
-/// where nothing is given at all.
+/// In components that are prescribed somewhere, reactions balance the other forces. In the other components the forces
+/// themselves must balance, and the moments must where nothing is prescribed at all.
 fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
     let c = body.components;
     let mut held = [false; 3];
@@ -127,7 +128,7 @@ fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
     let loose = body.prescribed.is_empty();
     let vector = |f: &dyn Fn(usize) -> f64| Amount((0..c).map(f).collect());
     let lever = sums.moment_size[0].max(sums.moment_size[1]);
-    // Forces through the centre have no lever; their rounding is no moment.
+    // Forces through the centre have no lever arm; their rounding must not count as a moment.
     let lever = lever.max(sums.size * body.ball().1 * 1e-3);
     BodyBalance {
         name: body.spec.name.clone(),

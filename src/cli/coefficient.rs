@@ -1,19 +1,19 @@
-//! The coefficient in words: how far it ranges, and where it was read.
+//! The coefficient in words: its range, and the files it was read from.
 
 use crate::parallel::exchange::{max_all, min_all};
 use crate::petsc::Session;
 use crate::scene::{distribution, Cells, Field, Scene};
 use crate::Result;
 
-/// How far ρ (Young's modulus in elasticity) ranges.
+/// The range of ρ (Young's modulus in elasticity).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coefficient {
-    /// Least and greatest value by body.
+    /// Least and greatest value in each body.
     pub bodies: Vec<[f64; 2]>,
 }
 
 impl Coefficient {
-    /// Evaluates it in all elements. Collective.
+    /// Evaluates ρ in all elements. Collective.
     pub fn of(session: &Session, scene: &Scene) -> Result<Coefficient> {
         let owns = distribution::owner(session, scene)?;
         let mine = session.agree(scene.coefficient_ranges(&owns))?;
@@ -26,7 +26,7 @@ impl Coefficient {
         })
     }
 
-    /// Least and greatest value of all.
+    /// Least and greatest value over all bodies.
     pub fn range(&self) -> [f64; 2] {
         let wider = |a: [f64; 2], b: &[f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         self.bodies
@@ -40,7 +40,8 @@ impl Coefficient {
         quotients.fold(1.0, f64::max)
     }
 
-    /// Such as "ρ from 0.001 to 1000, inside a body by a factor of up to 1e6; layers.bin, 24 x 24 x 12 cells".
+    /// A sentence such as "ρ from 0.001 to 1000, inside a body by a factor of up to 1e6; layers.bin, 24 x 24 x 12
+    /// cells".
     pub fn text(&self, scene: &Scene) -> String {
         let name = ["ρ", "E"][usize::from(scene.form.is_elastic())];
         let [low, high] = self.range();
@@ -64,7 +65,7 @@ impl Coefficient {
     }
 }
 
-/// Four digits of a number: 0.0123, 3000, 1e6.
+/// A number with four digits: 0.0123, 3000, 1e6.
 fn number(x: f64) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
     match (1e-4..1e5).contains(&rounded.abs()) {
@@ -73,7 +74,7 @@ fn number(x: f64) -> String {
     }
 }
 
-/// The files of the coefficient, each once.
+/// The coefficient files, each once.
 fn files(scene: &Scene) -> Vec<&Cells> {
     let mut out: Vec<&Cells> = Vec::new();
     for body in &scene.bodies {

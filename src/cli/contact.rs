@@ -1,4 +1,4 @@
-//! What the report says of contact: rows with their places, forces per interface, the balance of every body.
+//! Contact in the report: rows with their places, forces per interface, the balance of every body.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::scene::{Scene, Shape};
 use crate::substructures::{RowSource, SolvedRow};
 use crate::Solution;
 
-/// All rows on rank 0, by interface and t; empty on the others. Collective.
+/// All rows on rank 0, ordered by interface and t; empty on the other ranks. Collective.
 pub fn rows(session: &Session, solution: &Solution) -> Vec<SolvedRow> {
     let mut rows = SolvedRow::on_first_rank(session.comm(), solution.rows());
     rows.sort_by(|a, b| {
@@ -26,7 +26,8 @@ pub(super) fn by_source(rows: &[SolvedRow]) -> impl Iterator<Item = &[SolvedRow]
     rows.chunk_by(|a, b| a.label.source == b.label.source)
 }
 
-/// The body of the first member of rows from one source, and its side that they lie on; none where bodies meet in less than a side.
+/// For rows from one source: the body of their first member, and its side on which they lie. `None` where bodies meet
+/// in less than a side.
 pub(super) fn side(scene: &Scene, rows: &[SolvedRow]) -> Option<(usize, usize)> {
     let first = rows.first()?;
     let body = first.body()?;
@@ -79,13 +80,13 @@ pub fn forces(scene: &Scene, rows: &[SolvedRow]) -> Vec<InterfaceForce> {
         .collect()
 }
 
-/// Σ λ n: what the first body, or the only one, presses with on what is opposite.
+/// Σ λ n: the force of the first body, or the only one, on the opposite body or obstacle.
 fn resultant(scene: &Scene, rows: &[SolvedRow]) -> Vec<f64> {
     let component = |c: usize| rows.iter().map(|r| r.multiplier * r.normal()[c]).sum();
     (0..scene.dim()).map(component).collect()
 }
 
-/// The pressures of the inequalities, where multipliers are reported as such and some sides may touch.
+/// The pressures of the inequalities, where the scene reports multipliers as pressures and some sides may touch.
 fn pressures<'a>(
     scene: &Scene,
     rows: &'a [SolvedRow],
@@ -95,7 +96,7 @@ fn pressures<'a>(
     some.then(|| contact().filter_map(SolvedRow::pressure))
 }
 
-/// Multiplier and gap along every interface that has inequalities.
+/// The profiles of multiplier and gap along every interface that has inequalities.
 pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
     by_source(rows)
         .filter(|rows| rows.iter().any(|r| r.is_inequality()))
@@ -107,7 +108,7 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
                     Shape::Corner => 0,
                 },
             };
-            // Along a curved side no coordinate grows steadily.
+            // Along a curved side no coordinate increases monotonically.
             let curved = rows[0]
                 .body()
                 .is_some_and(|b| scene.bodies[b].spec.map.is_some());
@@ -134,7 +135,7 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
         .collect()
 }
 
-/// One outer step as the report has it.
+/// The record of one outer step in the report.
 pub fn outer_step(load_step: usize, number: usize, step: &Step) -> OuterStep {
     let spectrum = |s: crate::feti::Spectrum| json::Spectrum::new(s.lambda_min, s.lambda_max);
     OuterStep {
@@ -154,7 +155,7 @@ pub fn outer_step(load_step: usize, number: usize, step: &Step) -> OuterStep {
     }
 }
 
-/// The methods that made the steps, in order.
+/// The names of the methods that made the steps, in order.
 pub fn method(steps: &[OuterStep]) -> String {
     let mut seen: BTreeMap<usize, &str> = BTreeMap::new();
     for (k, step) in steps.iter().enumerate() {

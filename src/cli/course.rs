@@ -14,11 +14,11 @@ use crate::scene::{distribution, Scene, Stepping};
 use crate::substructures::SolvedRow;
 use crate::{FetiFeti, Result, Solution};
 
-/// What happened over the load steps.
+/// The results over the load steps.
 pub(super) struct Course {
     /// The last solution.
     pub solution: Solution,
-    /// Load step that it belongs to.
+    /// The load step of this solution.
     pub step: usize,
     pub outer: Vec<OuterStep>,
     pub load_steps: Vec<LoadStep>,
@@ -30,8 +30,8 @@ pub(super) struct Course {
     pub rows: Vec<SolvedRow>,
 }
 
-/// Solves the load steps one after the other, each from where the last one ended, the first from the checkpoint if there is one.
-/// Collective.
+/// Solves the load steps in order. Each starts from the end of the one before, the first from the checkpoint if there
+/// is one. Collective.
 pub(super) fn follow(
     session: &Session,
     scene: &Scene,
@@ -58,7 +58,7 @@ pub(super) fn follow(
         session.agree(list_before(session, dir, &times[..first], pvd))?;
     }
     let mut seconds = [0.0; 2];
-    // One step has the loads that the substructures came with.
+    // With a single load step the substructures have its loads already.
     let many = (n > 1).then(|| {
         let mine = solver.problem().local.iter().map(|s| s.index);
         session.agree(Stepping::new(scene, mine))
@@ -123,7 +123,7 @@ pub(super) fn follow(
     })
 }
 
-/// Puts what an interrupted run has left of the time series at its front.
+/// Lists the files of an interrupted run at the front of the time series.
 fn list_before(session: &Session, dir: &Path, times: &[f64], pvd: &mut Pvd) -> Result<()> {
     if session.rank() > 0 {
         return Ok(());
@@ -137,7 +137,7 @@ fn list_before(session: &Session, dir: &Path, times: &[f64], pvd: &mut Pvd) -> R
     Ok(())
 }
 
-/// Name of the file of load step `step`, without its ending.
+/// Name of the file of load step `step`, without its extension.
 fn step_name(step: usize) -> String {
     format!("step_{:04}", step + 1)
 }

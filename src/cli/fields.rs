@@ -64,7 +64,7 @@ impl Gathered {
         }
         parts.sort_unstable_by_key(|p| p.0);
         let mut all = Gathered::default();
-        // Meshes have the given values of the last load step.
+        // Meshes contain the prescribed values of the last load step.
         let last = scene.prescribed_factor(scene.n_steps() - 1);
         let now = scene.prescribed_factor(step);
         for (index, values) in parts {
@@ -96,7 +96,7 @@ impl Gathered {
         Ok(all)
     }
 
-    /// The displacement of a point; in scalar problems none.
+    /// The displacement of a point; zero in scalar problems.
     pub(super) fn displacement(&self, scene: &Scene, point: usize) -> [f64; 3] {
         let mut out = [0.0; 3];
         let c = scene.components();
@@ -106,7 +106,7 @@ impl Gathered {
         out
     }
 
-    /// The points that are copies of (body, node), for the nodes of the rows.
+    /// For the nodes of the rows, the points that are copies of (body, node).
     pub(super) fn copies(
         &self,
         scene: &Scene,
@@ -127,7 +127,7 @@ impl Gathered {
         out
     }
 
-    /// Multiplier, gap and contact at the points, on every copy of a node.
+    /// Multiplier, gap and contact at the points; every copy of a node gets them.
     fn contact_fields(&self, scene: &Scene, rows: &[SolvedRow]) -> Result<Option<ContactFields>> {
         if rows.iter().all(|r| !r.is_inequality()) {
             return Ok(None);
@@ -148,7 +148,7 @@ impl Gathered {
         Ok(Some(fields))
     }
 
-    /// u as VTK takes it: a number, or three components.
+    /// u in VTK's form: a number, or three components.
     fn vectors(&self, scene: &Scene) -> (usize, Vec<f64>) {
         match scene.components() {
             1 => (1, self.u.clone()),
@@ -214,7 +214,7 @@ fn stresses<'a>(
     })
 }
 
-/// The order in which ParaView names six components: xx, yy, zz, xy, yz, xz.
+/// The components of stress in ParaView's order: xx, yy, zz, xy, yz, xz.
 fn symmetric(s: &CellStress) -> [f64; 6] {
     let s = &s.stress;
     [s[0][0], s[1][1], s[2][2], s[0][1], s[1][2], s[0][2]]

@@ -1,4 +1,4 @@
-//! What rank 0 does for all.
+//! Work that rank 0 does for all ranks.
 
 use crate::petsc::Session;
 use crate::report::output;
@@ -18,7 +18,7 @@ pub fn on_first_rank(session: &Session, work: impl FnOnce() -> Result<()>) -> Re
 /// Prints `text` on rank 0. Collective.
 ///
 /// # Errors
-/// [`crate::Error::Environment`] where standard output takes nothing.
+/// [`crate::Error::Environment`] where standard output cannot be written.
 pub fn say(session: &Session, text: &str) -> Result<()> {
     on_first_rank(session, || output::print(text))
 }

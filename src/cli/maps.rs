@@ -7,11 +7,11 @@ use crate::report::pictures::contact_map::ContactMap;
 use crate::scene::Scene;
 use crate::substructures::SolvedRow;
 
-/// A side is drawn in two of its coordinates where no normal is further from the third than the angle of this cosine, else in its
-/// parameters.
+/// A side is drawn in two of its coordinates where all its normals are within a certain angle of the third coordinate;
+/// this is the cosine of the angle. Other sides are drawn in their parameters.
 const STEEP: f64 = 0.4;
 
-/// Every interface and obstacle that has inequalities.
+/// The maps of all interfaces and obstacles that have inequalities.
 pub(super) fn of(scene: &Scene, rows: &[SolvedRow]) -> Vec<ContactMap> {
     by_source(rows)
         .filter(|rows| rows.iter().any(|r| r.is_inequality()))
@@ -50,7 +50,7 @@ fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
             .collect();
         for cell in spec.side_cells(side) {
             let corner = |a: usize| of.get(&spec.mesh.node(cell[a])).copied();
-            // Around the face, not line by line.
+            // The corners in the order around the face, not line by line.
             if let [Some(a), Some(b), Some(c), Some(d)] = [0, 1, 3, 2].map(corner) {
                 cells.push([a, b, c, d]);
             }

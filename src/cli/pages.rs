@@ -1,4 +1,4 @@
-//! What the program writes about itself: scripts that complete command lines, manual pages.
+//! The program's shell completions and manual pages.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::report::destination::Destination;
 use crate::report::output;
 use crate::{Error, Result};
 
-/// A script for a shell.
+/// The completion script for a shell.
 pub fn completions(shell: Shell) -> String {
     let line = Line::command();
     // Commands by which processes of the program call each other are left out.

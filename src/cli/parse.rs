@@ -6,7 +6,7 @@ use clap::{CommandFactory, Parser};
 use super::args::{Command, Line};
 use crate::{Error, Result};
 
-/// What is to be done.
+/// The action that the arguments ask for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Wanted {
     /// Print a text: help, version.
@@ -15,10 +15,10 @@ pub enum Wanted {
     Run(Command),
 }
 
-/// What was written.
+/// The parsed command line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Invocation {
-    /// What is to be done.
+    /// The action.
     pub wanted: Wanted,
     /// Arguments for PetscInitialize.
     pub petsc: Vec<String>,
@@ -39,12 +39,13 @@ pub fn parse(args: Vec<String>) -> Result<Invocation> {
     Ok(Invocation { wanted, petsc })
 }
 
-/// What `fetifeti --help` prints.
+/// The text that `fetifeti --help` prints.
 pub fn usage() -> String {
     Line::command().render_help().to_string()
 }
 
-/// Ours and PETSc's. As PETSc reads them: what follows an option and is no option is its value.
+/// Separates our arguments from PETSc's, in the manner of PETSc: an argument behind an option is its value unless it is
+/// an option itself.
 fn split(args: Vec<String>) -> (Vec<String>, Vec<String>) {
     let is_option = |word: &str| word.starts_with('-') && word.parse::<f64>().is_err();
     let (mut ours, mut petsc) = (Vec::new(), Vec::new());
@@ -60,7 +61,7 @@ fn split(args: Vec<String>) -> (Vec<String>, Vec<String>) {
     (ours, petsc)
 }
 
-/// One sentence of what clap says in several lines.
+/// clap's message of several lines as one sentence.
 fn sentence(mistake: &clap::Error) -> String {
     let of = |kind| match mistake.get(kind) {
         Some(ContextValue::String(one)) => Some(one.clone()),
@@ -80,7 +81,7 @@ fn sentence(mistake: &clap::Error) -> String {
             let names = names.replace(['<', '>'], "").to_lowercase();
             format!("no {names} was given")
         }
-        // The first paragraph says what is wrong.
+        // The first paragraph of the message says what is wrong.
         _ => {
             let text = mistake.to_string();
             let text = text.strip_prefix("error: ").unwrap_or(&text);

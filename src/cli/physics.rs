@@ -1,4 +1,4 @@
-//! What is solved, in words.
+//! The physical problem in words.
 
 use crate::fem::cell::{Cure, Element, Plane};
 use crate::fem::Physics;

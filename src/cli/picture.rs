@@ -1,5 +1,5 @@
-//! `solution.png`: u and ρ of a plane scalar problem, the deformed bodies of an elastic one, the surface of solids; there also the coefficient
-//! where it varies inside bodies.
+//! `solution.png`: u and ρ of a plane scalar problem, the deformed bodies of an elastic one, or the surface of solids;
+//! the latter two with the coefficient where it varies inside bodies.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,11 +15,11 @@ use crate::scene::Scene;
 use crate::substructures::SolvedRow;
 use crate::Result;
 
-/// Displacements are magnified so that the largest is at most this part of the scene's size.
+/// Displacements are magnified such that the largest is at most this part of the scene's size.
 const LARGEST: f64 = 0.1;
-/// They are shown as they are between these parts of it.
+/// Displacements are not magnified where the largest is between these parts of the scene's size.
 const VISIBLE: [f64; 2] = [0.03, 0.3];
-/// … and beside contact already from this part on: magnified, bodies that touch overlap.
+/// Beside contact, the lower bound of [`VISIBLE`]: magnified, bodies that touch overlap.
 const VISIBLE_CONTACT: f64 = 0.01;
 
 /// Writes `solution.png` into `dir`.
@@ -112,10 +112,10 @@ fn varies_inside_bodies(values: &[f64], body: &[u32]) -> bool {
     cells.any(|(value, body)| *first.entry(body).or_insert(value) != value)
 }
 
-/// The points where they have moved to.
+/// The points in their displaced positions.
 struct Moved {
     points: Vec<[f64; 3]>,
-    /// Displacements are magnified by it.
+    /// The factor by which displacements are magnified.
     factor: f64,
 }
 
@@ -144,7 +144,8 @@ impl Moved {
     }
 }
 
-/// 1 where the largest displacement is visible beside the scene's size, from the part `from` of it on, else 1, 2 or 5 times a power of ten.
+/// The factor: 1 where the largest displacement, relative to the scene's size, is visible, that is, at least `from`;
+/// else 1, 2 or 5 times a power of ten.
 fn factor(largest: f64, size: f64, from: f64) -> f64 {
     if largest == 0.0 || (from..=VISIBLE[1]).contains(&(largest / size)) {
         return 1.0;
@@ -153,7 +154,7 @@ fn factor(largest: f64, size: f64, from: f64) -> f64 {
     let power = 10_f64.powi(wanted.log10().floor() as i32);
     let fits = [5.0, 2.0, 1.0].map(|m| m * power);
     let fits = fits.into_iter().find(|f| *f <= wanted).unwrap_or(power);
-    // Neither an overflow nor nothing, whatever the displacements.
+    // The factor must neither overflow nor vanish, however extreme the displacements are.
     if fits.is_normal() {
         fits
     } else {
@@ -172,7 +173,7 @@ fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
     out
 }
 
-/// Where bodies may touch and do, from node to node.
+/// The segments between neighbouring nodes that may touch, and whether they do.
 fn line_marks(rows: &[SolvedRow], at: &dyn Fn(&SolvedRow) -> [f64; 2]) -> Vec<ContactMark> {
     let mut out = Vec::new();
     for rows in by_source(rows) {
@@ -193,7 +194,7 @@ fn line_marks(rows: &[SolvedRow], at: &dyn Fn(&SolvedRow) -> [f64; 2]) -> Vec<Co
     out
 }
 
-/// The faces of elements whose nodes all may touch, on both bodies of an interface.
+/// The faces of elements all of whose nodes may touch, on both bodies of an interface.
 fn face_marks(scene: &Scene, rows: &[SolvedRow]) -> Vec<FaceMark> {
     let mut out = Vec::new();
     for rows in by_source(rows) {

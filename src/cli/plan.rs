@@ -1,4 +1,4 @@
-//! `fetifeti plan`: what the solver will build for a scene, and why.
+//! `fetifeti plan`: describes what the solver will build for a scene, and why.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -20,7 +20,7 @@ use crate::scene::{distribution, Plan, Scene};
 use crate::substructures::Substructures;
 use crate::{FetiFeti, Result};
 
-/// Bodies and interfaces are listed one by one up to this many lines.
+/// Bodies and interfaces are listed one by one up to this number.
 const LIST: usize = 24;
 
 /// Validates the scene and prints the plan.
@@ -43,7 +43,8 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
     say(session, &out)
 }
 
-/// What `-fetifeti_adaptive` comes to. Where it is sure to be looked at, the search is made: that factors the subdomains. Collective.
+/// The effect of `-fetifeti_adaptive`. Where the solver is sure to search, the search is carried out here, and the
+/// subdomains are factored for it. Collective.
 fn deflation(
     session: &Session,
     problem: Substructures,
@@ -156,7 +157,7 @@ fn interfaces(plan: &Plan) -> String {
     if plan.interfaces.is_empty() {
         return String::new();
     }
-    // Surplus cells of a row are dropped.
+    // The table drops the cells of a row beyond its columns.
     let columns = ["touch", "nodes", "tied", "contact"];
     let shown = if plan.contact_pairs > 0 { 4 } else { 3 };
     let mut table = Table::new(columns.into_iter().take(shown)).align(0, Align::Left);
@@ -277,7 +278,7 @@ fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {
     out
 }
 
-/// How many bodies float in all their rigid motions, and how many in some of them.
+/// A sentence with the number of bodies that float in all their rigid motions, and in some of them.
 fn kernels(scene: &Scene, sizes: &Sizes) -> String {
     if !scene.form.is_elastic() {
         return String::new();
@@ -298,7 +299,7 @@ fn kernels(scene: &Scene, sizes: &Sizes) -> String {
     format!(", {}", parts.join(", "))
 }
 
-/// The primal constraints: vertices that subdomains share, corners where bodies may touch, averages.
+/// A sentence on the primal constraints: vertices that subdomains share, corners where bodies may touch, averages.
 fn constraints(scene: &Scene, plan: &Plan, primal: usize, largest: usize) -> String {
     if scene.dim() == 2 && !scene.form.is_elastic() {
         return format!("{primal} vertices, at most {largest} in a body");
@@ -314,7 +315,7 @@ fn constraints(scene: &Scene, plan: &Plan, primal: usize, largest: usize) -> Str
     )
 }
 
-/// What the inequalities are.
+/// A sentence on the inequalities.
 fn inequalities(plan: &Plan) -> String {
     let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
     let contact = format!(

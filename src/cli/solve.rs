@@ -27,10 +27,10 @@ use crate::report::tables::summary;
 use crate::scene::{distribution, Scene};
 use crate::{Error, FetiFeti, Result, Status};
 
-/// Directions that a load step leaves to the next one.
+/// Number of directions that a load step passes on to the next one.
 const DIRECTIONS: usize = 30;
 
-/// Solves a scene and writes what was asked for.
+/// Solves a scene and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: Solve) -> Result<()> {
     let clock = Instant::now();
     let destination = Destination::from(args.results.clone());
@@ -81,7 +81,7 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
     }
 }
 
-/// The error of a solve that stopped early; results were written before.
+/// The error of a solve that stopped early; its results have been written before.
 pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> Error {
     Error::NotConverged(format!(
         "{what} did not converge: {status} after {iterations} iterations (the results written are partial)"
@@ -94,12 +94,12 @@ fn write_report(destination: &Destination, report: &SolveReport) -> Result<()> {
     destination.written(&files(report))
 }
 
-/// What a directory of results holds.
+/// The files in a directory of results.
 fn files(report: &SolveReport) -> Vec<&'static str> {
     let mut out = vec!["solution.vtu", "solution.png", "report.json"];
     if let Some(contact) = &report.contact {
         out.push("interfaces.png");
-        // Maps of whole faces would be too many shapes for a drawing.
+        // Maps of whole faces would have too many shapes for an SVG file.
         if report.dimension < 3 {
             out.push("interfaces.svg");
         }
@@ -111,7 +111,7 @@ fn files(report: &SolveReport) -> Vec<&'static str> {
     out
 }
 
-/// The identities, and λ_min ≥ 1 by the exact spectrum.
+/// The checks of the identities, and of λ_min ≥ 1 by the exact spectrum.
 fn checks(solver: &FetiFeti) -> Result<BTreeMap<String, f64>> {
     let identities = solver.check()?;
     let mut out: BTreeMap<String, f64> = identities
@@ -233,7 +233,7 @@ fn report(
     })
 }
 
-/// Key `adaptive`. Collective.
+/// The value of key `adaptive`. Collective.
 pub(super) fn adaptive(solver: &FetiFeti) -> Result<Option<Adaptive>> {
     let facts = solver.facts();
     let out = Adaptive {
@@ -249,7 +249,7 @@ fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
     let Some(cost) = solver.deflated() else {
         return Ok(None);
     };
-    // A spectrum that reaches over many decades may be out of the eigensolver's reach.
+    // A spectrum of many decades may be beyond the eigensolver.
     let exact_without = match solver.settings().method.spectrum {
         true => solver.plain_spectrum().ok().flatten(),
         false => None,
@@ -270,7 +270,7 @@ fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
     }))
 }
 
-/// The fields, the pictures and the profiles along the interfaces; rank 0 writes for all. Collective.
+/// Writes the fields, the pictures and the profiles along the interfaces; rank 0 writes for all. Collective.
 fn write_fields(
     session: &Session,
     scene: &Scene,
@@ -296,7 +296,7 @@ fn write_fields(
     session.agree(written)
 }
 
-/// Key `operators`. Collective.
+/// The value of key `operators`. Collective.
 fn operators(session: &Session, facts: &Facts) -> Operators {
     let mut sums = [
         facts.kinds as f64,
@@ -315,7 +315,7 @@ fn operators(session: &Session, facts: &Facts) -> Operators {
     }
 }
 
-/// Key `contact`. Collective.
+/// The value of key `contact`. Collective.
 fn contact_report(
     session: &Session,
     scene: &Scene,

@@ -14,7 +14,7 @@ use crate::report::tables::table::Table;
 use crate::study::{adaptive, hard_cases, hertz, kappa, kernels, scaling, speed_error};
 use crate::{Error, Result};
 
-/// Runs a study and writes what was asked for.
+/// Runs a study and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
     let name = args.name.to_possible_value().expect("no study is hidden");
     let task = Task {
@@ -36,11 +36,11 @@ pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
     }
 }
 
-/// A study that is run.
+/// A study with its arguments.
 struct Task<'a> {
     session: &'a Session,
     name: String,
-    /// The one of its cases that is run; `None`: all.
+    /// The only case to run; `None`: all.
     case: Option<String>,
     quick: bool,
     destination: Destination,
@@ -91,7 +91,7 @@ impl Task<'_> {
         };
         let report = match &self.destination.out {
             Some(dir) => run(dir)?,
-            // Scenes that nobody asked for.
+            // The user has not asked for the scenes: they go into a temporary directory.
             None => run(Workspace::new()?.dir())?,
         };
         self.finish(&report, &adaptive::text(&report), |dir| {
@@ -171,7 +171,7 @@ impl Task<'_> {
         self.case.as_deref()
     }
 
-    /// Tells on rank 0 what is being done.
+    /// Prints progress on rank 0.
     fn progress(&self) -> impl FnMut(&str) + '_ {
         |what| {
             if self.session.rank() == 0 {
@@ -180,7 +180,8 @@ impl Task<'_> {
         }
     }
 
-    /// Prints and writes on rank 0; `more` puts tables and pictures into the directory and says which. Collective.
+    /// Prints and writes the results on rank 0; `more` writes tables and pictures into the directory and returns their
+    /// names. Collective.
     fn finish<T: serde::Serialize>(
         &self,
         report: &T,

@@ -1,4 +1,4 @@
-//! `fetifeti table1`: Lee's experiment, his numbers and ours.
+//! `fetifeti table1`: Lee's experiment, with his numbers and ours.
 
 use super::args::Table1;
 use super::first_rank::on_first_rank;
@@ -13,7 +13,7 @@ use crate::report::tables::{paper, summary};
 use crate::scene::{distribution, Faces, Scene};
 use crate::{Error, FetiFeti, Result, Solution};
 
-/// Computes the rows and writes what was asked for.
+/// Computes the rows and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: Table1) -> Result<()> {
     let destination = Destination::from(args.results);
     on_first_rank(session, || destination.prepare())?;
@@ -61,7 +61,7 @@ pub fn run(session: &Session, args: Table1) -> Result<()> {
     stopped.map_or(Ok(()), Err)
 }
 
-/// M_D and M_C on one scene.
+/// The results with M_D and M_C on one scene.
 fn side(
     session: &Session,
     scene: &Scene,
@@ -72,7 +72,7 @@ fn side(
         let substructures = distribution::substructures(session, scene)?;
         let settings = MethodSettings {
             pc_type: Some(pc),
-            // The paper's method and nothing else.
+            // The paper's method without additions.
             adaptive: Adaptive::Off,
             ..MethodSettings::default()
         };

@@ -8,19 +8,19 @@ use serde::Serialize;
 use super::{json, output};
 use crate::Result;
 
-/// What was asked for.
+/// The destination of a command's results.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Destination {
     /// Directory for all results.
     pub out: Option<PathBuf>,
-    /// File for the record; `-` is standard output.
+    /// File for the JSON record; `-` is standard output.
     pub json: Option<PathBuf>,
-    /// Nothing on the terminal.
+    /// Whether nothing is printed on the terminal.
     pub quiet: bool,
 }
 
 impl Destination {
-    /// Finds out before the work whether results can be written.
+    /// Checks, before the computation, that results can be written.
     ///
     /// # Errors
     /// [`crate::Error::Environment`] with the path.
@@ -36,7 +36,7 @@ impl Destination {
         self.json.as_deref().is_some_and(output::is_stdout)
     }
 
-    /// Whether standard output takes no text: nobody wants it, or the record goes there.
+    /// Whether no text is printed on standard output: with `--quiet`, or because the record goes there.
     pub fn silent(&self) -> bool {
         self.quiet || self.json_on_stdout()
     }
@@ -52,7 +52,7 @@ impl Destination {
         }
     }
 
-    /// A line on stderr that the next one overwrites, on a terminal only; an empty one removes it.
+    /// Prints a progress line on stderr, if that is a terminal; the next line overwrites it, an empty one removes it.
     pub fn progress(&self, line: &str) {
         if !self.quiet && std::io::stderr().is_terminal() {
             eprint!("\r\x1b[K{line}");
@@ -73,7 +73,7 @@ impl Destination {
         }
     }
 
-    /// Says which files are in the directory now.
+    /// Prints a list of the files that were written to the directory.
     ///
     /// # Errors
     /// [`crate::Error::Environment`].
@@ -87,7 +87,8 @@ impl Destination {
         ))
     }
 
-    /// Prints `text` and writes the record, `STEM.json` in the directory. `more` writes the other files there and names them.
+    /// Prints `text` and writes the record, in the directory as `STEM.json`. `more` writes the other files there and
+    /// returns their names.
     ///
     /// # Errors
     /// [`crate::Error::Environment`]; those of `more`.

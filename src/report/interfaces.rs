@@ -1,8 +1,8 @@
-//! What plots along interfaces and maps of them share.
+//! Functions that plots along interfaces and maps of interfaces share.
 
 use crate::{Error, Result};
 
-/// Refuses lists of an interface that are not as long as there are nodes, which are called `what`.
+/// Checks that the lists of an interface have one entry per node; `what` names the lists in the error.
 pub(super) fn check_lengths(
     name: &str,
     n: usize,
@@ -24,8 +24,8 @@ pub(super) fn pressure(force: &[f64], area: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// At most `shown` interfaces, those with the largest forces first, and the title, which says how many there are where
-/// that is more. What is not a number comes first: it must be seen.
+/// The interfaces with the largest forces, at most `shown`, and the title, which gives the total number where there are
+/// more. Forces that are not finite come first: the reader must see them.
 pub(super) fn largest<'a, T>(
     interfaces: impl Iterator<Item = &'a T>,
     force: fn(&T) -> f64,

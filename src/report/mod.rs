@@ -1,11 +1,12 @@
-//! Results for people and programs: JSON, terminal tables, CSV, plots (PNG and SVG), pictures of fields, VTU for ParaView.
+//! Results for people and programs: JSON, terminal tables, CSV, plots (PNG and SVG), pictures of fields, VTU for
+//! ParaView.
 //!
-//! Nothing here knows PETSc, MPI or the method: every function takes plain arrays or the structs of [`json`]. All files are
-//! written to a temporary name first and then renamed, so that a reader never sees half a file.
+//! This module is independent of PETSc, MPI and the method: every function takes plain arrays or the structs of
+//! [`json`]. All files are written to a temporary name first and then renamed, so that a reader never sees half a file.
 //!
-//! | room | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | [`destination`] | where the results of a command go: terminal, JSON file, directory |
+//! | [`destination`] | the destination of a command's results: terminal, JSON file, directory |
 //! | [`output`] | files that are written as a whole or not at all; standard output |
 //! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`], [`json::BenchReport`] |
 //! | [`drawing`] | pixels, vectors, text, colours, ticks |
@@ -13,7 +14,7 @@
 //! | [`plots`] | line and scatter plots: Figure 3 of Lee (2010), contact along interfaces, energy and force over load steps |
 //! | [`pictures`] | fields on quadrilaterals and on the surface of solids, with the contact zone; pressure on faces of contact |
 //! | [`paraview`] | VTU files, contact as point data, time series |
-//! | [`progress`] | the line that tells how far a contact solve is |
+//! | [`progress`] | the progress line of a contact solve |
 
 pub mod destination;
 pub mod drawing;

@@ -1,15 +1,16 @@
-//! Where results go: files written atomically, or standard output for the path `-`.
+//! Output of results: files written atomically, or standard output for the path `-`.
 
 use crate::{Error, Result};
 use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a file through `fill`, first to a temporary name beside it, then by a rename: a reader sees the old file or the
-/// complete new one. Missing directories are made. The path `-` is standard output; devices and pipes are written directly.
+/// Writes a file through `fill`, first to a temporary name beside it, then by a rename: a reader sees the old file or
+/// the complete new one. Missing directories are made. The path `-` is standard output; devices and pipes are written
+/// directly.
 ///
 /// # Errors
-/// [`Error::Environment`], one sentence with the path, when the disk refuses; the old file is then untouched.
+/// [`Error::Environment`], one sentence with the path, when writing fails; the old file is then untouched.
 pub fn write_file(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
@@ -17,7 +18,8 @@ pub fn write_file(
     replace(path, false, fill)
 }
 
-/// [`write_file`] for bytes that must survive a crash of the machine: they are on the disk before the old file goes.
+/// As [`write_file`], for bytes that must survive a crash of the machine: they are on the disk before the old file is
+/// replaced.
 ///
 /// # Errors
 /// As [`write_file`].
@@ -36,7 +38,7 @@ fn replace(
         let mut out = BufWriter::new(std::io::stdout().lock());
         return fill(&mut out).and_then(|()| out.flush()).map_err(refused);
     }
-    // A link keeps pointing where it points: the file behind it is replaced.
+    // A symbolic link is kept: the file it points to is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     if let Ok(there) = fs::metadata(&target) {
         if there.is_dir() {
@@ -75,7 +77,7 @@ fn replace(
     written.map_err(refused)
 }
 
-/// [`write_file`] for text that is ready.
+/// As [`write_file`], for text.
 ///
 /// # Errors
 /// As [`write_file`].
@@ -83,7 +85,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<()> {
     write_file(path, |out| out.write_all(text.as_bytes()))
 }
 
-/// Prints text on standard output; unlike `print!` it does not panic where the output is a full disk or a closed pipe.
+/// Prints text on standard output. Unlike `print!` it does not panic where the output is a full disk or a closed pipe.
 ///
 /// # Errors
 /// [`Error::Environment`].
@@ -91,8 +93,8 @@ pub fn print(text: &str) -> Result<()> {
     write_text(Path::new("-"), text)
 }
 
-/// Makes a directory for results and proves, by writing and removing an empty file, that results can be written there:
-/// called before a long computation so that it does not end with a full result and no place to put it.
+/// Makes a directory for results and tests, with an empty file that it removes again, that files can be written there.
+/// It is called before a long computation, so that the results do not get lost at the end.
 ///
 /// # Errors
 /// [`Error::Environment`] with the path.
@@ -109,7 +111,7 @@ pub fn prepare_directory(path: &Path) -> Result<()> {
     fs::remove_file(&probe).map_err(refused)
 }
 
-/// As [`prepare_directory`] for the directory of a result file; the path `-` needs nothing.
+/// As [`prepare_directory`], for the directory of a result file; for the path `-` it does nothing.
 ///
 /// # Errors
 /// [`Error::Environment`] with the path.

@@ -1,5 +1,5 @@
-//! A progress line on stderr for the contact loop, redrawn in place and removed at the end; nothing where stderr is not a
-//! terminal.
+//! A progress line on stderr for the contact loop, redrawn in place and removed at the end. There is none where stderr
+//! is not a terminal.
 //!
 //! ```text
 //! contact step 3, 130 active  [##############>               ] 2.3e-4 of 1.0e-8, 17 it
@@ -8,9 +8,9 @@
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// Cells of the bar.
+/// Length of the bar in characters.
 const BAR: usize = 30;
-/// Between two redraws: twenty a second are as many as one can see.
+/// Shortest time between two redraws: more than twenty per second are not visible.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// The line.
@@ -24,7 +24,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A line on stderr if that is a terminal and `enabled` says so: on rank 0, without `--quiet`.
+    /// A line on stderr, if that is a terminal and `enabled` is set: on rank 0, without `--quiet`.
     pub fn new(enabled: bool) -> Self {
         let start = Instant::now();
         let terminal = enabled && std::io::stderr().is_terminal();
@@ -36,7 +36,7 @@ impl Progress {
         Progress::to(out, Box::new(move || start.elapsed()))
     }
 
-    /// A line on any writer, or none, with any clock.
+    /// A line on any writer, or none, with any clock; for tests.
     pub fn to(out: Option<Box<dyn Write>>, now: Box<dyn Fn() -> Duration>) -> Self {
         Progress {
             out,
@@ -48,13 +48,14 @@ impl Progress {
         }
     }
 
-    /// An outer step begins. Always drawn: outer steps are few.
+    /// Starts an outer step. The line is always redrawn: outer steps are few.
     pub fn step(&mut self, step: usize, active: usize) {
         (self.step, self.active) = (step, active);
         self.draw(&self.line(None));
     }
 
-    /// The residual after some inner iterations of the step, relative to its start. Drawn at most twenty times a second.
+    /// Shows the residual after some inner iterations of the step, relative to its start. The line is redrawn at most
+    /// twenty times a second.
     pub fn residual(&mut self, relative: f64, tolerance: f64, iterations: usize) {
         if self.out.is_none() {
             return;
@@ -95,7 +96,7 @@ impl Progress {
             return;
         }
         let width = line.chars().count();
-        // Blanks over what a longer line before has left.
+        // Blanks overwrite the end of a longer line before.
         let rest = " ".repeat(self.width.saturating_sub(width));
         self.put(&format!("\r{line}{rest}"));
         self.width = width;
@@ -104,7 +105,7 @@ impl Progress {
 
     fn put(&mut self, text: &str) {
         if let Some(out) = &mut self.out {
-            // A terminal that went away must not end the computation.
+            // If the terminal has gone away, the computation continues.
             if out
                 .write_all(text.as_bytes())
                 .and_then(|()| out.flush())
@@ -122,10 +123,10 @@ impl Drop for Progress {
     }
 }
 
-/// How far a residual is on the way from 1 to the tolerance, in decades.
+/// Progress of a residual from 1 to the tolerance, in decades; between 0 and 1.
 fn fraction(relative: f64, tolerance: f64) -> f64 {
     if relative.is_nan() || tolerance.is_nan() || tolerance >= 1.0 {
-        // Nothing to reach, or no number: full when the residual is as small as it has to be.
+        // No decades to cover, or no number: full when the residual is small enough.
         return if relative <= tolerance { 1.0 } else { 0.0 };
     }
     let decades = relative.max(1e-300).log10() / tolerance.max(1e-300).log10();
@@ -151,7 +152,7 @@ mod tests {
     }
 
     impl Terminal {
-        /// What stands on the line after all that was written.
+        /// The visible text of the line after all output.
         fn shown(&self) -> String {
             let mut cells: Vec<char> = Vec::new();
             let mut at = 0;
@@ -197,7 +198,7 @@ mod tests {
             terminal.shown(),
             format!("contact step 3, 1130 active  {half} 1.0e-4 of 1.0e-8, 17 it")
         );
-        // A shorter line leaves nothing of the longer one.
+        // A shorter line leaves no rest of the longer one.
         p.step(4, 9);
         assert_eq!(
             terminal.shown(),

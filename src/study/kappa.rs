@@ -1,8 +1,9 @@
-//! `study kappa`: condition numbers of the preconditioned operator over H_b/H_s and H_s/h, scalar and elastic, plane and solid, with M_D and
-//! M_C.
+//! `study kappa`: condition numbers of the preconditioned operator as a function of H_b/H_s and H_s/h; scalar and
+//! elastic, in the plane and in space, with M_D and M_C.
 //!
-//! The unit square or cube, held all round, is cut into two bodies in each direction, all tied. κ is the estimate of CG (Lanczos) at a
-//! relative residual of 1e-11, a lower bound that has settled to three digits by then; `exact` has SLEPc's where it was asked for.
+//! The domain is the unit square or cube, held all round, of two tied bodies in each direction. κ is the estimate of CG
+//! (Lanczos) at a relative residual of 1e-11, a lower bound that has converged to three digits by then. `exact` is
+//! SLEPc's value, where it was asked for.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +15,7 @@ use crate::report::tables::table::{Align, Table};
 use crate::scene::Scene;
 use crate::{Error, FetiFeti, Result};
 
-/// What is solved.
+/// A family of problems that differ in size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Family {
     /// Name in tables.
@@ -25,7 +26,7 @@ pub struct Family {
     pub poisson: Option<f64>,
     /// Pairs (H_b/H_s, H_s/h).
     pub sizes: &'static [[usize; 2]],
-    /// As many of them with `--quick`.
+    /// Number of these pairs with `--quick`.
     pub quick: usize,
 }
 
@@ -68,12 +69,12 @@ pub const FAMILIES: [Family; 5] = [
     },
 ];
 
-/// One preconditioner on one grid.
+/// The result with one preconditioner on one grid.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct KappaOf {
     /// CG's estimate of κ.
     pub kappa: f64,
-    /// Its smallest eigenvalue, at least 1 up to rounding.
+    /// CG's smallest eigenvalue, at least 1 up to rounding.
     pub lambda_min: f64,
     /// Iterations.
     pub iterations: usize,
@@ -81,7 +82,7 @@ pub struct KappaOf {
     pub exact: Option<f64>,
 }
 
-/// One grid.
+/// The results on one grid.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The family.
@@ -103,11 +104,11 @@ pub struct Row {
 pub struct Report {
     /// "kappa".
     pub study: String,
-    /// By family and size.
+    /// The results by family and size.
     pub rows: Vec<Row>,
 }
 
-/// Runs the study; `exact` asks for the exact spectra too (minutes where grids are large). Collective.
+/// Runs the study; `exact` asks for the exact spectra, too (minutes on large grids). Collective.
 ///
 /// # Errors
 /// Those of the method; [`Error::NotConverged`] where CG did not end.
@@ -155,7 +156,7 @@ pub fn grid(
         let settings = MethodSettings {
             pc_type: Some(pc),
             rtol: 1e-9,
-            // κ as the preconditioner leaves it.
+            // κ of the preconditioner alone.
             adaptive: Adaptive::Off,
             ..MethodSettings::default()
         };
@@ -188,7 +189,7 @@ pub fn grid(
     })
 }
 
-/// The scene: a load without symmetry, so that CG sees the whole spectrum.
+/// The scene. Its load has no symmetry, so that CG sees the whole spectrum.
 fn text(family: &Family, [bodies, subdomains, elements]: [usize; 3]) -> String {
     let dim = family.dim;
     let wave = |k: usize| match dim {

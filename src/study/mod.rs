@@ -1,7 +1,7 @@
-//! Studies: questions about the method that take many runs, with the tables and pictures that answer them.
+//! Studies: questions about the method that need many runs, with the tables and pictures that answer them.
 //!
-//! A study is library code that returns data; `fetifeti study NAME` writes it to files. Every scene of a study is text as a user
-//! would write it.
+//! A study is library code that returns data; `fetifeti study NAME` writes them to files. Every scene of a study is
+//! text in the format of scene files.
 
 pub mod adaptive;
 pub mod hard_cases;
@@ -15,7 +15,7 @@ pub mod speed_error;
 use crate::petsc::Session;
 use crate::{Error, Result};
 
-/// Refuses several ranks for the study `name`, for which `why` says what one rank is needed for.
+/// Refuses to run the study `name` on several ranks; `why` says why it needs a single one.
 ///
 /// # Errors
 /// [`Error::Input`].
@@ -28,7 +28,7 @@ fn alone(session: &Session, name: &str, why: &str) -> Result<()> {
     }
 }
 
-/// The cases of a study, or the one that is asked for.
+/// The cases of a study, or the single one that is asked for.
 fn chosen<T>(all: Vec<T>, name: impl Fn(&T) -> &str, only: Option<&str>) -> Result<Vec<T>> {
     let Some(wanted) = only else {
         return Ok(all);

@@ -1,4 +1,4 @@
-//! One scene of a study, solved, with its contact rows in one place.
+//! One scene of a study and its solution, with all contact rows on every rank.
 
 use std::time::Instant;
 
@@ -8,11 +8,11 @@ use crate::scene::{distribution, Numbering, Scene};
 use crate::substructures::SolvedRow;
 use crate::{FetiFeti, Result, Solution};
 
-/// A scene and what the method made of it.
+/// A scene and its solution by the method.
 pub struct Solved {
     /// The scene.
     pub scene: Scene,
-    /// The solver, ready for more.
+    /// The solver, which can be used further.
     pub solver: FetiFeti,
     /// The solution.
     pub solution: Solution,
@@ -21,10 +21,10 @@ pub struct Solved {
 }
 
 impl Solved {
-    /// Solves the scene in `text` with `settings`, on which options of the scene and of the user stand. Collective.
+    /// Solves the scene in `text`. The options of the scene and of the user override `settings`. Collective.
     ///
     /// # Errors
-    /// Those of the scene and of the method; not converging is none.
+    /// Those of the scene and of the method; a solve that does not converge is no error.
     pub fn new(
         session: &Session,
         name: &str,

@@ -1,5 +1,5 @@
-//! `fetifeti solve --checkpoint FILE` and `--resume FILE`: an interrupted run goes on to the same answer, on any number of ranks
-//! and by either method; files that are no checkpoints of the scene are refused and stay as they are.
+//! `fetifeti solve --checkpoint FILE` and `--resume FILE`: an interrupted run resumes and finds the same answer, on any
+//! number of ranks and by either method. Files that are no checkpoints of the scene are refused and not changed.
 
 use crate::support::checks::number;
 use crate::support::{mpi, program};
@@ -84,7 +84,7 @@ fn count(report: &Value) -> u64 {
     report["iterations"]["total"].as_u64().expect("a count")
 }
 
-/// A run that is cut off after `cut` outer steps goes on to the answer of one that is not.
+/// A run that is interrupted after `cut` outer steps resumes, and finds the answer of an uninterrupted run.
 fn goes_on(scratch: &Scratch, scene: &str, method: &str, cut: &str, resume: &[(usize, &str)]) {
     let kind = ["-fetifeti_contact_type", method];
     let (whole, part) = (scratch.path("whole"), scratch.path("part"));
@@ -120,7 +120,7 @@ fn goes_on(scratch: &Scratch, scene: &str, method: &str, cut: &str, resume: &[(u
         assert_eq!(end.state.active, whole.state.active, "{what}");
         let own = end.state.steps - found.state.steps;
         assert!(own < whole.state.steps, "{what}: {own} steps");
-        // The report tells of both parts.
+        // The report covers both parts of the run.
         let steps = warm["contact"]["steps"].as_array().expect("a list");
         assert_eq!(steps.len() as u64, end.state.steps, "{what}");
         assert_eq!(warm["outer_iterations"], steps.len(), "{what}");
@@ -166,7 +166,7 @@ fn bodies_around_a_point_go_on() {
     );
 }
 
-/// What is written does not depend on the ranks, and a permuted λ would not be a solution any more.
+/// The checkpoint does not depend on the number of ranks. A permuted λ would not be a solution.
 #[test]
 fn a_solved_run_is_confirmed_on_any_ranks() {
     let scratch = Scratch::new("confirm");
@@ -214,7 +214,7 @@ fn load_steps_go_on() {
     let scratch = Scratch::new("resume-press");
     let (file, dir) = (scratch.path("c"), scratch.path("out"));
     let cold = solve(1, PRESS, 0, &["-fetifeti_ksp_rtol", "1e-10"]);
-    // As many steps as the first load steps need and one that comes later does not find enough.
+    // The iteration limit suffices for the first load steps, but not for a later one.
     let needed = |load_step: usize| {
         let steps = cold["contact"]["steps"].as_array().expect("a list");
         let of_it = steps.iter().filter(|s| s["load_step"] == load_step);
@@ -322,7 +322,7 @@ fn bad_files_are_refused_and_stay() {
 
     let missing = fetifeti(&["solve", MODEL, "--resume", &scratch.path("nowhere")]);
     refused(&missing, 2, &["nowhere", "cannot be read"]);
-    // Said once, by every number of ranks.
+    // The message is printed once, on any number of ranks.
     let out = run_fetifeti(2, &["solve", MODEL, "--resume", MODEL]);
     assert_eq!(out.code, 2, "{}", out.all());
     assert_eq!(
@@ -349,7 +349,7 @@ fn a_checkpoint_belongs_to_its_scene() {
         scratch.file(name, &text.replace(from, to))
     };
     let resume = |scene: &str| fetifeti(&["solve", scene, "--resume", &file, "--quiet"]);
-    // Words and options may be others.
+    // Words and options of the scene may change.
     let same = changed(
         "same.toml",
         "fetifeti_ksp_rtol = 1e-10",
@@ -397,13 +397,13 @@ fn a_place_that_cannot_be_written_is_found_before_the_work() {
         &["standard output"],
     );
     assert_eq!(fs::read_to_string(&file).expect("still there"), "old");
-    // A disk that fills up ends the run with a sentence, on all ranks.
+    // A full disk ends the run with one sentence, on all ranks.
     for ranks in [1, 2] {
         let out = run_fetifeti(ranks, &["solve", MODEL, "--checkpoint", "/dev/full"]);
         assert_eq!(out.code, 3, "{}", out.all());
         assert_eq!(out.stderr.matches("/dev/full").count(), 1, "{}", out.all());
     }
-    // A file that is in the way is replaced as a whole, and nothing is left beside it.
+    // An existing file is replaced as a whole, and no other file is left behind.
     solve(
         1,
         MODEL,
@@ -414,7 +414,7 @@ fn a_place_that_cannot_be_written_is_found_before_the_work() {
     assert_eq!(scratch.files().len(), 1, "{:?}", scratch.files());
 }
 
-/// Whenever the run ends, the file is a checkpoint of a finished step.
+/// Whenever the run is interrupted, the file is a checkpoint of a finished step.
 #[test]
 fn a_run_that_is_killed_leaves_a_whole_file() {
     let scratch = Scratch::new("killed");

@@ -167,7 +167,7 @@ fn load_steps_are_a_time_series() {
     let csv = text(&format!("{dir}/steps.csv"));
     let force = column(&csv, "contact_force");
     assert_eq!(force.len(), 10, "{csv}");
-    // First the block only lies there, with its load of 0.1; from t = 0.5 on the punch presses.
+    // At first the block only lies there, with its load of 0.1; from t = 0.5 on the punch presses.
     for (k, f) in force.windows(2).enumerate() {
         let least = if k < 3 { -1e-8 } else { 0.02 };
         assert!(f[1] - f[0] > least, "{csv}");
@@ -189,7 +189,7 @@ fn both_methods_give_the_same_energy() {
         let out = fetifeti(&[&["solve", MODEL], &options[..]].concat());
         assert_eq!((out.code, out.stdout.as_str()), (0, ""), "{}", out.all());
         let r = report(&json);
-        // SMALBE leaves the last digits to steps of the active set.
+        // After SMALBE, steps of the active set compute the last digits.
         let steps = list(&r["contact"]["steps"]);
         assert_eq!(steps[0]["method"], method, "{}", r["contact"]["method"]);
         number(&r["energy"])
@@ -283,7 +283,7 @@ fn a_body_that_is_pushed_away_is_named() {
 
 #[test]
 fn a_contradiction_along_a_chain_is_named() {
-    // At (1, 0): a >= 1, b >= a, b <= -1; any two of these go together.
+    // At (1, 0): a >= 1, b >= a, b <= -1. Any two of these are compatible, all three are not.
     let body = |name: &str, x: usize, more: &str| {
         format!(
             "[[body]]\nname = \"{name}\"\norigin = [{x}, 0]\nsize = [1, 1]\nelements = 4\nload = -1\n{more}\n"
@@ -300,7 +300,7 @@ fn a_contradiction_along_a_chain_is_named() {
     for two in [
         format!("{contact}{lower}"),
         format!("{contact}{upper}"),
-        // With room between the bodies.
+        // The same with a gap between the bodies.
         format!("{contact}gap = 3\n{lower}{upper}"),
     ] {
         let scratch = Scratch::new("chain-two");

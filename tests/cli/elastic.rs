@@ -31,7 +31,7 @@ fn column(csv: &str, name: &str) -> Vec<f64> {
     lines.map(value).collect()
 }
 
-/// Solves a scene; its report, its interfaces as CSV and its grid as VTU.
+/// Solves a scene; returns its report, its interfaces as CSV and its grid as VTU.
 fn solve(scene: &str, dir: &Scratch, more: &[&str]) -> (Value, String, String) {
     let out = dir.path("out");
     let run = fetifeti(&[&["solve", scene, "--out", &out], more].concat());
@@ -48,8 +48,8 @@ fn array<'a>(vtu: &'a str, name: &str) -> &'a str {
     line.unwrap_or_else(|| panic!("no array {name}"))
 }
 
-/// Pressure between two concentric pipes in plane strain under pressure p inside, by Lamé's solution: σ_r = A − B/r² and
-/// u = (1 + ν)/E ((1 − 2ν) A r + B/r).
+/// Pressure between two concentric pipes in plane strain under pressure p inside, by Lamé's solution: σ_r = A − B/r²
+/// and u = (1 + ν)/E ((1 − 2ν) A r + B/r).
 fn pipes(p: f64, radii: [f64; 3], young: [f64; 2], nu: f64) -> f64 {
     // Displacement at r of a pipe from a to b with pressures p inside and q outside.
     let u = |e: f64, [a, b]: [f64; 2], [p, q]: [f64; 2], r: f64| {
@@ -60,7 +60,7 @@ fn pipes(p: f64, radii: [f64; 3], young: [f64; 2], nu: f64) -> f64 {
     };
     let [a, b, c] = radii;
     let apart = |q: f64| u(young[0], [a, b], [p, q], b) - u(young[1], [b, c], [q, 0.0], b);
-    // Linear in q.
+    // The condition is linear in q.
     apart(0.0) / (apart(0.0) - apart(1.0))
 }
 
@@ -79,7 +79,7 @@ fn pipes_press_on_each_other_as_lame_says() {
     }
     let face = &report["contact"]["interfaces"][0];
     let largest = pressure.iter().copied().fold(0.0, f64::max);
-    // Reading a number may cost its last digit.
+    // The decimal text of a number may lose its last digit.
     assert!(near(
         number(&face["max_pressure"]),
         largest,
@@ -172,7 +172,7 @@ fn blocks_have_a_map_of_pressure_and_forces_with_directions() {
     assert!(summary.contains("largest pressure"), "{summary}");
 }
 
-/// What `solve` prints.
+/// The summary that `solve` prints.
 fn run_summary(scene: &str) -> String {
     let run = fetifeti(&["solve", scene]);
     assert_eq!(run.code, 0, "{}", run.all());
@@ -202,10 +202,10 @@ fn loose_bodies_balance_in_forces_and_moments() {
     let held = bodies.iter().find(|b| b["name"] == "b0_0").unwrap();
     let ground: f64 = column(&csv, "multiplier").iter().sum();
     assert!(ground > 0.0);
-    // The wall carries what the ground does not.
+    // The wall carries the part of the load that the ground does not.
     let reaction = vector(&held["reaction"]);
     assert!(near(reaction[1], 0.2 - ground, 1e-6), "{held} {ground}");
-    // An interface that is tied has a resultant and no pressure.
+    // A tied interface has a resultant and no pressure.
     let interfaces = report["contact"]["interfaces"].as_array().unwrap();
     let tied = interfaces.iter().find(|i| i["kind"] == "tied").unwrap();
     assert!(near(

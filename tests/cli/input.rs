@@ -1,4 +1,4 @@
-//! What the program says to bad input: one sentence, the right exit code, no file. And scenes that are odd, but valid.
+//! The program's answers to bad input: one sentence, the right exit code, no file. Also unusual, but valid scenes.
 
 use crate::support::checks::identities;
 use crate::support::{direct, mpi, program};
@@ -25,7 +25,7 @@ fn refused(out: &Output, code: i32, parts: &[&str]) {
     assert_eq!(out.stdout, "", "{}", out.all());
 }
 
-/// `solve` of this text, told to write everything, is refused with exit code 2 and leaves no file behind.
+/// `solve` refuses this text with exit code 2; it leaves no file behind, although all outputs were asked for.
 fn bad_scene(text: &str, parts: &[&str]) {
     let scratch = Scratch::new("bad");
     let scene = scratch.file("s.toml", text);
@@ -142,8 +142,8 @@ fn a_balanced_load_on_loose_bodies_is_solved() {
         assert_eq!(out.code, 0, "{}", out.all());
         let report: serde_json::Value = serde_json::from_str(&out.stdout).expect("JSON");
         assert_eq!(report["floating_bodies"], 2);
-        // u depends on x alone, linear elements are nodally exact in one dimension: −½ ∫ u'², u' = min(x, 1 − x) up to sign, and
-        // the energy lost to interpolation, h²/24 of ∫ f².
+        // u depends on x alone, linear elements are nodally exact in one dimension: −½ ∫ u'², u' = min(x, 1 − x) up to
+        // sign, and the energy lost to interpolation, h²/24 of ∫ f².
         let (h, energy) = (1.0f64 / 8.0, report["energy"].as_f64().expect("a number"));
         let exact = -0.5 * (1.0 / 12.0) + h * h / 24.0;
         assert!((energy - exact).abs() < 1e-10, "{energy} {exact}");
@@ -319,7 +319,7 @@ fn the_program_explains_itself() {
             "{page}"
         );
     }
-    // Commands by which processes of the program call each other are for nobody else.
+    // Commands by which processes of the program call each other are hidden from users.
     for text in [&all.stdout, &script] {
         assert!(
             !text.contains("baseline") && !text.contains("measure"),
@@ -347,7 +347,7 @@ fn bad_input_on_two_ranks_is_said_once() {
         ),
         (grid("rhoo = 2"), "unknown key `rhoo`"),
         (two("3", 2, ""), "body \"loose\" is held by nothing"),
-        // The first rank never sees the loose body.
+        // The first rank does not own the loose body.
         (two("3", 1, ""), "body \"loose\" is held by nothing"),
     ];
     for (text, part) in bad {
@@ -368,7 +368,7 @@ fn bad_input_on_two_ranks_is_said_once() {
     );
 }
 
-/// The scene agrees with its direct solution.
+/// The solution of the scene agrees with the direct solution.
 fn solves(name: &'static str, text: impl Into<String>, multipliers: usize) {
     let text = text.into();
     with_session(move |session| {
@@ -411,7 +411,7 @@ fn a_body_without_free_nodes() {
     // 3 × 3 bodies of one element, the outer ones held: the middle one has four free corners, the corner bodies one.
     let ring = "[grid]\nbodies = 3\nelements = 1\nload = 1\ndirichlet = \"all\"\n";
     solves("3x3", ring, 4 * 6);
-    // All nodes of `stamp` are given, and with them those of its right neighbour that are tied to it.
+    // All nodes of `stamp` are prescribed, and so are the nodes of its right neighbour that are tied to it.
     let text = "[[body]]\nname = \"stamp\"\nsize = 1\nelements = 1\ndirichlet = { left = \"y\", right = 2 }\n\
                 [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = 1\nelements = [2, 1]\nload = 1\n\
                 [[body]]\nname = \"lid\"\norigin = [0, 1]\nsize = [2, 1]\nelements = [4, 2]\nsubdomains = 2\nload = -1\n\
@@ -437,9 +437,9 @@ fn subdomains_of_one_element() {
 
 #[test]
 fn bodies_in_a_row() {
-    // One end held: all others float, and the multipliers are a chain.
+    // One end is held: all other bodies float, and the multipliers form a chain.
     let text = "[grid]\nbodies = [6, 1]\nsize = [6, 1]\nelements = 4\nsubdomains = 2\nload = 1\ndirichlet = [\"left\"]\n";
-    // Inside each body one node on each half of two lines is dual; 5 faces of 5 nodes lie between bodies.
+    // Inside each body, each half of two lines has one dual node; there are 5 faces of 5 nodes between bodies.
     let multipliers = 6 * 4 + 5 * 5;
     solves("row", text, multipliers);
     solves(

@@ -1,4 +1,4 @@
-//! The program from the outside: what it prints, writes and refuses.
+//! The program from the outside: its output, its files and its error messages.
 
 #[path = "../support/mod.rs"]
 mod support;

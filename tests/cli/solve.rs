@@ -32,7 +32,7 @@ fn the_report_has_every_key_of_the_contract() {
     ] {
         assert_eq!(r[key], value, "{key}");
     }
-    // (2 · 2 · 8 + 1)² nodes, those between bodies twice, the boundary held.
+    // The mesh has (2 · 2 · 8 + 1)² nodes; those between bodies count twice, those on the boundary are held.
     assert_eq!(r["dofs"], 4 * 16 * 16);
     // Between two bodies 15 nodes, four times, and the cross point; inside a body 2 lines of 2 halves of 7 nodes.
     assert_eq!(r["multipliers"]["global"], 4 * 15 + 6);
@@ -82,7 +82,7 @@ fn the_report_has_every_key_of_the_contract() {
         "{}",
         r["memory_mb"]
     );
-    // No exact solution: no error.
+    // Without an exact solution there is no error.
     assert!(solve(EXAMPLE, &[]).1.get("error").is_none());
     assert!(solve(EXAMPLE, &[]).1["condition"]["exact"].is_null());
 }
@@ -147,7 +147,7 @@ fn results_are_written_where_they_were_asked_for() {
     let report = std::fs::read_to_string(format!("{dir}/report.json")).expect("the report");
     let report: Value = serde_json::from_str(&report).expect("JSON");
     assert_eq!(report["bodies"], 3);
-    // --quiet says nothing, and neither writes nor prints what was not asked for.
+    // With --quiet the program prints nothing, and writes only the files that were asked for.
     let out = fetifeti(&["solve", EXAMPLE, "--quiet"]);
     assert_eq!(
         (out.code, out.stdout.as_str(), out.stderr.as_str()),

@@ -1,4 +1,5 @@
-//! `fetifeti bench` from the outside: every method in every round, and what is made of the samples. Nothing here looks at how long something took.
+//! `fetifeti bench` from the outside: every method runs in every round, and the statistics follow from the samples. No
+//! test depends on how long something took.
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
@@ -6,7 +7,7 @@ use fetifeti::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, Spre
 use mpi::Scratch;
 use program::fetifeti;
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "schema version blas cores rounds quick cases"),
     ("cases[]", "case scene bodies subdomains dofs rtol rounds reference_residual methods"),
@@ -51,8 +52,8 @@ fn bench(args: &[&str]) -> BenchReport {
     report
 }
 
-/// Whether a row holds a solution. Ours must; another method may say instead why it holds none, and then has no seconds to be
-/// compared by.
+/// Whether a row has a solution. Ours must have one; another method may give a reason instead, and then has no times to
+/// compare.
 fn solved(row: &BenchRow) -> bool {
     let what = format!("{} {}: {row:?}", row.method, row.layout);
     let Some(message) = &row.message else {
@@ -66,7 +67,7 @@ fn solved(row: &BenchRow) -> bool {
     false
 }
 
-/// What must hold of every case.
+/// Properties of every case.
 fn check(case: &BenchCase, rounds: usize) {
     assert_eq!(case.rounds, rounds);
     assert!(case.reference_residual.expect("a direct solution") < 1e-10);
@@ -101,7 +102,7 @@ fn check(case: &BenchCase, rounds: usize) {
     assert_eq!(ours.ratio, Some(1.0));
 }
 
-/// Smallest and largest are samples, and half of all samples are on either side of the median.
+/// The smallest and the largest value are samples, and half of all samples are on either side of the median.
 fn between(spread: Spread, samples: Vec<f64>, rounds: usize) {
     let Spread { median, min, max } = spread;
     assert_eq!(samples.len(), rounds);
@@ -115,8 +116,8 @@ fn between(spread: Spread, samples: Vec<f64>, rounds: usize) {
     );
 }
 
-/// The runs took turns: sorted by their place, rounds follow each other and each has the methods in order, but for those that have
-/// failed before. A run that was left out has no place.
+/// The methods took turns: sorted by their position, rounds follow each other, and each round has the methods in order,
+/// except for those that failed before. A method that was not run has no position.
 fn interleaved(case: &BenchCase, rounds: usize) {
     let mut runs: Vec<(usize, usize, usize)> = Vec::new();
     for (k, row) in case.methods.iter().enumerate() {
@@ -172,7 +173,7 @@ fn every_method_runs_in_every_round() {
         ]
     );
     check(case, 2);
-    // The file is what was printed; the table has a line per method, the picture both forms.
+    // The file is equal to the printed report; the table has a line per method, the picture exists in both formats.
     let text = std::fs::read_to_string(format!("{out}/bench.json")).expect("a report");
     assert_eq!(keys::read::<BenchReport>(&text, KEYS), report);
     let csv = std::fs::read_to_string(format!("{out}/bench.csv")).expect("a table");
@@ -220,7 +221,7 @@ fn contact_cases_have_their_steps() {
 #[test]
 fn what_fails_is_said_and_not_run_again() {
     let dir = Scratch::new("bench-fails");
-    // The options of one scene are not those of the next one.
+    // The options of one scene do not affect the next one.
     let tight = format!("[options]\nfetifeti_ksp_rtol = 1e-9\n{TIED}");
     let [one, two] = [dir.file("one.toml", &tight), dir.file("two.toml", TIED)];
     let run = fetifeti(&[

@@ -1,5 +1,5 @@
-//! `fetifeti compare` on scenes with inequalities: a loop on the multipliers and a loop on the assembled problem must find the
-//! same set and the same solution.
+//! `fetifeti compare` on scenes with inequalities: a loop on the multipliers and a loop on the assembled problem must
+//! find the same set and the same solution.
 
 use crate::support::{compared, program};
 use compared::{solved, SceneFile};
@@ -10,7 +10,7 @@ fn contact(row: &CompareRow) -> CompareContact {
     row.contact.expect("what became of the inequalities")
 }
 
-/// What must hold of every row, whatever the scene.
+/// Properties of every row, for any scene.
 fn check(report: &CompareReport, rtol: f64) {
     let reference = report.contact.expect("inequalities");
     assert!(report.reference_residual.expect("a direct solution") < 1e-11);
@@ -50,7 +50,8 @@ fn all_methods_agree_on_the_model_problem() {
     );
     let reference = report.contact.expect("inequalities");
     assert_eq!((reference.rows, reference.load_steps), (17, 1));
-    // The upper part, where the left body is pushed down, stays in touch; in the lower one the right body would have to pull.
+    // The upper part stays in contact, because the left body is pushed down there; in the lower part the right body
+    // would have to pull.
     let active = reference.active.expect("a direct solution");
     assert!((1..17).contains(&active), "{active}");
     let [one, two] = [&report.rows[0], &report.rows[1]];
@@ -60,11 +61,11 @@ fn all_methods_agree_on_the_model_problem() {
         assert_eq!(contact(row).active, active, "{}", row.method);
         let outer = contact(row).outer;
         assert!(outer.is_none_or(|n| (2..12).contains(&n)), "{row:?}");
-        // Inner iterations of all steps, fewer than as many full solves.
+        // `iterations` are inner iterations of all steps; they are fewer than those of as many full solves.
         let direct = row.method == "mumps";
         assert_eq!(row.iterations.is_none(), direct, "{row:?}");
     }
-    // The loop with a direct solver ends where it must, one solve per set.
+    // The loop with the direct solver needs one solve per set.
     let mumps = report.rows.last().expect("a row");
     if solved(mumps) {
         assert!(mumps.error.is_some_and(|e| e < 1e-12), "{mumps:?}");
@@ -72,8 +73,8 @@ fn all_methods_agree_on_the_model_problem() {
     }
 }
 
-/// Two rows of two bodies on an uneven ground; only the lower left one is held. Where all four meet, rows depend on each other,
-/// and all their gaps hold together only by chance.
+/// Two rows of two bodies on an uneven ground; only the lower left one is held. Where all four meet, rows are linearly
+/// dependent, and their gaps are compatible only by chance.
 const PILE: &str = r#"
 title = "a pile"
 [options]
@@ -120,7 +121,7 @@ fn floating_bodies_gaps_and_obstacles_come_out_the_same() {
     assert!(0 < active && active < reference.rows, "{reference:?}");
 }
 
-/// A body that is pressed against an obstacle, all of it or none of it, by load step.
+/// A body under a load that depends on the load step; it touches the obstacle with all its nodes or with none.
 const STEPS: &str = r#"
 title = "steps"
 [steps]
@@ -146,7 +147,7 @@ fn the_last_load_step_is_solved_and_that_is_said() {
     let report = scene.compare(&["--with", "hypre,mumps,bddc"]);
     check(&report, 1e-6);
     let reference = report.contact.expect("inequalities");
-    // The load has turned round: all nine nodes lie on the lower bound.
+    // The load has changed its sign: all nine nodes lie on the lower bound.
     assert_eq!((reference.rows, reference.active), (18, Some(9)));
     assert_eq!(reference.load_steps, 4);
     let out = scene.scratch.path("out");

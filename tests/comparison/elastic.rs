@@ -1,4 +1,5 @@
-//! `fetifeti compare` in space and in elasticity: tied bodies, contact along axes and along other normals, bodies that float.
+//! `fetifeti compare` in space and in elasticity: tied bodies, contact along axes and along other normals, bodies that
+//! float.
 
 use crate::support::compared;
 use compared::{solved, SceneFile};
@@ -10,7 +11,7 @@ fn compare(name: &str, text: &str, more: &[&str]) -> CompareReport {
     scene.compare(&[&["-fetifeti_ksp_rtol", "1e-9"], more].concat())
 }
 
-/// Every method that has solved the problem has solved the same one; ours has.
+/// Every method that claims a solution has found the same one; ours must claim one.
 fn check(report: &CompareReport) {
     assert!(report.reference_residual.expect("a direct solution") < 1e-10);
     for r in report.rows.iter().filter(|r| solved(r)) {
@@ -65,7 +66,7 @@ load = "1 + x*y"
     assert_eq!(report.dofs, 12 * 7 * 7);
 }
 
-/// Components given one by one, on different sides; a jump of the stiffness; four and two subdomains.
+/// Single components are prescribed on different sides; the stiffness jumps; the bodies have four and two subdomains.
 const PLANE: &str = r#"
 title = "two plates"
 physics = "elasticity"
@@ -94,7 +95,7 @@ fn all_methods_agree_on_tied_plates() {
     check(&report);
     assert_eq!(methods(&report), ALL);
     assert_eq!((report.dofs, report.supports), (2 * 25 * 13 - 13 - 13, 0));
-    // Told of the rigid motions, smoothed aggregation needs few iterations: without them several times as many.
+    // With the rigid motions smoothed aggregation needs few iterations; without them it needs several times as many.
     let gamg = best(&report, "gamg");
     assert!(
         !solved(gamg) || gamg.iterations.expect("iterations") < 100,
@@ -122,7 +123,7 @@ load = [0.1, -1, 0.2]
     assert_eq!(methods(&report), ALL);
 }
 
-/// A block on another one, pressed on one side more than on the other, with a gap that opens; along x nothing holds it.
+/// A block on another one, pressed on one side more than on the other, with a gap that opens. Nothing holds it along x.
 const BLOCKS: &str = r#"
 title = "two blocks"
 physics = "elasticity"
@@ -153,7 +154,7 @@ fn all_methods_agree_on_blocks_of_which_one_floats() {
     check(&report);
     assert_eq!(methods(&report), ALL);
     assert_eq!(report.supports, 1);
-    // The same in space: sliding along both axes and turning about the vertical one are free.
+    // The same in space: sliding along both axes and rotation about the vertical one are free.
     let space = BLOCKS
         .replace("size = [1, 1]", "size = [1, 1, 1]")
         .replace("elements = [12, 12]", "elements = 4")
@@ -213,7 +214,7 @@ body = "disc"
 side = "bottom"
 plane = { point = [0, 0], normal = [0.28, 0.96] }
 "#;
-    // The load is along the normal: nothing drives the disc down the slope.
+    // The load is along the normal: no force drives the disc down the slope.
     let scene = scene.replace("[0, -0.005]", "[-0.0014, -0.0048]");
     let report = compare("disc", &scene, &["--with", "bddc,gamg,hypre,mumps"]);
     check(&report);

@@ -1,4 +1,4 @@
-//! `fetifeti compare` and `fetifeti bench`: methods that know nothing of each other.
+//! `fetifeti compare` and `fetifeti bench`: methods that are independent of each other.
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,4 +1,4 @@
-//! `fetifeti compare` from the outside: methods that know nothing of each other must agree.
+//! `fetifeti compare` from the outside: methods that are independent of each other must agree.
 
 use crate::support::{compared, keys, mpi, program};
 use compared::{solved, SceneFile};
@@ -14,7 +14,7 @@ fn row<'a>(report: &'a CompareReport, method: &str, parts: Option<usize>) -> &'a
         .unwrap_or_else(|| panic!("no row {method} {parts:?}"))
 }
 
-/// What must hold of every row, whatever the scene.
+/// Properties of every row, for any scene.
 fn check(report: &CompareReport, rtol: f64) {
     assert_eq!(report.rtol, rtol);
     assert!(report.reference_residual.expect("a direct solution") < 1e-11);
@@ -65,7 +65,7 @@ fn all_methods_agree_on_tied_bodies() {
     let scene = SceneFile::new("tied", TIED);
     let report = scene.compare(&["-fetifeti_ksp_rtol", "1e-7"]);
     check(&report, 1e-7);
-    // Nodes of both bodies less the held ones and the second copies of the common face.
+    // Nodes of both bodies, minus the held ones and the second copies on the common face.
     assert_eq!(report.dofs, 13 * 12 + 13 * 13 - 13);
     let methods: Vec<(&str, Option<usize>, usize)> = report
         .rows
@@ -87,7 +87,7 @@ fn all_methods_agree_on_tied_bodies() {
         ]
     );
     for parts in [6, 2] {
-        // Same primal space and scaling: the spectra of BDDC and FETI-DP agree but for ones.
+        // With the same primal space and scaling, the spectra of BDDC and FETI-DP agree except for eigenvalues 1.
         let both = ["bddc", "fetidp"].map(|m| row(&report, m, Some(parts)));
         let same_try = both[0].rescue == both[1].rescue;
         if same_try && both.iter().all(|r| solved(r)) {
@@ -157,7 +157,7 @@ fn a_second_try_is_told_with_its_options() {
 #[test]
 fn mistakes_end_before_anything_runs() {
     let scene = SceneFile::new("mistakes", TIED);
-    // Nothing holds these bodies: ours finds out, first of all.
+    // Nothing holds these bodies, and our method, which runs first, finds that out.
     let floating = SceneFile::new("floating", &TIED.replace("dirichlet = [\"left\"]\n", ""));
     let cases: [(&[&str], i32, &str); 5] = [
         (&[scene.path(), "--with", "bddc,bdcc"], 2, "bdcc"),

@@ -1,5 +1,5 @@
-//! Many bodies, most of them floating, with tied, unilateral and gap interfaces: both methods against the assembled reference, on one
-//! and several ranks.
+//! Many bodies, most of them floating, with tied, unilateral and gap interfaces: both methods against the assembled
+//! reference, on one and several ranks.
 
 use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
@@ -17,7 +17,8 @@ const SCENES: [&str; 5] = [
     "press_ramp",
 ];
 
-/// The reference is certified to 1e-10 by itself; energies to 1e-8, KKT residuals to 1e-8, rows with force closed in both.
+/// The reference is certified to 1e-10 independently. Energies agree to 1e-8, KKT residuals are below 1e-8, and rows
+/// with a force are closed in both solutions.
 fn agree(session: &Session, name: &str) -> Result<(), String> {
     let path = format!("{}/examples/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let scene = Scene::load(path).map_err(|e| e.to_string())?;

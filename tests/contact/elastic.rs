@@ -1,5 +1,5 @@
-//! Random elastic contact scenes, plane and solid, flat and curved, by both contact loops and on several ranks, against the assembled
-//! reference.
+//! Random elastic contact scenes, plane and solid, flat and curved, by both contact loops and on several ranks, against
+//! the assembled reference.
 
 use crate::support::{contact_judge, elastic_scene, mpi};
 use elastic_scene::{case, Case, Fate};
@@ -10,14 +10,15 @@ use fetifeti::Error;
 
 const KINDS: [ContactType; 2] = [ContactType::ActiveSet, ContactType::Smalbe];
 
-/// Solves the scenes of `seeds` with both methods: those that have a solution agree with the reference, the others are refused.
+/// Solves the scenes of `seeds` with both methods. Where there is a solution, both agree with the reference; the other
+/// scenes are refused.
 fn all_agree(
     session: &Session,
     seeds: std::ops::Range<u64>,
 ) -> std::result::Result<[usize; 3], String> {
     let mut wrong = Vec::new();
     let mut fates = [0; 3];
-    // Given values beyond an obstacle are refused before anything is solved.
+    // Prescribed values beyond an obstacle are refused before the solve.
     for case in seeds.filter_map(|seed| case(seed).ok()) {
         let index = match case.fate {
             Fate::Solvable(_) => 0,

@@ -1,4 +1,4 @@
-//! Contact: answers of both methods against references that know nothing of them.
+//! Contact: answers of both methods compared with independent references.
 
 #[path = "../support/mod.rs"]
 mod support;

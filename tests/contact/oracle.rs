@@ -116,7 +116,7 @@ fn solve(session: &Session, scene: &Scene, kind: ContactType, rtol: f64) -> (Fet
     (solver, solution)
 }
 
-/// Which nodes touch, and the displacements; at the tolerance that holds without options, too.
+/// Active nodes and displacements, also at the default tolerance.
 #[test]
 fn sets_and_displacements() {
     with_session(|session| {
@@ -149,7 +149,7 @@ fn sets_and_displacements() {
                 let energy = solution.energy - number(&row["energy"]);
                 assert!(energy.abs() < 1e-9, "{what}: {energy}");
 
-                // Every node once, the given ones included.
+                // Every node once, including the prescribed ones.
                 let mut nodal = std::collections::BTreeMap::new();
                 for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
                     for (&dof, &u) in sub.dofs.iter().zip(u) {

@@ -1,4 +1,5 @@
-//! The reference for contact problems on problems whose solutions are known, and against trying every active set.
+//! The reference solver for contact problems, on problems with known solutions, and compared with an enumeration of all
+//! active sets.
 
 use crate::support::{qp, rng};
 use faer::{Mat, Side};
@@ -21,8 +22,9 @@ fn string(n: usize, left: bool, right: bool) -> Mat<f64> {
 
 #[test]
 fn a_string_on_a_flat_obstacle() {
-    // −u'' = −f, u(0) = u(1) = 0, u ≥ −g: contact on |x − 1/2| ≤ 1/2 − a with f a²/2 = g, where the string leaves the obstacle
-    // with slope zero. With a at a node, linear elements are exact at the nodes: the set and the reactions are known.
+    // −u'' = −f, u(0) = u(1) = 0, u ≥ −g. The contact zone is |x − 1/2| ≤ 1/2 − a with f a²/2 = g, where the string
+    // leaves the obstacle with slope zero. With a at a node, linear elements are exact at the nodes: the active set and
+    // the reactions are known.
     let (n, f) = (99, 8.0);
     let h = 0.01;
     let a = 0.25;
@@ -89,7 +91,7 @@ fn two_floating_blocks_against_a_stop() {
     assert_eq!(s.closed, [0, 1]);
     assert!((s.below[0] - push).abs() < 1e-13 && (s.below[1] - 0.5).abs() < 1e-13);
     assert!((s.u[2 * n - 1] - 0.125).abs() < 1e-13);
-    // The load runs through both blocks, each shortened by (n − 1) h times the force.
+    // The load passes through both blocks; each is shortened by (n − 1) h times the force.
     let h = 1.0 / 6.0;
     let middle = 0.125 + 4.0 * h * push;
     assert!((s.u[n] - middle).abs() < 1e-13);
@@ -103,7 +105,7 @@ fn two_floating_blocks_that_balance() {
     assert_eq!(s.closed, [0]);
     assert!((s.below[0] - 0.5).abs() < 1e-13);
     assert!((s.u[3] - s.u[4] + 0.25).abs() < 1e-12);
-    // No load: any position apart will do.
+    // Without a load, any position in which the blocks do not overlap is a solution.
     let s = two_blocks(4, 0.0, 0.0, 1.0, None).solve().solved();
     assert!(s.energy.abs() < 1e-14 && s.u[3] - s.u[4] <= 1.0);
     // Loads that balance on each block alone.
@@ -149,14 +151,15 @@ fn rows_that_contradict_each_other_are_infeasible() {
         };
         certificate::check_contradiction(&qp, &y);
     }
-    // The same with the contradiction just removed.
+    // The same with the contradiction removed.
     let s = Qp::dense(&k, &[1.0; 4], vec![], vec![up(1, 1.0), down(1, 1.0)]);
     assert!((s.solve().solved().u[1] - 1.0).abs() < 1e-12);
 }
 
 #[test]
 fn dependent_rows_share_the_force() {
-    // Four floating points that meet: all six pairs held by rows, one point pushed onto a stop, five times written.
+    // Four floating points that meet: rows tie all six pairs, and one point is pushed onto a stop whose row occurs five
+    // times.
     let k = Mat::zeros(4, 4);
     let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
     let rows = pairs.map(|(a, b)| Row::new([(a, 1.0), (b, -1.0)], 0.0));
@@ -180,7 +183,7 @@ fn dependent_rows_share_the_force() {
     }
 }
 
-/// Tries every active set: the equations by a dense pseudo-inverse, then the signs. `None`: no set fits.
+/// Tries every active set: solves its equations by a dense pseudo-inverse, then checks the signs. `None`: no set fits.
 fn by_enumeration(qp: &Qp) -> Option<f64> {
     let (n, ni) = (qp.f.len(), qp.below.len());
     let unit = |i: usize| match qp.k.get(i, i) {
@@ -235,8 +238,8 @@ fn by_enumeration(qp: &Qp) -> Option<f64> {
     None
 }
 
-/// A random problem: K of random rank, rows of few terms, some of them sums or copies of others, data from a coarse lattice
-/// so that ties and touches without force happen often.
+/// A random problem: K has random rank; rows have few terms, some are sums or copies of others; data are from a coarse
+/// lattice, so that degenerate contacts without force are frequent.
 fn random(rng: &mut Rng) -> Qp {
     let n = rng.between(1, 7);
     let rank = rng.between(0, n);

@@ -27,7 +27,7 @@ fn judge(
     )
 }
 
-/// Solves all cases and says which fail, and the worst that was let pass.
+/// Solves all cases; prints the failures, and the largest deviations that were accepted.
 fn all_agree(
     session: &Session,
     cases: &[Case],
@@ -86,7 +86,7 @@ fn scenes_without_a_solution_are_refused() {
         let mut wrong = Vec::new();
         for kind in KINDS {
             for case in cases.unbounded.iter().chain(&cases.infeasible) {
-                // The message names a body: one that moves for ever, or one whose rows contradict each other.
+                // The message names a body: one that moves without bound, or one whose rows contradict each other.
                 let moves = |b: usize| match &case.fate {
                     Fate::Unbounded(z) => {
                         let of_body = z.iter().zip(&case.problem.body);

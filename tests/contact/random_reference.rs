@@ -1,4 +1,5 @@
-//! The random contact scenes themselves: varied enough, solvable often enough, and every one decided by the reference.
+//! The random contact scenes themselves: they are varied enough, solvable often enough, and the reference decides each
+//! of them.
 
 use crate::support::{assembled, random_scene};
 use assembled::compare::{compare, Candidate, Tolerances};

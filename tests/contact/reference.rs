@@ -1,4 +1,5 @@
-//! The assembled reference for contact scenes on the model problem and on larger scenes, and the comparison that judges by it.
+//! The assembled reference for contact scenes, on the model problem and on larger scenes, and the comparison of answers
+//! with it.
 
 use crate::support::{assembled, qp};
 use assembled::compare::{compare, Candidate, Tolerances};
@@ -56,7 +57,8 @@ fn the_model_problem_agrees_with_the_oracle() {
     }
 }
 
-/// `n` × `m` bodies held on the left, alternately stiff and soft, pushed downwards; tied, in contact or with gaps by turns.
+/// `n` × `m` bodies held on the left, alternately stiff and soft, pushed downwards; interfaces are in turn tied, in
+/// contact, and with gaps.
 fn wall(n: usize, m: usize, elements: usize) -> Scene {
     let mut text = format!(
         "[grid]\nname = \"b\"\nbodies = [{n}, {m}]\norigin = [0, 0]\nsize = [{n}, {m}]\nsubdomains = 1\nelements_per_subdomain = {elements}\n\
@@ -132,7 +134,7 @@ fn the_example_scenes_with_contact() {
     assert!(count >= 5, "{count}");
 }
 
-/// The solution as an answer, with changes.
+/// The judgement of the reference solution with modifications, taken as an answer.
 fn judged(
     problem: &Assembled,
     s: &Reference,
@@ -163,7 +165,7 @@ fn the_comparison_sees_what_is_wrong() {
     let mut u = s.u.clone();
     u[5] += 1e-5;
     fails(&u, &s.lambda, "stationarity");
-    // The floating body moved up, away from the other, and down, into it.
+    // The floating body is moved up, away from the other, and down, into it.
     let moved = |by: f64| -> Vec<f64> {
         let step = |i: usize| if problem.body[i] == 1 { by } else { 0.0 };
         (0..s.u.len()).map(|i| s.u[i] + step(i)).collect()
@@ -192,7 +194,7 @@ fn the_comparison_sees_what_is_wrong() {
 
 #[test]
 fn motions_that_nothing_stops_are_no_difference() {
-    // Two floating bodies pressed together by loads that balance, tied or in contact: they float as one.
+    // Two floating bodies are pressed together by loads that balance, tied or in contact: they float as one body.
     let text = "[grid]\nbodies = [2, 1]\norigin = [0, 0]\nsize = [2, 1]\nsubdomains = 1\nelements_per_subdomain = 4\n\
                 load = [{ x = [0, 1], y = [0, 1], value = 1 }, { x = [1, 2], y = [0, 1], value = -1 }]\n[[contact]]\nbodies = \"all\"\n";
     let problem = Assembled::of_scene(&Scene::parse("floating.toml", text).unwrap());
@@ -206,7 +208,7 @@ fn motions_that_nothing_stops_are_no_difference() {
 
 #[test]
 fn four_bodies_at_a_point_may_share_forces_differently() {
-    // All six rows of a tied cross point: any multipliers with the same Bᵀλ will do.
+    // All six rows of a tied cross point are present: any multipliers with the same Bᵀλ are correct.
     let text = "[grid]\nbodies = 2\nsubdomains = 1\nelements_per_subdomain = 3\ndirichlet = \"all\"\nload = 1\n";
     let problem = Assembled::of_scene(&Scene::parse("cross.toml", text).unwrap());
     let s = problem.solve();
@@ -240,7 +242,7 @@ fn four_bodies_at_a_point_may_share_forces_differently() {
 
 #[test]
 fn scenes_without_a_solution() {
-    // Pulled away from the body that is held; and a lower bound above the upper one of the other body.
+    // A body is pulled away from the held one; and a lower bound is above the upper bound of the other body.
     let pulled = "[grid]\nbodies = [2, 1]\norigin = [0, 0]\nsize = [2, 1]\nsubdomains = 1\nelements_per_subdomain = 3\n\
                   dirichlet = [\"left\"]\nload = 1\n[[contact]]\nbodies = \"all\"\n";
     let problem = Assembled::of_scene(&Scene::parse("pulled.toml", pulled).unwrap());

@@ -14,7 +14,7 @@ const SCALAR: Physics = Physics::Scalar;
 const ELASTIC: Physics = Physics::Elastic { nu: 0.3 };
 const SCALINGS: [Scaling; 3] = [Scaling::Rho, Scaling::Stiffness, Scaling::Deluxe];
 
-/// What comes out for a problem.
+/// The result for a problem.
 #[derive(Debug)]
 struct Outcome {
     kappa: f64,
@@ -38,12 +38,12 @@ fn solver(
     FetiFeti::new(session, problem, settings).expect("set up")
 }
 
-/// Checks the identities and the lower end of the spectrum on the way.
+/// Runs a problem, and checks the identities and the lower end of the spectrum.
 fn run(session: &Session, solid: &Solid, scaling: Scaling, adaptive: Adaptive) -> Outcome {
     run_to(session, solid, scaling, adaptive, 1e-9)
 }
 
-/// The same with identities that hold to `rounding`.
+/// As `run`, with identities that hold to `rounding`.
 fn run_to(
     session: &Session,
     solid: &Solid,
@@ -77,7 +77,7 @@ fn run_to(
     out
 }
 
-/// Numbers without pattern in [0, 1), by place.
+/// Numbers without a pattern in [0, 1), as a function of the place.
 fn noise(x: [usize; 3]) -> f64 {
     let mut z = (x[0] as u64) << 40 ^ (x[1] as u64) << 20 ^ x[2] as u64 ^ 0x5bd1_e995_0000_0001;
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -104,7 +104,7 @@ fn channels(x: [usize; 3]) -> f64 {
     }
 }
 
-/// Soft channels, a hundred million times.
+/// Channels that are softer by a factor of a hundred million.
 fn gaps(x: [usize; 3]) -> f64 {
     if [1, 2, 5].contains(&(x[1] % 8)) {
         1e-8
@@ -138,7 +138,8 @@ fn body(
 
 type Coefficient = fn([usize; 3]) -> f64;
 
-/// κ stays below 1.5 τ with every scaling, and is far above 100 without constraints where the coefficient is scaled by ρ.
+/// κ stays below 1.5 τ with every scaling, and is far above 100 without constraints where the coefficient is scaled by
+/// ρ.
 fn bounded(session: &Session, solid: &Solid, far: f64) {
     let off = run(session, solid, Scaling::Rho, Adaptive::Off);
     assert_eq!(off.added, 0);
@@ -222,7 +223,7 @@ fn smooth_coefficients_take_nothing() {
     });
 }
 
-/// The same on several bodies: λ_min stays where it is, and the solution is that of the assembled problem.
+/// Several bodies: λ_min does not change, and the solution is that of the assembled problem.
 #[test]
 fn several_bodies() {
     with_session(|session| {
@@ -250,7 +251,8 @@ fn several_bodies() {
     });
 }
 
-/// One rank's share of a body, its subdomains dealt out in turn; prints what must not depend on their number.
+/// One rank's share of a body; subdomains are dealt out in turn. Prints the values that must not depend on the number
+/// of ranks.
 fn on_a_rank(session: &Session, solid: &Solid) {
     let (size, rank) = (session.size(), session.rank());
     let problem = solid.substructures(|s| s % size == rank);

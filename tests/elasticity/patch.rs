@@ -1,5 +1,5 @@
-//! Patch tests and orders of convergence of whole solves: plane and solid, across tied faces and faces in contact, flat and distorted, for
-//! every element and cure of locking.
+//! Patch tests and orders of convergence of whole solves: plane and solid, across tied faces and faces in contact, flat
+//! and distorted, for every element and cure of locking.
 
 use fetifeti::fem::ErrorNorms;
 use fetifeti::feti::{MethodSettings, Precision};
@@ -8,7 +8,7 @@ use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
 
-/// Error norms of the solution of a scene against the exact solution that it states.
+/// Error norms of the solution of a scene, against the exact solution in the scene.
 fn errors(session: &Session, text: &str, rtol: f64) -> ErrorNorms {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
@@ -36,7 +36,7 @@ const FORMS: [&str; 5] = [
     "locking = \"bbar\"\n",
 ];
 
-/// Linear displacements given all round, on bodies that a map has distorted, tied to each other.
+/// Linear displacements are prescribed all round, on bodies that are distorted by a map and tied to each other.
 fn tied_patch(dim: usize, form: &str, bent: bool) -> String {
     let exact = [
         ["0.1*x - 0.2*y", "0.3*x + 0.05*y", ""],
@@ -86,7 +86,8 @@ fn linear_displacements_are_exact_across_ties() {
     });
 }
 
-/// Blocks on top of each other on rollers under uniform pressure: uniaxial stress, which contact without friction transmits exactly.
+/// Blocks on top of each other on rollers under uniform pressure: contact without friction transmits the uniaxial
+/// stress exactly.
 fn pressed(dim: usize, form: &str, interface: &str) -> String {
     let (p, e, nu) = (0.3, 2.0, 0.3);
     // Plane strain has the moduli of the plane; plane stress and solids Young's own.
@@ -138,7 +139,7 @@ fn uniform_pressure_is_exact_across_contact() {
     });
 }
 
-/// u = (s, …, s) with s = ∏ sin(π x_d) and the load that belongs to it.
+/// u = (s, …, s) with s = ∏ sin(π x_d), and the load of this solution.
 fn manufactured(dim: usize, form: &str, n: usize) -> String {
     let (nu, e) = (0.3, 1.0);
     let mu = e / (2.0 * (1.0 + nu));
@@ -237,9 +238,9 @@ fn a_preconditioner_in_single_precision_changes_no_answer() {
         let largest = double.iter().fold(0.0f64, |a, v| a.max(v.abs()));
         let far = double.iter().zip(&mixed).map(|(a, b)| (a - b).abs());
         let far = far.fold(0.0, f64::max);
-        // Not the same to the last bit: single precision is really used.
+        // The last bits differ: single precision is really used.
         assert!(far > 0.0 && far < 1e-10 * largest, "{far:.1e}");
-        // A step of refinement more at most.
+        // At most one more step of refinement.
         assert!(its_mixed <= its + 6, "{its} and {its_mixed}");
     });
 }

@@ -1,4 +1,5 @@
-//! 3D and elastic problems against a direct solve, with every kind of constraint, scaling and support, on one and several ranks.
+//! 3D and elastic problems against a direct solve, with every kind of constraint, scaling and support, on one and
+//! several ranks.
 
 use crate::support::checks::identities;
 use crate::support::{mpi, solid};
@@ -136,7 +137,7 @@ fn floating_and_partly_held_bodies_are_found() {
             };
             verify(session, &solid, settings, &what);
         }
-        // Bodies that roll on x = 0: defects 1 and 3 there, 3 and 6 elsewhere.
+        // Bodies on rollers at x = 0: their kernels have dimension 1 and 3, those of the other bodies 3 and 6.
         for (dim, kernel) in [(2, 2 * (1 + 3)), (3, 4 * (3 + 6))] {
             let solid = Solid {
                 held: Held::Rolling,
@@ -151,7 +152,7 @@ fn floating_and_partly_held_bodies_are_found() {
                     "{name} {defect:.1e}"
                 );
             }
-            // Nothing holds the whole against sliding along x = 0.
+            // Nothing holds the whole scene against sliding along x = 0.
             let error = solver.solve().expect_err("the load does not balance");
             assert!(error.to_string().contains("held by nothing"), "{error}");
         }
@@ -227,7 +228,8 @@ fn wrong_entities_are_refused() {
     });
 }
 
-/// One rank's share of a problem, its subdomains dealt out in turn; prints what must not depend on their number.
+/// One rank's share of a problem; subdomains are dealt out in turn. Prints the values that must not depend on the
+/// number of ranks.
 fn on_a_rank(session: &Session, scaling: Scaling) {
     let solid = match scaling {
         Scaling::Deluxe => Solid::new(3, [2, 2, 3], Physics::Scalar, Rows::Tied),

@@ -38,7 +38,7 @@ fn kappa(session: &Session, solid: &Solid, pc: PcType) -> f64 {
     kappa_with(session, solid, settings)
 }
 
-/// `found` is `wanted` up to `percent` of it.
+/// `found` agrees with `wanted` to `percent` percent.
 fn near(found: f64, wanted: f64, percent: f64) {
     assert!(
         (found / wanted - 1.0).abs() < percent / 100.0,
@@ -55,7 +55,7 @@ fn scalar_in_3d() {
             near(kappa(session, &solid([2, 3, 3]), CORRECTED), 2.92, 2.0);
             let plain = kappa(session, &solid([2, 3, 3]), PcType::Dirichlet);
             near(plain, 5.39, 1.0);
-            // Without edge averages, vertices alone are no good in 3D; faces on top do no harm.
+            // Without edge averages, vertices alone do not suffice in 3D; additional faces do no harm.
             let with = |text| {
                 let settings = MethodSettings {
                     primal: Primal::parse(text).expect("constraints"),
@@ -82,14 +82,14 @@ fn plane_strain() {
             near(stiff, 25.3, 1.0);
             let plain = kappa(session, &solid(0.49, Rows::Tied), PcType::Dirichlet);
             near(plain, 278.0, 2.0);
-            // The figures of reference count whole nodes as candidates and have no rows at cross points.
+            // The reference values treat whole nodes as candidates and have no rows at cross points.
             let by_node = |pc| kappa(session, &solid(0.3, Rows::NormalsByNode), pc);
             near(by_node(CORRECTED), 14.5, 1.0);
             near(by_node(PcType::Dirichlet), 67.3, 1.0);
             // Ours: tangential values on the faces stay in Z_c.
             let normals = kappa(session, &solid(0.3, Rows::Normals), CORRECTED);
             assert!(normals < 14.5, "{normals}");
-            // Edge averages are constraints in 2D too where the substructures list them.
+            // Edge averages are constraints in 2D, too, if the substructures list them.
             let edges = Solid {
                 plane_edges: true,
                 ..solid(0.49, Rows::Tied)

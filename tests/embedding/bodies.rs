@@ -1,10 +1,11 @@
-//! How a host names the bodies of a KSPFETIFETI: by a label of its mesh, by an index set over the rows, or not at all.
+//! How a host program defines the bodies of a KSPFETIFETI: by a label of its mesh, by an index set over the rows, or
+//! not at all.
 
 use crate::support::{mpi, plugin};
 use mpi::Scratch;
 use plugin::{number_after, Program};
 
-/// Runs tests/plugin/plex.c on four ranks, whose subdomains are halves of the two halves that the label names.
+/// Runs tests/plugin/plex.c on four ranks. Their subdomains are halves of the two halves that the label defines.
 fn plex(program: &Program, options: &str) -> mpi::Output {
     let always = "-petscpartitioner_type simple -ksp_type fetifeti -ksp_rtol 1e-10 -ksp_view";
     program.with_plugin(4, &format!("{options} {always}"))

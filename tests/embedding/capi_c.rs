@@ -36,7 +36,7 @@ fn bars_by_raw_arrays() {
 fn mistakes_are_sentences() {
     let scratch = Scratch::new("capi-wrong");
     let program = Program::linked("mpicc", &scratch, "tests/plugin/capi.c");
-    // What PETSc prints for the code of the error, and the sentence.
+    // PETSc's text for the error code, and our sentence.
     for (wrong, kind, sentence) in [
         ("null", NULL, "the FetiFeti is NULL"),
         ("order", STATE, "expected FetiFetiSolve before"),
@@ -58,7 +58,7 @@ fn mistakes_are_sentences() {
     }
 }
 
-/// PETSc's words for the codes of errors of input.
+/// PETSc's text for the codes of input errors.
 const NULL: &str = "Null argument, when expecting valid pointer";
 const STATE: &str = "Object is in wrong state";
 const WRONG: &str = "Invalid argument";
@@ -129,7 +129,7 @@ fn motions_of_stacked_matrices_are_used() {
         assert!(out.stdout.contains(kernel), "{}", out.all());
         number_after(&out, "primal dofs:")
     };
-    // Where rotations are known, more nodes of a straight face are constrained than where they are guessed.
+    // With known rotations, more nodes of a straight face are constrained than with guessed ones.
     let (with, without) = (primal("-fetifeti_view"), primal("-fetifeti_view -near 0"));
     assert!(with > without, "{with} and {without}");
 }
@@ -141,7 +141,7 @@ fn cycles_leave_nothing_behind() {
     for ranks in [1, 2] {
         let out = program.run(ranks, "-cycles 1000 -m 3 -malloc_dump");
         assert_eq!(out.code, 0, "{}", out.all());
-        // -malloc_dump prints what PETSc has not got back.
+        // -malloc_dump prints memory that has not been freed.
         assert!(!out.all().contains("bytes in"), "{}", out.all());
         let bytes = number_after(&out, "bytes per cycle:");
         assert!(bytes < 1500.0, "{bytes} bytes per cycle on {ranks} ranks");
@@ -156,7 +156,7 @@ fn a_dmda_program_with_contact() {
     for ranks in [1, 2, 4] {
         let out = program.run(ranks, "-contact -m 17 -fetifeti_ksp_rtol 1e-10");
         assert_eq!(out.code, 0, "{}", out.all());
-        // The program measures with its own matrices.
+        // The program measures these with its own matrices.
         for what in ["equilibrium", "overlap", "pull", "product"] {
             assert!(number_after(&out, what) < 1e-7, "{what}: {}", out.all());
         }
@@ -164,7 +164,7 @@ fn a_dmda_program_with_contact() {
         works.push(number_after(&out, "work"));
     }
     assert!(works.iter().all(|w| (w - works[0]).abs() < 1e-7));
-    // And as it was: one block, any KSP.
+    // The former form still works: one block, any KSP.
     let direct = program.run(1, "-m 17 -ksp_rtol 1e-10 -pc_type none");
     let ours = program.run(4, "-m 17 -ksp_rtol 1e-8 -ksp_type fetifeti");
     let energy = |out| number_after(out, "energy");

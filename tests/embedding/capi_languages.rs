@@ -1,4 +1,5 @@
-//! The functions of wrappers/fetifeti.h from Fortran (wrappers/fetifeti.f90) on bars whose solution is known, and from Python by ctypes on blocks, beside the same in C.
+//! The functions of wrappers/fetifeti.h from Fortran (wrappers/fetifeti.f90) on bars with known solutions, and from
+//! Python by ctypes on blocks, compared with the same program in C.
 
 use crate::support::{mpi, plugin};
 use mpi::{mpirun, Scratch};
@@ -15,14 +16,14 @@ fn bars_in_fortran() {
         assert!(number_after(&out, "reason") > 0.0, "{}", out.all());
         let (force, exact) = (number_after(&out, "force"), number_after(&out, "exact"));
         assert!((force - exact).abs() < 1e-7, "{}", out.all());
-        // Of the second row, which was given after the first.
+        // The value of the second row, which was added after the first.
         assert!(number_after(&out, "obstacle").abs() < 1e-9);
     }
 }
 
 #[test]
 fn contact_from_petsc4py() {
-    // Debian keeps petsc4py beside the PETSc that it was built for.
+    // Debian stores petsc4py next to the PETSc that it was built for.
     let modules = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
     let path = std::env::var("PYTHONPATH").unwrap_or_default();
     let path = format!("{modules}:{path}");
@@ -57,7 +58,7 @@ fn contact_from_petsc4py() {
         let touching = touching.and_then(|l| l.split(',').next()).expect("a line");
         assert!(out.stdout.contains(touching), "{touching}: {}", out.all());
     }
-    // And as it was: one block, any KSP.
+    // The former form still works: one block, any KSP.
     let direct = program.run(1, "-m 13 -ksp_rtol 1e-10 -pc_type none");
     let ours = python(4, "-m 13 -ksp_rtol 1e-8 -ksp_type fetifeti");
     let energy = |out| number_after(out, "energy");

@@ -1,12 +1,12 @@
-//! Every example runs on one rank and on two, and finds its own check satisfied.
+//! Every example runs on one rank and on two, and its own check is satisfied.
 
 use crate::support::mpi;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::OnceLock;
 
-/// Examples lie beside the directory of the test executables. A plain `cargo test` has built them; one that names this test
-/// has not, or has left older ones there.
+/// The path of an example, next to the directory of the test executables. A plain `cargo test` builds the examples; one
+/// that names this test does not, or leaves older ones there.
 fn path(name: &str) -> PathBuf {
     static BUILT: OnceLock<()> = OnceLock::new();
     BUILT.get_or_init(|| {
@@ -41,7 +41,7 @@ fn run(name: &str, ranks: usize, labels: &[&str]) -> Vec<String> {
     labels.iter().map(line).collect()
 }
 
-/// The same facts on one rank and on two.
+/// Compares the printed facts on one rank and on two.
 fn compare(name: &str, labels: &[&str]) {
     assert_eq!(run(name, 1, labels), run(name, 2, labels), "{name}");
 }
@@ -69,7 +69,7 @@ fn custom_substructures() {
     compare("custom_substructures", &["bodies", "multipliers", "kappa"]);
 }
 
-/// An example whose check cannot hold says so and fails: the runs above could have failed.
+/// An example whose check cannot hold fails with a message: so the checks of the other runs are effective.
 #[test]
 fn a_check_can_fail() {
     let path = path("feti1");

@@ -1,4 +1,4 @@
-//! KSPFETIFETI as a KSP like others: used again, changed, reset, watched, and refusing what it cannot solve.
+//! KSPFETIFETI as an ordinary KSP: used again, changed, reset, monitored; and problems that it refuses.
 
 use crate::support::{mpi, plugin};
 use mpi::Scratch;
@@ -44,7 +44,7 @@ fn cycles_leave_nothing_behind() {
         "-do cycles -cycles 1000 -n 6 -ksp_type fetifeti -malloc_debug -malloc_dump",
     );
     assert_eq!(out.code, 0, "{}", out.all());
-    // -malloc_dump prints what PETSc has not got back.
+    // -malloc_dump prints memory that has not been freed.
     assert!(!out.all().contains("bytes in"), "{}", out.all());
     let bytes = number_after(&out, "bytes per cycle:");
     assert!(bytes < 1500.0, "{bytes} bytes per cycle");

@@ -19,7 +19,7 @@ fn a_fortran_program() {
 
 #[test]
 fn a_petsc4py_script() {
-    // Debian keeps petsc4py beside the PETSc that it was built for.
+    // Debian stores petsc4py next to the PETSc that it was built for.
     let modules = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
     let path = std::env::var("PYTHONPATH").unwrap_or_default();
     let path = format!("{modules}:{path}");

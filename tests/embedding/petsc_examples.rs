@@ -11,7 +11,7 @@ fn distance(x: &[f64], y: &[f64]) -> f64 {
     norm(&mut x.iter().zip(y).map(|(x, y)| x - y)) / norm(&mut y.iter().copied())
 }
 
-/// Solves by FETI-FETI and by CG; the solutions agree, the residual is below the tolerance. Returns the iterations.
+/// Solves by FETI-FETI and by CG: the solutions agree, and the residual is below the tolerance. Returns the iterations.
 fn agrees(
     program: &Program,
     scratch: &Scratch,
@@ -136,7 +136,7 @@ fn ex49_elasticity_with_jumps() {
         (9, "", "-elas_fetifeti_bodies 3"),
         (4, bricks, "-elas_fetifeti_bodies 2"),
         (4, sponge, ""),
-        // MatZeroRows: rows only, an operator that is not symmetric as it stands.
+        // MatZeroRows on rows only: the operator is not symmetric.
         (4, "-use_nonsymbc", ""),
     ] {
         let options = format!("-mx 20 -my 20 -dm_mat_type is -no_view {options}");
@@ -192,7 +192,8 @@ fn an_assembled_matrix_is_refused_in_one_sentence() {
     }
 }
 
-/// Every element a subdomain, many of them on a rank: MatISSetAllowRepeated, which PETSc has from 3.21 on (`make test-newer`).
+/// Every element is a subdomain, many of them on a rank: MatISSetAllowRepeated, which PETSc has from 3.21 on (`make
+/// test-newer`).
 #[test]
 fn ex71_with_many_subdomains_on_a_rank() {
     if plugin::petsc_version() < (3, 21) {

@@ -1,4 +1,4 @@
-//! The plug-in in programs that run on another PETSc than it was built for: one sentence, and no crash.
+//! The plug-in in programs that use another PETSc than it was built for: one sentence, and no crash.
 
 use crate::support::{mpi, plugin};
 use mpi::Scratch;
@@ -11,7 +11,7 @@ fn another_petsc_is_refused() {
         let scratch = Scratch::new("embed-wrong");
         let program = Program::tutorial_of(&scratch, "ex2", build);
         for ranks in [1, 2] {
-            // It runs as long as nothing is loaded.
+            // The program runs as long as the plug-in is not loaded.
             let out = program.run(ranks, "-ksp_type cg");
             assert_eq!(out.code, 0, "{build}: {}", out.all());
             let out = program.with_plugin(ranks, "-ksp_type fetifeti");

@@ -1,4 +1,4 @@
-//! The operators of the theory page built as dense matrices, straight from the torn substructures.
+//! The operators of docs/theory.md as dense matrices, built directly from the torn substructures.
 #![allow(dead_code)] // every test file uses its own part
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -64,21 +64,21 @@ pub fn columns(solver: &FetiFeti, apply: impl Fn(&PetscVec, &PetscVec)) -> Mat<f
     out
 }
 
-/// Everything dense, on copies: the local dofs of all subdomains, one after the other.
+/// All operators as dense matrices on copies: the local dofs of all subdomains, one after the other.
 pub struct Reference {
     /// B and B_D = (B D⁻¹ Bᵀ)⁺ B D⁻¹, m × copies.
     pub b: Mat<f64>,
     pub bd: Mat<f64>,
-    /// B S̃⁺ Bᵀ with some generalised inverse.
+    /// B S̃⁺ Bᵀ with an arbitrary generalised inverse.
     pub f: Mat<f64>,
-    /// B R, R the kernels of the floating bodies.
+    /// G = B R, where R are the kernels of the floating bodies.
     pub g: Mat<f64>,
     pub m_dirichlet: Mat<f64>,
     pub m_corrected: Mat<f64>,
 }
 
 impl Reference {
-    /// `rows`: which copies each multiplier ties, with coefficients.
+    /// `rows`: the copies that each multiplier ties, with coefficients.
     pub fn new(problem: &Substructures, b: Mat<f64>) -> Reference {
         let start: Vec<usize> = problem
             .local
@@ -122,7 +122,7 @@ impl Reference {
         let on_gamma = |c: usize| shared(c) || contact.contains(&dof[c]);
         let primal = |c: usize| vertex[c] && shared(c);
 
-        // W̃: copies of a shared vertex are one unknown.
+        // W̃: the copies of a shared vertex are one unknown.
         let mut unknown = vec![0; n];
         let mut n_unknowns = 0;
         for c in 0..n {
@@ -139,7 +139,7 @@ impl Reference {
         let b_tilde = &b * &e;
         let f = &b_tilde * pseudo_inverse(&k_tilde) * b_tilde.transpose();
 
-        // Constants are the kernel of a body that K maps to zero.
+        // The kernel of a body is spanned by the constants, if K maps them to zero.
         let mut kernels = Vec::new();
         for candidate in 0..problem.n_bodies {
             let constant = Mat::from_fn(n, 1, |c, _| f64::from(u8::from(body[c] == candidate)));
@@ -155,7 +155,7 @@ impl Reference {
         let b_over_d = Mat::from_fn(b.nrows(), n, |i, c| b[(i, c)] / d[c]);
         let bd = pseudo_inverse(&(&b_over_d * b.transpose())) * &b_over_d;
 
-        // S on the torn interface: interiors eliminated.
+        // S on the torn interface: interior dofs are eliminated.
         let gamma: Vec<usize> = (0..n).filter(|&c| on_gamma(c)).collect();
         let inner: Vec<usize> = (0..n).filter(|&c| !on_gamma(c)).collect();
         let pick =
@@ -165,8 +165,8 @@ impl Reference {
         let bd_gamma = Mat::from_fn(b.nrows(), gamma.len(), |i, j| bd[(i, gamma[j])]);
         let m_dirichlet = &bd_gamma * &s * bd_gamma.transpose();
 
-        // Ψ: energy-minimal with unit value at one vertex, zero at the other primal vertices of the subdomain. Body corners count where
-        // the body is cut.
+        // Ψ: energy-minimal functions with value one at one vertex and zero at the other primal vertices of the
+        // subdomain. Corners of a body count only where the body has several subdomains.
         let pins = |c: usize| vertex[c] && on_gamma(c) && (shared(c) || subdomains[body[c]] > 1);
         let (pinned, loose): (Vec<usize>, Vec<usize>) =
             (0..gamma.len()).partition(|&i| pins(gamma[i]));
@@ -216,7 +216,7 @@ impl Reference {
     }
 }
 
-/// B of a solver on copies, once with the entries of B and once with those of B_D.
+/// B of a solver on copies, with the entries of B, and with those of B_D.
 pub fn jump_of(solver: &FetiFeti) -> (Mat<f64>, Mat<f64>) {
     let (problem, stiffness) = (solver.problem(), &solver.dual().stiffness);
     let n: usize = problem.local.iter().map(|s| s.k.n()).sum();

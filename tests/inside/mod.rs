@@ -1,4 +1,5 @@
-//! Tests of what only the crate itself can reach: operators against dense algebra, the layer over PETSc, the files of the report.
+//! Tests of parts that only the crate itself can access: operators compared with dense algebra, the PETSc layer, the
+//! files of the report.
 
 mod dense;
 mod operators;

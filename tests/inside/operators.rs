@@ -1,4 +1,4 @@
-//! The operators against dense algebra, and the identities of the theory on random scenes.
+//! The operators compared with dense algebra, and the identities of the theory on random scenes.
 
 use super::dense;
 use crate::inside::support::checks::identities;
@@ -73,7 +73,7 @@ fn rows_of_b_tie_what_they_should() {
                     assert_eq!(dofs[entries[0].0], dofs[entries[1].0], "{name}");
                     assert!(pairs.insert((entries[0].0, entries[1].0)), "{name}: twice");
                 } else {
-                    // Averages of the copies of two dofs; nothing where the row does not hold.
+                    // Averages of the copies of two dofs; zero where the row does not hold.
                     let mut sums = std::collections::BTreeMap::new();
                     entries
                         .iter()
@@ -98,7 +98,7 @@ fn rows_of_b_tie_what_they_should() {
                 });
                 assert_eq!(found.count(), 1, "{name}");
             }
-            // B B_Dᵀ B = B, and B_D is what the general definition gives.
+            // B B_Dᵀ B = B, and B_D agrees with its general definition.
             assert!(defect(&(&b * bd.transpose() * &b), &b) < 1e-13, "{name}");
             let reference = Reference::new(problem, b);
             assert!(
@@ -211,7 +211,7 @@ fn f_m_and_p_equal_their_dense_definitions() {
                         .abs()
                         .max((exact.lambda_min / low - 1.0).abs());
                     assert!(wrong < 1e-6, "{what}: {exact:?} for {low} {high}");
-                    // The Lanczos estimate of a run lies inside.
+                    // The Lanczos estimate of a solve lies inside the exact spectrum.
                     let solution = solver.solve().expect("solved");
                     let estimate = solution.estimate.expect("CG estimates");
                     assert!(
@@ -332,7 +332,7 @@ fn identities_hold_on_random_scenes() {
 #[test]
 fn jumps_by_body_do_not_hurt() {
     with_session(|session| {
-        // 4 × 4 bodies of 4 × 4 subdomains of 4 × 4 elements, ρ = 1 and 10⁴ in turns.
+        // 4 × 4 bodies of 4 × 4 subdomains of 4 × 4 elements, ρ alternately 1 and 10⁴.
         let scene = Scene::load("examples/scenes/jump_checkerboard.toml").expect("valid");
         let kappa = |projector, pc_type| {
             let settings = MethodSettings {
@@ -354,7 +354,7 @@ fn jumps_by_body_do_not_hurt() {
         assert!(ours <= 6.0, "{ours}");
         let corrected = kappa(ProjectorKind::Auto, Some(PcType::CoarseCorrected));
         assert!((corrected / ours - 1.0).abs() < 1e-6);
-        // What Q = M⁻¹ is for: the same problem with Q = I, and with M_D, as measured with dense algebra.
+        // The benefit of Q = M⁻¹: κ of the same problem with Q = I and M_D, as measured with dense algebra.
         let plain = kappa(ProjectorKind::Identity, Some(PcType::Dirichlet));
         assert!((plain / 4343.0 - 1.0).abs() < 5e-3, "{plain}");
         let weighted = kappa(ProjectorKind::Preconditioner, Some(PcType::Dirichlet));

@@ -130,7 +130,7 @@ fn direct_and_iterative_solution() {
         for (i, u) in x.array().unwrap().iter().enumerate() {
             assert!((u - ((i + 1) * (n - i)) as f64 / 2.0).abs() < 1e-10);
         }
-        // A load without symmetry: with one, the tenth residual of CG is zero or not as products are rounded.
+        // A load without symmetry: with one, rounding decides whether the tenth residual of CG is zero.
         for (i, b) in b.array_mut().unwrap().iter_mut().enumerate() {
             *b = (1 + i * i) as f64;
         }
@@ -168,7 +168,7 @@ fn direct_and_iterative_solution() {
     });
 }
 
-/// y = factor · x; counts its life.
+/// y = factor · x; counts its live instances.
 struct Scaled {
     factor: f64,
     drops: Rc<Cell<usize>>,
@@ -268,7 +268,7 @@ fn errors_and_panics_of_callbacks_come_back() {
             drop((mat, ksp));
             assert_eq!(drops.get(), 2);
         }
-        // The slot is empty again: PETSc's own next error is PETSc's.
+        // The stored error has been taken: PETSc's next error is its own.
         let a = laplacian(session, 3);
         let wrong = PVec::seq(session, 4).unwrap();
         match a.mult(&wrong, &a.left_vec().unwrap()).unwrap_err() {
@@ -344,7 +344,7 @@ fn options_are_read_set_and_checked() {
             error,
             "Option -opt_bad is \"abc\"; expected one of identity, diagonal."
         );
-        // The typo is the one that nobody asked for.
+        // The typo is the one option that nothing reads.
         assert_eq!(
             options.left().unwrap(),
             [("-opt_typo".to_string(), "7".to_string())]
@@ -381,7 +381,7 @@ fn memory_is_plausible() {
     with_session(|_| assert!((1e6..1e12).contains(&max_memory())));
 }
 
-/// What a second process does, started by the tests below with its own PETSc options; returns its exit code.
+/// The work of a second process, started by the tests below with its own PETSc options; returns its exit code.
 fn with_options(options: &str, help: &str) -> i32 {
     let args: Vec<String> = options.split(' ').map(String::from).collect();
     let session = match Session::new(&args, help) {

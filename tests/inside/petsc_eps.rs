@@ -1,4 +1,4 @@
-//! Extreme eigenvalues of C A for singular pairs, against dense algebra.
+//! Extreme eigenvalues of C A for singular pairs, compared with dense algebra.
 
 use faer::{Mat as Dense, Side};
 use fetifeti::petsc::testing::with_session;
@@ -128,7 +128,7 @@ fn pairs_with_one_kernel() {
     });
 }
 
-/// Preconditioned: C is nearly the pseudo-inverse of A, as a good preconditioner is, with many eigenvalues at 1.
+/// With preconditioning: C is nearly the pseudo-inverse of A, with many eigenvalues at 1.
 #[test]
 fn clustered_at_one() {
     with_session(|session| {
@@ -265,7 +265,7 @@ fn a_start_in_the_kernel_is_refused() {
     });
 }
 
-/// STSHELL with a standard problem: the operator steers, the eigenvalues are Rayleigh quotients of A.
+/// STSHELL with a standard problem: the operator drives the iteration, and the eigenvalues are Rayleigh quotients of A.
 #[test]
 fn spectral_transformation_in_rust() {
     struct Double(Mat, Rc<Cell<usize>>);
@@ -297,7 +297,7 @@ fn spectral_transformation_in_rust() {
             assert!((eps.eigenvalue(i).unwrap() - values[11 - i]).abs() < 1e-8);
         }
         assert!(applied.get() > 0, "the operator was not used");
-        // The eigenvector belongs to A.
+        // The eigenvector is one of A.
         let (x, y) = (a.right_vec().unwrap(), a.left_vec().unwrap());
         eps.eigenvector(0, &x).unwrap();
         a.mult(&x, &y).unwrap();

@@ -1,4 +1,4 @@
-//! The PETSc layer on several ranks: values do not depend on their number, and failures end the run.
+//! The PETSc layer on several ranks: values do not depend on the number of ranks, and failures end the run.
 
 use crate::inside::support::mpi;
 use fetifeti::petsc::{
@@ -6,7 +6,7 @@ use fetifeti::petsc::{
 };
 use fetifeti::{Error, Result};
 
-/// An error on rank 1 while rank 0 waits for it in a reduction.
+/// An error on rank 1, while rank 0 waits in a reduction.
 fn error_outside(session: &Session) -> Result<()> {
     match session.rank() {
         1 => Err(Error::input("The file is unreadable.")),
@@ -17,14 +17,14 @@ fn error_outside(session: &Session) -> Result<()> {
     }
 }
 
-/// Errors on all ranks but the first, and what they agree on.
+/// Errors on all ranks but the first, and the common error that they agree on.
 fn agreed(session: &Session) -> Result<()> {
     let mine = match session.rank() {
         0 => Ok(()),
         rank => Err(Error::input(format!("Bad number seen by rank {rank}."))),
     };
     let result = session.agree(mine);
-    // Collective work goes on after the agreement.
+    // Collective work is possible after the agreement.
     let x = PVec::mpi(session, 1)?;
     x.set(1.0)?;
     assert_eq!(x.sum()?, session.size() as f64);
@@ -102,7 +102,7 @@ fn values(session: &Session) -> Result<()> {
     sum.axpy(-(size as f64), &x)?;
     assert_eq!(sum.norm_inf()?, 0.0);
 
-    // MATIS: every rank brings the 2 × 2 matrix of an edge; assembled they are the Laplacian with free ends.
+    // MATIS: every rank contributes the 2 × 2 matrix of an edge; assembled they are the Laplacian with free ends.
     let edge = fetifeti::linalg::csr::Csr::from_triplets(
         2,
         &[(0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)],

@@ -1,5 +1,5 @@
-//! The files about contact, written as for a run with 2 and with 180 interfaces and read back: pictures, profiles, and a time
-//! series as ParaView reads it. They stay in target/tmp/report_contact to be looked at.
+//! The files about contact, written as for a run with 2 and with 180 interfaces and read back: pictures, profiles, and
+//! a time series as ParaView reads it. They stay in target/tmp/report_contact for inspection.
 
 use fetifeti::report::json::contact::LoadStep;
 use fetifeti::report::paraview::contact_fields::ContactFields;
@@ -89,7 +89,7 @@ impl Bodies {
         out
     }
 
-    /// Along every face a parabolic pressure around a middle that moves from face to face; face k % 5 = 4 is open.
+    /// A parabolic pressure along every face. Its middle moves from face to face; faces k with k % 5 = 4 are open.
     fn profiles(&self, scale: f64) -> Vec<Profile> {
         let faces = self.faces().into_iter().enumerate();
         let profile = |(k, (from, along, name)): (usize, ([f64; 2], [f64; 2], String))| {
@@ -140,7 +140,7 @@ impl Bodies {
     }
 }
 
-/// Width and height of a PNG, and how many of its pixels are coloured as the zone.
+/// Width and height of a PNG, and the number of its pixels in the colour of the zone.
 fn png(path: &PathBuf) -> (u32, u32, usize) {
     let mut reader = png::Decoder::new(std::fs::File::open(path).unwrap())
         .read_info()
@@ -163,7 +163,8 @@ fn two_interfaces() {
     profile::write(&profiles, "three bodies in a row", &dir).unwrap();
     let (u, rho) = (bodies.u(), vec![1.0; bodies.quads.len()]);
     let mut marks = bodies.marks(&profiles);
-    // An obstacle under the first body that is touched in part, one above the last that is touched in a single node.
+    // An obstacle under the first body that is partly in contact, and one above the last body in contact at a single
+    // node.
     marks.extend((0..32).map(|k| ContactMark {
         from: [f64::from(k) / 32.0, 0.0],
         to: [f64::from(k + 1) / 32.0, 0.0],
@@ -246,7 +247,7 @@ impl Element {
     }
 }
 
-/// Reads the XML that we write: a declaration, elements with attributes, text; every tag has to be closed.
+/// Parses the XML that we write: a declaration, elements with attributes, text. Every tag must be closed.
 fn xml(text: &str) -> Element {
     let unescape = |s: &str| {
         let s = s.replace("&quot;", "\"").replace("&lt;", "<");
@@ -293,7 +294,7 @@ fn xml(text: &str) -> Element {
     root.children.pop().unwrap()
 }
 
-/// The numbers' bytes of an inline array, without the length in front.
+/// The bytes of the numbers of an inline array, without the length in front.
 fn bytes(array: &Element) -> Vec<u8> {
     assert_eq!(array.get("format"), "binary");
     const DIGITS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -366,7 +367,7 @@ fn a_time_series_reads_back() {
             contact_force: profiles[0].force(),
         });
 
-        // After every step: the collection, and in it every file so far.
+        // After every step the collection exists and lists every file so far.
         let collection = xml(&std::fs::read_to_string(dir.join("solution.pvd")).unwrap());
         assert_eq!(collection.get("type"), "Collection");
         let sets = &collection.child("Collection").children;
@@ -384,7 +385,7 @@ fn a_time_series_reads_back() {
             let (touches, candidate) = (integers(named("contact")), integers(named("candidate")));
             let p = &bodies.profiles(time)[0];
             assert!(multiplier.iter().chain(&gap).all(|v| v.is_finite()));
-            // Both sides of the interface have it, the rest of the bodies nothing.
+            // Both sides of the interface have multipliers, the rest of the bodies has none.
             let total: f64 = multiplier.iter().sum();
             assert!((total - 2.0 * p.force()).abs() < 1e-12 && total > 0.0);
             assert_eq!(candidate.iter().sum::<i32>() as usize, 2 * p.t.len());

@@ -1,4 +1,4 @@
-//! What these tests share with the test programs.
+//! Helpers that these tests share with the test programs.
 #![allow(dead_code)]
 
 #[path = "../support/checks.rs"]

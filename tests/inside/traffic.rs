@@ -1,11 +1,11 @@
-//! Messages, bytes and all-reduces of a solve against PETSc's own counters.
+//! Messages, bytes and all-reduces of a solve, compared with PETSc's own counters.
 
 use crate::inside::support::mpi;
 use fetifeti::parallel::traffic;
 use fetifeti::petsc::{counters, Session};
 use fetifeti::{FetiFeti, Result, Scene, Settings};
 
-/// 3 × 3 bodies of 2 × 2 subdomains: one body floats, S_Π, A and Gᵀ G are all there.
+/// 3 × 3 bodies of 2 × 2 subdomains: one body floats, so that S_Π, A and Gᵀ G all exist.
 const TIED: &str = "[grid]\nbodies = 3\nsubdomains = 2\nelements_per_subdomain = 4\nload = \"1 + x + y^2\"\ndirichlet = \"all\"\n";
 
 /// Two bodies of 2 × 2 subdomains of 3 × 3 elements, in contact; the right one floats.
@@ -18,7 +18,7 @@ fn against_petsc(session: &Session, text: &str) -> Result<()> {
     let mine = fetifeti::share(session, scene.n_subdomains());
     let problem = scene.substructures(&|s| mine.contains(&s))?;
     let solver = FetiFeti::new(session, problem, Settings::default())?;
-    // PETSc finishes the set-up of a scatter in its first use, with messages of its own.
+    // PETSc completes the set-up of a scatter in its first use, with messages of its own.
     solver.solve()?;
     let read = || (traffic::sent(), counters(), solver.method().tally());
     let (ours, theirs, tally) = read();
@@ -35,7 +35,8 @@ fn against_petsc(session: &Session, text: &str) -> Result<()> {
     assert_eq!(iterations, solution.iterations);
     let sent = tally_after.sent - tally.sent;
     assert!(sent.messages <= ours.messages && tally_after.seconds > tally.seconds);
-    // F, M and the coarse problems inside them go through six halo operations, all of them with the same neighbours each time.
+    // F, M and the coarse problems inside them go through six halo operations, all of them with the same neighbours
+    // each time.
     assert_eq!(sent.messages % iterations as u64, 0);
     Ok(())
 }

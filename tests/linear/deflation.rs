@@ -1,4 +1,5 @@
-//! Deflation of what coefficients that jump inside bodies leave above τ: exact spectra, answers, ranks.
+//! Deflation of eigenvalues above τ, which arise from coefficients that jump inside bodies: exact spectra, solutions,
+//! ranks.
 
 use crate::support::{direct, mpi, program, rng};
 use direct::Direct;
@@ -10,8 +11,8 @@ use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
 use rng::Rng;
 
-/// n × n bodies of n_s × n_s subdomains of 4 × 4 elements, held on the left, ρ of a subdomain at random between 10^−decades and
-/// 10^decades.
+/// n × n bodies of n_s × n_s subdomains of 4 × 4 elements, held on the left, ρ of a subdomain at random between
+/// 10^−decades and 10^decades.
 fn by_subdomain(n: usize, ns: usize, decades: f64, seed: u64) -> String {
     let mut rng = Rng::new(seed);
     let mut text = String::new();
@@ -36,7 +37,7 @@ fn by_subdomain(n: usize, ns: usize, decades: f64, seed: u64) -> String {
     text
 }
 
-/// A stiff cross in every body and bars from body to body, along no subdomain.
+/// A stiff cross in every body, and bars from body to body that do not follow subdomains.
 fn channels(physics: &str) -> String {
     let what = match physics {
         "elasticity" => "young",
@@ -72,7 +73,7 @@ fn solver(session: &Session, scene: &Scene, settings: MethodSettings) -> FetiFet
     FetiFeti::new(session, problem, settings).expect("set up")
 }
 
-/// κ ≤ 1.5 τ and λ_min ≥ 1 for the thresholds; returns the numbers of vectors.
+/// κ ≤ 1.5 τ and λ_min ≥ 1 for all thresholds; returns the numbers of vectors.
 fn bounded(session: &Session, what: &str, scene: &Scene, taus: &[f64]) -> Vec<usize> {
     let each = taus.iter().map(|&tau| {
         let solver = solver(session, scene, below(tau));
@@ -185,7 +186,8 @@ fn every_krylov_method_works_in_the_complement() {
     });
 }
 
-/// Only CG shows Ritz values on the way; the others search before they begin, and are not left with a κ of 10⁵.
+/// Only CG provides Ritz values during the iteration. With the other methods the search comes first, so that they, too,
+/// do not iterate with a κ of 10⁵.
 #[test]
 fn methods_without_ritz_values_search_at_once() {
     let scratch = mpi::Scratch::new("deflation-methods");
@@ -212,7 +214,7 @@ fn methods_without_ritz_values_search_at_once() {
 
 #[test]
 fn contact_keeps_its_vectors() {
-    // Two columns of bodies, each held on its outer side: none can be pushed away.
+    // Two columns of bodies, each held on its outer side: no body can be pushed away.
     let right = "dirichlet = { right = 0 }\norigin = [\"1/2\"";
     let text = by_subdomain(2, 5, 3.0, 11).replace("origin = [\"1/2\"", right)
         + "[interface]\ndefault = \"contact\"\n";
@@ -241,7 +243,7 @@ fn contact_keeps_its_vectors() {
     });
 }
 
-/// One rank's share, subdomains dealt out in turn.
+/// One rank's share; subdomains are dealt out in turn.
 fn on_a_rank(session: &Session) -> fetifeti::Result<()> {
     let (size, rank) = (session.size(), session.rank());
     let scene = scene(&by_subdomain(3, 4, 6.0, 2));
@@ -268,7 +270,8 @@ fn one_two_and_four_ranks_agree() {
     let results = [1, 2, 4].map(|ranks| started.numbers(ranks, "random"));
     let one = &results[0];
     for other in &results[1..] {
-        // Vectors come out of iterations that start with other numbers on other ranks: those near τ may differ.
+        // The vectors come from iterations whose start depends on the number of ranks: those with eigenvalues near τ
+        // may differ.
         assert!((one[0] / other[0] - 1.0).abs() < 0.05, "{results:?}");
         assert!((one[1] / other[1] - 1.0).abs() < 1e-9, "{results:?}");
         assert!((one[2] - other[2]).abs() <= 1.0, "{results:?}");

@@ -1,4 +1,4 @@
-//! u of the method against a direct solve of the assembled problem, in the energy norm.
+//! u of the method compared with a direct solution of the assembled problem, in the energy norm.
 
 use crate::support::direct;
 use direct::{tight, with_options, Direct};
@@ -240,8 +240,8 @@ fn a_run_that_stops_early_says_so() {
 #[test]
 fn errors_fall_with_the_second_power_of_h() {
     with_session(|session| {
-        // u vanishes nowhere in particular on the boundary: values on all sides, a coefficient that varies inside bodies.
-        // −div((1 + x) grad u) for u = sin(2x) e^y is (1 + x)(4 − 1) u − 2 cos(2x) e^y.
+        // u is prescribed and nonzero on all sides, and the coefficient varies inside bodies: −div((1 + x) grad u) for
+        // u = sin(2x) e^y is (1 + x)(4 − 1) u − 2 cos(2x) e^y.
         let norms = |n: usize| {
             let text = format!(
                 "exact = \"sin(2*x)*exp(y)\"\n[grid]\nbodies = [3, 3]\nsubdomains = [2, 1]\nelements_per_subdomain = [{n}, {}]\n\

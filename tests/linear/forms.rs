@@ -1,4 +1,5 @@
-//! Dense or sparse operators, what equal subdomains share, and what is kept from load to load: the answer stays the same.
+//! The storage of operators does not change the answer: dense or sparse, shared between equal subdomains, kept from
+//! load to load.
 
 use crate::support::checks::identities;
 use crate::support::{mpi, program};
@@ -13,7 +14,7 @@ use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
 
-/// Two blocks of eight subdomains each, one on the other, pushed askew.
+/// Two blocks of eight subdomains each, one on the other, under an oblique load.
 const SOLID: &str = "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 2, 1]\nsubdomains = [2, 2, 2]\n\
                      elements_per_subdomain = 4\nyoung = [[[1], [5]]]\npoisson = 0.3\nload = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n";
 
@@ -91,7 +92,7 @@ fn subdomains_that_are_multiples_of_each_other_share_their_factors() {
         let rho = "rho = [[1, 0.3333333333333333, 1], [1e4, 7, 1e4], [1, 0.3333333333333333, 1]]\n";
         let jumps = solver(session, &text(rho), MethodSettings::default());
         assert_eq!(plain.facts().kinds, jumps.facts().kinds);
-        // The certificate multiplies with the matrices themselves.
+        // The certificate uses the matrices themselves.
         let solution = jumps.solve().expect("solved");
         assert!(solution.converged());
         assert!(solution.kkt.stationarity < 1e-8, "{:?}", solution.kkt);
@@ -112,7 +113,7 @@ fn directions_are_kept_from_load_to_load() {
         let (mut kept, mut fresh) = (make(60), make(0));
         let first = kept.solve().expect("solved");
         let plain = fresh.solve().expect("solved");
-        // The few further iterations to the last digits begin at what the first ones have left.
+        // The few further iterations for the last digits start from the residual of the first ones.
         assert!(first.iterations.abs_diff(plain.iterations) <= 2);
         let loads = |factor: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
             let local = fresh.problem().local.iter();

@@ -1,4 +1,5 @@
-//! M_C with few coarse functions (`-fetifeti_lifting vertices`): fewer columns, nearly the same spectrum, on any number of ranks.
+//! M_C with few coarse functions (`-fetifeti_lifting vertices`): fewer columns, nearly the same spectrum, on any number
+//! of ranks.
 
 use crate::support::checks::number;
 use crate::support::program;
@@ -42,7 +43,7 @@ fn few_functions_lie_between_all_and_none() {
         all <= few * (1.0 + 1e-8) && few < none,
         "{all} {few} {none}"
     );
-    // Functions of vertices do most of it.
+    // The functions of vertices provide most of the improvement.
     assert!(few - all < 0.5 * (none - all), "{all} {few} {none}");
 }
 

@@ -1,5 +1,5 @@
-//! `-fetifeti_local_solver` and `-fetifeti_local_ordering`: the answer does not depend on them, the report names them, and mistakes get one
-//! sentence.
+//! `-fetifeti_local_solver` and `-fetifeti_local_ordering`: the answer does not depend on them, the report names them,
+//! and mistakes get one sentence.
 
 use crate::support::program;
 use fetifeti::cholesky::interior::{LocalSolver, Ordering, Solver};
@@ -28,7 +28,7 @@ fn displacements_are_the_same_for_every_solver_and_order() {
                 let settings = MethodSettings {
                     local,
                     rtol: 1e-11,
-                    // More than cores, on any machine: orderings are made on all of them.
+                    // More threads than cores: orderings are computed on all of them.
                     threads: Some(4),
                     ..MethodSettings::default()
                 };

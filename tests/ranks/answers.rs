@@ -1,4 +1,4 @@
-//! The program under mpirun: the answer does not depend on the number of ranks or on how subdomains are dealt to them.
+//! The program under mpirun: the answer depends neither on the number of ranks nor on the distribution of subdomains.
 
 use crate::support::checks::{near, number};
 use crate::support::{mpi, program};
@@ -28,7 +28,7 @@ fn solve(ranks: usize, scene: &str, more: &[&str]) -> Value {
     report
 }
 
-/// The same report on every number of ranks.
+/// The report is the same on every number of ranks.
 fn same(scene: &str, runs: &[(usize, &str)]) {
     let one = solve(1, scene, &[]);
     for &(n, distribution) in runs {

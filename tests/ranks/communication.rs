@@ -1,11 +1,12 @@
-//! Messages, bytes and all-reduces of an iteration against a count by hand.
+//! Messages, bytes and all-reduces of an iteration, compared with a count by hand.
 
 use crate::support::{mpi, program};
 use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
 
-/// Two bodies of one subdomain each, 4 × 4 elements, held on the left: three multipliers and a half, none at the held corners.
+/// Two bodies of one subdomain each, 4 × 4 elements, held on the left: three multipliers and a half, none at the held
+/// corners.
 const TWO: &str =
     "[grid]\nbodies = [2, 1]\nelements = [8, 4]\nload = \"1 + x + y^2\"\ndirichlet = [\"left\"]\n";
 
@@ -25,14 +26,15 @@ fn two_bodies_by_hand() {
     assert_eq!(report["floating_bodies"], 1);
     let sent = &report["communication"];
     let number = |name: &str, of: &str| sent[name][of].as_f64().expect("a number");
-    // F λ: fetch and sum; M⁻¹ r: fetch and sum. All rows are on one rank (that of the lower body, which provides them), which sends
-    // their multipliers to the other one and gets their jumps back. One subdomain is no corner of another: S_Π holds fixing
-    // dofs of the floating body on its own rank, and there is no Z_c.
+    // F λ and M⁻¹ r each fetch and sum. All rows are on the rank of the lower body, which provides them; it sends their
+    // multipliers to the other rank and gets the jumps back. A body of one subdomain has no primal vertices: S_Π
+    // contains only the fixing dofs of the floating body, on its own rank, and there is no Z_c.
     assert_eq!(number("messages_per_iteration", "sum"), 4.0);
     assert_eq!(number("messages_per_iteration", "max"), 2.0);
     assert_eq!(number("bytes_per_iteration", "sum"), 4.0 * 5.0 * 8.0);
     assert_eq!(number("bytes_per_iteration", "max"), 2.0 * 5.0 * 8.0);
-    // P and Pᵀ on both sides of F and M⁻¹: four all-reduces of one number. CG: two products and a norm; the first norm is known.
+    // P and Pᵀ around F and M⁻¹: four all-reduces of one number. CG: two inner products and a norm; the first norm is
+    // known.
     let reductions = sent["reductions_per_iteration"].as_f64().expect("a number");
     assert_eq!(reductions, 7.0);
     let bytes = sent["reduced_bytes_per_iteration"]

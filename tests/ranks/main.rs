@@ -1,4 +1,4 @@
-//! Several ranks: the same answers, and what they send each other.
+//! Several ranks: the same answers, and the messages between ranks.
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -22,7 +22,7 @@ fn numbers_in_all_their_formats() {
     grid.write("c.raw", &bytes64(&fine));
     assert_eq!(grid.values("{ file = \"c.raw\" }"), fine);
     assert_eq!(grid.values("{ file = \"c.raw\", type = \"f64\" }"), fine);
-    // In f32 the same bytes are twice as many numbers.
+    // As f32 the same bytes are twice as many numbers.
     let message = grid.message("{ file = \"c.raw\", type = \"f32\" }");
     assert_eq!(
         message,
@@ -40,7 +40,7 @@ fn numbers_in_all_their_formats() {
     }
     grid.write("c.dat", text.as_bytes());
     assert_eq!(grid.values("{ file = \"c.dat\", type = \"text\" }"), values);
-    // Absolute names stay as they are.
+    // Absolute paths are used as they are.
     let absolute = grid.0.path("c.bin");
     assert_eq!(grid.values(&format!("{{ file = \"{absolute}\" }}")), values);
 }
@@ -48,7 +48,8 @@ fn numbers_in_all_their_formats() {
 #[test]
 fn the_shape_may_be_another_than_that_of_the_elements() {
     let grid = Grid(Scratch::new("shapes"));
-    // One number for each quarter of a body, for all, and for columns of three cells over eight elements.
+    // The sizes: one number for each quarter of a body, for all of it, and for columns of three cells over eight
+    // elements.
     grid.write("eight.txt", b"1 2 3 4\n5 6 7 8");
     let found = grid.values("{ file = \"eight.txt\", shape = [4, 2] }");
     let place = |e: usize| (e % 8, e / 8);
@@ -60,7 +61,8 @@ fn the_shape_may_be_another_than_that_of_the_elements() {
     let found = grid.values("{ file = \"three.txt\", shape = [3, 1] }");
     assert_eq!(found[..8], [1.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 3.0]);
     assert_eq!(found[..8], found[24..]);
-    // Finer than the mesh: the cell in which the midpoint lies, the right and upper one of four.
+    // Data finer than the mesh: the cell that contains the midpoint counts; of four adjacent cells, the upper right
+    // one.
     grid.write("fine.bin", &bytes32(&counting(16 * 8)));
     let found = grid.values("{ file = \"fine.bin\", shape = [16, 8] }");
     for (e, value) in found.iter().enumerate() {
@@ -94,7 +96,7 @@ fn solids_and_single_bodies() {
         assert!((value - 1.0 - grey).abs() < 1e-12, "{e}: {value}");
     }
 
-    // One body, bent: elements are counted, coordinates do not matter. E and ν each have their file.
+    // One bent body: cells follow the numbers of elements, not coordinates. E and ν each have their file.
     std::fs::write(path("e.bin"), bytes64(&counting(12))).unwrap();
     std::fs::write(path("nu.txt"), "0.1 0.2 0.3 0.4").unwrap();
     let text = "physics = \"elasticity\"\n[[body]]\nshape = { annulus = { inner = 1, outer = 2 } }\nelements = [4, 3]\nsubdomains = [2, 1]\n\
@@ -132,7 +134,7 @@ fn pictures_in_all_their_depths() {
     paint(&path, eight, colour, BitDepth::Eight, &opaque);
     close(&linear(), &wanted);
 
-    // On a logarithmic scale equal steps of grey are equal factors.
+    // On a logarithmic scale equal differences of grey are equal factors.
     paint(&path, eight, ColorType::Grayscale, BitDepth::Eight, &greys);
     let found = grid.values("{ file = \"p.png\", values = [1e-3, 1e3], scale = \"log\" }");
     let wanted: Vec<f64> = greys
@@ -140,7 +142,7 @@ fn pictures_in_all_their_depths() {
         .map(|g| 10_f64.powf(6.0 * f64::from(*g) / 255.0 - 3.0))
         .collect();
     close(&found, &upside_down(&wanted));
-    // White may be the softer one.
+    // White may be the smaller value.
     let found =
         grid.values("{ file = \"p.png\", values = [9, 2], scale = \"linear\", type = \"png\" }");
     assert_eq!(found[24], 9.0);

@@ -1,4 +1,4 @@
-//! Coefficients from files: the one sentence for each mistake.
+//! Coefficients from files: each mistake gets one sentence.
 
 use crate::support::{cells, mpi};
 use cells::{bytes32, bytes64, counting, paint, Grid};
@@ -67,7 +67,7 @@ fn mistakes_in_numbers() {
     assert!(grid
         .message("{ file = \"short.txt\", shape = [2, 2], value = 1 }")
         .starts_with("unknown key `value` in this table (known keys are file, type, "));
-    // What is no coefficient takes no file.
+    // Only coefficients may come from files.
     let text = Grid::text("1") + "load = { file = \"short.txt\", shape = [2, 2] }\n";
     let error = Scene::parse("s.toml", &text).unwrap_err();
     assert_eq!(

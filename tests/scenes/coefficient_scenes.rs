@@ -1,4 +1,5 @@
-//! The example scenes with coefficients from files: their data, their solution, and that neither depends on how it is read or dealt out.
+//! The example scenes with coefficients from files: their data and their solutions, which do not depend on how data are
+//! read or distributed.
 
 #[allow(dead_code)] // its main is not called here
 #[path = "../../examples/make_coefficients.rs"]
@@ -57,7 +58,7 @@ fn the_generator_writes_the_committed_files() {
         let name = written.rsplit('/').next().unwrap();
         let committed = format!("examples/scenes/{name}");
         assert!(fs::metadata(&committed).unwrap().len() < 200_000);
-        // Compression and the last digit of a power are no part of what is promised.
+        // PNG compression and the last digit of a power may differ between machines.
         if name.ends_with(".png") {
             assert_eq!(pixels(&written), pixels(&committed), "{name}");
         } else {
@@ -91,7 +92,7 @@ fn coefficients_range_as_the_scenes_say() {
                 low <= a * (1.0 + 1e-6) && b <= high * (1.0 + 1e-6),
                 "{name}"
             );
-            // Every body has nearly the whole range, so that constants by body would not do.
+            // Every body contains nearly the whole range: constants by body would not suffice.
             assert!(b / a > 0.5 * (high / low).sqrt(), "{name}: {a} {b}");
         }
     }
@@ -117,13 +118,14 @@ fn lines_of_the_coefficient_are_none_of_the_partition() {
             rho[0]
         })
         .collect();
-    // Subdomain 1 of body 0 is the second of the lowest row; subdomain 0 of body 3, the first of the second row of bodies, the first of the fifth row.
+    // Subdomain 1 of body 0 is the second entry of the first line. Subdomain 0 of body 3, which is the first body of
+    // the second row, is the first entry of the fifth line.
     let listed = words("examples/scenes/coefficients_random.txt");
     assert_eq!([values[1], values[16 * 3]], [listed[1], listed[12 * 4]]);
     assert_eq!(values.len(), 144);
 }
 
-/// ρ-scaling takes the stiffest element around a node, of those in the subdomain.
+/// ρ-scaling uses the stiffest of a subdomain's elements around a node.
 #[test]
 fn weights_are_those_of_the_stiffest_element() {
     for name in ["checkerboard", "layers", "inclusions"] {
@@ -253,7 +255,7 @@ fn a_missing_file_is_bad_input() {
     }
 }
 
-/// A field that varies inside bodies has a picture beside the other two.
+/// A field that varies inside bodies gets a picture in addition to the other two.
 #[test]
 fn the_picture_shows_the_coefficient() {
     let scratch = Scratch::new("pictured");

@@ -1,4 +1,4 @@
-//! Rows of contacts and obstacles: at faces, cross points, given values; labels; load steps.
+//! Rows of contacts and obstacles: at faces, cross points, prescribed values; labels; load steps.
 
 use fetifeti::mesh::contiguous_share;
 use fetifeti::scene::{Link, Scene};
@@ -69,7 +69,7 @@ fn gaps_have_three_forms() {
     assert_eq!(of("\"x + y\""), [1.0, 1.25, 1.5, 1.75, 2.0]);
     assert_eq!(of("[[0.25, 1], [0.75, 2]]"), [1.0, 1.0, 1.5, 2.0, 2.0]);
     assert_eq!(of("[[0, 3]]"), [3.0; 5]);
-    // The smallest of several gaps counts.
+    // Of several gaps the smallest one counts.
     let two = contact("range = [0, 0.5]\ngap = 0.1") + &contact("range = [0.5, 1]\ngap = 0.2");
     assert_eq!(gaps(&pair(&two)), [0.1, 0.1, 0.1, 0.2, 0.2]);
     // bi is the column of the first body.
@@ -94,7 +94,7 @@ fn ties_and_contacts_share_a_face() {
     const OPEN: (bool, bool) = (false, false);
     let both = tie("range = [0, 0.5]") + &contact("range = [0.5, 1]");
     assert_eq!(kinds(&pair(&both)), [TIED, TIED, TIED, CONTACT, CONTACT]);
-    // The rest of a face that is tied in part is open, that of a face in contact is free.
+    // On a partly tied face the remaining nodes are open; on a face partly in contact they are free.
     let some = tie("range = [0, 0.25]") + &contact("nodes = [3]");
     assert_eq!(kinds(&pair(&some)), [TIED, TIED, OPEN, CONTACT, OPEN]);
     assert_eq!(kinds(&pair(&contact("points = [0.5, 0.75]"))), [CONTACT; 2]);
@@ -119,7 +119,7 @@ fn an_entry_that_names_the_pair_beats_all() {
     let rows = pair(&format!("{more}{all}{none}")).rows(&|_| true);
     assert_eq!(rows.len(), 5);
     assert!(rows.iter().all(|r| r.block >= 25));
-    // A contact by name beats a tie of all pairs, and ties and contacts of all pairs lie side by side.
+    // A contact by name overrides a tie of all pairs; ties and contacts of all pairs coexist.
     let tied = "[[tie]]\nbodies = \"all\"\n";
     let scene = pair(&format!("{tied}{}", contact("gap = 2")));
     assert_eq!(gaps(&scene), [2.0; 5]);
@@ -158,11 +158,11 @@ fn every_face_in_contact_has_its_row_at_a_cross_point() {
     let faces = [[0, 1], [0, 2], [1, 3], [2, 3]].map(|p| (p, true));
     assert_eq!(cross(all), faces);
     assert_eq!(cross("[[contact]]\nbodies = \"all\"\n"), faces);
-    // A corner only by name.
+    // Contact at a corner exists only by name.
     let named = cross(&(all.to_string() + &entry("contact", 0, 3)));
     assert_eq!(named.len(), 5);
     assert!(named.contains(&([0, 3], true)));
-    // Columns are tied, by the default; between them is contact, which the diagonals must not tie together.
+    // Columns are tied by default, with contact between them; ties along diagonals would defeat it.
     let columns = entry("contact", 0, 1) + &entry("contact", 2, 3);
     let expected = [
         ([0, 1], true),
@@ -173,7 +173,7 @@ fn every_face_in_contact_has_its_row_at_a_cross_point() {
     assert_eq!(cross(&columns), expected);
     let by_all = format!("[[tie]]\nbodies = \"all\"\n{columns}");
     assert_eq!(cross(&by_all), expected);
-    // One face in contact among tied ones says nothing at the cross point: the other bodies tie the two.
+    // One face in contact among tied ones has no row at the cross point: the other bodies tie the two.
     let one = cross(&entry("contact", 0, 1));
     assert_eq!(one.len(), 5);
     assert!(one.iter().all(|r| !r.1));
@@ -198,7 +198,7 @@ fn given_values_go_to_the_right_hand_side() {
     let rows = scene.rows(&|_| true);
     assert_eq!(rows[2].terms, [(35, -1.0)]);
     assert_eq!(rows[2].gap, -2.5);
-    // Both given and compatible: nothing is left to say.
+    // Both values are prescribed and compatible: no row is left.
     let scene = two("dirichlet = [\"bottom\"]", "dirichlet = { bottom = 1 }", "");
     assert_eq!(scene.rows(&|_| true).len(), 4);
     assert_eq!(scene.plan().contact_rows, 4);
@@ -226,7 +226,7 @@ fn obstacles_bound_the_nodes_of_a_side() {
     let at = of(21);
     assert_eq!((at[0].0.terms[0], at[0].0.gap), ((21, -1.0), 0.75));
     assert_eq!((at[1].0.terms[0], at[1].0.gap), ((21, 1.0), 0.2));
-    // Of two bounds at a node only one holds to begin with.
+    // Of two bounds at a node only one is active at the start.
     assert!(at[0].0.holds && !at[1].0.holds);
     assert_eq!(at[1].1.source, RowSource::Obstacle(1));
     assert_eq!((at[1].1.t, at[1].1.point), ([0.25, 0.0], [0.25, 1.0, 0.0]));
@@ -256,12 +256,12 @@ fn obstacles_meet_ties_and_given_values() {
     assert_eq!(here.len(), 5);
     assert_eq!(here[0].terms.len(), 2);
     assert_eq!(rows.len(), 5 + 20);
-    // A given node has no row.
+    // A prescribed node has no row.
     let text = body("a", "[0, 0]", "dirichlet = [\"left\"]") + obstacle;
     let rows = Scene::parse("o.toml", &text).unwrap().rows(&|_| true);
     assert_eq!(rows.len(), 8);
     assert!(rows.iter().all(|r| r.terms[0].0 != 0));
-    // A side that is given everywhere leaves no inequality at all.
+    // A side that is prescribed everywhere has no inequality.
     let text = body("a", "[0, 0]", "dirichlet = [\"bottom\"]") + obstacle;
     assert!(!Scene::parse("o.toml", &text).unwrap().has_contact());
 }

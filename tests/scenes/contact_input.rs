@@ -1,4 +1,4 @@
-//! Every way to write contacts, obstacles and load steps wrongly, and the one sentence that says so.
+//! All mistakes in contacts, obstacles and load steps, and the one sentence for each.
 
 use fetifeti::scene::{
     ContactSpec, Extent, ObstacleSpec, Pair, Profile, Ramp, Scene, SceneSpec, StepsSpec,
@@ -164,13 +164,13 @@ fn contacts_that_are_decided_already() {
         "s.toml:13: bodies `a` and `b` have the given values 2 and 1 at (1, 0), which contradicts their contact \
          (u of `a` − u of `b` ≤ 0.5 was expected)",
     );
-    // By the default: there is no entry to name, but a body.
+    // The contact comes from the default: the message names a body instead of an entry.
     check(
         &given("2", "1", "[interface]\ndefault = \"contact\"\n"),
         "s.toml:7: bodies `a` and `b` have the given values 2 and 1 at (1, 0), which contradicts their contact \
          (u of `a` − u of `b` ≤ 0 was expected)",
     );
-    // Good at first, contradictory once the given values have grown.
+    // Compatible at first, contradictory once the prescribed values have grown.
     let steps = "[steps]\ntimes = [0.25, 0.75]\ndirichlet = \"t\"\n";
     check(
         &given("2", "1", &format!("{contact}{steps}")),

@@ -1,5 +1,5 @@
-//! Contact scenes solved on the assembled problem by a proximal method of multipliers: the rows have the right signs, and the
-//! example scenes have a solution.
+//! Contact scenes solved on the assembled problem by a proximal method of multipliers: the rows have the right signs,
+//! and the example scenes have a solution.
 
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
@@ -90,14 +90,14 @@ impl Problem {
         out
     }
 
-    /// The rows that the penalty pushes at.
+    /// The rows with an active penalty.
     fn active(&self, v: &[f64], lambda: &[f64]) -> Vec<bool> {
         let excess = self.excess(v);
         let both = excess.iter().zip(lambda);
         both.map(|(e, l)| l + RHO * e > 0.0).collect()
     }
 
-    /// What the inner iteration minimises.
+    /// The function that the inner iteration minimises.
     fn merit(&self, v: &[f64], u: &[f64], lambda: &[f64]) -> f64 {
         let kv = self.k_times(v);
         let smooth =
@@ -130,7 +130,7 @@ impl Problem {
                 let a = SparseColMat::try_new_from_triplets(self.n, self.n, &triplets).unwrap();
                 let x = a.sp_cholesky(Side::Lower).unwrap().solve(&b);
                 let d: Vec<f64> = (0..self.n).map(|i| x[(i, 0)] - v[i]).collect();
-                // The full step unless the convex function that is minimised grows along it.
+                // The full step, unless the convex objective increases along it.
                 let (start, mut length) = (self.merit(&v, &u, &lambda), 1.0);
                 let end = loop {
                     let end: Vec<f64> = v.iter().zip(&d).map(|(v, d)| v + length * d).collect();

@@ -1,4 +1,4 @@
-//! Counts of what scenes produce against independently computed ones.
+//! Numbers of rows, dofs and vertices of scenes, compared with independently computed ones.
 
 use crate::support::common;
 use fetifeti::mesh::contiguous_share;
@@ -62,7 +62,7 @@ fn multipliers_of_table_1_agree_with_the_reference() {
                 .rows(&|_| true);
             assert_eq!(problem.rows.len(), candidates.len(), "{case}");
             assert_eq!(plan.open_rows, candidates.len() - holding, "{case}");
-            // Corners of bodies are vertices too, but nothing is constrained where a dof has one copy.
+            // Corners of bodies are vertices, too, but a dof with a single copy has no constraint.
             let mut vertices: HashMap<u64, usize> = HashMap::new();
             for s in &problem.local {
                 for &p in &s.primal {
@@ -89,7 +89,7 @@ fn every_row_is_provided_once_whatever_the_distribution() {
         let mut subdomains = 0;
         let mut blocks: HashMap<u64, usize> = HashMap::new();
         for rank in 0..ranks {
-            // Dealt out in turns, which is the hardest case: neighbours are never on the same rank.
+            // Subdomains are dealt out in turn, the hardest case: neighbours are never on the same rank.
             let part = scene.substructures(&|s| s % ranks == rank).unwrap();
             subdomains += part.local.len();
             for row in &part.rows {
@@ -141,7 +141,8 @@ fn coefficients_at_dofs_are_the_largest_around() {
     assert_eq!(s.near_kernel.unwrap(), vec![vec![1.0; 9]]);
 }
 
-/// Number of rows that hold at the point (x, y) of 2 × 2 unit bodies of 2 × 2 elements with the given interface entries.
+/// Number of rows that hold at the point (x, y) of 2 × 2 unit bodies of 2 × 2 elements with the given interface
+/// entries.
 fn rows_at(point: [f64; 2], entries: &str) -> usize {
     let text =
         format!("[grid]\nbodies = 2\nsize = 2\nelements = 2\ndirichlet = [\"left\"]\n{entries}");
@@ -190,7 +191,7 @@ fn cross_points_are_fully_redundant_where_all_is_tied() {
     assert_eq!(rows_at([1.0, 0.0], &format!("{free}{both}")), 1);
     assert_eq!(rows_at([1.0, 0.5], &format!("{free}{both}")), 1);
     assert_eq!(rows_at(cross, &format!("{free}{both}")), 0);
-    // On the held side nothing is left to tie.
+    // On the held side there is no tie.
     assert_eq!(rows_at([0.0, 1.0], ""), 0);
     assert_eq!(rows_at([0.5, 1.0], ""), 1);
 }
@@ -253,7 +254,7 @@ fn the_rest_of_a_partly_tied_face_is_open() {
     // 17 nodes on each face, nothing given on them; nine and three are tied.
     assert_eq!(rows.len(), 34);
     assert_eq!(rows.iter().filter(|r| r.holds).count(), 12);
-    // A face that no entry speaks of is no candidate where the default is "free", and neither is one with "none".
+    // Where the default is "free", a face without an entry has no candidates, and neither has one with "none".
     let grid =
         "[grid]\nbodies = [3, 1]\nsize = [3, 1]\nelements = 4\n[interface]\ndefault = \"free\"\n";
     let tie = "[[tie]]\nbodies = [\"b0_0\", \"b1_0\"]\nnodes = [2]\n";
@@ -292,7 +293,7 @@ fn lees_experiment_agrees_with_a_second_implementation() {
 /// Terms as (subdomain, local dof, coefficient), and whether the row holds.
 type NamedRow = (Vec<(usize, usize, i32)>, bool);
 
-/// The rows with every dof said as (lowest subdomain that has it, local dof there), sorted.
+/// The rows, with every dof given as (lowest subdomain that has it, local dof there), sorted.
 fn named_rows(problem: &Substructures) -> Vec<NamedRow> {
     let mut name: HashMap<u64, (usize, usize)> = HashMap::new();
     for s in &problem.local {

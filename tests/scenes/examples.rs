@@ -1,4 +1,4 @@
-//! The example scenes say what their comments promise.
+//! The example scenes agree with their comments.
 
 use fetifeti::scene::{Numbering, Scene};
 use std::collections::HashSet;
@@ -61,7 +61,7 @@ fn the_lee_examples_are_rows_of_table_1() {
     let mut copies: f64 = 0.0;
     for s in 0..scene.n_subdomains() {
         let mut mesh = scene.subdomain_mesh(s).unwrap();
-        // Without Dirichlet nodes nothing of the load is lost.
+        // Without Dirichlet nodes the whole load remains.
         for (k, d) in mesh.dof.iter_mut().enumerate() {
             *d = k as u32;
         }
@@ -69,7 +69,7 @@ fn the_lee_examples_are_rows_of_table_1() {
         assert!(f.len() <= mesh.dof.len());
         copies += f.iter().sum::<f64>();
     }
-    // Free nodes get all but the share of the boundary: h/2 along the loaded parts of the boundary, less at corners.
+    // Free nodes get the load minus the share of the boundary: h/2 along its loaded parts, less at corners.
     let h: f64 = 1.0 / 64.0;
     let lost = 3.0 * (0.75 * h / 2.0 - h * h / 4.0) + (0.75 * h / 2.0 - h * h / 4.0);
     assert!((copies + 0.5 - lost).abs() < 1e-12, "{copies}");

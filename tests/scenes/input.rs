@@ -1,4 +1,4 @@
-//! Every way to write a scene wrongly, and the one sentence that says so: files, keys and values.
+//! All mistakes in files, keys and values of scenes, and the one sentence for each.
 
 use crate::support::{rng, scene_message};
 use fetifeti::scene::Scene;
@@ -327,6 +327,6 @@ fn damaged_files_never_panic() {
             }
         }
     }
-    // Most damage lands in comments and blanks or changes a value; a good part must be seen.
+    // Most random changes hit comments and blanks or change a value; a good part must be refused.
     assert!(accepted > 500 && refused > 500, "{accepted} {refused}");
 }

@@ -1,4 +1,4 @@
-//! Bodies that do not go together, ties that tie nothing, scenes that programs build wrongly: the one sentence that says so.
+//! Bodies that do not fit together, ties without nodes, invalid scenes built by programs; one sentence for each.
 
 use crate::support::scene_message;
 use fetifeti::scene::{BodySpec, Field, GridSpec, Scene, SceneSpec};
@@ -35,7 +35,7 @@ fn bodies_together() {
         "s.toml:6: bodies `a` and `b` are tied, but node (1, 0.2) of `b` (t = 0.2) meets no node of `a` \
          (matching nodes were expected on a tied face)",
     );
-    // Shifted by half an element: already the end of the common face has no partner.
+    // With a shift by half an element, no node matches, not even the end of the common face.
     let e = message(&format!(
         "{}{}",
         body("a", "[0, 0]", "elements = 4"),

@@ -185,7 +185,7 @@ fn the_numbering_is_a_bijection_that_merges_exactly_what_is_tied() {
             }
         }
         assert_eq!(position.len() as u64, numbering.len(), "{name}");
-        // Merged are exactly the classes that the rows span: N = body dofs − rank of the rows.
+        // The numbering merges exactly the classes that the rows span: N = body dofs − rank of the rows.
         let mut rows = scene.rows(&|_| true);
         rows.retain(|r| r.holds);
         let mut rank = 0;

@@ -7,7 +7,7 @@ fn scene(head: &str, keys: &str) -> Scene {
     Scene::parse("springs.toml", &text).expect("a scene")
 }
 
-/// eᵀKe for the translation e along component `c`: the stiffness of all springs together.
+/// eᵀKe for the translation e along component `c`: the total stiffness of all springs.
 fn against_translation(scene: &Scene, c: usize) -> f64 {
     let components = scene.components();
     let of = |s: usize| {

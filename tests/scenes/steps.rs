@@ -1,4 +1,4 @@
-//! Load steps: factors of loads, gaps and given values.
+//! Load steps: factors of loads, gaps and prescribed values.
 
 use crate::support::mpi::Scratch;
 use fetifeti::scene::{Scene, Stepping};
@@ -34,7 +34,7 @@ fn scene(steps: &str) -> Scene {
     Scene::parse("s.toml", &format!("{SCENE}{steps}")).unwrap()
 }
 
-/// The scene without any step, with data that are already scaled.
+/// The scene without steps, with data that are already scaled.
 fn scaled(load: f64, ramp: f64, given: f64) -> Scene {
     let text = SCENE
         .replace("ramp = \"t^2\"\n", "")
@@ -116,7 +116,7 @@ fn gaps_follow_their_ramp_and_given_values() {
         for (label, gap) in rows.iter().map(|r| r.label).zip(gaps) {
             let [x, y, _] = label.point;
             let expected = match label.members[1] {
-                // The obstacle follows its own ramp, the contact the factor of all gaps.
+                // The obstacle follows its own ramp; the contact follows the factor of all gaps.
                 None => {
                     bounds += 1;
                     (7.0 + x) * (1.0 - t)
@@ -145,14 +145,14 @@ fn gaps_follow_their_ramp_and_given_values() {
 
 #[test]
 fn counted_steps_end_at_one() {
-    // Without the obstacle, which would come down to the given values.
+    // Without the obstacle, which would contradict the prescribed values.
     let text = SCENE.split("[[obstacle]]").next().unwrap();
     let scene = Scene::parse("s.toml", &format!("{text}[steps]\ncount = 4\n")).unwrap();
     assert_eq!(scene.steps.as_ref().unwrap().times, [0.25, 0.5, 0.75, 1.0]);
-    // Factors default to 1: without own ramp nothing changes.
+    // Factors default to 1: without a ramp of its own the load does not change.
     assert_eq!(scene.loads(0, 0).unwrap(), scene.loads(0, 3).unwrap());
     assert_ne!(scene.loads(4, 0).unwrap(), scene.loads(4, 3).unwrap());
-    // Of overlapping bounds with different ramps the tighter one counts, step by step.
+    // Of overlapping bounds with different ramps the tighter one counts in every step.
     let two = "[[body]]\nname = \"a\"\nsize = 1\nelements = 2\n[[body]]\nname = \"b\"\norigin = [1, 0]\nsize = 1\nelements = 2\n\
                [[contact]]\nbodies = [0, 1]\ngap = 1\nramp = \"t\"\n[[contact]]\nbodies = [0, 1]\ngap = 1\nramp = \"1 - t\"\n\
                [steps]\ntimes = [0.25, 0.5, 0.875]\n";
@@ -178,7 +178,7 @@ fn a_load_step_does_not_rebuild_meshes() {
         .collect();
     let mut stepping = Stepping::new(&scene, 0..4).unwrap();
     std::fs::remove_file(scratch.path("rho.bin")).unwrap();
-    // A mesh needs its coefficients, a step does not.
+    // A mesh needs its coefficients; a load step does not.
     assert!(scene.subdomain_mesh(0).is_err());
     for step in [0, 2, 1, 0] {
         assert_eq!(stepping.loads(step).unwrap(), wanted[step]);

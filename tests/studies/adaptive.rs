@@ -1,4 +1,4 @@
-//! `study adaptive --quick`: the bound holds, errors are small, and what the study says where a bound is missed.
+//! `study adaptive --quick`: the bound holds, errors are small, and missed bounds are reported.
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
@@ -6,7 +6,7 @@ use fetifeti::study::adaptive::{Report, Run};
 use mpi::Scratch;
 use program::run_fetifeti;
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "study rtol repeats cases"),
     ("cases[]", "case title bodies subdomains dofs multipliers fine reference mumps plain runs"),
@@ -31,9 +31,9 @@ fn bounds_hold() {
     assert_eq!(report.cases.len(), 8);
     for case in &report.cases {
         println!("{}: {:?}", case.case, case.runs);
-        // Without a reference nothing is held against anything.
+        // Without a reference solution there is nothing to compare with.
         assert!(case.reference.is_some_and(|r| r < 1e-9), "{}", case.case);
-        // A direct solver that says nothing has no error; one that does has one that can be compared by.
+        // MUMPS may fail and has no error then; otherwise its error is small enough to compare with.
         assert!(case.mumps.is_none_or(|e| e < 1e-6), "{}", case.case);
         for run in &case.runs {
             assert_eq!(run.message, None, "{}", case.case);
@@ -42,23 +42,23 @@ fn bounds_hold() {
             let least = run.lambda_min.expect("beside κ");
             assert!(least >= 1.0 - 1e-6, "{}: {least}", case.case);
             assert!(run.error.is_some_and(|e| e < 1e-4), "{}", case.case);
-            // More iterations do not take away what has been reached, but for what rounding does.
+            // Further iterations do not increase the error, up to rounding.
             let [first, last] =
                 [run.error, run.attainable].map(|e| e.expect("there is a reference"));
             assert!(last <= 10.0 * first, "{}: {last}", case.case);
             assert_eq!(run.capped, 0, "{}", case.case);
         }
-        // The scene is there to be solved again.
+        // The scene file exists, and can be solved again.
         let scene = format!("{out}/{}.toml", case.case);
         assert!(std::path::Path::new(&scene).exists());
     }
-    // Constant coefficients need nothing, jumps do.
+    // Constant coefficients need no vectors, jumps do.
     let find = |name: &str| report.cases.iter().find(|c| c.case == name).expect(name);
     let (constant, jumps) = (find("scalar-2d-constant"), find("elastic-3d-subdomain-6"));
     assert_eq!(constant.runs[0].vectors, 0);
     assert!(!constant.runs[0].searched);
     assert!(jumps.runs[0].vectors > 0 && jumps.plain.kappa() > jumps.runs[0].kappa);
-    // What the exit code says is what the report says.
+    // The exit code agrees with the report.
     let failing = report.cases.iter().any(|c| c.failing().count() > 0);
     assert_eq!(run.code, i32::from(failing), "{}", run.all());
 }

@@ -1,4 +1,4 @@
-//! `study hard-cases --quick`: no wrong answer is called a solution, and what the study would say of one.
+//! `study hard-cases --quick`: no wrong answer is called a solution, and the study detects one.
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
@@ -6,7 +6,7 @@ use fetifeti::study::hard_cases::{Record, Report, Verdict};
 use mpi::Scratch;
 use program::run_fetifeti;
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "study limit rtol cases"),
     (
@@ -43,10 +43,10 @@ fn nothing_is_wrong() {
     for case in &report.cases {
         println!("{}: {:?} {:?}", case.case, case.verdict, case.error_max);
         assert_ne!(case.verdict, Verdict::Wrong, "{}", case.case);
-        // The direct solution is one; without it nothing was held against anything.
+        // The direct solution is certified; without one there would be nothing to compare with.
         let certified = case.reference.is_some_and(|r| r < 1e-9);
         assert_eq!(certified, case.case != "flies-away", "{}", case.case);
-        // Where the solver says no, it says why; where it says yes, it is right.
+        // Where the solver fails, it says why; where it claims a solution, it is right.
         assert_eq!(case.message.is_some(), case.verdict != Verdict::Solved);
         if case.verdict == Verdict::Solved {
             assert!(case.error_max.is_some_and(|e| e < report.limit));
@@ -65,7 +65,7 @@ fn nothing_is_wrong() {
     ] {
         assert_eq!(find(name).verdict, Verdict::Solved, "{name}");
     }
-    // Most are solved: a solver that always gives up is not what is tested here.
+    // Most cases are solved: a solver that always gives up would be useless.
     let solved = report.cases.iter().filter(|c| c.verdict == Verdict::Solved);
     assert!(solved.count() >= 25);
 }
@@ -75,7 +75,7 @@ fn ranks_do_not_matter() {
     let dir = Scratch::new("study-hard-ranks");
     let [one, two] = [1, 2].map(|ranks| quick(ranks, &dir));
     for (a, b) in one.cases.iter().zip(&two.cases) {
-        // Rounding decides where an iteration that is held up by it stops.
+        // Rounding decides where a stagnating iteration stops.
         if a.case != "flat-elastic" {
             assert_eq!(a.verdict, b.verdict, "{}", a.case);
             assert_eq!(a.active, b.active, "{}", a.case);
@@ -83,7 +83,7 @@ fn ranks_do_not_matter() {
     }
 }
 
-/// One case solved to a tolerance at which its answer is none: the study sees it.
+/// One case, solved with a tolerance too loose for a solution: the study detects it.
 #[test]
 fn a_wrong_answer_is_seen() {
     use fetifeti::petsc::testing::with_session;

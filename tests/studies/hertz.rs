@@ -1,4 +1,4 @@
-//! `study hertz --quick`: what it measures, and that ranks do not matter.
+//! `study hertz --quick`: its measurements, and their independence of ranks.
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
@@ -6,7 +6,7 @@ use fetifeti::study::hertz::{CaseReport, Report};
 use mpi::Scratch;
 use program::run_fetifeti;
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "study cases"),
     ("cases[]", "case title order meshes"),
@@ -52,7 +52,7 @@ fn half_width_and_peak_agree_with_the_theory() {
             assert!(near(mesh.half_width.fit, other.half_width.fit));
             assert!(near(mesh.peak.fit, other.peak.fit));
             assert!(mesh.kkt < 1e-6 && mesh.converged);
-            // The formulas once more, from the force: 4FR/(πE*) = a² and 3FR/(4E*) = a³.
+            // The formulas a second time, from the force: 4FR/(πE*) = a² and 3FR/(4E*) = a³.
             let stiffness = match case.case.as_str() {
                 "two_cylinders" => 1.0 / (0.91 + 0.96 / 3.0),
                 _ => 1.0 / 0.91,
@@ -63,7 +63,7 @@ fn half_width_and_peak_agree_with_the_theory() {
                 _ => (4.0 * mesh.force / stiffness / std::f64::consts::PI).sqrt(),
             };
             assert!((mesh.half_width.theory / a - 1.0).abs() < 1e-12);
-            // Small against the radius, as the theory wants it.
+            // The zone is small against the radius, as the theory requires.
             assert!(a > 0.03 && a < 0.11, "{a}");
         }
     }

@@ -1,4 +1,4 @@
-//! `study kappa --quick`: the measured condition numbers, and what a wrong case is told.
+//! `study kappa --quick`: the measured condition numbers, and the error message for a wrong case.
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
@@ -6,7 +6,7 @@ use fetifeti::study::kappa::Report;
 use mpi::Scratch;
 use program::run_fetifeti;
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "study rows"),
     (
@@ -40,7 +40,7 @@ fn condition_numbers_are_those_that_were_measured() {
     for row in &report.rows {
         for found in [&row.dirichlet, &row.coarse_corrected] {
             let exact = found.exact.expect("asked for");
-            // Lanczos comes from below.
+            // The Lanczos estimate is a lower bound.
             assert!(found.kappa <= exact * (1.0 + 1e-6), "{row:?}");
             assert!(found.kappa > 0.98 * exact, "{row:?}");
             assert!(found.lambda_min > 1.0 - 1e-6, "{row:?}");

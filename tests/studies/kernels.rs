@@ -1,4 +1,4 @@
-//! `study kernels --quick`: every solver in every order, with errors beside the times.
+//! `study kernels --quick`: every solver with every ordering, with errors and times.
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
@@ -6,7 +6,7 @@ use fetifeti::study::kernels::{faster, summary, Report, CASES, WORTH_CHANGING};
 use mpi::Scratch;
 use program::run_fetifeti;
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "study rows"),
     (
@@ -49,7 +49,7 @@ fn every_combination_is_measured_and_solves() {
     }
 }
 
-/// What is said to be faster follows from the rows alone.
+/// The statement about faster solvers follows from the rows alone.
 #[test]
 fn only_what_is_clearly_faster_is_named() {
     let row = |solver: &str, default, factor| fetifeti::study::kernels::Row {

@@ -6,7 +6,7 @@ use fetifeti::study::scaling::{Point, Problem, Report, Series, RANKS};
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "study quick cores network points model body iterations iterations_of predictions"),
     ("network", "messages reductions modelled_reductions network median_deviation largest_deviation"),
@@ -59,7 +59,7 @@ fn counts_and_model() {
     assert!(csv.lines().all(|l| l.split(',').count() == columns));
 }
 
-/// What is sent belongs to ranks and scenes.
+/// Messages depend on ranks and scenes.
 fn sends(report: &Report) {
     for p in &report.points {
         let c = &p.communication;
@@ -77,13 +77,14 @@ fn sends(report: &Report) {
         assert!(messages.max <= messages.sum && bytes.max <= bytes.sum);
         assert!(messages.sum <= messages.max * p.ranks as f64);
         assert!(bytes.sum >= 8.0 * messages.sum);
-        // CG: three and at times a first norm. Bodies that float: four more.
+        // CG: three all-reduces and, at times, a first norm. With floating bodies: four more.
         let floats = if p.floating_bodies > 0 { 4.0 } else { 0.0 };
         let reductions = c.reductions_per_iteration - floats;
         let most = 3.0 + p.steps as f64 / p.iterations as f64;
         assert!((3.0..=most + 1e-9).contains(&reductions), "{p:?}");
     }
-    // The body in the middle of 3 × 3 sends λ and the jump of λ, around F and around M⁻¹: to each of at most eight neighbours.
+    // The body in the middle of 3 × 3 sends λ and the jump of λ, around F and around M⁻¹, to each of at most eight
+    // neighbours.
     let middle = runs(report, Series::Neighbours, Problem::Tied)[0];
     let most = middle.communication.messages_per_iteration.max;
     assert!((8.0..=32.0).contains(&most), "{most}");
@@ -93,7 +94,7 @@ fn sends(report: &Report) {
     );
 }
 
-/// Iterations are bounded as bodies are added, and do not depend on ranks.
+/// The number of iterations is bounded as bodies are added, and does not depend on ranks.
 fn grows(report: &Report) {
     let growing = runs(report, Series::Bodies, Problem::Tied);
     assert_eq!(growing.iter().map(|p| p.subdomains).max(), Some(256));
@@ -124,7 +125,7 @@ fn positive(x: f64) -> bool {
     x.is_finite() && x > 0.0
 }
 
-/// Every phase has a law with its residuals, and every run says how far the model is off.
+/// Every phase has a law with its residuals, and every run has the deviation of the model.
 fn fits(report: &Report) {
     assert_eq!(report.model.laws.len(), 11);
     for law in &report.model.laws {
@@ -178,7 +179,7 @@ fn predicts(report: &Report) {
             assert!(positive(row.without_kernels) && row.without_kernels <= row.total);
         }
         assert!(!prediction.limits.is_empty() && !prediction.iteration_limits.is_empty());
-        // 3 · 8 r² bytes above 4 GB: r of 12 910, and two rows of bodies around those that float.
+        // 3 · 8 r² bytes exceed 4 GB for r above 12 910; the floating bodies are surrounded by two rows of held ones.
         let full = prediction.full_at.expect("100 000 bodies do not fit");
         assert!((12_900..13_700).contains(&full), "{full}");
     }
@@ -215,7 +216,7 @@ fn a_task_that_no_study_has_written_is_refused() {
 
 #[test]
 fn a_run_that_fails_is_named() {
-    // Too few iterations, in every run.
+    // Too few iterations are allowed, in every run.
     let run = fetifeti(&["study", "scaling", "--quick", "-fetifeti_ksp_max_it", "2"]);
     assert_eq!(run.code, 1, "{}", run.all());
     assert!(run.stderr.contains("4 x 4 bodies"), "{}", run.all());

@@ -6,7 +6,7 @@ use fetifeti::study::speed_error::Report;
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 
-/// What the report must have.
+/// Required keys of the report.
 const KEYS: Keys = &[
     ("", "study cores cases"),
     ("cases[]", "case title meshes runs"),
@@ -47,7 +47,7 @@ fn errors_fall_with_the_mesh() {
             case.case, coarse.error, fine.error
         );
         assert!(order > 0.8 && order < 1.3, "{}: order {order}", case.case);
-        // A run of MUMPS that fails has no answer to be listed.
+        // A failed run of MUMPS has no result to be listed.
         let mut ours = case.methods();
         ours.retain(|m| m != "mumps");
         assert_eq!(ours, ["fetifeti", "fetifeti, mixed"]);
@@ -55,7 +55,7 @@ fn errors_fall_with_the_mesh() {
             let mesh = case.meshes.iter().find(|m| m.elements == run.elements);
             let mesh = mesh.expect("a run has a mesh").error;
             assert!((run.error - mesh.hypot(run.solver_error)).abs() <= 1e-12 * run.error);
-            // Ours must; of MUMPS only what it says of itself counts.
+            // Ours must converge; MUMPS need not.
             assert!(run.converged || run.method == "mumps", "{run:?}");
             assert!(!run.converged || run.solver_error < 1e-3, "{run:?}");
             assert!(run.setup > 0.0 && run.solve > 0.0);

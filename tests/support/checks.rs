@@ -1,4 +1,4 @@
-//! Small things that many tests say.
+//! Small checks that many tests use.
 
 use fetifeti::FetiFeti;
 use serde_json::Value;
@@ -14,7 +14,7 @@ pub fn near(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * b.abs()
 }
 
-/// The identities of the operators hold up to `limit`, and there are some.
+/// Checks that there are identities of the operators, and that they hold up to `limit`.
 pub fn identities(solver: &FetiFeti, limit: f64, what: &str) {
     let found = solver.check().expect("checks run");
     assert!(!found.is_empty(), "{what}: nothing was checked");

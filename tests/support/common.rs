@@ -1,4 +1,4 @@
-//! Lee's experiment written down a second time, without the scene, mesh and fem modules: substructures by hand.
+//! Lee's experiment implemented a second time, without the scene, mesh and fem modules: substructures by hand.
 #![allow(dead_code)]
 
 use std::collections::BTreeMap;
@@ -127,7 +127,7 @@ impl Grid {
         }
     }
 
-    /// The part of the rank that `mine` says yes for, by subdomain.
+    /// The substructures of one rank; `mine` says which subdomains it owns.
     pub fn substructures(&self, mine: impl Fn(usize) -> bool) -> Substructures {
         let (nb, ns) = (self.bodies, self.subdomains);
         let n_subdomains = nb * nb * ns * ns;

@@ -1,11 +1,11 @@
-//! `fetifeti compare` from the outside: a scene in a file, and what the program says of it.
+//! `fetifeti compare` from the outside: a scene in a file, and the program's report on it.
 
 use super::keys::{self, Keys};
 use super::mpi::{Output, Scratch};
 use super::program::fetifeti;
 use fetifeti::report::json::{CompareReport, CompareRow};
 
-/// What a report of `compare` must have.
+/// Required keys of a report of `compare`.
 pub const KEYS: Keys = &[
     ("", "scene bodies subdomains dofs rtol cores supports reference_residual rows"),
     ("contact", "rows active outer feasibility min_multiplier load_steps"),
@@ -18,8 +18,8 @@ pub const KEYS: Keys = &[
     ("rows[].contact", "outer active differ feasibility min_multiplier"),
 ];
 
-/// Whether a row holds a solution. Ours must; a row of another method may say instead why it holds none, for whether PETSc's solvers
-/// get there is not ours to promise and differs from processor to processor.
+/// Whether a row has a solution. Ours must have one. A row of another method may give a reason instead: whether PETSc's
+/// solvers converge is beyond our control and differs from processor to processor.
 pub fn solved(row: &CompareRow) -> bool {
     let what = format!("{} on {} ranks: {row:?}", row.method, row.ranks);
     let Some(message) = &row.message else {
@@ -29,7 +29,7 @@ pub fn solved(row: &CompareRow) -> bool {
     };
     assert_ne!(row.method, "fetifeti", "{what}");
     assert!(!message.trim().is_empty() && !row.converged, "{what}");
-    // A method that broke down has left nothing that could be measured; one that stopped has what the judge found.
+    // A method that broke down has no measurements; one that stopped early has those of the judge.
     let left = row.converged_reason.is_empty();
     assert!(
         !left || (row.error, row.iterations, row.kappa) == (None, None, None),
@@ -39,15 +39,15 @@ pub fn solved(row: &CompareRow) -> bool {
     false
 }
 
-/// A scene file that goes away with the value.
+/// A scene file that is removed when the value is dropped.
 pub struct SceneFile {
     path: String,
-    /// Where it lies, for more files.
+    /// Its directory, for more files.
     pub scratch: Scratch,
 }
 
 impl SceneFile {
-    /// `name` is one that no other scene of the test file has.
+    /// `name` must be unique among the scenes of the test file.
     pub fn new(name: &str, text: &str) -> SceneFile {
         let scratch = Scratch::new(&format!("compare-{name}"));
         SceneFile {
@@ -60,7 +60,7 @@ impl SceneFile {
         &self.path
     }
 
-    /// `fetifeti compare` on two cores with more arguments; it must end well.
+    /// Runs `fetifeti compare` on two cores with more arguments; it must succeed.
     pub fn run(&self, more: &[&str]) -> Output {
         let args = [&["compare", self.path(), "-compare_cores", "2"], more].concat();
         let output = fetifeti(&args);
@@ -68,7 +68,7 @@ impl SceneFile {
         output
     }
 
-    /// The same for the report.
+    /// As `run`, and returns the report.
     pub fn compare(&self, more: &[&str]) -> CompareReport {
         let output = self.run(&[&["--json", "-"], more].concat());
         keys::read(&output.stdout, KEYS)

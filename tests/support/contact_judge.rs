@@ -1,4 +1,4 @@
-//! The answer of the method to a scene, judged by the assembled reference.
+//! The method's answer to a scene, compared with the assembled reference.
 
 use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use super::assembled::{Assembled, Reference};
@@ -19,7 +19,7 @@ fn settings(kind: ContactType) -> Settings {
     settings
 }
 
-/// The answer of the method, on every rank the whole of it: u by unknown, λ by row of the scene, energy.
+/// The whole answer of the method on every rank: u by unknown, λ by row of the scene, energy.
 pub fn answer(
     session: &Session,
     scene: &Scene,
@@ -28,7 +28,7 @@ pub fn answer(
     kind: ContactType,
 ) -> Result<(Vec<f64>, Vec<f64>, f64)> {
     let (rank, size) = (session.rank(), session.size());
-    // Runs of subdomains, or dealt like cards.
+    // Subdomains are distributed in contiguous runs, or in turn.
     let share = fetifeti::share(session, scene.n_subdomains());
     let mine = |s: usize| match cards {
         false => share.contains(&s),
@@ -67,7 +67,7 @@ pub fn answer(
     Ok((u.map_err(Error::input)?, lambda, solution.energy))
 }
 
-/// Compares it with the reference.
+/// Compares the answer with the reference.
 pub fn judge(
     session: &Session,
     (scene, problem, reference): (&Scene, &Assembled, &Reference),

@@ -1,4 +1,5 @@
-//! The assembled problem solved by a sparse Cholesky factorisation: what every run of the method is measured against.
+//! The assembled problem solved by a sparse Cholesky factorisation: the standard that every solve of the method is
+//! compared with.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +18,7 @@ use fetifeti::Solution;
 pub struct Direct {
     pub scene: Scene,
     meshes: Vec<SubdomainMesh>,
-    /// Nodal values of each subdomain, prescribed ones included.
+    /// Nodal values of each subdomain, including prescribed ones.
     pub nodal: Vec<Vec<f64>>,
 }
 
@@ -53,8 +54,8 @@ impl Direct {
         let k = SparseColMat::try_new_from_triplets(n, n, &triplets).unwrap();
         let factor = k.sp_cholesky(Side::Lower).unwrap();
         let mut u = vec![0.0; n];
-        // Residuals in twice the working precision: refinement then ends at the rounding of u itself, however far apart the
-        // coefficients are.
+        // Residuals are in twice the working precision: refinement then ends at the rounding of u itself, for any
+        // contrast of the coefficients.
         for _ in 0..4 {
             let mut r: Vec<(f64, f64)> = f.iter().map(|&f| (f, 0.0)).collect();
             for (&(i, j), &v) in &entries {
@@ -102,7 +103,8 @@ impl Direct {
                 let nodes = mesh.element_nodes([e % nx, e / nx, 0]);
                 for (a, row) in k.iter().enumerate() {
                     for (b, entry) in row.iter().enumerate() {
-                        // Rows of the element matrix add up to zero: energies of differences lose nothing to a large mean.
+                        // Rows of the element matrix sum to zero: energies of differences suffer no cancellation from a
+                        // large mean.
                         sum +=
                             rho * entry * (u[nodes[a]] - u[nodes[0]]) * (u[nodes[b]] - u[nodes[0]]);
                     }
@@ -127,7 +129,7 @@ impl Direct {
         FetiFeti::new(session, problem, settings.clone()).expect("set up")
     }
 
-    /// Solves and measures.
+    /// Solves by the method, and measures the distance from the direct solution.
     pub fn run(&self, session: &Session, settings: &MethodSettings) -> (Solution, f64) {
         let solution = self.solver(session, settings).solve().expect("solved");
         let distance = self.distance(&solution.u);
@@ -143,7 +145,7 @@ pub fn tight() -> MethodSettings {
     }
 }
 
-/// Runs `work` with PETSc options (names without `-fetifeti_`) that are gone afterwards.
+/// Runs `work` with PETSc options (names without `-fetifeti_`), and removes them afterwards.
 pub fn with_options<T>(session: &Session, options: &[(&str, &str)], work: impl FnOnce() -> T) -> T {
     struct Cleared<'a>(Options, &'a [(&'a str, &'a str)]);
     impl Drop for Cleared<'_> {

@@ -6,7 +6,7 @@ use super::rng::Rng;
 use fetifeti::scene::Scene;
 use std::fmt::Write;
 
-/// A scene and what became of it.
+/// A scene and its outcome.
 pub struct Case {
     pub seed: u64,
     pub text: String,
@@ -21,7 +21,7 @@ pub enum Fate {
     Infeasible,
 }
 
-/// The scene of a seed with its fate; an error where the scene itself is refused.
+/// The scene of a seed with its outcome; an error where the scene itself is refused.
 pub fn case(seed: u64) -> Result<Case, String> {
     let text = text(seed);
     let scene = Scene::parse("random.toml", &text).map_err(|e| format!("{e}\n{text}"))?;
@@ -44,7 +44,7 @@ fn number(rng: &mut Rng, low: f64, high: f64) -> f64 {
     (rng.uniform(low, high) * 1e3).round() / 1e3
 }
 
-/// The scene of a seed, as a user would write it.
+/// The scene of a seed, in the format of scene files.
 pub fn text(seed: u64) -> String {
     let rng = &mut Rng::new(seed);
     match rng.below(6) {
@@ -71,8 +71,8 @@ fn list(values: impl IntoIterator<Item = f64>) -> String {
     format!("[{}]", all.join(", "))
 }
 
-/// A pile or row of blocks, the lowest held in some way, pressed together or pulled at; contact, ties and gaps between them; an obstacle
-/// now and then.
+/// A pile or row of blocks. The lowest block is held in some way; the others are pressed together or pulled, with
+/// contact, ties and gaps between them, and sometimes an obstacle.
 fn blocks(rng: &mut Rng, dim: usize) -> String {
     let mut out = head(rng, dim);
     let count = rng.between(2, if dim == 2 { 4 } else { 2 });
@@ -83,7 +83,7 @@ fn blocks(rng: &mut Rng, dim: usize) -> String {
         let mut origin = vec![0.0; dim];
         origin[axis] = b as f64;
         let subdomains: Vec<usize> = (0..dim).map(|_| rng.between(1, 2)).collect();
-        // Faces must match: as many elements for all across the row.
+        // Faces must match: all blocks have the same number of elements across the row.
         let elements: Vec<usize> = subdomains
             .iter()
             .map(|s| if *s == 2 || dim == 2 { 4 } else { 2 })
@@ -165,7 +165,7 @@ fn blocks(rng: &mut Rng, dim: usize) -> String {
     out
 }
 
-/// A plane, straight or inclined, or something round, beside one of the bodies.
+/// A straight, inclined or round obstacle beside one of the bodies.
 fn obstacle(rng: &mut Rng, out: &mut String, dim: usize, count: usize) {
     let side = *rng.pick(&["left", "right", "bottom", "top"]);
     let (d, upper) = match side {
@@ -175,7 +175,7 @@ fn obstacle(rng: &mut Rng, out: &mut String, dim: usize, count: usize) {
         _ => (1, true),
     };
     let b = rng.below(count);
-    // Blocks lie along x or y from the origin on: the obstacle is put in front of the whole row.
+    // Blocks lie along x or y from the origin on: the obstacle is in front of the whole row.
     let far = count as f64;
     let distance = number(rng, -0.02, 0.2);
     let mut normal = vec![0.0; dim];

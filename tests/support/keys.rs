@@ -1,12 +1,14 @@
-//! Reports as other programs read them: by the names of their keys, which are written out here and nowhere taken from the crate.
+//! Reports as other programs read them: by the names of their keys. The names are written out in the tests, and not
+//! taken from the crate.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// Objects of a report, each as its place and the keys that it must have: `rows[].seconds` are those of every row.
+/// Objects of a report, each as its path and its required keys; the path `rows[].seconds` stands for those of every
+/// row.
 pub type Keys = &'static [(&'static str, &'static str)];
 
-/// Reads a report that must have these keys.
+/// Reads a report and checks its keys.
 pub fn read<T: DeserializeOwned>(text: &str, keys: Keys) -> T {
     let report: Value = serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"));
     for (place, names) in keys {
@@ -22,7 +24,7 @@ pub fn read<T: DeserializeOwned>(text: &str, keys: Keys) -> T {
     serde_json::from_value(report).expect("a report")
 }
 
-/// The objects at a place; null and what was left out are none.
+/// The objects at a path; null and omitted values count as none.
 fn find<'a>(report: &'a Value, place: &str) -> Vec<&'a Value> {
     let mut found = vec![report];
     for step in place.split('.').filter(|s| !s.is_empty()) {

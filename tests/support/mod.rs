@@ -1,4 +1,4 @@
-//! What test programs share; every program uses its own part.
+//! Helpers of the test programs; every program uses its own part.
 #![allow(dead_code)]
 
 pub mod assembled;

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use fetifeti::petsc::Session;
 
-/// What a run left behind.
+/// The result of a run.
 pub struct Output {
     /// Exit code of mpirun; -1 when it was killed after the time limit.
     pub code: i32,
@@ -26,11 +26,11 @@ impl Output {
     }
 }
 
-/// A run that hangs is a failure, not a wait.
+/// Time limit: a run that hangs is a failure.
 const LIMIT: Duration = Duration::from_secs(300);
 
-/// A command that may start MPI, without the variables that MPI has left in the environment: a test that has started MPI in its own
-/// process carries some that would lead another one astray.
+/// A command that may start MPI, without the environment variables of MPI: a test that has started MPI in its own
+/// process has some, and they would mislead another MPI program.
 pub fn command(program: &str) -> Command {
     let mut command = Command::new(program);
     for (name, _) in std::env::vars_os() {
@@ -100,15 +100,16 @@ fn collect(mut stream: impl Read + Send + 'static) -> thread::JoinHandle<String>
 
 const CASE: &str = "FETIFETI_TEST_CASE";
 
-/// A test that runs on several ranks: it starts itself once more under mpirun, where it is a rank.
+/// A test that runs on several ranks: it starts itself once more under mpirun.
 pub struct Ranks {
     test: String,
 }
 
-/// What a test does on several ranks. In an ordinary run returns what starts them; in a process that [`Ranks::run`] has started, runs
-/// `work` with PETSc and the name of the case and ends the process with its exit code.
+/// Defines the work of a test on several ranks. In an ordinary run, returns the value that starts the ranks. In a
+/// process started by [`Ranks::run`], runs `work` with PETSc and the name of the case and ends the process with its
+/// exit code.
 ///
-/// `work` is a closure in the test itself, because its type has the name of the test.
+/// `work` must be a closure in the test itself: the name of its type contains the name of the test.
 pub fn as_rank<W>(work: W) -> Ranks
 where
     W: FnOnce(&Session, &str) -> fetifeti::Result<()>,
@@ -119,20 +120,20 @@ where
     })
 }
 
-/// The same for a test that starts PETSc itself; `work` returns the exit code.
+/// As `as_rank`, for a test that starts PETSc itself; `work` returns the exit code.
 pub fn as_process<W: FnOnce(&str) -> i32>(work: W) -> Ranks {
     Ranks::new::<W>(work)
 }
 
-/// The name of the test in which a closure of this type stands.
+/// The name of the test that contains a closure of this type.
 fn test_of<W>() -> &'static str {
     let path = std::any::type_name::<W>();
     let test = path.trim_end_matches("::{{closure}}");
     test.split_once("::").expect("a test of a program").1
 }
 
-/// Runs a test that uses PETSc in a process of its own: PETSc lives on one thread of a process, and long tests would wait for each
-/// other there. `work` is a closure in the test itself.
+/// Runs a test that uses PETSc in a process of its own: PETSc is bound to one thread of a process, and long tests would
+/// wait for each other. `work` must be a closure in the test itself.
 pub fn alone<W: FnOnce()>(work: W) {
     const ALONE: &str = "alone";
     if std::env::var(CASE).is_ok_and(|case| case == ALONE) {
@@ -164,13 +165,13 @@ impl Ranks {
         let own = own.to_str().expect("the path is UTF-8");
         let args = ["--exact", &self.test, "--nocapture", "--test-threads=1"];
         let out = mpirun(ranks, own, &args, &[(CASE, case)]);
-        // A rank ends before the harness sums up: there is a sum only where no test has this name.
+        // A rank ends before the test harness prints its summary: the summary appears only if no test has this name.
         let ran = !out.stdout.contains("test result:");
         assert!(ran, "no test {}: {}", self.test, out.all());
         out
     }
 
-    /// The same for a case that ends well: the numbers that it prints after `RESULT`.
+    /// As `run`, for a case that must succeed: returns the numbers that it prints after `RESULT`.
     pub fn numbers(&self, ranks: usize, case: &str) -> Vec<f64> {
         let out = self.run(ranks, case);
         assert_eq!(out.code, 0, "{}", out.all());
@@ -195,7 +196,7 @@ impl Scratch {
         Scratch(dir)
     }
 
-    /// The path of `name` in it.
+    /// The path of `name` in the directory.
     pub fn path(&self, name: &str) -> String {
         self.0
             .join(name)
@@ -210,7 +211,7 @@ impl Scratch {
         self.path(name)
     }
 
-    /// Names of all files in it and below.
+    /// Names of all files in the directory and below.
     pub fn files(&self) -> Vec<String> {
         fn walk(dir: &Path, out: &mut Vec<String>) {
             for entry in fs::read_dir(dir).expect("the directory can be read") {

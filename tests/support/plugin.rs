@@ -1,11 +1,11 @@
-//! The plug-in under mpirun: PETSc's own example programs and ours, compiled here, with the library loaded into them.
+//! The plug-in under mpirun: PETSc's own example programs and ours, compiled here, with the library loaded.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::mpi::{mpirun, Output, Scratch};
 
-/// The library that cargo built beside this test.
+/// The library that cargo built for this test.
 pub fn library() -> String {
     let own = std::env::current_exe().expect("the test knows its own path");
     let deps = own.parent().expect("a test lies in a directory");
@@ -14,7 +14,7 @@ pub fn library() -> String {
     path.display().to_string()
 }
 
-/// What pkg-config says of PETSc.
+/// The output of pkg-config for PETSc.
 fn pkg_config(args: &[&str]) -> Vec<String> {
     for name in ["PETSc", "petsc"] {
         let out = Command::new("pkg-config").args(args).arg(name).output();
@@ -35,7 +35,7 @@ pub fn petsc_version() -> (u32, u32) {
     (next(), next())
 }
 
-/// Where PETSc's ksp tutorials lie (Debian: libpetsc3.18-dev-examples).
+/// The path of one of PETSc's ksp tutorials (Debian: libpetsc3.18-dev-examples).
 fn tutorial(name: &str) -> PathBuf {
     let below = "share/petsc/examples/src/ksp/ksp/tutorials";
     let prefix = pkg_config(&["--variable=prefix"]).join(" ");
@@ -47,7 +47,7 @@ fn tutorial(name: &str) -> PathBuf {
     found.unwrap_or_else(|| panic!("PETSc's example {name} is not installed: run scripts/setup.sh"))
 }
 
-/// A program that was compiled for a test.
+/// A program compiled for a test.
 pub struct Program(String);
 
 impl Program {
@@ -56,7 +56,8 @@ impl Program {
         Program::compile("mpicc", scratch, &tutorial(&format!("{name}.c")), &[])
     }
 
-    /// One of PETSc's ksp tutorials with another build of PETSc: a folder below Debian's /usr/lib/petscdir, `*` for the machine.
+    /// One of PETSc's ksp tutorials with another build of PETSc: a directory below Debian's /usr/lib/petscdir, with `*`
+    /// for the architecture.
     pub fn tutorial_of(scratch: &Scratch, name: &str, build: &str) -> Program {
         let (above, pattern) = build.split_once('/').expect("two folders");
         let end = pattern.trim_start_matches('*');
@@ -90,13 +91,13 @@ impl Program {
         Program::compile_with("mpicc", scratch, &source, &flags)
     }
 
-    /// A source of ours, from tests/plugin.
+    /// One of our sources, from tests/plugin.
     pub fn own(compiler: &str, scratch: &Scratch, name: &str) -> Program {
         let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/plugin");
         Program::compile(compiler, scratch, &dir.join(name), &[])
     }
 
-    /// A source of ours, by its path in the repository, that uses wrappers/fetifeti.h and is linked with the library.
+    /// One of our sources, by its path in the repository. It uses wrappers/fetifeti.h and is linked with the library.
     pub fn linked(compiler: &str, scratch: &Scratch, path: &str) -> Program {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let (library, headers) = (library(), root.join("wrappers"));
@@ -111,7 +112,7 @@ impl Program {
         Program::compile(compiler, scratch, &root.join(path), &more)
     }
 
-    /// The same in Fortran, with the module of wrappers/fetifeti.f90.
+    /// As `linked`, in Fortran with the module of wrappers/fetifeti.f90.
     pub fn fortran_with_module(scratch: &Scratch, path: &str) -> Program {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let module = root.join("wrappers/fetifeti.f90").display().to_string();
@@ -158,13 +159,13 @@ impl Program {
         Program(program)
     }
 
-    /// Runs it with these options, words separated by blanks.
+    /// Runs the program with these options, separated by blanks.
     pub fn run(&self, ranks: usize, options: &str) -> Output {
         let args: Vec<&str> = options.split_whitespace().collect();
         mpirun(ranks, &self.0, &args, &[])
     }
 
-    /// The same with the plug-in loaded.
+    /// As `run`, with the plug-in loaded.
     pub fn with_plugin(&self, ranks: usize, options: &str) -> Output {
         self.run(ranks, &format!("{options} -dll_append {}", library()))
     }
@@ -183,7 +184,7 @@ pub fn vector(path: &str) -> Vec<f64> {
     out
 }
 
-/// The number that follows `text` in what a run printed.
+/// The number that follows `text` in the output of a run.
 pub fn number_after(out: &Output, text: &str) -> f64 {
     let at = out.stdout.find(text);
     let at = at.unwrap_or_else(|| panic!("no \"{text}\" in {}", out.all()));

@@ -1,4 +1,4 @@
-//! The program itself, under mpirun and without.
+//! Runs the program itself, with and without mpirun.
 
 use std::process::Stdio;
 use std::time::Instant;

@@ -1,7 +1,7 @@
-//! Random contact scenes from a seed: grids of 2 to 6 bodies with everything that a scene may say about contact.
+//! Random contact scenes from a seed: grids of 2 to 6 bodies with all kinds of contact that a scene can describe.
 //!
-//! Bodies of higher number lie above those of lower number unless a contact turns that round, and most scenes push downwards
-//! onto a body that is held, so that most have a solution. Whether one has is for the reference to say.
+//! Bodies of higher number lie above those of lower number unless a contact reverses the order, and most scenes push
+//! downwards onto a held body, so that most have a solution. The reference decides which do.
 
 use super::assembled::{Assembled, Reference};
 use super::qp::Outcome;
@@ -13,7 +13,7 @@ use fetifeti::scene::{
     Region, Scene, SceneSpec, TieSpec,
 };
 
-/// A scene and what became of it.
+/// A scene and its outcome.
 pub struct Case {
     pub seed: u64,
     pub scene: Scene,
@@ -23,13 +23,14 @@ pub struct Case {
 
 pub enum Fate {
     Solvable(Reference),
-    /// A body may be pushed away for ever: the motion, by unknown.
+    /// A body can be pushed away without bound: the motion, by unknown.
     Unbounded(Vec<f64>),
     /// Rows that contradict each other.
     Infeasible,
 }
 
-/// The scene of a seed with its fate; an error where the scene itself is refused (values given that contradict a tie, …).
+/// The scene of a seed with its outcome; an error where the scene itself is refused (for example for prescribed values
+/// that contradict a tie).
 pub fn case(seed: u64) -> Result<Case, String> {
     let scene = Scene::new(spec(seed)).map_err(|e| e.to_string())?;
     let problem = Assembled::of_scene(&scene);
@@ -46,7 +47,7 @@ pub fn case(seed: u64) -> Result<Case, String> {
     })
 }
 
-/// Cases by fate, from one seed after the other.
+/// Cases by outcome, from successive seeds.
 #[derive(Default)]
 pub struct Collection {
     pub solvable: Vec<Case>,
@@ -57,8 +58,8 @@ pub struct Collection {
 }
 
 impl Collection {
-    /// The first `count` solvable cases from `first_seed` on, and whatever else came along. Scenes without an inequality are
-    /// left out.
+    /// The first `count` solvable cases from `first_seed` on, and the unsolvable and refused ones among them. Scenes
+    /// without an inequality are left out.
     pub fn new(first_seed: u64, count: usize) -> Collection {
         let mut out = Collection::default();
         for seed in first_seed.. {
@@ -78,7 +79,7 @@ impl Collection {
         out
     }
 
-    /// Part of the scenes that had no solution.
+    /// The fraction of scenes without a solution.
     pub fn rejected(&self) -> f64 {
         let no = self.unbounded.len() + self.infeasible.len() + self.refused.len();
         no as f64 / (no + self.solvable.len()) as f64
@@ -89,7 +90,7 @@ fn expression(text: &str) -> Expr {
     Expr::parse(text).expect("the generator writes expressions that can be read")
 }
 
-/// A number with few digits in [low, high], for messages that can be read.
+/// A number with few digits in [low, high], for readable messages.
 fn number(rng: &mut Rng, low: f64, high: f64) -> f64 {
     (rng.uniform(low, high) * 1e3).round() / 1e3
 }
@@ -126,7 +127,7 @@ pub fn spec(seed: u64) -> SceneSpec {
     if rng.one_in(8) {
         spec.default = ByDefault::Tied;
     }
-    // Whether contacts keep to the order of the bodies.
+    // Whether contacts follow the order of the bodies.
     let upwards = !rng.one_in(6);
     let tame = !rng.one_in(3);
     for j in 0..shape[1] {
@@ -188,7 +189,7 @@ fn bodies(rng: &mut Rng, shape: [usize; 2]) -> Vec<BodySpec> {
             if !quiet || out.is_empty() {
                 body.load = load(rng, &mesh, down);
             }
-            // The lowest body is held, and a few others are.
+            // The lowest body is held, and so are a few others.
             let mut sides = Vec::new();
             if out.is_empty() && held > 0 {
                 sides.push(*rng.pick(&[0, 2]));
@@ -208,7 +209,7 @@ fn bodies(rng: &mut Rng, shape: [usize; 2]) -> Vec<BodySpec> {
     out
 }
 
-/// 1, or far from it: jumps up to 10⁴ between bodies, up to 100 inside them.
+/// 1, or far from 1: jumps up to 10⁴ between bodies, up to 100 inside them.
 fn rho(rng: &mut Rng, jumps: bool) -> Field {
     if !jumps {
         return Field::constant(1.0);
@@ -278,7 +279,7 @@ fn gap(rng: &mut Rng, tame: bool) -> Profile {
     }
 }
 
-/// What joins two bodies on their common face.
+/// The entries for two bodies on their common face.
 fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, tame: bool) {
     let names = pair.map(|k| spec.bodies[k].name.clone());
     let (low, high) = (range(0.0, 0.4), range(0.4, 1.0));

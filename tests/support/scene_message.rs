@@ -1,4 +1,4 @@
-//! What the program says of a scene that is wrong, and scenes to make wrong.
+//! The program's message for a wrong scene, and scenes for such tests.
 
 use fetifeti::scene::Scene;
 use fetifeti::Error;

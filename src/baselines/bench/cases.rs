@@ -1,11 +1,11 @@
-//! The scenes of the benchmark, as text that a user might write.
+//! The scenes of the benchmark, as text in the format of scene files.
 
 /// A scene with a name.
 #[derive(Debug)]
 pub struct Named {
     /// Its name.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub description: &'static str,
     /// The scene, and a smaller one for `--quick`.
     scene: fn(quick: bool) -> String,
@@ -17,7 +17,7 @@ impl Named {
         CASES.iter().find(|c| c.name == name)
     }
 
-    /// The scene file.
+    /// The text of the scene file.
     pub fn scene(&self, quick: bool) -> String {
         (self.scene)(quick)
     }
@@ -57,8 +57,8 @@ pub const CASES: [Named; 6] = [
     },
 ];
 
-/// 4 × 4 bodies of 4 × 4 subdomains of 64 × 64 elements; small: 2 × 2 of 2 × 2 of 32 × 32. The load has no symmetry: with one, decompositions into
-/// two or four parts need no iteration.
+/// 4 × 4 bodies of 4 × 4 subdomains of 64 × 64 elements; small: 2 × 2 of 2 × 2 of 32 × 32. The load has no symmetry:
+/// with one, decompositions into two or four parts need no iteration.
 fn poisson(quick: bool, random: bool) -> String {
     let (bodies, elements) = if quick { (2, 32) } else { (4, 64) };
     let n = bodies * bodies * elements;
@@ -68,9 +68,9 @@ fn poisson(quick: bool, random: bool) -> String {
          elements_per_subdomain = {elements}\nload = \"1 + x + y^2\"\ndirichlet = \"all\"\n"
     );
     if random {
-        // Numbers without a pattern: the fraction of a large multiple of a sine. Coordinates are binary fractions, so that bodies compute
-        // the same ones on common faces. Inner nodes move by up to a fifth of an element in x and in y; ρ is from 0.1 to 10, its
-        // logarithm spread evenly.
+        // Numbers without a pattern: the fraction of a large multiple of a sine. Coordinates are binary fractions, so
+        // that bodies compute the same numbers on common faces. Inner nodes move by up to a fifth of an element in x
+        // and in y; ρ is from 0.1 to 10, its logarithm spread evenly.
         let draw = |a: &str, b: &str, c: &str| {
             format!("mod(43758.5453*sin({a}*{n}*x + {b}*{n}*y + {c}), 1)")
         };
@@ -87,7 +87,8 @@ fn poisson(quick: bool, random: bool) -> String {
     text
 }
 
-/// The model problem of examples/scenes/model_contact.toml, each body of 8 × 8 subdomains of 64 × 64 elements; small: 2 × 2 of 32 × 32.
+/// The model problem of examples/scenes/model_contact.toml, each body of 8 × 8 subdomains of 64 × 64 elements; small: 2
+/// × 2 of 32 × 32.
 fn contact(quick: bool) -> String {
     let (subdomains, elements) = if quick { (2, 32) } else { (8, 64) };
     let n = subdomains * elements;
@@ -108,7 +109,8 @@ fn contact(quick: bool) -> String {
     )
 }
 
-/// A cube of `n`³ elements on the ground: two bodies, one on the other, in subdomains of 4³ or 5³ elements; small: of 3³ or 5³.
+/// A cube of `n`³ elements on the ground: two bodies, one on the other, in subdomains of 4³ or 5³ elements. The small
+/// case has subdomains of 3³ or 5³ elements.
 fn cube(n: usize) -> String {
     let across = match n {
         ..24 => 4,

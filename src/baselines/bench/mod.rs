@@ -4,8 +4,8 @@
 //!     round 1: ours, bddc, …, mumps, then the judge;   round 2: ours, bddc, …, mumps;   …
 //! ```
 //!
-//! What else the machine does meets all methods alike, since they take turns. Errors are judged once, on the solutions of the first round; a method that
-//! fails in some round is not run again.
+//! The methods take turns, so that other load on the machine affects all of them alike. Errors are measured once, on
+//! the solutions of the first round. A method that fails in one round is not run again.
 
 mod cases;
 
@@ -25,7 +25,7 @@ use crate::scene::{distribution, Numbering, Scene};
 use crate::{Error, Result};
 use cases::{Named, CASES};
 
-/// What is run, and where the results go.
+/// The arguments of a benchmark: what is run, and where the results go.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Benchmark {
     /// Names of cases, or scene files; empty for all cases.
@@ -36,16 +36,17 @@ pub struct Benchmark {
     pub with: Vec<String>,
     /// Smaller cases.
     pub quick: bool,
-    /// Where results go; the directory gets tables, a picture and scenes. Quiet means no progress either.
+    /// Where results go; the directory gets tables, a picture and scenes. If the destination is quiet, no progress is
+    /// printed either.
     pub destination: Destination,
-    /// PETSc's arguments, which the jobs get, too.
+    /// PETSc's arguments, which are passed on to the jobs.
     pub petsc: Vec<String>,
 }
 
-/// A case that is to be run.
+/// A case of this benchmark.
 struct Case {
     name: String,
-    /// Where the scene is; `None`: in `text` only.
+    /// The scene file; `None`: the scene is in `text` only.
     file: Option<PathBuf>,
     text: String,
     scene: Scene,
@@ -55,8 +56,9 @@ struct Case {
 /// Runs the benchmark. Under mpirun only rank 0 starts jobs, the others wait. Collective.
 ///
 /// # Errors
-/// [`Error::Input`] for what can be known before anything runs, and for a scene that ours finds unsolvable; [`Error::NotConverged`] at
-/// the end where ours did not converge; [`Error::Environment`] without mpirun or disk. A baseline that fails is no error but a row with a message.
+/// [`Error::Input`] for mistakes that are found before anything runs, and for a scene that ours finds unsolvable;
+/// [`Error::NotConverged`] at the end where ours did not converge; [`Error::Environment`] without mpirun or disk. A
+/// baseline that fails is no error but a row with a message.
 pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
     let baselines = session.agree(table::select(&wanted.with))?;
     let mut names = wanted.cases.clone();
@@ -71,7 +73,7 @@ pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
     on_first_rank(session, || run(wanted, &cases))
 }
 
-/// The cases, a line each.
+/// The cases, one line each.
 pub fn cases() -> String {
     let width = CASES.iter().map(|c| c.name.len()).max().unwrap_or(0);
     let line = |c: &Named| format!("{:width$}  {}\n", c.name, c.description);
@@ -173,7 +175,7 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
             }
             now.rounds = round;
             now.sum_up();
-            // A long run that is ended from outside leaves what it has.
+            // Results are written as they come: a long run that is interrupted keeps them.
             if !destination.json_on_stdout() {
                 destination.write_json("bench.json", &report)?;
             }
@@ -195,8 +197,8 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
     }
 }
 
-/// Runs every method that has not failed so far. Returns the numbers of those that have left a solution, with the solutions and their active
-/// sets.
+/// Runs every method that has not failed so far. Returns the numbers of the methods that have left a solution, with the
+/// solutions and their active sets.
 fn one_round(
     wanted: &Benchmark,
     case: &Case,
@@ -219,7 +221,7 @@ fn one_round(
                 .print(&format!("{title}:\n{}\n", ran.printed))?;
         }
         match &ran.outcome {
-            // A mistake in the scene is one for every method.
+            // A mistake in the scene concerns every method.
             Err(failure) if run.baseline.is_none() && failure.code == Some(2) => {
                 return Err(failure.clone().into_error());
             }
@@ -240,7 +242,7 @@ fn one_round(
     Ok(solutions)
 }
 
-/// A case before its first round.
+/// The record of a case before its first round.
 fn blank(case: &Case) -> BenchCase {
     let row = |run: &Run| BenchRow {
         method: run.name().into(),
@@ -290,7 +292,8 @@ fn sample(ran: &Ran, round: usize, sequence: usize) -> BenchSample {
     }
 }
 
-/// Enters a run into its row: what does not change from round to round is that of the first one, unless a later one fails.
+/// Enters a run into its row. Facts that do not change from round to round are those of the first round, unless a later
+/// round fails.
 fn record(row: &mut BenchRow, ran: CompareRow, sample: BenchSample) {
     if sample.round == 1 {
         row.kappa = ran.kappa;
@@ -307,7 +310,7 @@ fn record(row: &mut BenchRow, ran: CompareRow, sample: BenchSample) {
     row.samples.push(sample);
 }
 
-/// The file of this process's BLAS: jobs are the same program and load the same one.
+/// The file of the BLAS of this process. Jobs run the same program and load the same BLAS.
 fn blas() -> Option<String> {
     let maps = std::fs::read_to_string("/proc/self/maps").ok()?;
     let mut files = maps.lines().filter_map(|l| l.split_whitespace().nth(5));
@@ -318,7 +321,7 @@ fn blas() -> Option<String> {
     files.find(|f| is_blas(f)).map(String::from)
 }
 
-/// A line on stderr for every run.
+/// Prints a line on stderr for every run.
 fn progress(wanted: &Benchmark, what: &str) {
     if !wanted.destination.quiet {
         eprintln!("bench: {what}");

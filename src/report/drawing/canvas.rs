@@ -1,7 +1,7 @@
-//! What a plot may draw, and the one font that all pictures use. Two canvases exist: [`super::raster::Raster`] (PNG)
-//! and [`super::svg::Svg`].
+//! The interface between plots and their output formats, and the one font of all pictures. Two canvases exist:
+//! [`super::raster::Raster`] (PNG) and [`super::svg::Svg`].
 //!
-//! The font is DejaVu Sans, carried inside the program: a picture looks the same on every machine.
+//! The font is DejaVu Sans, embedded in the program: a picture looks the same on every machine.
 
 use ab_glyph::{Font, FontRef, GlyphId};
 use std::sync::OnceLock;
@@ -18,7 +18,7 @@ impl Colour {
     pub const INK: Colour = Colour(0x22, 0x22, 0x22);
     /// Grid lines.
     pub const GRID: Colour = Colour(0xe4, 0xe4, 0xe4);
-    /// The ground.
+    /// The background.
     pub const WHITE: Colour = Colour(0xff, 0xff, 0xff);
     /// Eight colours that colour-blind readers can tell apart (Okabe and Ito).
     pub const CYCLE: [Colour; 8] = [
@@ -33,19 +33,19 @@ impl Colour {
     ];
 }
 
-/// Where a text's position is.
+/// The part of a text that is placed at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
-    /// At its left end.
+    /// The left end.
     Start,
-    /// At its middle.
+    /// The middle.
     Middle,
-    /// At its right end.
+    /// The right end.
     End,
 }
 
 impl Anchor {
-    /// The share of a text's width that lies before its anchor.
+    /// The part of a text's width that lies before its anchor.
     pub(super) fn share(self) -> f64 {
         match self {
             Anchor::Start => 0.0,
@@ -55,7 +55,7 @@ impl Anchor {
     }
 }
 
-/// How a text is set. In the text `_{...}` is a subscript and `^{...}` a superscript.
+/// The style of a text. In the text `_{...}` is a subscript and `^{...}` a superscript.
 #[derive(Debug, Clone, Copy)]
 pub struct TextStyle {
     /// Size in logical pixels.
@@ -66,7 +66,7 @@ pub struct TextStyle {
     pub anchor: Anchor,
     /// Bold instead of regular.
     pub bold: bool,
-    /// Reading upwards instead of to the right.
+    /// Whether the text reads upwards instead of to the right.
     pub upwards: bool,
 }
 
@@ -82,7 +82,7 @@ impl TextStyle {
         }
     }
 
-    /// Bold ink-coloured text around its position: a title.
+    /// The style of titles: bold ink-coloured text, centred at its position.
     pub fn title(size: f64) -> Self {
         TextStyle {
             bold: true,
@@ -91,11 +91,11 @@ impl TextStyle {
     }
 }
 
-/// Something to draw on.
+/// A surface to draw on.
 pub trait Canvas {
     /// Fills a polygon.
     fn polygon(&mut self, points: &[Point], fill: Colour);
-    /// Draws a polyline of a width; `dash` holds lengths of strokes and gaps in turn, empty for a full line.
+    /// Draws a polyline of a width; `dash` holds lengths of strokes and gaps in turn, and is empty for a full line.
     fn line(&mut self, points: &[Point], width: f64, colour: Colour, dash: &[f64]);
     /// Draws a text with its anchor at a point.
     fn text(&mut self, at: Point, text: &str, style: &TextStyle);
@@ -189,8 +189,8 @@ pub fn text_width(text: &str, size: f64, bold: bool) -> f64 {
         .sum()
 }
 
-/// The text, or as much of its start and its end as fits into a width, with an ellipsis between: of the name of an
-/// interface both bodies are seen.
+/// The text, shortened in its middle by an ellipsis if it does not fit into a width: in the name of an interface both
+/// bodies remain visible.
 pub fn shortened(text: &str, size: f64, bold: bool, width: f64) -> String {
     if text_width(text, size, bold) <= width {
         return text.to_string();

@@ -1,4 +1,4 @@
-//! Viridis: equal steps look equal, also to colour-blind readers and in grey print.
+//! The colour map Viridis: equal steps look equal, also to colour-blind readers and in grey print.
 
 use super::canvas::Colour;
 

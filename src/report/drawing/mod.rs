@@ -1,4 +1,4 @@
-//! What every picture is drawn with: a canvas for pixels (PNG) and one for vectors (SVG), text, colours, ticks.
+//! The tools for all pictures: a canvas of pixels (PNG) and one of vectors (SVG), text, colours, ticks.
 
 pub mod canvas;
 pub mod colormap;

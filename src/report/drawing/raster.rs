@@ -9,7 +9,7 @@ use tiny_skia::{
     Transform,
 };
 
-/// Pixels in RGB, drawn on in logical pixels of `scale` × `scale` real ones.
+/// An RGB picture. Coordinates are logical pixels, of `scale` × `scale` real pixels each.
 pub struct Raster {
     scale: f64,
     pixels: Pixmap,
@@ -34,7 +34,7 @@ impl Raster {
         (self.pixels.width() as usize, self.pixels.height() as usize)
     }
 
-    /// Sets one real pixel; what lies outside is ignored.
+    /// Sets one real pixel; pixels outside the picture are ignored.
     pub fn set(&mut self, x: usize, y: usize, Colour(r, g, b): Colour) {
         let (width, height) = self.size();
         if x < width && y < height {
@@ -82,8 +82,9 @@ impl Raster {
     }
 }
 
-/// Calls `visit` with the pixels of a picture whose centres lie in the triangle p: column, row, and the a and b of the
-/// centre p₀ + a (p₁ − p₀) + b (p₂ − p₀). For fields of many small cells, which are coloured pixel by pixel.
+/// Calls `visit` for every pixel whose centre lies in the triangle p, with its column and row, and with a and b such
+/// that the centre is p₀ + a (p₁ − p₀) + b (p₂ − p₀). Used for fields of many small cells, which are coloured pixel by
+/// pixel.
 pub fn triangle(
     p: [[f64; 2]; 3],
     (width, height): (usize, usize),
@@ -106,7 +107,7 @@ pub fn triangle(
             let (dx, dy) = (x as f64 + 0.5 - p[0][0], y as f64 + 0.5 - p[0][1]);
             let a = (dx * edge(2, 1) - dy * edge(2, 0)) / det;
             let b = (dy * edge(1, 0) - dx * edge(1, 1)) / det;
-            // The slack closes the seams between triangles.
+            // The tolerance closes the seams between triangles.
             if a >= -1e-9 && b >= -1e-9 && a + b <= 1.0 + 1e-9 {
                 visit(x, y, a, b);
             }
@@ -132,7 +133,8 @@ fn polyline(points: &[Point]) -> PathBuilder {
     path
 }
 
-/// The path, if it has an extent and all its points are numbers of a size that can be drawn: tiny-skia takes no others.
+/// The finished path; `None` if it has no extent, or if coordinates are not finite or too large: tiny-skia does not
+/// accept such paths.
 fn finished(path: PathBuilder) -> Option<Path> {
     let drawable = |x: f32| x.abs() < 1e9;
     let path = path.finish()?;
@@ -261,7 +263,7 @@ mod tests {
             (Colour::WHITE, Colour::WHITE)
         );
         assert_eq!(raster.get(6, 4), RED);
-        // A point on the way changes nothing, not even in the soft rim.
+        // A point on the edge changes nothing, not even in the antialiased rim.
         let mut with = Raster::new(20.0, 9.0, 1.0);
         with.line(&[(1.0, 4.2), (9.3, 4.2), (18.0, 4.2)], 2.5, RED, &[]);
         let mut without = Raster::new(20.0, 9.0, 1.0);

@@ -53,7 +53,7 @@ fn hex(c: Colour) -> String {
     format!("#{:02x}{:02x}{:02x}", c.0, c.1, c.2)
 }
 
-/// At most two digits after the point: a hundredth of a pixel is not seen.
+/// A number with at most two digits after the point: a hundredth of a pixel is invisible.
 fn short(x: f64) -> f64 {
     (x * 100.0).round() / 100.0
 }
@@ -104,8 +104,8 @@ impl Canvas for Svg {
             ""
         };
         let fill = hex(style.colour);
-        // Sub- and superscripts become texts of their own at computed places: not every viewer can anchor a text of
-        // several pieces. A text of one piece is anchored by the viewer, whatever font it has.
+        // Sub- and superscripts become separate texts at computed places: not every viewer can anchor a text of several
+        // pieces. A text of one piece is anchored by the viewer, and so fits the viewer's font.
         let total: f64 = runs
             .iter()
             .map(|run| canvas::run_width(run, style.bold))

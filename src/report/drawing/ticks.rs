@@ -1,16 +1,16 @@
-//! Axes: scales, ranges, and where the ticks go.
+//! Axes: scales, ranges, and positions of ticks.
 
-/// How numbers become positions.
+/// The map from numbers to positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Equal steps add.
+    /// Equal distances are equal differences.
     Linear,
-    /// Equal steps multiply; only numbers > 0 are shown.
+    /// Equal distances are equal ratios; only numbers > 0 are shown.
     Log,
 }
 
 impl Scale {
-    /// The number on a ruler with equal marks.
+    /// The position of a number on the scale, up to an affine map.
     pub fn forward(self, x: f64) -> f64 {
         match self {
             Scale::Linear => x,
@@ -24,7 +24,7 @@ impl Scale {
     }
 }
 
-/// A tick: where and what is written there; minor ticks have no label.
+/// A tick: its position and its label. Minor ticks have no label.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
     /// The number.
@@ -33,7 +33,7 @@ pub struct Tick {
     pub label: String,
 }
 
-/// The smallest range that holds the numbers with some air; 0..1 (or 1..10) when there are none.
+/// The smallest range that contains the numbers with a margin; 0..1 (or 1..10) without any numbers.
 pub fn range(values: impl Iterator<Item = f64>, scale: Scale) -> (f64, f64) {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for v in values.filter(|&v| scale.shows(v)) {
@@ -112,7 +112,7 @@ fn linear(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
 fn logarithmic(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
     let decades = high.log10() - low.log10();
-    // Few decades: 1, 2, 5 are labelled; many: every so many-th power of ten.
+    // On few decades 1, 2 and 5 are labelled; on many decades some powers of ten at equal distances.
     let labelled: &[u32] = if decades < 1.0 {
         &[1, 2, 3, 5, 7]
     } else if decades < 2.5 {
@@ -155,7 +155,7 @@ fn logarithmic(low: f64, high: f64, wanted: usize) -> Vec<Tick> {
     out
 }
 
-/// A number for a tick: plain between 0.001 and 100000, else as 2·10⁷.
+/// The label of a number: plain between 0.001 and 100000, else as 2·10⁷.
 pub fn number(x: f64) -> String {
     if x == 0.0 {
         return "0".to_string();

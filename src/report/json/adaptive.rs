@@ -1,4 +1,4 @@
-//! What adaptivity added, in words and as JSON.
+//! The effect of adaptivity, in words and as JSON.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,9 +7,9 @@ use super::spectrum::Spectrum;
 /// Constraints inside bodies, and deflation of eigenvalues above τ between them; key `adaptive` of a report.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Adaptive {
-    /// Primal constraints that were added in every body, by its number; empty where none was looked for.
+    /// Number of primal constraints that were added in every body, by its number; empty where none were searched for.
     pub constraints: Vec<usize>,
-    /// Seconds of finding them; part of `seconds.setup`.
+    /// Seconds of the search for constraints; part of `seconds.setup`.
     pub constraint_seconds: f64,
     /// The deflation; absent where nothing was searched for.
     pub deflation: Option<Deflation>,
@@ -20,30 +20,30 @@ pub struct Adaptive {
 pub struct Deflation {
     /// τ.
     pub tau: f64,
-    /// Vectors of all bodies.
+    /// Number of vectors of all bodies.
     pub vectors: usize,
-    /// Vectors of every body, by its number.
+    /// Number of vectors of every body, by its number.
     pub by_body: Vec<usize>,
-    /// Vectors beside those that bodies share.
+    /// Number of vectors that bodies share, in addition to `vectors`.
     pub shared: usize,
-    /// Vectors that depend on those of neighbours.
+    /// Number of vectors that depend linearly on those of neighbours.
     pub dependent: usize,
-    /// Whether the iteration broke down with the vectors, and was started anew without them.
+    /// Whether the iteration broke down with the vectors and was restarted without them.
     pub given_up: bool,
-    /// The largest eigenvalue of a body's pencil that is deflated; 0 without vectors.
+    /// The largest deflated eigenvalue of a body's pencil; 0 without vectors.
     pub largest: f64,
     /// Bodies with more vectors than `-fetifeti_adaptive_max` allows.
     pub capped: Vec<String>,
-    /// Seconds of the search and of the matrices; part of `seconds.solve` where the iteration asked for it.
+    /// Seconds of the search and of the matrices; part of `seconds.solve` where the iteration started the search.
     pub seconds: f64,
-    /// The spectrum without deflation: exact, where that was asked for and converged.
+    /// The exact spectrum without deflation, where it was asked for and SLEPc converged.
     pub exact_without: Option<Spectrum>,
-    /// The same as the iterations before the search saw it.
+    /// The estimate of the spectrum without deflation, from the iterations before the search.
     pub estimate_without: Option<Spectrum>,
 }
 
 impl Adaptive {
-    /// How many constraints were added and where.
+    /// A sentence with the number of added constraints, by body.
     pub fn constraints_text(&self) -> String {
         let bodies = self.constraints.iter().filter(|n| **n > 0).count();
         let count = |n: usize, one: &str, many: &str| match n {
@@ -60,7 +60,7 @@ impl Adaptive {
 }
 
 impl Deflation {
-    /// One line of a summary, and one more where a body needs more vectors than it may have.
+    /// One line for a summary, and a second one where a body needs more vectors than it may have.
     pub fn text(&self) -> String {
         let bodies = self.by_body.iter().filter(|n| **n > 0).count();
         let most = self.by_body.iter().max().copied().unwrap_or(0);

@@ -4,23 +4,22 @@ use super::compare::{CompareContact, CompareInequalities};
 use super::number;
 use serde::{Deserialize, Serialize};
 
-/// What `bench` reports: one document for all cases.
+/// The report of `bench`: one document for all cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchReport {
     /// Name and version of this record: [`BenchReport::SCHEMA`].
     pub schema: String,
     /// Version of fetifeti.
     pub version: String,
-    /// The file from which every method has its BLAS; `null` where the system does not tell.
+    /// The file of the BLAS that all methods use; `null` where the system does not know it.
     pub blas: Option<String>,
-    /// Cores that methods without a layout of their own were given.
+    /// Number of cores given to methods without a layout of their own.
     pub cores: usize,
-    /// Rounds that were asked for.
+    /// Number of rounds that were asked for.
     pub rounds: usize,
     /// Whether the named cases are the small ones.
     pub quick: bool,
-    /// The cases that are finished; the last one may be in the middle of its rounds when the run was ended from
-    /// outside.
+    /// The cases so far; if the run was interrupted, the last case may lack some of its rounds.
     pub cases: Vec<BenchCase>,
 }
 
@@ -42,14 +41,14 @@ pub struct BenchCase {
     pub subdomains: usize,
     /// Unknowns of the assembled problem.
     pub dofs: usize,
-    /// Relative residual of the assembled problem that every method was driven to.
+    /// Target for every method: the relative residual of the assembled problem.
     #[serde(with = "number")]
     pub rtol: f64,
-    /// Rounds that are finished.
+    /// Number of finished rounds.
     pub rounds: usize,
     /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
     pub reference_residual: Option<f64>,
-    /// In scenes with inequalities: what they are in the direct solution.
+    /// In scenes with inequalities: their state in the direct solution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<CompareInequalities>,
     /// The methods, in the order in which every round runs them.
@@ -61,43 +60,44 @@ pub struct BenchCase {
 pub struct BenchRow {
     /// The method, such as `fetifeti`, `bddc`, `gamg`.
     pub method: String,
-    /// How it uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or `subdomain`.
+    /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
+    /// `subdomain`.
     pub layout: String,
-    /// Parts of the domain that the method sees; `null` for methods that see none.
+    /// Number of parts of the domain for the method; `null` for methods without parts.
     pub subdomains: Option<usize>,
     /// MPI ranks.
     pub ranks: usize,
     /// Threads per rank.
     pub threads: usize,
-    /// κ as CG estimates it, in the first round.
+    /// CG's estimate of κ in the first round.
     pub kappa: Option<f64>,
-    /// Iterations, of all contact steps, in the first round; `null` for a direct solver.
+    /// Iterations of all contact steps in the first round; `null` for a direct solver.
     pub iterations: Option<usize>,
     /// Wall-clock time over the rounds that converged.
     pub seconds: BenchSeconds,
-    /// Median total over that of the fastest of ours.
+    /// The median total over that of the fastest variant of ours.
     pub ratio: Option<f64>,
     /// Largest resident memory over the ranks, summed, in MB of 10⁶ bytes.
     pub memory_mb: Option<Spread>,
-    /// The part of `memory_mb` that was there before the problem: program and libraries, once per rank.
+    /// The part of `memory_mb` that was used before the problem was read: program and libraries, once per rank.
     pub memory_at_start_mb: Option<Spread>,
-    /// Error in the energy norm against the direct solution, relative, of the first round.
+    /// Relative error in the energy norm against the direct solution, in the first round.
     pub error: Option<f64>,
-    /// Relative residual of the assembled problem, of the first round.
+    /// Relative residual of the assembled problem, in the first round.
     pub residual: Option<f64>,
-    /// In scenes with inequalities: how they came out in the first round.
+    /// In scenes with inequalities: their state in the first round.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<CompareContact>,
     /// Relative tolerance of the method's own residual in the first round.
     pub rtol: Option<f64>,
-    /// Whether every run reached the residual; what did not is not run again.
+    /// Whether every run reached the residual; a method that did not is not run again.
     pub converged: bool,
-    /// PETSc's name for why the last iteration ended.
+    /// PETSc's name for the reason why the last iteration ended.
     pub converged_reason: String,
-    /// Options of a second try that the method needs.
+    /// Options of a second try, if the method needs one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rescue: Option<String>,
-    /// One sentence when a run failed or did not converge.
+    /// One sentence if a run failed or did not converge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
     /// All runs.
@@ -107,18 +107,18 @@ pub struct BenchRow {
 /// Wall-clock seconds of one method over the rounds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchSeconds {
-    /// Mesh and matrices; not in the total.
+    /// Mesh and matrices; not part of the total.
     pub assemble: Option<Spread>,
     /// Factorisations, hierarchies, coarse problems.
     pub setup: Option<Spread>,
     /// Iterations and recovery.
     pub solve: Option<Spread>,
-    /// The part of `solve` for the way from multipliers to displacements.
+    /// The part of `solve` for the recovery of displacements from multipliers.
     pub recover: Option<Spread>,
     /// Set-up and solve.
     pub total: Option<Spread>,
-    /// A solve for another load with all that was set up for the first; in contact scenes the whole loop, with what has
-    /// to be set up for its sets.
+    /// A solve for another load with the set-up of the first; in contact scenes the whole loop, including the set-up
+    /// for its active sets.
     pub again: Option<Spread>,
     /// In contact loops: the total over the number of active sets.
     pub step: Option<Spread>,
@@ -127,9 +127,9 @@ pub struct BenchSeconds {
 /// One run of one method.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchSample {
-    /// From 1.
+    /// Number of the round, from 1.
     pub round: usize,
-    /// The place of this run among all runs of the case, from 1.
+    /// The position of this run among all runs of the case, from 1.
     pub sequence: usize,
     /// Seconds of assembly.
     pub assemble: Option<f64>,
@@ -143,13 +143,13 @@ pub struct BenchSample {
     pub total: Option<f64>,
     /// Seconds of the second solve.
     pub again: Option<f64>,
-    /// Active sets that were solved for.
+    /// Number of active sets that were solved for.
     pub outer: Option<usize>,
     /// Iterations.
     pub iterations: Option<usize>,
     /// Resident memory, MB.
     pub memory_mb: Option<f64>,
-    /// Resident memory before the problem, MB.
+    /// Resident memory before the problem was read, MB.
     pub memory_at_start_mb: Option<f64>,
     /// Whether the residual was reached.
     pub converged: bool,
@@ -158,7 +158,7 @@ pub struct BenchSample {
 /// Median and range of some samples.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// The one in the middle, or the mean of the two in the middle.
+    /// The median; of an even number of samples, the mean of the two in the middle.
     pub median: f64,
     /// The smallest.
     pub min: f64,
@@ -167,7 +167,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of these samples; `None` where there are none.
+    /// Median and range of these samples; `None` where there are none.
     pub fn of(samples: impl IntoIterator<Item = f64>) -> Option<Spread> {
         let mut all: Vec<f64> = samples.into_iter().collect();
         all.sort_by(f64::total_cmp);
@@ -182,7 +182,7 @@ impl Spread {
 }
 
 impl BenchRow {
-    /// Sums the samples up.
+    /// Computes median and range of the samples.
     pub fn sum_up(&mut self) {
         let converged = || self.samples.iter().filter(|s| s.converged);
         let spread = |of: fn(&BenchSample) -> Option<f64>| Spread::of(converged().filter_map(of));
@@ -200,19 +200,19 @@ impl BenchRow {
         [self.memory_mb, self.memory_at_start_mb] = memory;
     }
 
-    /// Whether this is ours.
+    /// Whether this is our method.
     pub fn is_ours(&self) -> bool {
         self.method == "fetifeti"
     }
 
-    /// Whether it solves only the equations of an active set that another method has found.
+    /// Whether the method solves only the equations of an active set that another method has found.
     pub fn set_given(&self) -> bool {
         self.contact.is_some_and(|c| c.outer.is_none())
     }
 }
 
 impl BenchCase {
-    /// Sums every method up and relates it to the fastest of ours.
+    /// Computes medians and ranges of every method, and their ratios to the fastest variant of ours.
     pub fn sum_up(&mut self) {
         self.methods.iter_mut().for_each(BenchRow::sum_up);
         let ours = self.fastest(true).and_then(|r| r.seconds.total);
@@ -225,8 +225,8 @@ impl BenchCase {
         }
     }
 
-    /// The fastest of ours, or of the others: those that solve the whole problem and always converged, by the median
-    /// total.
+    /// The fastest variant of ours, or of the others. Only methods that solve the whole problem and always converged
+    /// are compared, by the median total.
     pub fn fastest(&self, ours: bool) -> Option<&BenchRow> {
         let total = |r: &BenchRow| r.seconds.total.map_or(f64::INFINITY, |t| t.median);
         let fit = |r: &&BenchRow| {

@@ -3,7 +3,7 @@
 use super::number;
 use serde::{Deserialize, Serialize};
 
-/// What `compare` reports: facts about the problem, then one row per method and layout.
+/// The report of `compare`: facts about the problem, then one row per method and layout.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CompareReport {
     /// The scene's title.
@@ -12,19 +12,20 @@ pub struct CompareReport {
     pub bodies: usize,
     /// Subdomains over all bodies.
     pub subdomains: usize,
-    /// Unknowns of the assembled problem: one where tied bodies have several copies.
+    /// Unknowns of the assembled problem; the copies of a point of tied bodies are one unknown.
     pub dofs: usize,
-    /// Relative residual ‖b − A u‖₂ / ‖b‖₂ of the assembled problem that every method was driven to.
+    /// Target for every method: the relative residual ‖b − A u‖₂ / ‖b‖₂ of the assembled problem.
     #[serde(with = "number")]
     pub rtol: f64,
-    /// Cores that methods without a layout of their own were given.
+    /// Number of cores given to methods without a layout of their own.
     pub cores: usize,
-    /// Rigid motions that nothing in the scene holds: the assembled problem has as many supports, which bear no force.
+    /// Number of rigid motions that nothing in the scene holds. The assembled problem has the same number of supports,
+    /// which bear no force.
     #[serde(default)]
     pub supports: usize,
     /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
     pub reference_residual: Option<f64>,
-    /// In scenes with inequalities: what they are in the direct solution.
+    /// In scenes with inequalities: their state in the direct solution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<CompareInequalities>,
     /// The methods.
@@ -36,68 +37,69 @@ pub struct CompareReport {
 pub struct CompareRow {
     /// The method, such as `fetifeti`, `bddc`, `gamg`.
     pub method: String,
-    /// Parts of the domain that the method sees; `null` for methods that see none.
+    /// Number of parts of the domain for the method; `null` for methods without parts.
     pub subdomains: Option<usize>,
     /// MPI ranks.
     pub ranks: usize,
     /// Threads per rank.
     pub threads: usize,
-    /// κ as CG estimates it; `null` where there is none.
+    /// CG's estimate of κ; `null` where there is none.
     pub kappa: Option<f64>,
-    /// Iterations, of all contact steps; `null` for a direct solver or a run that failed.
+    /// Iterations of all contact steps; `null` for a direct solver or a run that failed.
     pub iterations: Option<usize>,
     /// Wall-clock time by phase.
     pub seconds: CompareSeconds,
     /// Largest resident memory over the ranks, summed, in MB of 10⁶ bytes.
     pub memory_mb: Option<f64>,
-    /// The part of `memory_mb` that was there before the problem: program and libraries, once per rank.
+    /// The part of `memory_mb` that was used before the problem was read: program and libraries, once per rank.
     pub memory_at_start_mb: Option<f64>,
-    /// Error in the energy norm against the assembled direct solution, relative.
+    /// Relative error in the energy norm against the assembled direct solution.
     pub error: Option<f64>,
-    /// Relative residual of the assembled problem that was reached.
+    /// The relative residual of the assembled problem that was reached.
     pub residual: Option<f64>,
-    /// In scenes with inequalities: how they came out.
+    /// In scenes with inequalities: their state in this method's solution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<CompareContact>,
-    /// Relative tolerance of the method's own residual with which that was reached.
+    /// Relative tolerance of the method's own residual in the run that reached `residual`.
     pub rtol: Option<f64>,
     /// Whether the residual was reached.
     pub converged: bool,
-    /// PETSc's name for why the iteration ended.
+    /// PETSc's name for the reason why the iteration ended.
     pub converged_reason: String,
-    /// Options with which a second try was made after the first had failed.
+    /// Options of the second try, where the first one failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rescue: Option<String>,
-    /// One sentence when the method could not run or did not converge.
+    /// One sentence if the method could not run or did not converge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
 }
 
-/// Inequalities in the direct solution of `compare`.
+/// The inequalities in the direct solution of `compare`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompareInequalities {
-    /// Inequality rows.
+    /// Number of inequality rows.
     pub rows: usize,
-    /// Those that hold with equality; `null` if there is no direct solution.
+    /// Number of rows that hold with equality; `null` if there is no direct solution.
     pub active: Option<usize>,
-    /// Active sets that the direct solution took.
+    /// Number of active sets on the way to the direct solution.
     pub outer: Option<usize>,
     /// Largest violation, relative to the largest |u|.
     pub feasibility: Option<f64>,
     /// Smallest multiplier, relative to the largest; 0 where none pulls.
     pub min_multiplier: Option<f64>,
-    /// Load steps of the scene, of which the last one is solved.
+    /// Number of load steps of the scene; only the last one is solved.
     pub load_steps: usize,
 }
 
-/// How the inequalities came out in one row of `compare`.
+/// The state of the inequalities in one row of `compare`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompareContact {
-    /// Active sets that were solved for; `null` for a method that solved the equations of the last one only.
+    /// Number of active sets that were solved for; `null` for a method that only solved the equations of the last set.
     pub outer: Option<usize>,
-    /// Rows of the last one.
+    /// Number of active rows at the end.
     pub active: usize,
-    /// Rows that hold here or in the direct solution, but not in both; rows that touch without a force do not count.
+    /// Number of rows that are active in this solution or in the direct one, but not in both; rows that touch without a
+    /// force do not count.
     pub differ: Option<usize>,
     /// Largest violation, relative to the largest |u|.
     pub feasibility: Option<f64>,

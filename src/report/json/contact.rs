@@ -2,32 +2,32 @@
 //!
 //! Forces are sums of multipliers, in the units of the loads; a multiplier of an inequality is positive where the
 //! bodies press against each other. In elasticity forces have directions: `force` is still the sum of the multipliers,
-//! `resultant` their vector sum. As in [`crate::report::json`], a number that is not known or not finite is `null` and
+//! `resultant` is their vector sum. As in [`crate::report::json`], a number that is unknown or not finite is `null` and
 //! never NaN.
 
 use super::number;
 use super::spectrum::Spectrum;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// How the contact was found, and what holds it.
+/// The course of the contact loop, and the contact forces.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactReport {
-    /// The methods that made the steps, in the order in which they came: `active_set`, or `active_set, then smalbe`
-    /// where the first gave up, or `smalbe, then active_set`, whose steps close what SMALBE has found.
+    /// The methods that made the steps, in order: `active_set`; `active_set, then smalbe` where the first one gave up;
+    /// or `smalbe, then active_set`, whose steps solve for the set of SMALBE to the last digits.
     pub method: String,
-    /// Inequalities: pairs of nodes, or nodes at an obstacle, that may touch.
+    /// Number of inequalities: pairs of nodes, or nodes at an obstacle, that may touch.
     pub candidates: usize,
-    /// Those that touch.
+    /// Number of inequalities that are active.
     pub active: usize,
     /// Numerical factorisations of subdomain matrices over the whole run.
     pub factorisations: usize,
-    /// Subdomains with different matrices: what `factorisations` has to be.
+    /// Number of subdomains with different matrices; `factorisations` must be equal to it.
     pub distinct_subdomains: usize,
     /// The outer iteration, over all load steps.
     pub steps: Vec<OuterStep>,
-    /// Where bodies meet each other or an obstacle.
+    /// The interfaces between bodies, and the obstacles.
     pub interfaces: Vec<InterfaceForce>,
-    /// Equilibrium, body by body.
+    /// Equilibrium of every body.
     pub bodies: Vec<BodyBalance>,
     /// One record per load step; empty without load steps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -37,7 +37,7 @@ pub struct ContactReport {
 /// One step of the outer iteration.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct OuterStep {
-    /// Load step that it belongs to, from 1; 0 without load steps.
+    /// The load step, from 1; 0 without load steps.
     pub load_step: usize,
     /// Number of the step, from 1 in every load step.
     pub step: usize,
@@ -45,17 +45,17 @@ pub struct OuterStep {
     pub method: String,
     /// Active inequalities in this step.
     pub active: usize,
-    /// Inequalities that were not active in the step before.
+    /// Inequalities that became active in this step.
     pub entered: usize,
     /// Inequalities that were active in the step before and no longer are.
     pub left: usize,
     /// Inner iterations.
     pub iterations: usize,
-    /// Spectrum as the inner iteration estimates it; `null` where it gives none.
+    /// The inner iteration's estimate of the spectrum; `null` where it gives none.
     pub estimate: Option<Spectrum>,
-    /// Spectrum with these rows by the eigenvalue solver; `null` where it was not asked for.
+    /// The exact spectrum for these active rows; `null` where it was not asked for.
     pub exact: Option<Spectrum>,
-    /// Rows on the wrong side at the end of the step: violated, or pulling.
+    /// Number of wrong rows at the end of the step: violated, or with a pulling multiplier.
     pub wrong: usize,
     /// Residual at the end of the step, relative to the start of the first step.
     #[serde(with = "number")]
@@ -68,7 +68,7 @@ pub struct OuterStep {
     pub seconds: f64,
 }
 
-/// What holds the two sides of an interface together.
+/// The kind of connection between the two sides of an interface.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum InterfaceKind {
@@ -84,7 +84,7 @@ pub enum InterfaceKind {
 }
 
 impl InterfaceKind {
-    /// The word that JSON has.
+    /// The word in JSON.
     pub fn name(self) -> &'static str {
         match self {
             InterfaceKind::Contact => "contact",
@@ -95,24 +95,24 @@ impl InterfaceKind {
     }
 }
 
-/// Force through one interface.
+/// The force through one interface.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceForce {
     /// `left|right` for two bodies, `left.top above` for an obstacle.
     pub name: String,
-    /// What kind of rows it has.
+    /// The kind of its rows.
     pub kind: InterfaceKind,
-    /// Rows, equations included.
+    /// Number of rows, equations included.
     pub candidates: usize,
-    /// Rows that hold.
+    /// Number of rows that hold.
     pub active: usize,
     /// Sum of the multipliers.
     #[serde(with = "number")]
     pub force: f64,
-    /// Largest distance that is left; 0 for equations.
+    /// Largest remaining distance; 0 for equations.
     #[serde(with = "number")]
     pub largest_gap: f64,
-    /// Smallest distance that is left; negative where the sides overlap.
+    /// Smallest remaining distance; negative where the sides overlap.
     #[serde(with = "number")]
     pub smallest_gap: f64,
     /// Smallest multiplier.
@@ -142,7 +142,7 @@ impl From<f64> for Amount {
     }
 }
 
-/// An [`Amount`] as JSON has it.
+/// The form of [`Amount`] in JSON.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Written {
@@ -175,21 +175,21 @@ impl<'de> Deserialize<'de> for Amount {
 /// Equilibrium of one body.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyBalance {
-    /// The body.
+    /// Name of the body.
     pub name: String,
-    /// Whether nothing but its neighbours holds it.
+    /// Whether only its neighbours hold it.
     pub floating: bool,
     /// Resultant of its loads.
     pub load: Amount,
     /// Resultant of the forces on its interfaces and at its obstacles.
     pub contact: Amount,
-    /// Resultant of the reactions at given displacements; `null` for a body without any.
+    /// Resultant of the reactions at prescribed displacements; `null` for a body without any.
     pub reaction: Option<Amount>,
-    /// What is missing to equilibrium, relative to the forces; in elasticity in the components that are given nowhere.
+    /// Imbalance of the forces, relative to the forces; in elasticity only of components that are prescribed nowhere.
     #[serde(with = "number")]
     pub imbalance: f64,
-    /// Elasticity, bodies without given displacements: what is missing to equilibrium of the moments about the body's
-    /// centre, relative to the moments of the single forces.
+    /// In elasticity, for bodies without prescribed displacements: imbalance of the moments about the body's centre,
+    /// relative to the moments of the single forces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moment_imbalance: Option<f64>,
 }
@@ -204,7 +204,7 @@ pub struct LoadStep {
     pub outer_iterations: usize,
     /// Inner iterations.
     pub iterations: usize,
-    /// Active inequalities at its end.
+    /// Active inequalities at the end of the step.
     pub active: usize,
     /// As [`super::SolveReport::energy`].
     #[serde(with = "number")]

@@ -1,6 +1,6 @@
-//! The records that programs read: one struct per command, keys as other programs rely on them.
+//! The JSON records of the commands: one struct per command, with keys that other programs rely on.
 //!
-//! A number that is not known or not finite is written as `null`, never as NaN, and read back as `None` or NaN.
+//! A number that is unknown or not finite is written as `null`, never as NaN, and read back as `None` or NaN.
 
 pub mod adaptive;
 mod bench;

@@ -1,5 +1,5 @@
-//! Numbers of a record that may be unknown: `null` is read back as NaN. The serialiser writes NaN and the infinities as
-//! `null`.
+//! Serialisation of numbers that may be unknown: NaN and the infinities are written as `null`, and `null` is read back
+//! as NaN.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

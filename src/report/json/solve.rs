@@ -6,7 +6,7 @@ use super::number;
 use super::spectrum::Condition;
 use serde::{Deserialize, Serialize};
 
-/// What `solve` reports.
+/// The report of `solve`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SolveReport {
     /// The scene's name or file.
@@ -33,7 +33,7 @@ pub struct SolveReport {
     pub floating_bodies: usize,
     /// Subdomains over all bodies.
     pub subdomains: usize,
-    /// Free degrees of freedom, those that subdomains of one body share counted once.
+    /// Free degrees of freedom; one shared by subdomains of a body counts once.
     pub dofs: usize,
     /// Rows of B.
     pub multipliers: Multipliers,
@@ -43,22 +43,22 @@ pub struct SolveReport {
     pub iterations: Iterations,
     /// Extreme eigenvalues of the preconditioned operator.
     pub condition: Condition,
-    /// What was deflated; absent where nothing was searched for.
+    /// The deflation; absent where nothing was searched for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adaptive: Option<Adaptive>,
     /// Residuals of the Karush-Kuhn-Tucker conditions.
     pub kkt: Kkt,
     /// The value of the Lagrangian ½ uᵀKu − fᵀu + λᵀ(Bu − c) on the free dofs: at the solution the potential energy,
-    /// without what given displacements alone contribute.
+    /// without the contribution of prescribed displacements alone.
     #[serde(with = "number")]
     pub energy: f64,
-    /// How contact was found and what it carries; absent where no sides may touch.
+    /// The contact loop and the contact forces; absent where no sides may touch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactReport>,
     /// Error against the exact solution, where the scene has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorNorms>,
-    /// What a Krylov iteration sends; `null` where there was none.
+    /// The messages of a Krylov iteration; `null` where there was none.
     #[serde(default)]
     pub communication: Option<Communication>,
     /// Wall-clock time by phase.
@@ -66,10 +66,10 @@ pub struct SolveReport {
     /// Largest resident memory, summed over the ranks, in MB of 10⁶ bytes.
     #[serde(with = "number")]
     pub memory_mb: f64,
-    /// How the subdomains' operators are held.
+    /// The storage of the subdomains' operators.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operators: Option<Operators>,
-    /// PETSc's name for why the iteration ended, such as `CONVERGED_RTOL`.
+    /// PETSc's name for the reason why the iteration ended, such as `CONVERGED_RTOL`.
     pub converged_reason: String,
     /// Krylov method, such as `cg`.
     pub ksp_type: String,
@@ -83,7 +83,7 @@ pub struct SolveReport {
     pub local_ordering: String,
     /// Weight Q of the projector: `none` without floating bodies, else `identity`, `diagonal` or `preconditioner`.
     pub projector: String,
-    /// Relative defects of the operators' identities, where `-fetifeti_check` asked for them.
+    /// Relative defects of the operators' identities, with `-fetifeti_check`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub check: Option<std::collections::BTreeMap<String, f64>>,
     /// Relative tolerance of the inner iteration.
@@ -91,14 +91,14 @@ pub struct SolveReport {
     pub rtol: f64,
 }
 
-/// The subdomains' operators, over all ranks.
+/// The storage of the subdomains' operators, over all ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Operators {
-    /// Different subdomains: those whose matrices are multiples of each other count once on each rank.
+    /// Number of different subdomains: on each rank, subdomains whose matrices are multiples of each other count once.
     pub kinds: usize,
-    /// Kinds with S and T as sparse solves; the others have dense matrices.
+    /// Number of kinds whose S and T are applied by sparse solves; the others have dense matrices.
     pub sparse: usize,
-    /// Subdomains with S in single precision (`-fetifeti_precision mixed`).
+    /// Number of subdomains with S in single precision (`-fetifeti_precision mixed`).
     #[serde(default)]
     pub single: usize,
     /// MB of sparse factors.
@@ -109,7 +109,7 @@ pub struct Operators {
     pub dense_mb: f64,
 }
 
-/// Rows of B.
+/// Numbers of rows of B.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Multipliers {
     /// Rows of B_loc, inside the bodies.
@@ -120,7 +120,7 @@ pub struct Multipliers {
     pub active: usize,
 }
 
-/// Krylov iterations.
+/// Numbers of Krylov iterations.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Iterations {
     /// Per contact step.
@@ -130,7 +130,7 @@ pub struct Iterations {
 }
 
 impl Iterations {
-    /// From the counts per contact step.
+    /// Makes the record from the counts per contact step.
     pub fn new(inner: Vec<usize>) -> Self {
         let total = inner.iter().sum();
         Iterations { inner, total }
@@ -153,25 +153,25 @@ pub struct Kkt {
     pub min_multiplier: Option<f64>,
 }
 
-/// What one Krylov iteration sends: means over all iterations.
+/// The messages of one Krylov iteration: means over all iterations.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Communication {
     /// Messages from rank to rank.
     pub messages_per_iteration: PerIteration,
     /// Their bytes.
     pub bytes_per_iteration: PerIteration,
-    /// All-reduces; every rank takes part in each.
+    /// Number of all-reduces; every rank takes part in each.
     pub reductions_per_iteration: f64,
-    /// Bytes that a rank puts into them.
+    /// Bytes that a rank contributes to them.
     pub reduced_bytes_per_iteration: f64,
 }
 
-/// A quantity over the ranks.
+/// A quantity of all ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct PerIteration {
-    /// Of all ranks.
+    /// Sum over the ranks.
     pub sum: f64,
-    /// Of the rank that has most.
+    /// Largest value of a rank.
     pub max: f64,
 }
 
@@ -199,7 +199,7 @@ pub struct ErrorNorms {
     /// H¹ seminorm.
     #[serde(with = "number")]
     pub h1: f64,
-    /// Energy norm; a distance, and no energy as that of the report.
+    /// Energy norm of the error; a norm, in contrast to the `energy` of the report.
     #[serde(rename = "energy", with = "number")]
     pub energy_norm: f64,
 }
@@ -213,9 +213,9 @@ pub struct Seconds {
     pub setup: f64,
     /// Iterations.
     pub solve: f64,
-    /// u from λ.
+    /// The recovery of u from λ.
     pub recover: f64,
-    /// Everything, input and output included.
+    /// The whole run, input and output included.
     pub total: f64,
 }
 

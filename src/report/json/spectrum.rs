@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 /// Extreme eigenvalues of the preconditioned operator.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// By an eigenvalue solver; `null` where it was not asked for.
+    /// From an eigenvalue solver; `null` where it was not asked for.
     pub exact: Option<Spectrum>,
-    /// Lanczos estimate of the run; `null` where the Krylov method gives none.
+    /// Lanczos estimate of the solve; `null` where the Krylov method gives none.
     pub estimate: Option<Spectrum>,
 }
 
-/// Both ends of a spectrum.
+/// The two ends of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// Smallest eigenvalue.

@@ -30,7 +30,7 @@ pub struct Table1Side {
     pub iterations: usize,
     /// Exact κ with M_D; `null` where it was not asked for.
     pub exact: Option<f64>,
-    /// κ with M_D as CG estimates it.
+    /// CG's estimate of κ with M_D.
     pub estimate: Option<f64>,
     /// Exact λ_min with M_D.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -40,7 +40,7 @@ pub struct Table1Side {
     pub lambda_max: Option<f64>,
     /// The paper's printed numbers; `null` in a row that the paper does not have.
     pub paper: Option<PaperSide>,
-    /// The same with M_C.
+    /// The results with M_C.
     pub coarse_corrected: CoarseCorrected,
 }
 
@@ -49,7 +49,7 @@ pub struct Table1Side {
 pub struct CoarseCorrected {
     /// Exact κ with M_C; `null` where it was not asked for.
     pub exact: Option<f64>,
-    /// κ with M_C as CG estimates it.
+    /// CG's estimate of κ with M_C.
     pub estimate: Option<f64>,
     /// Exact λ_min with M_C.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -61,7 +61,7 @@ pub struct CoarseCorrected {
     pub iterations: usize,
 }
 
-/// What the paper prints for one column of one row.
+/// The paper's numbers for one column of one row.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PaperSide {
     /// Condition number.

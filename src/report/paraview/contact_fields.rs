@@ -1,9 +1,9 @@
-//! Contact as point data of a VTU file: arrays over all points from what is known at the candidates.
+//! Contact as point data of a VTU file: arrays over all points, from data at the candidates.
 //!
-//! Every array is a number everywhere. ParaView would take NaN (VTK 9.7 reads it in base64 and in ascii, and leaves it
+//! Every entry of an array is finite. ParaView would accept NaN (VTK 9.7 reads it in base64 and in ascii, and leaves it
 //! out of the colour range), but filters that compute, such as contours and calculators, pass it on, and other readers
-//! of the format need not know it. So `multiplier`, `gap` and `contact` are 0 away from the interfaces, and `candidate`
-//! says where that 0 means something: a threshold on `candidate` leaves the interfaces alone.
+//! of the format need not support it. So `multiplier`, `gap` and `contact` are 0 away from the interfaces, and
+//! `candidate` is 1 where their values are meaningful: a threshold on `candidate` shows the interfaces alone.
 
 use super::vtu::Vtu;
 use crate::{Error, Result};
@@ -38,7 +38,7 @@ impl ContactFields {
         }
     }
 
-    /// Adds one candidate at one point; points where several interfaces meet have several.
+    /// Adds one candidate at one point. A point where several interfaces meet has several candidates.
     ///
     /// # Errors
     /// [`Error::Input`] when the mesh has no such point or a number is not finite.
@@ -62,7 +62,7 @@ impl ContactFields {
         Ok(())
     }
 
-    /// Adds the area that belongs to a candidate of a point that has been added.
+    /// Adds the area of a candidate to a point; the candidate must have been added before.
     ///
     /// # Errors
     /// [`Error::Input`] when the mesh has no such point or the area is negative or not finite.
@@ -79,7 +79,7 @@ impl ContactFields {
         Ok(())
     }
 
-    /// Divides forces by areas, once all candidates have been added; where there is no area the pressure is 0.
+    /// Computes the pressures, once all candidates have been added; where there is no area the pressure is 0.
     pub fn divide(&mut self) {
         for (p, pressure) in self.pressure.iter_mut().enumerate() {
             if self.area[p] > 0.0 {
@@ -93,7 +93,7 @@ impl ContactFields {
         &self.pressure
     }
 
-    /// The grid with the arrays as point data.
+    /// The grid with the arrays attached as point data.
     #[must_use]
     pub fn on<'a>(&'a self, grid: Vtu<'a>) -> Vtu<'a> {
         let grid = if self.pressure.is_empty() {

@@ -4,8 +4,8 @@ use crate::report::output;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// A collection that grows step by step. Its file is complete after every step: a run that is stopped leaves a series
-/// of what it had, and ParaView can open it while the run goes on.
+/// A collection that grows step by step. Its file is complete after every step: an interrupted run leaves a valid
+/// series, and ParaView can open it during the run.
 #[derive(Debug, Clone)]
 pub struct Pvd {
     path: PathBuf,
@@ -21,8 +21,8 @@ impl Pvd {
         }
     }
 
-    /// Adds the file of one time and writes the collection anew. The file is named relative to the collection, so that
-    /// the directory of both can be moved. A time that is there already, as after a restart, gets the new file.
+    /// Adds the file of one time and writes the collection again. The file is named relative to the collection, so that
+    /// their directory can be moved. If the time exists already, as after a restart, its file is replaced.
     ///
     /// # Errors
     /// [`Error::Input`] when the time is not finite, is before the last one, or the file lies outside the collection's
@@ -102,7 +102,7 @@ mod tests {
         pvd.add(0.1, &dir.0.join("again.vtu")).unwrap();
         assert_eq!(count(), 2);
         assert_eq!(pvd.entries()[0], (0.1, "again.vtu".to_string()));
-        // Nothing but the collection is left behind.
+        // No other file is left behind.
         assert_eq!(std::fs::read_dir(&dir.0).unwrap().count(), 1);
     }
 

@@ -1,4 +1,5 @@
-//! ParaView's unstructured grids (`.vtu`): XML with arrays as base64 of little-endian numbers behind a UInt64 length.
+//! ParaView's unstructured grids (`.vtu`): XML with arrays in base64, each as little-endian numbers after a UInt64
+//! length.
 
 use crate::report::output;
 use crate::{Error, Result};
@@ -284,7 +285,7 @@ fn array<const N: usize>(
         out,
         "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"binary\">"
     )?;
-    // A stream: arrays of any length need no second copy.
+    // The encoder is a stream: arrays of any length need no second copy.
     let mut base64 = EncoderWriter::new(&mut *out, &STANDARD);
     base64.write_all(&((count * N) as u64).to_le_bytes())?;
     for number in numbers {
@@ -300,7 +301,7 @@ mod tests {
     use super::*;
     use base64::Engine;
 
-    /// The bytes of a named array behind their length.
+    /// The bytes of a named array after their length.
     fn bytes_of(file: &str, name: &str) -> Vec<u8> {
         let after = file.split(&format!("Name=\"{name}\"")).nth(1).unwrap();
         let content = after.split_once('>').unwrap().1.split_once('<').unwrap().0;

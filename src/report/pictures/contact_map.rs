@@ -15,35 +15,35 @@ use crate::{Error, Result};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Interfaces in the figure.
+/// Number of interfaces in the figure.
 const SHOWN: usize = 6;
 const LEFT: f64 = 66.0;
 const GAP: f64 = 12.0;
 /// Largest size of a map.
 const PANEL: (f64, f64) = (300.0, 260.0);
-/// Below a map, for numbers and the name of the axis.
+/// Height below a map, for numbers and the name of the axis.
 const BELOW: f64 = 44.0;
 
-/// What is known on one interface, node by node.
+/// The data of one interface, node by node.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactMap {
     /// `left|right` for two bodies, `left.top above` for an obstacle.
     pub name: String,
-    /// What `at` measures, such as `x` and `z`.
+    /// The names of the coordinates `at`, such as `x` and `z`.
     pub labels: [String; 2],
-    /// Where the node is drawn.
+    /// Position of the node in the map.
     pub at: Vec<[f64; 2]>,
-    /// Faces of elements: four nodes each, in order around it.
+    /// Faces of elements: four nodes each, in the order around the face.
     pub cells: Vec<[u32; 4]>,
     /// Parameters along the face.
     pub t: Vec<[f64; 2]>,
     /// Position in space.
     pub points: Vec<[f64; 3]>,
-    /// Distance that is left between the sides.
+    /// Remaining distance between the sides.
     pub gap: Vec<f64>,
     /// Force at the node; positive where the sides press against each other.
     pub multiplier: Vec<f64>,
-    /// The area of the side that belongs to the node.
+    /// The nodal area: the part of the side that belongs to the node.
     pub area: Vec<f64>,
     /// Whether the sides touch.
     pub active: Vec<bool>,
@@ -80,7 +80,7 @@ impl ContactMap {
         self.multiplier.iter().sum()
     }
 
-    /// The line around the faces in contact, and around those that may touch.
+    /// The outlines of the faces in contact, and of all faces that may touch.
     fn outlines(&self) -> Vec<ContactMark> {
         let closed = |cell: &[u32; 4]| cell.iter().all(|&k| self.active[k as usize]);
         let boundary = |cells: &mut dyn Iterator<Item = &[u32; 4]>, closed: bool| {
@@ -206,7 +206,7 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
         values: Values::Nodal(&pressure),
         scale: Scale::Linear,
     };
-    // Zero is always shown: it is where nothing presses.
+    // The range always contains zero, the value outside contact.
     let (least, most) = field.range();
     let range = match (least, most) {
         (a, b) if a >= 0.0 && b > 0.0 && pressure.iter().any(|&p| p > 0.0) => (0.0, b),

@@ -17,8 +17,7 @@ pub use super::outline::Mesh;
 pub use super::values::{coefficient_scale, Field, Values};
 
 /// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100.
-/// Where sides may touch, between bodies or at obstacles, `contact` says so: its marks are drawn on u. Empty without
-/// contact.
+/// `contact` lists the parts of sides that may touch another body or an obstacle; they are marked on u.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
@@ -46,7 +45,7 @@ pub fn write_solution(
     draw(mesh, &fields, contact, title).write_png(path)
 }
 
-/// Writes any fields of one mesh as PNG: side by side, or under each other where the mesh is wide.
+/// Writes any fields of one mesh as PNG: side by side, or one below the other where the mesh is wide.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
@@ -55,8 +54,8 @@ pub fn write(mesh: &Mesh, fields: &[Field], title: &str, path: &Path) -> Result<
     draw(mesh, fields, &[], title).write_png(path)
 }
 
-/// As [`write()`] for bodies that have been displaced: `mesh` as it was, `shown` where its points are drawn; bodies are
-/// outlined each for itself, and thinly as they were. `contact` is marked where it is drawn.
+/// As [`write()`] for displaced bodies: `mesh` is undeformed, `shown` are the displaced points. Every body has its own
+/// outline, with a thin outline of its undeformed shape. `contact` is in displaced coordinates.
 ///
 /// # Errors
 /// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
@@ -93,14 +92,14 @@ fn check(mesh: &Mesh, fields: &[Field]) -> Result<()> {
 
 const LEFT: f64 = 52.0;
 const BAR_GAP: f64 = 12.0;
-/// Outlines of bodies before they moved.
+/// Colour of the outlines of undeformed bodies.
 const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
 fn draw(mesh: &Mesh, fields: &[Field], contact: &[ContactMark], title: &str) -> Raster {
     draw_lines(mesh, fields, contact, title, &mesh.lines(), &[])
 }
 
-/// Draws the fields with `lines` on them and `before`, the outlines of bodies before they moved, below.
+/// Draws the fields, with `before`, the outlines of undeformed bodies, below them and `lines` above.
 fn draw_lines(
     mesh: &Mesh,
     fields: &[Field],
@@ -128,7 +127,7 @@ fn draw_lines(
         (400.0 / size[0]).min(520.0 / size[1])
     };
     let (w, h) = (scale * size[0], scale * size[1]);
-    // A colour bar needs some height, a title some width, whatever the shape of the mesh.
+    // A colour bar needs a certain height, a title a certain width, for any shape of the mesh.
     let cell = (
         LEFT + w.max(120.0) + BAR_GAP + BAR + LABELS,
         h.max(90.0) + 2.4 * TEXT + 34.0,
@@ -263,7 +262,7 @@ mod tests {
         let count = rows(0..w / 2).count();
         assert!(count.abs_diff(400) < 12, "{count}");
         assert_eq!(rows(w / 2..w).count(), 0);
-        // Dashes: black and white in turn, in the upper half.
+        // Dashes, in the upper half: black and white in turn.
         let x = ((LEFT + 200.0) * 2.0) as usize;
         let y0 = ((6.0 + 2.4 * TEXT) * 2.0) as usize;
         let dark: Vec<bool> = (y0 + 8..y0 + 380)

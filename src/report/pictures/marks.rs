@@ -1,19 +1,19 @@
-//! The contact zone on a picture: closed parts as strong lines, open ones dashed, with their legend.
+//! The contact zone in a picture: closed parts as strong lines, open ones dashed, with their legend.
 
 use super::outline;
 use super::paint::{self, View};
 use crate::report::drawing::canvas::{self, Canvas, Colour};
 use crate::report::drawing::raster::Raster;
 
-/// A part of a side that may touch another body or an obstacle: usually the face of one element. A mark whose ends
-/// coincide is a single node.
+/// A part of a side that may touch another body or an obstacle, usually the face of one element. If its ends coincide,
+/// it is a single node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactMark {
     /// One end.
     pub from: [f64; 2],
     /// The other end.
     pub to: [f64; 2],
-    /// Whether it touches.
+    /// Whether the part touches.
     pub closed: bool,
 }
 
@@ -22,7 +22,7 @@ const SAMPLE: f64 = 34.0;
 const DASH: [f64; 2] = [4.0, 3.0];
 const LABELS: [(bool, &str); 2] = [(true, "in contact"), (false, "may touch, open")];
 
-/// Height of the legend in logical pixels; nothing without marks.
+/// Height of the legend in logical pixels; zero without marks.
 pub(super) fn legend_height(marks: &[ContactMark]) -> f64 {
     if marks.is_empty() {
         0.0
@@ -34,7 +34,7 @@ pub(super) fn legend_height(marks: &[ContactMark]) -> f64 {
 /// Draws the marks; `spacing` is the width of a typical body in logical pixels.
 pub(super) fn draw(raster: &mut Raster, marks: &[ContactMark], view: &View, spacing: f64) {
     let strong = (0.012 * spacing).clamp(1.8, 3.4);
-    // Open ones first: closed ones must not disappear where both meet.
+    // Open marks are drawn first: closed ones must not be hidden where both meet.
     for closed in [false, true] {
         let these = || marks.iter().filter(move |m| m.closed == closed);
         let lines = these().filter(|m| m.from != m.to).map(|m| (m.from, m.to));
@@ -55,7 +55,7 @@ pub(super) fn draw(raster: &mut Raster, marks: &[ContactMark], view: &View, spac
     }
 }
 
-/// The two kinds of line around the middle of a picture.
+/// Draws samples of the two kinds of line, centred in a picture.
 pub(super) fn legend(raster: &mut Raster, marks: &[ContactMark], middle: (f64, f64)) {
     let mut shown = LABELS.to_vec();
     shown.retain(|l| marks.iter().any(|m| m.closed == l.0));
@@ -64,7 +64,7 @@ pub(super) fn legend(raster: &mut Raster, marks: &[ContactMark], middle: (f64, f
     });
 }
 
-/// White under both kinds: they are seen on every colour of a field and on the line around a body.
+/// Draws a line with a white border, which is visible on every colour of a field and on the outline of a body.
 fn stroke(raster: &mut Raster, line: &[(f64, f64)], closed: bool, strong: f64) {
     if closed {
         raster.line(line, strong + 1.4, Colour::WHITE, &[]);

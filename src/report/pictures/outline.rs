@@ -1,4 +1,4 @@
-//! A mesh of quadrilaterals as pictures see it, and the lines between its bodies and subdomains.
+//! A mesh of quadrilaterals for pictures, and the lines between its bodies and subdomains.
 
 use crate::{Error, Result};
 use rayon::slice::ParallelSliceMut;
@@ -9,11 +9,11 @@ use std::collections::HashMap;
 pub struct Mesh<'a> {
     /// Positions. A position may be listed several times: once per body, or once per subdomain.
     pub points: &'a [[f64; 2]],
-    /// Corners of every cell, in order around it.
+    /// Corners of every cell, in the order around it.
     pub quads: &'a [[u32; 4]],
     /// Body of every cell.
     pub body: &'a [u32],
-    /// Subdomain of every cell, numbered through over all bodies.
+    /// Subdomain of every cell; numbers continue from body to body.
     pub subdomain: &'a [u32],
 }
 
@@ -25,11 +25,11 @@ pub(super) struct Lines {
     pub subdomains: Vec<Vec<[f64; 2]>>,
 }
 
-/// A position rounded to a millionth of the mesh: equal for copies of one point.
+/// A position rounded to a millionth of the mesh: equal for all copies of a point.
 type Key = (i64, i64);
 
 impl Mesh<'_> {
-    /// Refuses arrays that do not fit each other.
+    /// Checks that the sizes of the arrays agree.
     pub(super) fn check(&self) -> Result<()> {
         for (found, what) in [
             (self.body.len(), "bodies"),
@@ -56,7 +56,7 @@ impl Mesh<'_> {
         }
     }
 
-    /// Smallest and largest coordinates; the unit square without points.
+    /// Smallest and largest coordinates; those of the unit square if there are no points.
     pub(super) fn bounds(&self) -> ([f64; 2], [f64; 2]) {
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
@@ -73,7 +73,7 @@ impl Mesh<'_> {
         }
     }
 
-    /// How many different numbers a list of cells' bodies or subdomains holds, if they are numbered through.
+    /// The number of different bodies or subdomains in a list by cell, if they are numbered consecutively.
     pub(super) fn count(&self, numbers: &[u32]) -> usize {
         numbers.iter().max().map_or(0, |&m| m as usize + 1)
     }
@@ -83,10 +83,10 @@ impl Mesh<'_> {
         self.lines_at(self.points, false)
     }
 
-    /// The lines where the points have moved to `shown`; with `apart` around every body for itself, because bodies that
-    /// touched need not do so any more.
+    /// The lines for points displaced to `shown`. With `apart` every body gets its own outline, because bodies that
+    /// touched may have separated.
     pub(super) fn lines_at(&self, shown: &[[f64; 2]], apart: bool) -> Lines {
-        // Edges by point numbers: those that one subdomain has twice lie inside it and are most of all.
+        // Edges by point numbers: most edges occur twice in one subdomain, and so lie inside it.
         let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.quads.len());
         for (cell, quad) in self.quads.iter().enumerate() {
             for k in 0..4 {
@@ -98,12 +98,13 @@ impl Mesh<'_> {
             }
         }
         edges.par_sort_unstable();
-        // The rest by position: copies of one edge meet again.
+        // The remaining edges are compared by position, which is the same for copies of one edge.
         let (low, high) = self.bounds();
         let grid = f64::from(1 << 20) / (high[0] - low[0]).max(high[1] - low[1]).max(1e-300);
         let key_in = |p: u32, body: u32| -> Key {
             let q = self.points[p as usize];
-            // Bodies that are kept apart have keys far from each other; inside one differences are as they were.
+            // With `apart`, the keys of different bodies are far from each other; differences within a body do not
+            // change.
             let far = if apart { i64::from(body) << 24 } else { 0 };
             (
                 ((q[0] - low[0]) * grid).round() as i64 + far,
@@ -170,7 +171,7 @@ pub(super) fn joined(segments: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Ve
     chains(edges, &position)
 }
 
-/// Joins edges to polylines: straight ahead where that is possible, so that grids become long straight lines.
+/// Joins edges to polylines, straight ahead where possible, so that grids become long straight lines.
 fn chains(mut edges: Vec<(Key, Key)>, position: &HashMap<Key, [f64; 2]>) -> Vec<Vec<[f64; 2]>> {
     edges.sort_unstable();
     let mut touching: HashMap<Key, Vec<usize>> = HashMap::new();

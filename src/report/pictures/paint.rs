@@ -1,4 +1,4 @@
-//! Painting a field on a mesh of quadrilaterals: where it lies in the picture, its cells, axes and colour bar.
+//! Painting a field on a mesh of quadrilaterals: its position in the picture, cells, axes and colour bar.
 
 use super::outline::Mesh;
 use super::values::Field;
@@ -14,10 +14,10 @@ pub(super) const BAR: f64 = 14.0;
 
 pub(super) const TEXT: f64 = 13.0;
 const TITLE_TEXT: f64 = 15.0;
-/// Room for the numbers at a colour bar.
+/// Width for the numbers at a colour bar.
 pub(super) const LABELS: f64 = 74.0;
 
-/// A picture with a title above a content of this size: the picture, its width, and where the content begins.
+/// An empty picture with a title, for content of this size: the picture, its width, and the top of the content.
 pub(super) fn sheet(title: &str, (width, height): (f64, f64)) -> (Raster, f64, f64) {
     let width = width.max(canvas::text_width(title, TITLE_TEXT, true) + 24.0);
     if title.is_empty() {
@@ -30,7 +30,8 @@ pub(super) fn sheet(title: &str, (width, height): (f64, f64)) -> (Raster, f64, f
     (raster, width, top)
 }
 
-/// Samples of a width with their labels, side by side around a point; `draw` draws a sample to the right of a point.
+/// Draws samples of one width with their labels, side by side around a point; `draw` draws a sample to the right of a
+/// point.
 pub(super) fn legend<T>(
     raster: &mut Raster,
     entries: &[(T, &str)],
@@ -50,7 +51,7 @@ pub(super) fn legend<T>(
     }
 }
 
-/// Where the mesh lies in the picture.
+/// The position of the mesh in the picture.
 pub(super) struct View {
     pub low: [f64; 2],
     pub scale: f64,
@@ -58,7 +59,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Logical pixels of a point; y grows upwards in the mesh and downwards in the picture.
+    /// The position of a point in logical pixels; y grows upwards in the mesh and downwards in the picture.
     pub fn place(&self, p: [f64; 2]) -> Point {
         (
             self.origin.0 + self.scale * (p[0] - self.low[0]),
@@ -73,7 +74,7 @@ impl View {
     }
 }
 
-/// Paints all cells: each as four triangles around its centre, linear on each of them.
+/// Paints all cells. Each is divided into four triangles around its centre, with linear interpolation on each.
 pub(super) fn paint(
     raster: &mut Raster,
     mesh: &Mesh,
@@ -102,7 +103,7 @@ pub(super) fn paint(
     }
 }
 
-/// Ticks along the lower and the left side.
+/// Draws ticks along the lower and the left side.
 pub(super) fn axes(raster: &mut Raster, view: &View, low: [f64; 2], high: [f64; 2]) {
     let wanted = |length: f64| ((length * view.scale / 70.0) as usize).clamp(1, 8);
     let y = view.origin.1 + 2.0;
@@ -127,7 +128,7 @@ pub(super) fn axes(raster: &mut Raster, view: &View, low: [f64; 2], high: [f64; 
     }
 }
 
-/// The colours with their numbers.
+/// Draws the colour bar with its numbers.
 pub(super) fn colour_bar(
     raster: &mut Raster,
     at: Point,
@@ -137,7 +138,7 @@ pub(super) fn colour_bar(
 ) {
     let steps = 256;
     for k in 0..steps {
-        // Each strip reaches under the next one, so that no ground shines through between them.
+        // Each strip extends under the next one, so that no background shows between them.
         let (a, b) = (
             f64::from(k) / f64::from(steps),
             f64::from((k + 2).min(steps)) / f64::from(steps),

@@ -1,8 +1,8 @@
-//! Pictures of fields on solids: the surface from two sides, bodies moved apart in the second picture, so that it shows
+//! Pictures of fields on solids: the surface from two viewpoints. In the second picture bodies are moved apart, to show
 //! where they touch.
 //!
 //! The projection is parallel and from a fixed direction, y upwards, so that pictures of different scenes and meshes
-//! compare. Hidden parts are found pixel by pixel.
+//! can be compared. Hidden parts are found pixel by pixel.
 
 use super::paint::{colour_bar, legend, sheet, BAR, LABELS, TEXT};
 use super::space::Camera;
@@ -19,16 +19,17 @@ pub use super::surface::{FaceMark, Solid};
 
 const SMALL_TEXT: f64 = 11.5;
 const MARGIN: f64 = 16.0;
-/// Room for the axes below a picture.
+/// Height for the axes below a picture.
 const AXES: f64 = 62.0;
-/// So far two or three bodies are moved apart, and more, relative to the distances of their centres from the middle.
+/// The distance by which bodies are moved apart, relative to the distance of their centres from the middle: for two or
+/// three bodies, and for more.
 const APART: [f64; 2] = [0.75, 0.5];
 
-/// So much more of the marked area another place has to show before it is taken.
+/// Another viewpoint is taken only if it shows the marked area by this factor better.
 const BETTER: f64 = 1.6;
 
-/// Writes fields as PNG, side by side: the first on the bodies as they are, the others on bodies moved apart, or on the
-/// other side of a single one, seen from where most of the faces in `marks` are seen.
+/// Writes fields as PNG, side by side. The first picture shows the bodies in their places. The others show the bodies
+/// moved apart, or another side of a single body, from the viewpoint that shows most of the faces in `marks`.
 ///
 /// # Errors
 /// [`crate::Error::Input`] when an array does not fit the mesh; [`crate::Error::Environment`] with the path.
@@ -109,7 +110,7 @@ fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Res
     Ok(raster)
 }
 
-/// How far each body is moved away from the middle of all.
+/// The shift of each body away from the common middle.
 fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
     let n = solid.body.iter().max().map_or(0, |&b| b as usize + 1);
     let mut bounds = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; n];
@@ -127,7 +128,7 @@ fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
     let shift = |[a, b]: [[f64; 3]; 2]| {
         [0, 1, 2].map(|d| {
             let away = 0.5 * (a[d] + b[d]) - 0.5 * (low[d] + high[d]);
-            // A body number without cells.
+            // A body number without cells has no centre.
             if away.is_finite() {
                 apart * away
             } else {
@@ -138,7 +139,7 @@ fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
     bounds.into_iter().map(shift).collect()
 }
 
-/// From where most of the marked area is seen; from the first picture's place if that does as well.
+/// The viewpoint that shows most of the marked area; the viewpoint of the first picture if no other is clearly better.
 fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
     let seen = |camera: &Camera| -> f64 {
         let marked = surface.faces.iter().filter(|f| f.mark.is_some());
@@ -168,7 +169,7 @@ fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
     best
 }
 
-/// The directions of the axes.
+/// Draws the directions of the axes.
 fn triad(raster: &mut Raster, at: (f64, f64), camera: &Camera) {
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         let mut along = [0.0; 3];
@@ -181,12 +182,12 @@ fn triad(raster: &mut Raster, at: (f64, f64), camera: &Camera) {
     }
 }
 
-/// The lengths of the undeformed scene.
+/// Prints the extent of the undeformed scene.
 fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
     let [low, high] = Solid::bounds(solid.points);
     let size = (0..3).fold(0.0_f64, |a, d| a.max(high[d] - low[d]));
     let range = |d: usize| {
-        // The ends of curved bodies come with rounding.
+        // Coordinates of curved bodies contain rounding errors.
         let round = |x: f64| if x.abs() < 1e-9 * size { 0.0 } else { x };
         let number = |x: f64| crate::report::drawing::ticks::number(round(x));
         format!(
@@ -200,7 +201,7 @@ fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
     raster.text(at, &text, &TextStyle::new(SMALL_TEXT, Anchor::Start));
 }
 
-/// What the colours of marked faces mean.
+/// Draws the legend for the colours of marked faces.
 fn key(raster: &mut Raster, marks: &[FaceMark], middle: (f64, f64)) {
     const SAMPLE: f64 = 18.0;
     let mut shown = Vec::new();

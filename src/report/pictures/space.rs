@@ -3,17 +3,17 @@
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::raster::{self, Raster};
 
-/// Where the picture is looked at from, y upwards and z towards the viewer.
+/// A viewpoint for pictures with y upwards and z towards the viewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Camera {
     right: [f64; 3],
     up: [f64; 3],
-    /// Towards the viewer.
+    /// Unit vector towards the viewer.
     pub towards: [f64; 3],
 }
 
 impl Camera {
-    /// From the front and the right (`behind`: from the back and the left), from above or below.
+    /// The viewpoint at the front and right (`behind`: at the back and left), above or below.
     pub fn new(behind: bool, below: bool) -> Camera {
         let turn = 34_f64.to_radians() + if behind { std::f64::consts::PI } else { 0.0 };
         let tilt = if below { -38_f64 } else { 27.0 }.to_radians();
@@ -25,13 +25,13 @@ impl Camera {
         }
     }
 
-    /// Right, up, and how near.
+    /// The coordinates of a point in the picture: right, up, and towards the viewer.
     pub fn project(&self, p: [f64; 3]) -> [f64; 3] {
         [self.right, self.up, self.towards].map(|e| e[0] * p[0] + e[1] * p[1] + e[2] * p[2])
     }
 }
 
-/// A rectangle of pixels with depths, finer than those of the picture that it goes into.
+/// A rectangle of pixels with depths, at a finer resolution than the final picture.
 pub(super) struct Buffer {
     width: usize,
     height: usize,
@@ -39,11 +39,11 @@ pub(super) struct Buffer {
     colour: Vec<Colour>,
 }
 
-/// Fine pixels across a pixel of the picture.
+/// Fine pixels per pixel of the picture, in each direction.
 const FINE: usize = 2;
 
 impl Buffer {
-    /// An empty buffer of width × height logical pixels, and fine pixels per logical one.
+    /// An empty buffer of width × height logical pixels, and the number of fine pixels per logical one.
     pub fn new(width: f64, height: f64, raster: &Raster) -> (Buffer, f64) {
         let scale = raster.scale() * FINE as f64;
         let whole = |x: f64| (x * raster.scale()).ceil() as usize * FINE;
@@ -58,7 +58,7 @@ impl Buffer {
     }
 
     /// Paints the pixels of a triangle (x to the right, y downwards, depth towards the viewer) that nothing nearer
-    /// covers; `shade` gets the value there.
+    /// covers; `shade` maps the interpolated value to a colour.
     pub fn triangle(&mut self, p: [[f64; 3]; 3], v: [f64; 3], shade: &impl Fn(f64) -> Colour) {
         let (size, flat) = ((self.width, self.height), p.map(|[x, y, _]| [x, y]));
         raster::triangle(flat, size, |x, y, a, b| {
@@ -71,7 +71,8 @@ impl Buffer {
         });
     }
 
-    /// Draws a line of a width in fine pixels where nothing is nearer than it by more than `slack`; its ends are round.
+    /// Draws a line of a width in fine pixels. It is hidden where something is nearer by more than `slack`; its ends
+    /// are round.
     pub fn line(&mut self, ends: [[f64; 3]; 2], width: f64, slack: f64, colour: Colour) {
         let [a, b] = ends;
         let half = 0.5 * width;
@@ -103,7 +104,7 @@ impl Buffer {
         }
     }
 
-    /// Copies it into a picture, its upper left corner at a logical position.
+    /// Copies the buffer into a picture, with its upper left corner at a logical position.
     pub fn copy(&self, raster: &mut Raster, at: (f64, f64)) {
         let corner = [at.0, at.1].map(|v| (v * raster.scale()).round().max(0.0) as usize);
         for y in 0..self.height / FINE {
@@ -138,7 +139,7 @@ mod tests {
                     assert!((dot - f64::from(u8::from(i == j))).abs() < 1e-15);
                 }
             }
-            // Right-handed: what is seen is not mirrored.
+            // The axes are right-handed: the picture is not mirrored.
             let [r, u] = [c.right, c.up];
             let z = r[0] * u[1] - r[1] * u[0];
             assert!((z - c.towards[2]).abs() < 1e-15);

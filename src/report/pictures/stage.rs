@@ -1,4 +1,4 @@
-//! A solid seen from one place: its surface in the colours of a field, lit, with lines around bodies and between
+//! A solid from one viewpoint: its surface in the colours of a field, lit, with lines around bodies and between
 //! subdomains.
 
 use super::space::{Buffer, Camera};
@@ -9,9 +9,9 @@ use crate::report::drawing::raster::Raster;
 
 /// Largest size of one picture.
 const PANEL: (f64, f64) = (470.0, 440.0);
-/// Faces in contact.
+/// Colour of faces in contact.
 pub(super) const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
-/// How much of the white ground shines through faces that may touch and do not.
+/// The part of white in the colour of faces that may touch and do not.
 const PALE: f64 = 0.45;
 
 /// The diagonals of a quadrilateral, and its middle.
@@ -24,7 +24,7 @@ pub(super) fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]
     (across, middle)
 }
 
-/// A solid seen from one place, its bodies shifted.
+/// A solid from one viewpoint, its bodies shifted.
 pub(super) struct Stage<'a> {
     solid: &'a Solid<'a>,
     surface: &'a Surface,
@@ -72,7 +72,7 @@ impl<'a> Stage<'a> {
         self.camera.project([0, 1, 2].map(|d| at[d] + shift[d]))
     }
 
-    /// Logical pixels, with room for the lines around.
+    /// Size in logical pixels, with a margin for lines.
     pub fn size(&self) -> (f64, f64) {
         let [w, h] = [0, 1].map(|d| self.scale * (self.high[d] - self.low[d]) + 6.0);
         (w, h)
@@ -145,8 +145,8 @@ pub(super) fn pale(Colour(r, g, b): Colour) -> Colour {
     Colour(mix(r), mix(g), mix(b))
 }
 
-/// How light a face is: the light comes from above the viewer's left shoulder and leaves no side dark, because colours
-/// have to be read.
+/// The brightness of a face. The light comes from above the viewer's left shoulder and leaves no side dark, because
+/// colours must remain readable.
 fn light(normal: [f64; 3], camera: &Camera) -> f64 {
     let seen = camera.project(normal);
     let from = [-0.35, 0.65, 0.67];

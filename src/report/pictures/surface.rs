@@ -1,4 +1,4 @@
-//! The surface of bodies made of hexahedra as pictures see it: outer faces, edges of bodies, lines between subdomains.
+//! The surface of bodies of hexahedra for pictures: outer faces, edges of bodies, lines between subdomains.
 
 use crate::linalg::vec3::{cross, norm};
 use crate::{Error, Result};
@@ -11,45 +11,45 @@ pub struct Solid<'a> {
     /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per
     /// subdomain.
     pub points: &'a [[f64; 3]],
-    /// Where the points are drawn: as `points`, or displaced.
+    /// Positions of the points in the picture: as `points`, or displaced.
     pub shown: &'a [[f64; 3]],
-    /// Corners of every cell as VTK numbers them, x, y, z right-handed.
+    /// Corners of every cell in VTK's order, x, y, z right-handed.
     pub hexahedra: &'a [[u32; 8]],
     /// Body of every cell.
     pub body: &'a [u32],
-    /// Subdomain of every cell, numbered through over all bodies.
+    /// Subdomain of every cell; numbers continue from body to body.
     pub subdomain: &'a [u32],
 }
 
 /// The face of an element that may touch another body or an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaceMark {
-    /// The body that the element belongs to.
+    /// Body of the element.
     pub body: u32,
-    /// The corners, in any order, where the undeformed bodies have them.
+    /// The corners in the undeformed body, in any order.
     pub corners: [[f64; 3]; 4],
-    /// Whether it touches.
+    /// Whether the face touches.
     pub closed: bool,
 }
 
 /// An outer face.
 pub(super) struct Face {
-    /// Counter-clockwise, seen from outside.
+    /// Corners, counter-clockwise seen from outside.
     pub corners: [u32; 4],
     pub cell: u32,
-    /// Of a face that may touch, whether it does.
+    /// Whether the face touches; `None` if it cannot touch.
     pub mark: Option<bool>,
 }
 
-/// A line on the surface, with the points at its ends.
+/// A line on the surface, given by the points at its ends.
 pub(super) struct Edge {
     pub ends: [u32; 2],
     pub body: u32,
-    /// An edge of the body; otherwise a line between subdomains.
+    /// Whether the line is an edge of the body; otherwise it lies between subdomains.
     pub crease: bool,
 }
 
-/// What is seen of a solid.
+/// The visible surface of a solid.
 pub(super) struct Surface {
     pub faces: Vec<Face>,
     pub edges: Vec<Edge>,
@@ -65,14 +65,14 @@ const FACES: [[usize; 4]; 6] = [
     [3, 0, 4, 7],
 ];
 
-/// Faces that meet at an angle with a cosine below this meet in an edge of the body.
+/// The edge between two faces is an edge of the body if the cosine of the angle between their normals is below this.
 const CREASE: f64 = 0.8;
 
-/// A position rounded to a millionth of the mesh: equal for copies of one point.
+/// A position rounded to a millionth of the mesh: equal for all copies of a point.
 type Key = [i64; 3];
 
 impl Solid<'_> {
-    /// Refuses arrays that do not fit each other.
+    /// Checks that the sizes of the arrays agree.
     pub(super) fn check(&self) -> Result<()> {
         let (cells, points) = (self.hexahedra.len(), self.points.len());
         for (found, expected, what) in [
@@ -99,7 +99,7 @@ impl Solid<'_> {
         }
     }
 
-    /// Least and greatest coordinates of `points`; of no point the unit cube.
+    /// Least and greatest coordinates of `points`; those of the unit cube if there are no points.
     pub(super) fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
         let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for p in points {
@@ -115,14 +115,14 @@ impl Solid<'_> {
         }
     }
 
-    /// What is seen: the faces that one cell of a body has alone.
+    /// The outer surface: the faces that belong to only one cell of a body.
     pub(super) fn surface(&self, marks: &[FaceMark]) -> Surface {
         let [low, high] = Self::bounds(self.points);
         let size = (0..3).fold(1e-300_f64, |a, d| a.max(high[d] - low[d]));
         let grid = f64::from(1 << 20) / size;
         let key =
             |p: [f64; 3]| -> Key { [0, 1, 2].map(|d| ((p[d] - low[d]) * grid).round() as i64) };
-        // Four times the middle of a face.
+        // Four times the centre of a face.
         let middle = |corners: [[f64; 3]; 4]| {
             let mut sum = [0; 3];
             for corner in corners.map(key) {
@@ -162,7 +162,7 @@ impl Solid<'_> {
         Surface { faces, edges }
     }
 
-    /// Faces by point numbers: those that one subdomain has twice lie inside it and are most of all.
+    /// Faces that occur once in a subdomain, by point numbers; most faces occur twice and lie inside it.
     fn faces_of_one_subdomain(&self) -> Vec<Face> {
         let mut all: Vec<([u32; 4], u32, u8)> = Vec::with_capacity(6 * self.hexahedra.len());
         for (cell, hexahedron) in self.hexahedra.iter().enumerate() {
@@ -183,7 +183,7 @@ impl Solid<'_> {
     }
 
     fn edges(&self, faces: &[Face], key: &dyn Fn(u32) -> Key) -> Vec<Edge> {
-        // Ends of a line by place, and the faces beside it.
+        // (points at the ends of a line, two faces beside it, number of faces beside it).
         type Beside = ([u32; 2], [usize; 2], usize);
         let mut found: HashMap<(u32, Key, Key), Beside> = HashMap::new();
         for (f, face) in faces.iter().enumerate() {
@@ -213,13 +213,14 @@ impl Solid<'_> {
                 out.push(Edge { ends, body, crease });
             }
         }
-        // Creases last: they are drawn over the others. In a fixed order, so that a picture is the same every time.
+        // Creases come last: they are drawn over the other lines. The order is fixed, so that a picture is the same in
+        // every run.
         out.sort_unstable_by_key(|e| (e.crease, e.ends));
         out
     }
 }
 
-/// The unit vector along a × b; zero where there is none.
+/// The unit vector along a × b; zero if a × b is zero.
 pub(super) fn unit_cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     let v = cross(a, b);
     let length = norm(v);

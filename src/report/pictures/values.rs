@@ -1,4 +1,4 @@
-//! What a picture shows: numbers on points or cells, their range and their colours.
+//! The values that a picture shows: numbers on points or cells, their range and their colours.
 
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::colormap::viridis;
@@ -22,19 +22,19 @@ impl<'a> Values<'a> {
     }
 }
 
-/// One picture: what it is called and what it shows.
+/// A field in a picture: its title, values and scale.
 #[derive(Debug, Clone, Copy)]
 pub struct Field<'a> {
-    /// Written above it.
+    /// Title above the picture.
     pub title: &'a str,
-    /// What it shows.
+    /// The values.
     pub values: Values<'a>,
     /// Scale of the colours.
     pub scale: Scale,
 }
 
 impl Field<'_> {
-    /// Refuses numbers that do not fit a mesh of so many points and cells.
+    /// Checks that the numbers fit a mesh with these numbers of points and cells.
     pub(super) fn check(&self, points: usize, cells: usize) -> Result<()> {
         let (expected, what) = match self.values {
             Values::Nodal(_) => (points, "points"),
@@ -58,7 +58,7 @@ impl Field<'_> {
         }
     }
 
-    /// The numbers at both ends of the colour bar; a constant field gets the middle colour.
+    /// The numbers at the two ends of the colour bar; a constant field gets the middle colour.
     pub(super) fn range(&self) -> (f64, f64) {
         let numbers = self.values.numbers().iter().copied();
         let shown = numbers.filter(|&v| self.scale.shows(v));
@@ -78,7 +78,7 @@ impl Field<'_> {
         }
     }
 
-    /// The colour of a number where the colour bar has this range.
+    /// The map from numbers to colours, for a colour bar of this range.
     pub(super) fn colour(&self, range: (f64, f64)) -> impl Fn(f64) -> Colour {
         let scale = self.scale;
         let (low, high) = (scale.forward(range.0), scale.forward(range.1));

@@ -8,7 +8,7 @@ use crate::report::tables::paper;
 use crate::Result;
 use std::path::{Path, PathBuf};
 
-/// Which of the three sizes of a row varies in a panel while the other two are 2.
+/// The size of a row that varies in a panel; the other two are 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Family {
     Bodies,
@@ -19,7 +19,7 @@ enum Family {
 impl Family {
     const ALL: [Family; 3] = [Family::Bodies, Family::Subdomains, Family::Elements];
 
-    /// The abscissa of a row, if it belongs to this family.
+    /// The value on the horizontal axis for a row of this family; `None` for other rows.
     fn abscissa(self, bodies: usize, subdomains: usize, elements: usize) -> Option<f64> {
         let (x, others) = match self {
             Family::Bodies => (bodies, [subdomains, elements]),
@@ -49,7 +49,7 @@ impl Family {
 }
 
 /// The figure for some rows of Table 1; rows outside the three families of the paper are not shown. Where no exact κ is
-/// known, the estimate of the run stands in.
+/// known, the estimate of the solve is shown instead.
 pub fn figure(rows: &[Table1Row]) -> Figure {
     let panels = Family::ALL
         .into_iter()

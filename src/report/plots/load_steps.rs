@@ -1,4 +1,4 @@
-//! Load steps: a figure of energy, contact force and active rows over time, and all of it as CSV.
+//! Load steps: a figure of energy, contact force and active rows over time, and all data as CSV.
 
 use super::plot::{Axis, Figure, Marker, Panel, Series};
 use crate::report::drawing::canvas::Colour;
@@ -9,7 +9,7 @@ use crate::report::tables::table::Table;
 use crate::Result;
 use std::path::{Path, PathBuf};
 
-/// Steps up to which each gets a marker.
+/// Up to this number of steps, each gets a marker.
 const MARKED: usize = 60;
 
 /// The figure.
@@ -46,7 +46,7 @@ pub fn figure(steps: &[LoadStep], title: &str) -> Figure {
     figure
 }
 
-/// Round whole numbers from 0 to `most`, seven at most.
+/// At most seven round whole numbers from 0 to `most`.
 fn counts(most: usize) -> Vec<f64> {
     let decades = (0..).map(|k| 10_usize.pow(k));
     let step = decades
@@ -56,7 +56,7 @@ fn counts(most: usize) -> Vec<f64> {
     (0..=most / step).map(|k| (k * step) as f64).collect()
 }
 
-/// The table for programs: full precision, empty cells where nothing is known.
+/// The table for programs: full precision, empty cells for unknown values.
 pub fn csv(steps: &[LoadStep]) -> Table {
     let mut table = Table::new([
         "t",

@@ -1,4 +1,4 @@
-//! One plot: its axes and what is drawn between them.
+//! One panel of a plot: its axes and data.
 
 use super::series::Series;
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
@@ -11,13 +11,13 @@ pub(super) const MARGIN: f64 = 14.0;
 /// One axis of a panel.
 #[derive(Debug, Clone)]
 pub struct Axis {
-    /// What it measures; `_{...}` and `^{...}` are sub- and superscripts.
+    /// Quantity on the axis; `_{...}` and `^{...}` are sub- and superscripts.
     pub label: String,
     /// Linear or logarithmic.
     pub scale: Scale,
-    /// Where the ticks go; found automatically when empty.
+    /// Positions of the ticks; if empty, they are chosen automatically.
     pub ticks: Vec<f64>,
-    /// What it shows; everything when `None`.
+    /// Range of the axis; `None`: the range of the data.
     pub range: Option<(f64, f64)>,
 }
 
@@ -64,26 +64,26 @@ impl Axis {
 /// One plot.
 #[derive(Debug, Clone)]
 pub struct Panel {
-    /// Written above; may be empty.
+    /// Title above the panel; may be empty.
     pub title: String,
     /// Horizontal axis.
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// What is shown, later ones on top.
+    /// The data; later series are drawn on top.
     pub series: Vec<Series>,
-    /// Parts of the horizontal axis that are set off by a coloured ground.
+    /// Parts of the horizontal axis with a coloured background.
     pub bands: Vec<Band>,
 }
 
-/// A part of the horizontal axis.
+/// A part of the horizontal axis with a coloured background.
 #[derive(Debug, Clone)]
 pub struct Band {
-    /// Name in the legend, as that of a series.
+    /// Name in the legend, like that of a series.
     pub label: String,
-    /// Where it starts and ends; a band of no width is drawn as a thin line.
+    /// The two ends; a band of no width is drawn as a thin line.
     pub range: (f64, f64),
-    /// Its ground.
+    /// Colour of the background.
     pub colour: Colour,
 }
 
@@ -103,7 +103,7 @@ impl Panel {
         self.series.is_empty() && self.title.is_empty() && self.y.label.is_empty()
     }
 
-    /// What the axes show.
+    /// The ranges of the axes.
     fn ranges(&self) -> [(f64, f64); 2] {
         let shown = || {
             let all = self.series.iter().flat_map(|s| &s.points);
@@ -127,8 +127,8 @@ impl Panel {
         widths.fold(0.0, f64::max)
     }
 
-    /// Draws the panel with `label_width` left for the labels at the vertical axis, at least its own: panels under each
-    /// other get the same, so that their axes stand under each other.
+    /// Draws the panel. The labels at the vertical axis get the width `label_width`, or their own if that is larger;
+    /// panels in one column get the same, so that their axes are aligned.
     pub(super) fn draw(
         &self,
         canvas: &mut dyn Canvas,
@@ -192,7 +192,7 @@ impl Panel {
                 canvas.line(&[(x0, py(t.at)), (x1, py(t.at))], 1.0, Colour::GRID, &[]);
             }
         }
-        // Labels that would touch their left neighbour are left out.
+        // Labels that would touch their left neighbour are omitted.
         let mut free = f64::NEG_INFINITY;
         for t in &x_ticks {
             let (x, length) = (px(t.at), if t.label.is_empty() { 3.0 } else { 5.0 });

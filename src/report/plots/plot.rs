@@ -14,9 +14,9 @@ pub use super::series::{Line, Marker, Series};
 /// Panels in a grid under one title and above one legend.
 #[derive(Debug, Clone)]
 pub struct Figure {
-    /// Written at the top; may be empty.
+    /// Title at the top; may be empty.
     pub title: String,
-    /// Row by row.
+    /// The panels, row by row.
     pub panels: Vec<Panel>,
     /// Panels per row.
     pub columns: usize,
@@ -114,7 +114,7 @@ impl Figure {
             .fold(0.0, f64::max);
         let column = SAMPLE + 8.0 + widest + 26.0;
         let columns = (((width - 2.0 * MARGIN) / column) as usize).clamp(1, entries.len().max(1));
-        // As few columns as the same number of rows allows: five entries are 3 + 2, not 4 + 1.
+        // The number of columns is the smallest for this number of rows: five entries are 3 + 2, not 4 + 1.
         let rows = entries.len().div_ceil(columns);
         let columns = if rows == 0 {
             1
@@ -147,7 +147,7 @@ impl Figure {
         let top = height - 0.5 * MARGIN - rows as f64 * LEGEND_LINE;
         let start = 0.5 * (width - columns as f64 * column + 26.0);
         for (k, entry) in self.legend().into_iter().enumerate() {
-            // Down the columns: neighbours in the list stand under each other.
+            // Entries run down the columns: neighbours in the list are above each other.
             let (c, r) = (k / rows, k % rows);
             let (x, y) = (
                 start + c as f64 * column,
@@ -199,7 +199,7 @@ mod tests {
     use crate::report::drawing::canvas::Colour;
     use crate::report::drawing::ticks::Scale;
 
-    /// Writes down what is drawn.
+    /// A canvas that records the calls.
     #[derive(Default)]
     struct Recorder {
         lines: Vec<(Vec<Point>, Colour)>,
@@ -331,7 +331,7 @@ mod tests {
             "a single point is seen"
         );
         assert_eq!(drawn.texts.iter().filter(|t| t.1 == "zone").count(), 1);
-        // Panels under each other share their axes' place.
+        // Panels above each other have their axes in the same place.
         for k in 0..3 {
             assert!((curves[1].0[k].0 - at(k)).abs() < 1e-9);
         }

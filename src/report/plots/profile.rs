@@ -1,4 +1,4 @@
-//! Multiplier and gap along the interfaces: a figure of the ones with the largest forces, and all of them as CSV.
+//! Multiplier and gap along the interfaces: a figure for the interfaces with the largest forces, and all data as CSV.
 
 use super::plot::{Axis, Band, Figure, Line, Marker, Panel, Series};
 use crate::report::drawing::canvas::Colour;
@@ -11,36 +11,36 @@ use crate::report::tables::table::quoted;
 use crate::Result;
 use std::path::{Path, PathBuf};
 
-/// Interfaces in the figure.
+/// Number of interfaces in the figure.
 const SHOWN: usize = 12;
-/// Points up to which each gets a marker.
+/// Up to this number of points, each gets a marker.
 const MARKED: usize = 40;
-/// A gap below this part of an interface's length is rounding.
+/// A gap below this part of the interface's length is rounding.
 const CLOSED: f64 = 1e-11;
-/// The same for displacements in space: their scale is not that of the interface, and iterations end at a tolerance.
+/// The same bound for displacements in space: their scale is not that of the interface, and iterations end at a
+/// tolerance.
 const CLOSED_IN_SPACE: f64 = 1e-6;
-/// Ground of the contact zone.
+/// Background of the contact zone.
 const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
 
-/// What is known along one interface, node by node.
+/// The data along one interface, node by node.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Profile {
     /// `left|right` for two bodies, `left.top above` for an obstacle.
     pub name: String,
-    /// What `t` measures, such as `y`.
+    /// Name of the coordinate `t`, such as `y`.
     pub label: String,
     /// Position along the interface.
     pub t: Vec<f64>,
     /// Position in the plane.
     pub points: Vec<[f64; 2]>,
-    /// Distance that is left between the sides.
+    /// Remaining distance between the sides.
     pub gap: Vec<f64>,
     /// Force at the node; positive where the sides press against each other.
     pub multiplier: Vec<f64>,
     /// Whether the sides touch.
     pub active: Vec<bool>,
-    /// The area (in the plane a length) of the side that belongs to the node; empty: forces are not reported as
-    /// pressures.
+    /// The nodal area (in the plane a length); empty if forces are not reported as pressures.
     pub area: Vec<f64>,
 }
 
@@ -62,7 +62,7 @@ impl Profile {
         interfaces::check_lengths(&self.name, n, "positions", &lists)
     }
 
-    /// Whether there are areas.
+    /// Whether pressures are shown: whether there are areas.
     fn has_pressure(&self) -> bool {
         !self.area.is_empty()
     }
@@ -84,7 +84,7 @@ impl Profile {
         order
     }
 
-    /// Smallest and largest position, with some air.
+    /// Smallest and largest position, with a margin.
     fn range(&self) -> (f64, f64) {
         let (low, high) = extremes(&self.t);
         let air = if high > low {
@@ -99,7 +99,7 @@ impl Profile {
         }
     }
 
-    /// The zone: from half-way to the last open node to half-way to the next one.
+    /// The contact zone. Its ends are half-way between the last node in contact and the next open one.
     fn zone(&self) -> Vec<Band> {
         let order = self.order();
         let t = |k: usize| self.t[order[k]];
@@ -132,7 +132,7 @@ impl Profile {
         out
     }
 
-    /// Multiplier and gap under each other; `largest_gap` is that of the whole figure.
+    /// The panels of multiplier and gap, one below the other; `largest_gap` is that of the whole figure.
     fn panels(&self, largest_gap: f64) -> [Panel; 2] {
         let order = self.order();
         let marker = if order.len() <= MARKED {
@@ -154,7 +154,8 @@ impl Profile {
             range: Some(x),
             ..Axis::new(label, Scale::Linear)
         };
-        // Rounding is not blown up to the size of the panel, and zero is always shown: touching means zero.
+        // Rounding errors are not magnified to the size of the panel, and the range always contains zero, the gap of
+        // closed contact.
         let (low, high) = extremes(&self.gap);
         let length = x.1 - x.0;
         let closed = match self.has_pressure() {
@@ -249,7 +250,8 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
 /// all interfaces: name, t, x, y, gap, multiplier, active (0 or 1), and with areas pressure and area.
 ///
 /// # Errors
-/// [`crate::Error::Input`] when the arrays of an interface differ in length; [`crate::Error::Environment`] with the path.
+/// [`crate::Error::Input`] when the arrays of an interface differ in length; [`crate::Error::Environment`] with the
+/// path.
 pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
     let csv = dir.join("interfaces.csv");
@@ -306,7 +308,7 @@ mod tests {
         let zone = p.zone();
         assert_eq!(zone.len(), 1);
         assert_eq!(zone[0].range, (4.5 / 16.0, 11.5 / 16.0));
-        // Whatever the order of the nodes; a node alone; nodes at the ends.
+        // Nodes in any order; a single node; nodes at the ends.
         let mut q = Profile {
             t: vec![1.0, 0.0, 0.5, 0.25, 0.75],
             points: vec![[0.0; 2]; 5],

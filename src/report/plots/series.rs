@@ -1,26 +1,26 @@
-//! Points of a plot that belong together: their markers, their line, their name in the legend.
+//! A series of a plot: points with their markers, line, and name in the legend.
 
 use crate::report::drawing::canvas::{self, Canvas, Colour, Point};
 
 /// Shape of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
-    /// Nothing.
+    /// No marker.
     None,
     /// A disc.
     Circle,
     /// A square.
     Square,
-    /// A square on its corner.
+    /// A square standing on its corner.
     Diamond,
     /// A triangle.
     Triangle,
 }
 
-/// How points are joined.
+/// The line that joins points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Line {
-    /// Not at all.
+    /// No line.
     None,
     /// By a full line.
     Full,
@@ -30,10 +30,10 @@ pub enum Line {
     Dotted,
 }
 
-/// Points that belong together.
+/// A series of points.
 #[derive(Debug, Clone)]
 pub struct Series {
-    /// Name in the legend; series of equal name in several panels appear there once; empty: not in the legend.
+    /// Name in the legend. Series of the same name in several panels appear there once; an empty name does not appear.
     pub label: String,
     /// (x, y). A point that the axes cannot show (NaN, ≤ 0 on a log axis) is left out and interrupts the line.
     pub points: Vec<(f64, f64)>,
@@ -45,7 +45,7 @@ pub struct Series {
     pub filled: bool,
     /// Radius of the markers in logical pixels.
     pub size: f64,
-    /// How the points are joined.
+    /// The line that joins the points.
     pub line: Line,
 }
 

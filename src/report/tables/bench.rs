@@ -93,7 +93,7 @@ fn case_text(case: &BenchCase) -> String {
     )
 }
 
-/// The fastest of both sides in one line.
+/// One line about the fastest variant of ours and the fastest other method.
 fn sum(case: &BenchCase) -> String {
     let [Some(ours), Some(other)] = [true, false].map(|ours| case.fastest(ours)) else {
         return String::new();
@@ -109,7 +109,7 @@ fn sum(case: &BenchCase) -> String {
     )
 }
 
-/// A method with its layout, the same in every case.
+/// A method with its layout; the label is the same in every case.
 fn label(row: &BenchRow) -> String {
     match (row.layout.as_str(), row.subdomains) {
         (layout @ ("threads" | "ranks"), _) => format!("{}, {layout}", row.method),
@@ -118,7 +118,7 @@ fn label(row: &BenchRow) -> String {
     }
 }
 
-/// All rows for programs: full precision, empty cells where nothing is known.
+/// All rows for programs: full precision, empty cells for unknown values.
 pub fn csv(report: &BenchReport) -> Table {
     let phases = ["setup", "solve", "recover", "total", "again"];
     let mut header: Vec<String> = ["case", "method", "layout", "subdomains", "ranks", "threads"]
@@ -180,10 +180,10 @@ pub fn csv(report: &BenchReport) -> Table {
     table
 }
 
-/// Error over seconds of set-up and solve: a panel for each case, a marker for each method at its median, a bar from
-/// its smallest to its largest total.
+/// A figure of the error over the seconds of set-up and solve. Each case has a panel; each method has a marker at its
+/// median, and a bar from its smallest to its largest total.
 pub fn figure(report: &BenchReport) -> Figure {
-    // One colour for a method in all panels, one shape for a layout.
+    // A method has the same colour in all panels; a layout has the same shape.
     let mut methods: Vec<&str> = Vec::new();
     for row in report.cases.iter().flat_map(|c| &c.methods) {
         if !methods.contains(&row.method.as_str()) {

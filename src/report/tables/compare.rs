@@ -5,13 +5,13 @@ use super::summary::{exactly, ranks};
 use super::table::{count, fixed, scientific, Align, Table};
 use crate::report::json::{CompareInequalities, CompareReport, CompareRow};
 
-/// Columns that only inequalities fill.
+/// Number of columns for scenes with inequalities only.
 const OUTER: usize = 4;
 const SET: usize = 13;
 
 /// The comparison for terminals, with a caption.
 pub fn text(report: &CompareReport) -> String {
-    // Outer steps and the set only where there are inequalities.
+    // Outer steps and the active set are shown only where there are inequalities.
     let contact = report.contact.is_some();
     let dropped: &[usize] = if contact { &[] } else { &[OUTER, SET] };
     let header = [
@@ -82,7 +82,7 @@ pub fn text(report: &CompareReport) -> String {
     )
 }
 
-/// What is to be said of inequalities below the table.
+/// Sentences about the inequalities, below the table.
 fn inequalities(c: &CompareInequalities) -> String {
     let mut text = format!(
         "Of {} inequalities {} hold with equality in the direct solution, found in {} steps of an active-set loop \
@@ -104,7 +104,7 @@ fn inequalities(c: &CompareInequalities) -> String {
     text
 }
 
-/// The comparison for programs: full precision, empty cells where nothing is known.
+/// The comparison for programs: full precision, empty cells for unknown values.
 pub fn csv(rows: &[CompareRow]) -> Table {
     let mut table = Table::new([
         "method",

@@ -1,14 +1,14 @@
-//! What `solve` prints about contact: outer steps, certificate, forces per interface, equilibrium per body.
+//! The output of `solve` about contact: outer steps, certificate, forces per interface, equilibrium per body.
 
 use super::table::{fixed, scientific, value, Align, Table};
 use crate::report::json::contact::{BodyBalance, ContactReport, InterfaceForce, OuterStep};
 use crate::report::json::Kkt;
 
-/// Interfaces that are listed.
+/// Number of interfaces that are listed.
 const INTERFACES: usize = 12;
-/// Bodies that are listed.
+/// Number of bodies that are listed.
 const BODIES: usize = 8;
-/// Outer steps that are listed: the first few and the last ones.
+/// Number of outer steps that are listed: the first few and the last ones.
 const STEPS: usize = 24;
 
 /// Everything about contact, after the lines of [`super::summary::solve`].
@@ -37,7 +37,7 @@ pub fn certificate(kkt: &Kkt) -> String {
         scientific(Some(kkt.feasibility))
     );
     if let Some(least) = kkt.min_multiplier {
-        // Only what is below zero violates the sign.
+        // Only negative multipliers violate the sign condition.
         let wrong = if least.is_nan() {
             least
         } else {
@@ -67,7 +67,7 @@ fn outer(r: &ContactReport) -> String {
         return String::new();
     }
     let loads = steps.iter().any(|s| s.load_step > 0);
-    // One method for all steps stands in the heading already.
+    // If all steps have the same method, the heading names it.
     let methods = steps.iter().any(|s| s.method != steps[0].method);
     let names = "step,active,entered,left,it,κ est.,residual,tolerance,seconds";
     let mut header: Vec<&str> = names.split(',').collect();
@@ -101,7 +101,7 @@ fn outer(r: &ContactReport) -> String {
         }
         cells
     };
-    // The start and the end of a long run tell how it went; JSON has all of it.
+    // The start and the end of a long run are enough here; the JSON record has all steps.
     let hidden = steps.len().saturating_sub(STEPS);
     let head = if hidden > 0 { STEPS / 3 } else { steps.len() };
     let mut before: Option<usize> = None;
@@ -156,7 +156,7 @@ fn forces(r: &ContactReport) -> String {
         return String::new();
     }
     let mut order: Vec<&InterfaceForce> = r.interfaces.iter().collect();
-    // NaN first: what went wrong must be seen.
+    // NaN comes first: errors must be visible.
     let size = |f: &InterfaceForce| {
         if f.force.is_nan() {
             f64::INFINITY
@@ -165,7 +165,7 @@ fn forces(r: &ContactReport) -> String {
         }
     };
     order.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    // Pressures take the place of multipliers where they are known.
+    // Pressures replace multipliers where they are known.
     let pressures = order.iter().any(|f| f.max_pressure.is_some());
     let names = if pressures {
         "interface,kind,rows,active,force,resultant,area,largest pressure,least gap,largest gap"
@@ -209,7 +209,7 @@ fn forces(r: &ContactReport) -> String {
     format!("{table}{more}")
 }
 
-/// A number, or components in brackets; what is rounding beside the others is 0.
+/// A number, or components in brackets; a component that is rounding compared with the others is printed as 0.
 fn vector(components: &[f64]) -> String {
     if let [x] = components {
         return value(*x);

@@ -1,9 +1,9 @@
-//! What the tables of `compare` and `bench`, with a method in each row, share.
+//! Functions shared by the tables of `compare` and `bench`, which have a method in each row.
 
 use super::table::count;
 use crate::report::json::CompareContact;
 
-/// The cells of a row without those at some places.
+/// The cells of a row, without those at certain positions.
 pub(super) fn without<T>(places: &[usize], cells: impl IntoIterator<Item = T>) -> Vec<T> {
     let kept = (0..).zip(cells).filter(|(k, _)| !places.contains(k));
     kept.map(|(_, cell)| cell).collect()
@@ -17,7 +17,7 @@ pub(super) fn ranks_and_threads(ranks: usize, threads: usize) -> String {
     }
 }
 
-/// Active sets that were solved for.
+/// The number of active sets that were solved for.
 pub(super) fn outer(contact: Option<CompareContact>) -> String {
     match contact {
         Some(CompareContact { outer: None, .. }) => "last set".to_string(),
@@ -25,7 +25,7 @@ pub(super) fn outer(contact: Option<CompareContact>) -> String {
     }
 }
 
-/// How a method ended, in a word; what takes more goes to `note`.
+/// The end of a run in a word; longer messages go to `note`.
 pub(super) fn outcome(
     reason: &str,
     rescue: Option<&str>,
@@ -44,7 +44,7 @@ pub(super) fn outcome(
     }
 }
 
-/// A count for programs; empty where it is not known.
+/// A count for programs; empty if unknown.
 pub(super) fn counted(n: Option<usize>) -> String {
     n.map(|n| n.to_string()).unwrap_or_default()
 }

@@ -48,13 +48,13 @@ pub fn solve(r: &SolveReport) -> String {
             ),
         ),
     ];
-    // A plane scalar problem is what the program began with: it goes without saying.
+    // The default, a scalar problem in the plane, is not mentioned.
     if r.dimension == 3 || r.components > 1 {
         lines.insert(1, ("physics", r.form.clone()));
     }
     let inner = if r.outer_iterations > 1 {
         let each: Vec<String> = r.iterations.inner.iter().map(usize::to_string).collect();
-        // The table of outer steps has them where there are many.
+        // For many outer steps, their table has the iterations.
         let each = if each.len() > 12 {
             String::new()
         } else {
@@ -151,7 +151,7 @@ pub(crate) fn ranks(n: usize) -> String {
     }
 }
 
-/// What an iteration sends, in a line.
+/// One line on the messages of an iteration.
 fn communication(c: &Communication) -> String {
     let (messages, bytes) = (c.messages_per_iteration, c.bytes_per_iteration);
     format!(
@@ -200,7 +200,7 @@ pub fn table1(rows: &[Table1Row]) -> Table {
     table
 }
 
-/// Table 1 for programs: one line per size, full precision, empty cells where nothing is known.
+/// Table 1 for programs: one line per size, full precision, empty cells for unknown values.
 pub fn table1_csv(rows: &[Table1Row]) -> Table {
     const NAMES: [&str; 10] = [
         "multipliers",
@@ -248,7 +248,7 @@ pub fn table1_csv(rows: &[Table1Row]) -> Table {
     table
 }
 
-/// The shortest text that reads back as the same number; empty when it is not known or not finite.
+/// The shortest text that reads back as the same number; empty if the number is unknown or not finite.
 pub(crate) fn exactly(x: Option<f64>) -> String {
     match x {
         Some(x) if x.is_finite() && (x == 0.0 || (1e-4..1e15).contains(&x.abs())) => format!("{x}"),

@@ -5,16 +5,16 @@ use crate::Result;
 use std::fmt;
 use std::path::Path;
 
-/// Which side of a column the text leans on.
+/// Alignment of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// Words.
+    /// For words.
     Left,
-    /// Numbers.
+    /// For numbers.
     Right,
 }
 
-/// A table of texts. Rules may be put between rows; they are for terminals only.
+/// A table of texts. Rules may be put between rows; only terminals show them.
 #[derive(Debug, Clone)]
 pub struct Table {
     header: Vec<String>,

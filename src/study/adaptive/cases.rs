@@ -1,4 +1,4 @@
-//! The cases: four problems, the fields of coefficients, tied and in contact, as a user would write them.
+//! The cases: four problems with several coefficient fields, tied and in contact, in the format of scene files.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use super::fields::Field;
 use crate::report::output;
 use crate::Result;
 
-/// What is solved.
+/// The equations and the dimension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Problem {
     /// −∇·(ρ∇u) = f in the plane.
@@ -45,11 +45,11 @@ impl Problem {
 pub struct Case {
     /// Its name, a word.
     pub name: String,
-    /// What it is.
+    /// A description.
     pub title: String,
     /// The scene; the coefficients are in the file NAME.txt beside it.
     pub text: String,
-    /// What is in that file.
+    /// The content of that file.
     pub coefficients: String,
     /// Number of bodies.
     pub bodies: usize,
@@ -76,14 +76,14 @@ struct Size {
     elements: usize,
 }
 
-/// Which meshes.
+/// The sizes of the meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Meshes {
-    /// As small as they may be.
+    /// The smallest possible meshes.
     Quick,
     /// Small enough for exact spectra.
     Small,
-    /// With finer elements, for seconds.
+    /// Finer elements, for timing.
     Fine,
 }
 
@@ -105,7 +105,7 @@ fn size(problem: Problem, meshes: Meshes) -> Size {
     }
 }
 
-/// The fields of tied bodies; constant coefficients are the control.
+/// The coefficient fields of tied bodies; the constant one is the control.
 const TIED: [Field; 7] = [
     Field::Constant,
     Field::Subdomains(3.0),
@@ -116,7 +116,7 @@ const TIED: [Field; 7] = [
     Field::Inclusions,
 ];
 
-/// The fields of bodies in contact, in the plane.
+/// The coefficient fields of bodies in contact, in the plane.
 const CONTACT: [Field; 6] = [
     Field::Constant,
     Field::Subdomains(3.0),
@@ -126,7 +126,7 @@ const CONTACT: [Field; 6] = [
     Field::Inclusions,
 ];
 
-/// All cases; of the quick meshes some.
+/// All cases; of the quick meshes a selection.
 pub fn cases(meshes: Meshes) -> Vec<Case> {
     let mut out = Vec::new();
     for problem in Problem::ALL {
@@ -182,7 +182,7 @@ fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size)
         across(size.subdomains),
         across(size.subdomains * size.elements),
     );
-    // Every problem and kind of field has numbers of its own.
+    // Every combination of problem and field has random numbers of its own.
     let seed = name
         .bytes()
         .fold(1u64, |a, b| a.wrapping_mul(31).wrapping_add(u64::from(b)));
@@ -239,7 +239,8 @@ fn pulled(problem: Problem) -> &'static str {
     }
 }
 
-/// Two rows of bodies: the upper one is pressed onto the lower one on the left, where it is heavier, and lifted on the right.
+/// Two rows of bodies in contact: the upper row is pressed onto the lower one on the left, where its load is heavier,
+/// and lifted on the right.
 fn pressed(problem: Problem) -> &'static str {
     match problem.elastic() {
         false => "dirichlet = [\"bottom\"]\nload = \"if(x < 0.7, -2, 1)\"\n",
@@ -250,7 +251,7 @@ fn pressed(problem: Problem) -> &'static str {
     }
 }
 
-/// The numbers of a file, a line for each row of cells; read back they are the same.
+/// The numbers as text, a line for each row of cells; read back they are the same.
 fn lines(values: &[f64], columns: usize) -> String {
     let line = |row: &[f64]| {
         let words: Vec<String> = row.iter().map(|v| format!("{v:e}")).collect();

@@ -30,21 +30,22 @@ pub enum Field {
     Constant,
     /// 10^x with x uniform in [−p, p], one number for every subdomain.
     Subdomains(f64),
-    /// The same, one number for every element.
+    /// 10^x with x uniform in [−p, p], one number for every element.
     Elements(f64),
     /// 10⁶ in straight channels along x, one element thick, through subdomains and bodies.
     Channels,
-    /// 10⁶ in random boxes of one to five elements, where they happen to fall.
+    /// 10⁶ in boxes of one to five elements at random positions.
     Inclusions,
 }
 
 /// The coefficient of channels and inclusions, in a matrix of 1.
 pub const STIFF: f64 = 1e6;
 
-/// Every so many elements there is a channel; no divisor of the elements of a body, so that subdomains are met in different places.
+/// Distance of channels in elements. It does not divide the number of elements of a body, so that channels cross
+/// subdomains in different places.
 const SPACING: usize = 5;
 
-/// The part of the volume that inclusions take at least.
+/// Inclusions take at least this part of the volume.
 const FILLED: f64 = 0.2;
 
 impl Field {
@@ -61,7 +62,7 @@ impl Field {
         }
     }
 
-    /// What it is.
+    /// A description.
     pub fn title(self) -> String {
         match self {
             Field::Constant => "constant coefficient".into(),
@@ -72,7 +73,7 @@ impl Field {
         }
     }
 
-    /// The cells of the grid, given `subdomains` and `elements` of the whole domain in each direction.
+    /// The cells of the grid, for these numbers of subdomains and elements of the whole domain in each direction.
     pub fn cells(self, subdomains: [usize; 3], elements: [usize; 3]) -> [usize; 3] {
         match self {
             Field::Constant => [1; 3],
@@ -93,7 +94,7 @@ impl Field {
             Field::Channels => {
                 let stiff = |i: usize| {
                     let (y, z) = (i / cells[0] % cells[1], i / cells[0] / cells[1]);
-                    // In space bars, else they would be plates that cut the domain.
+                    // In space channels are bars; plates would cut the domain.
                     y % SPACING == 2 && (cells[2] == 1 || z % 3 == 1)
                 };
                 (0..n).map(|i| if stiff(i) { STIFF } else { 1.0 }).collect()

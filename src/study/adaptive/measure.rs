@@ -1,4 +1,4 @@
-//! One case, measured.
+//! The measurements of one case.
 
 use std::path::Path;
 use std::time::Instant;
@@ -16,14 +16,14 @@ use crate::scene::{distribution, Numbering, Scene};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, FetiFeti, Result, Solution};
 
-/// Residuals beyond [`RTOL`], until rounding stops the iteration.
+/// Relative residuals below [`RTOL`]; rounding stops the iteration somewhere on the way.
 const TIGHTER: [f64; 4] = [1e-10, 1e-12, 1e-14, 1e-15];
 
-/// Without deflation, κ above this is CG's estimate: SLEPc takes minutes for the same digits.
+/// Without deflation, a κ above this is only CG's estimate: SLEPc takes minutes for the same digits.
 const ESTIMATED: f64 = 1e4;
 
-/// Options of PCBDDC besides the threshold: adaptive constraints are made for deluxe scaling, and what has not converged after so many
-/// iterations will not.
+/// Options of PCBDDC besides the threshold. Adaptive constraints need deluxe scaling; an iteration that has not
+/// converged after this many steps will not converge.
 const ADAPTIVE: [&str; 4] = [
     "-bddc_pc_bddc_use_deluxe_scaling",
     "true",
@@ -31,7 +31,7 @@ const ADAPTIVE: [&str; 4] = [
     "500",
 ];
 
-/// A solve and what it took.
+/// A solve and its cost.
 struct Solved {
     solver: FetiFeti,
     solution: Solution,
@@ -41,7 +41,7 @@ struct Solved {
 /// Measures one case; its files go into `dir`.
 ///
 /// # Errors
-/// Those of the scene, of the disk and of PETSc. A method that fails is none.
+/// Those of the scene, of the disk and of PETSc. A method that fails is no error.
 pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Record> {
     let file = case.write(dir)?;
     let scene = distribution::load(session, &file)?;
@@ -78,7 +78,7 @@ pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result
         record.mumps = court.error(&mumps.values(&problem.local)?)?;
     }
     ours(session, &problem, &court, effort, &mut record)?;
-    // In contact it solves the equations of a set that is known.
+    // In contact, PCBDDC solves the equations of a known active set.
     let known = mumps.is_some() || !scene.has_contact();
     if effort.patience > 0 && known {
         let list = |m: &Reference| m.problem.rows.list(&m.found.active);
@@ -94,8 +94,8 @@ pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result
     Ok(record)
 }
 
-/// What MUMPS finds with iterative refinement in working precision. Where the active set around it does not settle and `known` is one that
-/// is known to be right, its equations are solved.
+/// The solution of MUMPS with iterative refinement in working precision. If its active-set loop does not settle and
+/// `known` is given, the equations of that correct set are solved.
 fn mumps<'a>(
     session: &Session,
     scene: &Scene,
@@ -110,7 +110,7 @@ fn mumps<'a>(
     }
 }
 
-/// Without and with deflation, in turns, so that what else the machine does meets all of them.
+/// Runs without and with deflation in turns, so that other load on the machine affects all of them.
 fn ours(
     session: &Session,
     problem: &Substructures,
@@ -126,7 +126,7 @@ fn ours(
         for (k, &way) in ways.iter().enumerate() {
             let solved = match solve(session, problem, way) {
                 Ok(solved) => solved,
-                // What one way cannot do is said in its row.
+                // If one variant fails, its row says why.
                 Err(e @ Error::Environment(_)) => return Err(e),
                 Err(e) => {
                     if round == 0 {
@@ -191,7 +191,7 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
     record.multipliers = facts.multipliers_local + facts.multipliers_global;
     let small = |s: &crate::feti::Spectrum| s.kappa() < ESTIMATED;
     let exact = match record.multipliers <= effort.plain && solution.estimate.iter().all(small) {
-        // An eigensolver that fails takes nothing away from the solution.
+        // If the eigensolver fails, the solution remains valid.
         true => solver.plain_spectrum().ok().flatten(),
         false => None,
     };
@@ -209,7 +209,7 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
 fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
     let (solver, solution) = (&solved.solver, &solved.solution);
     let searched = solver.deflated().is_some();
-    // As -fetifeti_spectrum does it: what the iterations have not shown is searched for, too.
+    // As with -fetifeti_spectrum: vectors that the iterations have not called for are searched for as well.
     let spectrum = solver.spectrum().ok().flatten();
     let cost = solver.deflated();
     let vectors = cost.as_ref().map_or(&[][..], |c| &c.vectors);
@@ -230,7 +230,8 @@ fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
     Ok(run)
 }
 
-/// The smallest error on the way to the smallest residual, the first one that is not reached included: as of MUMPS, what counts is the solution.
+/// The smallest error over ever smaller residuals, up to and including the first residual that is not reached: as for
+/// MUMPS, only the solution counts.
 fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Option<f64>> {
     let mut least = first;
     for rtol in TIGHTER {
@@ -247,7 +248,7 @@ fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Op
     Ok(least)
 }
 
-/// Seconds of a case on finer elements, without and with deflation in turns; its files go into `dir`/fine.
+/// Seconds of a case on finer elements, without and with deflation in turns. Files go into `dir`/fine.
 ///
 /// # Errors
 /// Those of the scene, of the disk and of PETSc.
@@ -297,7 +298,7 @@ pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Resul
     Ok(out)
 }
 
-/// PCBDDC with one part for each body: its matrices are then as large as ours, and the machine is not asked for hundreds of ranks.
+/// PCBDDC with one part for each body: its matrices are then as large as ours, and it needs no hundreds of ranks.
 fn bddc(
     file: &Path,
     scene: &Scene,
@@ -327,21 +328,22 @@ fn bddc(
     })
 }
 
-/// Who says how far a solution is from the direct one.
+/// Measures the distance of solutions from the direct one.
 struct Court<'a> {
     direct: Option<&'a Reference<'a>>,
     parts: &'a [Subdomain],
 }
 
 impl Court<'_> {
-    /// The distance in the energy norm, relative. Copies that differ count with the weight of their coefficients, as in `compare`.
+    /// The relative distance in the energy norm. Copies that differ are averaged with the weight of their coefficients,
+    /// as in `compare`.
     fn error(&self, u: &[Vec<f64>]) -> Result<Option<f64>> {
         let distance = |d: &Reference| d.distance(self.parts, u, Copies::ByCoefficient);
         Ok(self.direct.map(distance).transpose()?.map(|d| d[0]))
     }
 }
 
-/// What the last digit of every displacement is worth in the energy norm.
+/// The energy norm of an error of one unit in the last place of every displacement.
 fn last_place(direct: &Reference, scene: &Scene, parts: &[Subdomain]) -> Result<f64> {
     let numbering = Numbering::new(scene);
     let mut d = direct.values(parts)?;
@@ -355,7 +357,7 @@ fn last_place(direct: &Reference, scene: &Scene, parts: &[Subdomain]) -> Result<
     direct.size(parts, &d, Copies::Alike)
 }
 
-/// The middle one; 0 of none.
+/// The median; 0 of no values.
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)

@@ -1,10 +1,11 @@
-//! `study adaptive`: condition numbers that the user chooses, on coefficients that jump inside bodies.
+//! `study adaptive`: condition numbers below a bound that the user chooses, on coefficients that jump inside bodies.
 //!
-//! Every case is a scene in the text form with its coefficients in a file. It is solved without deflation and with each τ, to the same residual; exact spectra are
-//! SLEPc's. Errors are distances from a direct solution with residuals in twice the working precision, and are held against what MUMPS attains
-//! on the same problem. PCBDDC with its own adaptive constraints runs on the same scenes.
+//! Every case is a scene file with its coefficients in a second file. It is solved without deflation and with each τ,
+//! to the same residual; exact spectra are SLEPc's. Errors are distances from a direct solution with residuals in twice
+//! the working precision, and are compared with the error of MUMPS on the same problem. PCBDDC with its own adaptive
+//! constraints runs on the same scenes.
 //!
-//! Nothing here makes a case pass: a bound that is missed is what the study is for, and says which one it was.
+//! Cases are not tuned to pass: the purpose of the study is to find bounds that are missed, and the result names them.
 
 mod cases;
 mod fields;
@@ -25,19 +26,19 @@ use crate::Result;
 /// Relative residual that is asked of all methods.
 pub const RTOL: f64 = 1e-8;
 
-/// The bounds that are asked for.
+/// The values of τ.
 const TAUS: [f64; 3] = [5.0, 10.0, 50.0];
 
 /// τ of the runs on finer elements.
 const USUAL: f64 = 10.0;
 
-/// κ may be this many times τ.
+/// κ may be at most this many times τ.
 pub const OVER: f64 = 1.5;
 
-/// The smallest eigenvalue may be this much below one.
+/// The smallest eigenvalue may be below one by at most this.
 pub const BELOW_ONE: f64 = 1e-6;
 
-/// Our attainable error may be this many times that of MUMPS.
+/// Our attainable error may be at most this many times that of MUMPS.
 pub const WORSE: f64 = 10.0;
 
 /// The study.
@@ -58,7 +59,7 @@ pub struct Report {
 pub struct Record {
     /// Its name.
     pub case: String,
-    /// What it is.
+    /// A description.
     pub title: String,
     /// Unknowns.
     pub dofs: usize,
@@ -70,11 +71,11 @@ pub struct Record {
     pub multipliers: usize,
     /// Without deflation.
     pub plain: Plain,
-    /// What the direct solution that errors refer to has left; `None` where there is none.
+    /// Relative residual of the direct solution that errors refer to; `None` where there is none.
     pub reference: Option<f64>,
     /// Error of MUMPS with iterative refinement.
     pub mumps: Option<f64>,
-    /// Error of the direct solution with every entry off by one unit in its last place, up or down.
+    /// Error of the direct solution if every entry is wrong by one unit in its last place, up or down.
     pub last_place: Option<f64>,
     /// With deflation, by τ.
     pub runs: Vec<Run>,
@@ -89,19 +90,19 @@ pub struct Fine {
     pub dofs: usize,
     /// CG's estimate of κ without deflation.
     pub estimate: Option<f64>,
-    /// Iterations without.
+    /// Iterations without deflation.
     pub plain_iterations: usize,
-    /// Seconds of set-up and solve without.
+    /// Seconds of set-up and solve without deflation.
     pub plain_seconds: f64,
-    /// Vectors.
+    /// Number of deflation vectors.
     pub vectors: usize,
-    /// Iterations with, those before the search included.
+    /// Iterations with deflation, including those before the search.
     pub iterations: usize,
-    /// Seconds of set-up, search and solve.
+    /// Seconds of set-up, search and solve with deflation.
     pub seconds: f64,
-    /// Of which for the search.
+    /// The part of `seconds` for the search.
     pub search: f64,
-    /// What did not converge.
+    /// A message if something did not converge.
     pub message: Option<String>,
 }
 
@@ -112,13 +113,13 @@ pub struct Plain {
     pub exact: Option<f64>,
     /// CG's estimate, a lower bound.
     pub estimate: Option<f64>,
-    /// Krylov iterations in all.
+    /// Krylov iterations in total.
     pub iterations: usize,
     /// Seconds of set-up and solve.
     pub seconds: f64,
     /// Error at [`RTOL`].
     pub error: Option<f64>,
-    /// Why it did not converge, where it did not.
+    /// Why the run did not converge; `None` if it did.
     pub message: Option<String>,
 }
 
@@ -136,31 +137,31 @@ pub struct Run {
     pub tau: f64,
     /// Whether the first iterations of the solve called for a search.
     pub searched: bool,
-    /// Exact κ with what is deflated, what is searched for after the solve included.
+    /// Exact κ with all deflation vectors, including those that are searched for after the solve.
     pub kappa: Option<f64>,
     /// The smallest eigenvalue.
     pub lambda_min: Option<f64>,
-    /// Vectors of all bodies and those that bodies share.
+    /// Number of vectors: those of all bodies, and those that bodies share.
     pub vectors: usize,
-    /// Vectors of the body that has most.
+    /// The largest number of vectors of a body.
     pub most: usize,
-    /// Bodies in which the search ended early.
+    /// Number of bodies in which the search ended early.
     pub capped: usize,
     /// Seconds of the search and the matrices of the deflation.
     pub search: f64,
-    /// Krylov iterations in all, those before the search included.
+    /// Krylov iterations in total, including those before the search.
     pub iterations: usize,
     /// Seconds of set-up, search and solve.
     pub seconds: f64,
     /// Error at [`RTOL`].
     pub error: Option<f64>,
-    /// Error when the iteration goes on until rounding stops it.
+    /// Error if the iteration continues until rounding stops it.
     pub attainable: Option<f64>,
-    /// Why it did not converge, where it did not.
+    /// Why the run did not converge; `None` if it did.
     pub message: Option<String>,
     /// PCBDDC with the same threshold.
     pub bddc: Option<Bddc>,
-    /// What does not hold; empty: all is well.
+    /// The checks that fail; empty if all hold.
     pub fails: Vec<String>,
 }
 
@@ -175,12 +176,12 @@ pub struct Bddc {
     pub iterations: Option<usize>,
     /// Seconds of set-up and solve.
     pub seconds: f64,
-    /// Why there is no result, or that its residual was not reached.
+    /// Why there is no result, or a message if the residual was not reached.
     pub message: Option<String>,
 }
 
 impl Run {
-    /// What of the promises of deflation does not hold, given the error of MUMPS.
+    /// The guarantees of deflation that are violated, given the error of MUMPS.
     pub fn judge(&self, reference: bool, mumps: Option<f64>) -> Vec<String> {
         let mut fails = Vec::new();
         if let Some(message) = &self.message {
@@ -209,25 +210,25 @@ impl Run {
 }
 
 impl Record {
-    /// The runs in which something does not hold.
+    /// The runs with a failed check.
     pub fn failing(&self) -> impl Iterator<Item = &Run> {
         self.runs.iter().filter(|r| !r.fails.is_empty())
     }
 }
 
-/// What is measured, and how often.
+/// The parts of the study that are run, and how often.
 #[derive(Debug, Clone, Copy)]
 struct Effort {
     taus: &'static [f64],
     repeats: usize,
-    /// Seconds that PCBDDC may take; 0: it is not run.
+    /// Time limit of PCBDDC in seconds; 0: it is not run.
     patience: u64,
-    /// Exact spectra without deflation up to so many multipliers.
+    /// Exact spectra without deflation are computed up to this number of multipliers.
     plain: usize,
 }
 
-/// Runs all cases, telling `progress` before each. Scenes and their coefficients are written into `dir`, so that
-/// every case can be solved again by itself.
+/// Runs all cases, and calls `progress` before each. Scenes and their coefficients are written into `dir`, so that
+/// every case can be solved again separately.
 ///
 /// # Errors
 /// [`Error::Input`](crate::Error::Input) on several ranks; those of the disk; PETSc's own errors.

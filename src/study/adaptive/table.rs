@@ -122,7 +122,7 @@ pub fn fine(report: &Report) -> Table {
     table
 }
 
-/// Condition numbers: fixed while they are small.
+/// A condition number; in fixed notation while it is small.
 pub(super) fn number(x: Option<f64>) -> String {
     match x {
         Some(v) if v < 1e4 => fixed(x, 2),
@@ -130,7 +130,7 @@ pub(super) fn number(x: Option<f64>) -> String {
     }
 }
 
-/// The table for terminals, with what could not be done.
+/// The table for terminals, with the messages of runs that failed.
 pub fn text(report: &Report) -> String {
     let mut out = format!(
         "Adaptive deflation: rtol {:e}, seconds are medians of {} runs; errors in the energy norm against a direct solution; attainable: the \

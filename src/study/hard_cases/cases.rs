@@ -1,11 +1,11 @@
-//! The cases, as a user would write them.
+//! The cases, in the format of scene files.
 
 /// One case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
     /// Its name, a word.
     pub name: &'static str,
-    /// What is hard about it.
+    /// The difficulty of the case.
     pub title: &'static str,
     /// The scene.
     pub text: String,
@@ -19,7 +19,7 @@ struct Grid<'a> {
     subdomains: usize,
     /// Elements across a subdomain.
     elements: usize,
-    /// The other keys of the grid, and what comes after it.
+    /// The other keys of the grid, and the rest of the scene.
     rest: &'a str,
 }
 
@@ -42,7 +42,7 @@ impl Grid<'_> {
     }
 }
 
-/// All cases; `quick`: the same difficulties on smaller meshes.
+/// All cases; with `quick` on smaller meshes.
 pub fn cases(quick: bool) -> Vec<Case> {
     let mut out = coefficients();
     out.extend(shapes(quick));
@@ -58,9 +58,9 @@ fn case(name: &'static str, title: &'static str, grid: Grid) -> Case {
     }
 }
 
-/// Stiffness and near-incompressibility.
+/// Cases with large jumps of stiffness, and near-incompressible ones.
 fn coefficients() -> Vec<Case> {
-    // A load that no symmetry makes easy.
+    // A load without symmetry: symmetry would make the problem easy.
     const PULL: &str = "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\"]\n";
     const PULL3: &str =
         "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\", \"z - 0.3*x\"]\n";
@@ -157,7 +157,7 @@ fn coefficients() -> Vec<Case> {
     out
 }
 
-/// Flat elements, many subdomains, fine subdomains.
+/// Cases with flat elements, many subdomains, or fine subdomains.
 fn shapes(quick: bool) -> Vec<Case> {
     let mut out = Vec::new();
     let flat = "size = [1, 0.001]\ndirichlet = [\"left\"]\nload = \"1 + x\"\n";
@@ -247,7 +247,7 @@ fn shapes(quick: bool) -> Vec<Case> {
     out
 }
 
-/// Two blocks, one on the other: keys of the lower and the upper one, and what is between them.
+/// Two blocks, one on the other: the keys of the scene, of the lower and the upper block, and of the interface.
 fn blocks(head: &str, lower: &str, upper: &str, rest: &str) -> String {
     let body = |name: &str, y: f64, keys: &str| {
         format!(
@@ -261,7 +261,7 @@ fn blocks(head: &str, lower: &str, upper: &str, rest: &str) -> String {
     )
 }
 
-/// Contacts that are too few, too loose, too deep, or none.
+/// Cases in which contacts are too few, too loose, too deep, or absent.
 fn contacts() -> Vec<Case> {
     const SLIDES: &str = "dirichlet = { left = { x = 0 }, right = { x = 0 } }\n";
     const FIXED: &str = "dirichlet = [\"bottom\"]\n";

@@ -1,7 +1,8 @@
-//! `study hard-cases`: problems that are hard for the method, each against a direct solution that shares only matrices with it.
+//! `study hard-cases`: problems that are hard for the method, each compared with a direct solution that shares only
+//! matrices with it.
 //!
-//! What counts is that no wrong answer is called a solution. A case ends as `solved`, as `not converged` or `refused` where the program
-//! says so itself, or as `WRONG`.
+//! The purpose is to show that no wrong answer is called a solution. A case ends as `solved`; as `not converged` or
+//! `refused`, where the program says so itself; or as `WRONG`.
 
 mod cases;
 
@@ -22,10 +23,11 @@ use crate::{Error, Result};
 /// Relative residual that is asked of the method.
 pub const RTOL: f64 = 1e-8;
 
-/// What an answer may be away from the direct solution, relative to it, in the energy norm and in the largest displacement.
+/// Largest admissible distance of an answer from the direct solution, relative to it, in the energy norm and in the
+/// largest displacement.
 pub const LIMIT: f64 = 1e-3;
 
-/// Exact spectra up to so many multipliers; in the quick study.
+/// Exact spectra are computed up to this number of multipliers; the second number is for the quick study.
 const SPECTRUM: [usize; 2] = [1200, 400];
 
 /// How a case ended.
@@ -39,12 +41,12 @@ pub enum Verdict {
     NotConverged,
     /// The program refuses the scene with a sentence, and the direct solver finds no solution either.
     Refused,
-    /// Converged, but not to the solution; or a scene is refused that has one.
+    /// Converged, but not to the solution; or a solvable scene is refused.
     Wrong,
 }
 
 impl Verdict {
-    /// For tables.
+    /// The word for tables.
     pub fn name(self) -> &'static str {
         match self {
             Verdict::Solved => "solved",
@@ -73,7 +75,7 @@ pub struct Report {
 pub struct Record {
     /// Its name.
     pub case: String,
-    /// What is hard about it.
+    /// The difficulty of the case.
     pub title: String,
     /// Unknowns.
     pub dofs: usize,
@@ -83,9 +85,9 @@ pub struct Record {
     pub multipliers: usize,
     /// Steps of the contact loop; 0 without inequalities.
     pub outer_iterations: usize,
-    /// Krylov iterations in all.
+    /// Krylov iterations in total.
     pub iterations: usize,
-    /// κ with the rows that hold at the end.
+    /// κ with the active rows at the end.
     pub condition: json::Condition,
     /// The certificate of the method.
     pub kkt: Option<json::Kkt>,
@@ -93,13 +95,13 @@ pub struct Record {
     pub error_energy: Option<f64>,
     /// The largest difference of a displacement, over the largest displacement.
     pub error_max: Option<f64>,
-    /// Rows that hold, and in the direct solution.
+    /// Number of active rows, in our solution and in the direct one.
     pub active: [Option<usize>; 2],
-    /// The largest residual of the direct solution; `None` where it has none.
+    /// The largest residual of the direct solution; `None` where there is no direct solution.
     pub reference: Option<f64>,
-    /// How it ended.
+    /// The verdict.
     pub verdict: Verdict,
-    /// What the program says, where it did not solve the case.
+    /// The program's message, where it did not solve the case.
     pub message: Option<String>,
     /// Seconds of assembly, set-up and solve.
     pub seconds: f64,
@@ -112,7 +114,7 @@ impl Report {
     }
 }
 
-/// Runs all cases, telling `progress` before each. Collective.
+/// Runs all cases, and calls `progress` before each. Collective.
 ///
 /// # Errors
 /// A scene that cannot be read, and PETSc's own errors.
@@ -135,7 +137,7 @@ pub fn run(
     })
 }
 
-/// Solves one case and holds it against the direct solution; exact spectra up to `spectrum` multipliers. Collective.
+/// Solves one case and compares it with the direct solution; exact spectra up to `spectrum` multipliers. Collective.
 ///
 /// # Errors
 /// As [`run`].
@@ -155,7 +157,7 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
     };
     let solved = match Solved::new(session, &file, &case.text, &settings) {
         Ok(solved) => solved,
-        // The scene has been read: what is refused now is said not to have a solution.
+        // The scene has been read: a refusal from here on says that it has no solution.
         Err(e @ (Error::Input(_) | Error::Unfit(_) | Error::NotConverged(_))) => {
             record.message = Some(e.to_string());
             let exists = Reference::certified(session, &scene, &Layout::new(&scene)).is_ok();
@@ -172,7 +174,7 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
     Ok(record)
 }
 
-/// What the method says of itself, then what the direct solution says.
+/// Fills the record: first with the method's own report, then with the comparison.
 fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -> Result<()> {
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
@@ -182,7 +184,7 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
     record.iterations = solution.iterations;
     record.seconds = solved.seconds;
     if record.multipliers <= exact {
-        // An eigensolver that fails takes nothing away from the solution.
+        // If the eigensolver fails, the solution remains valid.
         record.condition.exact = solver.spectrum().ok().flatten().map(spectrum);
     }
     record.condition.estimate = solution.estimate.map(spectrum);
@@ -291,7 +293,7 @@ fn scientific_or_fixed(x: Option<f64>) -> String {
     }
 }
 
-/// The table for terminals, with what every case is and what the program said.
+/// The table for terminals, with descriptions of the cases and messages of the program.
 pub fn text(report: &Report) -> String {
     let mut out = format!(
         "Hard cases: rtol {:e}; errors against a direct solution; set: rows that hold, ours/direct\n{}\n",

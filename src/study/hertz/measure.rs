@@ -10,7 +10,7 @@ use crate::substructures::{BodyNode, SolvedRow};
 /// The pressure at a node that may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pressure {
-    /// Signed distance from the middle; of a ball the radius.
+    /// Signed distance from the middle; for a ball, the distance from the axis.
     pub x: f64,
     /// Multiplier over nodal length or area.
     pub value: f64,
@@ -20,23 +20,25 @@ pub struct Pressure {
     pub active: bool,
 }
 
-/// What a solution says about the contact zone.
+/// The measured properties of the contact zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {
     /// Sum of the multipliers: the force of the modelled part.
     pub force: f64,
-    /// Where p² = p0² (1 − x²/a²), fitted to the pressures, ends, and its p0.
+    /// The half-width a and the peak p0 of the curve p² = p0² (1 − x²/a²) fitted to the pressures.
     pub fit: Contact,
-    /// The last node that touches, and the largest nodal pressure.
+    /// The position of the last node that touches, and the largest nodal pressure.
     pub nodal: Contact,
     /// Nodes that touch.
     pub active: usize,
 }
 
-/// The nodal pressures: rows must be those of one contact between facing sides, or of one plane obstacle, around the origin.
+/// The nodal pressures. The rows must be those of one contact between facing sides, or of one plane obstacle, around
+/// the origin.
 pub fn pressures(scene: &Scene, rows: &[SolvedRow]) -> Vec<Pressure> {
     let mut normals: HashMap<(usize, usize), HashMap<usize, [f64; 3]>> = HashMap::new();
-    // ∫ N_a over the side of the row's first member, projected along the row: Hertz's pressure acts on the tangent plane.
+    // The integral of N_a over the side of the row's first member, projected along the row: Hertz's pressure acts on
+    // the tangent plane.
     let mut projected_area = |row: &SolvedRow| {
         let BodyNode { body, node } = row.label.members[0]?;
         let side = scene.side_of(row.label.source, body)?;
@@ -72,7 +74,7 @@ pub fn measure(rows: &[SolvedRow], pressures: &[Pressure]) -> Option<Measured> {
     let active: Vec<&Pressure> = pressures.iter().filter(|p| p.active).collect();
     let last = active.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
     let peak = active.iter().map(|p| p.value).fold(0.0, f64::max);
-    // The nodes at the edge carry the pressure of half a neighbourhood: they say nothing about the curve.
+    // Nodes at the edge carry the pressure of half a neighbourhood; they are left out of the fit.
     let inner = active.iter().filter(|p| p.x.abs() < 0.999 * last);
     // Weighted least squares of p² = b − c x².
     let mut sums = [0.0; 5];
@@ -97,7 +99,7 @@ pub fn measure(rows: &[SolvedRow], pressures: &[Pressure]) -> Option<Measured> {
     })
 }
 
-/// The theory for the measured force; `share`: the whole force over the modelled one.
+/// The theory for the measured force; `share`: the whole force over that of the modelled part.
 pub fn theory(pair: &Pair, measured: &Measured, share: f64) -> Contact {
     pair.under(share * measured.force)
 }

@@ -1,7 +1,8 @@
-//! `study hertz`: half-width and peak pressure of frictionless contact against Hertz's theory, mesh by mesh.
+//! `study hertz`: half-width and peak pressure of frictionless contact compared with Hertz's theory, mesh by mesh.
 //!
-//! The theory gets the force that the multipliers add up to. It speaks of half-spaces and parabolas, so that displacements are chosen
-//! for contact zones of 5 to 10 % of the radius: the rest is of the order a²/R².
+//! The theory is evaluated for the sum of the multipliers as force. It holds for half-spaces and parabolas, so that
+//! displacements are chosen for contact zones of 5 to 10 % of the radius: the remaining difference is of the order
+//! a²/R².
 
 mod measure;
 mod picture;
@@ -34,7 +35,7 @@ pub struct Report {
 pub struct CaseReport {
     /// `cylinder`, `two_cylinders` or `sphere`.
     pub case: String,
-    /// What it is.
+    /// A description.
     pub title: String,
     /// Order of convergence of the pressures, see [`CaseReport::order`].
     pub order: f64,
@@ -51,7 +52,7 @@ pub struct Mesh {
     pub dofs: usize,
     /// Nodes that touch.
     pub active: usize,
-    /// Force of both (all four) symmetric parts.
+    /// Force on the whole body: that on both (all four) symmetric parts together.
     pub force: f64,
     /// Half-width a.
     pub half_width: Quantity,
@@ -63,7 +64,7 @@ pub struct Mesh {
     pub outer_iterations: usize,
     /// Krylov iterations of all steps.
     pub iterations: usize,
-    /// Stationarity, feasibility, complementarity: the largest.
+    /// The largest residual of stationarity, feasibility and complementarity.
     pub kkt: f64,
     /// Whether the solver said that it converged.
     pub converged: bool,
@@ -73,14 +74,14 @@ pub struct Mesh {
     pub pressure: Vec<Node>,
 }
 
-/// A number of the theory, measured in two ways.
+/// A quantity of the theory, measured in two ways.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Quantity {
     /// By Hertz's formula.
     pub theory: f64,
     /// By the fit of p² = p0² (1 − x²/a²) to the nodal pressures.
     pub fit: f64,
-    /// Of a single node: the last that touches, the largest pressure.
+    /// From single nodes: the position of the last node that touches, or the largest pressure.
     pub node: f64,
     /// fit/theory − 1.
     pub error: f64,
@@ -118,7 +119,7 @@ pub fn meshes(case: Case, quick: bool) -> &'static [usize] {
     }
 }
 
-/// Runs the study, telling `progress` before every mesh. Collective.
+/// Runs the study, and calls `progress` before every mesh. Collective.
 ///
 /// # Errors
 /// Those of the method; [`Error::NotConverged`] where a solution cannot be measured.
@@ -216,9 +217,10 @@ impl CaseReport {
         mesh.half_width.error.abs().max(mesh.peak.error.abs())
     }
 
-    /// The order in which the pressures come nearer to the theory: minus the slope of log(root mean square) over log(elements), by least
-    /// squares. An element at the edge of the contact zone sees the root as a straight line: about 1 is what to expect, and by how
-    /// much one mesh is better than another depends on where their nodes happen to lie.
+    /// The order of convergence of the pressures to the theory: minus the slope of log(root mean square) over
+    /// log(elements), by least squares. Within one element at the edge of the contact zone the root is approximated by
+    /// a straight line, so that an order of about 1 is to be expected. The gain from one mesh to the next depends on
+    /// where their nodes happen to lie.
     pub fn order(meshes: &[Mesh]) -> f64 {
         let n = meshes.len() as f64;
         let logs = meshes
@@ -234,8 +236,8 @@ impl CaseReport {
         -(xy - x * y) / (xx - x * x)
     }
 
-    /// Whether every mesh converged, the pressures come nearer to the theory, and half-width and peak are within 2 % of it on the finest
-    /// mesh.
+    /// Whether every mesh converged, the pressures converge to the theory, and half-width and peak are within 2 % of it
+    /// on the finest mesh.
     pub fn holds(&self) -> bool {
         self.meshes.iter().all(|m| m.converged)
             && self.order > 0.7

@@ -1,4 +1,4 @@
-//! What the study shows: the table, the nodal pressures as CSV, and their picture against the theory.
+//! The results of the study: the table, the nodal pressures as CSV, and their picture with the theory.
 
 use super::{CaseReport, Contact, Quantity, Report};
 use crate::report::drawing::canvas::Colour;
@@ -92,7 +92,7 @@ pub fn csv(case: &CaseReport) -> Table {
     table
 }
 
-/// Pressure over distance in units of the theory, and the errors over the mesh.
+/// A figure of pressure over distance in units of the theory, and of the errors over the mesh.
 pub fn figure(case: &CaseReport) -> Figure {
     let hertz = Contact { a: 1.0, p0: 1.0 };
     let curve: Vec<(f64, f64)> = (0..=400)
@@ -105,7 +105,7 @@ pub fn figure(case: &CaseReport) -> Figure {
     let mut series =
         vec![Series::new("Hertz", curve, Colour::CYCLE[7]).marker(Marker::None, true, 1.0)];
     let markers = [Marker::Triangle, Marker::Square, Marker::Circle];
-    // The two coarsest and the finest: more would hide each other.
+    // The two coarsest meshes and the finest one: more curves would hide each other.
     let n = case.meshes.len();
     let shown = [0, 1.min(n - 1), n - 1];
     for (k, &m) in shown.iter().enumerate() {

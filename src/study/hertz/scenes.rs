@@ -1,4 +1,4 @@
-//! The three scenes, mesh by mesh, as a user would write them.
+//! The three scenes, mesh by mesh, in the format of scene files.
 
 use super::theory::{Elastic, Pair};
 
@@ -17,7 +17,7 @@ pub enum Case {
 const RADIUS: f64 = 1.0;
 /// Young's modulus and Poisson's ratio of the lower (or only) body.
 const LOWER: [f64; 2] = [1.0, 0.3];
-/// Of the upper one of two.
+/// Young's modulus and Poisson's ratio of the upper one of two bodies.
 const UPPER: [f64; 2] = [3.0, 0.2];
 
 impl Case {
@@ -33,7 +33,7 @@ impl Case {
         }
     }
 
-    /// What it is, for titles.
+    /// A description, for titles.
     pub fn title(self) -> &'static str {
         match self {
             Case::Cylinder => "Elastic cylinder on a rigid plane",
@@ -42,7 +42,7 @@ impl Case {
         }
     }
 
-    /// What Hertz's formulas need.
+    /// The parameters of Hertz's formulas.
     pub fn pair(self) -> Pair {
         let body = |[young, poisson]: [f64; 2]| Elastic {
             young,

@@ -1,6 +1,6 @@
 //! Hertz's formulas for frictionless contact (K. L. Johnson, *Contact Mechanics*, 1985, chapter 4).
 
-/// An elastic body, or the rigid one.
+/// An elastic body, or a rigid one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elastic {
     /// Young's modulus; infinite for a rigid body.
@@ -20,7 +20,7 @@ impl Elastic {
     };
 }
 
-/// A pair of bodies: what the formulas need of them.
+/// The parameters of the formulas for a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// E*, with 1/E* the sum of (1 − ν²)/E.
@@ -31,17 +31,17 @@ pub struct Pair {
     pub spheres: bool,
 }
 
-/// What the formulas say.
+/// The result of the formulas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Half-width, or radius, of the contact zone.
     pub a: f64,
-    /// Pressure in its middle.
+    /// Pressure in the middle of the zone.
     pub p0: f64,
 }
 
 impl Pair {
-    /// Of two bodies.
+    /// The pair of two bodies.
     pub fn new(bodies: [Elastic; 2], spheres: bool) -> Pair {
         let compliance = |b: &Elastic| (1.0 - b.poisson * b.poisson) / b.young;
         let curvature = |b: &Elastic| 1.0 / b.radius;
@@ -52,7 +52,7 @@ impl Pair {
         }
     }
 
-    /// Under the force F (per length of cylinders).
+    /// The contact under the force F (per length for cylinders).
     pub fn under(&self, force: f64) -> Contact {
         use std::f64::consts::PI;
         let (e, r) = (self.modulus, self.radius);

@@ -1,8 +1,9 @@
-//! `study kernels`: every solver of [`crate::cholesky::interior`] in every order, on the matrices of subdomains.
+//! `study kernels`: every solver of [`crate::cholesky::interior`] with every ordering, on the matrices of subdomains.
 //!
-//! A subdomain is the middle one of three in every direction, so that it floats and its whole surface is interface Γ. Measured are, on one
-//! thread and without the analysis of the pattern, L Lᵀ = K_II, a solve with it, and S on Γ. All combinations of a case run one after the
-//! other in every round, so that what else the machine does meets all of them; what is reported are medians over the rounds.
+//! The subdomain is the middle one of three in every direction, so that it floats and its whole surface is interface Γ.
+//! Three kernels are timed on one thread, without the analysis of the pattern: the factorisation L Lᵀ = K_II, a solve
+//! with it, and the Schur complement S on Γ. In every round all combinations of a case run one after the other, so that
+//! other load on the machine affects all of them. The results are medians over the rounds.
 
 mod subdomain;
 mod tables;
@@ -19,7 +20,7 @@ use crate::petsc::Session;
 use crate::{Error, Result};
 use subdomain::Sample;
 
-/// What is factored.
+/// A family of matrices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
     /// Name in tables.
@@ -60,7 +61,7 @@ pub const CASES: [Case; 4] = [
     },
 ];
 
-/// Another solver than the default has to be so many times faster to take its place.
+/// A solver must be this many times faster than the default one to replace it.
 pub const WORTH_CHANGING: f64 = 1.3;
 
 /// Seconds and errors of one solver in one order.
@@ -78,9 +79,9 @@ pub struct Row {
     pub solver: String,
     /// The order.
     pub ordering: String,
-    /// Whether this is what the options' defaults give.
+    /// Whether this combination is the default of the options.
     pub default: bool,
-    /// Rounds of which the medians are.
+    /// Number of rounds, of which the medians are taken.
     pub rounds: usize,
     /// Seconds of the analysis of the pattern of K_II.
     pub analyse: f64,
@@ -103,11 +104,11 @@ pub struct Row {
 pub struct Report {
     /// "kernels".
     pub study: String,
-    /// By case, size, solver and order.
+    /// The results by case, size, solver and ordering.
     pub rows: Vec<Row>,
 }
 
-/// What is measured of one combination in one round.
+/// The measurements of one combination in one round.
 #[derive(Default)]
 struct Seconds {
     analyse: Vec<f64>,
@@ -119,7 +120,8 @@ struct Seconds {
 /// Runs the study.
 ///
 /// # Errors
-/// [`Error::Input`] on several ranks, which would measure each other; a solver that fails.
+/// [`Error::Input`] on several ranks, which would disturb each other's timing; a solver that
+/// fails.
 pub fn run(
     session: &Session,
     quick: bool,
@@ -141,7 +143,7 @@ pub fn run(
     })
 }
 
-/// What this build has.
+/// The combinations of solver and ordering that this build supports.
 fn combinations() -> Vec<LocalSolver> {
     let orderings = || Ordering::ALL.into_iter().filter(|o| o.available());
     let solvers = Solver::ALL.into_iter();
@@ -150,7 +152,8 @@ fn combinations() -> Vec<LocalSolver> {
         .collect()
 }
 
-/// One subdomain: rounds until there are enough of them, or, beyond the fewest, until the time is up.
+/// Measures one subdomain. There is a least number of rounds; further rounds follow until there are enough or the time
+/// is up.
 fn one(case: &Case, elements: usize, quick: bool) -> Result<Vec<Row>> {
     let (fewest, most, time) = match quick {
         true => (3, 3, Duration::ZERO),
@@ -166,7 +169,7 @@ fn one(case: &Case, elements: usize, quick: bool) -> Result<Vec<Row>> {
             break;
         }
         for turn in 0..all.len() {
-            // Everybody is first once.
+            // The order rotates: every combination is first once.
             let c = (turn + round) % all.len();
             let failed = |why: NoFactor| {
                 let names = (all[c].kind.name(), all[c].ordering.name());
@@ -199,7 +202,7 @@ fn empty(case: &Case, sample: &Sample, solver: LocalSolver) -> Row {
     }
 }
 
-/// Solves are repeated and averaged: at least so often, and so long.
+/// Solves are repeated and averaged: at least this number of times, and this long.
 const SOLVES: u32 = 3;
 const MEASURABLE: Duration = Duration::from_millis(1);
 
@@ -217,7 +220,7 @@ fn measure(
     seconds.factor.push(clock.elapsed().as_secs_f64());
     row.bytes = factor.bytes();
     let mut x = sample.inner_load.clone();
-    // The first one brings the factor into the caches where it fits there.
+    // A first solve brings the factor into the caches if it fits there.
     factor.solve(&mut x);
     let (mut solves, clock) = (0, Instant::now());
     while solves < SOLVES || clock.elapsed() < MEASURABLE {
@@ -247,7 +250,7 @@ fn measure(
     Ok(())
 }
 
-/// Largest difference over the largest entry of `b`.
+/// The largest difference of two vectors over the largest entry of `b`.
 fn far(a: &[f64], b: &[f64]) -> f64 {
     let size = b.iter().fold(0.0f64, |s, v| s.max(v.abs()));
     let far = a.iter().zip(b).map(|(a, b)| (a - b).abs());

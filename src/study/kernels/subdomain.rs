@@ -1,4 +1,4 @@
-//! The matrix of a subdomain that touches no side, with loads whose solutions are known.
+//! The matrix of a subdomain that touches no side of the domain, with loads whose solutions are known.
 
 use super::Case;
 use crate::linalg::csr::Csr;
@@ -11,19 +11,19 @@ pub struct Sample {
     pub elements: usize,
     /// K.
     pub k: Csr,
-    /// Where its dofs are.
+    /// Positions of its dofs.
     pub positions: Vec<[f64; 3]>,
     /// The dofs on its surface.
     pub interface: Vec<u32>,
-    /// u and K u.
+    /// A known solution u, with load K u.
     pub solution: Vec<f64>,
     /// K u.
     pub load: Vec<f64>,
     /// K_II.
     pub inner: Csr,
-    /// Where the interior dofs are.
+    /// Positions of the interior dofs.
     pub inner_positions: Vec<[f64; 3]>,
-    /// u_I, and K_II u_I.
+    /// A known solution u_I, with load K_II u_I.
     pub inner_solution: Vec<f64>,
     /// K_II u_I.
     pub inner_load: Vec<f64>,
@@ -77,7 +77,7 @@ fn scene(case: &Case, elements: usize) -> String {
     )
 }
 
-/// Which points lie on a side of their bounding box.
+/// For each point, whether it lies on a side of the bounding box.
 fn surface(x: &[[f64; 3]], dim: usize) -> Vec<bool> {
     let mut out = vec![false; x.len()];
     for axis in 0..dim {

@@ -1,4 +1,4 @@
-//! What `study kernels` prints: ours in milliseconds, the others as ratios.
+//! The output of `study kernels`: the default in milliseconds, the others as ratios.
 
 use super::{Report, Row, WORTH_CHANGING};
 use crate::cholesky::interior::{Ordering, Solver};
@@ -35,10 +35,11 @@ fn least<'a>(rows: impl Iterator<Item = &'a Row>, of: fn(&Row) -> f64) -> Option
     rows.min_by(|a, b| of(a).total_cmp(&of(b)))
 }
 
-/// A combination that is worth changing to: case, elements, kernel, solver, ordering, and how many times faster than the default it is.
+/// A combination that is worth changing to: case, elements, kernel, solver, ordering, and its speed-up over the
+/// default.
 pub type Faster = (String, usize, &'static str, String, String, f64);
 
-/// All of them, the fastest of each case and kernel.
+/// All such combinations; the fastest one for each case and kernel.
 pub fn faster(report: &Report) -> Vec<Faster> {
     let mut out = Vec::new();
     for rows in cases(report) {
@@ -65,7 +66,8 @@ pub fn faster(report: &Report) -> Vec<Faster> {
     out
 }
 
-/// One row for every case and kernel: the default in milliseconds, every solver in its best order as a ratio to it.
+/// One row for every case and kernel: the default in milliseconds, and every solver in its best ordering as a ratio to
+/// it.
 pub fn summary(report: &Report) -> Table {
     let mut header = vec!["case", "n", "n_I", "n_Γ", "kernel", "default ms"];
     header.extend(Solver::ALL.map(Solver::name));
@@ -149,7 +151,7 @@ pub fn table(report: &Report) -> Table {
     table
 }
 
-/// Three digits.
+/// A number of milliseconds with three digits.
 fn milliseconds(seconds: f64) -> String {
     let ms = 1e3 * seconds;
     let digits = match ms {
@@ -162,7 +164,7 @@ fn milliseconds(seconds: f64) -> String {
     format!("{ms:.digits$}")
 }
 
-/// Both tables and what follows from them.
+/// Both tables, and the conclusion from them.
 pub fn text(report: &Report) -> String {
     let default = (Solver::default().name(), Ordering::default().taken().name());
     let mut out = format!(

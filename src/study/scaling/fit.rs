@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::linalg::dense::Dense;
 use crate::linalg::nnls::nnls;
 
-/// A measurement of this part of the largest one counts relative to itself and this part of the largest: clocks and caches make small ones uncertain.
+/// Clocks and caches make small measurements uncertain. A measurement is therefore weighted relative to itself plus
+/// this part of the largest measurement.
 const SMALL: f64 = 0.01;
 
 /// Seconds of a phase as Σ coefficient · term.
@@ -17,20 +18,21 @@ pub struct Law {
     pub terms: Vec<String>,
     /// Seconds per unit of each term, none of them negative.
     pub seconds: Vec<f64>,
-    /// Measurements that it is fitted to.
+    /// Number of measurements that the law is fitted to.
     pub points: usize,
     /// Median of |fitted − measured| / measured.
     pub median_deviation: f64,
-    /// Largest of these.
+    /// Largest of these deviations.
     pub largest_deviation: f64,
-    /// Sum of the squares that the fit makes least.
+    /// The sum of squares that the fit minimises.
     pub misfit: f64,
     /// (measured, fitted) of every measurement.
     pub residuals: Vec<(f64, f64)>,
 }
 
 impl Law {
-    /// Fits a phase; `samples` are (terms, seconds). Samples without any of the terms are left out: there is no such phase in them.
+    /// Fits a phase; `samples` are (terms, seconds). Samples in which all terms are zero are left out: the phase does
+    /// not occur in them.
     pub fn fit(phase: &str, terms: &[&str], samples: &[(Vec<f64>, f64)]) -> Law {
         let there = |s: &&(Vec<f64>, f64)| s.1 > 0.0 && s.0.iter().any(|x| *x > 0.0);
         let samples: Vec<&(Vec<f64>, f64)> = samples.iter().filter(there).collect();
@@ -45,7 +47,7 @@ impl Law {
                 a.set(i, j, weight * x);
             }
         }
-        // Columns of equal length: r³ and 1 are eleven decades apart.
+        // Columns are scaled to equal length: r³ and 1 are eleven decades apart.
         let length = |j: usize| a.col(j).iter().map(|x| x * x).sum::<f64>().sqrt();
         let sizes: Vec<f64> = (0..n).map(length).collect();
         for (j, size) in sizes.iter().enumerate().filter(|s| *s.1 > 0.0) {
@@ -76,7 +78,7 @@ impl Law {
         law
     }
 
-    /// The seconds that it gives for these terms.
+    /// The seconds of the phase for these terms.
     pub fn at(&self, terms: &[f64]) -> f64 {
         self.seconds.iter().zip(terms).map(|(c, x)| c * x).sum()
     }
@@ -88,7 +90,7 @@ mod tests {
 
     const KNOWN: [f64; 3] = [2e-5, 3e-9, 7e-12];
 
-    /// 1, n² and n³ for n from 1 to 4096, and what they cost times `noise` of the sample.
+    /// Samples with the terms 1, n² and n³ for n from 1 to 4096, and their cost times `noise` of the sample.
     fn samples(noise: impl Fn(usize) -> f64) -> Vec<(Vec<f64>, f64)> {
         let one = |k: usize| {
             let n = 2.0_f64.powi(k as i32);

@@ -1,4 +1,4 @@
-//! One measurement, in a process group of its own: a scene solved a few times, or the network.
+//! One measurement in a process group of its own: the repeated solve of one scene, or the network.
 
 use std::path::{Path, PathBuf};
 
@@ -22,11 +22,11 @@ use crate::{Error, FetiFeti, Result};
 pub struct Task {
     /// Where the record goes, as JSON.
     pub result: PathBuf,
-    /// What to measure.
+    /// The measurement.
     pub what: What,
 }
 
-/// What to measure.
+/// The kinds of measurement.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum What {
     /// Messages and all-reduces.
@@ -35,7 +35,7 @@ pub enum What {
     Solve {
         /// The scene file.
         scene: String,
-        /// How often; the smallest seconds of every phase count.
+        /// Number of repetitions; the smallest seconds of every phase count.
         repeats: usize,
     },
 }
@@ -43,7 +43,7 @@ pub enum What {
 /// Messages and all-reduces.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct NetworkRecord {
-    /// One way between two ranks.
+    /// Messages one way between two ranks.
     pub messages: Vec<Timing>,
     /// All-reduces.
     pub reductions: Vec<Timing>,
@@ -90,7 +90,7 @@ fn solve(session: &Session, text: &str, repeats: usize) -> Result<Point> {
 }
 
 impl Point {
-    /// The smaller seconds of both, phase by phase.
+    /// The smaller seconds of two points, phase by phase.
     fn faster(self, other: &Point) -> Point {
         Point {
             setup: SetupSeconds::from_fn(|k| self.setup.all()[k].min(other.setup.all()[k])),
@@ -104,7 +104,8 @@ impl Point {
     }
 }
 
-/// Set-up and solve. Every phase is that of the slowest rank, but messages are those of the rank that waits least. Collective.
+/// One set-up and solve. The seconds of a phase are those of the slowest rank; those of messages are of the rank that
+/// waits least. Collective.
 fn once(session: &Session, problem: crate::Substructures) -> Result<Point> {
     let comm = session.comm();
     let (subdomains, start) = (problem.n_subdomains, clock::spent());
@@ -169,7 +170,7 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<Point> {
     })
 }
 
-/// What the costs depend on, of the rank that has most of it. Collective.
+/// The quantities that costs depend on, each of the rank with the largest value. Collective.
 fn work(session: &Session, solver: &FetiFeti) -> Work {
     let dual = solver.dual();
     let stiffness = &dual.stiffness;

@@ -1,8 +1,9 @@
-//! `study scaling`: seconds over ranks and bodies by phase, messages, and a model that goes where this machine cannot.
+//! `study scaling`: seconds by phase over ranks and bodies, messages, and a model for machines larger than this one.
 //!
-//! Every run is a process group of its own, with one thread per rank, on scenes in which no two subdomains are equal. On one rank the costs
-//! of the phases are fitted to what a rank's work consists of; messages are counted, α and β are measured by ping-pong; runs on several ranks show
-//! how far the model is from the truth. What it then predicts is a body on each of up to 100 000 ranks.
+//! Every run is a process group of its own, with one thread per rank, on scenes in which no two subdomains are equal.
+//! The costs of the phases are fitted, on one rank, to the amounts of work of a rank. Messages are counted, and α and β
+//! are measured by ping-pong. Runs on several ranks show how accurate the model is. It then predicts problems with one
+//! body per rank, on up to 100 000 ranks.
 
 mod fit;
 mod measure;
@@ -45,7 +46,7 @@ const USUAL: [f64; 2] = [1.5e-6, 8e-11];
 pub struct Report {
     /// "scaling".
     pub study: String,
-    /// Whether small scenes were run.
+    /// Whether the small scenes were run.
     pub quick: bool,
     /// Cores of this machine.
     pub cores: usize,
@@ -57,24 +58,24 @@ pub struct Report {
     pub model: Model,
     /// Subdomains of the predicted body, and elements of a subdomain, in each direction.
     pub body: [usize; 2],
-    /// Iterations that are predicted with: those of the largest number of such bodies that was run.
+    /// Iterations that the predictions assume: those of the run with the largest number of such bodies.
     pub iterations: usize,
-    /// Bodies of that run.
+    /// Number of bodies in that run.
     pub iterations_of: usize,
-    /// A body per rank: on the network that is stated, and on one with the messages of this machine.
+    /// Predictions with a body per rank: for the stated network, and for one as fast as the messages of this machine.
     pub predictions: Vec<Prediction>,
 }
 
-/// What the user may say.
+/// The settings of the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Small scenes.
+    /// Whether to run the small scenes.
     pub quick: bool,
-    /// α and β of the network that is predicted for.
+    /// α and β of the network of the predictions.
     pub network: [f64; 2],
-    /// A run that takes longer is ended.
+    /// Time limit of a run.
     pub limit: Duration,
-    /// PETSc's arguments that every run gets.
+    /// PETSc's arguments for every run.
     pub petsc: Vec<String>,
 }
 
@@ -82,7 +83,7 @@ impl Settings {
     /// Reads `-scaling_alpha`, `-scaling_beta` and `-compare_time_limit`.
     ///
     /// # Errors
-    /// [`Error::Input`] for numbers that no network has.
+    /// [`Error::Input`] for numbers that are impossible for a network.
     pub fn from_options(session: &Session, quick: bool, petsc: &[String]) -> Result<Settings> {
         let options = Options::new(session, "scaling_");
         let mut network = USUAL;
@@ -118,7 +119,7 @@ impl Settings {
     }
 }
 
-/// Runs the study, telling `progress` before every run. On one rank: the runs have ranks of their own.
+/// Runs the study, and calls `progress` before every run. It is called on one rank: the runs have ranks of their own.
 ///
 /// # Errors
 /// [`Error::Input`] on several ranks or for a case; those of the runs.
@@ -195,7 +196,7 @@ fn middle(points: &[Point]) -> &Point {
     found.expect("it is one of the runs")
 }
 
-/// The run with most bodies of a size.
+/// The run with the largest number of bodies of this size.
 fn largest_like(points: &[Point], [s, e]: [usize; 2]) -> &Point {
     let like = |p: &&Point| {
         let tied = p.problem == Problem::Tied;
@@ -212,7 +213,7 @@ fn started<T: serde::de::DeserializeOwned>(
     ranks: usize,
 ) -> Result<T> {
     let result = launcher.workspace.file("record.json");
-    // A record of the run before must not be taken for that of one that fails.
+    // The record of an earlier run must not be taken for that of one that fails.
     let _ = std::fs::remove_file(&result);
     let task = Task {
         result: result.clone(),
@@ -237,7 +238,7 @@ fn messages(launcher: &Launcher) -> Result<Measured> {
 }
 
 fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Result<Point> {
-    // For the messages once is enough.
+    // To count messages, one run is enough.
     let repeats = match setup.series {
         Series::Neighbours => 1,
         _ if quick => 2,
@@ -253,7 +254,7 @@ fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Resul
         problem: setup.problem,
         ranks: setup.ranks,
         oversubscribed: setup.ranks > cores,
-        // Contact adds work of its own in every step.
+        // Contact adds work in every step that the model does not have.
         fitted: setup.ranks == 1 && setup.problem == Problem::Tied,
         bodies: setup.n_bodies(),
         elements: setup.elements,
@@ -262,7 +263,7 @@ fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Resul
 }
 
 impl Point {
-    /// Sets what the model says and how far it is off.
+    /// Enters the model's seconds and their deviation from the measured ones.
     fn compare(&mut self, model: &Model, network: &Network) {
         let ranks = self.ranks as f64;
         self.model = model.seconds(&self.work, ranks, &Sent::of(self), network);

@@ -1,10 +1,12 @@
-//! What a rank's work costs by phase, and what messages cost.
+//! The cost of a rank's work by phase, and the cost of messages.
 //!
-//! Every phase is a sum of a few terms, fitted to the runs on one rank, where nothing is sent and nobody waits. Messages are α–β on top: their
-//! number and bytes are counted, α and β measured apart. Runs on several ranks test the model, they do not feed it.
+//! The seconds of a phase are a sum of a few terms, fitted to the runs on one rank, where nothing is sent and nobody
+//! waits. Messages are added by the α–β model: their number and bytes are counted; α and β are measured separately.
+//! Runs on several ranks test the model, they do not enter the fit.
 //!
-//! What an iteration reads comes from the cache as long as all of it fits, and from memory, many times slower, where it does not. Every term of an
-//! iteration is there twice: as it is, and times the part of what is read that is beyond the cache. The cache's size is the one that fits best.
+//! An iteration reads its operators from the cache as long as they fit there, and otherwise from memory, which is many
+//! times slower. Every term of an iteration therefore occurs twice: as it is, and times the part of the data that does
+//! not fit in the cache. The cache size is the one that gives the best fit.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,16 +20,16 @@ const PROJECTIONS: f64 = 4.0;
 /// All-reduces of r² numbers in the set-up: Gᵀ Q G, and Gᵀ G to see which bodies are held.
 const SQUARES: f64 = 2.0;
 
-/// A phase: its terms, what they are for a rank's work, and what was measured.
+/// A phase: its terms as functions of a rank's work, and the measured seconds.
 struct Phase {
-    /// Its name; those of an iteration are [`ITERATED`].
+    /// The name; the phases of an iteration are [`ITERATED`].
     name: &'static str,
     terms: &'static [&'static str],
     values: fn(&Work) -> Vec<f64>,
     seconds: fn(&Point) -> f64,
 }
 
-/// One where there is any of it.
+/// 1 if x is positive, else 0.
 fn any(x: f64) -> f64 {
     f64::from(u8::from(x > 0.0))
 }
@@ -35,7 +37,7 @@ fn any(x: f64) -> f64 {
 /// The phases that read the same operators again and again.
 const ITERATED: std::ops::Range<usize> = 5..10;
 
-/// Sizes of the cache that are tried, in bytes: powers of √2 from 128 kB on.
+/// Number of cache sizes that are tried: powers of √2 times 128 kB.
 const CACHES: usize = 20;
 
 const PHASES: [Phase; 11] = [
@@ -113,16 +115,16 @@ const PHASES: [Phase; 11] = [
     },
 ];
 
-/// What a rank sends in an iteration.
+/// The data that a rank sends in an iteration.
 pub struct Sent {
     messages: f64,
     bytes: f64,
-    /// All-reduces of one number: those of CG.
+    /// All-reduces of one number: the inner products of CG.
     dots: f64,
 }
 
 impl Sent {
-    /// What the rank with most of it sends in a run.
+    /// The data that the rank with the largest amount sends in a run.
     pub fn of(point: &Point) -> Sent {
         let counted = &point.communication;
         let projections = PROJECTIONS * any(point.work.kernels);
@@ -143,10 +145,11 @@ pub struct Model {
     pub cache: f64,
 }
 
-/// Bytes of the sparse factors of Gᵀ Q G over r log r: nested dissection of a plane grid of bodies, with 12 bytes an entry.
+/// Bytes of the sparse factors of Gᵀ Q G over r log r, for nested dissection of a plane grid of bodies, with 12 bytes
+/// per entry.
 const FILL: f64 = 93.0;
 
-/// The part of what a rank reads in an iteration that is beyond a cache.
+/// The part of the data read by a rank in an iteration that does not fit in a cache of this size.
 fn beyond(cache: f64, work: &Work) -> f64 {
     let r = work.kernels;
     let dense = 8.0 * (work.interface_squares + work.lifting_squares);
@@ -168,7 +171,7 @@ fn terms(k: usize, cache: f64, work: &Work) -> Vec<f64> {
     values
 }
 
-/// What the model says of a run.
+/// The model's seconds of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Modelled {
     /// Seconds of set-up.
@@ -212,7 +215,7 @@ impl Model {
         }
     }
 
-    /// The seconds of `work` on each of `ranks` ranks, with what an iteration sends.
+    /// The seconds of `work` on each of `ranks` ranks, with the messages of an iteration.
     pub fn seconds(&self, work: &Work, ranks: f64, sent: &Sent, network: &Network) -> Modelled {
         let at = |k: usize| self.laws[k].at(&terms(k, self.cache, work));
         let r = work.kernels;
@@ -241,11 +244,11 @@ mod tests {
     use super::*;
     use crate::report::json::{Communication, PerIteration};
 
-    /// Seconds per term of an iteration on the subdomains, in and beyond a cache of this size.
+    /// Seconds per term of an iteration on the subdomains, as chosen for the tests.
     const KNOWN: [f64; 6] = [4e-7, 3e-10, 2e-8, 0.0, 2e-9, 0.0];
     const CACHE: f64 = 131_072.0 * 16.0;
 
-    /// A run of `n` bodies with seconds as they are known.
+    /// A run of `n` bodies whose seconds follow these laws.
     fn point(n: f64, subdomains: f64) -> Point {
         let work = Work {
             subdomains: n * subdomains,

@@ -1,4 +1,4 @@
-//! Messages between ranks: measured, and as seconds per message (α) and per byte (β).
+//! Messages between ranks: measurements, and their model by seconds per message (α) and per byte (β).
 
 use std::time::Instant;
 
@@ -9,31 +9,32 @@ use serde::{Deserialize, Serialize};
 use super::fit::Law;
 use crate::parallel::exchange::sum_all;
 
-/// Numbers in the messages that are measured.
+/// Lengths of the measured messages, in numbers.
 const LENGTHS: [usize; 8] = [1, 8, 64, 512, 2048, 8192, 32_768, 131_072];
 
-/// Every measurement takes about this long, repeated [`ROUNDS`] times; the fastest counts.
+/// Duration of one measurement. It is repeated [`ROUNDS`] times, and the fastest counts.
 const SECONDS: f64 = 2e-3;
 const ROUNDS: usize = 12;
 
-/// Messages that cost α and, per byte, β; adding up the bytes of an all-reduce costs γ more.
+/// A network on which a message costs α plus β per byte; the sums of an all-reduce cost γ per byte in addition.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Network {
     /// Seconds per message.
     pub alpha: f64,
     /// Seconds per byte.
     pub beta: f64,
-    /// Seconds per byte of an all-reduce for sums and copies: those of a core.
+    /// Seconds per byte of an all-reduce for sums and copies, a property of the core.
     pub gamma: f64,
 }
 
 impl Network {
-    /// Messages one after the other.
+    /// Seconds of messages one after the other.
     pub fn messages(&self, messages: f64, bytes: f64) -> f64 {
         self.alpha * messages + self.beta * bytes
     }
 
-    /// An all-reduce of `bytes` among `ranks`: recursive doubling for short ones, a reduce-scatter and an all-gather for long ones.
+    /// Seconds of an all-reduce of `bytes` among `ranks`: recursive doubling for short ones, a reduce-scatter and an
+    /// all-gather for long ones.
     pub fn all_reduce(&self, ranks: f64, bytes: f64) -> f64 {
         if ranks <= 1.0 {
             return 0.0;
@@ -49,28 +50,28 @@ impl Network {
 /// Seconds of one operation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
-    /// Ranks that take part.
+    /// Number of ranks that take part.
     pub ranks: usize,
-    /// Bytes of a rank.
+    /// Bytes per rank.
     pub bytes: usize,
     /// Seconds.
     pub seconds: f64,
 }
 
-/// What has been measured on this machine, and what comes of it.
+/// The measurements on this machine, and the network fitted to them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// One way between two ranks.
+    /// Messages one way between two ranks.
     pub messages: Vec<Timing>,
     /// All-reduces.
     pub reductions: Vec<Timing>,
-    /// The same as the network below gives them.
+    /// Seconds of these all-reduces by the fitted network.
     pub modelled_reductions: Vec<f64>,
     /// α and β, fitted to `messages`, and γ, to `reductions` on two ranks.
     pub network: Network,
     /// Median of |fitted − measured| / measured of the messages.
     pub median_deviation: f64,
-    /// Largest of these.
+    /// Largest of these deviations.
     pub largest_deviation: f64,
 }
 
@@ -139,7 +140,7 @@ fn ping_pong(comm: &SimpleCommunicator, buffer: &mut [f64]) {
     }
 }
 
-/// Seconds of `work` on `n` numbers, the smallest mean of several rounds, averaged over the ranks.
+/// Seconds of `work` on `n` numbers: the smallest mean of several rounds, averaged over the ranks.
 fn fastest(comm: &SimpleCommunicator, mut work: impl FnMut(&mut [f64]), n: usize) -> f64 {
     let mut buffer = vec![1.0; n];
     let mut run = |times: usize| {
@@ -198,7 +199,7 @@ mod tests {
         assert_eq!(net.all_reduce(1.0, 8.0), 0.0);
         assert_eq!(net.all_reduce(2.0, 0.0), 1e-6);
         assert!((net.all_reduce(1000.0, 0.0) / 10e-6 - 1.0).abs() < 1e-12);
-        // A long one moves every byte twice and adds it once, however many ranks there are.
+        // A long all-reduce moves every byte twice and adds it once, for any number of ranks.
         let long = [64.0, 65536.0].map(|ranks| net.all_reduce(ranks, 1e8));
         assert!(
             long.iter().all(|t| (t / 3e-2 - 1.0).abs() < 0.02),

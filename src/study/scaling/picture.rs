@@ -1,4 +1,4 @@
-//! Curves of the study: runs over ranks and bodies, and the model by phase.
+//! Figures of the study: runs over ranks and bodies, and the model by phase.
 
 use super::{IterationSeconds, Point, Problem, Report, Series as Runs, SetupSeconds};
 use crate::report::drawing::canvas::Colour;
@@ -41,7 +41,7 @@ fn over_ranks(report: &Report, runs: Runs, title: &str) -> Panel {
         };
         let model = |p: &&Point| (p.ranks as f64, p.model.total(p.iterations as f64));
         let name = problem.name();
-        // Steps of the contact loop are not in the model.
+        // The model does not include the steps of the contact loop.
         if problem == Problem::Tied {
             let curve = of.iter().map(model).collect();
             series.push(
@@ -94,7 +94,7 @@ fn iterations(report: &Report) -> Panel {
     panel("Bodies of one size, tied", x, y, series)
 }
 
-/// What was run.
+/// The figure of the runs.
 pub fn figure(report: &Report) -> Figure {
     Figure::new(
         "Seconds over ranks, iterations over subdomains",
@@ -106,7 +106,7 @@ pub fn figure(report: &Report) -> Figure {
     )
 }
 
-/// The name and place in the palette of a phase, the same in all panels.
+/// The names of the phases. The index of a phase is its place in the palette, the same in all panels.
 fn phases() -> Vec<&'static str> {
     let mut all = SetupSeconds::NAMES.to_vec();
     let more = IterationSeconds::NAMES.iter();
@@ -175,7 +175,7 @@ fn predicted(report: &Report, iteration: bool) -> Panel {
     panel(title, x, Axis::new(y, Scale::Log), series)
 }
 
-/// The model beside what it is fitted to, and what it predicts for the stated network.
+/// The figure of the model: the runs it is fitted to, and the predictions for the stated network.
 pub fn model_figure(report: &Report) -> Figure {
     let network = report.predictions[0].network;
     Figure::new(

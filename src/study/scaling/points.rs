@@ -1,4 +1,4 @@
-//! The runs of the study: what was solved, where, and what it took.
+//! The runs of the study: the problem, the ranks, and the measurements.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,25 +6,25 @@ use super::model::Modelled;
 use super::quantities::{IterationSeconds, SetupSeconds, Work};
 use crate::report::json::Communication;
 
-/// What a run belongs to.
+/// The series that a run belongs to.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Series {
-    /// Ever more bodies of one size, on one rank.
+    /// An increasing number of bodies of one size, on one rank.
     #[default]
     Bodies,
     /// Subdomains of other sizes, on one rank.
     Elements,
-    /// One scene on ever more ranks.
+    /// One scene on an increasing number of ranks.
     Strong,
-    /// As many bodies as ever per rank.
+    /// A fixed number of bodies per rank.
     Weak,
-    /// A body per rank, for the messages of one with eight neighbours.
+    /// A body per rank, to count the messages of a body with eight neighbours.
     Neighbours,
 }
 
 impl Series {
-    /// As tables say it.
+    /// The word for tables.
     pub fn name(self) -> &'static str {
         match self {
             Series::Bodies => "bodies",
@@ -36,7 +36,7 @@ impl Series {
     }
 }
 
-/// What is solved.
+/// The problem of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Problem {
@@ -48,7 +48,7 @@ pub enum Problem {
 }
 
 impl Problem {
-    /// As tables say it.
+    /// The word for tables.
     pub fn name(self) -> &'static str {
         match self {
             Problem::Tied => "tied",
@@ -60,19 +60,19 @@ impl Problem {
 /// One run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// What it belongs to.
+    /// The series.
     pub series: Series,
-    /// What is solved.
+    /// The problem.
     pub problem: Problem,
     /// MPI ranks.
     pub ranks: usize,
-    /// More ranks than cores: messages are right, seconds are not.
+    /// Whether there are more ranks than cores: then messages are right, seconds are not.
     pub oversubscribed: bool,
-    /// Whether the costs are fitted to it.
+    /// Whether the model is fitted to this run.
     pub fitted: bool,
     /// Bodies.
     pub bodies: usize,
-    /// Those with a kernel.
+    /// Number of bodies with a kernel.
     pub floating_bodies: usize,
     /// Subdomains over all bodies.
     pub subdomains: usize,
@@ -80,7 +80,7 @@ pub struct Point {
     pub elements: usize,
     /// Rows of B.
     pub multipliers: usize,
-    /// Krylov iterations, in all contact steps.
+    /// Krylov iterations of all contact steps.
     pub iterations: usize,
     /// Contact steps.
     pub steps: usize,
@@ -88,7 +88,7 @@ pub struct Point {
     pub kappa: Option<f64>,
     /// Seconds of set-up, the slowest rank in each phase.
     pub setup: SetupSeconds,
-    /// Seconds of an iteration, likewise; messages: of the rank that waits least.
+    /// Seconds of an iteration, the slowest rank in each phase; for messages, the rank that waits least.
     pub iteration: IterationSeconds,
     /// Seconds of a solve besides its iterations.
     pub outside: f64,
@@ -98,12 +98,12 @@ pub struct Point {
     pub memory_mb: [f64; 2],
     /// Largest work of a rank.
     pub work: Work,
-    /// What an iteration sends.
+    /// The messages of an iteration.
     pub communication: Communication,
-    /// What the model says.
+    /// The model's seconds.
     pub model: Modelled,
     /// Modelled over measured seconds of set-up, minus one.
     pub setup_deviation: f64,
-    /// The same for an iteration.
+    /// Modelled over measured seconds of an iteration, minus one.
     pub iteration_deviation: f64,
 }

@@ -1,4 +1,4 @@
-//! Weak scaling far beyond this machine: a body on every rank.
+//! Prediction of weak scaling far beyond this machine: a body on every rank.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,19 +6,19 @@ use super::model::{Model, Modelled, Sent};
 use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds};
 
-/// Ranks that are predicted.
+/// Numbers of ranks in the predictions.
 pub const RANKS: [usize; 9] = [9, 16, 64, 256, 1024, 4096, 16_384, 65_536, 100_000];
 
 /// Dense r × r matrices that a rank holds while Gᵀ Q G is set up: Gᵀ Q G, Gᵀ G, and the factor of the latter.
 const DENSE: f64 = 3.0;
 
-/// Memory of a rank, in bytes, beyond which it is said that they do not fit.
+/// Memory of a rank in bytes. Where the dense matrices need more, the tables say that they do not fit.
 const ROOM: f64 = 4e9;
 
 /// The problem with a body on each of `ranks` ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Ranks, and bodies.
+    /// Number of ranks, and of bodies.
     pub ranks: usize,
     /// Kernel vectors of all bodies.
     pub kernels: usize,
@@ -30,14 +30,15 @@ pub struct Row {
     pub seconds: Modelled,
     /// Seconds of set-up and a solve.
     pub total: f64,
-    /// The same without all that r costs: set-up and solves with Gᵀ Q G, and the all-reduces of r numbers.
+    /// Seconds of set-up and a solve without all that r costs: set-up and solves with Gᵀ Q G, and the all-reduces of r
+    /// numbers.
     pub without_kernels: f64,
 }
 
-/// The phase that takes longest from some number of ranks on.
+/// The phase that takes longest, from some number of ranks on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
-    /// From so many ranks on.
+    /// The number of ranks.
     pub from: usize,
     /// Its name.
     pub phase: String,
@@ -46,33 +47,34 @@ pub struct Limit {
 /// One network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
-    /// What network it is.
+    /// Description of the network.
     pub network_name: String,
     /// Its α and β.
     pub network: Network,
-    /// By ranks.
+    /// Predictions by number of ranks.
     pub rows: Vec<Row>,
-    /// Which phase of set-up and solve together takes longest.
+    /// The phases that take longest in set-up and solve together.
     pub limits: Vec<Limit>,
-    /// Which phase of an iteration takes longest.
+    /// The phases that take longest in an iteration.
     pub iteration_limits: Vec<Limit>,
-    /// Ranks from which on it takes twice as long as on the first row; `None`: beyond the last.
+    /// Number of ranks from which on the time is twice that of the first row; `None`: beyond the last row.
     pub doubles_at: Option<usize>,
-    /// Ranks from which on the dense matrices of order r need more than 4 GB on every rank; `None`: beyond the last.
+    /// Number of ranks from which on the dense matrices of order r need more than 4 GB on every rank; `None`: beyond
+    /// the last row.
     pub full_at: Option<usize>,
 }
 
-/// What is predicted from: the rank in the middle of 3 × 3, and how often one iterates.
+/// The data that predictions are based on: the middle rank of 3 × 3, and the number of iterations.
 pub struct Basis<'a> {
     /// The fitted costs.
     pub model: &'a Model,
-    /// A body on every rank, one of them with all its neighbours.
+    /// A run with a body on every rank, of which one has all its neighbours.
     pub middle: &'a Point,
-    /// Iterations, of the largest number of such bodies that was measured.
+    /// Number of iterations in the run with the largest number of such bodies.
     pub iterations: usize,
 }
 
-/// Kernel vectors of `ranks` bodies in a square that is held all round: those inside float.
+/// Number of kernel vectors of `ranks` bodies in a square that is held all round: the inner bodies float.
 fn kernels(ranks: f64) -> f64 {
     (ranks.sqrt() - 2.0).max(0.0).powi(2)
 }
@@ -112,7 +114,7 @@ impl Basis<'_> {
             .map_or(String::new(), |(name, _)| name)
     }
 
-    /// Predicts for a network.
+    /// The prediction for a network.
     pub fn predict(&self, network_name: &str, network: Network) -> Prediction {
         let rows: Vec<Row> = RANKS
             .iter()

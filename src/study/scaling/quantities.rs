@@ -12,7 +12,7 @@ macro_rules! quantities {
         }
 
         impl $name {
-            /// What the numbers are, in order.
+            /// The names of the numbers, in order.
             pub const NAMES: [&'static str; [$($text),+].len()] = [$($text),+];
 
             /// The numbers, in order.
@@ -20,7 +20,7 @@ macro_rules! quantities {
                 [$(self.$field),+]
             }
 
-            /// From the numbers by their place.
+            /// Makes the record from a function of the index.
             pub fn from_fn(of: impl Fn(usize) -> f64) -> $name {
                 let mut at = 0..;
                 $(let $field = of(at.next().expect("an endless range"));)+
@@ -54,7 +54,8 @@ quantities! {
 quantities! {
     /// Seconds of an iteration by phase.
     IterationSeconds {
-        /// Products with the operators of the subdomains, rows of G, vectors; in measurements also the inner products of CG.
+        /// Products with the operators of the subdomains, rows of G, vectors; in measurements also the inner products
+        /// of CG.
         local: "subdomains",
         /// S_Π⁺.
         primal: "S_Π",
@@ -70,7 +71,7 @@ quantities! {
 }
 
 quantities! {
-    /// What costs depend on, of one rank.
+    /// The quantities that costs depend on, for one rank.
     Work {
         /// Subdomains.
         subdomains: "subdomains",
@@ -82,7 +83,7 @@ quantities! {
         interface_cubes: "interface^3",
         /// Owned multipliers.
         multipliers: "multipliers",
-        /// Numbers that halos move in an iteration.
+        /// Numbers that halo exchanges send in an iteration.
         ghosts: "ghosts",
         /// Owned primal dofs.
         primal: "primal",
@@ -90,9 +91,9 @@ quantities! {
         primal_factor: "primal log primal",
         /// Columns of Z_c.
         lifting: "columns",
-        /// Σ over bodies of their squares.
+        /// Σ over bodies of their columns squared.
         lifting_squares: "columns^2",
-        /// Σ over bodies of their cubes.
+        /// Σ over bodies of their columns cubed.
         lifting_cubes: "columns^3",
         /// Σ n_Γ² · columns of the subdomain.
         lifting_products: "interface^2 columns",

@@ -1,15 +1,15 @@
-//! What is run: scenes as text, and on how many ranks.
+//! The runs: scenes as text, and their numbers of ranks.
 
 use super::{Problem, Series};
 
-/// Bodies and ranks of one measurement.
+/// The set-up of one measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setup {
-    /// What it is run for.
+    /// The series it belongs to.
     pub series: Series,
-    /// What is solved.
+    /// The problem.
     pub problem: Problem,
-    /// Bodies in x and y; two in contact.
+    /// Number of bodies in x and y; two in contact.
     pub bodies: [usize; 2],
     /// Subdomains of a body in each direction.
     pub subdomains: usize,
@@ -28,7 +28,7 @@ pub fn predicted_body(quick: bool) -> [usize; 2] {
     }
 }
 
-/// Everything that is run, in this order.
+/// All runs, in order.
 pub fn setups(quick: bool) -> Vec<Setup> {
     let [s, e] = predicted_body(quick);
     let tied = |series, bodies, subdomains, elements, ranks| Setup {
@@ -54,7 +54,7 @@ pub fn setups(quick: bool) -> Vec<Setup> {
         let one = |&n: &usize| tied(Series::Bodies, [n, n], subdomains, 8, 1);
         out.extend(counts.iter().map(one));
     }
-    // Subdomains of other sizes, for what a subdomain costs.
+    // Subdomains of other sizes, to measure the cost of a subdomain.
     let sizes: &[usize] = if quick { &[4, 16] } else { &[4, 16, 32, 64] };
     let one = |&elements: &usize| tied(Series::Elements, [2, 2], 4, elements, 1);
     out.extend(sizes.iter().map(one));
@@ -78,18 +78,18 @@ pub fn setups(quick: bool) -> Vec<Setup> {
     for (ranks, bodies) in [(1, [2, 2]), (2, [4, 2]), (4, [4, 4])] {
         out.push(tied(Series::Weak, bodies, s, e, ranks));
     }
-    // A body on every rank; the one in the middle has all eight neighbours.
+    // A body on every rank; the body in the middle has all eight neighbours.
     out.push(tied(Series::Neighbours, [3, 3], s, e, 9));
     out
 }
 
 impl Setup {
-    /// Bodies.
+    /// Number of bodies.
     pub fn n_bodies(&self) -> usize {
         self.bodies[0] * self.bodies[1]
     }
 
-    /// In a few words, for progress and errors.
+    /// A description in a few words, for progress and errors.
     pub fn name(&self) -> String {
         format!(
             "{}, {}: {} x {} bodies of {n} x {n} subdomains of {e} x {e} elements on {}",
@@ -106,8 +106,8 @@ impl Setup {
         )
     }
 
-    /// The scene file. ρ is random by element, from 1 to 2, without a pattern: no two subdomains are equal, so that nothing is shared
-    /// among those that happen to lie on one rank.
+    /// The scene file. ρ is random by element, from 1 to 2: no two subdomains are equal, so that subdomains on one rank
+    /// share no operators.
     pub fn scene(&self) -> String {
         let Setup {
             bodies: [nx, ny],

@@ -1,9 +1,9 @@
-//! Tables of the study, and what they come to in words.
+//! Tables of the study, and conclusions in words.
 
 use super::{IterationSeconds, Limit, Point, Prediction, Report, Row, SetupSeconds, Work};
 use crate::report::tables::table::{fixed, scientific, value, Align, Table};
 
-/// Three digits; a dash for nothing.
+/// A number with three digits; a dash for zero.
 fn short(x: f64) -> String {
     match x {
         x if x <= 0.0 => "–".into(),
@@ -34,7 +34,7 @@ fn ranks(p: &Point) -> String {
     format!("{}{}", p.ranks, if p.oversubscribed { "*" } else { "" })
 }
 
-/// What a run is, the first columns of both tables.
+/// The description of a run: the first columns of both tables.
 fn what(p: &Point) -> [String; 6] {
     [
         p.series.name().into(),
@@ -191,7 +191,7 @@ fn prediction(p: &Prediction) -> Table {
     out
 }
 
-/// What limits, in sentences.
+/// Sentences about the limits of scaling.
 fn limits(p: &Prediction) -> String {
     let course = |limits: &[Limit]| {
         let one = |(k, limit): (usize, &Limit)| match k {
@@ -223,7 +223,7 @@ fn growth(p: &Prediction) -> String {
     value(ends.map_or(1.0, |(a, b)| b.total / a.total))
 }
 
-/// All of it for terminals.
+/// All tables and sentences for terminals.
 pub fn text(report: &Report) -> String {
     let net = report.network.network;
     let [s, e] = report.body;

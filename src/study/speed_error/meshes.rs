@@ -1,4 +1,4 @@
-//! How far the exact solution of a mesh is from that of the continuous problem.
+//! The discretisation error: the distance of the exact solution of a mesh from that of the continuous problem.
 
 use super::{Case, MeshError};
 use crate::feti::MethodSettings;
@@ -7,14 +7,14 @@ use crate::study::solved::Solved;
 use crate::substructures::Subdomain;
 use crate::{Error, Result};
 
-/// A tight solution of ours. On one rank.
+/// Our solution with a tight tolerance. On one rank.
 struct Tight {
     solved: Solved,
     /// uᵀKu.
     size: f64,
 }
 
-/// The errors of the meshes themselves.
+/// The discretisation errors of the meshes.
 ///
 /// # Errors
 /// Those of the method; [`Error::NotConverged`] where it stops early.
@@ -38,7 +38,8 @@ pub fn errors(session: &Session, case: Case, meshes: &[usize]) -> Result<Vec<Mes
         });
     }
     if fine.is_some() {
-        // The reference is half as far from the solution as the finest mesh: d² = e² − (e/2)² there, and e/2 is missing everywhere.
+        // The reference mesh is twice as fine as the finest one. Its error is taken as half of e, the error of the
+        // finest mesh: there d² = e² − (e/2)², and (e/2)² is missing from d² on every mesh.
         let missing = out[out.len() - 1].error.powi(2) / 3.0;
         out.iter_mut()
             .for_each(|m| m.error = (m.error.powi(2) + missing).sqrt());
@@ -94,7 +95,7 @@ impl Tight {
             let difference = sub.dofs.iter().zip(u).map(|(&dof, u)| {
                 let inside = (dof - body.first_dof) as usize;
                 let [i, j, _] = mesh.place(inside / c);
-                // The corners of the element around the node, and where it lies in it.
+                // The corners of the coarse element around the node, and the position of the node in it.
                 let line = |k: usize, d: usize| (k / ratio).min(from.elements[d] - 1);
                 let [p, q] = [line(i, 0), line(j, 1)];
                 let part = |k: usize, line: usize| k as f64 / ratio as f64 - line as f64;

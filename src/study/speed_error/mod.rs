@@ -1,14 +1,15 @@
-//! `study speed-error`: how far a solution is from the solution of the continuous problem, and how many seconds it took, for ours and every
-//! baseline of `compare`, over meshes and tolerances.
+//! `study speed-error`: the distance of solutions from the solution of the continuous problem over seconds, for ours
+//! and every baseline of `compare`, over meshes and tolerances.
 //!
 //! ```text
 //!     ‖u_h,k − u‖² = ‖u_h − u‖² + ‖u_h,k − u_h‖²         (Galerkin)
 //! ```
 //!
-//! The first part, the mesh's, is measured once per mesh on a tight solution of ours: against the known solution, or against a mesh
-//! twice as fine as the finest. The second, the solver's, is what `compare` reports: the distance from a direct solution of the
-//! same mesh. With inequalities the sum stands for the distance only; the parts are exact. `compare` runs all methods one after the other for
-//! every mesh and tolerance, so that what else the machine does meets all of them.
+//! The first part is the error of the mesh. It is measured once per mesh on a tight solution of ours: against the known
+//! solution, or against a mesh twice as fine as the finest. The second part is the error of the solver. It is reported
+//! by `compare`: the distance from a direct solution on the same mesh. With inequalities the sum is only an
+//! approximation of the distance; the two parts are exact. For every mesh and tolerance `compare` runs all methods one
+//! after the other, so that other load on the machine affects all of them.
 
 mod meshes;
 mod picture;
@@ -27,7 +28,7 @@ use crate::report::json::CompareReport;
 use crate::report::output;
 use crate::{Error, Result};
 
-/// A way to run ours: one curve each. The first also brings the baselines.
+/// A variant of our method, with a curve of its own. The baselines run together with the first variant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variant {
     /// Its name in tables and pictures.
@@ -53,7 +54,7 @@ pub const VARIANTS: [Variant; 2] = [
 pub struct Report {
     /// Its name, "speed-error".
     pub study: String,
-    /// Cores that every method might use.
+    /// Cores that every method may use.
     pub cores: usize,
     /// The scenes.
     pub cases: Vec<CaseReport>,
@@ -64,7 +65,7 @@ pub struct Report {
 pub struct CaseReport {
     /// Its name.
     pub case: String,
-    /// What it is.
+    /// A description.
     pub title: String,
     /// Error of every mesh itself, relative, in the energy norm.
     pub meshes: Vec<MeshError>,
@@ -72,7 +73,7 @@ pub struct CaseReport {
     pub runs: Vec<Run>,
 }
 
-/// The error of a mesh.
+/// The discretisation error of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MeshError {
     /// Elements across a subdomain.
@@ -86,7 +87,7 @@ pub struct MeshError {
 /// One method on one mesh with one tolerance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// `fetifeti` or a baseline; one with "(set given)" solves the equations of the last active set only.
+    /// `fetifeti` or a baseline; a name with "(set given)" solves only the equations of the last active set.
     pub method: String,
     /// Elements across a subdomain.
     pub elements: usize,
@@ -106,7 +107,7 @@ pub struct Run {
     pub solve: f64,
     /// Distance from the direct solution of the mesh, relative.
     pub solver_error: f64,
-    /// Both parts together.
+    /// The error of mesh and solver together.
     pub error: f64,
     /// Whether the residual was reached; pictures show only these.
     pub converged: bool,
@@ -121,7 +122,8 @@ pub fn tolerances(quick: bool) -> &'static [f64] {
     }
 }
 
-/// Runs the study with the program itself, telling `progress` before every step. On one rank: the methods have the machine.
+/// Runs the study with the program itself, and calls `progress` before every step. It is called on one rank: the
+/// methods need the machine.
 ///
 /// # Errors
 /// [`Error::Input`] on several ranks; those of `compare`.
@@ -151,7 +153,8 @@ pub fn run(
                         case.name(),
                         mesh.elements
                     ));
-                    // A direct solver knows no tolerance: it is run at the first one. Variants need a baseline beside them.
+                    // A direct solver has no tolerance: it runs with the first one only. `compare` needs a baseline
+                    // beside each variant.
                     let with = match (k, quick) {
                         (0, false) => None,
                         _ => Some("mumps"),
@@ -176,7 +179,7 @@ pub fn run(
     })
 }
 
-/// The runs of a comparison that have an answer; baselines only where wanted.
+/// The runs of a comparison that have a result; baselines only where wanted.
 fn rows(
     report: &CompareReport,
     mesh: &MeshError,
@@ -195,7 +198,7 @@ fn rows(
         if !(ours || baselines) {
             continue;
         }
-        // Methods that are set up for a mesh and its parts do not search for the set.
+        // Methods that are set up for a mesh and its parts do not search for the active set.
         let given = row.contact.is_some_and(|c| c.outer.is_none());
         let method = match (ours, given) {
             (true, _) => variant.name.into(),
@@ -220,7 +223,7 @@ fn rows(
     out
 }
 
-/// `fetifeti compare` as a process of its own.
+/// Runs `fetifeti compare` as a process of its own.
 fn compare(
     case: Case,
     n: usize,
@@ -274,7 +277,7 @@ impl CaseReport {
         out
     }
 
-    /// For every mesh and tolerance the run of a method in its fastest layout, if one converged.
+    /// For every mesh and tolerance, the run of a method in its fastest layout, if one converged.
     pub fn fastest(&self, method: &str) -> Vec<&Run> {
         let mut out: Vec<&Run> = Vec::new();
         for run in self

@@ -1,4 +1,5 @@
-//! The three scenes, mesh by mesh: a scalar problem in the plane and an elastic solid with known solutions, and a contact problem.
+//! The three scenes, mesh by mesh: a scalar problem in the plane and an elastic solid with known solutions, and a
+//! contact problem.
 
 /// One scene of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +25,7 @@ impl Case {
         }
     }
 
-    /// For titles.
+    /// Title.
     pub fn title(self) -> &'static str {
         match self {
             Case::Scalar => "Scalar problem in the plane, known solution",
@@ -54,7 +55,8 @@ impl Case {
                  load = {{ value = \"5*pi^2*sin(pi*x)*sin(2*pi*y)\", quadrature = \"gauss\" }}\ndirichlet = \"all\"\n"
             ),
             Case::Solid => {
-                // u = a φ with φ = sin πx sin πy sin πz: f = μ 3π² φ a + (λ + μ) π² (φ a_i − Σ_{j≠i} a_j cos_i cos_j sin_k).
+                // u = a φ with φ = sin πx sin πy sin πz: f = μ 3π² φ a + (λ + μ) π² (φ a_i − Σ_{j≠i} a_j cos_i cos_j
+                // sin_k).
                 let s = ["x", "y", "z"].map(|v| format!("sin(pi*{v})"));
                 let c = ["x", "y", "z"].map(|v| format!("cos(pi*{v})"));
                 let a = [1.0, 0.5, -0.3];

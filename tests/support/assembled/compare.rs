@@ -1,5 +1,5 @@
-//! Whether an answer is a solution: the same energy, the same closed rows and the same u as the reference, as far as the
-//! problem determines them.
+//! Decides whether an answer is a solution: it must have the energy, the closed rows and the u of the reference, as far
+//! as the problem determines them.
 
 use super::super::qp::certificate::{self, largest, relative, Kkt};
 use super::{Assembled, Place, Reference};
@@ -11,9 +11,9 @@ use faer::{Mat, Side};
 pub struct Tolerances {
     pub energy: f64,
     pub kkt: f64,
-    /// u up to free motions, largest entry.
+    /// Largest entry of the difference of u, up to free motions.
     pub u: f64,
-    /// From where on a row counts as closed with force, or as open.
+    /// Threshold beyond which a row counts as closed with force, or as open.
     pub strict: f64,
 }
 
@@ -28,7 +28,7 @@ impl Default for Tolerances {
     }
 }
 
-/// What a solver says.
+/// The answer of a solver.
 pub struct Candidate<'a> {
     /// By unknown, as [`Assembled::dofs`].
     pub u: &'a [f64],
@@ -37,26 +37,26 @@ pub struct Candidate<'a> {
     pub energy: f64,
 }
 
-/// How well an answer agrees.
+/// The agreement of an answer with the reference.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Agreement {
     pub energy: f64,
     pub u: f64,
     pub kkt: Kkt,
-    /// Rows that carry force in the reference or in the answer, rows that are open in either, and rows that are neither:
-    /// closed without force, where either set is right.
+    /// Rows that carry force in the reference or in the answer, rows that are open in either, and rows that are
+    /// neither: closed without force, where either set is right.
     pub closed: usize,
     pub open: usize,
     pub degenerate: usize,
-    /// Dimension of the motions that leave the energy and all rows with force as they are: u is unique where it is 0.
+    /// Dimension of the motions that change neither the energy nor the rows with force: u is unique where it is 0.
     pub free_motions: usize,
 }
 
-/// Compares `answer` with the reference; an error says everything that does not fit.
+/// Compares `answer` with the reference; an error lists all disagreements.
 ///
 /// Every multiplier of a convex problem is complementary to every solution. So rows are compared crosswise: a row that
-/// carries force in one answer must be closed in the other. That is equality of the closed sets wherever the problem
-/// determines them, and asks for nothing at rows that touch without force or share their force with dependent rows.
+/// carries force in one answer must be closed in the other. Where the problem determines the closed sets, this means
+/// that they are equal; rows that touch without force, or share their force with dependent rows, are not constrained.
 pub fn compare(
     problem: &Assembled,
     reference: &Reference,
@@ -130,8 +130,8 @@ pub fn compare(
     }
 }
 
-/// What errors of the energy are compared with: the energy and the work of the load, and where both vanish what the data could do
-/// on the diagonal of K.
+/// The scale of errors of the energy: the energy and the work of the load; where both vanish, the energy that the data
+/// could cause on the diagonal of K.
 fn energy_scale(problem: &Assembled, reference: &Reference) -> f64 {
     let qp = &problem.qp;
     let stiffness = |i: usize| qp.k.get(i, i);
@@ -148,8 +148,8 @@ fn energy_scale(problem: &Assembled, reference: &Reference) -> f64 {
     }
 }
 
-/// Number of the motions in the kernel of K that equations and rows with force leave free, and the largest entry of
-/// u − v with its part in them removed.
+/// The number of motions in the kernel of K that equations and rows with force leave free, and the largest entry of u −
+/// v after its component in these motions is removed.
 fn distance(
     problem: &Assembled,
     u: &[f64],

@@ -1,8 +1,9 @@
 //! A contact problem assembled body by body and solved by the reference of `tests/support/qp`: what runs of the method are measured
 //! against.
 //!
-//! Unknowns are the free body dofs, so that a node where bodies meet has one for each of them; ties, contacts and obstacles
-//! are the rows. That is the problem as the rows of a scene state it, without any of the method's tearing inside bodies.
+//! Unknowns are the free body dofs, so that a node where bodies meet has one for each of them; ties, contacts and
+//! obstacles are the rows. This is the problem as the rows of a scene state it, without the method's tearing inside
+//! bodies.
 
 pub mod compare;
 
@@ -13,7 +14,7 @@ use fetifeti::scene::Scene;
 use fetifeti::substructures::{InterfaceRow, RowKind, Substructures};
 use fetifeti::Csr;
 
-/// Where a row of the problem went.
+/// The place of a row of the scene in the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// An equation that does not hold: no constraint.
@@ -22,7 +23,7 @@ pub enum Place {
     Below(usize),
 }
 
-/// The problem, its numbering, and its rows in the order in which they came.
+/// The problem, its numbering, and its rows in the order of the scene.
 pub struct Assembled {
     pub qp: Qp,
     /// Body dof of each unknown, increasing.
@@ -51,7 +52,7 @@ impl Assembled {
         Assembled::new(&scene.substructures(&|_| true).unwrap())
     }
 
-    /// The whole problem; `problem` has to hold all of it.
+    /// Assembles the whole problem; `problem` must contain all subdomains and rows.
     pub fn new(problem: &Substructures) -> Assembled {
         assert_eq!(problem.local.len(), problem.n_subdomains);
         let mut body_of = BTreeMap::new();
@@ -64,7 +65,7 @@ impl Assembled {
         let n = dofs.len();
         let mut triplets = Vec::new();
         let mut f = vec![0.0; n];
-        // Columns that may be kernels, by body and number.
+        // Candidates for kernel columns, by body and number.
         let mut columns: BTreeMap<(usize, usize), BTreeMap<usize, f64>> = BTreeMap::new();
         for s in &problem.local {
             let place: Vec<usize> = s.dofs.iter().map(|&d| find(&dofs, d)).collect();
@@ -124,7 +125,7 @@ impl Assembled {
         }
     }
 
-    /// The problem in its general form, whatever becomes of it.
+    /// The outcome: a solution, or the proof that there is none.
     pub fn outcome(&self) -> Outcome {
         self.qp.solve()
     }
@@ -132,7 +133,7 @@ impl Assembled {
     /// The solution.
     ///
     /// # Panics
-    /// Where there is none, or none can be certified.
+    /// Panics where there is no solution, or none can be certified.
     pub fn solve(&self) -> Reference {
         self.reference(self.outcome().solved())
     }
@@ -167,8 +168,8 @@ impl Assembled {
         find(&self.dofs, dof)
     }
 
-    /// By unknown, from (body dof, value) pairs of all copies; those of one body dof have to agree up to `tolerance` relative to
-    /// the largest value.
+    /// Values by unknown, from (body dof, value) pairs of all copies. The values of one body dof must agree up to
+    /// `tolerance`, relative to the largest value.
     pub fn gather(
         &self,
         copies: impl IntoIterator<Item = (u64, f64)>,

@@ -1,8 +1,9 @@
-//! What a solution, or the proof that there is none, has to satisfy. Everything here works on the problem as it was given.
+//! The conditions for a solution, or for a proof that there is none. All functions work on the original, unscaled
+//! problem.
 
 use super::{scaled, Qp, Row};
 
-/// KKT residuals, relative to the size of what is added up in them; 0 where nothing is.
+/// KKT residuals, relative to the size of their terms; 0 where all terms vanish.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Kkt {
     /// K u + Bᵀλ = f, in the scale of diag(K).
@@ -54,9 +55,10 @@ pub fn add_transposed(rows: &[Row], lambda: &[f64], y: &mut [f64]) {
     }
 }
 
-/// The largest entry of u and c, and the largest multiplier of a row of unit length.
+/// The scales of u and λ: the largest entry of u and c, and the largest multiplier of a row of unit length.
 ///
-/// Where u or λ vanish, that is what the data could cause: f on the diagonal of K, c times its smallest entry.
+/// Where u or λ vanish, the scale is the value that the data could cause: f on the diagonal of K, c times its smallest
+/// entry.
 pub fn sizes(qp: &Qp, u: &[f64], equal: &[f64], below: &[f64]) -> (f64, f64) {
     let d = scaled::weights(qp);
     let rows = || qp.equal.iter().chain(&qp.below);
@@ -111,7 +113,7 @@ pub fn kkt(qp: &Qp, u: &[f64], equal: &[f64], below: &[f64]) -> Kkt {
     }
 }
 
-/// Every kernel column is one.
+/// Checks that every kernel column is in the kernel of K.
 pub fn check_kernel(qp: &Qp) {
     let d = scaled::weights(qp);
     for column in &qp.kernel {

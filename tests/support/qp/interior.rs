@@ -1,4 +1,4 @@
-//! Mehrotra's predictor-corrector method from an infeasible start, as far as double precision takes it.
+//! Mehrotra's predictor-corrector method from an infeasible start, to the limits of double precision.
 
 use super::certificate::add_transposed;
 use super::kkt::System;
@@ -15,7 +15,7 @@ struct Residual {
     mu: f64,
 }
 
-/// Values for the unknowns (u, λ_E, λ_I) and s.
+/// A direction: increments of the unknowns (u, λ_E, λ_I) and of s.
 struct Direction {
     x: Vec<f64>,
     slack: Vec<f64>,
@@ -42,7 +42,7 @@ fn largest(v: &[f64]) -> f64 {
     v.iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
-/// How far the method is from the end: residuals and μ in the units in which the polish needs them.
+/// Distance from the end: residuals and μ, in the units that the polish needs.
 fn distance(p: &Point, r: &Residual) -> f64 {
     let length = 1.0 + largest(&p.u);
     let force = 1.0 + largest(&p.below).max(largest(&p.equal));
@@ -51,15 +51,15 @@ fn distance(p: &Point, r: &Residual) -> f64 {
     primal.max(dual).max(r.mu.abs() / (length * force))
 }
 
-/// A point close to the solution of the scaled problem, in the inner part of the solutions where there are many. `epsilon` is that of
-/// [`System`].
+/// A point close to the solution of the scaled problem; if there are many solutions, in the interior of their set.
+/// `epsilon` is that of [`System`].
 pub fn solve(qp: &Qp, epsilon: f64) -> Point {
     let (n, ne, ni) = (qp.f.len(), qp.equal.len(), qp.below.len());
     let rows: Vec<&Row> = qp.equal.iter().chain(&qp.below).collect();
     let mut system = System::new(qp, rows, epsilon);
     let mut t = vec![0.0; ne + ni];
 
-    // Start: the problem with s = −λ, then both made positive.
+    // Start: the problem with s = −λ, then both are made positive.
     t[ne..].fill(1.0);
     system.factor(&t);
     let sides = qp.equal.iter().chain(&qp.below).map(|row| row.rhs);

@@ -11,19 +11,19 @@ use faer::{Conj, Mat, Par, Side};
 
 /// [K Bᵀ; B −diag(t)], and its factorisation with +ε and −ε on the diagonal.
 ///
-/// The added ε is what makes semidefinite K and dependent rows harmless: iterative refinement removes it again from the
-/// solution wherever the system itself determines it, and leaves the rest where it was.
+/// The added ε makes semidefinite K and dependent rows harmless. Iterative refinement removes its effect from the
+/// solution wherever the system itself determines the solution, and leaves the other components unchanged.
 pub struct System<'a> {
     qp: &'a Qp,
     rows: Vec<&'a Row>,
     t: Vec<f64>,
     epsilon: f64,
-    /// Lower triangle, and where the diagonal entries of the rows are in its values.
+    /// Lower triangle, and the positions of the rows' diagonal entries in its values.
     matrix: SparseColMat<usize, f64>,
     diagonal: Vec<usize>,
     symbolic: SymbolicCholesky<usize>,
     values: Vec<f64>,
-    /// Signs of the pivots: a pivot lost to rounding is set right, and refinement pays for it.
+    /// Signs of the pivots: a pivot with a wrong sign from rounding is corrected, at the cost of more refinement.
     signs: Vec<i8>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> System<'a> {
         }
         let size = n + rows.len();
         let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets).unwrap();
-        // Columns of multipliers hold their diagonal entry only.
+        // Columns of multipliers contain only their diagonal entry.
         let diagonal = (n..size).map(|j| matrix.symbolic().col_ptr()[j]).collect();
         let symbolic = factorize_symbolic_cholesky(
             matrix.symbolic(),
@@ -131,7 +131,7 @@ impl<'a> System<'a> {
         );
     }
 
-    /// Improves x as a solution of A x = b until that stops paying; returns the size of the residual.
+    /// Improves x as a solution of A x = b until there is no more progress; returns the size of the residual.
     pub fn refine(&self, b: &[f64], x: &mut [f64], most: usize) -> f64 {
         let (mut r, mut size) = self.residual(b, x);
         for _ in 0..most {
@@ -160,7 +160,7 @@ impl<'a> System<'a> {
     }
 }
 
-/// A sum and what rounding took from it.
+/// A sum, and the rounding error lost from it.
 #[derive(Clone, Copy)]
 struct Sum(f64, f64);
 

@@ -1,13 +1,15 @@
-//! A reference for contact problems: quadratic programs with a semidefinite matrix and dependent rows, solved and certified.
+//! A reference for contact problems: quadratic programs with a semidefinite matrix and dependent rows, solved and
+//! certified.
 //!
 //! ```text
 //!     min ½ uᵀKu − fᵀu    subject to    B_E u = c_E,   B_I u ≤ c_I
 //! ```
 //!
-//! A solution exists exactly when the rows can be met and no motion in the kernel of K lowers the energy for ever. Both are
-//! decided first, each by a quadratic program of its own that always has a solution and whose solution is the proof: of rows
-//! that contradict each other or of a motion without end. The problem itself is then solved by an interior point method, its active set is read off and the equations on it
-//! are solved to rounding. Nothing leaves this module that does not meet its own KKT conditions.
+//! A solution exists if and only if the rows can be satisfied and no motion in the kernel of K lowers the energy
+//! without bound. Both questions are decided first, each by a quadratic program that always has a solution; this
+//! solution is the proof that rows contradict each other, or that there is an unbounded motion. The problem itself is
+//! then solved by an interior point method. Its active set is identified, and the equations on it are solved to
+//! rounding. Every result satisfies its own KKT conditions.
 
 pub mod certificate;
 mod interior;
@@ -23,8 +25,9 @@ pub use certificate::Kkt;
 /// Limit of all KKT residuals of a reference.
 pub const CERTIFIED: f64 = 1e-11;
 
-/// What is added to the diagonal of singular systems, relative to the problem's own. Loads on a stiff body that only a soft one holds
-/// are small beside it: then a smaller one is tried, which costs the factorisations digits.
+/// The regularisation on the diagonal of singular systems, relative to the problem's own diagonal. Where a soft body
+/// holds a stiff one, the loads on the latter are small compared with it; then a smaller value is tried, at the cost of
+/// digits in the factorisation.
 const EPSILON: [f64; 3] = [1e-7, 1e-9, 1e-11];
 
 /// Σ coefficient · u(index), and the right-hand side.
@@ -69,7 +72,7 @@ pub struct Qp {
 #[derive(Debug, Clone)]
 pub struct Solved {
     pub u: Vec<f64>,
-    /// Multipliers with K u + B_Eᵀ λ_E + B_Iᵀ λ_I = f; one choice of many where rows depend on each other.
+    /// Multipliers with K u + B_Eᵀ λ_E + B_Iᵀ λ_I = f; they are not unique where rows are dependent.
     pub equal: Vec<f64>,
     pub below: Vec<f64>,
     /// Inequality rows on which the equations were solved: (B u)_r = c_r.
@@ -78,7 +81,7 @@ pub struct Solved {
     pub kkt: Kkt,
 }
 
-/// What became of a problem, with the proof.
+/// The outcome of a problem, with its proof.
 #[derive(Debug, Clone)]
 pub enum Outcome {
     Solved(Solved),
@@ -119,7 +122,8 @@ impl Qp {
             below,
             kernel: Vec::new(),
         };
-        // Coefficients far apart must not pass for a kernel: eigenvalues of the matrix with unit diagonal.
+        // Coefficients of different size must not be mistaken for a kernel: the eigenvalues are those of the matrix
+        // with unit diagonal.
         let d = scaled::weights(&qp);
         let unit = Mat::from_fn(n, n, |i, j| 0.5 * d[i] * (k[(i, j)] + k[(j, i)]) * d[j]);
         let eigen = unit.self_adjoint_eigen(Side::Lower).expect("eigenvalues");
@@ -145,7 +149,7 @@ impl Qp {
         (0..u.len()).map(half).sum()
     }
 
-    /// Solves, or proves that there is nothing to solve.
+    /// Solves the problem, or proves that it has no solution.
     ///
     /// # Panics
     /// Where neither a solution nor its absence can be certified.
@@ -197,8 +201,8 @@ impl Qp {
         panic!("the reference failed its own check: {failed:?}");
     }
 
-    /// The least squares of what the rows are violated by, min ½|t|² with B_E u + t_E = c_E, B_I u + t_I ≤ c_I. Where t is not
-    /// zero, y = −t proves that no u meets all rows.
+    /// Minimises the violation of the rows, min ½|t|² with B_E u + t_E = c_E, B_I u + t_I ≤ c_I. If t is not zero, y =
+    /// −t proves that no u satisfies all rows.
     fn contradiction(&self) -> Option<Vec<f64>> {
         let rows = self.equal.len() + self.below.len();
         if rows == 0 {
@@ -254,8 +258,8 @@ impl Qp {
         Some(y)
     }
 
-    /// The projection of the load on the motions in the kernel of K that no row stops. Where it is not zero, the energy falls
-    /// along it for ever.
+    /// The projection of the load on the motions in the kernel of K that no row stops. If it is not zero, the energy
+    /// decreases along it without bound.
     fn descent(&self) -> Option<Vec<f64>> {
         if self.kernel.is_empty() {
             return None;

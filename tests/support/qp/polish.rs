@@ -1,23 +1,24 @@
-//! From a point near the solution to the solution: the equations on the active set, and rows exchanged until all signs fit.
+//! The step from a point near the solution to the solution: solves the equations on the active set, and exchanges rows
+//! until all signs are right.
 
 use super::kkt::System;
 use super::scaled::Point;
 use super::{Qp, Row};
 use std::collections::HashSet;
 
-/// What counts as zero, relative to the largest entries of u and λ, and to the data.
+/// Values below this count as zero, relative to the largest entries of u and λ, and to the data.
 const ZERO: f64 = 2e-12;
 
-/// The solution on the active set that `p` shows.
+/// The solution on the active set of `p`.
 ///
-/// The equations are solved for the least change of `p`. Where rows depend on each other, many multipliers fit; those of an
-/// interior point method are positive on every row that can carry force, and stay so. `epsilon` is that of [`System`]. `None`: no
-/// active set near `p` fits.
+/// The equations are solved for the smallest change of `p`. Where rows are dependent, multipliers are not unique; those
+/// of an interior point method are positive on every row that can carry force, and remain so. `epsilon` is that of
+/// [`System`]. `None`: no active set near `p` fits.
 pub fn polish(qp: &Qp, mut p: Point, epsilon: f64) -> Option<Point> {
     let (n, ne, ni) = (qp.f.len(), qp.equal.len(), qp.below.len());
     let mut closed: Vec<bool> = (0..ni).map(|k| p.below[k] > p.slack[k]).collect();
     let mut seen = HashSet::new();
-    // Data of size one, unit diagonal: what vanishes is compared with 1.
+    // The data have size one and the diagonal is one: small values are compared with 1.
     let largest = |v: &[f64]| v.iter().fold(1.0f64, |m, v| m.max(v.abs()));
     loop {
         if !seen.insert(closed.clone()) {
@@ -30,8 +31,8 @@ pub fn polish(qp: &Qp, mut p: Point, epsilon: f64) -> Option<Point> {
         let b: Vec<f64> = qp.f.iter().copied().chain(sides).collect();
         let mut system = System::new(qp, rows, epsilon);
         system.factor(&vec![0.0; ne + active.len()]);
-        // The smallest part of the multipliers to start from that leads to the right signs: rows that equations imply may carry
-        // any force, and large ones that cancel cost digits.
+        // The multipliers to start from are the smallest part of those of `p` that leads to the right signs: rows
+        // implied by equations may carry any force, and large forces that cancel cost digits.
         let mut x = Vec::new();
         for part in [0.0, 1e-6, 1e-4, 1e-2, 1.0] {
             x.clone_from(&p.u);

@@ -1,4 +1,4 @@
-//! The problem with unit diagonal, unit rows and data of size one: what the algorithm works on.
+//! The problem with unit diagonal, unit rows and data of size one, for the algorithm.
 
 use super::{Qp, Row};
 use fetifeti::Csr;
@@ -9,7 +9,7 @@ pub struct Point {
     pub u: Vec<f64>,
     pub equal: Vec<f64>,
     pub below: Vec<f64>,
-    /// c − B u of the inequality rows, as far as it is a variable of its own.
+    /// The slack c − B u of the inequality rows, as a separate variable.
     pub slack: Vec<f64>,
     pub closed: Vec<usize>,
 }
@@ -22,7 +22,7 @@ pub struct Scales {
     below: Vec<f64>,
 }
 
-/// diag(K)^(−1/2); where the diagonal is zero, that of the mean of the others.
+/// diag(K)^(−1/2); zero diagonal entries are replaced by the mean of the others.
 pub fn weights(qp: &Qp) -> Vec<f64> {
     let diagonal: Vec<f64> = (0..qp.f.len()).map(|i| qp.k.get(i, i)).collect();
     let positive: Vec<f64> = diagonal.iter().copied().filter(|&v| v > 0.0).collect();

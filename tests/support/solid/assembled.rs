@@ -9,7 +9,7 @@ use fetifeti::substructures::Substructures;
 
 /// The solution by local dof of every subdomain; all rows must be ties u_a = u_b.
 pub fn solve(problem: &Substructures) -> Vec<Vec<f64>> {
-    // Body dofs that rows tie are one unknown.
+    // Body dofs that are tied by rows are one unknown.
     let mut leader: BTreeMap<u64, u64> = BTreeMap::new();
     fn find(leader: &BTreeMap<u64, u64>, mut dof: u64) -> u64 {
         while let Some(&next) = leader.get(&dof) {

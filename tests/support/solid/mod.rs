@@ -1,4 +1,4 @@
-//! Grids of equal box bodies in 2D and 3D, scalar and elastic, written down without the scene, mesh and fem modules.
+//! Grids of equal box bodies in 2D and 3D, scalar and elastic, implemented without the scene, mesh and fem modules.
 
 pub mod assembled;
 mod element;
@@ -10,7 +10,7 @@ use fetifeti::substructures::{
 };
 use fetifeti::Csr;
 
-/// What the bodies are made of.
+/// The material of the bodies.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Physics {
     /// −Δu.
@@ -19,30 +19,30 @@ pub enum Physics {
     Elastic { nu: f64 },
 }
 
-/// What holds the bodies together.
+/// The rows between bodies.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Rows {
     /// All components, all pairs of bodies at a node.
     Tied,
-    /// Rows as `Tied`, but only those hold that are normal to the face of just two bodies; what does not hold is a candidate all the same,
-    /// so that whole nodes belong to Γ and leave Z_c.
+    /// Rows as for `Tied`, of which only those normal to the face of exactly two bodies hold. The other rows are
+    /// candidates all the same, so that whole nodes belong to Γ and are not in Z_c.
     NormalsByNode,
     /// One row for each pair of faces and node, in the normal direction.
     Normals,
 }
 
-/// What holds the unit square or cube.
+/// The support of the unit square or cube.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Held {
     /// All components on the whole boundary.
     AllRound,
     /// All components where x = 0.
     Left,
-    /// Nothing but the first component where x = 0.
+    /// Only the first component where x = 0.
     Rolling,
 }
 
-/// Stiffness by place of the body and of the subdomain in it.
+/// Stiffness as a function of the body's place and the subdomain's place in it.
 pub type Stiffness = fn([usize; 3], [usize; 3]) -> f64;
 
 /// N_b bodies of N_s subdomains of N_e elements in every direction on the unit square or cube.
@@ -57,7 +57,7 @@ pub struct Solid {
     pub held: Held,
     /// Stiffness of a body and of a subdomain in it, by place; 1 if `None`.
     pub stiffness: Option<Stiffness>,
-    /// Stiffness of an element by its place on the whole grid, on top of that; 1 if `None`.
+    /// Further factor of the stiffness of an element, by its place on the whole grid; 1 if `None`.
     pub by_element: Option<fn([usize; 3]) -> f64>,
     /// Whether the edges of squares in 2D are entities; those of cubes always are.
     pub plane_edges: bool,
@@ -191,7 +191,7 @@ impl Solid {
             }
         }
 
-        // Vertices, edges and faces by the number of directions in which a node is at an end of the box.
+        // Vertices, edges and faces, by the number of directions in which a node is at an end of the box.
         let mut primal = Vec::new();
         let mut entities: BTreeMap<(Vec<usize>, usize), Entity> = BTreeMap::new();
         for (i, (x, c)) in nodes.iter().enumerate() {
@@ -235,7 +235,7 @@ impl Solid {
         }
     }
 
-    /// A load without pattern; what the copies of a dof get adds up.
+    /// A load without a pattern; the loads of the copies of a dof add up.
     fn load(&self, body: usize, x: [usize; 3], c: usize) -> f64 {
         let t = (self.dof(body, x, c) + 1) as f64 * 0.618_033_988_749_894_9;
         (2.0 * t.fract() - 1.0) / self.per_side() as f64
@@ -313,7 +313,8 @@ impl Solid {
         out
     }
 
-    /// The part of the rank that `mine` says yes for, by subdomain; rows are provided where the body's subdomain 0 is.
+    /// The substructures of one rank; `mine` says which subdomains it owns. The owner of a body's subdomain 0 provides
+    /// its rows.
     pub fn substructures(&self, mine: impl Fn(usize) -> bool) -> Substructures {
         let n = self.per_side() + 1;
         let per_body = self.subdomains.pow(self.dim as u32);
