@@ -1,6 +1,7 @@
 //! One run of the Krylov method: λ ← λ + P x with Pᵀ F P x = Pᵀ r.
 
 use super::residual::ROUNDING;
+use super::system::System;
 use super::tally::Start;
 use crate::feti::method::LinearMethod;
 use crate::feti::spectrum::Spectrum;
@@ -126,22 +127,18 @@ pub fn iterate(
     // small residual and leaves a negligible part.
     system.dual().p_transpose(residual)?;
     let nothing = (ROUNDING * control.size).max(control.tolerance);
-    let start = residual.norm2()?;
+    let mut start = residual.norm2()?;
     if start <= nothing {
         return Ok(Run::nothing_to_do(start));
     }
     // The part of the solution in range W, and in the span of earlier directions, is known before the iteration.
-    for known_part in [
-        super::system::System::deflated_part,
-        super::system::System::recycled_part,
-    ] {
+    for known_part in [System::deflated_part, System::recycled_part] {
         known_part(system, residual, lambda)?;
-        let start = residual.norm2()?;
+        start = residual.norm2()?;
         if start <= nothing {
             return Ok(Run::nothing_to_do(start));
         }
     }
-    let start = residual.norm2()?;
     let x = system.dual().multipliers()?;
     let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
