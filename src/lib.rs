@@ -135,6 +135,9 @@ extern crate self as fetifeti;
 #[cfg(all(test, feature = "cli"))]
 #[path = "../tests/inside/mod.rs"]
 mod inside;
+#[cfg(test)]
+#[path = "../tests/support/session.rs"]
+mod testing;
 
 pub use error::{Error, Result};
 pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling, Spectrum};

@@ -109,35 +109,5 @@ pub fn bodies(group: &[u64], bonds: &[Bond]) -> Vec<usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn bond(low: usize, high: usize, holds: bool) -> Bond {
-        Bond {
-            low,
-            high,
-            shared: 9,
-            holds,
-        }
-    }
-
-    #[test]
-    fn a_group_in_two_pieces_is_two_bodies() {
-        let row = [bond(0, 1, true), bond(1, 2, true)];
-        assert_eq!(bodies(&[7, 3, 7], &row), [0, 1, 2]);
-        assert_eq!(bodies(&[7, 7, 7], &row), [0, 0, 0]);
-    }
-
-    #[test]
-    fn what_does_not_hold_makes_no_body() {
-        let row = [bond(0, 1, true), bond(1, 2, false)];
-        assert_eq!(bodies(&[0, 0, 0], &row), [0, 0, 1]);
-    }
-
-    #[test]
-    fn all_are_named_or_none() {
-        assert!(named_groups(&[Some(1), None]).is_err());
-        assert_eq!(named_groups(&[None, None]).unwrap(), None);
-        assert_eq!(named_groups(&[Some(4), Some(1)]).unwrap(), Some(vec![4, 1]));
-    }
-}
+#[path = "../../tests/inside/embed/bodies.rs"]
+mod tests;

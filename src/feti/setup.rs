@@ -260,15 +260,5 @@ fn unfit_norm(error: Error, prefix: &str) -> Error {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::{count, usual_threads};
-
-    #[test]
-    fn ranks_share_the_cores_of_a_machine() {
-        assert_eq!(count("0-3,8\n"), Some(5));
-        assert_eq!(count("0"), Some(1));
-        assert_eq!(count("none"), None);
-        assert!(usual_threads(1) >= 1);
-        assert_eq!(usual_threads(1 << 20), 1);
-    }
-}
+#[path = "../../tests/inside/feti/setup.rs"]
+mod tests;

@@ -8,6 +8,7 @@ pub mod semidefinite;
 pub mod single;
 pub mod symmetric;
 #[cfg(test)]
+#[path = "../../tests/inside/linalg/testing.rs"]
 pub(crate) mod testing;
 pub(crate) mod twice;
 pub(crate) mod union_find;

@@ -28,7 +28,6 @@ mod scatter;
 mod session;
 mod shell;
 mod spectrum;
-pub mod testing;
 mod vec;
 
 pub use citations::cite;

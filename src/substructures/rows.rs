@@ -232,45 +232,5 @@ impl Record for SolvedRow {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_travel_unchanged() {
-        let members = [Some(BodyNode { body: 3, node: 70 }), None];
-        let label = RowLabel {
-            point: [0.5, -1.0, 2.0],
-            t: [0.25, 1.0],
-            normal: [0.0, 0.6, -0.8],
-            area: 0.125,
-            ..RowLabel::new(RowSource::Obstacle(7), members)
-        };
-        let given = InterfaceRow {
-            terms: vec![(9, 1.0)],
-            gap: 0.0,
-            kind: RowKind::Inequality,
-            holds: true,
-            block: 9,
-            label,
-        };
-        for (kind, holds, state) in [
-            (RowKind::Inequality, true, RowState::Holds),
-            (RowKind::Inequality, false, RowState::Open),
-            (RowKind::Equality, true, RowState::Tied),
-            (RowKind::Equality, false, RowState::Open),
-        ] {
-            let given = InterfaceRow {
-                kind,
-                ..given.clone()
-            };
-            let row = SolvedRow::new(&given, 2.0, -0.75, holds);
-            let mut words = Vec::new();
-            row.pack(&mut words);
-            assert_eq!(words.len(), SolvedRow::WORDS);
-            assert_eq!(SolvedRow::unpack(&words), row);
-            assert_eq!((row.state, row.holds()), (state, holds));
-            assert_eq!((row.gap, row.pressure()), (0.75, Some(16.0)));
-            assert_eq!((row.body(), row.node()), (Some(3), Some(70)));
-        }
-    }
-}
+#[path = "../../tests/inside/substructures/rows.rs"]
+mod tests;

@@ -1,9 +1,9 @@
 //! The program's answers to bad input: one sentence, the right exit code, no file. Also unusual, but valid scenes.
 
 use crate::support::checks::identities;
+use crate::support::session::with_session;
 use crate::support::{direct, mpi, program};
 use direct::{tight, Direct};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::scene::Scene;
 use mpi::{Output, Scratch};
 use program::{fetifeti, run_fetifeti};

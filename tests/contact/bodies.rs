@@ -1,10 +1,10 @@
 //! Many bodies, most of them floating, with tied, unilateral and gap interfaces: both methods against the assembled
 //! reference, on one and several ranks.
 
+use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::Error;

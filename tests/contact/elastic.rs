@@ -1,10 +1,10 @@
 //! Random elastic contact scenes, plane and solid, flat and curved, by both contact loops and on several ranks, against
 //! the assembled reference.
 
+use crate::support::session::with_session;
 use crate::support::{contact_judge, elastic_scene, mpi};
 use elastic_scene::{case, Case, Fate};
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::Error;
 

@@ -1,10 +1,11 @@
 //! The model problem (3.1)-(3.3) against values of an independent computation (tests/data/model_contact.json).
 
 use crate::support::checks::number;
+use crate::support::session::with_session;
 use crate::support::{mpi, program};
 use fetifeti::contact::{self, ContactType};
-use fetifeti::petsc::{testing::with_session, Session};
 use fetifeti::scene::Scene;
+use fetifeti::Session;
 use fetifeti::{FetiFeti, MethodSettings, RowState, Settings, Solution};
 use mpi::Scratch;
 use program::run_fetifeti;

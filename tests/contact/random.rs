@@ -1,9 +1,9 @@
 //! Random contact scenes by the method, with both contact loops and on several ranks, against the assembled reference.
 
+use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi, random_scene};
 use assembled::compare::Agreement;
 use fetifeti::contact::ContactType;
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::Error;
 use random_scene::{Case, Collection, Fate};

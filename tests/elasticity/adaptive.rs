@@ -1,10 +1,10 @@
 //! Adaptive primal constraints: exact condition numbers of bodies with coefficients that jump from element to element.
 
 use crate::support::checks::identities;
+use crate::support::session::with_session;
 use crate::support::{mpi, solid};
 use fetifeti::feti::Adaptive;
 use fetifeti::feti::{MethodSettings, Scaling};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::substructures::Substructures;
 use fetifeti::FetiFeti;

@@ -1,9 +1,9 @@
 //! Patch tests and orders of convergence of whole solves: plane and solid, across tied faces and faces in contact, flat
 //! and distorted, for every element and cure of locking.
 
+use crate::support::session::with_session;
 use fetifeti::fem::ErrorNorms;
 use fetifeti::feti::{MethodSettings, Precision};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;

@@ -2,9 +2,9 @@
 //! several ranks.
 
 use crate::support::checks::identities;
+use crate::support::session::with_session;
 use crate::support::{mpi, solid};
 use fetifeti::feti::{MethodSettings, Primal, ProjectorKind, Scaling};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::{Options, Session};
 use fetifeti::substructures::Substructures;
 use fetifeti::FetiFeti;

@@ -2,9 +2,9 @@
 
 use crate::support::checks::identities;
 use crate::support::mpi::alone;
+use crate::support::session::with_session;
 use crate::support::solid;
 use fetifeti::feti::{MethodSettings, PcType, Primal};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::FetiFeti;
 use solid::{Physics, Rows, Solid};

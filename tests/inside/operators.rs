@@ -3,12 +3,12 @@
 use super::dense;
 use crate::inside::support::checks::identities;
 use crate::inside::support::direct;
+use crate::testing::with_session;
 use crate::FetiFeti;
 use dense::{columns, defect, jump_of, pseudo_inverse, spectrum, Reference};
 use direct::{tight, Direct};
 use faer::Mat;
 use fetifeti::feti::{MethodSettings, PcType, ProjectorKind};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::{Faces, Scene};
 use fetifeti::substructures::{Subdomain, Substructures};

@@ -1,8 +1,8 @@
 //! The PETSc layer on one rank, in one process.
 
 use crate::inside::support::mpi;
+use crate::testing::with_session;
 use fetifeti::linalg::csr::Csr;
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::{
     cite, max_memory, Comm, Event, Is, Ksp, Mat, MatFlag, NormType, Options, Scatter, Session,
     ShellMat, ShellPc, Stage, Vec as PVec,

@@ -1,7 +1,7 @@
 //! Extreme eigenvalues of C A for singular pairs, compared with dense algebra.
 
+use crate::testing::with_session;
 use faer::{Mat as Dense, Side};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::{
     extreme_eigenvalues, Comm, Eps, Mat, ProblemType, Session, ShellOp, Vec as PVec, Which,
 };

@@ -1,11 +1,11 @@
 //! Deflation of eigenvalues above τ, which arise from coefficients that jump inside bodies: exact spectra, solutions,
 //! ranks.
 
+use crate::support::session::with_session;
 use crate::support::{direct, mpi, program, rng};
 use direct::Direct;
 use fetifeti::feti::Adaptive;
 use fetifeti::feti::MethodSettings;
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;

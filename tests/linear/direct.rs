@@ -1,9 +1,9 @@
 //! u of the method compared with a direct solution of the assembled problem, in the energy norm.
 
 use crate::support::direct;
+use crate::support::session::with_session;
 use direct::{tight, with_options, Direct};
 use fetifeti::feti::{MethodSettings, PcType, ProjectorKind, Scaling};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::scene::Scene;
 
 const PC_TYPES: [PcType; 4] = [

@@ -2,10 +2,10 @@
 //! load to load.
 
 use crate::support::checks::identities;
+use crate::support::session::with_session;
 use crate::support::{mpi, program};
 use fetifeti::feti::Operators;
 use fetifeti::feti::{MethodSettings, PcType};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;

@@ -2,8 +2,8 @@
 //! and mistakes get one sentence.
 
 use crate::support::program;
+use crate::support::session::with_session;
 use fetifeti::cholesky::interior::{LocalSolver, Ordering, Solver};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::{FetiFeti, MethodSettings, Scene};
 use program::fetifeti;
 use serde_json::Value;

@@ -2,9 +2,9 @@
 
 use crate::support::checks::{identities, number};
 use crate::support::common;
+use crate::support::session::with_session;
 use common::Grid;
 use fetifeti::feti::{MethodSettings, PcType};
-use fetifeti::petsc::testing::with_session;
 use fetifeti::FetiFeti;
 use serde_json::Value;
 

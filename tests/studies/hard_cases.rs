@@ -86,7 +86,7 @@ fn ranks_do_not_matter() {
 /// One case, solved with a tolerance too loose for a solution: the study detects it.
 #[test]
 fn a_wrong_answer_is_seen() {
-    use fetifeti::petsc::testing::with_session;
+    use crate::support::session::with_session;
     use fetifeti::study::hard_cases::{cases, one};
     let verdict = with_session(|session| {
         let mut case = cases(true)

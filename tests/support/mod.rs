@@ -17,4 +17,5 @@ pub mod qp;
 pub mod random_scene;
 pub mod rng;
 pub mod scene_message;
+pub mod session;
 pub mod solid;

@@ -24,6 +24,7 @@ mod own;
 mod triangle;
 
 #[cfg(test)]
+#[path = "../../../tests/inside/cholesky/interior.rs"]
 mod tests;
 
 use super::symbolic::Keep;

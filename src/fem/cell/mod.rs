@@ -30,10 +30,13 @@ mod stiffness;
 mod stress;
 
 #[cfg(test)]
+#[path = "../../../tests/inside/fem/cell/locking_tests.rs"]
 mod locking_tests;
 #[cfg(test)]
+#[path = "../../../tests/inside/fem/cell/stiffness_tests.rs"]
 mod stiffness_tests;
 #[cfg(test)]
+#[path = "../../../tests/inside/fem/cell/testing.rs"]
 mod testing;
 
 pub use errors::error_squares;

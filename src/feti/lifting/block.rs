@@ -122,13 +122,5 @@ pub(crate) fn block(local: &Scaled, recipe: &Recipe, functions: &[Functions]) ->
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_that_follow_each_other_make_runs() {
-        let inside = [true, true, false, true, false, false, true];
-        assert_eq!(runs(inside.into_iter()), [0..2, 3..4, 6..7]);
-        assert!(runs([false, false].into_iter()).is_empty());
-    }
-}
+#[path = "../../../tests/inside/feti/lifting/block.rs"]
+mod tests;

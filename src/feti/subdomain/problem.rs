@@ -17,6 +17,7 @@
 //! matrix; subdomains with multiples of the matrix share it through [`Scaled`](super::scaled::Scaled).
 
 #[cfg(test)]
+#[path = "../../../tests/inside/feti/subdomain/problem.rs"]
 mod tests;
 
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -261,17 +261,5 @@ fn lines(values: &[f64], columns: usize) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_unique_and_quick_cases_exist() {
-        let all = cases(Meshes::Small);
-        let mut names: Vec<&str> = all.iter().map(|c| c.name.as_str()).collect();
-        assert_eq!(names.len(), 40);
-        names.sort_unstable();
-        names.dedup();
-        assert_eq!(names.len(), 40);
-        assert_eq!(cases(Meshes::Quick).len(), QUICK.len());
-    }
-}
+#[path = "../../../tests/inside/study/adaptive/cases.rs"]
+mod tests;

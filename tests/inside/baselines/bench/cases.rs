@@ -1,0 +1,63 @@
+//! Unit tests of `src/baselines/bench/cases.rs`.
+
+use super::*;
+use crate::scene::{Numbering, Scene};
+
+fn load(name: &str, quick: bool) -> Scene {
+    let text = Named::find(name).expect("a name").scene(quick);
+    Scene::parse(&format!("{name}.toml"), &text).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+#[test]
+fn cases_have_the_size_that_they_are_named_after() {
+    let dofs = |name, quick| Numbering::new(&load(name, quick)).len();
+    assert_eq!(dofs("poisson-1024", false), 1023 * 1023);
+    assert_eq!(dofs("poisson-1024-random", false), 1023 * 1023);
+    assert_eq!(dofs("poisson-1024", true), 127 * 127);
+    assert_eq!(dofs("contact-512", false), 512 * 513 + 513 * 513);
+    assert_eq!(dofs("cube-24", false), 3 * 25 * 24 * 25);
+    assert_eq!(dofs("cube-40", false), 3 * 41 * 40 * 41);
+    assert_eq!(dofs("cube-24", true), 3 * 13 * 12 * 13);
+    for quick in [false, true] {
+        let all = CASES.map(|c| load(c.name, quick));
+        let contact = all.each_ref().map(Scene::has_contact);
+        assert_eq!(contact, [false, false, true, false, false, true]);
+        assert!(all
+            .iter()
+            .all(|s| s.n_bodies() > 1 && s.n_subdomains() > s.n_bodies()));
+    }
+}
+
+#[test]
+fn the_large_square_is_that_of_the_examples() {
+    let example = Scene::load("examples/scenes/speed_1024.toml").expect("a scene");
+    let scene = load("poisson-1024", false);
+    let sizes = |s: &Scene| (s.n_bodies(), s.n_subdomains(), Numbering::new(s).len());
+    assert_eq!(sizes(&scene), sizes(&example));
+    let [a, b] = [&scene, &example].map(|s| s.subdomain(17).expect("a subdomain"));
+    assert_eq!(a.k, b.k);
+}
+
+#[test]
+fn in_the_random_case_no_two_subdomains_are_equal() {
+    let scene = load("poisson-1024-random", true);
+    scene
+        .check_values()
+        .expect("elements that are not turned over");
+    let all: Vec<_> = (0..scene.n_subdomains())
+        .map(|s| scene.subdomain(s).expect("a subdomain"))
+        .collect();
+    for (a, one) in all.iter().enumerate() {
+        for other in &all[..a] {
+            assert_ne!(one.k.val, other.k.val);
+        }
+        let (low, high) = one
+            .rho
+            .iter()
+            .fold((f64::MAX, 0.0_f64), |r, &x| (r.0.min(x), r.1.max(x)));
+        assert!(
+            low > 0.09 && high < 10.1 && high / low > 3.0,
+            "{low} {high}"
+        );
+    }
+}

@@ -1,0 +1,53 @@
+//! Unit tests of `src/embed/partition.rs`.
+
+use super::*;
+use crate::testing::with_session;
+
+/// Bonds of a w × h grid of subdomains: 9 dofs along sides, 1 at corners.
+fn grid(w: usize, h: usize) -> Vec<Bond> {
+    let mut bonds = Vec::new();
+    for low in 0..w * h {
+        for high in low + 1..w * h {
+            let (dx, dy) = ((low % w).abs_diff(high % w), high / w - low / w);
+            if dx <= 1 && dy <= 1 {
+                bonds.push(Bond {
+                    low,
+                    high,
+                    shared: if dx + dy == 1 { 9 } else { 1 },
+                    holds: true,
+                });
+            }
+        }
+    }
+    bonds
+}
+
+fn parted(n: usize, bonds: &[Bond], parts: usize) -> Vec<u64> {
+    let bonds = bonds.to_vec();
+    with_session(move |session| partition(session, "part_", n, &bonds, parts).unwrap())
+}
+
+#[test]
+fn groups_are_equal_and_connected() {
+    for (w, h, parts) in [(4, 4, 2), (4, 4, 4), (6, 4, 3), (3, 3, 2), (5, 1, 2)] {
+        let group = parted(w * h, &grid(w, h), parts);
+        let body = bodies(&group, &grid(w, h));
+        assert_eq!(body.iter().max().unwrap() + 1, parts, "{group:?}");
+        for b in 0..parts {
+            let size = body.iter().filter(|&&x| x == b).count();
+            assert!(size == w * h / parts || size == (w * h).div_ceil(parts));
+        }
+    }
+}
+
+#[test]
+fn groups_are_round() {
+    // The partition must also succeed if corners hold nothing, as in elasticity.
+    let mut bonds = grid(4, 4);
+    bonds.iter_mut().for_each(|b| b.holds = b.shared > 1);
+    let group = parted(16, &bonds, 4);
+    let block = |s: usize| s % 4 / 2 + 2 * (s / 8);
+    for (s, t) in (0..16).flat_map(|s| (0..16).map(move |t| (s, t))) {
+        assert_eq!(group[s] == group[t], block(s) == block(t), "{group:?}");
+    }
+}

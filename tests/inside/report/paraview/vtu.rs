@@ -1,0 +1,85 @@
+//! Unit tests of `src/report/paraview/vtu.rs`.
+
+use super::*;
+use base64::Engine;
+
+/// The bytes of a named array after their length.
+fn bytes_of(file: &str, name: &str) -> Vec<u8> {
+    let after = file.split(&format!("Name=\"{name}\"")).nth(1).unwrap();
+    let content = after.split_once('>').unwrap().1.split_once('<').unwrap().0;
+    let bytes = STANDARD.decode(content.trim()).unwrap();
+    let (length, data) = bytes.split_at(8);
+    assert_eq!(
+        u64::from_le_bytes(length.try_into().unwrap()) as usize,
+        data.len()
+    );
+    data.to_vec()
+}
+
+fn floats(bytes: &[u8]) -> Vec<f64> {
+    bytes
+        .chunks(8)
+        .map(|b| f64::from_le_bytes(b.try_into().unwrap()))
+        .collect()
+}
+
+const POINTS: [[f64; 3]; 6] = [
+    [0., 0., 0.],
+    [1., 0., 0.],
+    [2., 0., 0.],
+    [0., 1., 0.],
+    [1., 1., 0.],
+    [2., 1.5, 0.],
+];
+const QUADS: [u32; 8] = [0, 1, 4, 3, 1, 2, 5, 4];
+
+fn text(vtu: &Vtu) -> String {
+    let mut out = Vec::new();
+    vtu.fill(&mut out).unwrap();
+    String::from_utf8(out).unwrap()
+}
+
+#[test]
+fn arrays_read_back() {
+    let u = [0.0, 0.1, -2.5, 1e-300, f64::MAX, 6.0];
+    let body = [0, -1];
+    let velocity: Vec<f64> = (0..6).map(f64::from).collect();
+    let vtu = Vtu::new(&POINTS, Shape::Quad, &QUADS)
+        .point_data("u", 1, &u[..])
+        .cell_data("v", 3, &velocity[..])
+        .cell_data("body", 1, &body[..]);
+    vtu.check().unwrap();
+    let file = text(&vtu);
+    assert!(file.contains("NumberOfPoints=\"6\" NumberOfCells=\"2\""));
+    assert_eq!(floats(&bytes_of(&file, "u")), u);
+    assert_eq!(floats(&bytes_of(&file, "v")), velocity);
+    assert_eq!(bytes_of(&file, "body"), [0, 0, 0, 0, 255, 255, 255, 255]);
+    assert_eq!(floats(&bytes_of(&file, "Points")), POINTS.concat());
+    let integers = |name| -> Vec<i64> {
+        bytes_of(&file, name)
+            .chunks(8)
+            .map(|b| i64::from_le_bytes(b.try_into().unwrap()))
+            .collect()
+    };
+    assert_eq!(integers("connectivity"), QUADS.map(i64::from));
+    assert_eq!(integers("offsets"), [4, 8]);
+    assert_eq!(bytes_of(&file, "types"), [9, 9]);
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let short = [1.0; 5];
+    let path = Path::new("/dev/null");
+    let cases = [
+        (
+            Vtu::new(&POINTS, Shape::Quad, &QUADS).point_data("u", 1, &short[..]),
+            "'u' has 5 numbers",
+        ),
+        (Vtu::new(&POINTS, Shape::Quad, &QUADS[..7]), "multiple of 4"),
+        (Vtu::new(&POINTS[..5], Shape::Quad, &QUADS), "point 5"),
+    ];
+    for (vtu, part) in cases {
+        let message = vtu.write(path).unwrap_err().to_string();
+        assert!(message.contains(part), "{message}");
+    }
+}

@@ -1,0 +1,73 @@
+//! Unit tests of `src/report/pictures/solid.rs`.
+
+use super::*;
+use crate::report::drawing::ticks::Scale;
+use crate::report::pictures::surface::tests::Blocks;
+use crate::report::pictures::values::Values;
+
+fn count(raster: &Raster, is: impl Fn(Colour) -> bool) -> [usize; 2] {
+    let (w, h) = raster.size();
+    let half = |range: std::ops::Range<usize>| {
+        let pixels = range.flat_map(|x| (0..h).map(move |y| (x, y)));
+        pixels.filter(|&(x, y)| is(raster.get(x, y))).count()
+    };
+    [half(0..w / 2), half(w / 2..w)]
+}
+
+#[test]
+fn a_contact_zone_between_bodies_is_seen_where_they_are_moved_apart() {
+    let blocks = Blocks::new(2, 4);
+    let u: Vec<f64> = blocks.points.iter().map(|p| p[1]).collect();
+    let field = Field {
+        title: "u",
+        values: Values::Nodal(&u),
+        scale: Scale::Linear,
+    };
+    let marks: Vec<FaceMark> = (0..16)
+        .flat_map(|k| {
+            let at =
+                |i: usize, j: usize| [0.25 * (k % 4 + i) as f64, 1.0, 0.25 * (k / 4 + j) as f64];
+            let corners = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
+            [0, 1].map(|body| FaceMark {
+                body,
+                corners,
+                closed: k < 8,
+            })
+        })
+        .collect();
+    let red = |c: Colour| c.0 > 150 && c.1 < 40 && c.2 < 90;
+    let plain = draw(&blocks.view(), &[field; 2], &[], "two").unwrap();
+    assert_eq!(count(&plain, red), [0, 0]);
+    let marked = draw(&blocks.view(), &[field; 2], &marks, "two").unwrap();
+    let [left, right] = count(&marked, red);
+    // The sample in the legend may lie in the left half.
+    assert!(left < 1200 && right > 8000, "{left} {right}");
+}
+
+#[test]
+fn the_lower_side_is_shown_where_it_touches() {
+    let blocks = Blocks::new(1, 2);
+    let corners = [[0.0; 3], [0.5, 0.0, 0.0], [0.5, 0.0, 0.5], [0.0, 0.0, 0.5]];
+    let mark = FaceMark {
+        body: 0,
+        corners,
+        closed: true,
+    };
+    let solid = blocks.view();
+    let camera = second_camera(&solid, &solid.surface(&[mark]), false);
+    assert_eq!(camera, Camera::new(false, true));
+    let nothing = second_camera(&solid, &solid.surface(&[]), false);
+    assert_eq!(nothing, Camera::new(true, true));
+}
+
+#[test]
+fn fields_of_the_wrong_length_are_refused() {
+    let blocks = Blocks::new(1, 2);
+    let field = Field {
+        title: "u",
+        values: Values::Cell(&[1.0; 5]),
+        scale: Scale::Linear,
+    };
+    let error = draw(&blocks.view(), &[field; 2], &[], "").err().unwrap();
+    assert!(error.to_string().contains("'u' has 5 numbers"), "{error}");
+}

@@ -1,0 +1,115 @@
+//! Unit tests of `src/study/scaling/model.rs`.
+
+use super::super::{Problem, Series};
+use super::*;
+use crate::report::json::{Communication, PerIteration};
+
+/// Seconds per term of an iteration on the subdomains, as chosen for the tests.
+const KNOWN: [f64; 6] = [4e-7, 3e-10, 2e-8, 0.0, 2e-9, 0.0];
+const CACHE: f64 = 131_072.0 * 16.0;
+
+/// A run of `n` bodies whose seconds follow these laws.
+fn point(n: f64, subdomains: f64) -> Point {
+    let work = Work {
+        subdomains: n * subdomains,
+        unknowns: 81.0 * n * subdomains,
+        interface_squares: (700.0 + 13.0 * subdomains) * n * subdomains,
+        interface_cubes: 4e4 * n * subdomains,
+        multipliers: 15.0 * n * subdomains.sqrt(),
+        ghosts: 90.0 * n * subdomains,
+        kernels: n - 1.0,
+        ..Work::default()
+    };
+    let local = terms(5, CACHE, &work);
+    let local = local.iter().zip(KNOWN).map(|(x, c)| c * x).sum();
+    Point {
+        series: Series::Bodies,
+        problem: Problem::Tied,
+        ranks: 1,
+        oversubscribed: false,
+        fitted: true,
+        bodies: n as usize,
+        floating_bodies: n as usize - 1,
+        subdomains: (n * subdomains) as usize,
+        elements: 8,
+        multipliers: 0,
+        iterations: 10,
+        steps: 1,
+        kappa: None,
+        setup: SetupSeconds {
+            natural: 1e-8 * work.kernels.powi(2) + 5e-11 * work.kernels.powi(3),
+            ..SetupSeconds::default()
+        },
+        iteration: IterationSeconds {
+            local,
+            ..IterationSeconds::default()
+        },
+        outside: 0.0,
+        total: [0.0; 2],
+        memory_mb: [0.0; 2],
+        work,
+        communication: Communication {
+            messages_per_iteration: PerIteration {
+                sum: 20.0,
+                max: 10.0,
+            },
+            bytes_per_iteration: PerIteration {
+                sum: 2000.0,
+                max: 1000.0,
+            },
+            reductions_per_iteration: 7.0,
+            reduced_bytes_per_iteration: 56.0,
+        },
+        model: Modelled::default(),
+        setup_deviation: 0.0,
+        iteration_deviation: 0.0,
+    }
+}
+
+fn points() -> Vec<Point> {
+    let bodies = [2.0, 8.0, 32.0, 128.0, 512.0];
+    let all = bodies
+        .iter()
+        .flat_map(|&n| [1.0, 4.0, 16.0].map(|s| point(n, s)));
+    all.collect()
+}
+
+#[test]
+fn known_costs_and_the_size_of_the_cache_are_recovered() {
+    let model = Model::fit(&points());
+    assert!((model.cache / CACHE - 1.0).abs() < 1e-12, "{}", model.cache);
+    for (found, known) in model.laws[5].seconds.iter().zip(KNOWN) {
+        assert!(
+            (found - known).abs() < 1e-6 * KNOWN[0].min(known + 1e-14),
+            "{found} {known}"
+        );
+    }
+    let natural = &model.laws[3];
+    assert!(
+        (natural.seconds[2] / 5e-11 - 1.0).abs() < 1e-6,
+        "{natural:?}"
+    );
+}
+
+#[test]
+fn messages_come_on_top() {
+    let (model, one) = (Model::fit(&points()), point(8.0, 4.0));
+    let net = Network {
+        alpha: 1e-6,
+        beta: 1e-9,
+        gamma: 0.0,
+    };
+    let at = |ranks: f64| model.seconds(&one.work, ranks, &Sent::of(&one), &net);
+    let (alone, many) = (at(1.0), at(1024.0));
+    assert!((many.iteration.exchange - (10e-6 + 1e-6)).abs() < 1e-12);
+    // Three inner products of CG and four projections with r = 7, ten steps each.
+    let reduction = 3.0 * 10.0 * (1e-6 + 8e-9) + 4.0 * 10.0 * (1e-6 + 56e-9);
+    assert!((many.iteration.reduction - reduction).abs() < 1e-12);
+    assert_eq!(alone.iteration.reduction, 0.0);
+    assert_eq!(many.iteration.local, alone.iteration.local);
+    // Two all-reduces of r² numbers in the set-up.
+    let more = many.setup.natural - alone.setup.natural;
+    assert!((more - 2.0 * net.all_reduce(1024.0, 8.0 * 49.0)).abs() < 1e-15);
+    let total = many.setup.sum() + 5.0 * many.iteration.sum() + many.outside;
+    assert_eq!(many.total(5.0), total);
+}
