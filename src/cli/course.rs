@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::contact;
 use super::fields::Gathered;
+use super::first_rank::on_first_rank;
 use crate::checkpoint::{Checkpoints, Resumed};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
@@ -28,6 +29,8 @@ pub(super) struct Course {
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
+    /// The fields of this solution, where a directory of results is asked for.
+    pub fields: Option<Gathered>,
 }
 
 /// Solves the load steps in order. Each starts from the end of the one before, the first from the checkpoint if there
@@ -64,6 +67,8 @@ pub(super) fn follow(
         session.agree(Stepping::new(scene, mine))
     });
     let mut stepping = many.transpose()?;
+    let wanted = destination.out.is_some();
+    let mut fields = wanted.then(|| Gathered::new(session, scene)).transpose()?;
     for step in first..n {
         if let Some(stepping) = &mut stepping {
             let loads = session.agree(stepping.loads(step))?;
@@ -94,11 +99,16 @@ pub(super) fn follow(
             recover_seconds: seconds[1],
             solution,
             rows,
+            fields: None,
         };
         if let Some(times) = &times {
             now.load_steps.push(load_step_record(times[step], &now));
-            if let (Some(dir), Some(pvd)) = (&destination.out, &mut pvd) {
-                write_step(session, scene, solver, &now, dir, times[step], pvd)?;
+        }
+        if let (Some(dir), Some(pvd), Some(fields)) = (&destination.out, &mut pvd, &mut fields) {
+            fields.gather(session, scene, solver, &now.solution, step);
+            if let Some(times) = &times {
+                let write = || write_step(scene, fields, &now, dir, times[step], pvd);
+                on_first_rank(session, write)?;
             }
         }
         let done = course.insert(now);
@@ -119,6 +129,7 @@ pub(super) fn follow(
         outer: records.outer,
         load_steps: records.load_steps,
         iterations: records.iterations,
+        fields,
         ..last
     })
 }
@@ -155,21 +166,16 @@ fn load_step_record(t: f64, course: &Course) -> LoadStep {
     }
 }
 
-/// Adds one load step to the time series. Collective.
+/// Adds one load step to the time series.
 fn write_step(
-    session: &Session,
     scene: &Scene,
-    solver: &FetiFeti,
+    fields: &Gathered,
     course: &Course,
     dir: &Path,
     t: f64,
     pvd: &mut Pvd,
 ) -> Result<()> {
-    let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
-    let written = gathered.map_or(Ok(()), |g| {
-        let name = step_name(course.step);
-        g.write_vtu(scene, &course.rows, dir, &name)?;
-        pvd.add(t, &dir.join(format!("{name}.vtu")))
-    });
-    session.agree(written)
+    let name = step_name(course.step);
+    fields.write_vtu(scene, &course.rows, dir, &name)?;
+    pvd.add(t, &dir.join(format!("{name}.vtu")))
 }

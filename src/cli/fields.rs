@@ -1,6 +1,7 @@
-//! The solution gathered on rank 0, and as VTU.
+//! The fields of the solution on rank 0, and as VTU.
 
 use std::collections::HashMap;
+use std::iter::repeat_n;
 use std::path::Path;
 
 use crate::fem::cell::{centre_stress, CellStress};
@@ -9,13 +10,15 @@ use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::paraview::contact_fields::ContactFields;
 use crate::report::paraview::vtu::{Shape, Vtu};
-use crate::scene::Scene;
+use crate::scene::{Scene, SteppedMesh};
 use crate::substructures::{BodyNode, SolvedRow};
 use crate::{FetiFeti, Result, Solution};
 
-/// The whole solution, subdomain after subdomain.
+/// The meshes and the solution of the whole scene on rank 0, subdomain after subdomain; empty on the other ranks. Meshes
+/// are built once, and every load step brings its u and stress.
 #[derive(Default)]
 pub struct Gathered {
+    meshes: Vec<SteppedMesh>,
     pub(super) points: Vec<[f64; 3]>,
     /// Corners of each cell as VTK numbers them, one cell after the other.
     pub(super) cells: Vec<u32>,
@@ -33,14 +36,47 @@ pub struct Gathered {
 }
 
 impl Gathered {
-    /// Gathers the solution of load step `step`; `None` on all ranks but the first. Collective.
-    pub fn new(
+    /// The meshes of a scene, without a solution. Collective.
+    ///
+    /// # Errors
+    /// As [`Scene::subdomain_mesh`].
+    pub fn new(session: &Session, scene: &Scene) -> Result<Gathered> {
+        let mine = match session.rank() {
+            0 => scene.n_subdomains(),
+            _ => 0,
+        };
+        session.agree(Gathered::of(scene, mine))
+    }
+
+    fn of(scene: &Scene, n_subdomains: usize) -> Result<Gathered> {
+        let mut all = Gathered::default();
+        for index in 0..n_subdomains {
+            let mut stepped = SteppedMesh::new(scene, index)?;
+            let mesh = stepped.at(1.0);
+            let (first, cells) = (all.points.len(), mesh.n_elements());
+            let body = mesh.body as u32;
+            all.points.extend(&mesh.points);
+            all.owner.extend(repeat_n(body, mesh.points.len()));
+            all.body.extend(repeat_n(body, cells));
+            all.subdomain.extend(repeat_n(index as u32, cells));
+            let shifted = mesh.cells().into_iter().map(|p| (first + p) as u32);
+            all.cells.extend(shifted);
+            all.rho.extend(&mesh.rho);
+            all.poisson.extend(&mesh.poisson);
+            all.meshes.push(stepped);
+        }
+        Ok(all)
+    }
+
+    /// Brings the solution of load step `step` to rank 0. Collective.
+    pub fn gather(
+        &mut self,
         session: &Session,
         scene: &Scene,
         solver: &FetiFeti,
         solution: &Solution,
         step: usize,
-    ) -> Result<Option<Gathered>> {
+    ) {
         // [subdomain, n, u × n] to rank 0
         let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
         for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
@@ -48,52 +84,26 @@ impl Gathered {
             outgoing[0].extend(u.iter().map(|v| v.to_bits()));
         }
         let received = exchange_words(session.comm(), outgoing).concat();
-        if session.rank() > 0 {
-            return Ok(None);
-        }
-        Gathered::assemble(scene, &received, step).map(Some)
-    }
-
-    fn assemble(scene: &Scene, words: &[u64], step: usize) -> Result<Gathered> {
         let mut parts: Vec<(usize, &[u64])> = Vec::new();
-        let mut rest = words;
+        let mut rest = &received[..];
         while let [index, n, tail @ ..] = rest {
             let (values, tail) = tail.split_at(*n as usize);
             parts.push((*index as usize, values));
             rest = tail;
         }
         parts.sort_unstable_by_key(|p| p.0);
-        let mut all = Gathered::default();
-        // Meshes contain the prescribed values of the last load step.
-        let last = scene.prescribed_factor(scene.n_steps() - 1);
-        let now = scene.prescribed_factor(step);
+        let scale = scene.prescribed_factor(step);
+        self.u.clear();
+        self.stress.clear();
         for (index, values) in parts {
-            let mut mesh = scene.subdomain_mesh(index)?;
-            if now != last {
-                let scale = if last != 0.0 { now / last } else { 0.0 };
-                mesh.prescribed.iter_mut().for_each(|v| *v *= scale);
-            }
+            let mesh = self.meshes[index].at(scale);
             let u: Vec<f64> = values.iter().map(|&w| f64::from_bits(w)).collect();
-            let first = all.points.len();
             let nodal = mesh.nodal(&u);
             if scene.form.is_elastic() {
-                all.stress.extend(stresses(&mesh, &nodal));
-                all.poisson.extend(&mesh.poisson);
+                self.stress.extend(stresses(mesh, &nodal));
             }
-            all.u.extend(nodal);
-            all.points.extend(&mesh.points);
-            let owner = std::iter::repeat_n(mesh.body as u32, mesh.points.len());
-            all.owner.extend(owner);
-            let cells = mesh.n_elements();
-            let body = std::iter::repeat_n(mesh.body as u32, cells);
-            all.body.extend(body);
-            let subdomain = std::iter::repeat_n(index as u32, cells);
-            all.subdomain.extend(subdomain);
-            let shifted = mesh.cells().into_iter().map(|p| (first + p) as u32);
-            all.cells.extend(shifted);
-            all.rho.extend(&mesh.rho);
+            self.u.extend(nodal);
         }
-        Ok(all)
     }
 
     /// The displacement of a point; zero in scalar problems.

@@ -64,8 +64,8 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
         report.check = Some(checks(&solver)?);
     }
     report.seconds.assemble = assemble;
-    if let Some(dir) = &destination.out {
-        write_fields(session, &scene, &solver, &course, dir)?;
+    if let (Some(dir), Some(fields)) = (&destination.out, &course.fields) {
+        write_fields(session, &scene, &solver, &course, fields, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
     on_first_rank(session, || write_report(&destination, &report))?;
@@ -145,9 +145,10 @@ fn report(
     let mut memory = [max_memory() / 1e6];
     sum_all(session.comm(), &mut memory);
     let mut errors = [0.0; 3];
-    for (j, sub) in solver.problem().local.iter().enumerate() {
+    let compared = scene.exact.iter().flat_map(|_| &solver.problem().local);
+    for (sub, u) in compared.zip(&solution.u) {
         let mesh = scene.subdomain_mesh(sub.index)?;
-        if let Some(squares) = scene.error_squares(&mesh, &mesh.nodal(&solution.u[j])) {
+        if let Some(squares) = scene.error_squares(&mesh, &mesh.nodal(u)) {
             errors.iter_mut().zip(squares).for_each(|(e, s)| *e += s);
         }
     }
@@ -276,12 +277,12 @@ fn write_fields(
     scene: &Scene,
     solver: &FetiFeti,
     course: &Course,
+    fields: &Gathered,
     dir: &Path,
 ) -> Result<()> {
-    let gathered = Gathered::new(session, scene, solver, &course.solution, course.step)?;
-    let written = gathered.map_or(Ok(()), |g| {
-        g.write_vtu(scene, &course.rows, dir, "solution")?;
-        picture::write(scene, &g, &course.rows, dir)?;
+    on_first_rank(session, || {
+        fields.write_vtu(scene, &course.rows, dir, "solution")?;
+        picture::write(scene, fields, &course.rows, dir)?;
         if solver.facts().inequalities > 0 {
             match scene.dim() {
                 2 => profile::write(&contact::profiles(scene, &course.rows), &scene.title, dir)?,
@@ -292,8 +293,7 @@ fn write_fields(
             load_steps::write(&course.load_steps, &scene.title, dir)?;
         }
         Ok(())
-    });
-    session.agree(written)
+    })
 }
 
 /// The value of key `operators`. Collective.

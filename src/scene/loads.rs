@@ -20,10 +20,37 @@ pub struct Stepping<'a> {
 }
 
 struct Stepped {
+    mesh: SteppedMesh,
+    columns: Csr,
+}
+
+/// The mesh of a subdomain, built once; its given values follow the load steps.
+pub struct SteppedMesh {
     mesh: SubdomainMesh,
     /// Given values without the factors of load steps.
     given: Vec<f64>,
-    columns: Csr,
+}
+
+impl SteppedMesh {
+    /// Builds the mesh of subdomain `index`.
+    ///
+    /// # Errors
+    /// As [`Scene::subdomain_mesh`].
+    pub fn new(scene: &Scene, index: usize) -> Result<SteppedMesh> {
+        let mesh = scene.mesh_with(index, Factors::none())?;
+        Ok(SteppedMesh {
+            given: mesh.prescribed.clone(),
+            mesh,
+        })
+    }
+
+    /// The mesh where the factor of given values is `scale` ([`Scene::prescribed_factor`]).
+    pub fn at(&mut self, scale: f64) -> &SubdomainMesh {
+        for (now, given) in self.mesh.prescribed.iter_mut().zip(&self.given) {
+            *now = given * scale;
+        }
+        &self.mesh
+    }
 }
 
 impl<'a> Stepping<'a> {
@@ -36,12 +63,9 @@ impl<'a> Stepping<'a> {
         subdomains: impl IntoIterator<Item = usize>,
     ) -> Result<Stepping<'a>> {
         let build = |index| {
-            let mesh = scene.mesh_with(index, Factors::none())?;
-            Ok(Stepped {
-                given: mesh.prescribed.clone(),
-                columns: fem::given_columns(&mesh),
-                mesh,
-            })
+            let mesh = SteppedMesh::new(scene, index)?;
+            let columns = fem::given_columns(&mesh.mesh);
+            Ok(Stepped { mesh, columns })
         };
         let subdomains: Result<Vec<Stepped>> = subdomains.into_iter().map(build).collect();
         Ok(Stepping {
@@ -59,11 +83,9 @@ impl<'a> Stepping<'a> {
         let factors = Factors::of(&self.scene.steps, step)?;
         let scale = factors.dirichlet();
         let load = |s: &mut Stepped| {
-            for (now, given) in s.mesh.prescribed.iter_mut().zip(&s.given) {
-                *now = given * scale;
-            }
-            let load = self.scene.nodal_load(&s.mesh, factors)?;
-            Ok(fem::free_load(&s.mesh, &s.columns, &load))
+            let mesh = s.mesh.at(scale);
+            let load = self.scene.nodal_load(mesh, factors)?;
+            Ok(fem::free_load(mesh, &s.columns, &load))
         };
         self.subdomains.iter_mut().map(load).collect()
     }

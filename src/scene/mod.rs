@@ -29,7 +29,7 @@ mod validate;
 pub use body::Body;
 pub use checked::Scene;
 pub use geometry::interface::{Interface, Link, Shape, SharedNode};
-pub use loads::Stepping;
+pub use loads::{SteppedMesh, Stepping};
 pub use model::cells::{Cells, NumberFormat, Tone};
 pub use model::expr::gradient::WithGradient;
 pub use model::expr::{Expr, Variables};
