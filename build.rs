@@ -1,5 +1,5 @@
-//! Compiles the C half of the PETSc plug-in, and passes on where a private build of PETSc lies, so that the program finds its
-//! libraries when it runs.
+//! Compiles the C half of the PETSc plug-in, and passes on where a private build of PETSc lies, so that the program
+//! finds its libraries when it runs.
 
 fn main() {
     println!("cargo:rerun-if-env-changed=DEP_PETSC_RPATH");

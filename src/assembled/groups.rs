@@ -17,8 +17,8 @@ const SAME: f64 = 1e-12;
 /// The groups of one active set.
 #[derive(Debug, Clone)]
 pub struct Groups {
-    /// For every unknown of [`Inequalities::unknowns`] the lowest unknown of its group; `None` where the group is tied to
-    /// ground.
+    /// For every unknown of [`Inequalities::unknowns`] the lowest unknown of its group; `None` where the group is tied
+    /// to ground.
     pub lead: Vec<Option<usize>>,
     /// u minus u at the group's lowest unknown; u itself in a group that is tied to ground.
     pub offset: Vec<f64>,

@@ -154,8 +154,12 @@ impl<'a> Layout<'a> {
                     let x = self.position(block);
                     self.trouble.get_or_insert_with(|| {
                         format!(
-                            "at ({}, {}, {}) the node is in inequalities along {} directions that are not independent, so that they are no bounds of single unknowns",
-                            x[0], x[1], x[2], list.len()
+                            "at ({}, {}, {}) the node is in inequalities along {} directions that \
+                             are not independent, so that they are no bounds of single unknowns",
+                            x[0],
+                            x[1],
+                            x[2],
+                            list.len()
                         )
                     });
                 }

@@ -2,7 +2,7 @@
 //! bounds of differences.
 //!
 //! ```text
-//! Scene ──> Layout (unknowns w, frames, supports) ──> Unknowns ──> System (A, b) ──> Reduced (Tᵀ K T of changing active sets)
+//! Scene ──> Layout (unknowns w, frames, supports) ──> Unknowns ──> System (A, b) ──> Reduced (Tᵀ K T of active sets)
 //!      └──> Inequalities (w_p − w_m ≤ g) ──> Groups (active rows as equations) ──────────────────────┘
 //! ```
 

@@ -2,7 +2,7 @@
 //! with the same rules, around solvers of PETSc.
 //!
 //! ```text
-//!     solve Tᵀ K T v = Tᵀ(f − K u₀) on A_k,   Bᵀ λ = f − K u,   A_{k+1} = { j : λ_j > 0 on A_k, (B u − c)_j > 0 off it }
+//!     solve Tᵀ K T v = Tᵀ(f − K u₀) on A_k,  Bᵀ λ = f − K u,  A_{k+1} = { j : λ_j > 0 on A_k, (B u − c)_j > 0 off it }
 //! ```
 //!
 //! The loop starts from all candidates. While the set changes, problems are solved loosely, and u is the start of the

@@ -13,7 +13,8 @@ use super::potentials::Potentials;
 use crate::scene::Scene;
 use crate::substructures::RowKind;
 
-/// u_plus − u_minus ≤ gap. Unknowns are indices into [`Inequalities::unknowns`]; the length of that list stands for ground.
+/// u_plus − u_minus ≤ gap. Unknowns are indices into [`Inequalities::unknowns`]; the length of that list stands for
+/// ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Index of the unknown with coefficient 1.

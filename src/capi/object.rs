@@ -162,8 +162,8 @@ impl Object {
     /// The error if subdomains are numbered in two ways.
     pub fn mixed(&self) -> Error {
         Fault::WrongState.error(
-            "some matrices were added without numbers, which follows their order, and other subdomains with numbers of unknowns, \
-             expected one way for all of a FetiFeti",
+            "some matrices were added without numbers, which follows their order, \
+             and other subdomains with numbers of unknowns, expected one way for all of a FetiFeti",
         )
     }
 

@@ -111,7 +111,8 @@ fn numbers(session: &Session, layout: &PetscVec, is: &Is) -> Result<PetscVec> {
         Ok(())
     } else {
         Err(Error::input(format!(
-            "the bodies' index set has {} entries on rank {}, expected one for each of the {wanted} rows of the operator there",
+            "the bodies' index set has {} entries on rank {}, \
+             expected one for each of the {wanted} rows of the operator there",
             found.len(),
             session.rank()
         )))

@@ -131,7 +131,8 @@ impl Object {
             let n = self.size_of(k)?;
             if dof as usize >= n {
                 return Err(Fault::OutOfRange.error(format!(
-                    "a contact pair of rank {} has unknown {dof} of matrix {k}, which has {n} by now, expected pairs of the present matrices",
+                    "a contact pair of rank {} has unknown {dof} of matrix {k}, \
+                     which has {n} by now, expected pairs of the present matrices",
                     self.session.rank()
                 )));
             }
@@ -160,7 +161,8 @@ impl Object {
             (_, n) => n,
         };
         Err(Fault::OutOfRange.error(format!(
-            "contact pairs name matrix {k} but {there} have been added without numbers so far, expected one of these (from 0)"
+            "contact pairs name matrix {k} but {there} have been added without numbers so far, \
+             expected one of these (from 0)"
         )))
     }
 }

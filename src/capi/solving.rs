@@ -67,8 +67,9 @@ impl Object {
         let (solver, n) = (solver.solver(), solver.n_given_rows());
         let (known, problem) = (solver.facts(), solver.problem());
         let mut text = format!(
-            "FetiFeti Object: {} MPI processes\n  bodies: {} ({} floating, kernels of dimension {}), subdomains: {}\n  \
-             multipliers: {} inside bodies, {} between bodies, {n} of these for rows given ({} inequalities)\n  primal dofs: {}\n",
+            "FetiFeti Object: {} MPI processes\n  bodies: {} ({} floating, kernels of dimension {}), subdomains: {}\
+             \n  multipliers: {} inside bodies, {} between bodies, {n} of these for rows given ({} inequalities)\
+             \n  primal dofs: {}\n",
             self.session.size(),
             problem.n_bodies,
             known.floating_bodies,

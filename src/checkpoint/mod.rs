@@ -144,7 +144,8 @@ impl Checkpoints {
                 "--checkpoint"
             };
             return Err(Error::input(format!(
-                "{flag}: {} has no contact and no obstacle, so that there is no outer loop, expected a scene with inequalities",
+                "{flag}: {} has no contact and no obstacle, \
+                 so that there is no outer loop, expected a scene with inequalities",
                 path.display()
             )));
         }

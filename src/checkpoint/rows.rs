@@ -227,7 +227,8 @@ impl Layout {
         if !same {
             let n = global.active.len();
             return Err(Error::input(format!(
-                "{}: the checkpoint is for {} subdomains with {} local and {n} global multipliers, expected {} with {} and {} numbered alike",
+                "{}: the checkpoint is for {} subdomains with {} local and {n} global multipliers, \
+                 expected {} with {} and {} numbered alike",
                 file.display(),
                 global.local.len(),
                 global.lambda.len() - n,

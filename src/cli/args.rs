@@ -16,7 +16,8 @@ fetifeti -help lists ours with PETSc's; they are also read from PETSC_OPTIONS an
 
 On several ranks: mpirun -n N fetifeti solve SCENE ... gives the same answer.
 
-Exit codes: 0 solved, 1 not converged (what was written is partial), 2 bad input, 3 the environment (PETSc, MPI, disk).";
+Exit codes: 0 solved, 1 not converged (what was written is partial), 2 bad input, 3 the environment \
+(PETSc, MPI, disk).";
 
 /// What ends the help of a command that solves something.
 const OPTIONS: &str =

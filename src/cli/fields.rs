@@ -14,8 +14,8 @@ use crate::scene::{Scene, SteppedMesh};
 use crate::substructures::{BodyNode, SolvedRow};
 use crate::{FetiFeti, Result, Solution};
 
-/// The meshes and the solution of the whole scene on rank 0, subdomain after subdomain; empty on the other ranks. Meshes
-/// are built once, and every load step brings its u and stress.
+/// The meshes and the solution of the whole scene on rank 0, subdomain after subdomain; empty on the other ranks.
+/// Meshes are built once, and every load step brings its u and stress.
 #[derive(Default)]
 pub struct Gathered {
     meshes: Vec<SteppedMesh>,

@@ -62,7 +62,8 @@ impl Task<'_> {
         match report.cases.iter().find(|c| !c.holds()) {
             None => Ok(()),
             Some(case) => Err(Error::NotConverged(format!(
-                "hertz, {}: half-width and peak are not within 2 % of the theory on the finest mesh, or do not come nearer to it",
+                "hertz, {}: half-width and peak are not within 2 % of the theory \
+                 on the finest mesh, or do not come nearer to it",
                 case.case
             ))),
         }

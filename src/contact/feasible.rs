@@ -61,7 +61,8 @@ fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
                 }
             });
             return Err(Error::input(format!(
-                "the gaps of {} {}{place} contradict each other: no displacement satisfies all {} conditions there, expected gaps that leave room",
+                "the gaps of {} {}{place} contradict each other: \
+                 no displacement satisfies all {} conditions there, expected gaps that leave room",
                 if bodies.len() == 1 { "body" } else { "bodies" },
                 bodies.join(", "),
                 rows.len()

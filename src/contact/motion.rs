@@ -62,8 +62,9 @@ pub fn check(
     }
     let who = moving(problem, &dual.stiffness.space.kernel_start, &rest);
     Err(Error::input(format!(
-        "{who} pushed away for ever: the load does not balance and no Dirichlet side, tie, contact or obstacle stands against it \
-         (resultant {:.6e} in the direction of the motion), expected a support on that side",
+        "{who} pushed away for ever: the load does not balance and no Dirichlet side, tie, \
+         contact or obstacle stands against it (resultant {:.6e} in the direction of the motion), \
+         expected a support on that side",
         left
     )))
 }

@@ -74,7 +74,8 @@ pub fn named_groups(named: &[Option<u64>]) -> Result<Option<Vec<u64>>> {
     let given = |(s, body): (usize, &Option<u64>)| {
         body.ok_or_else(|| {
             Error::input(format!(
-                "subdomain {s} was given no body but others were, expected a body for every subdomain (KSPFETIFETISetBody on all ranks) or for none"
+                "subdomain {s} was given no body but others were, \
+                 expected a body for every subdomain (KSPFETIFETISetBody on all ranks) or for none"
             ))
         })
     };

@@ -78,7 +78,8 @@ impl Contact {
         for row in &seen {
             if let Some((dof, _)) = row.terms.iter().find(|t| !owner.contains_key(&t.0)) {
                 return Err(Error::input(format!(
-                    "contact row {} of rank {} has a coefficient at unknown {dof}, which no subdomain has, expected unknowns of subdomains",
+                    "contact row {} of rank {} has a coefficient at unknown {dof}, \
+                     which no subdomain has, expected unknowns of subdomains",
                     row.from.1, row.from.0
                 )));
             }

@@ -124,7 +124,8 @@ fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
         let usable = d > 0.0 && d.is_finite();
         if !col.is_empty() && !usable {
             return Err(Error::Unfit(format!(
-                "the local matrix of a subdomain has {d} on the diagonal at global dof {}, expected a positive number (a stiffness matrix)",
+                "the local matrix of a subdomain has {d} on the diagonal at global dof {}, \
+                 expected a positive number (a stiffness matrix)",
                 piece.dofs[i]
             )));
         }
@@ -135,7 +136,8 @@ fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
             let same = (v - other).abs() <= SYMMETRIC * size;
             if free(j) && !same {
                 return Err(Error::input(format!(
-                    "the operator is not symmetric: a local matrix has {v} at global dofs ({}, {}) and {other} at ({}, {}), expected equal entries",
+                    "the operator is not symmetric: a local matrix has {v} \
+                     at global dofs ({}, {}) and {other} at ({}, {}), expected equal entries",
                     piece.dofs[i], piece.dofs[j], piece.dofs[j], piece.dofs[i]
                 )));
             }

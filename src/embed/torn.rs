@@ -98,7 +98,8 @@ pub fn unassembled(a: &Mat) -> Result<()> {
         return Ok(());
     }
     Err(Error::input(format!(
-        "the operator is of type {kind}, expected is (MATIS): an assembled matrix cannot be torn into subdomains without its elements; \
+        "the operator is of type {kind}, expected is (MATIS): \
+         an assembled matrix cannot be torn into subdomains without its elements; \
          assemble into a MATIS instead (-dm_mat_type is, or MatSetType(A, MATIS) before assembly)"
     )))
 }

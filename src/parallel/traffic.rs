@@ -67,7 +67,9 @@ impl Sub for Traffic {
 
 thread_local! {
     /// The counter of this thread: only the thread that runs PETSc sends.
-    static SENT: Cell<Traffic> = const { Cell::new(Traffic { messages: 0, bytes: 0, reductions: 0, reduced_bytes: 0 }) };
+    static SENT: Cell<Traffic> = const {
+        Cell::new(Traffic { messages: 0, bytes: 0, reductions: 0, reduced_bytes: 0 })
+    };
 }
 
 /// The traffic of this rank since it started; take differences.

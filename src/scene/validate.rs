@@ -357,7 +357,8 @@ pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(
                         return fail(
                             body,
                             format_args!(
-                                "sides {} and {} prescribe {given} and {value} at their common corner {} (equal values were expected)",
+                                "sides {} and {} prescribe {given} and {value} \
+                                 at their common corner {} (equal values were expected)",
                                 SIDES[other],
                                 SIDES[side],
                                 body.spot(place)

@@ -98,7 +98,8 @@ fn probe(names: &[&str], what: &str, var: &str) -> pkg_config::Library {
         }
     }
     fail(&format!(
-        "{what} 3.18 to 3.26 was not found by pkg-config: install it (Debian: libpetsc-real-dev, libslepc-real-dev) or set {var}."
+        "{what} 3.18 to 3.26 was not found by pkg-config: \
+         install it (Debian: libpetsc-real-dev, libslepc-real-dev) or set {var}."
     ))
 }
 
@@ -149,7 +150,8 @@ fn refuse_unusable(include: &[PathBuf]) {
     ] {
         if defined(name) {
             fail(&format!(
-                "The PETSc described by {} was configured with {kind}; fetifeti needs real double scalars and 32-bit indices.",
+                "The PETSc described by {} was configured with {kind}; \
+                 fetifeti needs real double scalars and 32-bit indices.",
                 path.display()
             ));
         }
@@ -198,14 +200,16 @@ const LIBRARIES: [Library; 2] = [
     Library {
         define: "FF_HAVE_METIS",
         names: &["cholmod"],
-        program: "#if __has_include(<suitesparse/cholmod.h>)\n#include <suitesparse/cholmod.h>\n#else\n#include <cholmod.h>\n#endif\n\
+        program: "#if __has_include(<suitesparse/cholmod.h>)\n\
+                  #include <suitesparse/cholmod.h>\n#else\n#include <cholmod.h>\n#endif\n\
                   int main(void) { cholmod_common c; return !cholmod_start(&c) || !&cholmod_metis; }\n",
     },
     Library {
         define: "FF_HAVE_SCOTCH",
         names: &["scotch", "scotcherr"],
         program: "#include <stdio.h>\n#include <stdint.h>\n\
-                  #if __has_include(<scotch/scotch.h>)\n#include <scotch/scotch.h>\n#else\n#include <scotch.h>\n#endif\n\
+                  #if __has_include(<scotch/scotch.h>)\n\
+                  #include <scotch/scotch.h>\n#else\n#include <scotch.h>\n#endif\n\
                   int main(void) { SCOTCH_Graph g; return SCOTCH_graphInit(&g); }\n",
     },
 ];

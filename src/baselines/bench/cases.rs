@@ -32,7 +32,8 @@ pub const CASES: [Named; 6] = [
     },
     Named {
         name: "poisson-1024-random",
-        description: "the same with every node moved and rho random by element: no two subdomains are equal (quick: 128 x 128)",
+        description: "the same with every node moved and rho random by element: \
+                      no two subdomains are equal (quick: 128 x 128)",
         scene: |quick| poisson(quick, true),
     },
     Named {
@@ -99,7 +100,8 @@ fn contact(quick: bool) -> String {
         )
     };
     format!(
-        "title = \"Model contact problem, 2 x {n} x {n} elements\"\n{}{}\n[[contact]]\nbodies = [\"left\", \"right\"]\ngap = 0\n",
+        "title = \"Model contact problem, 2 x {n} x {n} elements\"\n{}{}\n\
+         [[contact]]\nbodies = [\"left\", \"right\"]\ngap = 0\n",
         body(
             "left",
             0,
@@ -120,7 +122,8 @@ fn cube(n: usize) -> String {
     let (bodies, elements) = ("[1, 2, 1]", n / across);
     let subdomains = format!("[{across}, {}, {across}]", across / 2);
     format!(
-        "title = \"Elastic cube, {n} x {n} x {n} elements\"\ndimension = 3\nphysics = \"elasticity\"\n\n[grid]\nbodies = {bodies}\n\
+        "title = \"Elastic cube, {n} x {n} x {n} elements\"\ndimension = 3\n\
+         physics = \"elasticity\"\n\n[grid]\nbodies = {bodies}\n\
          subdomains = {subdomains}\nelements_per_subdomain = {elements}\nyoung = 1\npoisson = 0.3\n\
          load = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n"
     )

@@ -2,8 +2,8 @@
 //! within the available memory.
 //!
 //! ```text
-//!     explicit    f (flops of [I, Γ] → S and of S → T)  +  applications · copies · (n_Γ² + n_Δ²) · d
-//!     implicit    f (flops of K_rr and K_II)  +  columns of Ψ · 2 l · e  +  applications · copies · 2 (l_rr + l_II) · e
+//!     explicit   f (flops of [I, Γ] → S and of S → T)  +  applications · copies · (n_Γ² + n_Δ²) · d
+//!     implicit   f (flops of K_rr and K_II)  +  columns of Ψ · 2 l · e  +  applications · copies · 2 (l_rr + l_II) · e
 //! ```
 //!
 //! n follows from the interface. Flops and the entries l of the factors follow from the symbolic factorisation and are

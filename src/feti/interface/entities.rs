@@ -117,7 +117,8 @@ fn average(
         }
         if copies.len().max(1) != count {
             return Err(Error::input(format!(
-                "{} lists entity {} with local dof {i}, which {} subdomains hold, but {count} list the entity, expected the same number",
+                "{} lists entity {} with local dof {i}, which {} subdomains hold, \
+                 but {count} list the entity, expected the same number",
                 name(problem, sub.index, sub.body),
                 entity.key,
                 copies.len().max(1),
@@ -184,7 +185,8 @@ fn agree(problem: &Substructures, group: &[&[u64]]) -> Result<()> {
             "with different dofs"
         };
         return Err(Error::input(format!(
-            "entity {} is listed by {} and by {} {what}, expected the same body dofs in the same order, once in each subdomain of one body",
+            "entity {} is listed by {} and by {} {what}, \
+             expected the same body dofs in the same order, once in each subdomain of one body",
             first[0],
             who(first),
             who(other)

@@ -186,7 +186,8 @@ impl Sharing {
             let body = |c: &Copy| self.body_of[c.subdomain as usize];
             if let Some(c) = copies.iter().find(|c| body(c) != body(&copies[0])) {
                 return Err(Error::input(format!(
-                    "body dof {dof} is listed by subdomain {} of body \"{}\" and by subdomain {} of body \"{}\", but bodies share dofs only through interface rows",
+                    "body dof {dof} is listed by subdomain {} of body \"{}\" \
+                     and by subdomain {} of body \"{}\", but bodies share dofs only through interface rows",
                     copies[0].subdomain,
                     problem.body_names[body(&copies[0]) as usize],
                     c.subdomain,

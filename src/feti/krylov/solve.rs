@@ -102,8 +102,9 @@ impl LinearMethod {
         }
     }
 
-    /// Iterates further, after `run` with this `control`, until the displacements have the accuracy of the user's tolerance
-    /// and `enough` asks for no more. On return the displacements are those of λ, rigid motions included. Collective.
+    /// Iterates further, after `run` with this `control`, until the displacements have the accuracy of the user's
+    /// tolerance and `enough` asks for no more. On return the displacements are those of λ, rigid motions included.
+    /// Collective.
     fn meet(
         &self,
         at: &mut Iterate,

@@ -124,7 +124,8 @@ impl Dual {
             None => String::new(),
         };
         format!(
-            "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies)\n  preconditioner: {}{lifted}\n",
+            "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies)\
+             \n  preconditioner: {}{lifted}\n",
             jump.n_local,
             jump.n_global - jump.n_local,
             natural.projector.name(),

@@ -89,7 +89,8 @@ impl PrimalProblem {
                 let reason = ksp.converged_reason()?;
                 if reason.code < 0 {
                     return Err(Error::NotConverged(format!(
-                        "the primal problem of the bodies was not solved ({}): change the -fetifeti_coarse_ options, or take more constraints with -fetifeti_primal",
+                        "the primal problem of the bodies was not solved ({}): change the \
+                         -fetifeti_coarse_ options, or take more constraints with -fetifeti_primal",
                         reason.name
                     )));
                 }

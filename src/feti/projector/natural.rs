@@ -287,18 +287,18 @@ impl NaturalCoarse {
         self.qg.as_ref().unwrap_or(&self.g)
     }
 
-    /// λ ← P λ. Collective.
+    /// λ ← P λ = λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ. Collective.
     pub fn project(&self, comm: &SimpleCommunicator, lambda: &PetscVec) -> Result<()> {
         match &self.gtg {
-            Some(gtg) => gtg.remove(comm, lambda, &self.g, self.qg(), Side::Plain), /*  λ − Q G (Gᵀ Q G)⁻¹ Gᵀ λ */
+            Some(gtg) => gtg.remove(comm, lambda, &self.g, self.qg(), Side::Plain),
             None => Ok(()),
         }
     }
 
-    /// r ← Pᵀ r. Collective.
+    /// r ← Pᵀ r = r − G (Gᵀ Q G)⁻ᵀ (Q G)ᵀ r. Collective.
     pub fn project_transpose(&self, comm: &SimpleCommunicator, residual: &PetscVec) -> Result<()> {
         match &self.gtg {
-            Some(gtg) => gtg.remove(comm, residual, self.qg(), &self.g, Side::Transposed), /* r − G (Gᵀ Q G)⁻ᵀ (Q G)ᵀ r */
+            Some(gtg) => gtg.remove(comm, residual, self.qg(), &self.g, Side::Transposed),
             None => Ok(()),
         }
     }
@@ -340,7 +340,8 @@ impl NaturalCoarse {
             if work.abs() > 1e-10 * scale {
                 let who = moving(problem, &stiffness.space.kernel_start, motion);
                 return Err(Error::input(format!(
-                    "{who} held by nothing (no Dirichlet side and no tie to a held body) and the load does not balance, expected a Dirichlet side or a tie"
+                    "{who} held by nothing (no Dirichlet side and no tie to a held body) \
+                     and the load does not balance, expected a Dirichlet side or a tie"
                 )));
             }
         }

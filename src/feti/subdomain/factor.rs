@@ -35,7 +35,8 @@ pub(crate) fn factor(
     let ours = settings.local.kind == Solver::Multifrontal;
     if !ours && settings.operators == Operators::Implicit {
         return Err(Error::input(format!(
-            "option -{}operators is implicit, which goes with the local solver multifrontal alone, but -{0}local_solver is {}",
+            "option -{}operators is implicit, which goes with the local solver multifrontal alone, \
+             but -{0}local_solver is {}",
             settings.prefix,
             settings.local.kind.name()
         )));
@@ -159,7 +160,8 @@ pub(crate) fn no_factor(problem: &Substructures, sub: &Subdomain, error: NoFacto
 
 fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
     Error::Unfit(format!(
-        "the matrix of subdomain {} in body \"{}\" is not positive semidefinite (at local dof {dof}), expected a stiffness matrix",
+        "the matrix of subdomain {} in body \"{}\" is not positive semidefinite \
+         (at local dof {dof}), expected a stiffness matrix",
         sub.index, problem.body_names[sub.body]
     ))
 }

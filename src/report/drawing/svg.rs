@@ -27,8 +27,9 @@ impl Svg {
     pub fn to_text(&self) -> String {
         let (w, h) = (self.width, self.height);
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
-             font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" \
+             viewBox=\"0 0 {w} {h}\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n\
+             <rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{}</svg>\n",
             self.body
         )
     }
@@ -90,7 +91,8 @@ impl Canvas for Svg {
         };
         let colour = hex(colour);
         self.push(format_args!(
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linejoin=\"round\"{dash}/>",
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" \
+             stroke-width=\"{width}\" stroke-linejoin=\"round\"{dash}/>",
             list(points)
         ));
     }
@@ -132,7 +134,8 @@ impl Canvas for Svg {
                 )
             };
             self.push(format_args!(
-                "<text {place} text-anchor=\"{anchor}\" font-size=\"{}\" fill=\"{fill}\"{weight} xml:space=\"preserve\">{}</text>",
+                "<text {place} text-anchor=\"{anchor}\" font-size=\"{}\" \
+                 fill=\"{fill}\"{weight} xml:space=\"preserve\">{}</text>",
                 short(run.size),
                 escaped(&run.text)
             ));

@@ -93,7 +93,8 @@ impl Deflation {
                 n => format!(" and {} more", n - 1),
             };
             out += &format!(
-                "; body \"{first}\"{more} has eigenvalues above {} that are left, for want of vectors (-fetifeti_adaptive_max)",
+                "; body \"{first}\"{more} has eigenvalues above {} that are left, \
+                 for want of vectors (-fetifeti_adaptive_max)",
                 self.tau
             );
         }

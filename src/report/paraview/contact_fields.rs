@@ -51,7 +51,8 @@ impl ContactFields {
         }
         if !(multiplier.is_finite() && gap.is_finite()) {
             return Err(Error::input(format!(
-                "the contact candidate at point {point} has the multiplier {multiplier} and the gap {gap}, expected finite numbers"
+                "the contact candidate at point {point} has the multiplier {multiplier} \
+                 and the gap {gap}, expected finite numbers"
             )));
         }
         let first = self.candidate[point] == 0;
@@ -70,7 +71,8 @@ impl ContactFields {
         let n = self.multiplier.len();
         if point >= n || !(area >= 0.0 && area.is_finite()) {
             return Err(Error::input(format!(
-                "a contact candidate at point {point} of {n} has the area {area}, expected a number that is not negative"
+                "a contact candidate at point {point} of {n} has the area {area}, \
+                 expected a number that is not negative"
             )));
         }
         self.area.resize(n, 0.0);

@@ -60,7 +60,8 @@ impl Pvd {
 
     fn to_text(&self) -> String {
         let mut text = String::from(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
         );
         for (t, file) in &self.entries {
             let file = file

@@ -12,12 +12,17 @@ use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
 pub fn text(report: &BenchReport) -> String {
     let cases: Vec<String> = report.cases.iter().map(case_text).collect();
     format!(
-        "{}\n{} rounds were asked for; in each of them every method ran once, in the order of the rows, each run in processes of its own, on {} cores.\n\
-         Seconds are medians over the rounds; assembly is not in them. recover: the part of the solve for the way from multipliers to u;\n\
-         total: set-up and solve, with its smallest and largest value; ratio: the total over that of the fastest of ours;\n\
+        "{}\n{} rounds were asked for; in each of them every method ran once, \
+         in the order of the rows, each run in processes of its own, on {} cores.\n\
+         Seconds are medians over the rounds; assembly is not in them. \
+         recover: the part of the solve for the way from multipliers to u;\n\
+         total: set-up and solve, with its smallest and largest value; \
+         ratio: the total over that of the fastest of ours;\n\
          again: the solve for a second load, with what was set up for the first{}.\n\
-         parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); MB: largest resident memory, summed over the ranks;\n\
-         net: without what each rank holds before it has read the problem; error: in the energy norm, against a refined direct solution.\n{}",
+         parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); \
+         MB: largest resident memory, summed over the ranks;\n\
+         net: without what each rank holds before it has read the problem; \
+         error: in the energy norm, against a refined direct solution.\n{}",
         cases.join("\n"),
         report.rounds,
         report.cores,

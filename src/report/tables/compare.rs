@@ -74,7 +74,8 @@ pub fn text(report: &CompareReport) -> String {
         match report.supports {
             0 => String::new(),
             n => format!(
-                "Nothing holds {n} rigid motion{}: the assembled problem has as many unknowns set to zero, which bear no force.\n",
+                "Nothing holds {n} rigid motion{}: \
+                 the assembled problem has as many unknowns set to zero, which bear no force.\n",
                 if n == 1 { "" } else { "s" }
             ),
         },
@@ -87,7 +88,8 @@ fn inequalities(c: &CompareInequalities) -> String {
     let mut text = format!(
         "Of {} inequalities {} hold with equality in the direct solution, found in {} steps of an active-set loop \
          (violation {}, smallest multiplier {}).\n\
-         outer: active sets that were solved for; it: inner iterations of all of them; last set: the equations of our last active set only;\n\
+         outer: active sets that were solved for; it: inner iterations of all of them; \
+         last set: the equations of our last active set only;\n\
          set: rows that hold here and not in the direct solution, or the other way round.\n",
         c.rows,
         count(c.active),

@@ -61,7 +61,8 @@ impl Steps {
                 let value = ramp.at(t);
                 if !value.is_finite() {
                     return Err(Error::Input(format!(
-                        "{written}the factor `{key}` = \"{ramp}\" is {value} at t = {t} where a finite number was expected"
+                        "{written}the factor `{key}` = \"{ramp}\" is {value} at t = {t} \
+                         where a finite number was expected"
                     )));
                 }
             }

@@ -222,8 +222,8 @@ impl<'a> Checks<'a> {
                     "u"
                 };
                 return Err(Error::Input(format!(
-                    "{}body `{}` has the given value {value} at {at}{}, beyond its obstacle ({what} {relation} {bound} was \
-                     expected)",
+                    "{}body `{}` has the given value {value} at {at}{}, \
+                     beyond its obstacle ({what} {relation} {bound} was expected)",
                     self.place(entry, member),
                     self.bodies[member.body].spec.name,
                     factors.when()

@@ -66,8 +66,8 @@ fn facing(
         };
         let Some(interface) = opposite(bodies, pair, sides) else {
             return Err(Error::Input(format!(
-                "{}the sides of bodies `{first}` and `{second}` have different numbers of nodes (equal numbers were expected, so that \
-                 each node has one opposite)",
+                "{}the sides of bodies `{first}` and `{second}` have different numbers \
+                 of nodes (equal numbers were expected, so that each node has one opposite)",
                 spec.written
             )));
         };

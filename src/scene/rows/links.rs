@@ -75,7 +75,8 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
                 }
                 let [a, b] = self.names();
                 return Err(Error::Input(format!(
-                    "{}the contact of bodies `{a}` and `{b}` selects the node at t = {}, which the tie of {} selects too \
+                    "{}the contact of bodies `{a}` and `{b}` selects the node at t = {}, \
+                     which the tie of {} selects too \
                      (ranges that share no more than their ends were expected)",
                     entry.written,
                     Parameters(t),

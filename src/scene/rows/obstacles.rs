@@ -95,7 +95,8 @@ pub(crate) fn find(
                         if let Some(rigid) = &entry.rigid {
                             if rigid.distance(at.point).is_none() {
                                 return fail(format!(
-                                    "no point of the obstacle is nearest to the node {} of body `{}` (on its axis or in its centre)",
+                                    "no point of the obstacle is nearest to the node {} of body `{}` \
+                                     (on its axis or in its centre)",
                                     spec.spot(place),
                                     spec.name
                                 ));
@@ -109,7 +110,8 @@ pub(crate) fn find(
                             };
                             let (at, name) = (spec.spot(place), &spec.name);
                             return fail(format!(
-                                "the bound `{key}` of body `{name}` is {value} at {at} where a finite number was expected"
+                                "the bound `{key}` of body `{name}` is {value} at {at} \
+                                 where a finite number was expected"
                             ));
                         }
                         list.push(Limit {

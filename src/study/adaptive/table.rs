@@ -133,8 +133,8 @@ pub(super) fn number(x: Option<f64>) -> String {
 /// The table for terminals, with the messages of runs that failed.
 pub fn text(report: &Report) -> String {
     let mut out = format!(
-        "Adaptive deflation: rtol {:e}, seconds are medians of {} runs; errors in the energy norm against a direct solution; attainable: the \
-         error where rounding stops the iteration\n{}\n",
+        "Adaptive deflation: rtol {:e}, seconds are medians of {} runs; errors in the energy norm \
+         against a direct solution; attainable: the error where rounding stops the iteration\n{}\n",
         report.rtol,
         report.repeats,
         table(report)

@@ -251,7 +251,8 @@ fn shapes(quick: bool) -> Vec<Case> {
 fn blocks(head: &str, lower: &str, upper: &str, rest: &str) -> String {
     let body = |name: &str, y: f64, keys: &str| {
         format!(
-            "[[body]]\nname = \"{name}\"\norigin = [0, {y}]\nsize = [1, 1]\nsubdomains = [2, 2]\nelements = [16, 16]\n{keys}"
+            "[[body]]\nname = \"{name}\"\norigin = [0, {y}]\n\
+             size = [1, 1]\nsubdomains = [2, 2]\nelements = [16, 16]\n{keys}"
         )
     };
     format!(

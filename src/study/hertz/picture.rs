@@ -69,7 +69,8 @@ pub fn text(report: &Report) -> String {
         .map(|c| format!("{} {:.2}", c.case, c.order))
         .collect();
     format!(
-        "Hertz contact: n elements per radius; fit: p² = p0² (1 − x²/a²); last, node: single nodes; theory for the measured force\n{}\n\
+        "Hertz contact: n elements per radius; fit: p² = p0² (1 − x²/a²); \
+         last, node: single nodes; theory for the measured force\n{}\n\
          order of convergence of the pressures: {}\n",
         table(report),
         orders.join(", ")

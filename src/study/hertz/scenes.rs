@@ -83,8 +83,10 @@ impl Case {
                 format!(
                     "{head}physics = \"elasticity\"\n\
                      [[body]]\nname = \"lower\"\n\
-                     shape = {{ half_disc = {{ radius = {RADIUS}, centre = [0, -{RADIUS}], focus = 0.05, pole = \"top\" }} }}\n\
-                     elements = [{0}, {n}]\nsubdomains = [4, 2]\nyoung = {young}\npoisson = {poisson}\ndirichlet = [\"bottom\"]\n\
+                     shape = {{ half_disc = {{ radius = {RADIUS}, \
+                     centre = [0, -{RADIUS}], focus = 0.05, pole = \"top\" }} }}\n\
+                     elements = [{0}, {n}]\nsubdomains = [4, 2]\nyoung = {young}\n\
+                     poisson = {poisson}\ndirichlet = [\"bottom\"]\n\
                      [[body]]\nname = \"upper\"\n\
                      shape = {{ half_disc = {{ radius = {RADIUS}, centre = [0, {RADIUS}], focus = 0.05 }} }}\n\
                      elements = [{0}, {n}]\nsubdomains = [4, 2]\nyoung = {young2}\npoisson = {poisson2}\n\
@@ -96,10 +98,12 @@ impl Case {
             Case::Sphere => format!(
                 "{head}dimension = 3\nphysics = \"elasticity\"\n\
                  [[body]]\nname = \"ball\"\n\
-                 shape = {{ quarter_ball = {{ radius = {RADIUS}, centre = [0, {RADIUS}, 0], focus = 0.05, trim = 0.7 }} }}\n\
+                 shape = {{ quarter_ball = {{ radius = {RADIUS}, \
+                 centre = [0, {RADIUS}, 0], focus = 0.05, trim = 0.7 }} }}\n\
                  elements = [{n}, {n}, {n}]\nsubdomains = [{0}, {0}, {0}]\nyoung = {young}\npoisson = {poisson}\n\
                  dirichlet = {{ left = {{ x = 0 }}, back = {{ z = 0 }}, top = [0, -0.01, 0] }}\n\
-                 [[obstacle]]\nbody = \"ball\"\nside = \"bottom\"\nplane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\n",
+                 [[obstacle]]\nbody = \"ball\"\nside = \"bottom\"\n\
+                 plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\n",
                 (n / 8).max(2)
             ),
         }

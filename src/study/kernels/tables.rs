@@ -180,7 +180,8 @@ pub fn text(report: &Report) -> String {
     }
     for (case, n, kernel, solver, ordering, factor) in faster {
         out += &format!(
-            "more than {WORTH_CHANGING} times faster than the default: {solver} with {ordering}, {kernel} of {case}, n = {n}: {factor:.2}\n"
+            "more than {WORTH_CHANGING} times faster than the default: \
+             {solver} with {ordering}, {kernel} of {case}, n = {n}: {factor:.2}\n"
         );
     }
     let worst = |of: fn(&Row) -> f64| report.rows.iter().map(of).fold(0.0, f64::max);

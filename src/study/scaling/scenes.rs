@@ -122,12 +122,14 @@ impl Setup {
         );
         match self.problem {
             Problem::Tied => format!(
-                "[grid]\nbodies = [{nx}, {ny}]\nsize = [{nx}, {ny}]\nload = \"1 + x + y^2\"\ndirichlet = \"all\"\n{parts}"
+                "[grid]\nbodies = [{nx}, {ny}]\nsize = [{nx}, {ny}]\n\
+                 load = \"1 + x + y^2\"\ndirichlet = \"all\"\n{parts}"
             ),
             Problem::Contact => format!(
                 "[[body]]\nname = \"left\"\norigin = [0, 0]\nsize = [1, 1]\ndirichlet = [\"left\"]\n\
                  load = [{{ y = [0.75, 1], value = -3 }}]\n{parts}\n\
-                 [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\nload = [{{ y = [0, 0.25], value = -1 }}]\n{parts}\n\
+                 [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\n\
+                 load = [{{ y = [0, 0.25], value = -1 }}]\n{parts}\n\
                  [[contact]]\nbodies = [\"left\", \"right\"]\ngap = 0\n"
             ),
         }

@@ -208,12 +208,27 @@ fn limits(p: &Prediction) -> String {
     );
     let last = p.rows.last().map_or(0, |r| r.ranks);
     out += &match p.doubles_at {
-        Some(at) => format!(".\nFrom {at} ranks on the whole takes more than twice as long as on {} ranks, at {last} ranks {} times as long", p.rows[0].ranks, growth(p)),
-        None => format!(".\nUp to {last} ranks the whole takes less than twice as long as on {} ranks ({} times)", p.rows[0].ranks, growth(p)),
+        Some(at) => format!(
+            ".\nFrom {at} ranks on the whole takes more than twice as long as on {} ranks, \
+             at {last} ranks {} times as long",
+            p.rows[0].ranks,
+            growth(p)
+        ),
+        None => format!(
+            ".\nUp to {last} ranks the whole takes less than twice as long as on {} ranks ({} times)",
+            p.rows[0].ranks,
+            growth(p)
+        ),
     };
     out += &match p.full_at {
-        Some(at) => format!(".\nFrom {at} ranks on the dense matrices of order r, which every rank has, need more than 4 GB per rank during set-up: beyond that this set-up is not possible, whatever it takes.\n"),
-        None => format!(".\nThe dense matrices of order r, which every rank has, need less than 4 GB per rank up to {last} ranks.\n"),
+        Some(at) => format!(
+            ".\nFrom {at} ranks on the dense matrices of order r, which every rank has, need more than \
+             4 GB per rank during set-up: beyond that this set-up is not possible, whatever it takes.\n"
+        ),
+        None => format!(
+            ".\nThe dense matrices of order r, which every rank has, need less than 4 GB per rank \
+             up to {last} ranks.\n"
+        ),
     };
     out
 }
@@ -228,11 +243,15 @@ pub fn text(report: &Report) -> String {
     let net = report.network.network;
     let [s, e] = report.body;
     let mut out = format!(
-        "Runs on {} cores, one thread per rank, no two subdomains equal; * more ranks than cores: messages are counted, seconds mean nothing.\n\
+        "Runs on {} cores, one thread per rank, no two subdomains equal; \
+         * more ranks than cores: messages are counted, seconds mean nothing.\n\
          messages, kB: of the rank that sends most, in an iteration\n\n{}\n\
-         Set-up by phase in milliseconds (S), an iteration in microseconds (I); model %: how far the model is off. It is fitted to the tied runs on one rank.\n\n{}\n\
-         Fitted seconds of a phase on one rank, relative deviations over the runs; beyond: times the part of what is read that is beyond {:.1} MB of cache\n\n{}\n\
-         Messages on this machine: α = {} s, β = {} s per byte, fitted to the messages, γ = {} s per byte added up, fitted to the all-reduces on 2 ranks\n\n{}\n",
+         Set-up by phase in milliseconds (S), an iteration in microseconds (I); \
+         model %: how far the model is off. It is fitted to the tied runs on one rank.\n\n{}\n\
+         Fitted seconds of a phase on one rank, relative deviations over the runs; \
+         beyond: times the part of what is read that is beyond {:.1} MB of cache\n\n{}\n\
+         Messages on this machine: α = {} s, β = {} s per byte, fitted to the messages, \
+         γ = {} s per byte added up, fitted to the all-reduces on 2 ranks\n\n{}\n",
         report.cores,
         runs(report),
         phases(report),
@@ -245,8 +264,9 @@ pub fn text(report: &Report) -> String {
     );
     for p in &report.predictions {
         out += &format!(
-            "Predicted, network \"{}\": α = {} s, β = {} s per byte. A body of {s} x {s} subdomains of {e} x {e} elements on every rank, {} iterations \
-             (those of {} bodies). Set-up by phase in ms (S), an iteration in µs (I); without r: without what GᵀQG costs\n\n{}{}\n",
+            "Predicted, network \"{}\": α = {} s, β = {} s per byte. A body of {s} x {s} subdomains \
+             of {e} x {e} elements on every rank, {} iterations (those of {} bodies). \
+             Set-up by phase in ms (S), an iteration in µs (I); without r: without what GᵀQG costs\n\n{}{}\n",
             p.network_name,
             scientific(Some(p.network.alpha)),
             scientific(Some(p.network.beta)),

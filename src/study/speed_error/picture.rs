@@ -51,7 +51,8 @@ pub fn table(report: &Report) -> Table {
 /// The table for terminals.
 pub fn text(report: &Report) -> String {
     format!(
-        "Error and seconds on {} cores; n: elements across a subdomain; error: of mesh and solver, relative, in the energy norm\n{}",
+        "Error and seconds on {} cores; n: elements across a subdomain; \
+         error: of mesh and solver, relative, in the energy norm\n{}",
         report.cores,
         table(report)
     )

@@ -78,7 +78,8 @@ impl Case {
                 };
                 format!(
                     "title = \"elasticity3d, {n}\"\ndimension = 3\nphysics = \"elasticity\"\nexact = [{}]\n\
-                     [grid]\nbodies = [2, 1, 1]\nsubdomains = [1, 2, 2]\nelements_per_subdomain = {n}\nyoung = 1\npoisson = 0.3\n\
+                     [grid]\nbodies = [2, 1, 1]\nsubdomains = [1, 2, 2]\n\
+                     elements_per_subdomain = {n}\nyoung = 1\npoisson = 0.3\n\
                      load = {{ {}, quadrature = \"gauss\" }}\ndirichlet = \"all\"\n",
                     list(&|i| format!("({})*{phi}", a[i])),
                     [0, 1, 2]
