@@ -1,7 +1,7 @@
 //! Load steps: factors of loads, gaps and prescribed values.
 
 use crate::support::mpi::Scratch;
-use fetifeti::scene::{Scene, Stepping};
+use fetifeti::scene::{Scene, SteppedMesh, Stepping};
 
 const SCENE: &str = "
 [[body]]
@@ -103,6 +103,27 @@ fn the_last_step_is_that_of_the_subdomains_to_the_bit() {
         let rows = scene.rows(&|_| true);
         let gaps: Vec<f64> = rows.iter().map(|r| r.gap).collect();
         assert_eq!(gaps, scene.gaps(&|_| true, last).unwrap());
+    }
+}
+
+/// A mesh that follows the load steps is that of a scene with scaled data, also where the last factor is zero.
+#[test]
+fn meshes_follow_given_values() {
+    let steps = "[steps]\ntimes = [0.25, 0.5, 1]\ndirichlet = \"1 - t\"\n";
+    let scene = scene(steps);
+    for index in 0..scene.n_subdomains() {
+        let mut mesh = SteppedMesh::new(&scene, index).unwrap();
+        // Forwards and back: a step leaves nothing behind for the next one.
+        for step in [0, 1, 2, 0] {
+            let factor = scene.prescribed_factor(step);
+            assert_eq!(factor, [0.75, 0.5, 0.0][step]);
+            let expected = scaled(1.0, 1.0, factor).subdomain_mesh(index).unwrap();
+            let mesh = mesh.at(factor);
+            assert_eq!(mesh.dof, expected.dof);
+            for (found, wanted) in mesh.prescribed.iter().zip(&expected.prescribed) {
+                assert!((found - wanted).abs() < 1e-15, "{found} {wanted}");
+            }
+        }
     }
 }
 
