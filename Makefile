@@ -61,7 +61,7 @@ test: setup ## Check format, lints and documentation, then run every test
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo clippy --lib --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
-	cargo test --workspace --no-fail-fast
+	scripts/test.sh
 
 # A newer PETSc than Debian's, from the source packages of the Python registry.
 NEWER_DIR ?= $(TARGET)/newer
