@@ -1,8 +1,9 @@
-//! The order of the rooms: each imports only from those before it, and inside a room no circle has more than three files.
+//! The order of the rooms: each imports only from those before it, and inside a room no circle has more than three
+//! files.
 //!
 //! The imports are read from the sources: `use` statements and paths that begin with `crate` or `super`. A name that a
-//! module re-exports counts for the file that it comes from. What only tests import does not count. docs/architecture.md has
-//! the map.
+//! module re-exports counts for the file that it comes from. What only tests import does not count. The map
+//! is in docs/architecture.md.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

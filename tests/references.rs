@@ -5,7 +5,8 @@
 //! - a path that begins with `src/`, `tests/`, `docs/`, `wrappers/`, `examples/` or `scripts/`;
 //! - the target of a link in a page, with its heading where it names one;
 //! - a section of docs/theory.md, written `docs/theory.md, section 9` or `[theory](theory.md), section 9`;
-//! - in CONTRIBUTING.md and docs/architecture.md a name before its file, `find` (`src/scene/rows/entries.rs`): the file has it.
+//! - in CONTRIBUTING.md and docs/architecture.md a name before its file, `find` (`src/scene/rows/entries.rs`): the file
+//!   has it.
 //!
 //! docs/architecture.md has a row for each room of tests/architecture.rs, in the same order.
 

@@ -184,7 +184,8 @@ fn loose_bodies_balance_in_forces_and_moments() {
     let dir = Scratch::new("elastic-moments");
     // A cantilever of three bodies, of which two float, above an obstacle that its end comes to lie on.
     let text = fs::read_to_string("examples/scenes/beam_2d.toml").unwrap();
-    let obstacle = "\n[[obstacle]]\nbody = \"b2_0\"\nside = \"bottom\"\nplane = { point = [0, -0.05], normal = [0, 1] }\n";
+    let obstacle = "\n[[obstacle]]\nbody = \"b2_0\"\nside = \"bottom\"\n\
+                    plane = { point = [0, -0.05], normal = [0, 1] }\n";
     let scene = dir.path("beam.toml");
     fs::write(&scene, text + obstacle).unwrap();
     let (report, csv, _) = solve(&scene, &dir, &["-fetifeti_ksp_rtol", "1e-10"]);

@@ -48,8 +48,10 @@ fn grid(line: &str) -> String {
 /// A held body and another one at `x`, each of `subdomains`² subdomains.
 fn two(x: &str, subdomains: usize, more: &str) -> String {
     format!(
-        "[[body]]\nname = \"held\"\nsize = 1\nelements = 4\nsubdomains = {subdomains}\nload = 1\ndirichlet = [\"left\"]\n\
-         [[body]]\nname = \"loose\"\norigin = [{x}, 0]\nsize = 1\nelements = 4\nsubdomains = {subdomains}\nload = 1\n{more}"
+        "[[body]]\nname = \"held\"\nsize = 1\nelements = 4\n\
+         subdomains = {subdomains}\nload = 1\ndirichlet = [\"left\"]\n\
+         [[body]]\nname = \"loose\"\norigin = [{x}, 0]\nsize = 1\n\
+         elements = 4\nsubdomains = {subdomains}\nload = 1\n{more}"
     )
 }
 
@@ -414,7 +416,8 @@ fn a_body_without_free_nodes() {
     // All nodes of `stamp` are prescribed, and so are the nodes of its right neighbour that are tied to it.
     let text = "[[body]]\nname = \"stamp\"\nsize = 1\nelements = 1\ndirichlet = { left = \"y\", right = 2 }\n\
                 [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = 1\nelements = [2, 1]\nload = 1\n\
-                [[body]]\nname = \"lid\"\norigin = [0, 1]\nsize = [2, 1]\nelements = [4, 2]\nsubdomains = 2\nload = -1\n\
+                [[body]]\nname = \"lid\"\norigin = [0, 1]\nsize = [2, 1]\n\
+                elements = [4, 2]\nsubdomains = 2\nload = -1\n\
                 [[tie]]\nbodies = [\"stamp\", \"lid\"]\nwhere = \"none\"\n";
     let scene = Scene::parse("s.toml", text).expect("valid");
     assert_eq!(scene.subdomain(0).expect("assembled").k.n(), 0);
@@ -438,7 +441,8 @@ fn subdomains_of_one_element() {
 #[test]
 fn bodies_in_a_row() {
     // One end is held: all other bodies float, and the multipliers form a chain.
-    let text = "[grid]\nbodies = [6, 1]\nsize = [6, 1]\nelements = 4\nsubdomains = 2\nload = 1\ndirichlet = [\"left\"]\n";
+    let text = "[grid]\nbodies = [6, 1]\nsize = [6, 1]\nelements = 4\n\
+                subdomains = 2\nload = 1\ndirichlet = [\"left\"]\n";
     // Inside each body, each half of two lines has one dual node; there are 5 faces of 5 nodes between bodies.
     let multipliers = 6 * 4 + 5 * 5;
     solves("row", text, multipliers);

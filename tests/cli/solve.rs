@@ -366,8 +366,8 @@ fn the_plan_counts_inequalities_and_load_steps() {
         ),
         (
             "obstacle",
-            "outer loop            active set: 79 inequalities (17 candidate nodes in 1 contact pair, 62 nodes beside 4 \
-             obstacles)",
+            "outer loop            active set: 79 inequalities \
+             (17 candidate nodes in 1 contact pair, 62 nodes beside 4 obstacles)",
         ),
         (
             "press_ramp",

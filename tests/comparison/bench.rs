@@ -39,8 +39,10 @@ const TIED: &str = "title = \"four bodies\"\n[grid]\nbodies = 2\nsubdomains = [2
 
 /// The model contact problem on few elements.
 const CONTACT: &str = "title = \"model\"\n\
-    [[body]]\nname = \"left\"\nsize = [1, 1]\nelements = 8\nsubdomains = 2\ndirichlet = [\"left\"]\nload = [{ y = [0.75, 1], value = -3 }]\n\
-    [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\nelements = 8\nsubdomains = 2\nload = [{ y = [0, 0.25], value = -1 }]\n\
+    [[body]]\nname = \"left\"\nsize = [1, 1]\nelements = 8\nsubdomains = 2\n\
+    dirichlet = [\"left\"]\nload = [{ y = [0.75, 1], value = -3 }]\n\
+    [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\n\
+    elements = 8\nsubdomains = 2\nload = [{ y = [0, 0.25], value = -1 }]\n\
     [[contact]]\nbodies = [\"left\", \"right\"]\n";
 
 fn bench(args: &[&str]) -> BenchReport {

@@ -19,7 +19,8 @@ fn oracle() -> Vec<Value> {
 fn model(elements: u64, subdomains: usize) -> String {
     let body = |name: &str, x: usize, y: &str, value: i32| {
         format!(
-            "[[body]]\nname = \"{name}\"\norigin = [{x}, 0]\nsize = 1\nelements = {elements}\nsubdomains = {subdomains}\n\
+            "[[body]]\nname = \"{name}\"\norigin = [{x}, 0]\nsize = 1\n\
+             elements = {elements}\nsubdomains = {subdomains}\n\
              load = [{{ y = {y}, value = {value} }}]\n"
         )
     };

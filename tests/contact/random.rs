@@ -48,7 +48,8 @@ fn all_agree(
     }
     if session.rank() == 0 {
         println!(
-            "{kind:?}: {} of {} agree; energy within {energy:.1e}, u {u:.1e}, KKT {kkt:.1e}; {degenerate} with degenerate rows",
+            "{kind:?}: {} of {} agree; energy within {energy:.1e}, \
+             u {u:.1e}, KKT {kkt:.1e}; {degenerate} with degenerate rows",
             cases.len() - wrong.len(),
             cases.len()
         );

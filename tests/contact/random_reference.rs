@@ -29,8 +29,8 @@ fn most_random_scenes_have_a_solution() {
         floating += usize::from(case.problem.qp.kernel.len() > 1);
     }
     println!(
-        "unbounded {}, infeasible {}, refused {}; of 500 closed somewhere {closed}, and open {open}, degenerate {degenerate}, u not unique {free}, \
-         with ties {equations}, several floating bodies {floating}",
+        "unbounded {}, infeasible {}, refused {}; of 500 closed somewhere {closed}, and open {open}, \
+         degenerate {degenerate}, u not unique {free}, with ties {equations}, several floating bodies {floating}",
         all.unbounded.len(),
         all.infeasible.len(),
         all.refused.len()

@@ -11,7 +11,9 @@ use qp::{Outcome, CERTIFIED};
 fn model(n: usize) -> Scene {
     let text = format!(
         "[grid]\nbodies = [2, 1]\norigin = [0, 0]\nsize = [2, 1]\nsubdomains = 1\nelements_per_subdomain = {n}\n\
-         dirichlet = [\"left\"]\nload = [\n  {{ x = [0, 1], y = [0.75, 1], value = -3 }},\n  {{ x = [1, 2], y = [0, 0.25], value = -1 }},\n]\n\
+         dirichlet = [\"left\"]\nload = [\
+         \n  {{ x = [0, 1], y = [0.75, 1], value = -3 }},\
+         \n  {{ x = [1, 2], y = [0, 0.25], value = -1 }},\n]\n\
          [[contact]]\nbodies = \"all\"\ngap = 0\n"
     );
     Scene::parse("model.toml", &text).unwrap()
@@ -61,8 +63,10 @@ fn the_model_problem_agrees_with_the_oracle() {
 /// contact, and with gaps.
 fn wall(n: usize, m: usize, elements: usize) -> Scene {
     let mut text = format!(
-        "[grid]\nname = \"b\"\nbodies = [{n}, {m}]\norigin = [0, 0]\nsize = [{n}, {m}]\nsubdomains = 1\nelements_per_subdomain = {elements}\n\
-         dirichlet = [\"left\"]\nrho = {{ checkerboard = [1, 100], by = \"body\" }}\nload = \"-0.2 - 20*sin(6.283185307179586*y)*(1 + 0.3*sin(5*x))\"\n"
+        "[grid]\nname = \"b\"\nbodies = [{n}, {m}]\norigin = [0, 0]\n\
+         size = [{n}, {m}]\nsubdomains = 1\nelements_per_subdomain = {elements}\n\
+         dirichlet = [\"left\"]\nrho = {{ checkerboard = [1, 100], by = \"body\" }}\n\
+         load = \"-0.2 - 20*sin(6.283185307179586*y)*(1 + 0.3*sin(5*x))\"\n"
     );
     let mut count = 0;
     for j in 0..m {
@@ -196,7 +200,8 @@ fn the_comparison_sees_what_is_wrong() {
 fn motions_that_nothing_stops_are_no_difference() {
     // Two floating bodies are pressed together by loads that balance, tied or in contact: they float as one body.
     let text = "[grid]\nbodies = [2, 1]\norigin = [0, 0]\nsize = [2, 1]\nsubdomains = 1\nelements_per_subdomain = 4\n\
-                load = [{ x = [0, 1], y = [0, 1], value = 1 }, { x = [1, 2], y = [0, 1], value = -1 }]\n[[contact]]\nbodies = \"all\"\n";
+                load = [{ x = [0, 1], y = [0, 1], value = 1 }, { x = [1, 2], y = [0, 1], value = -1 }]\n\
+                [[contact]]\nbodies = \"all\"\n";
     let problem = Assembled::of_scene(&Scene::parse("floating.toml", text).unwrap());
     let s = problem.solve();
     assert!((s.contact_force - 1.0).abs() < 1e-12);
@@ -251,7 +256,8 @@ fn scenes_without_a_solution() {
     };
     assert!((0..z.len()).all(|i| (z[i] - problem.body[i] as f64).abs() < 1e-9));
     let squeezed = pulled.to_string()
-        + "[[obstacle]]\nbody = \"b0_0\"\nside = [\"right\"]\nbelow = 1\n[[obstacle]]\nbody = \"b1_0\"\nside = [\"left\"]\nabove = 0.5\n";
+        + "[[obstacle]]\nbody = \"b0_0\"\nside = [\"right\"]\nbelow = 1\n\
+           [[obstacle]]\nbody = \"b1_0\"\nside = [\"left\"]\nabove = 0.5\n";
     let problem = Assembled::of_scene(&Scene::parse("squeezed.toml", &squeezed).unwrap());
     assert!(matches!(problem.outcome(), Outcome::Infeasible(_)));
     assert!(problem.place.iter().all(|p| matches!(p, Place::Below(_))));

@@ -113,8 +113,8 @@ fn pressed(dim: usize, form: &str, interface: &str) -> String {
         )
     };
     format!(
-        "dimension = {dim}\nphysics = \"elasticity\"\n{form}exact = [{}]\n{}{}{}pressure = {{ top = {p} }}\n[interface]\ndefault = \
-         \"{interface}\"\n",
+        "dimension = {dim}\nphysics = \"elasticity\"\n{form}exact = [{}]\n\
+         {}{}{}pressure = {{ top = {p} }}\n[interface]\ndefault = \"{interface}\"\n",
         exact[..dim].join(", "),
         body("lower", 0.0, ", bottom = { y = 0 } }"),
         body("middle", 1.0, " }"),
@@ -172,7 +172,8 @@ fn manufactured(dim: usize, form: &str, n: usize) -> String {
         .collect();
     let exact = vec![format!("\"{s}\""); dim].join(", ");
     format!(
-        "dimension = {dim}\nphysics = \"elasticity\"\n{form}exact = [{exact}]\n[grid]\nbodies = 2\nsubdomains = 2\nelements = {n}\n\
+        "dimension = {dim}\nphysics = \"elasticity\"\n{form}exact = [{exact}]\n\
+         [grid]\nbodies = 2\nsubdomains = 2\nelements = {n}\n\
          poisson = {nu}\nload = {{ {}, quadrature = \"gauss\" }}\ndirichlet = \"all\"\n",
         loads.join(", ")
     )
@@ -206,8 +207,8 @@ fn a_scalar_in_space_converges_too() {
         let text = |n: usize| {
             let s = "sin(pi*x)*sin(pi*y)*sin(pi*z)";
             format!(
-                "dimension = 3\nexact = \"{s}\"\n[grid]\nbodies = 2\nsubdomains = 2\nelements = {n}\ndirichlet = \"all\"\nload = {{ value = \
-                 \"3*pi^2*{s}\", quadrature = \"gauss\" }}\n"
+                "dimension = 3\nexact = \"{s}\"\n[grid]\nbodies = 2\nsubdomains = 2\nelements = {n}\n\
+                 dirichlet = \"all\"\nload = {{ value = \"3*pi^2*{s}\", quadrature = \"gauss\" }}\n"
             )
         };
         let [coarse, fine] = [4, 8].map(|n| errors(session, &text(n), 1e-10));

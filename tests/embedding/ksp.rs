@@ -54,7 +54,8 @@ fn cycles_leave_nothing_behind() {
 fn what_a_user_may_watch() {
     let scratch = Scratch::new("embed-watch");
     let program = Program::own("mpicc", &scratch, "host.c");
-    let watch = "-ksp_monitor_true_residual -ksp_converged_reason -ksp_view -ksp_view_singularvalues -ksp_view_eigenvalues";
+    let watch = "-ksp_monitor_true_residual -ksp_converged_reason \
+                 -ksp_view -ksp_view_singularvalues -ksp_view_eigenvalues";
     let more = "-options_left -log_view -citations";
     let out = program.with_plugin(
         4,

@@ -21,7 +21,8 @@ fn scene(text: &str) -> Scene {
 fn scenes() -> Vec<(&'static str, Scene)> {
     let grid = |bodies: &str, subdomains: usize, elements: usize, more: &str| {
         scene(&format!(
-            "[grid]\nbodies = {bodies}\nsubdomains = {subdomains}\nelements_per_subdomain = {elements}\nload = \"1 + x\"\n{more}\n"
+            "[grid]\nbodies = {bodies}\nsubdomains = {subdomains}\n\
+             elements_per_subdomain = {elements}\nload = \"1 + x\"\n{more}\n"
         ))
     };
     let all = "dirichlet = \"all\"\n";

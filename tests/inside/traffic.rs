@@ -6,11 +6,14 @@ use fetifeti::petsc::{counters, Session};
 use fetifeti::{FetiFeti, Result, Scene, Settings};
 
 /// 3 × 3 bodies of 2 × 2 subdomains: one body floats, so that S_Π, A and Gᵀ G all exist.
-const TIED: &str = "[grid]\nbodies = 3\nsubdomains = 2\nelements_per_subdomain = 4\nload = \"1 + x + y^2\"\ndirichlet = \"all\"\n";
+const TIED: &str = "[grid]\nbodies = 3\nsubdomains = 2\nelements_per_subdomain = 4\n\
+                    load = \"1 + x + y^2\"\ndirichlet = \"all\"\n";
 
 /// Two bodies of 2 × 2 subdomains of 3 × 3 elements, in contact; the right one floats.
-const CONTACT: &str = "[[body]]\nname = \"left\"\nsize = [1, 1]\nsubdomains = 2\nelements_per_subdomain = 3\ndirichlet = [\"left\"]\n\
-    load = -1\n[[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\nsubdomains = 2\nelements_per_subdomain = 3\nload = -1\n\
+const CONTACT: &str = "[[body]]\nname = \"left\"\nsize = [1, 1]\nsubdomains = 2\n\
+    elements_per_subdomain = 3\ndirichlet = [\"left\"]\nload = -1\n\
+    [[body]]\nname = \"right\"\norigin = [1, 0]\nsize = [1, 1]\nsubdomains = 2\n\
+    elements_per_subdomain = 3\nload = -1\n\
     [[contact]]\nbodies = [\"left\", \"right\"]\ngap = 0\n";
 
 fn against_petsc(session: &Session, text: &str) -> Result<()> {

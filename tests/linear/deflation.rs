@@ -48,7 +48,8 @@ fn channels(physics: &str) -> String {
         _ => "1",
     };
     format!(
-        "physics = \"{physics}\"\n[grid]\nbodies = [3, 2]\nsize = [3, 2]\nsubdomains = 3\nelements_per_subdomain = 4\nload = {load}\n\
+        "physics = \"{physics}\"\n[grid]\nbodies = [3, 2]\nsize = [3, 2]\n\
+         subdomains = 3\nelements_per_subdomain = 4\nload = {load}\n\
          dirichlet = [\"left\"]\n[grid.{what}]\ndefault = 1\nregions = [\n\
          {{ x = [0.1, 2.9], y = [\"1/12\", \"2/12\"], value = 1e6 }},\n\
          {{ x = [0.4, 2.6], y = [\"7/12\", \"8/12\"], value = 1e6 }},\n\

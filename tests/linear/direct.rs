@@ -82,7 +82,8 @@ fn jumps_of_a_million_each_way() {
 
 /// 4 × 4 bodies, the inner ones floating, and the three bodies of the partly tied scene.
 fn floating_scenes() -> Vec<(&'static str, Direct)> {
-    let grid = "[grid]\nbodies = 4\nsubdomains = 2\nelements_per_subdomain = 3\ndirichlet = \"all\"\nload = \"1 + x - 2*y\"\n\
+    let grid = "[grid]\nbodies = 4\nsubdomains = 2\nelements_per_subdomain = 3\n\
+                dirichlet = \"all\"\nload = \"1 + x - 2*y\"\n\
                 rho = { checkerboard = [1, 20], by = \"body\" }\n";
     vec![
         (
@@ -244,8 +245,11 @@ fn errors_fall_with_the_second_power_of_h() {
         // u = sin(2x) e^y is (1 + x)(4 − 1) u − 2 cos(2x) e^y.
         let norms = |n: usize| {
             let text = format!(
-                "exact = \"sin(2*x)*exp(y)\"\n[grid]\nbodies = [3, 3]\nsubdomains = [2, 1]\nelements_per_subdomain = [{n}, {}]\n\
-                 rho = \"1 + x\"\ndirichlet = {{ left = \"sin(2*x)*exp(y)\", right = \"sin(2*x)*exp(y)\", bottom = \"sin(2*x)*exp(y)\", top = \"sin(2*x)*exp(y)\" }}\n\
+                "exact = \"sin(2*x)*exp(y)\"\n\
+                 [grid]\nbodies = [3, 3]\nsubdomains = [2, 1]\nelements_per_subdomain = [{n}, {}]\n\
+                 rho = \"1 + x\"\n\
+                 dirichlet = {{ left = \"sin(2*x)*exp(y)\", right = \"sin(2*x)*exp(y)\", \
+                 bottom = \"sin(2*x)*exp(y)\", top = \"sin(2*x)*exp(y)\" }}\n\
                  load = {{ value = \"3*(1 + x)*sin(2*x)*exp(y) - 2*cos(2*x)*exp(y)\", quadrature = \"gauss\" }}\n",
                 2 * n
             );

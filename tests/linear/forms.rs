@@ -15,8 +15,10 @@ use program::run_fetifeti;
 use serde_json::Value;
 
 /// Two blocks of eight subdomains each, one on the other, under an oblique load.
-const SOLID: &str = "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 2, 1]\nsubdomains = [2, 2, 2]\n\
-                     elements_per_subdomain = 4\nyoung = [[[1], [5]]]\npoisson = 0.3\nload = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n";
+const SOLID: &str =
+    "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 2, 1]\nsubdomains = [2, 2, 2]\n\
+                     elements_per_subdomain = 4\nyoung = [[[1], [5]]]\npoisson = 0.3\n\
+                     load = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n";
 
 fn solver(session: &Session, text: &str, settings: MethodSettings) -> FetiFeti {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -85,7 +87,10 @@ fn memory_bounds_dense_operators() {
 fn subdomains_that_are_multiples_of_each_other_share_their_factors() {
     with_session(|session| {
         let text = |rho: &str| {
-            format!("[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 5\nload = \"1 + x\"\ndirichlet = \"all\"\n{rho}")
+            format!(
+                "[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 5\n\
+                     load = \"1 + x\"\ndirichlet = \"all\"\n{rho}"
+            )
         };
         let plain = solver(session, &text(""), MethodSettings::default());
         // Checkerboards of 1/3 by body.
@@ -102,7 +107,8 @@ fn subdomains_that_are_multiples_of_each_other_share_their_factors() {
 #[test]
 fn directions_are_kept_from_load_to_load() {
     with_session(|session| {
-        let text = "[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 6\nload = \"1 + x\"\ndirichlet = [\"left\"]\n";
+        let text = "[grid]\nbodies = 3\nsubdomains = 3\nelements_per_subdomain = 6\n\
+                    load = \"1 + x\"\ndirichlet = [\"left\"]\n";
         let make = |recycle| {
             let settings = MethodSettings {
                 recycle,

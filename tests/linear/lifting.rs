@@ -7,7 +7,8 @@ use program::run_fetifeti;
 use serde_json::Value;
 
 /// Two blocks, one of them held, tied together.
-const TIED: &str = "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 2, 1]\nsubdomains = [3, 2, 2]\nelements_per_subdomain = 2\n\
+const TIED: &str = "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 2, 1]\n\
+                    subdomains = [3, 2, 2]\nelements_per_subdomain = 2\n\
                     poisson = 0.3\nload = [\"0.3*y\", -1, 0.1]\ndirichlet = [\"bottom\"]\n";
 
 fn report(ranks: usize, scene: &str, more: &[&str]) -> Value {

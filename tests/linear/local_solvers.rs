@@ -10,10 +10,14 @@ use serde_json::Value;
 
 /// Bodies that float, in contact and tied; subdomains that touch no side.
 const SCENES: [(&str, &str); 2] = [
-    ("plane contact", include_str!("../../examples/scenes/contact_row_16.toml")),
+    (
+        "plane contact",
+        include_str!("../../examples/scenes/contact_row_16.toml"),
+    ),
     (
         "elastic solid",
-        "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [2, 1, 1]\nsubdomains = [2, 2, 2]\nelements_per_subdomain = 3\n\
+        "dimension = 3\nphysics = \"elasticity\"\n\
+         [grid]\nbodies = [2, 1, 1]\nsubdomains = [2, 2, 2]\nelements_per_subdomain = 3\n\
          dirichlet = [\"left\"]\npoisson = 0.3\nload = [1.0, -2.0, 0.5]\n",
     ),
 ];

@@ -48,7 +48,15 @@ fn kappa_multipliers_and_iterations_equal_the_oracle() {
                     let want = &expected[key];
                     let relative = (s.kappa() / number(&want["kappa"]) - 1.0).abs();
                     let solution = solver.solve().expect("solved");
-                    println!("{nb} {ns} {ne} {side} {key}: {:.6} {:.6} want {} {}; {} iterations, kkt {:?}", s.lambda_min, s.lambda_max, want["kappa"], want["iterations"], solution.iterations, solution.kkt);
+                    println!(
+                        "{nb} {ns} {ne} {side} {key}: {:.6} {:.6} want {} {}; {} iterations, kkt {:?}",
+                        s.lambda_min,
+                        s.lambda_max,
+                        want["kappa"],
+                        want["iterations"],
+                        solution.iterations,
+                        solution.kkt
+                    );
                     assert!(
                         relative < 1e-4,
                         "{nb} {ns} {ne} {side} {key}: {s:?} for {want}"

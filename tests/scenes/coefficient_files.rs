@@ -76,7 +76,8 @@ fn solids_and_single_bodies() {
     let scratch = Scratch::new("solids");
     let path = |name: &str| scratch.path(name);
     std::fs::write(path("solid.bin"), bytes32(&counting(6 * 4 * 4))).unwrap();
-    let text = "dimension = 3\n[grid]\nbodies = [3, 1, 2]\nelements = [2, 4, 2]\nsubdomains = [1, 2, 1]\ndirichlet = [\"left\"]\n";
+    let text = "dimension = 3\n[grid]\nbodies = [3, 1, 2]\nelements = [2, 4, 2]\n\
+                subdomains = [1, 2, 1]\ndirichlet = [\"left\"]\n";
     let scene = |rho: &str| Scene::load(scratch.file("s.toml", &format!("{text}rho = {rho}\n")));
     let found = rho(&scene("{ file = \"solid.bin\" }").unwrap(), [3, 1, 2]);
     assert_eq!(found, counting(96));
@@ -99,8 +100,11 @@ fn solids_and_single_bodies() {
     // One bent body: cells follow the numbers of elements, not coordinates. E and ν each have their file.
     std::fs::write(path("e.bin"), bytes64(&counting(12))).unwrap();
     std::fs::write(path("nu.txt"), "0.1 0.2 0.3 0.4").unwrap();
-    let text = "physics = \"elasticity\"\n[[body]]\nshape = { annulus = { inner = 1, outer = 2 } }\nelements = [4, 3]\nsubdomains = [2, 1]\n\
-                dirichlet = [\"left\"]\nyoung = { file = \"e.bin\" }\npoisson = { file = \"nu.txt\", shape = [4, 1] }\n";
+    let text =
+        "physics = \"elasticity\"\n[[body]]\nshape = { annulus = { inner = 1, outer = 2 } }\n\
+                elements = [4, 3]\nsubdomains = [2, 1]\n\
+                dirichlet = [\"left\"]\nyoung = { file = \"e.bin\" }\n\
+                poisson = { file = \"nu.txt\", shape = [4, 1] }\n";
     let scene = Scene::load(scratch.file("b.toml", text)).unwrap();
     assert_eq!(rho(&scene, [1; 3]), counting(12));
     let poisson = elements(&scene, [1; 3], |s| scene.subdomain_mesh(s).unwrap().poisson);

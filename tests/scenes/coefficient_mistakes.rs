@@ -32,7 +32,8 @@ fn mistakes_in_numbers() {
     );
     grid.refuses(
         "{ file = \"short.bin\", shape = [31, 1, 1] }",
-        "a list of 3 where a pair of positive whole numbers was expected (`dimension = 3` at the top makes the scene solid)",
+        "a list of 3 where a pair of positive whole numbers was expected \
+         (`dimension = 3` at the top makes the scene solid)",
     );
     grid.refuses(
         "{ file = \"short.bin\", shape = [0, 1] }",
@@ -104,12 +105,14 @@ fn values_that_are_no_coefficients() {
     let mut values = vec![0.25; 8];
     values[6] = 0.5;
     std::fs::write(scratch.path("nu.bin"), bytes64(&values)).unwrap();
-    let text = "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"a\"\nsize = 1\nelements = 2\npoisson = { file = \"nu.bin\" }\n";
+    let text = "dimension = 3\nphysics = \"elasticity\"\n\
+                [[body]]\nname = \"a\"\nsize = 1\nelements = 2\npoisson = { file = \"nu.bin\" }\n";
     let error = Scene::load(scratch.file("s.toml", text)).unwrap_err();
     let directory = format!("{}/", scratch.0.display());
     assert_eq!(
         error.to_string().replace(&directory, ""),
-        "s.toml:3: body `a`: ν = 0.5 in cell (0, 1, 1) of 2 x 2 x 2 in nu.bin where a number above -1 and below 1/2 was expected"
+        "s.toml:3: body `a`: ν = 0.5 in cell (0, 1, 1) of 2 x 2 x 2 \
+         in nu.bin where a number above -1 and below 1/2 was expected"
     );
 }
 

@@ -216,10 +216,21 @@ fn every_scene_is_solved_with_the_same_answer_on_every_number_of_ranks() {
 #[test]
 fn the_plan_says_how_far_the_coefficient_ranges() {
     for (name, wanted) in [
-        ("checkerboard", "ρ from 1 to 10000, inside a body by a factor of up to 10000; examples/scenes/coefficients_checkerboard.txt, 16 x 16 cells\n"),
-        ("channels", "ρ from 1 to 1e6, inside a body by a factor of up to 1e6; examples/scenes/coefficients_channels.png, 96 x 96 cells\n"),
+        (
+            "checkerboard",
+            "ρ from 1 to 10000, inside a body by a factor of up to 10000; \
+                          examples/scenes/coefficients_checkerboard.txt, 16 x 16 cells\n",
+        ),
+        (
+            "channels",
+            "ρ from 1 to 1e6, inside a body by a factor of up to 1e6; \
+                      examples/scenes/coefficients_channels.png, 96 x 96 cells\n",
+        ),
         ("inclusions", "E from 1 to "),
-        ("layers", "ρ from 0.001024 to 1000, inside a body by a factor of up to 9.77e5; "),
+        (
+            "layers",
+            "ρ from 0.001024 to 1000, inside a body by a factor of up to 9.77e5; ",
+        ),
     ] {
         let plans = [1, 3].map(|ranks| {
             let out = run_fetifeti(ranks, &["plan", &path(name)]);

@@ -32,7 +32,8 @@ fn contacts() {
     let with = |lines: &str| pair(&format!("[[contact]]\nbodies = [\"a\", \"b\"]\n{lines}\n"));
     check(
         &with("gapp = 1"),
-        "s.toml:13: unknown key `gapp` in [[contact]] (known keys are bodies, sides, where, range, points, nodes, gap, ramp)",
+        "s.toml:13: unknown key `gapp` in [[contact]] (known keys are bodies, \
+         sides, where, range, points, nodes, gap, ramp)",
     );
     check(
         &pair("[[contact]]\ngap = 1\n"),
@@ -137,8 +138,8 @@ fn nodes_that_are_tied_and_in_contact() {
     };
     let message = |t: &str| {
         format!(
-            "s.toml:14: the contact of bodies `a` and `b` selects the node at t = {t}, which the tie of s.toml:11 selects \
-             too (ranges that share no more than their ends were expected)"
+            "s.toml:14: the contact of bodies `a` and `b` selects the node at t = {t}, which the \
+             tie of s.toml:11 selects too (ranges that share no more than their ends were expected)"
         )
     };
     check(&both("range = [0, 0.5]", "where = \"all\""), &message("0"));
@@ -229,7 +230,8 @@ fn obstacles() {
     );
     check(
         &with("body = \"a\"\nside = \"top\"\nbelow = 0\nnodes = [5]"),
-        "s.toml:11: the obstacle of body `a` names the node with number 5, but its side top has 5 nodes and none like that",
+        "s.toml:11: the obstacle of body `a` names the node with number 5, \
+         but its side top has 5 nodes and none like that",
     );
     check(
         &with("body = \"a\"\nside = \"left\"\nabove = \"ln(y)\""),
@@ -242,10 +244,12 @@ fn obstacles() {
          (below ≤ above was expected)",
     );
     // Two sides at their common corner.
-    let corner = "[[obstacle]]\nbody = \"a\"\nside = \"top\"\nbelow = 1\n[[obstacle]]\nbody = \"a\"\nside = \"left\"\nabove = 0\n";
+    let corner = "[[obstacle]]\nbody = \"a\"\nside = \"top\"\nbelow = 1\n\
+                  [[obstacle]]\nbody = \"a\"\nside = \"left\"\nabove = 0\n";
     check(
         &pair(corner),
-        "s.toml:15: the obstacles of body `a` leave nothing at (0, 1): below = 1 and above = 0 (below ≤ above was expected)",
+        "s.toml:15: the obstacles of body `a` leave nothing at (0, 1): \
+         below = 1 and above = 0 (below ≤ above was expected)",
     );
     let given = body("a", "[0, 0]", "dirichlet = { top = \"2*x\" }\n");
     let above = "[[obstacle]]\nbody = \"a\"\nside = \"top\"\n";

@@ -268,7 +268,8 @@ fn coefficients() {
     );
     check(
         &with("{ value = 1, checkerboard = [1, 2] }"),
-        "s.toml:7: 2 values where one of `value`, `regions`, `checkerboard`, `per_body` or `per_subdomain` was expected",
+        "s.toml:7: 2 values where one of `value`, `regions`, \
+         `checkerboard`, `per_body` or `per_subdomain` was expected",
     );
     check(
         &with("[{ x = [1, 0], value = 2 }]"),

@@ -145,7 +145,8 @@ fn blocks(rng: &mut Rng, dim: usize) -> String {
             ),
             2 if dim == 2 => writeln!(
                 out,
-                "[[tie]]\nbodies = [\"b{}\", \"b{b}\"]\nrange = [0, 0.5]\n[[contact]]\nbodies = [\"b{}\", \"b{b}\"]\nrange = [0.5, 1]",
+                "[[tie]]\nbodies = [\"b{}\", \"b{b}\"]\nrange = [0, 0.5]\n\
+                 [[contact]]\nbodies = [\"b{}\", \"b{b}\"]\nrange = [0.5, 1]",
                 b - 1,
                 b - 1
             ),
@@ -222,8 +223,8 @@ fn round(rng: &mut Rng) -> String {
     };
     let disc = |name: &str, y: f64, pole: &str, rest: &str| {
         format!(
-            "[[body]]\nname = \"{name}\"\nshape = {{ half_disc = {{ radius = 1, centre = [0, {y}], grading = {grading}, \
-             pole = \"{pole}\" }} }}\nelements = [8, 4]\nsubdomains = 2\n{rest}"
+            "[[body]]\nname = \"{name}\"\nshape = {{ half_disc = {{ radius = 1, centre = [0, {y}], \
+             grading = {grading}, pole = \"{pole}\" }} }}\nelements = [8, 4]\nsubdomains = 2\n{rest}"
         )
     };
     let gap = number(rng, -0.01, 0.02);
@@ -256,8 +257,10 @@ fn round(rng: &mut Rng) -> String {
             let radius = number(rng, 0.9, 1.02);
             writeln!(
                 out,
-                "[[body]]\nname = \"ring\"\nshape = {{ annulus = {{ inner = 1, outer = 1.5, from = 0, to = 90 }} }}\nelements = [4, 8]\n\
-                 subdomains = [1, 2]\npressure = {{ right = {} }}\ndirichlet = {{ bottom = {{ y = 0 }}, top = {{ x = 0 }} }}\n\
+                "[[body]]\nname = \"ring\"\n\
+                 shape = {{ annulus = {{ inner = 1, outer = 1.5, from = 0, to = 90 }} }}\nelements = [4, 8]\n\
+                 subdomains = [1, 2]\npressure = {{ right = {} }}\n\
+                 dirichlet = {{ bottom = {{ y = 0 }}, top = {{ x = 0 }} }}\n\
                  [[obstacle]]\nbody = \"ring\"\nside = \"left\"\ncylinder = {{ centre = [0, 0], radius = {radius} }}",
                 number(rng, 0.05, 0.3)
             )

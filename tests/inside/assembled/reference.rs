@@ -6,7 +6,10 @@ use crate::testing::with_session;
 /// A column of two squares with these keys, the upper one on the lower one.
 fn column(lower: &str, upper: &str) -> Scene {
     let body = |name: &str, y: f64, keys: &str| {
-        format!("[[body]]\nname = \"{name}\"\norigin = [0, {y}]\nsize = [1, 1]\nelements = 4\nsubdomains = [2, 1]\n{keys}\n")
+        format!(
+            "[[body]]\nname = \"{name}\"\norigin = [0, {y}]\n\
+                 size = [1, 1]\nelements = 4\nsubdomains = [2, 1]\n{keys}\n"
+        )
     };
     let contact = "[[contact]]\nbodies = [\"lower\", \"upper\"]\n";
     let text = body("lower", 0.0, lower) + &body("upper", 1.0, upper) + contact;

@@ -4,7 +4,8 @@ use super::*;
 
 #[test]
 fn the_programs_own_error_is_found() {
-    let petsc = "[host:1] noise\nError on rank 3: PCSetUp failed with PETSc error 76\n  Zero pivot\n  PCSetUp() line 9\n----\n";
+    let petsc = "[host:1] noise\nError on rank 3: PCSetUp failed with PETSc error 76\
+                 \n  Zero pivot\n  PCSetUp() line 9\n----\n";
     assert_eq!(
         spoken(petsc).as_deref(),
         Some("PCSetUp failed with PETSc error 76: Zero pivot")

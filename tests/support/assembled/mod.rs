@@ -1,5 +1,5 @@
-//! A contact problem assembled body by body and solved by the reference of `tests/support/qp`: what runs of the method are measured
-//! against.
+//! A contact problem assembled body by body and solved by the reference of `tests/support/qp`: what runs of the method
+//! are measured against.
 //!
 //! Unknowns are the free body dofs, so that a node where bodies meet has one for each of them; ties, contacts and
 //! obstacles are the rows. This is the problem as the rows of a scene state it, without the method's tearing inside

@@ -165,6 +165,7 @@ pub fn check_descent(qp: &Qp, z: &[f64]) {
     let scale: f64 = qp.f.iter().zip(z).map(|(f, z)| (f * z).abs()).sum();
     assert!(
         stiff <= 1e-9 * scaled_size && stopped <= 1e-9 * size && work > 1e-9 * scale,
-        "the energy seems to have no lower bound, but there is no proof: K z = {stiff:.1e}, B z = {stopped:.1e}, fᵀz = {work:.1e}"
+        "the energy seems to have no lower bound, but there is no proof: \
+         K z = {stiff:.1e}, B z = {stopped:.1e}, fᵀz = {work:.1e}"
     );
 }

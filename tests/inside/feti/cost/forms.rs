@@ -29,7 +29,8 @@ fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
     });
 }
 
-const SOLID: &str = "title = \"solid\"\ndimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [1, 1, 1]\nsubdomains = [2, 2, 2]\n\
+const SOLID: &str = "title = \"solid\"\ndimension = 3\nphysics = \"elasticity\"\n\
+                     [grid]\nbodies = [1, 1, 1]\nsubdomains = [2, 2, 2]\n\
                      elements_per_subdomain = 9\nload = [0, -1, 0]\ndirichlet = [\"bottom\"]\n";
 const PLANE: &str = "title = \"plane\"\n[grid]\nbodies = 1\nsubdomains = 3\nelements_per_subdomain = 48\nload = 1\n";
 

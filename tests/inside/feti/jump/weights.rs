@@ -5,7 +5,8 @@ use crate::scene::Scene;
 
 fn noisy(rho: &str) -> Vec<bool> {
     let text = format!(
-        "title = \"field\"\n[grid]\nbodies = 1\nsubdomains = 2\nelements_per_subdomain = 24\nload = 1\nrho = \"{rho}\"\n"
+        "title = \"field\"\n[grid]\nbodies = 1\nsubdomains = 2\n\
+         elements_per_subdomain = 24\nload = 1\nrho = \"{rho}\"\n"
     );
     let scene = Scene::parse("field.toml", &text).expect("a scene");
     let problem = scene.substructures(&|_| true).expect("substructures");
@@ -28,7 +29,8 @@ fn noise_is_told_from_fields_and_channels() {
 fn weights_of_noise_are_the_mean() {
     let draw = "mod(43758.5453*sin(12.9898*48*x + 78.233*48*y), 1)";
     let text = format!(
-        "title = \"field\"\n[grid]\nbodies = 1\nsubdomains = 1\nelements_per_subdomain = 24\nload = 1\nrho = \"2 + {draw}\"\n"
+        "title = \"field\"\n[grid]\nbodies = 1\nsubdomains = 1\n\
+         elements_per_subdomain = 24\nload = 1\nrho = \"2 + {draw}\"\n"
     );
     let scene = Scene::parse("field.toml", &text).expect("a scene");
     let problem = scene.substructures(&|_| true).expect("substructures");

@@ -21,7 +21,8 @@ fn elements_by_hand() {
         "viewBox=\"0 0 30 20\"",
         "<polygon points=\"0,0 1,0 1,2\" fill=\"#ff0010\"/>",
         "stroke-dasharray=\"4 2\"",
-        "<text x=\"5\" y=\"13.65\" text-anchor=\"end\" font-size=\"10\" fill=\"#222222\" xml:space=\"preserve\">a&lt;b</text>",
+        "<text x=\"5\" y=\"13.65\" text-anchor=\"end\" font-size=\"10\" \
+         fill=\"#222222\" xml:space=\"preserve\">a&lt;b</text>",
         "rotate(-90)",
         // H is 1540 of 2048 units wide, b 1300, the slash 690, h 1298; b in 0.7 of the size.
         "rotate(-90)\" x=\"-10.83\" y=\"3.65\"",
