@@ -1,4 +1,5 @@
-! The functions of fetifeti.h for Fortran; their manual pages are there. PETSc objects are passed by their %v, NULL is 0:
+! The functions of fetifeti.h for Fortran; their manual pages are there. PETSc objects are passed by their
+! %v, NULL is 0:
 !
 !   type(c_ptr) :: ff
 !   ierr = FetiFetiCreateFortran(PETSC_COMM_WORLD, ff)
@@ -26,7 +27,8 @@ module fetifeti
       type(c_ptr), value :: ff
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetOptionsPrefix(ff, prefix) bind(C, name="FetiFetiSetOptionsPrefix") result(ierr) ! ends with c_null_char
+    ! prefix ends with c_null_char.
+    function FetiFetiSetOptionsPrefix(ff, prefix) bind(C, name="FetiFetiSetOptionsPrefix") result(ierr)
       import :: c_int, c_ptr, c_char
       type(c_ptr), value :: ff
       character(c_char) :: prefix(*)
@@ -90,7 +92,8 @@ module fetifeti
       real(c_double), intent(in) :: coords(*)
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetDirichletBoundaries(ff, dofs, values) bind(C, name="FetiFetiSetDirichletBoundaries") result(ierr)
+    function FetiFetiSetDirichletBoundaries(ff, dofs, values) &
+        bind(C, name="FetiFetiSetDirichletBoundaries") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_intptr_t), value :: dofs, values
@@ -116,7 +119,8 @@ module fetifeti
       real(c_double), intent(in) :: b(*), gap(*)
       integer(c_int) :: ierr
     end function
-    function FetiFetiSetContactPairs(ff, a, first, b, second, gap, kind) bind(C, name="FetiFetiSetContactPairs") result(ierr)
+    function FetiFetiSetContactPairs(ff, a, first, b, second, gap, kind) &
+        bind(C, name="FetiFetiSetContactPairs") result(ierr)
       import :: c_int, c_ptr, c_double, c_intptr_t
       type(c_ptr), value :: ff
       integer(c_int), value :: a, b, kind

@@ -1,8 +1,9 @@
 /*
    FETI-FETI for programs that run on PETSc: FETI-DP inside bodies, one-level FETI between bodies, contact between them.
 
-   Link with libfetifeti.so. All functions return a PETSc error code; errors go through PETSc's error handler as one sentence. All ranks of the
-   communicator of FetiFetiCreate() must call a "Collective" function; each rank may call the others as often as it likes.
+   Link with libfetifeti.so. All functions return a PETSc error code; errors go through PETSc's error handler as one
+   sentence. All ranks of the communicator of FetiFetiCreate() must call a "Collective" function; each rank may call the
+   others as often as it likes.
 */
 #if !defined(FETIFETI_H)
 #define FETIFETI_H
@@ -10,17 +11,19 @@
 #include <petscksp.h>
 
 /*S
-   FetiFeti - A solver for several bodies that are tied together or in contact: min 1/2 u'Ku - f'u subject to rows B u = c, B u <= c
+   FetiFeti - A solver for several bodies that are tied or in contact: min 1/2 u'Ku - f'u subject to B u = c, B u <= c
 
    Level: beginner
 
    Notes:
-   The unknowns of all bodies have one numbering, the numbering of the entries of the right-hand side and the solution. Two subdomains of one body
-   share an unknown if both list its number. Two subdomains of different bodies that list the same number are tied: one-level FETI between them.
+   The unknowns of all bodies have one numbering, the numbering of the entries of the right-hand side and the solution.
+   Two subdomains of one body share an unknown if both list its number. Two subdomains of different bodies that list the
+   same number are tied: one-level FETI between them.
 
    Matrices that were assembled body by body need no common numbers: see FetiFetiAddMatIS().
 
-.seealso: `FetiFetiCreate()`, `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactPairs()`, `FetiFetiSetContactRows()`, `FetiFetiSolve()`
+.seealso: `FetiFetiCreate()`, `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactPairs()`,
+          `FetiFetiSetContactRows()`, `FetiFetiSolve()`
 S*/
 typedef struct _p_FetiFeti *FetiFeti;
 
@@ -64,8 +67,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiInitializePackage(void);
    Level: intermediate
 
    Note:
-   A rank without rows has no subdomain and need not call. Either all other ranks call, or none. The last of KSPFETIFETISetBody(), KSPFETIFETISetBodyIS() and
-   KSPFETIFETISetBodyLabel() counts.
+   A rank without rows has no subdomain and need not call. Either all other ranks call, or none. The last of
+   KSPFETIFETISetBody(), KSPFETIFETISetBodyIS() and KSPFETIFETISetBodyLabel() counts.
 
 .seealso: `KSPFETIFETISetBodyIS()`, `KSPFETIFETISetBodyLabel()`, `KSPFETIFETIGetInnerKSP()`
 @*/
@@ -83,7 +86,8 @@ PETSC_EXTERN PetscErrorCode KSPFETIFETISetBody(KSP ksp, PetscInt body);
    Level: intermediate
 
    Note:
-   A subdomain belongs to the body that most of its unknowns name, the lowest of several. The index set is referenced, not copied.
+   A subdomain belongs to the body that most of its unknowns name, the lowest of several. The index set is referenced,
+   not copied.
 
 .seealso: `KSPFETIFETISetBody()`, `KSPFETIFETISetBodyLabel()`
 @*/
@@ -104,8 +108,8 @@ PETSC_EXTERN PetscErrorCode KSPFETIFETISetBodyIS(KSP ksp, IS bodies);
    Level: intermediate
 
    Note:
-   The mesh is that of KSPSetDM(), else the one that made the operator (DMCreateMatrix()). The subdomain of a rank belongs to the value that most of the rank's
-   cells have, the lowest of several; cells without a value do not count.
+   The mesh is that of KSPSetDM(), else the one that made the operator (DMCreateMatrix()). The subdomain of a rank
+   belongs to the value that most of the rank's cells have, the lowest of several; cells without a value do not count.
 
 .seealso: `KSPFETIFETISetBody()`, `KSPFETIFETISetBodyIS()`
 @*/
@@ -142,7 +146,8 @@ PETSC_EXTERN PetscErrorCode KSPFETIFETIGetInnerKSP(KSP ksp, KSP *inner);
    Level: beginner
 
    Note:
-   From Fortran call FetiFetiCreateFortran(), which takes the communicator as Fortran numbers it (wrappers/fetifeti.f90).
+   From Fortran call FetiFetiCreateFortran(), which takes the communicator as Fortran numbers it
+   (wrappers/fetifeti.f90).
 
 .seealso: `FetiFetiDestroy()`, `FetiFetiSolve()`
 @*/
@@ -167,7 +172,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiCreateFortran(int comm, FetiFeti *ff);
 PETSC_EXTERN PetscErrorCode FetiFetiDestroy(FetiFeti *ff);
 
 /*@
-   FetiFetiReset - Forgets subdomains, rows and everything else but the prefix and what FetiFetiSetFromOptions() has read
+   FetiFetiReset - Forgets subdomains, rows and everything else but the prefix and what FetiFetiSetFromOptions() read
 
    Collective
 
@@ -249,8 +254,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiView(FetiFeti ff, PetscViewer viewer);
    Level: beginner
 
    Note:
-   Without this function the layout comes from the matrix of FetiFetiSetMatIS(), or from all matrices of FetiFetiAddMatIS() without numbers, one after the
-   other on each rank. Otherwise N is one more than the highest number of an unknown in a subdomain, and n is that of PETSC_DECIDE.
+   Without this function the layout comes from the matrix of FetiFetiSetMatIS(), or from all matrices of
+   FetiFetiAddMatIS() without numbers, one after the other on each rank. Otherwise N is one more than the highest number
+   of an unknown in a subdomain, and n is that of PETSC_DECIDE.
 
 .seealso: `FetiFetiAddSubdomain()`, `FetiFetiSetBlockSize()`
 @*/
@@ -268,7 +274,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetSizes(FetiFeti ff, PetscInt n, PetscInt N
    Level: beginner
 
    Note:
-   Displacements in the plane have block size 2, in space 3. The block size improves the choice of constraints and bodies.
+   Displacements in the plane have block size 2, in space 3. The block size improves the choice of constraints and
+   bodies.
 
 .seealso: `FetiFetiSetCoordinates()`, `FetiFetiSetNearNullSpace()`
 @*/
@@ -291,19 +298,22 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetBlockSize(FetiFeti ff, PetscInt bs);
    Level: beginner
 
    Notes:
-   A rank may call this as often as it likes, or never. The arrays are copied. The matrix is that of the elements of the subdomain alone, without the
-   contributions of its neighbours: the sum over all subdomains is the assembled matrix. It must be symmetric.
+   A rank may call this as often as it likes, or never. The arrays are copied. The matrix is that of the elements of the
+   subdomain alone, without the contributions of its neighbours: the sum over all subdomains is the assembled matrix. It
+   must be symmetric.
 
-   A row that has only its diagonal in all subdomains is taken as a boundary condition, u = b / diagonal, as MatZeroRowsColumns() leaves it. So is an empty row.
+   A row that has only its diagonal in all subdomains is taken as a boundary condition, u = b / diagonal, as
+   MatZeroRowsColumns() leaves it. So is an empty row.
 
    A body whose subdomains are not connected becomes several bodies.
 
 .seealso: `FetiFetiSetMatIS()`, `FetiFetiAddMatIS()`, `FetiFetiSetDirichletBoundaries()`
 @*/
-PETSC_EXTERN PetscErrorCode FetiFetiAddSubdomain(FetiFeti ff, PetscInt body, PetscInt n, const PetscInt ia[], const PetscInt ja[], const PetscScalar a[], const PetscInt dofs[]);
+PETSC_EXTERN PetscErrorCode FetiFetiAddSubdomain(FetiFeti ff, PetscInt body, PetscInt n, const PetscInt ia[],
+                                                 const PetscInt ja[], const PetscScalar a[], const PetscInt dofs[]);
 
 /*@
-   FetiFetiSetMatIS - Takes the subdomains from a matrix of type MATIS, one on each rank, instead of those that were given before
+   FetiFetiSetMatIS - Takes the subdomains from a matrix of type MATIS, one on each rank, instead of those given before
 
    Collective
 
@@ -315,8 +325,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddSubdomain(FetiFeti ff, PetscInt body, Pet
    Level: beginner
 
    Note:
-   The layout of vectors, the block size and the motions (the near-null space, else the null space) come from the matrix, too. Entries are copied: after a change of
-   the matrix call this again.
+   The layout of vectors, the block size and the motions (the near-null space, else the null space) come from the
+   matrix, too. Entries are copied: after a change of the matrix call this again.
 
 .seealso: `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`
 @*/
@@ -330,21 +340,24 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetMatIS(FetiFeti ff, Mat A, PetscInt body);
    Input Parameters:
 +  ff      - the solver
 .  A       - the matrix of the body, of type MATIS
-.  numbers - NULL: the matrices are numbered one after the other; else for each row of A that this rank owns its number among the unknowns of all bodies
+.  numbers - NULL: the matrices are numbered one after the other; else for each row of A that this rank owns its number
+             among the unknowns of all bodies
 -  body    - number of the body, or PETSC_DECIDE for all matrices
 
    Level: beginner
 
    Notes:
-   Without numbers the unknowns on each rank are its rows of the first matrix, then those of the second, and so on, as DMComposite and nested matrices
-   number them. FetiFetiSolve() takes vectors of type VECNEST with a part for each matrix. No other function for sizes is needed. The motions of a body that cost no
-   energy are those of MatSetNearNullSpace() on its matrix, else of MatSetNullSpace(); where one matrix has neither, the motions of all are found from the matrices, or
-   from FetiFetiSetCoordinates().
+   Without numbers the unknowns on each rank are its rows of the first matrix, then those of the second, and so on, as
+   DMComposite and nested matrices number them. FetiFetiSolve() takes vectors of type VECNEST with a part for each
+   matrix. No other function for sizes is needed. The motions of a body that cost no energy are those of
+   MatSetNearNullSpace() on its matrix, else of MatSetNullSpace(); where one matrix has neither, the motions of all are
+   found from the matrices, or from FetiFetiSetCoordinates().
 
-   With numbers (as DMCompositeGetGlobalISs() gives them) null spaces of A are not looked at: their vectors belong to another numbering. Give motions by
-   FetiFetiSetNearNullSpace() or FetiFetiSetCoordinates().
+   With numbers (as DMCompositeGetGlobalISs() gives them) null spaces of A are not looked at: their vectors belong to
+   another numbering. Give motions by FetiFetiSetNearNullSpace() or FetiFetiSetCoordinates().
 
-   All matrices of a solver are added in one of the two ways, and FetiFetiAddSubdomain() and FetiFetiSetMatIS() go together with numbers only.
+   All matrices of a solver are added in one of the two ways, and FetiFetiAddSubdomain() and FetiFetiSetMatIS() go
+   together with numbers only.
 
    Entries are copied: after a change of a matrix call FetiFetiReset() and add all again.
 
@@ -371,7 +384,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddMatIS(FetiFeti ff, Mat A, IS numbers, Pet
 PETSC_EXTERN PetscErrorCode FetiFetiSetNearNullSpace(FetiFeti ff, MatNullSpace space);
 
 /*@
-   FetiFetiSetCoordinates - Gives the places of the nodes: rigid body motions are made from them where no near-null space is given
+   FetiFetiSetCoordinates - Gives the places of the nodes, for rigid body motions where no near-null space is given
 
    Logically Collective
 
@@ -384,7 +397,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetNearNullSpace(FetiFeti ff, MatNullSpace s
    Level: intermediate
 
    Note:
-   Rotations are made where the block size is the dimension, else one constant for each component. Otherwise places are not used.
+   Rotations are made where the block size is the dimension, else one constant for each component. Otherwise places are
+   not used.
 
 .seealso: `FetiFetiSetNearNullSpace()`, `FetiFetiSetBlockSize()`
 @*/
@@ -403,8 +417,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetCoordinates(FetiFeti ff, PetscInt dim, Pe
    Level: beginner
 
    Notes:
-   As with PCBDDCSetDirichletBoundaries() the unknowns may be listed on any rank. The matrices need not contain the conditions: rows and columns
-   of held unknowns are not used. Values are read at each FetiFetiSolve(), and may change between solves.
+   As with PCBDDCSetDirichletBoundaries() the unknowns may be listed on any rank. The matrices need not contain the
+   conditions: rows and columns of held unknowns are not used. Values are read at each FetiFetiSolve(), and may change
+   between solves.
 
 .seealso: `FetiFetiSetNeumannBoundaries()`
 @*/
@@ -422,7 +437,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetDirichletBoundaries(FetiFeti ff, IS dofs,
    Level: advanced
 
    Note:
-   PCBDDC classifies interface nodes by these unknowns. Here vertices, edges and faces follow from the sets of subdomains that share each unknown.
+   PCBDDC classifies interface nodes by these unknowns. Here vertices, edges and faces follow from the sets of
+   subdomains that share each unknown.
 
 .seealso: `FetiFetiSetDirichletBoundaries()`, `FetiFetiSetPrimalDofs()`
 @*/
@@ -460,16 +476,19 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetPrimalDofs(FetiFeti ff, IS dofs);
    Level: beginner
 
    Notes:
-   Each row is given by one rank, any one. For two nodes that face each other with the normal n from the first to the second: coefficients n at the first one, -n at
-   the second one, and the distance as gap. A multiplier is then the force with which the second one is pressed away.
+   Each row is given by one rank, any one. For two nodes that face each other with the normal n from the first to the
+   second: coefficients n at the first one, -n at the second one, and the distance as gap. A multiplier is then the
+   force with which the second one is pressed away.
 
-   Terms at held unknowns go to the right-hand side. A row all of whose unknowns are held has no effect, and a multiplier of zero.
+   Terms at held unknowns go to the right-hand side. A row all of whose unknowns are held has no effect, and a
+   multiplier of zero.
 
    Rows of FetiFetiSetContactPairs() stay.
 
 .seealso: `FetiFetiSetContactPairs()`, `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
 @*/
-PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, const PetscInt ia[], const PetscInt ja[], const PetscScalar b[], const PetscReal gap[], const PetscInt kind[]);
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, const PetscInt ia[], const PetscInt ja[],
+                                                   const PetscScalar b[], const PetscReal gap[], const PetscInt kind[]);
 
 /*@
    FetiFetiSetContactPairs - Gives rows u_first - u_second <= gap, or = gap, for pairs of unknowns that face each other
@@ -478,7 +497,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, cons
 
    Input Parameters:
 +  ff     - the solver
-.  a      - the matrix whose unknowns `first` lists, 0 for the first one of FetiFetiAddMatIS(); PETSC_DECIDE: numbers among the unknowns of all bodies
+.  a      - the matrix whose unknowns `first` lists, 0 for the first one of FetiFetiAddMatIS(); PETSC_DECIDE: numbers
+            among the unknowns of all bodies
 .  first  - unknowns; NULL together with `second`: forgets all pairs that were given before
 .  b      - the matrix whose unknowns `second` lists, or PETSC_DECIDE
 .  second - unknowns, as many on each rank as in `first`
@@ -488,8 +508,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, cons
    Level: beginner
 
    Notes:
-   May be called several times: pairs are added to the rows that were given before. Entry r of the one index set on this rank belongs to entry r of the other. They may
-   name unknowns of other ranks; each pair is given by one rank. Matrices are those that were added without numbers so far, or the one of FetiFetiSetMatIS().
+   May be called several times: pairs are added to the rows that were given before. Entry r of the one index set on this
+   rank belongs to entry r of the other. They may name unknowns of other ranks; each pair is given by one rank. Matrices
+   are those that were added without numbers so far, or the one of FetiFetiSetMatIS().
 
    Two sides of DMDAs, here of one unknown in every node, first in the numbering of the grid:
 .vb
@@ -502,7 +523,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, cons
 
 .seealso: `FetiFetiAddMatIS()`, `FetiFetiSetContactRows()`, `FetiFetiGetMultipliers()`
 @*/
-PETSC_EXTERN PetscErrorCode FetiFetiSetContactPairs(FetiFeti ff, PetscInt a, IS first, PetscInt b, IS second, const PetscReal gap[], PetscInt kind);
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactPairs(FetiFeti ff, PetscInt a, IS first, PetscInt b, IS second,
+                                                    const PetscReal gap[], PetscInt kind);
 
 /*@
    FetiFetiSetUp - Finds bodies, interfaces and constraints, and factors
@@ -543,8 +565,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetUp(FetiFeti ff);
    Notes:
    With matrices of FetiFetiAddMatIS() without numbers vectors may be of type VECNEST, with a part for each matrix.
 
-   A solve that follows another one with inequalities starts from its multipliers. An iteration that stops early is no error: see
-   FetiFetiGetConvergedReason(). Contradictory rows, and a floating body whose load no row balances, are errors.
+   A solve that follows another one with inequalities starts from its multipliers. An iteration that stops early is no
+   error: see FetiFetiGetConvergedReason(). Contradictory rows, and a floating body whose load no row balances, are
+   errors.
 
 .seealso: `FetiFetiGetConvergedReason()`, `FetiFetiGetKKT()`, `FetiFetiGetMultipliers()`
 @*/
@@ -628,8 +651,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiGetSpectrum(FetiFeti ff, PetscReal *min, Pet
 .  ff - the solver
 
    Output Parameter:
-.  kkt - stationarity |K u - f + B'l| / (|f| + |B'l|), the largest violation of a row over the largest |u|, the largest |l_r (B u - c)_r| over max |l| max |u|,
-         the smallest multiplier of an inequality over max |l|
+.  kkt - stationarity |K u - f + B'l| / (|f| + |B'l|), the largest violation of a row over the largest |u|, the largest
+         |l_r (B u - c)_r| over max |l| max |u|, the smallest multiplier of an inequality over max |l|
 
    Level: beginner
 

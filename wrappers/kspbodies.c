@@ -15,9 +15,13 @@ PetscErrorCode ff_label_body(KSP ksp, Mat A, const char *name, PetscInt *body)
   if (dm) PetscCall(PetscObjectTypeCompare((PetscObject)dm, DMPLEX, &plex));
   if (!plex) PetscCall(MatGetDM(A, &dm));
   if (!plex && dm) PetscCall(PetscObjectTypeCompare((PetscObject)dm, DMPLEX, &plex));
-  PetscCheck(plex, PetscObjectComm((PetscObject)ksp), PETSC_ERR_ARG_WRONGSTATE, "The label %s is to name the bodies, but neither the KSP nor its operator has a DMPlex: expected KSPSetDM(), or an operator of DMCreateMatrix()", name);
+  PetscCheck(plex, PetscObjectComm((PetscObject)ksp), PETSC_ERR_ARG_WRONGSTATE,
+             "The label %s is to name the bodies, but neither the KSP nor its operator has a DMPlex: "
+             "expected KSPSetDM(), or an operator of DMCreateMatrix()",
+             name);
   PetscCall(DMGetLabel(dm, name, &label));
-  PetscCheck(label, PetscObjectComm((PetscObject)ksp), PETSC_ERR_ARG_WRONG, "The DMPlex has no label %s that could name the bodies", name);
+  PetscCheck(label, PetscObjectComm((PetscObject)ksp), PETSC_ERR_ARG_WRONG,
+             "The DMPlex has no label %s that could name the bodies", name);
   PetscCall(DMPlexGetHeightStratum(dm, 0, &first, &last));
   PetscCall(PetscMalloc1(last - first, &values));
   for (c = first; c < last; c++) PetscCall(DMLabelGetValue(label, c, &values[c - first]));
@@ -30,8 +34,13 @@ PetscErrorCode ff_label_body(KSP ksp, Mat A, const char *name, PetscInt *body)
     }
     n++;
   }
-  if (n > 1) PetscCall(PetscInfo(ksp, "This rank's cells have %" PetscInt_FMT " values of the label %s; its subdomain belongs to body %" PetscInt_FMT "\n", n, name, *body));
-  PetscCheck(*body >= 0 || first == last, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "No cell of this rank has a value of at least 0 of the label %s, expected one for every cell", name);
+  if (n > 1)
+    PetscCall(PetscInfo(ksp,
+                        "This rank's cells have %" PetscInt_FMT " values of the label %s; "
+                        "its subdomain belongs to body %" PetscInt_FMT "\n",
+                        n, name, *body));
+  PetscCheck(*body >= 0 || first == last, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG,
+             "No cell of this rank has a value of at least 0 of the label %s, expected one for every cell", name);
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
@@ -52,7 +61,8 @@ static PetscErrorCode KSPFETIFETISetBody_FETIFETI(KSP ksp, PetscInt body)
   KSP_FETIFETI *ff = (KSP_FETIFETI *)ksp->data;
 
   PetscFunctionBegin;
-  PetscCheck(body >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "The body of a rank is %" PetscInt_FMT ", expected a number of at least 0", body);
+  PetscCheck(body >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "The body of a rank is %" PetscInt_FMT ", expected a number of at least 0", body);
   if (ff->body == body) PetscFunctionReturn(0);
   PetscCall(Forget(ff));
   ff->body = body;
@@ -113,7 +123,8 @@ PetscErrorCode ff_compose_bodies(KSP ksp)
   PetscFunctionBegin;
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBody_C", KSPFETIFETISetBody_FETIFETI));
   PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBodyIS_C", KSPFETIFETISetBodyIS_FETIFETI));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBodyLabel_C", KSPFETIFETISetBodyLabel_FETIFETI));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ksp, "KSPFETIFETISetBodyLabel_C",
+                                       KSPFETIFETISetBodyLabel_FETIFETI));
   PetscFunctionReturn(0);
 }
 

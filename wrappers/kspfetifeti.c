@@ -1,9 +1,9 @@
 /*
-   KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. The method is in Rust (src/embed,
-   src/capi). This file has the functions that every KSP type must have; kspbodies.c has the functions for bodies.
+   KSPFETIFETI: the FETI-FETI method as a KSP for operators of type MATIS, in the manner of KSPFETIDP. The method is in
+   Rust (src/embed, src/capi). This file has the functions that every KSP type must have; kspbodies.c has the functions
+   for bodies.
 */
 #include "kspfetifeti.h"
-
 
 /* Converts a status of Rust to a PETSc error. */
 static PetscErrorCode Raise(KSP ksp, int status)
@@ -12,8 +12,11 @@ static PetscErrorCode Raise(KSP ksp, int status)
   const char *message = fetifeti_plugin_message(&code);
 
   PetscFunctionBegin;
-  if (status == FF_RAISED) PetscFunctionReturn(PetscError(PETSC_COMM_SELF, __LINE__, PETSC_FUNCTION_NAME, __FILE__, (PetscErrorCode)code, PETSC_ERROR_REPEAT, " "));
-  SETERRQ(status == FF_ALONE ? PETSC_COMM_SELF : PetscObjectComm((PetscObject)ksp), (PetscErrorCode)code, "FETI-FETI: %s", message);
+  if (status == FF_RAISED)
+    PetscFunctionReturn(PetscError(PETSC_COMM_SELF, __LINE__, PETSC_FUNCTION_NAME, __FILE__, (PetscErrorCode)code,
+                                   PETSC_ERROR_REPEAT, " "));
+  SETERRQ(status == FF_ALONE ? PETSC_COMM_SELF : PetscObjectComm((PetscObject)ksp), (PetscErrorCode)code,
+          "FETI-FETI: %s", message);
 }
 
 /* The inner KSP runs once or several times in a solve; monitors of the outer KSP see a single iteration count. */
@@ -83,7 +86,8 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
     wishes.body   = (int)body;
     wishes.bodies = NULL;
   }
-  status = fetifeti_plugin_setup(PetscObjectComm((PetscObject)ksp), A, ((PetscObject)ksp)->prefix, &wishes, &ff->solver);
+  status = fetifeti_plugin_setup(PetscObjectComm((PetscObject)ksp), A, ((PetscObject)ksp)->prefix, &wishes,
+                                 &ff->solver);
   ff->id    = id;
   ff->stale = PETSC_FALSE;
   if (status == FF_UNFIT && !ksp->errorifnotconverged) {
@@ -156,7 +160,8 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   /* The inner KSP tests the jumps between subdomains; the residual of the host's equations is tested in addition. */
   if (ff->true_residual) wishes.goal = PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol);
   if (nullsp) PetscCall(MatNullSpaceRemove(nullsp, R));
-  if (!ksp->guess_zero && norm <= PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol)) { /* the guess is a solution */
+  if (!ksp->guess_zero && norm <= PetscMax(ksp->rtol * (size > 0 ? size : norm), ksp->abstol)) {
+    /* the guess is a solution */
     result.iterations = 0;
     result.reason     = norm <= ksp->abstol ? KSP_CONVERGED_ATOL : KSP_CONVERGED_RTOL;
     PetscCall(VecSet(D, 0.0));
@@ -195,9 +200,12 @@ static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems *Pets
 
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "KSP FETIFETI options");
-  PetscCall(PetscOptionsString("-fetifeti_body_label", "Label of the DMPlex's cells that names the bodies", "KSPFETIFETISetBodyLabel", ff->label ? ff->label : "", name, sizeof(name), &set));
+  PetscCall(PetscOptionsString("-fetifeti_body_label", "Label of the DMPlex's cells that names the bodies",
+                               "KSPFETIFETISetBodyLabel", ff->label ? ff->label : "", name, sizeof(name), &set));
   if (set) PetscCall(ff_plugin_set_body_label(ksp, name));
-  PetscCall(PetscOptionsBool("-fetifeti_true_residual", "Go on until the residual of the assembled equations is below the tolerance", NULL, ff->true_residual, &ff->true_residual, NULL));
+  PetscCall(PetscOptionsBool("-fetifeti_true_residual",
+                             "Go on until the residual of the assembled equations is below the tolerance", NULL,
+                             ff->true_residual, &ff->true_residual, NULL));
   PetscOptionsHeadEnd();
   PetscFunctionReturn(0);
 }
@@ -226,8 +234,10 @@ static PetscErrorCode KSPView_FETIFETI(KSP ksp, PetscViewer viewer)
   }
   fetifeti_plugin_facts(ff->solver, &facts);
   if (ascii) {
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  bodies: %d (%d floating, kernels of dimension %d), subdomains: %d\n", facts.bodies, facts.floating, facts.kernel, facts.subdomains));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  multipliers: %.0f inside bodies, %.0f between bodies\n", facts.local_rows, facts.global_rows));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  bodies: %d (%d floating, kernels of dimension %d), subdomains: %d\n",
+                                     facts.bodies, facts.floating, facts.kernel, facts.subdomains));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  multipliers: %.0f inside bodies, %.0f between bodies\n",
+                                     facts.local_rows, facts.global_rows));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  primal dofs: %d\n", facts.primal));
     PetscCall(PetscViewerASCIIPrintf(viewer, "Inner KSP solver details\n"));
   }
@@ -358,11 +368,18 @@ static PetscErrorCode Suits(void)
 
   PetscFunctionBegin;
   PetscCall(PetscGetVersionNumber(major.half, minor.half, NULL, NULL));
-  PetscCheck(major.half[1] == -1, PETSC_COMM_SELF, PETSC_ERR_SUP, "libfetifeti.so was built for a PETSc with 32-bit indices, this one has 64-bit indices: load it into a PETSc with 32-bit indices");
-  PetscCheck(major.half[0] == PETSC_VERSION_MAJOR && minor.half[0] == PETSC_VERSION_MINOR, PETSC_COMM_SELF, PETSC_ERR_SUP, "libfetifeti.so was built for PETSc %d.%d, this is PETSc %d.%d: build it again for this one", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, (int)major.half[0],
-             (int)minor.half[0]);
+  PetscCheck(major.half[1] == -1, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "libfetifeti.so was built for a PETSc with 32-bit indices, this one has 64-bit indices: "
+             "load it into a PETSc with 32-bit indices");
+  PetscCheck(major.half[0] == PETSC_VERSION_MAJOR && minor.half[0] == PETSC_VERSION_MINOR, PETSC_COMM_SELF,
+             PETSC_ERR_SUP,
+             "libfetifeti.so was built for PETSc %d.%d, this is PETSc %d.%d: build it again for this one",
+             PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, (int)major.half[0], (int)minor.half[0]);
   PetscCall(PetscDataTypeFromString("scalar", &scalar, &found));
-  PetscCheck(scalar == PETSC_SCALAR, PETSC_COMM_SELF, PETSC_ERR_SUP, "libfetifeti.so was built for a PETSc with real double scalars, this one has %s: load it into a PETSc with real scalars", scalar == PETSC_COMPLEX ? "complex scalars" : "others");
+  PetscCheck(scalar == PETSC_SCALAR, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "libfetifeti.so was built for a PETSc with real double scalars, this one has %s: "
+             "load it into a PETSc with real scalars",
+             scalar == PETSC_COMPLEX ? "complex scalars" : "others");
   PetscFunctionReturn(0);
 }
 

@@ -21,8 +21,9 @@ typedef struct {
   KSPConvergedReason failed; /* why there is no solver */
 } KSP_FETIFETI;
 
-/* The return value of a Rust function: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a sentence about a matrix
-   that cannot be factored; FF_RAISED, after a PETSc error that has been reported; or FF_ALONE, a sentence that other ranks may not have. */
+/* The return value of a Rust function: 0; FF_SENTENCE with a message to be fetched, the same on all ranks; FF_UNFIT, a
+   sentence about a matrix that cannot be factored; FF_RAISED, after a PETSc error that has been reported; or FF_ALONE,
+   a sentence that other ranks may not have. */
 #define FF_SENTENCE 1
 #define FF_UNFIT    2
 #define FF_RAISED   3

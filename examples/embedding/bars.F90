@@ -1,5 +1,5 @@
-! Two elastic bars in contact, by raw arrays: each is cut into three subdomains, the left one is held at 0, the right one at -d,
-! and the ends between may come as near as g. With springs of 1 the force is (d - g) / (2 n).
+! Two elastic bars in contact, by raw arrays: each is cut into three subdomains, the left one is held at 0, the right
+! one at -d, and the ends between may come as near as g. With springs of 1 the force is (d - g) / (2 n).
 program bars
 #include <petsc/finclude/petscvec.h>
   use petscvec
@@ -53,13 +53,15 @@ program bars
   step = 1 ! u_n - u_{n+1} <= g, by the numbers of all unknowns
   PetscCallA(ISCreateStride(PETSC_COMM_WORLD, rows, n, step, first, ierr))
   PetscCallA(ISCreateStride(PETSC_COMM_WORLD, rows, n + 1, step, second, ierr))
-  ierr = FetiFetiSetContactPairs(ff, PETSC_DECIDE, first%v, PETSC_DECIDE, second%v, [g], FETIFETI_INEQUALITY); CHKERRA(ierr)
+  ierr = FetiFetiSetContactPairs(ff, PETSC_DECIDE, first%v, PETSC_DECIDE, second%v, [g], FETIFETI_INEQUALITY)
+  CHKERRA(ierr)
   ! An obstacle that is never reached: -u_n <= d.
   ierr = FetiFetiSetContactRows(ff, rows, [0, 1], [n], [-1.0d0], [d], [FETIFETI_INEQUALITY]); CHKERRA(ierr)
   ierr = FetiFetiSolve(ff, b%v, x%v); CHKERRA(ierr)
   ierr = FetiFetiGetConvergedReason(ff, reason); CHKERRA(ierr)
   ierr = FetiFetiGetMultipliers(ff, 2 * rows, lambda); CHKERRA(ierr)
-  if (rank == 0) print '(a,i3,3(a,f12.8))', 'reason', reason, ' force ', lambda(1), ' obstacle ', lambda(2), ' exact ', (d - g) / (2 * n)
+  if (rank == 0) print '(a,i3,3(a,f12.8))', 'reason', reason, ' force ', lambda(1), ' obstacle ', lambda(2), &
+    ' exact ', (d - g) / (2 * n)
   ierr = FetiFetiDestroy(ff); CHKERRA(ierr)
   PetscCallA(VecDestroy(b, ierr))
   PetscCallA(VecDestroy(x, ierr))

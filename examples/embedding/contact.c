@@ -1,9 +1,10 @@
 /*
-   Plane elasticity on DMDAs. Without options: one block, held at its left (in x) and at its bottom (in y), pressed from above, solved by any KSP. With
-   -contact: a second block with a curved lower side lies on the first one, and the press is on that. What contact adds to the program stands between
-   "contact" and "end of contact".
+   Plane elasticity on DMDAs. Without options: one block, held at its left (in x) and at its bottom (in y), pressed from
+   above, solved by any KSP. With -contact: a second block with a curved lower side lies on the first one, and the press
+   is on that. What contact adds to the program stands between "contact" and "end of contact".
 
-     mpicc contact.c -o contact $(pkg-config --cflags --libs PETSc) -I../../wrappers -L../../target/release -lfetifeti -Wl,-rpath,$PWD/../../target/release
+     lib=$PWD/../../target/release
+     mpicc contact.c -o contact $(pkg-config --cflags --libs PETSc) -I../../wrappers -L$lib -lfetifeti -Wl,-rpath,$lib
      mpirun -n 4 ./contact -contact -m 17
 */
 static const char help[] = "An elastic block under a press, or two of them in contact.\n";
@@ -15,7 +16,12 @@ static const char help[] = "An elastic block under a press, or two of them in co
 /* Stiffness of a bilinear square under plane stress, E = 1, nu = 0.3; nodes anticlockwise from the lower left. */
 static void Stiffness(PetscScalar k[64])
 {
-  const PetscReal nu = 0.3, d[3][3] = {{1 / (1 - nu * nu), nu / (1 - nu * nu), 0}, {nu / (1 - nu * nu), 1 / (1 - nu * nu), 0}, {0, 0, 0.5 / (1 + nu)}};
+  const PetscReal nu      = 0.3;
+  const PetscReal d[3][3] = {
+    {1 / (1 - nu * nu),  nu / (1 - nu * nu), 0             },
+    {nu / (1 - nu * nu), 1 / (1 - nu * nu),  0             },
+    {0,                  0,                  0.5 / (1 + nu)}
+  };
   const PetscReal sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
   PetscInt        q, i, j, r, s;
 
@@ -43,7 +49,8 @@ static void Stiffness(PetscScalar k[64])
 static PetscErrorCode Block(PetscInt m, DM *da)
 {
   PetscFunctionBeginUser;
-  PetscCall(DMDACreate2d(PETSC_COMM_WORLD, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_BOX, m, m, PETSC_DECIDE, PETSC_DECIDE, 2, 1, NULL, NULL, da));
+  PetscCall(DMDACreate2d(PETSC_COMM_WORLD, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_BOX, m, m, PETSC_DECIDE,
+                         PETSC_DECIDE, 2, 1, NULL, NULL, da));
   PetscCall(DMSetMatType(*da, MATIS));
   PetscCall(DMSetUp(*da));
   PetscCall(DMDASetElementType(*da, DMDA_ELEMENT_Q1));
@@ -95,8 +102,10 @@ static PetscErrorCode Assemble(DM da, PetscInt m, PetscBool hold, PetscBool pres
   PetscFunctionReturn(0);
 }
 
-/* How far u and the multipliers of the pairs are from the solution, by the host's own matrices: this proves that it is one, as the problem is convex. */
-static PetscErrorCode Judge(Mat A[2], Vec b[2], Vec u[2], IS side[2], PetscInt n, const PetscReal gap[], const PetscReal lambda[])
+/* How far u and the multipliers of the pairs are from the solution, by the host's own matrices: this proves that it is
+   one, as the problem is convex. */
+static PetscErrorCode Judge(Mat A[2], Vec b[2], Vec u[2], IS side[2], PetscInt n, const PetscReal gap[],
+                            const PetscReal lambda[])
 {
   Vec                r, local[2];
   VecScatter         scatter;
@@ -139,8 +148,10 @@ static PetscErrorCode Judge(Mat A[2], Vec b[2], Vec u[2], IS side[2], PetscInt n
     PetscCall(ISRestoreIndices(side[k], &dof[k]));
     PetscCall(VecDestroy(&local[k]));
   }
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equilibrium %.2e overlap %.2e pull %.2e product %.2e\n", (double)PetscSqrtReal(equilibrium / load), (double)open, (double)pull, (double)product));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%" PetscInt_FMT " of %" PetscInt_FMT " nodes touch, force %.9f\n", active, n, (double)force));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "equilibrium %.2e overlap %.2e pull %.2e product %.2e\n",
+                        (double)PetscSqrtReal(equilibrium / load), (double)open, (double)pull, (double)product));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%" PetscInt_FMT " of %" PetscInt_FMT " nodes touch, force %.9f\n", active, n,
+                        (double)force));
   PetscFunctionReturn(0);
 }
 
@@ -187,7 +198,8 @@ int main(int argc, char **argv)
     PetscCall(Assemble(da[1], m, PETSC_FALSE, PETSC_TRUE, &A[1], &b[1]));
     PetscCall(VecCreateNest(PETSC_COMM_WORLD, 2, NULL, b, &load));
     PetscCall(VecDuplicate(load, &u));
-    for (k = 0; k < 2; k++) { /* vertical displacements of the upper side of block 0, and of the lower side of block 1 */
+    /* vertical displacements of the upper side of block 0, and of the lower side of block 1 */
+    for (k = 0; k < 2; k++) {
       PetscCall(ISCreateStride(PETSC_COMM_WORLD, n, k ? 1 : 2 * m * (m - 1) + 1, 2, &side[k]));
       PetscCall(DMDAGetAO(da[k], &ao));
       PetscCall(AOApplicationToPetscIS(ao, side[k]));
@@ -204,7 +216,8 @@ int main(int argc, char **argv)
     PetscCall(FetiFetiGetConvergedReason(ff, &reason));
     PetscCall(FetiFetiGetIterations(ff, &its));
     PetscCall(VecDot(load, u, &energy));
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "reason %d, %" PetscInt_FMT " iterations, work %.9f\n", (int)reason, its, (double)-energy));
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "reason %d, %" PetscInt_FMT " iterations, work %.9f\n", (int)reason, its,
+                          (double)-energy));
     PetscCall(VecNestGetSubVecs(u, NULL, &parts));
     PetscCall(Judge(A, b, parts, side, n, gap, force));
     /* contact */

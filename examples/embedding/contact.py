@@ -2,8 +2,9 @@
 
     LD_LIBRARY_PATH=target/release mpirun -n 2 python3 examples/embedding/contact.py [-contact] [-m 17]
 
-The same problems as in contact.c. Without -contact: one block, held at its left (in x) and at its bottom (in y), pressed from above, solved by any KSP. With it a second
-block with a curved lower side lies on the first one, and the press is on that.
+The same problems as in contact.c. Without -contact: one block, held at its left (in x) and at its bottom (in y),
+pressed from above, solved by any KSP. With it a second block with a curved lower side lies on the first one, and the
+press is on that.
 """
 import ctypes
 import sys
@@ -72,7 +73,8 @@ DECIDE, EQUALITY, INEQUALITY = -1, 0, 1
 
 
 def call(name, *args):
-    """Calls a function: PETSc objects (None is NULL), integers, NumPy arrays of float64 and int32, ctypes.byref of a handle. An error is PETSc's."""
+    """Calls a function: PETSc objects (None is NULL), integers, NumPy arrays of float64 and int32, ctypes.byref of a
+    handle. An error is PETSc's."""
     code = getattr(lib, name)(*[argument(a) for a in args])
     if code:
         raise PETSc.Error(code)

@@ -1,6 +1,7 @@
 /*
-   Two bars of springs by raw arrays: body 0 is held at its left end at 0, body 1 at its right end at -d, and the ends between may come as close as the gap g.
-   Spring constants are 1, so that the force between them is (d - g) / (2 N) where they touch. -wrong does one thing wrong.
+   Two bars of springs by raw arrays: body 0 is held at its left end at 0, body 1 at its right end at -d, and the ends
+   between may come as close as the gap g. Spring constants are 1, so that the force between them is (d - g) / (2 N)
+   where they touch. -wrong does one thing wrong.
 */
 static const char help[] = "The functions of fetifeti.h on bars.\n";
 
@@ -18,7 +19,8 @@ static PetscErrorCode Bar(FetiFeti ff, PetscInt body, PetscInt s, const char wro
   PetscBool   is;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-tied", &tied, NULL)); /* the last subdomain of bar 0 is a body by itself, tied to the others */
+  /* the last subdomain of bar 0 is a body by itself, tied to the others */
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-tied", &tied, NULL));
   if (tied && body == 0 && s == SUBDOMAINS - 1) own = 7;
   if (tied && body == 1 && s == 0) own = 0; /* of a body that is in two pieces */
   for (i = 0; i <= LENGTH; i++) {
@@ -50,7 +52,8 @@ static PetscErrorCode Bar(FetiFeti ff, PetscInt body, PetscInt s, const char wro
 }
 
 /* Solves for one d and compares; kind as in FetiFetiSetContactRows(). */
-static PetscErrorCode Check(FetiFeti ff, Vec held, Vec b, Vec x, PetscReal d, PetscReal g, PetscInt kind, PetscBool mine)
+static PetscErrorCode Check(FetiFeti ff, Vec held, Vec b, Vec x, PetscReal d, PetscReal g, PetscInt kind,
+                            PetscBool mine)
 {
   const PetscReal    force = (kind == FETIFETI_INEQUALITY && d < g) ? 0 : (d - g) / (2 * N);
   const PetscScalar *u;
@@ -66,7 +69,8 @@ static PetscErrorCode Check(FetiFeti ff, Vec held, Vec b, Vec x, PetscReal d, Pe
   PetscCall(FetiFetiGetConvergedReason(ff, &reason));
   PetscCheck(reason > 0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "reason %d", (int)reason);
   PetscCall(FetiFetiGetKKT(ff, kkt));
-  PetscCheck(kkt[0] < 1e-5 && kkt[3] >= 0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "kkt %g %g", (double)kkt[0], (double)kkt[3]);
+  PetscCheck(kkt[0] < 1e-5 && kkt[3] >= 0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "kkt %g %g", (double)kkt[0],
+             (double)kkt[3]);
   if (mine) PetscCall(FetiFetiGetMultipliers(ff, 1, &lambda));
   if (mine) worst = PetscAbsReal(lambda - force) * N;
   PetscCall(VecGetOwnershipRange(x, &first, &last));
@@ -86,7 +90,8 @@ int main(int argc, char **argv)
 {
   FetiFeti    ff;
   PetscMPIInt rank, size;
-  PetscInt    s, k, ends[2] = {0, 2 * N + 1}, middle = LENGTH, ia[2] = {0, 2}, ja[2] = {N, N + 1}, kind = FETIFETI_INEQUALITY, its;
+  PetscInt    s, k, its, ends[2] = {0, 2 * N + 1}, middle = LENGTH;
+  PetscInt    ia[2] = {0, 2}, ja[2] = {N, N + 1}, kind = FETIFETI_INEQUALITY;
   PetscScalar row[2] = {1, -1};
   PetscReal   gap    = 0.5, least, most;
   PetscBool   last, is;
@@ -159,7 +164,9 @@ int main(int argc, char **argv)
 
     PetscCall(VecGetOwnershipRange(x, &first, &end));
     PetscCall(VecGetArrayRead(x, &u));
-    if (first <= N && N < end) PetscCheck(PetscAbsReal(u[N - first] - (gap - 1)) < 1e-6, PETSC_COMM_SELF, PETSC_ERR_PLIB, "u_N is %g", (double)u[N - first]);
+    if (first <= N && N < end)
+      PetscCheck(PetscAbsReal(u[N - first] - (gap - 1)) < 1e-6, PETSC_COMM_SELF, PETSC_ERR_PLIB, "u_N is %g",
+                 (double)u[N - first]);
     PetscCall(VecRestoreArrayRead(x, &u));
   }
   PetscCall(VecDestroy(&b));

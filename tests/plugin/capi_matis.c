@@ -1,6 +1,7 @@
 /*
-   Blocks of plane elasticity, assembled into a MATIS each by a DMDA. -do matis, raw: one block by FetiFetiSetMatIS() and FetiFetiAddSubdomain(), against a
-   direct solver. -do stack: two blocks one after the other, tied by pairs, judged by their own matrices. -do cycles: that again and again. -wrong does one thing wrong.
+   Blocks of plane elasticity, assembled into a MATIS each by a DMDA. -do matis, raw: one block by FetiFetiSetMatIS()
+   and FetiFetiAddSubdomain(), against a direct solver. -do stack: two blocks one after the other, tied by pairs, judged
+   by their own matrices. -do cycles: that again and again. -wrong does one thing wrong.
 */
 static const char help[] = "Matrices and the C API.\n";
 
@@ -30,7 +31,8 @@ static PetscErrorCode Compare(Mat A, Vec b, Vec x, const char what[])
   PetscCall(VecNorm(exact, NORM_2, &size));
   PetscCall(VecAXPY(exact, -1.0, x));
   PetscCall(VecNorm(exact, NORM_2, &error));
-  PetscCheck(error < 1e-7 * size, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "%s: off by %g of %g", what, (double)error, (double)size);
+  PetscCheck(error < 1e-7 * size, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "%s: off by %g of %g", what, (double)error,
+             (double)size);
   PetscCall(KSPDestroy(&ksp));
   PetscCall(VecDestroy(&exact));
   PetscCall(MatDestroy(&assembled));
@@ -87,7 +89,8 @@ static PetscErrorCode One(FetiFeti ff, PetscInt m, PetscBool raw)
 }
 
 /* K u + B'l = f and B u = gap of the tied blocks, by their own matrices. */
-static PetscErrorCode Balance(Mat A[2], Vec b[2], Vec u[2], IS side[2][2], PetscInt n, const PetscReal lambda[], PetscReal gap)
+static PetscErrorCode Balance(Mat A[2], Vec b[2], Vec u[2], IS side[2][2], PetscInt n, const PetscReal lambda[],
+                              PetscReal gap)
 {
   PetscInt        k, c, i, s;
   const PetscInt *dof;
@@ -115,14 +118,16 @@ static PetscErrorCode Balance(Mat A[2], Vec b[2], Vec u[2], IS side[2][2], Petsc
     PetscCall(VecAssemblyBegin(r));
     PetscCall(VecAssemblyEnd(r));
     PetscCall(VecNorm(r, NORM_2, &norm[0]));
-    PetscCheck(norm[0] < 1e-6 * size, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "block %d is out of balance by %g", (int)k, (double)norm[0]);
+    PetscCheck(norm[0] < 1e-6 * size, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "block %d is out of balance by %g", (int)k,
+               (double)norm[0]);
     PetscCall(VecDestroy(&r));
   }
   for (c = 0; c < 2; c++) {
     PetscCall(VecAXPY(part[0][c], -1.0, part[1][c]));
     PetscCall(VecShift(part[0][c], c ? -gap : 0.0));
     PetscCall(VecNorm(part[0][c], NORM_INFINITY, &size));
-    PetscCheck(size < 1e-6, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "the sides differ by %g in component %d", (double)size, (int)c);
+    PetscCheck(size < 1e-6, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "the sides differ by %g in component %d", (double)size,
+               (int)c);
     for (s = 0; s < 2; s++) PetscCall(VecDestroy(&part[s][c]));
   }
   PetscFunctionReturn(0);
@@ -254,19 +259,22 @@ static PetscErrorCode Two(FetiFeti ff, PetscInt m, DM da[2], Mat A[2], Vec b[2],
   PetscCall(VecNorm(u, NORM_2, &norm[0]));
   PetscCall(FetiFetiSolve(ff, load, u));
   PetscCall(VecNorm(u, NORM_2, &norm[1])); /* not the norm that PETSc remembers from before */
-  PetscCheck(norm[0] == 0.0 && norm[1] > 0.0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "the norms are %g and %g", (double)norm[0], (double)norm[1]);
+  PetscCheck(norm[0] == 0.0 && norm[1] > 0.0, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "the norms are %g and %g",
+             (double)norm[0], (double)norm[1]);
   if (judge) {
     PetscCall(FetiFetiGetMultipliers(ff, 2 * n, lambda));
     PetscCall(VecNestGetSubVecs(u, NULL, &parts));
     PetscCall(Balance(A, b, parts, side, n, lambda, 0.125));
     PetscCall(FetiFetiSolve(ff, plain, x)); /* plain vectors, and a nested one for the solution */
     PetscCall(VecNorm(x, NORM_2, &other));
-    PetscCheck(PetscAbsReal(other - norm[1]) < 1e-7 * other, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "a plain vector gives %g, a nested one %g", (double)other, (double)norm[1]);
+    PetscCheck(PetscAbsReal(other - norm[1]) < 1e-7 * other, PETSC_COMM_WORLD, PETSC_ERR_PLIB,
+               "a plain vector gives %g, a nested one %g", (double)other, (double)norm[1]);
     PetscCall(VecSet(u, 0.0));
     PetscCall(FetiFetiSolve(ff, plain, u));
     PetscCall(Balance(A, b, parts, side, n, lambda, 0.125));
 
-    PetscCall(FetiFetiSetContactPairs(ff, 0, NULL, 0, NULL, NULL, 0)); /* the first component by pairs of all unknowns, the other one by rows */
+    /* the first component by pairs of all unknowns, the other one by rows */
+    PetscCall(FetiFetiSetContactPairs(ff, 0, NULL, 0, NULL, NULL, 0));
     for (k = 0; k < 2; k++) {
       PetscCall(Numbers(b[k], where[k], side[k][0], &all[k]));
       PetscCall(Numbers(b[k], where[k], side[k][1], &own));
@@ -292,7 +300,8 @@ static PetscErrorCode Two(FetiFeti ff, PetscInt m, DM da[2], Mat A[2], Vec b[2],
     PetscCall(VecSet(values, 0.5));
     PetscCall(ISGetLocalSize(where[1], &count));
     PetscCall(ISGetIndices(where[1], &number));
-    PetscCall(ISCreateGeneral(PETSC_COMM_WORLD, rank == 0 && count ? 1 : 0, number + (count ? count - 1 : 0), PETSC_COPY_VALUES, &held));
+    PetscCall(ISCreateGeneral(PETSC_COMM_WORLD, rank == 0 && count ? 1 : 0, number + (count ? count - 1 : 0),
+                              PETSC_COPY_VALUES, &held));
     PetscCall(ISRestoreIndices(where[1], &number));
     PetscCall(FetiFetiSetDirichletBoundaries(ff, held, values));
     PetscCall(FetiFetiSolve(ff, load, u));
@@ -300,7 +309,8 @@ static PetscErrorCode Two(FetiFeti ff, PetscInt m, DM da[2], Mat A[2], Vec b[2],
       const PetscScalar *v;
 
       PetscCall(VecGetArrayRead(parts[1], &v));
-      PetscCheck(PetscAbsReal(v[count - 1] - 0.5) < 1e-12, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a held unknown is %g", (double)v[count - 1]);
+      PetscCheck(PetscAbsReal(v[count - 1] - 0.5) < 1e-12, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a held unknown is %g",
+                 (double)v[count - 1]);
       PetscCall(VecRestoreArrayRead(parts[1], &v));
     }
     PetscCall(ISDestroy(&held));
@@ -350,7 +360,9 @@ int main(int argc, char **argv)
       if (i == cycles / 10) PetscCall(PetscMemoryGetCurrentUsage(&before));
     }
     PetscCall(PetscMemoryGetCurrentUsage(&after));
-    if (cycles) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "bytes per cycle: %.0f\n", (double)((after - before) / (cycles - cycles / 10))));
+    if (cycles)
+      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "bytes per cycle: %.0f\n",
+                            (double)((after - before) / (cycles - cycles / 10))));
     for (k = 0; k < 2; k++) {
       PetscCall(VecDestroy(&b[k]));
       PetscCall(MatDestroy(&A[k]));

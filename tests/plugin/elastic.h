@@ -37,7 +37,8 @@ static PetscErrorCode Block(PetscInt m, PetscBool hold, PetscBool near, DM *da, 
   MatNullSpace    motions;
 
   PetscFunctionBeginUser;
-  PetscCall(DMDACreate2d(PETSC_COMM_WORLD, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_BOX, m, m, PETSC_DECIDE, PETSC_DECIDE, 2, 1, NULL, NULL, da));
+  PetscCall(DMDACreate2d(PETSC_COMM_WORLD, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_BOX, m, m, PETSC_DECIDE,
+                         PETSC_DECIDE, 2, 1, NULL, NULL, da));
   PetscCall(DMSetMatType(*da, MATIS));
   PetscCall(DMSetUp(*da));
   PetscCall(DMDASetElementType(*da, DMDA_ELEMENT_Q1));

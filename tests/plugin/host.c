@@ -1,6 +1,7 @@
 /*
-   A host program that knows nothing of FETI-FETI: Laplacians on a square of quadrilaterals, one strip of elements per rank, as a MATIS, and a KSP that takes
-   its type from the options. What it does with the KSP is chosen by -do; it prints "ok" when everything was as it should be.
+   A host program that knows nothing of FETI-FETI: Laplacians on a square of quadrilaterals, one strip of elements per
+   rank, as a MATIS, and a KSP that takes its type from the options. What it does with the KSP is chosen by -do; it
+   prints "ok" when everything was as it should be.
 */
 static char help[] = "Solves with a KSP of any type in every way that programs do.\n";
 
@@ -101,7 +102,8 @@ static PetscErrorCode Load(Mat A, int seed, Vec *b)
   PetscFunctionBeginUser;
   PetscCall(MatCreateVecs(A, NULL, b));
   PetscCall(VecGetOwnershipRange(*b, &first, &last));
-  for (i = first; i < last; i++) PetscCall(VecSetValue(*b, i, PetscSinReal((PetscReal)(seed * (i + 1))), INSERT_VALUES));
+  for (i = first; i < last; i++)
+    PetscCall(VecSetValue(*b, i, PetscSinReal((PetscReal)(seed * (i + 1))), INSERT_VALUES));
   PetscCall(VecAssemblyBegin(*b));
   PetscCall(VecAssemblyEnd(*b));
   PetscCall(MatGetNullSpace(A, &nullsp));
@@ -130,7 +132,8 @@ static PetscErrorCode Check(KSP ksp, Mat A, Vec b, Vec x, const char *what)
   PetscCall(VecAYPX(r, -1.0, b));
   PetscCall(VecNorm(r, NORM_2, &norm));
   PetscCall(VecNorm(b, NORM_2, &size));
-  PetscCheck(norm <= 1.01 * rtol * size, comm, PETSC_ERR_PLIB, "%s: residual %g of %g, expected %g of it", what, (double)norm, (double)size, (double)rtol);
+  PetscCheck(norm <= 1.01 * rtol * size, comm, PETSC_ERR_PLIB, "%s: residual %g of %g, expected %g of it", what,
+             (double)norm, (double)size, (double)rtol);
   PetscCall(MatConvert(A, MATAIJ, MAT_INITIAL_MATRIX, &assembled));
   PetscCall(MatGetNullSpace(A, &nullsp));
   PetscCall(MatSetNullSpace(assembled, nullsp));
@@ -145,7 +148,8 @@ static PetscErrorCode Check(KSP ksp, Mat A, Vec b, Vec x, const char *what)
   PetscCall(VecNorm(r, NORM_2, &length));
   PetscCall(VecAXPY(r, -1.0, x));
   PetscCall(VecNorm(r, NORM_2, &error));
-  PetscCheck(error <= 1e3 * rtol * length, comm, PETSC_ERR_PLIB, "%s: error %g of %g", what, (double)error, (double)length);
+  PetscCheck(error <= 1e3 * rtol * length, comm, PETSC_ERR_PLIB, "%s: error %g of %g", what, (double)error,
+             (double)length);
   PetscCall(KSPDestroy(&plain));
   PetscCall(MatDestroy(&assembled));
   PetscCall(VecDestroy(&r));
@@ -203,7 +207,8 @@ static PetscErrorCode Again(MPI_Comm comm, Wanted wanted)
   PetscCall(Check(ksp, A, b, x, "first solve"));
   PetscCall(KSPGetIterationNumber(ksp, &its));
   PetscCall(KSPGetResidualHistory(ksp, &history, &entries));
-  PetscCheck(entries == its + 1, comm, PETSC_ERR_PLIB, "%" PetscInt_FMT " residuals of %" PetscInt_FMT " iterations", entries, its);
+  PetscCheck(entries == its + 1, comm, PETSC_ERR_PLIB, "%" PetscInt_FMT " residuals of %" PetscInt_FMT " iterations",
+             entries, its);
   PetscCall(KSPSolve(ksp, c, x));
   PetscCall(Check(ksp, A, c, x, "another load"));
   PetscCall(KSPSetInitialGuessNonzero(ksp, PETSC_TRUE));
@@ -323,7 +328,8 @@ static PetscErrorCode Unfit(MPI_Comm comm, Wanted wanted)
   PetscCall(Solver(comm, A, NULL, &ksp));
   PetscCall(KSPSolve(ksp, b, x));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
-  PetscCheck(reason == KSP_DIVERGED_PC_FAILED, comm, PETSC_ERR_PLIB, "negative matrix: %s", KSPConvergedReasons[reason]);
+  PetscCheck(reason == KSP_DIVERGED_PC_FAILED, comm, PETSC_ERR_PLIB, "negative matrix: %s",
+             KSPConvergedReasons[reason]);
   /* and a good one after that */
   wanted.factor = 1;
   PetscCall(Fill(comm, &wanted, A));

@@ -1,6 +1,7 @@
 /*
-   A DMPlex of squares whose cells have a label: bodies by this label, or by an index set over the rows. Its stiffness is that of springs between all nodes of a
-   square, which does not depend on their order. The solution is compared with that of the assembled matrix.
+   A DMPlex of squares whose cells have a label: bodies by this label, or by an index set over the rows. Its stiffness
+   is that of springs between all nodes of a square, which does not depend on their order. The solution is compared with
+   that of the assembled matrix.
 
      -by label|is|option|none   how bodies are named (option: the host names none, -fetifeti_body_label may)
 */
@@ -20,7 +21,8 @@ static PetscErrorCode Mesh(DM *dm)
 
   PetscFunctionBeginUser;
 #if PETSC_VERSION_GE(3, 22, 0)
-  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, NULL, NULL, PETSC_TRUE, 0, PETSC_TRUE, dm));
+  PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, NULL, NULL, PETSC_TRUE, 0, PETSC_TRUE,
+                                dm));
 #else
   PetscCall(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 2, PETSC_FALSE, faces, NULL, NULL, NULL, PETSC_TRUE, dm));
 #endif

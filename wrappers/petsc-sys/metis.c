@@ -45,7 +45,9 @@ static int order_triangle(int n, int *ptr, int *index, int *order)
 int ff_metis_order(int n, const int *row, const int *col, int *order)
 {
   /* CHOLMOD takes one triangle of a symmetric pattern. */
-  int *ptr = malloc(((size_t)n + 1) * sizeof(int)), *index = malloc(((size_t)row[n] / 2 + 1) * sizeof(int)), result = FF_NO_MEMORY;
+  int *ptr    = malloc(((size_t)n + 1) * sizeof(int));
+  int *index  = malloc(((size_t)row[n] / 2 + 1) * sizeof(int));
+  int  result = FF_NO_MEMORY;
 
   if (ptr && index) {
     ptr[0] = 0;

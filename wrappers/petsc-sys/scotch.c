@@ -35,7 +35,8 @@ int ff_scotch_order(int n, const int *row, const int *col, int *order)
   /* Resets the random numbers: the result does not depend on earlier calls. */
   SCOTCH_randomReset();
   if (SCOTCH_graphInit(&graph)) return FF_NO_MEMORY;
-  if (SCOTCH_graphBuild(&graph, 0, n, (const SCOTCH_Num *)row, NULL, NULL, NULL, row[n], (const SCOTCH_Num *)col, NULL)) {
+  if (SCOTCH_graphBuild(&graph, 0, n, (const SCOTCH_Num *)row, NULL, NULL, NULL, row[n], (const SCOTCH_Num *)col,
+                        NULL)) {
     SCOTCH_graphExit(&graph);
     return FF_FAILED;
   }

@@ -128,7 +128,8 @@ int ff_st_shell_set_apply(ST st, int (*f)(ST, Vec, Vec))
 
 /* ---- errors ---- */
 
-static PetscErrorCode CollectFrame(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *context)
+static PetscErrorCode CollectFrame(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                   PetscErrorType type, const char *message, void *context)
 {
   (void)comm;
   ((ff_trace)context)(line, function, file, (int)code, type == PETSC_ERROR_INITIAL, message);
@@ -182,7 +183,8 @@ int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double 
 
 /* ---- graphs and MATIS ---- */
 
-int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen, int *part, int *done)
+int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen,
+                 int *part, int *done)
 {
   MatPartitioning partitioning;
   Mat             graph;

@@ -30,19 +30,23 @@ int ff_pc_shell_set_apply_transpose(PC pc, int (*f)(PC, Vec, Vec));
 int ff_pc_shell_set_view(PC pc, int (*f)(PC, PetscViewer));
 int ff_st_shell_set_apply(ST st, int (*f)(ST, Vec, Vec));
 
-/* KSPSolve() that may stop early: from iteration `first` on, in every third one, if the largest singular value estimate is
-   above `limit` while the residual is above `rest`. `tripped` says whether it did; the reason is KSP_CONVERGED_ITS then. */
+/* KSPSolve() that may stop early: from iteration `first` on, in every third one, if the largest singular value estimate
+   is above `limit` while the residual is above `rest`. `tripped` says whether it did; the reason is KSP_CONVERGED_ITS
+   then. */
 int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, int *tripped);
 
 /* Collects PETSc's error frames instead of printing them. */
 typedef void (*ff_trace)(int line, const char *function, const char *file, int code, int initial, const char *message);
 int ff_push_error_handler(ff_trace trace);
 
-/* part[i] of each vertex of a symmetric graph with edge weights in compressed rows, by MatPartitioning on this process alone; the options have this prefix.
-   Without the option -<prefix>mat_partitioning_type it is PT-Scotch, and `done` is 0 where PETSc has none. */
-int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen, int *part, int *done);
+/* part[i] of each vertex of a symmetric graph with edge weights in compressed rows, by MatPartitioning on this process
+   alone; the options have this prefix. Without the option -<prefix>mat_partitioning_type it is PT-Scotch, and `done` is
+   0 where PETSc has none. */
+int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen,
+                 int *part, int *done);
 
-/* Whether the local-to-global map of a MATIS may list a dof several times, once for each of several subdomains (PETSc 3.21 and later). */
+/* Whether the local-to-global map of a MATIS may list a dof several times, once for each of several subdomains (PETSc
+   3.21 and later). */
 int ff_is_repeated(Mat mat, int *repeated);
 
 /* Whether any option begins with `start` (dash included). */
