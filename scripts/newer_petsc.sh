@@ -1,9 +1,9 @@
 #!/bin/bash
 # Builds a newer PETSc and SLEPc than Debian's from the source packages of the Python registry (PyPI), into one folder:
 #   scripts/newer_petsc.sh FOLDER [PETSC_VERSION SLEPC_VERSION]
-# leaves FOLDER/petsc-VERSION and FOLDER/slepc-VERSION (both with arch-fetifeti) and FOLDER/env, to be sourced. What is already
-# built stays. MUMPS, ScaLAPACK and PT-Scotch are Debian's, as in Debian's PETSc; Debian's hypre is
-# too old for PETSc 3.22.
+# leaves FOLDER/petsc-VERSION and FOLDER/slepc-VERSION (both with arch-fetifeti) and FOLDER/env, to be sourced. What is
+# already built stays. MUMPS, ScaLAPACK and PT-Scotch are Debian's, as in Debian's PETSc; Debian's hypre is too old for
+# PETSc 3.22.
 set -euo pipefail
 
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
@@ -55,8 +55,10 @@ if [ ! -e "$PETSC_DIR/$arch/lib/libpetsc.so" ]; then
         --with-debugging=0 COPTFLAGS=-O2 CXXOPTFLAGS=-O2 FOPTFLAGS=-O2 --with-shared-libraries=1 \
         "--with-blaslapack-lib=[-llapack,-lblas]" --with-x=0 --with-fortran-bindings=0 \
         --with-scalapack-lib=-lscalapack-openmpi \
-        --with-mumps-include=/usr/include "--with-mumps-lib=[-ldmumps,-lzmumps,-lsmumps,-lcmumps,-lmumps_common,-lpord]" \
-        --with-ptscotch-include=/usr/include/scotch "--with-ptscotch-lib=[-lptesmumps,-lptscotch,-lptscotcherr,-lscotch,-lscotcherr]"
+        --with-mumps-include=/usr/include \
+        "--with-mumps-lib=[-ldmumps,-lzmumps,-lsmumps,-lcmumps,-lmumps_common,-lpord]" \
+        --with-ptscotch-include=/usr/include/scotch \
+        "--with-ptscotch-lib=[-lptesmumps,-lptscotch,-lptscotcherr,-lscotch,-lscotcherr]"
     step "Building PETSc $petsc" "$folder/petsc-make.log" make -j"$jobs" all
 fi
 if [ ! -e "$SLEPC_DIR/$arch/lib/libslepc.so" ]; then

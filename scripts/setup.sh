@@ -92,13 +92,15 @@ if [ ${#missing[@]} -gt 0 ]; then
     elif ! command -v apt-get >/dev/null; then
         stop "there is no apt-get here; install these packages (named as in Debian 12) and run this again."
     elif [ "$as_root" = none ]; then
-        stop "installing them needs root; run: sudo apt-get update && sudo apt-get install --no-install-recommends ${missing[*]}"
+        stop "installing them needs root; run:" \
+            "sudo apt-get update && sudo apt-get install --no-install-recommends ${missing[*]}"
     fi
     say "installing them with ${as_root:+$as_root }apt-get; this takes a few minutes on a fresh machine."
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update ||
         stop "'apt-get update' failed; see its messages above."
     # --no-remove: never trade a package that somebody else uses for one of ours.
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-remove --no-install-recommends install "${missing[@]}" ||
+    $as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get -q -y --no-remove --no-install-recommends install "${missing[@]}" ||
         stop "apt-get could not install ${missing[*]}; see its messages above."
     say "installed: ${missing[*]}"
 fi
@@ -109,8 +111,8 @@ if [ ${#components[@]} -gt 0 ]; then
     rustup component add "${components[@]}" || stop "rustup could not add ${components[*]}; see its messages above."
 fi
 
-# OpenBLAS is three times faster than the reference BLAS in MUMPS. Debian's alternatives prefer it by themselves; a choice
-# that somebody made by hand is left alone.
+# OpenBLAS is three times faster than the reference BLAS in MUMPS. Debian's alternatives prefer it by themselves; a
+# choice that somebody made by hand is left alone.
 if command -v update-alternatives >/dev/null; then
     for blas in /usr/lib/*-linux-gnu/libblas.so.3 /usr/lib/*-linux-gnu/liblapack.so.3; do
         [ -e "$blas" ] || continue
