@@ -1,4 +1,4 @@
-//! Dead references: what documents and comments name is there.
+//! Dead references: what documents and comments name is there. And no line has more than 120 characters.
 //!
 //! Held against the repository, in every text that git knows:
 //!
@@ -9,6 +9,8 @@
 //!   has it.
 //!
 //! docs/architecture.md has a row for each room of tests/architecture.rs, in the same order.
+//!
+//! Longer lines are for what cannot be broken: rows of tables, and in pages what is shown as it is.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -28,20 +30,24 @@ const READ: [&str; 12] = [
     "rs", "md", "toml", "c", "h", "f90", "F90", "py", "sh", "cff", "run", "Makefile",
 ];
 
+/// Characters of the longest line.
+const WIDTH: usize = 120;
+
+/// This file: it has dead references on purpose.
+const OWN: &str = "tests/references.rs";
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every text of the repository with its path, this one left out: it has dead references on purpose.
+/// Every text of the repository with its path.
 fn texts() -> Vec<(PathBuf, String)> {
     let mut files = Vec::new();
     collect(root(), &mut files);
-    let own = Path::new("tests/references.rs");
     let inside = files
         .iter()
         .map(|f| f.strip_prefix(root()).expect("inside"));
     inside
-        .filter(|file| *file != own)
         .map(|file| {
             let text = std::fs::read_to_string(root().join(file)).expect("a text");
             (file.to_path_buf(), text)
@@ -201,6 +207,36 @@ fn plain(path: &Path) -> PathBuf {
     out
 }
 
+/// The lines of a text that are too long.
+fn too_long(file: &Path, text: &str) -> Vec<String> {
+    let page = file.extension().is_some_and(|e| e == "md");
+    let mut fenced = false;
+    let mut found = Vec::new();
+    for (at, line) in text.lines().enumerate() {
+        fenced ^= line.starts_with("```");
+        let length = line.chars().count();
+        if length > WIDTH && !is_row(line) && !(page && (fenced || is_shown(line))) {
+            let file = file.display();
+            found.push(format!("{file}:{}: {length} characters", at + 1));
+        }
+    }
+    found
+}
+
+/// Whether a line is a row of a table, in a page or in a comment of documentation.
+fn is_row(line: &str) -> bool {
+    let line = line.trim_start();
+    let marks = ["//!", "///"].iter();
+    let text = marks.fold(line, |l, mark| l.strip_prefix(mark).unwrap_or(l));
+    text.trim_start().starts_with('|')
+}
+
+/// Whether a line of a page is shown as it is, a command, output or a formula, or is a picture or link as a whole.
+fn is_shown(line: &str) -> bool {
+    let link = line.starts_with('[') || line.starts_with("![");
+    line.starts_with("    ") || (link && line.ends_with(')'))
+}
+
 fn read(file: &str) -> String {
     std::fs::read_to_string(root().join(file)).unwrap_or_else(|e| panic!("{file}: {e}"))
 }
@@ -212,9 +248,20 @@ fn what_is_named_is_there() {
     let texts = texts();
     assert!(texts.len() > 400, "only {} texts were found", texts.len());
     let exists = |path: &Path| root().join(path).exists();
-    let looked = texts.iter();
+    let looked = texts.iter().filter(|(file, _)| file != Path::new(OWN));
     let found: Vec<String> = looked
         .flat_map(|(file, text)| dead(file, text, &exists, &theory))
+        .collect();
+    assert!(found.is_empty(), "\n{}\n", found.join("\n"));
+}
+
+#[test]
+fn lines_are_not_too_long() {
+    let texts = texts();
+    assert!(texts.iter().any(|(file, _)| file == Path::new(OWN)));
+    let found: Vec<String> = texts
+        .iter()
+        .flat_map(|(file, text)| too_long(file, text))
         .collect();
     assert!(found.is_empty(), "\n{}\n", found.join("\n"));
 }
@@ -320,4 +367,20 @@ fn what_is_dead_is_found() {
     let map =
         "text\n| room | what |\n| `src/fem` | a |\n| `src/main.rs` | b |\n\n| `src/other` | c |\n";
     assert_eq!(mapped(map), ["fem", "main"]);
+}
+
+/// A page and a source, each with long lines that may be and one that may not.
+#[test]
+fn what_is_too_long_is_found() {
+    let (word, words) = ("ü".repeat(WIDTH), "word ".repeat(WIDTH / 4));
+    let page = format!(
+        "{word}\n| {words} |\n![{words}](a.png)\n    {words}\n```\n{words}\n```\n[a](b.md) {words}\n"
+    );
+    let long = |file: &str, text: &str| too_long(Path::new(file), text);
+    assert_eq!(long("docs/a.md", &page), ["docs/a.md:8: 160 characters"]);
+    let source = format!("//! | {words} |\n    /// {words}\n    f(\"{words}\");\n");
+    assert_eq!(
+        long("src/a.rs", &source),
+        ["src/a.rs:2: 158 characters", "src/a.rs:3: 160 characters"]
+    );
 }
