@@ -11,8 +11,8 @@ FETIFETI := $(TARGET)/release/fetifeti
 # rustup's toolchain comes first where there is one.
 export PATH := $(if $(wildcard $(HOME)/.cargo/bin),$(HOME)/.cargo/bin:)$(PATH)
 
-# Open MPI: more ranks than cores are wanted (PCBDDC takes one subdomain per rank), so idle ranks must yield and none may be
-# pinned to a core. Copies through the kernel are forbidden in most containers and only cost messages there.
+# Open MPI: more ranks than cores are wanted (PCBDDC takes one subdomain per rank), so idle ranks must yield and none
+# may be pinned to a core. Copies through the kernel are forbidden in most containers and only cost messages there.
 export OMPI_MCA_rmaps_base_oversubscribe = 1
 export OMPI_MCA_mpi_yield_when_idle = 1
 export OMPI_MCA_hwloc_base_binding_policy = none

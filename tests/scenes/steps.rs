@@ -174,8 +174,10 @@ fn counted_steps_end_at_one() {
     assert_eq!(scene.loads(0, 0).unwrap(), scene.loads(0, 3).unwrap());
     assert_ne!(scene.loads(4, 0).unwrap(), scene.loads(4, 3).unwrap());
     // Of overlapping bounds with different ramps the tighter one counts in every step.
-    let two = "[[body]]\nname = \"a\"\nsize = 1\nelements = 2\n[[body]]\nname = \"b\"\norigin = [1, 0]\nsize = 1\nelements = 2\n\
-               [[contact]]\nbodies = [0, 1]\ngap = 1\nramp = \"t\"\n[[contact]]\nbodies = [0, 1]\ngap = 1\nramp = \"1 - t\"\n\
+    let two = "[[body]]\nname = \"a\"\nsize = 1\nelements = 2\n\
+               [[body]]\nname = \"b\"\norigin = [1, 0]\nsize = 1\nelements = 2\n\
+               [[contact]]\nbodies = [0, 1]\ngap = 1\nramp = \"t\"\n\
+               [[contact]]\nbodies = [0, 1]\ngap = 1\nramp = \"1 - t\"\n\
                [steps]\ntimes = [0.25, 0.5, 0.875]\n";
     let scene = Scene::parse("two.toml", two).unwrap();
     let gaps: Vec<f64> = (0..3)
