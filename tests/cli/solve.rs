@@ -293,6 +293,16 @@ fn solvers_are_seen_by_their_prefixes() {
 }
 
 #[test]
+fn an_eigensolver_that_fails_is_said() {
+    let scene = "examples/scenes/lee_column_1.toml";
+    let options = ["-fetifeti_spectrum", "-fetifeti_eps_max_it", "1"];
+    let out = fetifeti(&[&["solve", scene, "--quiet"], &options[..]].concat());
+    assert_eq!(out.code, 1, "{}", out.all());
+    let sentence = "smallest eigenvalue did not converge";
+    assert!(out.stderr.contains(sentence), "{}", out.all());
+}
+
+#[test]
 fn a_coarse_solver_that_fails_is_said() {
     let scene = "examples/scenes/lee_column_1.toml";
     let options = [

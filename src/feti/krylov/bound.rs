@@ -165,7 +165,7 @@ impl LinearMethod {
     }
 
     fn present_spectrum(&self) -> Result<Option<Spectrum>> {
-        let prefix = format!("{}eps_", self.settings().prefix);
-        eigenvalues::exact(self.session(), self.system(), &prefix)
+        // SLEPc's options begin with `eps_` themselves.
+        eigenvalues::exact(self.session(), self.system(), &self.settings().prefix)
     }
 }
