@@ -16,12 +16,10 @@ fn main() -> ExitCode {
 }
 
 fn run(session: &Session) -> Result<()> {
-    let mut grid = GridSpec {
-        dirichlet: free_all_round(),
-        ..GridSpec::unit_square([4, 4], [1, 1], [8, 8])
-    };
+    let mut grid = GridSpec::unit_square([4, 4], [1, 1], [8, 8]);
+    grid.whole.dirichlet = free_all_round();
     for side in [0, 1] {
-        grid.dirichlet[side][0] = Some(Field::constant(0.0)); // left and right, the only component
+        grid.whole.dirichlet[side][0] = Some(Field::constant(0.0)); // left and right, the only component
     }
     let scene = Scene::grid("One-level FETI", &grid)?;
     let mine = fetifeti::share(session, scene.n_subdomains());

@@ -23,7 +23,7 @@ fn run(session: &Session) -> Result<()> {
     // A scene may come from a file (Scene::load), from text (Scene::parse) or, as here, from a program.
     let expression = |text: &str| Expr::parse(text).map_err(Error::input);
     let mut grid = GridSpec::unit_square([2, 2], [4, 4], [N / 2, N / 2]);
-    grid.load = Load {
+    grid.whole.load = Load {
         fields: vec![Field::Expression(expression("2*pi^2*sin(pi*x)*sin(pi*y)")?)],
         quadrature: Quadrature::Gauss,
     };

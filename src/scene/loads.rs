@@ -6,7 +6,7 @@ use super::meshes::reaches;
 use super::model::field::Field;
 use super::model::spec::Force;
 use super::model::steps::Factors;
-use super::validate::bad_load;
+use super::validate::LOAD;
 use crate::error::Result;
 use crate::fem::{self, SubdomainMesh};
 use crate::linalg::csr::Csr;
@@ -185,9 +185,9 @@ impl Scene {
             };
             fem::add_side_load(mesh, load.side, force, &mut out);
         }
-        match bad {
-            Some((value, point)) => bad_load(&body.spec, value, point),
-            None => Ok(out),
+        if let Some((value, point)) = bad {
+            LOAD.at(&body.spec, value, point)?;
         }
+        Ok(out)
     }
 }

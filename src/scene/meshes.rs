@@ -5,7 +5,7 @@ use super::checked::Scene;
 use super::coefficient::{by_element, evaluate};
 use super::model::field::Field;
 use super::model::steps::Factors;
-use super::validate::{bad_spring, checked_poisson, checked_rho};
+use super::validate::{Quantity, RATIO, SPRING};
 use crate::error::Result;
 use crate::fem::{self, SubdomainMesh};
 use crate::mesh::Block;
@@ -62,11 +62,11 @@ impl Scene {
             mesh.points.push(body.spec.position(place));
         }
         mesh.rho = by_element(body, &block, &mesh, &body.spec.rho, |value, point| {
-            checked_rho(&body.spec, &self.form, value, point)
+            Quantity::coefficient(&self.form).at(&body.spec, value, point)
         })?;
         if self.form.is_elastic() {
             mesh.poisson = by_element(body, &block, &mesh, &body.spec.poisson, |value, point| {
-                checked_poisson(&body.spec, value, point)
+                RATIO.at(&body.spec, value, point)
             })?;
         }
         for (side, stiffness) in &body.spec.springs {
@@ -116,14 +116,14 @@ fn add_spring(
     let mut bad = None;
     let value = |point: [f64; 3], _normal: [f64; 3]| {
         let k = evaluate(body, block, stiffness, point);
-        if !(k >= 0.0 && k.is_finite()) {
+        if !(SPRING.good)(k) {
             bad.get_or_insert((k, point));
         }
         [k, 0.0, 0.0]
     };
     fem::add_side_load(mesh, side, value, &mut sums);
     if let Some((k, point)) = bad {
-        return bad_spring(&body.spec, k, point);
+        SPRING.at(&body.spec, k, point)?;
     }
     mesh.spring.resize(mesh.points.len(), 0.0);
     for (spring, sum) in mesh.spring.iter_mut().zip(sums.chunks_exact(c)) {

@@ -1,7 +1,6 @@
 //! Checks of a scene that look at one body at a time.
 
 use super::body::Body;
-use super::model::expr::Variables;
 use super::model::field::{At, Field};
 use super::model::spec::{BodySpec, Force, SceneSpec, SIDES};
 use crate::error::{Error, Result};
@@ -32,36 +31,33 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
     let dim = spec.bodies[0].mesh.dim();
     for body in &spec.bodies {
         if body.mesh.dim() != dim {
-            return fail(
-                body,
-                format_args!(
-                    "{} dimensions where {dim} were expected, as in the bodies before",
-                    body.mesh.dim()
-                ),
-            );
+            return body.error(format!(
+                "{} dimensions where {dim} were expected, as in the bodies before",
+                body.mesh.dim()
+            ));
         }
         check_mesh(body)?;
         check_values(body, &spec.form)?;
         check_shape(body, &spec.form)?;
         if names.insert(&body.name, body).is_some() {
-            return fail(body, "a second body of this name (names must be unique)");
+            return body.error("a second body of this name (names must be unique)");
         }
         subdomains += body.mesh.n_subdomains();
         if subdomains > MOST_SUBDOMAINS {
-            return fail(
-                body,
-                format_args!("the scene has more than {MOST_SUBDOMAINS} subdomains with this body"),
-            );
+            return body.error(format!(
+                "the scene has more than {MOST_SUBDOMAINS} subdomains with this body"
+            ));
         }
     }
     Ok(())
 }
 
-fn fail<T>(body: &BodySpec, message: impl std::fmt::Display) -> Result<T> {
-    Err(Error::Input(format!(
-        "{}body `{}`: {message}",
-        body.written, body.name
-    )))
+impl BodySpec {
+    /// The error `message` about this body.
+    fn error<T>(&self, message: impl std::fmt::Display) -> Result<T> {
+        let (written, name) = (&self.written, &self.name);
+        Err(Error::Input(format!("{written}body `{name}`: {message}")))
+    }
 }
 
 fn check_mesh(body: &BodySpec) -> Result<()> {
@@ -74,22 +70,16 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
     for d in 0..body.mesh.dim() {
         let axis = ["x", "y", "z"][d];
         if !origin[d].is_finite() {
-            return fail(
-                body,
-                format_args!(
-                    "origin {} in {axis} where a finite number was expected",
-                    origin[d]
-                ),
-            );
+            return body.error(format!(
+                "origin {} in {axis} where a finite number was expected",
+                origin[d]
+            ));
         }
         if !(size[d].is_finite() && size[d] > 0.0) {
-            return fail(
-                body,
-                format_args!(
-                    "size {} in {axis} where a positive number was expected",
-                    size[d]
-                ),
-            );
+            return body.error(format!(
+                "size {} in {axis} where a positive number was expected",
+                size[d]
+            ));
         }
         if elements[d] == 0 || subdomains[d] == 0 {
             let what = if elements[d] == 0 {
@@ -97,27 +87,22 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
             } else {
                 "subdomains"
             };
-            return fail(
-                body,
-                format_args!("zero {what} in {axis} where at least one was expected"),
-            );
+            return body.error(format!(
+                "zero {what} in {axis} where at least one was expected"
+            ));
         }
         if elements[d] % subdomains[d] != 0 {
-            return fail(
-                body,
-                format_args!(
-                    "{} subdomains in {axis} do not divide {} elements (a multiple was expected)",
-                    subdomains[d], elements[d]
-                ),
-            );
+            return body.error(format!(
+                "{} subdomains in {axis} do not divide {} elements (a multiple was expected)",
+                subdomains[d], elements[d]
+            ));
         }
         let step = size[d] / elements[d] as f64;
         let far = origin[d].abs().max((origin[d] + size[d]).abs());
         if step < 1e-8 * far {
-            return fail(
-                body,
-                format_args!("elements of size {step} in {axis} cannot be told apart at {far}"),
-            );
+            return body.error(format!(
+                "elements of size {step} in {axis} cannot be told apart at {far}"
+            ));
         }
     }
     let block = body.mesh.block_elements();
@@ -127,30 +112,26 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
             .iter()
             .map(|n| n.to_string())
             .collect();
-        return fail(
-            body,
-            format_args!(
-                "a subdomain of {} elements is too large (more subdomains were expected)",
-                counts.join(" × ")
-            ),
-        );
+        return body.error(format!(
+            "a subdomain of {} elements is too large (more subdomains were expected)",
+            counts.join(" × ")
+        ));
     }
     Ok(())
 }
 
 /// Checks values that do not depend on the point.
 fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
-    check_coefficient(body, coefficient(form), &body.rho, is_coefficient, POSITIVE)?;
+    Quantity::coefficient(form).check(body, &body.rho)?;
     if form.is_elastic() {
-        check_coefficient(body, "ν", &body.poisson, is_ratio, RATIO)?;
+        RATIO.check(body, &body.poisson)?;
     }
     let components = form.components(body.mesh.dim());
     let count = |n: usize, what: &str| match n == components || n == 1 && components == 1 {
         true => Ok(()),
-        false => fail(
-            body,
-            format_args!("{what} of {n} components where {components} were expected"),
-        ),
+        false => body.error(format!(
+            "{what} of {n} components where {components} were expected"
+        )),
     };
     let none = body.load.fields.len() == 1 && body.load.fields[0].as_constant() == Some(0.0);
     if !none {
@@ -171,50 +152,14 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
     for field in fields.iter().copied().chain(springs).chain(held) {
         if let Field::Cells(cells) = field {
             let file = cells.name();
-            return fail(
-                body,
-                format_args!(
-                    "{file} gives a load, a spring or a side where only coefficients were expected"
-                ),
-            );
+            return body.error(format!(
+                "{file} gives a load, a spring or a side where only coefficients were expected"
+            ));
         }
     }
-    for value in fields.into_iter().flat_map(Field::known_values) {
-        if !value.is_finite() {
-            return fail(
-                body,
-                format_args!("load {value} where a finite number was expected"),
-            );
-        }
-    }
-    Ok(())
-}
-
-/// Checks the values of a coefficient that are known without evaluation.
-fn check_coefficient(
-    body: &BodySpec,
-    name: &str,
-    field: &Field,
-    good: fn(f64) -> bool,
-    wanted: &str,
-) -> Result<()> {
-    let Some(value) = field.known_values().into_iter().find(|v| !good(*v)) else {
-        return Ok(());
-    };
-    let found = match field {
-        Field::Cells(cells) => cells.find(|v| !good(v))?,
-        _ => None,
-    };
-    match found {
-        Some((value, cell)) => fail(
-            body,
-            format_args!("{name} = {value} in {cell} where {wanted} was expected"),
-        ),
-        None => fail(
-            body,
-            format_args!("{name} = {value} where {wanted} was expected"),
-        ),
-    }
+    fields
+        .into_iter()
+        .try_for_each(|field| LOAD.check(body, field))
 }
 
 /// Whether a bent body has positive elements everywhere.
@@ -229,91 +174,97 @@ fn check_shape(body: &BodySpec, form: &Form) -> Result<()> {
             .map(|a| body.position([0, 1, 2].map(|d| place[d] + (a >> d & 1))))
             .collect();
         if let Some(p) = points.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
-            return fail(
-                body,
-                format_args!(
-                    "its shape puts a node at {} where finite numbers were expected",
-                    body.spot_at(*p)
-                ),
-            );
+            return body.error(format!(
+                "its shape puts a node at {} where finite numbers were expected",
+                body.spot_at(*p)
+            ));
         }
         if !jacobian_is_positive(mesh.dim(), &points, form.element) {
-            return fail(
-                body,
-                format_args!(
+            return body.error(format!(
                     "its shape turns the element at {} inside out (a map that keeps the orientation was expected)",
                     body.spot_at(points[0])
-                ),
-            );
+                ));
         }
     }
     Ok(())
 }
 
-const POSITIVE: &str = "a positive number";
-const RATIO: &str = "a number above -1 and below 1/2";
-
-fn is_ratio(value: f64) -> bool {
-    value > -1.0 && value < 0.5
+/// A quantity that a body has by points: its name in messages, and the values that it may have.
+pub(super) struct Quantity {
+    name: &'static str,
+    pub good: fn(f64) -> bool,
+    wanted: &'static str,
 }
 
-/// The name of the coefficient in messages.
-fn coefficient(form: &Form) -> &'static str {
-    match form.is_elastic() {
-        true => "E",
-        false => "ρ",
+/// The coefficient of a scalar problem.
+const RHO: Quantity = Quantity {
+    name: "ρ =",
+    good: |v| v.is_finite() && v > 0.0,
+    wanted: "a positive number",
+};
+
+/// Young's modulus.
+const YOUNG: Quantity = Quantity { name: "E =", ..RHO };
+
+/// Poisson's ratio.
+pub(super) const RATIO: Quantity = Quantity {
+    name: "ν =",
+    good: |v| v > -1.0 && v < 0.5,
+    wanted: "a number above -1 and below 1/2",
+};
+
+/// A component of a load.
+pub(super) const LOAD: Quantity = Quantity {
+    name: "load",
+    good: f64::is_finite,
+    wanted: "a finite number",
+};
+
+/// The stiffness of an elastic foundation.
+pub(super) const SPRING: Quantity = Quantity {
+    name: "spring",
+    good: |v| v >= 0.0 && v.is_finite(),
+    wanted: "a finite number of at least 0",
+};
+
+impl Quantity {
+    /// ρ or E.
+    pub fn coefficient(form: &Form) -> Quantity {
+        match form.is_elastic() {
+            true => YOUNG,
+            false => RHO,
+        }
     }
-}
 
-fn is_coefficient(value: f64) -> bool {
-    value.is_finite() && value > 0.0
-}
-
-/// A value of ρ or E at a point, checked.
-pub(super) fn checked_rho(
-    body: &BodySpec,
-    form: &Form,
-    value: f64,
-    point: [f64; 3],
-) -> Result<f64> {
-    if is_coefficient(value) {
-        return Ok(value);
+    /// A value at a point, checked.
+    pub fn at(&self, body: &BodySpec, value: f64, point: [f64; 3]) -> Result<f64> {
+        match (self.good)(value) {
+            true => Ok(value),
+            false => self.refuse(body, value, &format!(" at {}", body.spot_at(point))),
+        }
     }
-    let (name, at) = (coefficient(form), body.spot_at(point));
-    fail(
-        body,
-        format_args!("{name} = {value} at {at} where {POSITIVE} was expected"),
-    )
-}
 
-/// A value of Poisson's ratio at a point, checked.
-pub(super) fn checked_poisson(body: &BodySpec, value: f64, point: [f64; 3]) -> Result<f64> {
-    if is_ratio(value) {
-        return Ok(value);
+    /// The error of a value; `place` says where it is.
+    fn refuse<T>(&self, body: &BodySpec, value: f64, place: &str) -> Result<T> {
+        let Quantity { name, wanted, .. } = self;
+        body.error(format!("{name} {value}{place} where {wanted} was expected"))
     }
-    let at = body.spot_at(point);
-    fail(
-        body,
-        format_args!("ν = {value} at {at} where {RATIO} was expected"),
-    )
-}
 
-/// The error for a load that is not finite.
-pub(super) fn bad_load<T>(body: &BodySpec, value: f64, point: [f64; 3]) -> Result<T> {
-    let at = body.spot_at(point);
-    fail(
-        body,
-        format_args!("load {value} at {at} where a finite number was expected"),
-    )
-}
-
-/// The error for a spring that is negative or not finite.
-pub(super) fn bad_spring<T>(body: &BodySpec, value: f64, point: [f64; 3]) -> Result<T> {
-    let at = body.spot_at(point);
-    fail(
-        body,
-        format_args!("spring {value} at {at} where a finite number of at least 0 was expected"),
-    )
+    /// Checks the values of a field that are known without evaluation.
+    fn check(&self, body: &BodySpec, field: &Field) -> Result<()> {
+        let wrong = |value: &f64| !(self.good)(*value);
+        let Some(value) = field.known_values().into_iter().find(wrong) else {
+            return Ok(());
+        };
+        let found = match field {
+            Field::Cells(cells) => cells.find(|v| wrong(&v))?,
+            _ => None,
+        };
+        match found {
+            Some((value, cell)) => self.refuse(body, value, &format!(" in {cell}")),
+            None => self.refuse(body, value, ""),
+        }
+    }
 }
 
 /// Degrees of freedom with a value that a side gives, in increasing order: C k + c for component c of node k.
@@ -328,11 +279,7 @@ pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(
     }
     for place in mesh.boundary() {
         let at = At {
-            variables: Variables {
-                point: body.position(place),
-                body: body.place,
-                subdomain: [0; 3],
-            },
+            variables: body.variables(place),
             subdomains: mesh.subdomains,
         };
         for component in 0..components {
@@ -343,27 +290,21 @@ pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(
                 };
                 let value = field.eval(&at);
                 if !value.is_finite() {
-                    return fail(
-                        body,
-                        format_args!(
+                    return body.error(format!(
                             "Dirichlet value {value} at {} on side {} where a finite number was expected",
                             body.spot(place),
                             SIDES[side]
-                        ),
-                    );
+                        ));
                 }
                 match found {
                     Some((other, given)) if !agree(given, value) => {
-                        return fail(
-                            body,
-                            format_args!(
-                                "sides {} and {} prescribe {given} and {value} \
-                                 at their common corner {} (equal values were expected)",
-                                SIDES[other],
-                                SIDES[side],
-                                body.spot(place)
-                            ),
-                        );
+                        return body.error(format!(
+                            "sides {} and {} prescribe {given} and {value} \
+                             at their common corner {} (equal values were expected)",
+                            SIDES[other],
+                            SIDES[side],
+                            body.spot(place)
+                        ));
                     }
                     Some(_) => {}
                     None => found = Some((side, value)),
@@ -385,8 +326,7 @@ pub(super) fn check_unknowns(bodies: &[Body]) -> Result<()> {
     {
         return Ok(());
     }
-    fail(
-        &bodies[0].spec,
+    bodies[0].spec.error(
         "every node of the scene lies on a Dirichlet side (at least one free node was expected)",
     )
 }

@@ -1,7 +1,7 @@
 //! A scene as plain data: what a file says, or what a program builds. Nothing here has been checked yet;
 //! [`Scene::new`](crate::scene::Scene::new) does that.
 
-use super::expr::Expr;
+use super::expr::{Expr, Variables};
 use super::field::{Field, Region};
 use super::map::Map;
 use super::profile::Profile;
@@ -125,6 +125,15 @@ impl BodySpec {
         self.map.as_ref().map_or(point, |map| map.apply(point))
     }
 
+    /// The variables of expressions at the node at a place.
+    pub(crate) fn variables(&self, place: [usize; 3]) -> Variables {
+        Variables {
+            point: self.position(place),
+            body: self.place,
+            subdomain: [0; 3],
+        }
+    }
+
     /// The position of a node in the notation of messages: "(x, y)" or "(x, y, z)".
     pub(crate) fn spot(&self, place: [usize; 3]) -> String {
         self.spot_at(self.position(place))
@@ -145,121 +154,68 @@ pub const POISSON: f64 = 0.3;
 /// A box cut into `bodies[0]` × `bodies[1]` (× `bodies[2]`) equal bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridSpec {
-    /// Bodies are named `<name><i>_<j>` (`<name><i>_<j>_<k>` in three dimensions), column i, row j and layer k.
-    pub name: String,
     /// Bodies in x, y and z.
     pub bodies: [usize; 3],
-    /// Lower left corner of the whole grid.
-    pub origin: [f64; 3],
-    /// Edge lengths of the whole grid; 0 in z in the plane.
-    pub size: [f64; 3],
-    /// How the whole grid is bent into shape.
-    pub map: Option<Map>,
-    /// Elements of every body; 0 in z in the plane.
-    pub elements: [usize; 3],
-    /// Subdomains of every body.
-    pub subdomains: [usize; 3],
-    /// Coefficient ρ, or Young's modulus.
-    pub rho: Field,
-    /// Poisson's ratio.
-    pub poisson: Field,
-    /// Load f.
-    pub load: Load,
-    /// Loads on the outer sides of the whole grid.
-    pub surface: Vec<SurfaceLoad>,
-    /// Elastic foundations on the outer sides of the whole grid.
-    pub springs: Vec<(usize, Field)>,
-    /// Factor of the loads over the load steps; `None`: the factor of all loads of the scene.
-    pub ramp: Option<Ramp>,
-    /// Dirichlet conditions on the outer sides of the whole grid.
-    pub dirichlet: Sides,
-    /// Where it was written, or empty.
-    pub written: String,
+    /// The whole grid: its box, its map and its outer sides. Elements and subdomains are those of every body. Bodies are
+    /// named `<name><i>_<j>` (`<name><i>_<j>_<k>` in three dimensions), column i, row j and layer k.
+    pub whole: BodySpec,
 }
 
 impl GridSpec {
     /// The unit square, held all round, with ρ = 1 and f = 1.
     pub fn unit_square(bodies: [usize; 2], subdomains: [usize; 2], elements: [usize; 2]) -> Self {
-        GridSpec {
-            bodies: [bodies[0], bodies[1], 1],
-            size: [1.0, 1.0, 0.0],
-            elements: [elements[0], elements[1], 0],
-            subdomains: [subdomains[0], subdomains[1], 1],
-            ..GridSpec::unit_cube([1; 3], [1; 3], [1; 3])
-        }
+        let mesh = BoxMesh::plane([0.0; 2], [1.0; 2], elements, subdomains);
+        GridSpec::held([bodies[0], bodies[1], 1], mesh)
     }
 
     /// The unit cube, held all round, with ρ = 1 and f = 1.
     pub fn unit_cube(bodies: [usize; 3], subdomains: [usize; 3], elements: [usize; 3]) -> Self {
-        GridSpec {
-            name: "b".into(),
-            bodies,
+        let mesh = BoxMesh {
             origin: [0.0; 3],
             size: [1.0; 3],
-            map: None,
             elements,
             subdomains,
-            rho: Field::constant(1.0),
-            poisson: Field::constant(POISSON),
+        };
+        GridSpec::held(bodies, mesh)
+    }
+
+    fn held(bodies: [usize; 3], mesh: BoxMesh) -> Self {
+        let whole = BodySpec {
             load: Load::constant(1.0),
-            surface: Vec::new(),
-            springs: Vec::new(),
-            ramp: None,
             dirichlet: held_all_round(),
-            written: String::new(),
-        }
+            ..BodySpec::new("b", mesh)
+        };
+        GridSpec { bodies, whole }
     }
 
     /// Its bodies, layer by layer and row by row.
     pub fn expand(&self) -> Vec<BodySpec> {
-        // The size is the same to the last bit for every body: equal subdomains then have equal matrices.
-        let size = [0, 1, 2].map(|d| self.size[d] / self.bodies[d] as f64);
-        let solid = self.elements[2] > 0;
+        let GridSpec { bodies, whole } = self;
+        let BoxMesh { origin, size, .. } = whole.mesh;
         let body = |place: [usize; 3]| {
-            let outer = |s: usize| place[s / 2] == [0, self.bodies[s / 2] - 1][s % 2];
-            let mut dirichlet = self.dirichlet.clone();
-            for (s, side) in dirichlet.iter_mut().enumerate() {
-                if !outer(s) {
-                    *side = [const { None }; 3];
-                }
-            }
+            let outer = |s: usize| place[s / 2] == [0, bodies[s / 2] - 1][s % 2];
+            let mut body = whole.clone();
             let [i, j, k] = place;
-            BodySpec {
-                name: match solid {
-                    false => format!("{}{i}_{j}", self.name),
-                    true => format!("{}{i}_{j}_{k}", self.name),
-                },
-                mesh: BoxMesh {
-                    origin: [0, 1, 2].map(|d| {
-                        self.origin[d] + self.size[d] * (place[d] as f64 / self.bodies[d] as f64)
-                    }),
-                    size,
-                    elements: self.elements,
-                    subdomains: self.subdomains,
-                },
-                map: self.map.clone(),
-                rho: self.rho.over(self.bodies),
-                poisson: self.poisson.over(self.bodies),
-                load: self.load.clone(),
-                surface: self
-                    .surface
-                    .iter()
-                    .filter(|l| outer(l.side))
-                    .cloned()
-                    .collect(),
-                springs: self
-                    .springs
-                    .iter()
-                    .filter(|(side, _)| outer(*side))
-                    .cloned()
-                    .collect(),
-                ramp: self.ramp.clone(),
-                dirichlet,
-                place,
-                written: self.written.clone(),
+            body.name = match whole.mesh.dim() {
+                2 => format!("{}{i}_{j}", whole.name),
+                _ => format!("{}{i}_{j}_{k}", whole.name),
+            };
+            body.place = place;
+            for d in 0..3 {
+                body.mesh.origin[d] = origin[d] + size[d] * (place[d] as f64 / bodies[d] as f64);
+                // The same to the last bit for every body: equal subdomains then have equal matrices.
+                body.mesh.size[d] = size[d] / bodies[d] as f64;
             }
+            body.rho = whole.rho.over(*bodies);
+            body.poisson = whole.poisson.over(*bodies);
+            body.surface.retain(|load| outer(load.side));
+            body.springs.retain(|(side, _)| outer(*side));
+            for s in (0..6).filter(|&s| !outer(s)) {
+                body.dirichlet[s] = [const { None }; 3];
+            }
+            body
         };
-        places(self.bodies).map(body).collect()
+        places(*bodies).map(body).collect()
     }
 }
 
@@ -416,7 +372,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
         z: None,
         value: Expr::constant(value),
     };
-    grid.load = Load {
+    grid.whole.load = Load {
         fields: vec![Field::Regions {
             list: vec![
                 region([0.0, 0.5], [0.75, 1.0], -3.0),

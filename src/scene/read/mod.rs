@@ -1,7 +1,7 @@
 //! From TOML to a [`SceneSpec`]: keys, types and shapes.
 
 mod cells;
-pub(crate) mod document;
+mod document;
 mod fields;
 mod form;
 mod shape;
@@ -10,64 +10,37 @@ mod steps;
 mod ties;
 mod values;
 
-use super::model::field::{By, Field};
-use super::model::spec::{
-    free_all_round, BodySpec, ByDefault, GridSpec, Load, SceneSpec, Sides, SurfaceLoad, POISSON,
-};
+use super::model::spec::{BodySpec, GridSpec, Load, SceneSpec, POISSON};
 use super::validate::MOST_BODIES;
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use crate::mesh::BoxMesh;
-use document::{Item, Section, Source, Value};
+use document::{Item, Section, Value};
 use fields::Shape;
 use values::MOST;
 
 /// The scene in `text`; `file` names it in messages.
 pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
-    let source = Source { file, text };
-    let root = source.parse()?;
-    let mut scene = Section::new(&source, "the scene", &root)?;
-    let reader = Reader::new(&source, &mut scene)?;
+    let root = document::parse(file, text)?;
+    let mut scene = root.section("the scene")?;
+    let reader = Reader::new(&mut scene)?;
 
     let title = match (scene.take("name"), scene.take("title")) {
-        (_, Some(item)) | (Some(item), None) => reader.text(item, "a title")?,
+        (_, Some(item)) | (Some(item), None) => item.text("a title")?,
         (None, None) => stem(file),
     };
-    let mut bodies = Vec::new();
-    for item in reader.tables(scene.take("grid"))? {
-        bodies.extend(reader.grid(item)?.expand());
-    }
-    for item in reader.tables(scene.take("body"))? {
+    let grids = scene.each("grid", |item| Ok(reader.grid(item)?.expand()))?;
+    let mut bodies = grids.concat();
+    for item in scene.tables("body")? {
         bodies.push(reader.body(item, bodies.len())?);
     }
-    let default = match scene.take("interface") {
-        None => ByDefault::default(),
-        Some(item) => reader.interface(item)?,
-    };
-    let mut ties = Vec::new();
-    for item in reader.tables(scene.take("tie"))? {
-        ties.push(reader.tie(item, &bodies)?);
-    }
-    let mut contacts = Vec::new();
-    for item in reader.tables(scene.take("contact"))? {
-        contacts.push(reader.contact(item, &bodies)?);
-    }
-    let mut obstacles = Vec::new();
-    for item in reader.tables(scene.take("obstacle"))? {
-        obstacles.push(reader.obstacle(item, &bodies)?);
-    }
-    let steps = match scene.take("steps") {
-        None => None,
-        Some(item) => Some(reader.steps(item)?),
-    };
-    let exact = match scene.take("exact") {
-        None => None,
-        Some(item) => Some(reader.exact(item)?),
-    };
-    let options = match scene.take("options") {
-        None => Vec::new(),
-        Some(item) => reader.options(item)?,
-    };
+    let default = scene.read("interface", |item| reader.interface(item))?;
+    let ties = scene.each("tie", |item| reader.tie(item, &bodies))?;
+    let contacts = scene.each("contact", |item| reader.contact(item, &bodies))?;
+    let obstacles = scene.each("obstacle", |item| reader.obstacle(item, &bodies))?;
+    let steps = scene.read("steps", |item| reader.steps(item))?;
+    let exact = scene.read("exact", |item| reader.components(item))?;
+    let options = scene.read("options", options)?;
     scene.finish()?;
     if bodies.is_empty() {
         return Err(Error::Input(format!(
@@ -78,13 +51,13 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
         title,
         form: reader.form,
         bodies,
-        default,
+        default: default.unwrap_or_default(),
         ties,
         contacts,
         obstacles,
         steps,
         exact,
-        options,
+        options: options.unwrap_or_default(),
     })
 }
 
@@ -94,215 +67,143 @@ fn stem(file: &str) -> String {
         .map_or_else(|| file.to_string(), |s| s.to_string_lossy().into_owned())
 }
 
-struct Reader<'a> {
-    source: &'a Source<'a>,
+/// PETSc options, with or without the leading dash.
+fn options(item: &Item) -> Result<Vec<(String, String)>> {
+    let option = |(key, _, item): &(String, usize, Item)| {
+        let value = match &item.value {
+            Value::Text(text) => text.clone(),
+            Value::Integer(v) => v.to_string(),
+            Value::Number(v) => format!("{v:e}"),
+            Value::Truth(v) => v.to_string(),
+            _ => return item.expected("a text, a number or a truth value"),
+        };
+        Ok((key.trim_start_matches('-').to_string(), value))
+    };
+    let section = item.section("[options]")?;
+    section.entries.iter().map(option).collect()
+}
+
+struct Reader {
     /// The dimension of the scene.
     dim: usize,
     /// The equation and its finite elements.
     form: Form,
 }
 
-/// Data that bodies and grids have in common.
-struct Data {
-    rho: Field,
-    poisson: Field,
-    load: Load,
-    surface: Vec<SurfaceLoad>,
-    springs: Vec<(usize, Field)>,
-    dirichlet: Sides,
-}
-
-impl<'a> Reader<'a> {
-    fn body(&self, item: &'a Item, index: usize) -> Result<BodySpec> {
-        let mut section = Section::new(self.source, "[[body]]", item)?;
-        let name = match section.take("name") {
-            Some(item) => self.text(item, "a name")?,
-            None => format!("body{index}"),
-        };
-        let origin = self.origin(&mut section)?;
-        let bent = section.take("shape");
-        let size = match (section.take("size"), bent) {
-            (Some(item), _) => self.size(item)?,
-            (None, Some(_)) => self.unit(),
-            (None, None) => self.size(section.need("size", "a width and a height")?)?,
-        };
-        let (elements, subdomains) = self.partition(&mut section, item, &name)?;
-        let mut body = BodySpec::new(
-            name,
-            BoxMesh {
-                origin,
-                size,
-                elements,
-                subdomains,
-            },
-        );
-        body.map = bent.map(|item| self.map(item, origin, size)).transpose()?;
-        body.written = self.written(item);
-        let shape = Shape {
-            bare: By::Subdomain,
-            bodies: None,
-            elements,
-            subdomains,
-        };
-        let data = self.data(&mut section, &shape)?;
-        body.ramp = self.ramp(&mut section)?;
-        (body.rho, body.poisson) = (data.rho, data.poisson);
-        (body.load, body.surface, body.dirichlet) = (data.load, data.surface, data.dirichlet);
-        body.springs = data.springs;
+impl Reader {
+    /// A body; without a name it is called by its number.
+    fn body(&self, item: &Item, number: usize) -> Result<BodySpec> {
+        let mut section = item.section("[[body]]")?;
+        let name = section.read("name", |item| item.text("a name"))?;
+        let name = name.unwrap_or_else(|| format!("body{number}"));
+        let body = self.box_of_elements(&mut section, item, name, None)?;
         section.finish()?;
         Ok(body)
     }
 
-    fn grid(&self, item: &'a Item) -> Result<GridSpec> {
-        let mut section = Section::new(self.source, "[grid]", item)?;
-        let name = match section.take("name") {
-            Some(item) => self.text(item, "a name")?,
-            None => "b".into(),
-        };
+    fn grid(&self, item: &Item) -> Result<GridSpec> {
+        let mut section = item.section("[grid]")?;
+        let name = section.read("name", |item| item.text("a name"))?;
         let counts = section.need("bodies", "the number of bodies in x and y")?;
         let bodies = self.counts(counts, 1)?;
         let n = bodies.iter().fold(1_usize, |n, b| n.saturating_mul(*b));
         if n > MOST_BODIES {
-            return self.error(
-                counts,
-                format_args!("{n} bodies where at most {MOST_BODIES} were expected"),
-            );
+            return counts.error(format!(
+                "{n} bodies where at most {MOST_BODIES} were expected"
+            ));
         }
-        let origin = self.origin(&mut section)?;
-        let size = match section.take("size") {
-            Some(item) => self.size(item)?,
-            None => self.unit(),
-        };
-        let bent = section.take("shape");
-        let map = bent.map(|item| self.map(item, origin, size)).transpose()?;
-        let (elements, subdomains) = self.partition(&mut section, item, "of the grid")?;
-        let shape = Shape {
-            bare: By::Body,
-            bodies: Some(bodies),
-            elements,
-            subdomains,
-        };
-        let data = self.data(&mut section, &shape)?;
-        let ramp = self.ramp(&mut section)?;
+        let name = name.unwrap_or_else(|| "b".into());
+        let whole = self.box_of_elements(&mut section, item, name, Some(bodies))?;
         section.finish()?;
-        Ok(GridSpec {
-            name,
-            bodies,
-            origin,
+        Ok(GridSpec { bodies, whole })
+    }
+
+    /// The keys that a body has, and a grid of `bodies`.
+    fn box_of_elements(
+        &self,
+        section: &mut Section,
+        item: &Item,
+        name: String,
+        bodies: Option<[usize; 3]>,
+    ) -> Result<BodySpec> {
+        let wanted = ["a point [x, y]", "a point [x, y, z]"][self.dim - 2];
+        let origin = section.read("origin", |item| self.vector(item, wanted))?;
+        let bent = section.take("shape");
+        let size = match section.read("size", |item| self.size(item))? {
+            Some(size) => size,
+            // The unit box.
+            None if bent.is_some() || bodies.is_some() => [1.0, 1.0, [0.0, 1.0][self.dim - 2]],
+            None => self.size(section.need("size", "a width and a height")?)?,
+        };
+        let (elements, subdomains) = self.partition(section, item, &name, bodies.is_some())?;
+        let mesh = BoxMesh {
+            origin: origin.unwrap_or_default(),
             size,
-            map,
             elements,
             subdomains,
-            rho: data.rho,
-            poisson: data.poisson,
-            load: data.load,
-            surface: data.surface,
-            springs: data.springs,
-            ramp,
-            dirichlet: data.dirichlet,
-            written: self.written(item),
-        })
+        };
+        let map = bent.map(|item| self.map(item, &mesh)).transpose()?;
+        let shape = Shape { mesh, bodies };
+        let mut body = BodySpec::new(name, mesh);
+        let elastic = self.form.is_elastic();
+        if let Some(item) = section.take(if elastic { "young" } else { "rho" }) {
+            body.rho = self.coefficient(item, &shape, 1.0)?;
+        }
+        if let Some(item) = elastic.then(|| section.take("poisson")).flatten() {
+            body.poisson = self.coefficient(item, &shape, POISSON)?;
+        }
+        if let Some(item) = section.take("load") {
+            let (fields, quadrature) = self.vector_field(item, &shape)?;
+            let quadrature = quadrature.unwrap_or_default();
+            body.load = Load { fields, quadrature };
+        }
+        body.surface = self.surface_loads(section)?;
+        body.springs = self.springs(section)?;
+        if let Some(item) = section.take("dirichlet") {
+            body.dirichlet = self.sides(item)?;
+        }
+        body.ramp = self.ramp(section)?;
+        (body.map, body.written) = (map, item.written());
+        Ok(body)
     }
 
     /// `elements` or `elements_per_subdomain`, and `subdomains`.
     fn partition(
         &self,
-        section: &mut Section<'a>,
+        section: &mut Section,
         item: &Item,
         name: &str,
+        grid: bool,
     ) -> Result<([usize; 3], [usize; 3])> {
-        let subdomains = match section.take("subdomains") {
-            Some(item) => self.counts(item, 1)?,
-            None => [1; 3],
-        };
-        match (
-            section.take("elements"),
-            section.take("elements_per_subdomain"),
-        ) {
-            (Some(item), None) => Ok((self.counts(item, 0)?, subdomains)),
-            (None, Some(item)) => {
-                let each = self.counts(item, 0)?;
-                let elements = [0, 1, 2].map(|d| each[d] * subdomains[d]);
-                match elements.iter().find(|n| **n > MOST) {
-                    None => Ok((elements, subdomains)),
-                    Some(n) => self.error(
-                        item,
-                        format_args!("{n} elements in a row, more than {MOST}"),
-                    ),
-                }
-            }
-            (Some(_), Some(item)) => self.error(
-                item,
-                "both `elements` and `elements_per_subdomain` are given where one was expected",
-            ),
-            (None, None) => self.error(
-                item,
-                format_args!(
-                    "body {name} has no `elements` (or `elements_per_subdomain`)",
-                    name = if name == "of the grid" {
-                        name.into()
-                    } else {
-                        format!("`{name}`")
+        let subdomains = section.read("subdomains", |item| self.counts(item, 1))?;
+        let subdomains = subdomains.unwrap_or([1; 3]);
+        let elements =
+            match (
+                section.take("elements"),
+                section.take("elements_per_subdomain"),
+            ) {
+                (Some(item), None) => self.counts(item, 0)?,
+                (None, Some(item)) => {
+                    let each = self.counts(item, 0)?;
+                    let elements = [0, 1, 2].map(|d| each[d] * subdomains[d]);
+                    if let Some(n) = elements.iter().find(|n| **n > MOST) {
+                        return item.error(format!("{n} elements in a row, more than {MOST}"));
                     }
-                ),
-            ),
-        }
-    }
-
-    /// Coefficients, loads and Dirichlet conditions.
-    fn data(&self, section: &mut Section<'a>, shape: &Shape) -> Result<Data> {
-        let elastic = self.form.is_elastic();
-        let key = if elastic { "young" } else { "rho" };
-        let rho = match section.take(key) {
-            Some(item) => self.coefficient(item, shape, 1.0)?,
-            None => Field::constant(1.0),
-        };
-        let given = if elastic {
-            section.take("poisson")
-        } else {
-            None
-        };
-        let poisson = match given {
-            Some(item) => self.coefficient(item, shape, POISSON)?,
-            None => Field::constant(POISSON),
-        };
-        let load = match section.take("load") {
-            Some(item) => {
-                let (fields, quadrature) = self.vector_field(item, shape)?;
-                Load {
-                    fields,
-                    quadrature: quadrature.unwrap_or_default(),
+                    elements
                 }
-            }
-            None => Load::constant(0.0),
-        };
-        Ok(Data {
-            rho,
-            poisson,
-            load,
-            surface: self.surface_loads(section)?,
-            springs: self.springs(section)?,
-            dirichlet: match section.take("dirichlet") {
-                Some(item) => self.sides(item)?,
-                None => free_all_round(),
-            },
-        })
-    }
-
-    /// PETSc options, with or without the leading dash.
-    fn options(&self, item: &'a Item) -> Result<Vec<(String, String)>> {
-        let section = Section::new(self.source, "[options]", item)?;
-        let mut out = Vec::new();
-        for (key, _, item) in section.entries() {
-            let value = match &item.value {
-                Value::Text(text) => text.clone(),
-                Value::Integer(v) => v.to_string(),
-                Value::Number(v) => format!("{v:e}"),
-                Value::Truth(v) => v.to_string(),
-                _ => return self.expected(item, "a text, a number or a truth value"),
+                (Some(_), Some(item)) => return item.error(
+                    "both `elements` and `elements_per_subdomain` are given where one was expected",
+                ),
+                (None, None) => {
+                    let name = match grid {
+                        true => "of the grid".into(),
+                        false => format!("`{name}`"),
+                    };
+                    return item.error(format!(
+                        "body {name} has no `elements` (or `elements_per_subdomain`)"
+                    ));
+                }
             };
-            out.push((key.trim_start_matches('-').to_string(), value));
-        }
-        Ok(out)
+        Ok((elements, subdomains))
     }
 }

@@ -9,55 +9,28 @@ use crate::scene::model::ramp::{Ramp, StepsSpec};
 /// Largest number of load steps.
 const MOST_STEPS: usize = 1 << 20;
 
-impl<'a> Reader<'a> {
-    pub(super) fn steps(&self, item: &'a Item) -> Result<StepsSpec> {
-        let mut section = Section::new(self.source, "[steps]", item)?;
+impl Reader {
+    pub(super) fn steps(&self, item: &Item) -> Result<StepsSpec> {
+        let mut section = item.section("[steps]")?;
         let times = match (section.take("count"), section.take("times")) {
             (Some(item), None) => {
-                let count = self.count(item, "a positive whole number")?;
+                let count = item.count("a positive whole number")?;
                 if count > MOST_STEPS {
-                    return self.error(
-                        item,
-                        format_args!("{count} steps where at most {MOST_STEPS} were expected"),
-                    );
+                    return item.error(format!(
+                        "{count} steps where at most {MOST_STEPS} were expected"
+                    ));
                 }
                 (1..=count).map(|k| k as f64 / count as f64).collect()
             }
-            (None, Some(item)) => {
-                let wanted = "a list of increasing times";
-                let mut times: Vec<f64> = Vec::new();
-                for item in self.list(item, wanted)? {
-                    let t = self.number(item)?;
-                    match times.last() {
-                        Some(last) if *last >= t => {
-                            return self.error(
-                                item,
-                                format_args!(
-                                "the time {t} after {last} where increasing times were expected"
-                            ),
-                            )
-                        }
-                        _ => times.push(t),
-                    }
-                }
-                if times.is_empty() {
-                    return self.expected(item, wanted);
-                }
-                times
-            }
+            (None, Some(item)) => self.times(item)?,
             (Some(_), Some(item)) => {
-                return self.error(
-                    item,
-                    "both `count` and `times` are given where one was expected",
-                )
+                return item.error("both `count` and `times` are given where one was expected")
             }
-            (None, None) => {
-                return self.error(item, "[steps] has no `count` (or `times`)");
-            }
+            (None, None) => return item.error("[steps] has no `count` (or `times`)"),
         };
-        let mut factor = |key| match section.take(key) {
-            Some(item) => self.ramp_value(item),
-            None => Ok(Ramp::constant(1.0)),
+        let mut factor = |key| {
+            let read = section.read(key, ramp);
+            Ok(read?.unwrap_or_else(|| Ramp::constant(1.0)))
         };
         let (load, gap, dirichlet) = (factor("load")?, factor("gap")?, factor("dirichlet")?);
         section.finish()?;
@@ -66,29 +39,35 @@ impl<'a> Reader<'a> {
             load,
             gap,
             dirichlet,
-            written: self.written(item),
+            written: item.written(),
         })
     }
 
-    /// `ramp`, where it is given.
-    pub(super) fn ramp(&self, section: &mut Section<'a>) -> Result<Option<Ramp>> {
-        let item = section.take("ramp");
-        item.map(|item| self.ramp_value(item)).transpose()
-    }
-
-    fn ramp_value(&self, item: &Item) -> Result<Ramp> {
-        match &item.value {
-            Value::Integer(v) => Ok(Ramp::constant(*v as f64)),
-            Value::Number(v) => Ok(Ramp::constant(*v)),
-            Value::Text(text) => Ramp::parse(text).or_else(|message| {
-                self.error(item, format_args!("bad expression \"{text}\": {message}"))
-            }),
-            _ => self.expected(item, "a number or an expression in t"),
+    fn times(&self, item: &Item) -> Result<Vec<f64>> {
+        let wanted = "a list of increasing times";
+        let mut times: Vec<f64> = Vec::new();
+        for item in item.list(wanted)? {
+            let t = self.number(item)?;
+            if let Some(last) = times.last().filter(|last| **last >= t) {
+                return item.error(format!(
+                    "the time {t} after {last} where increasing times were expected"
+                ));
+            }
+            times.push(t);
+        }
+        match times.is_empty() {
+            true => item.expected(wanted),
+            false => Ok(times),
         }
     }
 
+    /// `ramp`, where it is given.
+    pub(super) fn ramp(&self, section: &mut Section) -> Result<Option<Ramp>> {
+        section.read("ramp", ramp)
+    }
+
     /// A number, an expression, or a table [[t, value], …].
-    pub(super) fn profile(&self, item: &'a Item) -> Result<Profile> {
+    pub(super) fn profile(&self, item: &Item) -> Result<Profile> {
         let Value::List(rows) = &item.value else {
             return Ok(Profile::Expression(self.expression(item)?));
         };
@@ -98,13 +77,24 @@ impl<'a> Reader<'a> {
             let [t, value] = self.pair(row, "a pair [t, value]")?;
             let after = table.last().is_none_or(|last| last[0] < t);
             if !((0.0..=1.0).contains(&t) && after) {
-                return self.error(row, format_args!("t = {t} where {wanted} was expected"));
+                return row.error(format!("t = {t} where {wanted} was expected"));
             }
             table.push([t, value]);
         }
-        if table.is_empty() {
-            return self.expected(item, wanted);
+        match table.is_empty() {
+            true => item.expected(wanted),
+            false => Ok(Profile::Table(table)),
         }
-        Ok(Profile::Table(table))
+    }
+}
+
+/// A factor as a function of t.
+fn ramp(item: &Item) -> Result<Ramp> {
+    match &item.value {
+        Value::Integer(v) => Ok(Ramp::constant(*v as f64)),
+        Value::Number(v) => Ok(Ramp::constant(*v)),
+        Value::Text(text) => Ramp::parse(text)
+            .or_else(|message| item.error(format!("bad expression \"{text}\": {message}"))),
+        _ => item.expected("a number or an expression in t"),
     }
 }

@@ -1,8 +1,8 @@
 //! Single values (numbers, texts, counts, sizes), each with a message for a value of the wrong kind.
 
-use super::document::{Item, Value};
+use super::document::{Item, Section, Value};
 use super::Reader;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::model::expr::Expr;
 use crate::scene::model::spec::SIDES;
 
@@ -10,54 +10,33 @@ use crate::scene::model::spec::SIDES;
 /// it can be reported.
 pub(super) const MOST: usize = 1 << 22;
 
-impl<'a> Reader<'a> {
-    pub(super) fn error<T>(&self, item: &Item, message: impl std::fmt::Display) -> Result<T> {
-        Err(Error::Input(format!(
-            "{}: {message}",
-            self.source.place(item.line)
-        )))
-    }
-
-    pub(super) fn expected<T>(&self, item: &Item, wanted: &str) -> Result<T> {
-        self.error(
-            item,
-            format_args!("{} where {wanted} was expected", item.value.kind()),
-        )
-    }
-
-    /// One table or a list of tables.
-    pub(super) fn tables(&self, item: Option<&'a Item>) -> Result<Vec<&'a Item>> {
-        match item {
-            None => Ok(Vec::new()),
-            Some(item) => match &item.value {
-                Value::Table(_) => Ok(vec![item]),
-                Value::List(items) => Ok(items.iter().collect()),
-                _ => self.expected(item, "a table"),
-            },
+impl Item<'_> {
+    /// A positive whole number.
+    pub(super) fn count(&self, wanted: &str) -> Result<usize> {
+        match self.value {
+            Value::Integer(v) if v > 0 && v as usize <= MOST => Ok(v as usize),
+            Value::Integer(v) if v > 0 => self.error(format!(
+                "the number {v} where {wanted} of at most {MOST} was expected"
+            )),
+            _ => self.expected(wanted),
         }
     }
+}
 
-    pub(super) fn text(&self, item: &Item, wanted: &str) -> Result<String> {
-        match &item.value {
-            Value::Text(text) => Ok(text.clone()),
-            _ => self.expected(item, wanted),
-        }
-    }
-
-    pub(super) fn list(&self, item: &'a Item, wanted: &str) -> Result<&'a [Item]> {
-        match &item.value {
-            Value::List(items) => Ok(items),
-            _ => self.expected(item, wanted),
-        }
-    }
-
+impl Reader {
     /// A number, or a constant expression such as "1/3".
     pub(super) fn number(&self, item: &Item) -> Result<f64> {
-        let value = self.expression(item)?.as_constant();
-        match value {
+        match self.expression(item)?.as_constant() {
             Some(v) if v.is_finite() => Ok(v),
-            Some(v) => self.error(item, format_args!("{v} where a finite number was expected")),
-            None => self.expected(item, "a number without variables"),
+            Some(v) => item.error(format!("{v} where a finite number was expected")),
+            None => item.expected("a number without variables"),
+        }
+    }
+
+    pub(super) fn positive(&self, item: &Item) -> Result<f64> {
+        match self.number(item)? {
+            v if v > 0.0 => Ok(v),
+            v => item.error(format!("{v} where a positive number was expected")),
         }
     }
 
@@ -70,43 +49,35 @@ impl<'a> Reader<'a> {
                 2 => Expr::parse_plane(text),
                 _ => Expr::parse(text),
             }
-            .or_else(|message| {
-                self.error(item, format_args!("bad expression \"{text}\": {message}"))
-            }),
-            _ => self.expected(item, "a number or an expression"),
+            .or_else(|message| item.error(format!("bad expression \"{text}\": {message}"))),
+            _ => item.expected("a number or an expression"),
         }
     }
 
-    pub(super) fn pair(&self, item: &'a Item, wanted: &str) -> Result<[f64; 2]> {
-        match self.list(item, wanted)? {
+    /// An expression for each component.
+    pub(super) fn components(&self, item: &Item) -> Result<Vec<Expr>> {
+        let c = self.form.components(self.dim);
+        match &item.value {
+            _ if c == 1 => Ok(vec![self.expression(item)?]),
+            Value::List(items) if items.len() == c => {
+                items.iter().map(|i| self.expression(i)).collect()
+            }
+            _ => item.expected(format!("a list of {c} components")),
+        }
+    }
+
+    pub(super) fn pair(&self, item: &Item, wanted: &str) -> Result<[f64; 2]> {
+        match item.list(wanted)? {
             [a, b] => Ok([self.number(a)?, self.number(b)?]),
-            _ => self.expected(item, wanted),
-        }
-    }
-
-    pub(super) fn count(&self, item: &Item, wanted: &str) -> Result<usize> {
-        match item.value {
-            Value::Integer(v) if v > 0 && v as usize <= MOST => Ok(v as usize),
-            Value::Integer(v) if v > 0 => self.error(
-                item,
-                format_args!("the number {v} where {wanted} of at most {MOST} was expected"),
-            ),
-            _ => self.expected(item, wanted),
+            _ => item.expected(wanted),
         }
     }
 
     /// One number for each dimension; the rest is zero.
-    pub(super) fn vector(&self, item: &'a Item, wanted: &str) -> Result<[f64; 3]> {
-        let list = self.list(item, wanted)?;
+    pub(super) fn vector(&self, item: &Item, wanted: &str) -> Result<[f64; 3]> {
+        let list = item.list(wanted)?;
         if list.len() != self.dim {
-            return self.error(
-                item,
-                format_args!(
-                    "a list of {} where {wanted} was expected{}",
-                    list.len(),
-                    self.hint(list.len())
-                ),
-            );
+            return self.wrong_length(item, wanted, list.len());
         }
         let mut out = [0.0; 3];
         for (value, item) in out.iter_mut().zip(list) {
@@ -115,12 +86,13 @@ impl<'a> Reader<'a> {
         Ok(out)
     }
 
-    /// A hint for a list whose length fits the other dimension.
-    fn hint(&self, n: usize) -> &'static str {
-        match (self.dim, n) {
+    /// The error of a list of `n`, with a hint where that fits the other dimension.
+    fn wrong_length<T>(&self, item: &Item, wanted: &str, n: usize) -> Result<T> {
+        let hint = match (self.dim, n) {
             (2, 3) => " (`dimension = 3` at the top makes the scene solid)",
             _ => "",
-        }
+        };
+        item.error(format!("a list of {n} where {wanted} was expected{hint}"))
     }
 
     /// A positive whole number for each dimension, or one for all of them; `flat` stands for z in the plane.
@@ -129,7 +101,7 @@ impl<'a> Reader<'a> {
         match &item.value {
             Value::List(items) if items.len() == self.dim => {
                 for (count, item) in out.iter_mut().zip(items) {
-                    *count = self.count(item, "a positive whole number")?;
+                    *count = item.count("a positive whole number")?;
                 }
             }
             Value::List(items) => {
@@ -137,17 +109,10 @@ impl<'a> Reader<'a> {
                     2 => "a pair of positive whole numbers",
                     _ => "three positive whole numbers",
                 };
-                return self.error(
-                    item,
-                    format_args!(
-                        "{} where {wanted} was expected{}",
-                        item.value.kind(),
-                        self.hint(items.len())
-                    ),
-                );
+                return self.wrong_length(item, wanted, items.len());
             }
             _ => {
-                let one = self.count(item, "a positive whole number or a pair of them")?;
+                let one = item.count("a positive whole number or a pair of them")?;
                 out[..self.dim].fill(one);
             }
         }
@@ -155,7 +120,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Edge lengths, one for each dimension or one for all.
-    pub(super) fn size(&self, item: &'a Item) -> Result<[f64; 3]> {
+    pub(super) fn size(&self, item: &Item) -> Result<[f64; 3]> {
         let size = match &item.value {
             Value::List(_) => {
                 let wanted = ["a width and a height", "three edge lengths"][self.dim - 2];
@@ -169,24 +134,14 @@ impl<'a> Reader<'a> {
         };
         match size[..self.dim].iter().find(|s| **s <= 0.0) {
             None => Ok(size),
-            Some(s) => self.error(
-                item,
-                format_args!("the size {s} where a positive number was expected"),
-            ),
+            Some(s) => item.error(format!("the size {s} where a positive number was expected")),
         }
     }
 
     /// The index of a side of this scene's bodies.
     pub(super) fn side(&self, item: &Item) -> Result<usize> {
-        let names = &SIDES[..2 * self.dim];
-        let found = match &item.value {
-            Value::Text(text) => names.iter().position(|s| s == text),
-            _ => None,
-        };
-        match found {
-            Some(s) => Ok(s),
-            None => self.expected(item, &self.sides_list()),
-        }
+        let found = SIDES[..2 * self.dim].iter().position(|s| item.is(s));
+        found.map_or_else(|| item.expected(self.sides_list()), Ok)
     }
 
     /// "left, right, bottom or top".
@@ -199,7 +154,32 @@ impl<'a> Reader<'a> {
         )
     }
 
-    pub(super) fn written(&self, item: &Item) -> String {
-        format!("{}: ", self.source.place(item.line))
+    /// What `read` makes of the values of a table whose keys are sides, and the sides.
+    pub(super) fn by_side<T>(
+        &self,
+        item: &Item,
+        what: &str,
+        read: impl Fn(&Item) -> Result<T>,
+    ) -> Result<Vec<(usize, T)>> {
+        let mut section = item.section(what)?;
+        let mut out = Vec::new();
+        for (side, name) in SIDES.into_iter().enumerate().take(2 * self.dim) {
+            out.extend(section.read(name, &read)?.map(|value| (side, value)));
+        }
+        section.finish()?;
+        Ok(out)
+    }
+
+    /// What `read` makes of the values of a table with some of the keys x, y (and z), by component.
+    pub(super) fn by_axis<T>(
+        &self,
+        section: &mut Section,
+        read: impl Fn(&Item) -> Result<T>,
+    ) -> Result<[Option<T>; 3]> {
+        let mut out = [const { None }; 3];
+        for (value, key) in out.iter_mut().zip(["x", "y", "z"]).take(self.dim) {
+            *value = section.read(key, &read)?;
+        }
+        Ok(out)
     }
 }

@@ -5,7 +5,6 @@ use super::select::{is_end, selected, Parameters};
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link};
-use crate::scene::model::expr::Variables;
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::spec::Extent;
 use crate::scene::model::steps::Factors;
@@ -125,12 +124,7 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         let node = shared[k];
         let body = &self.bodies[bodies[order[0]]];
         let place = body.mesh().place(node.nodes[order[0]]);
-        let at = Variables {
-            point: body.spec.position(place),
-            body: body.spec.place,
-            subdomain: [0; 3],
-        };
-        let value = contact.gap.eval(node.t[0], &at);
+        let value = contact.gap.eval(node.t[0], &body.spec.variables(place));
         if value.is_finite() {
             return Ok(value);
         }
