@@ -6,7 +6,7 @@ use crate::linalg::vec3::{dot, minus, norm};
 use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
 use crate::scene::model::spec::BodySpec;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The interfaces of two bodies with different maps: the coinciding nodes, by pairs of sides. A single common node is a
 /// corner.
@@ -21,43 +21,41 @@ pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
     }
     let n_sides = 2 * a.mesh().dim();
     let near = TOLERANCE * shortest(&a.spec).min(shortest(&b.spec));
-    let mut out = Vec::new();
-    let mut seen = std::collections::HashSet::new();
+    let mut found = Vec::new();
+    let mut seen = HashSet::new();
     for sb in 0..n_sides {
         let grid = Grid::new(&b.spec, sb, near);
         for sa in 0..n_sides {
-            let mut shared = Vec::new();
-            let side = a.mesh().side_nodes(sa);
-            for (place, t) in side.map(|p| (p, parameters(&a.spec, sa, p))) {
-                if let Some(other) = grid.find(a.spec.position(place), near) {
-                    shared.push(SharedNode {
-                        nodes: [a.mesh().node(place), other],
-                        t,
-                        link: Link::Free,
-                    });
-                }
-            }
-            let varies = |k: usize| shared.iter().any(|s: &SharedNode| s.t[k] != shared[0].t[k]);
-            let dim = a.mesh().dim();
-            if shared.is_empty() {
-                continue;
-            }
-            if (0..dim - 1).all(varies) {
+            let node = |place| {
+                let other = grid.find(a.spec.position(place), near)?;
+                Some(SharedNode {
+                    nodes: [a.mesh().node(place), other],
+                    t: parameters(&a.spec, sa, place),
+                    link: Link::Free,
+                })
+            };
+            let shared: Vec<SharedNode> = a.mesh().side_nodes(sa).filter_map(node).collect();
+            let varies = |k: usize| shared.iter().any(|s| s.t[k] != shared[0].t[k]);
+            let shape = match (0..a.mesh().dim() - 1).all(varies) {
+                true => Shape::Face,
+                false => Shape::Corner,
+            };
+            if shape == Shape::Face {
                 seen.extend(shared.iter().map(|s| s.nodes));
-                out.push(interface(bodies, pair, [sa, sb], Shape::Face, shared));
-            } else {
-                out.push(interface(bodies, pair, [sa, sb], Shape::Corner, shared));
             }
+            found.push(([sa, sb], shape, shared));
         }
     }
     // Removes nodes of corners and edges that a face, or another corner, already has.
-    for i in out.iter_mut().filter(|i| i.shape == Shape::Corner) {
-        i.shared.retain(|s| seen.insert(s.nodes));
-        i.normals.truncate(i.shared.len());
-        i.distances.truncate(i.shared.len());
+    for (_, _, shared) in found.iter_mut().filter(|f| f.1 == Shape::Corner) {
+        shared.retain(|s| seen.insert(s.nodes));
     }
-    out.retain(|i| !i.shared.is_empty());
-    out
+    let found = found
+        .into_iter()
+        .filter(|(_, _, shared)| !shared.is_empty());
+    found
+        .map(|(sides, shape, shared)| interface(bodies, pair, sides, shape, shared))
+        .collect()
 }
 
 /// Sides of two bodies that face each other, node opposite node; `None` where their nodes cannot be paired.

@@ -156,8 +156,8 @@ pub const POISSON: f64 = 0.3;
 pub struct GridSpec {
     /// Bodies in x, y and z.
     pub bodies: [usize; 3],
-    /// The whole grid: its box, its map and its outer sides. Elements and subdomains are those of every body. Bodies are
-    /// named `<name><i>_<j>` (`<name><i>_<j>_<k>` in three dimensions), column i, row j and layer k.
+    /// The whole grid: its box, its map and its outer sides. Elements and subdomains are those of every body. Bodies
+    /// are named `<name><i>_<j>` (`<name><i>_<j>_<k>` in three dimensions), column i, row j and layer k.
     pub whole: BodySpec,
 }
 

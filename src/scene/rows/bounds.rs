@@ -138,7 +138,7 @@ impl<'a> Checks<'a> {
             for same in obstacle.limits.all().chunk_by(|a, b| a.node == b.node) {
                 let node = same[0].node;
                 let member = BodyNode { body, node };
-                let (distance, direction) = obstacle.ahead(&self.bodies[body], node);
+                let (distance, direction) = obstacle.ahead(node);
                 let side = member.along(self.bodies, direction);
                 if side.terms.is_empty() {
                     self.check_given(obstacle, member, side.given, distance)?;

@@ -5,7 +5,6 @@ use super::select::pick;
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::normals::parameters;
-use crate::scene::model::expr::Variables;
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::rigid::Rigid;
 use crate::scene::model::spec::{Extent, ObstacleSpec, SIDES};
@@ -26,6 +25,8 @@ pub struct Obstacle {
     pub limits: Limits,
     /// In elasticity, the rigid body: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
     pub rigid: Option<Rigid>,
+    /// The distance of each of these nodes from the rigid body, and the unit vector away from it.
+    nearest: BTreeMap<usize, (f64, [f64; 3])>,
 }
 
 impl Obstacle {
@@ -36,11 +37,9 @@ impl Obstacle {
 
     /// The distance of a node from the rigid body, and the direction towards it. An obstacle that bounds u itself has
     /// distance 0: u ≤ g and −u ≤ −g are rows along ±1.
-    pub(crate) fn ahead(&self, body: &Body, node: usize) -> (f64, [f64; 3]) {
-        let nearest = |rigid: Rigid| rigid.distance(body.spec.position(body.mesh().place(node)));
-        match self.rigid.and_then(nearest) {
-            Some((distance, normal)) => (distance, normal.map(|v| 0.0 - v)),
-            // A rigid body always has a nearest point here: other nodes were refused. This case bounds u itself.
+    pub(crate) fn ahead(&self, node: usize) -> (f64, [f64; 3]) {
+        match self.nearest.get(&node) {
+            Some((distance, normal)) => (*distance, normal.map(|v| 0.0 - v)),
             None => (0.0, [if self.upper { 1.0 } else { -1.0 }, 0.0, 0.0]),
         }
     }
@@ -53,18 +52,19 @@ pub(crate) fn find(
     first: usize,
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
-    let mut found: BTreeMap<(usize, usize, usize, bool), Vec<Limit>> = BTreeMap::new();
+    let mut found: BTreeMap<(usize, usize, usize, bool), Found> = BTreeMap::new();
     for (k, entry) in entries.iter().enumerate() {
         let fail = |message: String| Err(Error::Input(format!("{}{message}", entry.written)));
-        if entry.below.is_none() && entry.above.is_none() && entry.rigid.is_none() {
+        let (below, above) = (entry.below.as_ref(), entry.above.as_ref());
+        let bounds = match entry.rigid {
+            None => [("below", false, below), ("above", true, above)],
+            Some(_) => [("", false, None), ("gap", true, Some(&entry.gap))],
+        };
+        if bounds.iter().all(|(_, _, bound)| bound.is_none()) {
             return fail(
                 "an obstacle without a bound (`below`, `above` or both were expected)".into(),
             );
         }
-        let bounds = match entry.rigid {
-            None => [(false, entry.below.as_ref()), (true, entry.above.as_ref())],
-            Some(_) => [(false, None), (true, Some(&entry.gap))],
-        };
         let chosen = match &entry.body {
             None => 0..bodies.len(),
             Some(name) => match bodies.iter().position(|b| b.spec.name == *name) {
@@ -77,54 +77,43 @@ pub(crate) fn find(
                 }
             },
         };
-        for b in chosen {
-            for &side in &entry.sides {
-                let selected = select(&bodies[b], side, entry)?;
-                let number = if entry.rigid.is_some() { k + 1 } else { 0 };
-                for (upper, bound) in bounds {
-                    let Some(bound) = bound else { continue };
-                    let list = found.entry((b, side, number, upper)).or_default();
-                    for &(node, t) in &selected {
-                        let spec = &bodies[b].spec;
-                        let place = spec.mesh.place(node);
-                        let at = Variables {
-                            point: spec.position(place),
-                            body: spec.place,
-                            subdomain: [0; 3],
-                        };
-                        if let Some(rigid) = &entry.rigid {
-                            if rigid.distance(at.point).is_none() {
-                                return fail(format!(
-                                    "no point of the obstacle is nearest to the node {} of body `{}` \
-                                     (on its axis or in its centre)",
-                                    spec.spot(place),
-                                    spec.name
-                                ));
-                            }
-                        }
-                        let value = bound.eval(t[0], &at);
-                        if !value.is_finite() {
-                            let key = match entry.rigid {
-                                Some(_) => "gap",
-                                None => ["below", "above"][usize::from(upper)],
-                            };
-                            let (at, name) = (spec.spot(place), &spec.name);
+        let number = if entry.rigid.is_some() { k + 1 } else { 0 };
+        for (b, &side) in chosen.flat_map(|b| entry.sides.iter().map(move |side| (b, side))) {
+            let (selected, spec) = (select(&bodies[b], side, entry)?, &bodies[b].spec);
+            for (key, upper, bound) in bounds {
+                let Some(bound) = bound else { continue };
+                let of_side = found.entry((b, side, number, upper)).or_default();
+                for &(node, t) in &selected {
+                    let place = spec.mesh.place(node);
+                    let (at, spot, name) = (spec.variables(place), || spec.spot(place), &spec.name);
+                    if let Some(rigid) = &entry.rigid {
+                        let Some(nearest) = rigid.distance(at.point) else {
                             return fail(format!(
-                                "the bound `{key}` of body `{name}` is {value} at {at} \
-                                 where a finite number was expected"
+                                "no point of the obstacle is nearest to the node {} of body `{name}` \
+                                 (on its axis or in its centre)",
+                                spot()
                             ));
-                        }
-                        list.push(Limit {
-                            node,
-                            value: if upper { value } else { 0.0 - value },
-                            entry: Some(first + k),
-                        });
+                        };
+                        of_side.nearest.insert(node, nearest);
                     }
+                    let value = bound.eval(t[0], &at);
+                    if !value.is_finite() {
+                        return fail(format!(
+                            "the bound `{key}` of body `{name}` is {value} at {} \
+                             where a finite number was expected",
+                            spot()
+                        ));
+                    }
+                    of_side.limits.push(Limit {
+                        node,
+                        value: if upper { value } else { 0.0 - value },
+                        entry: Some(first + k),
+                    });
                 }
             }
         }
     }
-    let named = |(key, list): ((usize, usize, usize, bool), Vec<Limit>)| {
+    let named = |(key, of_side): ((usize, usize, usize, bool), Found)| {
         let (body, side, number, upper) = key;
         let what = match (number, upper) {
             (0, false) => "below".to_string(),
@@ -136,11 +125,19 @@ pub(crate) fn find(
             side,
             upper,
             name: format!("{}.{} {what}", bodies[body].spec.name, SIDES[side]),
-            limits: Limits::new(list),
+            limits: Limits::new(of_side.limits),
             rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
+            nearest: of_side.nearest,
         }
     };
     Ok(found.into_iter().map(named).collect())
+}
+
+/// What the entries say about the nodes of one side.
+#[derive(Default)]
+struct Found {
+    limits: Vec<Limit>,
+    nearest: BTreeMap<usize, (f64, [f64; 3])>,
 }
 
 /// The nodes that `entry` selects on a side, with their t.
