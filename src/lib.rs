@@ -105,7 +105,7 @@ pub(crate) mod baselines;
 pub mod capi;
 #[cfg(feature = "cli")]
 pub mod checkpoint;
-pub mod cholesky;
+pub(crate) mod cholesky;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;

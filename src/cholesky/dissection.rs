@@ -13,27 +13,21 @@ use crate::linalg::csr::Csr;
 /// outweighs the fill that cutting further would save.
 const LEAF: usize = 12;
 
-/// The supernodes of the interior in elimination order (children before parents).
-#[derive(Debug, Clone, Default)]
-pub struct Dissection {
-    /// Dofs of each supernode.
-    pub supernodes: Vec<Vec<u32>>,
-}
-
-/// Orders the dofs listed in `interior` of the graph of `k` by nested dissection.
+/// Orders the dofs listed in `interior` of the graph of `k` by nested dissection. Returns the dofs of each supernode,
+/// in the order of elimination (children before parents).
 ///
 /// `coordinates`, if given, has one position per dof of `k`.
 pub fn nested_dissection(
     k: &Csr,
     interior: &[u32],
     coordinates: Option<&[[f64; 3]]>,
-) -> Dissection {
+) -> Vec<Vec<u32>> {
     let mut work = Cutting {
         k,
         coordinates,
         part: vec![NONE; k.n()],
         distance: vec![0; k.n()],
-        out: Dissection::default(),
+        out: Vec::new(),
         next_part: 0,
     };
     work.dissect(interior.to_vec());
@@ -49,7 +43,7 @@ struct Cutting<'a> {
     part: Vec<u32>,
     /// Breadth-first distance, valid inside the set that is being cut.
     distance: Vec<u32>,
-    out: Dissection,
+    out: Vec<Vec<u32>>,
     next_part: u32,
 }
 
@@ -57,7 +51,7 @@ impl Cutting<'_> {
     fn dissect(&mut self, set: Vec<u32>) {
         if set.len() <= LEAF {
             if !set.is_empty() {
-                self.finish(set);
+                self.out.push(set);
             }
             return;
         }
@@ -66,14 +60,14 @@ impl Cutting<'_> {
             None => match self.cut_by_distance(&set) {
                 Some(cut) => cut,
                 // A dense block cannot be cut: the whole set is one front.
-                None => return self.finish(set),
+                None => return self.out.push(set),
             },
         };
         let (lower, upper, separator) = self.separate(lower, upper);
         self.dissect(lower);
         self.dissect(upper);
         if !separator.is_empty() {
-            self.finish(separator);
+            self.out.push(separator);
         }
     }
 
@@ -117,10 +111,6 @@ impl Cutting<'_> {
         let (lower, upper) = (rest(lower), rest(upper));
         separator.iter().for_each(|&i| self.part[i as usize] = NONE);
         (lower, upper, separator)
-    }
-
-    fn finish(&mut self, set: Vec<u32>) {
-        self.out.supernodes.push(set);
     }
 
     /// Halves the set at the median of its longest extent; `None` without coordinates, or when all positions coincide.

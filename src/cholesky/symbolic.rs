@@ -55,11 +55,7 @@ impl Front {
 impl Symbolic {
     /// Analyses the pattern of `k`; `interface` lists the interface dofs in the order wanted for S.
     pub fn new(k: &Csr, interface: &[u32], coordinates: Option<&[[f64; 3]]>) -> Symbolic {
-        let n = k.n();
-        let mut kept = vec![false; n];
-        interface.iter().for_each(|&i| kept[i as usize] = true);
-        let inside: Vec<u32> = (0..n as u32).filter(|&i| !kept[i as usize]).collect();
-        let supernodes = nested_dissection(k, &inside, coordinates).supernodes;
+        let supernodes = nested_dissection(k, &k.others(interface), coordinates);
         Symbolic::with_supernodes(k, interface, &supernodes)
     }
 

@@ -7,11 +7,13 @@ mod cells;
 mod form;
 mod loads;
 mod norms;
-pub mod q1;
+pub(crate) mod q1;
 mod subdomain;
 
-pub use assemble::{assemble, free_load, given_columns};
+pub(crate) use assemble::{assemble, free_load, given_columns};
 pub use form::{Form, Physics};
-pub use loads::{add_side_load, load_vector, Quadrature};
-pub use norms::{error_squares, ErrorNorms};
+pub use loads::Quadrature;
+pub(crate) use loads::{add_side_load, load_vector};
+pub(crate) use norms::error_squares;
+pub use norms::ErrorNorms;
 pub use subdomain::SubdomainMesh;

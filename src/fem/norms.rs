@@ -15,7 +15,7 @@ pub struct ErrorNorms {
 }
 
 impl ErrorNorms {
-    /// The norms from the squares that [`error_squares`] gives, summed over all subdomains (and ranks).
+    /// The norms from the squares that `error_squares` gives, summed over all subdomains (and ranks).
     pub fn from_squares(squares: [f64; 3]) -> ErrorNorms {
         let [l2, h1, energy] = squares.map(f64::sqrt);
         ErrorNorms { l2, h1, energy }

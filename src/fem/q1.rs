@@ -18,16 +18,6 @@ pub fn stiffness(dx: f64, dy: f64) -> [[f64; 4]; 4] {
     k
 }
 
-/// The shape functions N_a at (s, t) ∈ \[0,1\]².
-pub fn shape(s: f64, t: f64) -> [f64; 4] {
-    [(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t]
-}
-
-/// Their derivatives by s and t: `[a] = [∂N_a/∂s, ∂N_a/∂t]`.
-pub fn shape_gradient(s: f64, t: f64) -> [[f64; 2]; 4] {
-    [[t - 1.0, s - 1.0], [1.0 - t, -s], [-t, 1.0 - s], [t, s]]
-}
-
 /// The two-point Gauss rule on \[0,1\]: (point, weight), exact for cubics.
 pub const GAUSS2: [(f64, f64); 2] = [
     (0.211_324_865_405_187_1, 0.5),

@@ -18,6 +18,7 @@ mod setup;
 pub(crate) mod spectrum;
 pub(crate) mod subdomain;
 
+pub use crate::cholesky::interior::{LocalSolver, Ordering, Solver};
 pub use facts::Facts;
 pub use krylov::certificate::Kkt;
 pub use krylov::recovery::LinearSolution;

@@ -48,17 +48,54 @@ impl Csr {
         }
     }
 
+    /// y ← y + factor A x, where A may be a block.
+    pub(crate) fn add_mul(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        for (i, y) in y.iter_mut().enumerate() {
+            let (col, val) = self.row(i);
+            let sum = col.iter().zip(val).map(|(&j, v)| v * x[j as usize]);
+            *y += factor * sum.sum::<f64>();
+        }
+    }
+
+    /// y ← y + factor Aᵀ x, where A may be a block.
+    pub(crate) fn add_mul_transpose(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        for (i, &x) in x.iter().enumerate().filter(|x| *x.1 != 0.0) {
+            let (col, val) = self.row(i);
+            let entries = col.iter().zip(val);
+            entries.for_each(|(&j, v)| y[j as usize] += factor * v * x);
+        }
+    }
+
+    /// Number of bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        8 * self.row_ptr.len() + 12 * self.col.len()
+    }
+
     /// The rows and columns listed in `keep` (increasing), in that order.
     pub fn restricted(&self, keep: &[u32]) -> Csr {
+        self.block(keep, keep)
+    }
+
+    /// The indices that `listed` leaves out, increasing.
+    pub(crate) fn others(&self, listed: &[u32]) -> Vec<u32> {
+        let mut others = vec![true; self.n()];
+        listed.iter().for_each(|&i| others[i as usize] = false);
+        (0..self.n() as u32)
+            .filter(|&i| others[i as usize])
+            .collect()
+    }
+
+    /// The block of these rows and columns, in this order. A column index is a position in `cols`.
+    pub(crate) fn block(&self, rows: &[u32], cols: &[u32]) -> Csr {
         let mut place = vec![u32::MAX; self.n()];
-        for (p, &i) in keep.iter().enumerate() {
-            place[i as usize] = p as u32;
+        for (p, &j) in cols.iter().enumerate() {
+            place[j as usize] = p as u32;
         }
         let mut out = Csr {
             row_ptr: vec![0],
             ..Csr::default()
         };
-        for &i in keep {
+        for &i in rows {
             let (col, val) = self.row(i as usize);
             for (&j, &v) in col.iter().zip(val) {
                 if place[j as usize] != u32::MAX {

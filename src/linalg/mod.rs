@@ -3,7 +3,6 @@
 pub mod csr;
 pub mod dense;
 pub mod nnls;
-pub mod rectangular;
 pub mod semidefinite;
 pub mod single;
 pub mod symmetric;

@@ -3,7 +3,7 @@
 
 use crate::support::program;
 use crate::support::session::with_session;
-use fetifeti::cholesky::interior::{LocalSolver, Ordering, Solver};
+use fetifeti::feti::{LocalSolver, Ordering, Solver};
 use fetifeti::{FetiFeti, MethodSettings, Scene};
 use program::fetifeti;
 use serde_json::Value;

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
-use fetifeti::fem::q1;
+use fetifeti::fem::cell::{self, Element, Material};
 use fetifeti::fem::SubdomainMesh;
 use fetifeti::feti::MethodSettings;
 use fetifeti::petsc::{Options, Session};
@@ -93,15 +93,15 @@ impl Direct {
     pub fn energy(&self, nodal: &[Vec<f64>]) -> f64 {
         let mut sum = 0.0;
         for (mesh, u) in self.meshes.iter().zip(nodal) {
-            let k = {
-                let [dx, dy, _] = mesh.step.expect("a box");
-                q1::stiffness(dx, dy)
-            };
+            let points = mesh.element_points([0; 3]);
+            let mut k = [0.0; 16];
+            let unit = Material::Scalar { rho: 1.0 };
+            cell::stiffness(2, &points[..4], Element::Q1, &unit, &mut k);
             let [nx, ny, _] = mesh.elements;
             for (e, rho) in mesh.rho.iter().enumerate() {
                 assert!(e < nx * ny);
                 let nodes = mesh.element_nodes([e % nx, e / nx, 0]);
-                for (a, row) in k.iter().enumerate() {
+                for (a, row) in k.chunks_exact(4).enumerate() {
                     for (b, entry) in row.iter().enumerate() {
                         // Rows of the element matrix sum to zero: energies of differences suffer no cancellation from a
                         // large mean.

@@ -88,36 +88,24 @@ pub struct Condensation {
     /// x ← [K_II⁻¹ x_I; 0].
     interior: Box<dyn SparseCholesky>,
     interface: Vec<u32>,
-    /// Rows of K_ΓI, one for each interface dof.
-    ptr: Vec<usize>,
-    col: Vec<u32>,
-    val: Vec<f64>,
+    /// K_ΓI: a row for each interface dof, columns by dof.
+    coupling: Csr,
 }
 
 impl Condensation {
     /// `interior` solves with K_II on vectors by dof and leaves zero on the interface.
     pub fn new(k: &Csr, interface: &[u32], interior: Box<dyn SparseCholesky>) -> Condensation {
-        let mut out = Condensation {
+        let inside = k.others(interface);
+        let mut coupling = k.block(interface, &inside);
+        let by_dof = |j: &mut u32| *j = inside[*j as usize];
+        coupling.col.iter_mut().for_each(by_dof);
+        coupling.col.shrink_to_fit();
+        coupling.val.shrink_to_fit();
+        Condensation {
             interior,
             interface: interface.to_vec(),
-            ptr: vec![0],
-            col: Vec::new(),
-            val: Vec::new(),
-        };
-        let mut outside = vec![false; k.n()];
-        interface.iter().for_each(|&i| outside[i as usize] = true);
-        for &i in interface {
-            let (col, val) = k.row(i as usize);
-            let inside = col.iter().zip(val).filter(|e| !outside[*e.0 as usize]);
-            for (&j, &v) in inside {
-                out.col.push(j);
-                out.val.push(v);
-            }
-            out.ptr.push(out.col.len());
+            coupling,
         }
-        out.col.shrink_to_fit();
-        out.val.shrink_to_fit();
-        out
     }
 
     /// The factor of the whole of `k`, without an interface.
@@ -130,9 +118,10 @@ impl Condensation {
 
     /// The interface dofs, each with its row of K_ΓI.
     fn rows(&self) -> impl Iterator<Item = (usize, &[u32], &[f64])> {
-        let row =
-            |(&i, w): (&u32, &[usize])| (i as usize, &self.col[w[0]..w[1]], &self.val[w[0]..w[1]]);
-        self.interface.iter().zip(self.ptr.windows(2)).map(row)
+        self.interface.iter().enumerate().map(|(r, &i)| {
+            let (col, val) = self.coupling.row(r);
+            (i as usize, col, val)
+        })
     }
 
     /// g ← f_Γ − K_ΓI K_II⁻¹ f_I; f_I is left as it is.
@@ -178,6 +167,6 @@ impl Condensation {
     }
 
     fn bytes(&self) -> usize {
-        self.interior.bytes() + 12 * self.val.len()
+        self.interior.bytes() + 12 * self.coupling.nnz()
     }
 }

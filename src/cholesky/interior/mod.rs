@@ -34,7 +34,7 @@ use crate::petsc::Options;
 use crate::{Error, Result};
 
 pub use analysis::{Analysis, NoFactor};
-pub use factor::{Factor, SparseCholesky};
+pub use factor::Factor;
 pub use order::{Elimination, Ordering};
 
 /// The solver that factors.
@@ -115,7 +115,7 @@ impl LocalSolver {
     ///
     /// # Errors
     /// [`NoFactor::Failed`].
-    pub fn analyse(
+    pub(crate) fn analyse(
         self,
         k: &Csr,
         interface: &[u32],
@@ -136,7 +136,7 @@ impl LocalSolver {
     }
 
     /// A condenser that analyses each matrix anew.
-    pub fn condenser(self, keep: Keep) -> Condenser<'static> {
+    pub(crate) fn condenser(self, keep: Keep) -> Condenser<'static> {
         Condenser {
             solver: self,
             analysis: None,

@@ -82,13 +82,11 @@ impl Elimination {
         coordinates: Option<&[[f64; 3]]>,
         ordering: Ordering,
     ) -> Result<Elimination, String> {
-        let mut kept = vec![false; k.n()];
-        interface.iter().for_each(|&i| kept[i as usize] = true);
-        let inside: Vec<u32> = (0..k.n() as u32).filter(|&i| !kept[i as usize]).collect();
+        let inside = k.others(interface);
         let graph = graph_of(k, &inside);
         let (order, given) = match ordering.taken() {
             Ordering::Auto | Ordering::Nd => {
-                let sets = nested_dissection(k, &inside, coordinates).supernodes;
+                let sets = nested_dissection(k, &inside, coordinates);
                 let vertex = |i: &u32| inside.binary_search(i).expect("an interior dof") as u32;
                 (sets.iter().flatten().map(vertex).collect(), Some(sets))
             }

@@ -1,6 +1,6 @@
 //! Distance between a finite element function and an exact solution on one cell.
 
-use super::map::for_each_sample;
+use super::map::for_each_sample_of;
 use super::material::Moduli;
 use super::reference::Rule;
 use super::{Element, Material};
@@ -20,41 +20,24 @@ pub fn error_squares<F>(
     element: Element,
     material: &Material,
     nodal: &[f64],
-    exact: F,
+    mut exact: F,
 ) -> [f64; 3]
 where
     F: FnMut([f64; 3]) -> ([f64; 3], [[f64; 3]; 3]),
 {
     let n = points.len() * material.components(dim);
     assert_eq!(nodal.len(), n, "a cell has {n} degrees of freedom");
-    match dim {
-        2 => squares::<2, 4, F>(points, element, material, nodal, exact),
-        3 => squares::<3, 8, F>(points, element, material, nodal, exact),
-        _ => panic!("cells have dimension 2 or 3, not {dim}"),
-    }
-}
-
-fn squares<const D: usize, const N: usize, F>(
-    points: &[[f64; 3]],
-    element: Element,
-    material: &Material,
-    nodal: &[f64],
-    mut exact: F,
-) -> [f64; 3]
-where
-    F: FnMut([f64; 3]) -> ([f64; 3], [[f64; 3]; 3]),
-{
-    let components = material.components(D);
-    let Moduli { shear, point, mean } = material.moduli(D, element);
+    let components = material.components(dim);
+    let Moduli { shear, point, mean } = material.moduli(dim, element);
     let mut squares = [0.0; 3];
     let (mut volume, mut dilatation) = (0.0, 0.0);
-    for_each_sample::<D, N>(points, element, Rule::Error, |s| {
+    for_each_sample_of(dim, points, element, Rule::Error, |s| {
         let (u, slope) = exact(s.point);
         let (mut value, mut gradient) = (u.map(|v| -v), slope.map(|row| row.map(|v| -v)));
         for (a, node) in nodal.chunks_exact(components).enumerate() {
             for (i, &x) in node.iter().enumerate() {
                 value[i] += x * s.shape[a];
-                for j in 0..D {
+                for j in 0..dim {
                     gradient[i][j] += x * s.gradient[j][a];
                 }
             }
@@ -63,17 +46,17 @@ where
         let l2: f64 = value[..components].iter().map(|v| v * v).sum();
         let h1: f64 = gradient
             .iter()
-            .flat_map(|row| &row[..D])
+            .flat_map(|row| &row[..dim])
             .map(|v| v * v)
             .sum();
         let energy = if let Material::Scalar { rho } = material {
             rho * h1
         } else {
-            let divergence: f64 = (0..D).map(|i| gradient[i][i]).sum();
+            let divergence: f64 = (0..dim).map(|i| gradient[i][i]).sum();
             dilatation += s.weight * divergence;
             let mut strain = 0.0;
-            for i in 0..D {
-                for j in 0..D {
+            for i in 0..dim {
+                for j in 0..dim {
                     strain += (0.5 * (gradient[i][j] + gradient[j][i])).powi(2);
                 }
             }

@@ -1,6 +1,6 @@
 //! Forces in a cell.
 
-use super::map::for_each_sample;
+use super::map::for_each_sample_of;
 use super::reference::Rule;
 use super::Element;
 use crate::fem::Quadrature;
@@ -19,36 +19,19 @@ pub fn body_load<F>(
     element: Element,
     quadrature: Quadrature,
     components: usize,
-    f: F,
+    mut f: F,
     out: &mut [f64],
 ) where
     F: FnMut([f64; 3]) -> [f64; 3],
 {
     let n = points.len() * components;
     assert_eq!(out.len(), n, "a cell has {n} degrees of freedom");
-    match dim {
-        2 => load::<2, 4, F>(points, element, quadrature, components, f, out),
-        3 => load::<3, 8, F>(points, element, quadrature, components, f, out),
-        _ => panic!("cells have dimension 2 or 3, not {dim}"),
-    }
-}
-
-fn load<const D: usize, const N: usize, F>(
-    points: &[[f64; 3]],
-    element: Element,
-    quadrature: Quadrature,
-    components: usize,
-    mut f: F,
-    out: &mut [f64],
-) where
-    F: FnMut([f64; 3]) -> [f64; 3],
-{
     out.fill(0.0);
     let constant = (quadrature == Quadrature::Midpoint).then(|| {
-        let sum = |i: usize| points.iter().map(|p| p[i]).sum::<f64>() / N as f64;
+        let sum = |i: usize| points.iter().map(|p| p[i]).sum::<f64>() / points.len() as f64;
         f([sum(0), sum(1), sum(2)])
     });
-    for_each_sample::<D, N>(points, element, Rule::Load, |s| {
+    for_each_sample_of(dim, points, element, Rule::Load, |s| {
         let force = constant
             .unwrap_or_else(|| f(s.point))
             .map(|value| value * s.weight);

@@ -2,13 +2,13 @@
 
 use super::reference::{for_each, q1_point, Element, ReferencePoint, Rule};
 
-/// A quadrature point of a cell.
-pub(super) struct Sample<const D: usize, const N: usize> {
+/// A quadrature point of a cell; what a cell of the plane does not have is zero.
+pub(super) struct Sample {
     pub point: [f64; 3],
     /// N_a.
-    pub shape: [f64; N],
+    pub shape: [f64; 8],
     /// `[i][a]` = ∂N_a/∂x_i.
-    pub gradient: [[f64; N]; D],
+    pub gradient: [[f64; 8]; 3],
     /// Weight of the rule times det J: the weights sum to the volume.
     pub weight: f64,
 }
@@ -19,7 +19,7 @@ pub(super) fn for_each_sample<const D: usize, const N: usize>(
     points: &[[f64; 3]],
     element: Element,
     rule: Rule,
-    mut f: impl FnMut(&Sample<D, N>),
+    mut f: impl FnMut(&Sample),
 ) {
     let points = corners::<N>(points);
     for_each::<D, N>(element, rule, |reference| {
@@ -27,9 +27,30 @@ pub(super) fn for_each_sample<const D: usize, const N: usize>(
     });
 }
 
+/// The same for a dimension that is known at run time.
+///
+/// # Panics
+/// When `dim` is not 2 or 3, or there are not 2^`dim` points.
+pub(super) fn for_each_sample_of(
+    dim: usize,
+    points: &[[f64; 3]],
+    element: Element,
+    rule: Rule,
+    f: impl FnMut(&Sample),
+) {
+    match dim {
+        2 => for_each_sample::<2, 4>(points, element, rule, f),
+        3 => for_each_sample::<3, 8>(points, element, rule, f),
+        _ => panic!("cells have dimension 2 or 3, not {dim}"),
+    }
+}
+
 /// The middle of the unit cell, for Q1.
-pub(super) fn centre_sample<const D: usize, const N: usize>(points: &[[f64; 3]]) -> Sample<D, N> {
-    sample(corners::<N>(points), &q1_point([0.5; D], 1.0))
+pub(super) fn centre_sample(dim: usize, points: &[[f64; 3]]) -> Sample {
+    match dim {
+        2 => sample(corners::<4>(points), &q1_point([0.5; 2], 1.0)),
+        _ => sample(corners::<8>(points), &q1_point([0.5; 3], 1.0)),
+    }
 }
 
 fn corners<const N: usize>(points: &[[f64; 3]]) -> &[[f64; 3]; N] {
@@ -42,19 +63,20 @@ fn corners<const N: usize>(points: &[[f64; 3]]) -> &[[f64; 3]; N] {
 fn sample<const D: usize, const N: usize>(
     points: &[[f64; 3]; N],
     reference: &ReferencePoint<D, N>,
-) -> Sample<D, N> {
+) -> Sample {
     let (det, inverse) = invert(&jacobian(points, reference));
-    let mut gradient = [[0.0; N]; D];
-    for (i, row) in gradient.iter_mut().enumerate() {
+    let (mut shape, mut gradient) = ([0.0; 8], [[0.0; 8]; 3]);
+    shape[..N].copy_from_slice(&reference.shape);
+    for i in 0..D {
         for (j, slope) in reference.slope.iter().enumerate() {
             for a in 0..N {
-                row[a] += inverse[j][i] * slope[a]; // ∇N = J⁻ᵀ ∇̂N
+                gradient[i][a] += inverse[j][i] * slope[a]; // ∇N = J⁻ᵀ ∇̂N
             }
         }
     }
     Sample {
         point: place(points, &reference.shape),
-        shape: reference.shape,
+        shape,
         gradient,
         weight: reference.weight * det,
     }

@@ -39,12 +39,13 @@ mod stiffness_tests;
 #[path = "../../../tests/inside/fem/cell/testing.rs"]
 mod testing;
 
-pub use errors::error_squares;
-pub use loads::body_load;
+pub(crate) use errors::error_squares;
+pub(crate) use loads::body_load;
 pub use map::jacobian_is_positive;
 pub use material::{Cure, Material, Plane};
 pub use reference::Element;
 pub use rigid::{rigid_count, rigid_motions};
-pub use sides::{side_load, side_weights, Side, SideWeights};
+pub(crate) use sides::side_load;
+pub use sides::{side_weights, Side, SideWeights};
 pub use stiffness::stiffness;
 pub use stress::{centre_stress, CellStress};

@@ -37,7 +37,7 @@ fn scalar<const D: usize, const N: usize>(
 ) {
     let mut k = [[0.0; N]; N];
     for_each_sample::<D, N>(points, element, Rule::Stiffness, |s| {
-        for slope in &s.gradient {
+        for slope in &s.gradient[..D] {
             for (row, g) in k.iter_mut().zip(slope) {
                 for (entry, h) in row.iter_mut().zip(slope) {
                     *entry += s.weight * g * h;

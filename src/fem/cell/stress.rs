@@ -1,6 +1,6 @@
 //! Strain and stress at the centre of a cell, for output.
 
-use super::map::{centre_sample, for_each_sample, Sample};
+use super::map::{centre_sample, for_each_sample_of, Sample};
 use super::reference::Rule;
 use super::{Element, Material, Plane};
 
@@ -51,23 +51,10 @@ pub fn centre_stress(
 ) -> CellStress {
     let n = points.len() * material.components(dim);
     assert_eq!(nodal.len(), n, "a cell has {n} degrees of freedom");
-    match dim {
-        2 => centre::<2, 4>(points, element, material, nodal),
-        3 => centre::<3, 8>(points, element, material, nodal),
-        _ => panic!("cells have dimension 2 or 3, not {dim}"),
-    }
-}
-
-fn centre<const D: usize, const N: usize>(
-    points: &[[f64; 3]],
-    element: Element,
-    material: &Material,
-    nodal: &[f64],
-) -> CellStress {
-    let components = material.components(D);
+    let components = material.components(dim);
     let mut mean = [[0.0; 3]; 3];
     let mut volume = 0.0;
-    for_each_sample::<D, N>(points, element, Rule::Stiffness, |s| {
+    for_each_sample_of(dim, points, element, Rule::Stiffness, |s| {
         volume += s.weight;
         add_gradient(s, s.weight, components, nodal, &mut mean);
     });
@@ -75,7 +62,7 @@ fn centre<const D: usize, const N: usize>(
     let mut gradient = mean;
     if element == Element::Q1 {
         gradient = [[0.0; 3]; 3];
-        let sample = centre_sample::<D, N>(points);
+        let sample = centre_sample(dim, points);
         add_gradient(&sample, 1.0, components, nodal, &mut gradient);
     }
     let mut out = CellStress::default();
@@ -84,7 +71,7 @@ fn centre<const D: usize, const N: usize>(
         out.stress[0] = gradient[0].map(|v| rho * v);
         return out;
     }
-    let moduli = material.moduli(D, element);
+    let moduli = material.moduli(dim, element);
     let trace = |g: &[[f64; 3]; 3]| g[0][0] + g[1][1] + g[2][2];
     let spherical = moduli.point * trace(&gradient) + moduli.mean * trace(&mean);
     for i in 0..3 {
@@ -101,7 +88,7 @@ fn centre<const D: usize, const N: usize>(
             poisson,
             ..
         },
-    ) = (D, material)
+    ) = (dim, material)
     {
         out.strain[2][2] = -poisson / (1.0 - poisson) * trace(&gradient);
         out.stress[2][2] = 0.0;
@@ -110,8 +97,8 @@ fn centre<const D: usize, const N: usize>(
 }
 
 /// Adds `weight` times ∇u, `[i][j]` = ∂u_i/∂x_j.
-fn add_gradient<const D: usize, const N: usize>(
-    s: &Sample<D, N>,
+fn add_gradient(
+    s: &Sample,
     weight: f64,
     components: usize,
     nodal: &[f64],
@@ -119,7 +106,7 @@ fn add_gradient<const D: usize, const N: usize>(
 ) {
     for (a, node) in nodal.chunks_exact(components).enumerate() {
         for (i, value) in node.iter().enumerate() {
-            for j in 0..D {
+            for j in 0..3 {
                 gradient[i][j] += weight * value * s.gradient[j][a];
             }
         }

@@ -106,10 +106,7 @@ impl Kind<'_> {
     /// Symbolic factorisations of K_rr and K_II.
     fn sparse(&self) -> [Symbolic; 2] {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
-        let mut kept = vec![false; k.n()];
-        let interface = self.delta.iter().chain(self.primal);
-        interface.for_each(|&i| kept[i as usize] = true);
-        let inside: Vec<u32> = (0..k.n() as u32).filter(|&i| !kept[i as usize]).collect();
+        let inside = k.others(&[self.delta, self.primal].concat());
         let places: Option<Vec<[f64; 3]>> =
             x.map(|x| inside.iter().map(|&i| x[i as usize]).collect());
         [

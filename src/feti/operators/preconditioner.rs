@@ -20,8 +20,8 @@ use crate::feti::settings::{PcType, Precision};
 use crate::feti::subdomain::problem::LocalProblem;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
+use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
-use crate::linalg::rectangular::Rectangular;
 use crate::linalg::single::Single;
 use crate::parallel::exchange::{max_all, min_all};
 use crate::petsc::Vec as PetscVec;
@@ -33,7 +33,7 @@ pub struct Preconditioner {
     kind: PcType,
     lifting: Option<Lifting>,
     /// K_ΓΓ of each local subdomain in the order of Γ, for the lumped preconditioner.
-    k_gamma: Vec<Rectangular>,
+    k_gamma: Vec<Csr>,
     /// S of each local subdomain in single precision; `None` unless that is asked for and S is a dense matrix. Equal
     /// subdomains share it.
     single: Vec<Option<Arc<Single>>>,
@@ -57,9 +57,7 @@ impl Preconditioner {
                 .local
                 .iter()
                 .zip(&stiffness.locals)
-                .map(|(sub, local)| {
-                    Rectangular::block(&sub.k, local.interface(), local.interface())
-                })
+                .map(|(sub, local)| sub.k.block(local.interface(), local.interface()))
                 .collect(),
             _ => Vec::new(),
         };

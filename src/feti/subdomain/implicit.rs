@@ -21,7 +21,6 @@ use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use crate::cholesky::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::{self, Dense, Scratch};
-use crate::linalg::rectangular::Rectangular;
 
 /// K_rr counts as singular if a pivot is below this fraction of its diagonal entry. The vertices alone do not hold the
 /// subdomain then.
@@ -36,8 +35,8 @@ pub struct Implicit {
     interface: Vec<u32>,
     n_delta: usize,
     /// K_IΓ and K_ΓΓ.
-    coupling: Rectangular,
-    k_gamma: Rectangular,
+    coupling: Csr,
+    k_gamma: Csr,
     /// K_II.
     interior: PartialCholesky,
     /// K_rr, factored with the vertices kept.
@@ -69,9 +68,7 @@ impl Implicit {
         coordinates: Option<&[[f64; 3]]>,
     ) -> Result<Option<(Implicit, Coarse)>, SingularInterior> {
         let vertices = &interface[n_delta..];
-        let mut kept = vec![false; k.n()];
-        interface.iter().for_each(|&i| kept[i as usize] = true);
-        let inside: Vec<u32> = (0..k.n() as u32).filter(|&i| !kept[i as usize]).collect();
+        let inside = k.others(interface);
 
         let Ok((held, s_vv)) = factored(k, vertices, coordinates) else {
             return Ok(None);
@@ -88,8 +85,8 @@ impl Implicit {
             })?;
 
         let mut out = Implicit {
-            coupling: Rectangular::block(k, &inside, interface),
-            k_gamma: Rectangular::block(k, interface, interface),
+            coupling: k.block(&inside, interface),
+            k_gamma: k.block(interface, interface),
             interface: interface.to_vec(),
             inside,
             n_delta,

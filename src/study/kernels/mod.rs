@@ -1,4 +1,4 @@
-//! `study kernels`: every solver of [`crate::cholesky::interior`] with every ordering, on the matrices of subdomains.
+//! `study kernels`: every solver of `cholesky::interior` with every ordering, on the matrices of subdomains.
 //!
 //! The subdomain is the middle one of three in every direction, so that it floats and its whole surface is interface Γ.
 //! Three kernels are timed on one thread, without the analysis of the pattern: the factorisation L Lᵀ = K_II, a solve

@@ -2,6 +2,11 @@
 
 use super::*;
 
+/// ∂N_a/∂s and ∂N_a/∂t of the bilinear shape functions at (s, t) ∈ \[0,1\]².
+fn shape_gradient(s: f64, t: f64) -> [[f64; 2]; 4] {
+    [[t - 1.0, s - 1.0], [1.0 - t, -s], [-t, 1.0 - s], [t, s]]
+}
+
 #[test]
 fn the_unit_square_has_the_textbook_matrix() {
     // 1/6 of [4 −1 −1 −2; −1 4 −2 −1; −1 −2 4 −1; −2 −1 −1 4].

@@ -61,15 +61,10 @@ fn forces_and_moments_of_a_cell_are_those_of_the_distribution() {
                 .map(|a| cell[a][0] * out[dim * a + 1] - cell[a][1] * out[dim * a])
                 .sum();
             let mut exact = 0.0;
-            let mut add = |point: [f64; 3], weight: f64| {
-                let f = force(point);
-                exact += weight * (point[0] * f[1] - point[1] * f[0]);
-            };
-            if dim == 2 {
-                for_each_sample::<2, 4>(&cell, element, Rule::Error, |s| add(s.point, s.weight));
-            } else {
-                for_each_sample::<3, 8>(&cell, element, Rule::Error, |s| add(s.point, s.weight));
-            }
+            for_each_sample_of(dim, &cell, element, Rule::Error, |s| {
+                let f = force(s.point);
+                exact += s.weight * (s.point[0] * f[1] - s.point[1] * f[0]);
+            });
             // Two Gauss points per direction are exact on a quadrilateral; on a hexahedron x² det J has degree 4.
             let bound = if (dim, element) == (3, Element::Q1) {
                 1e-3

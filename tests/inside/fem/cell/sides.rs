@@ -1,5 +1,6 @@
 //! Unit tests of `src/fem/cell/sides.rs`.
 
+use super::super::map::for_each_sample_of;
 use super::super::testing::{distorted, unit};
 use super::*;
 
@@ -56,16 +57,7 @@ fn pressure_on_the_surface_of_a_distorted_cell_has_no_force_and_no_moment() {
                 assert!(moment.iter().all(|v| v.abs() < 1e-14), "{moment:?}");
                 // ∫ x·n = dim · volume: orientation and size are right, too.
                 let mut volume = 0.0;
-                let mut add = |w: f64| volume += w;
-                if dim == 2 {
-                    super::super::map::for_each_sample::<2, 4>(&cell, element, Rule::Load, |s| {
-                        add(s.weight)
-                    });
-                } else {
-                    super::super::map::for_each_sample::<3, 8>(&cell, element, Rule::Load, |s| {
-                        add(s.weight)
-                    });
-                }
+                for_each_sample_of(dim, &cell, element, Rule::Load, |s| volume += s.weight);
                 assert!((divergence - volume).abs() < 1e-14, "{divergence} {volume}");
             }
         }

@@ -1,7 +1,7 @@
 //! Tests of the stiffness: against other ways to compute it, its kernel, the patch test.
 
 use super::testing::{
-    combinations, distorted, elastic, matrix, rotation, times, unit, Grid, Random,
+    combinations, distorted, elastic, matrix, rotation, shape_gradient, times, unit, Grid, Random,
 };
 use super::*;
 use crate::fem::q1;
@@ -131,7 +131,7 @@ fn q1_is_the_textbooks_b_d_b_with_two_gauss_points_per_direction() {
             let mut expected = Mat::zeros(8, 8);
             for (s, ws) in q1::GAUSS2 {
                 for (t, wt) in q1::GAUSS2 {
-                    let slopes = q1::shape_gradient(s, t);
+                    let slopes = shape_gradient(s, t);
                     let j = |i: usize, k: usize| -> f64 {
                         (0..4).map(|a| cell[a][i] * slopes[a][k]).sum()
                     };

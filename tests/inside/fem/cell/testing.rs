@@ -20,6 +20,11 @@ impl Random {
     }
 }
 
+/// ∂N_a/∂s and ∂N_a/∂t of the bilinear shape functions at (s, t) ∈ \[0,1\]².
+pub fn shape_gradient(s: f64, t: f64) -> [[f64; 2]; 4] {
+    [[t - 1.0, s - 1.0], [1.0 - t, -s], [-t, 1.0 - s], [t, s]]
+}
+
 pub fn elastic(young: f64, poisson: f64, plane: Plane, cure: Cure) -> Material {
     Material::Elastic {
         young,
