@@ -122,47 +122,29 @@ impl Expr {
         if let Ast::Number(value) = self.root {
             return value;
         }
-        evaluate(
-            &self.root,
-            &[
-                at.point[0],
-                at.point[1],
-                at.point[2],
-                at.body[0] as f64,
-                at.body[1] as f64,
-                at.body[2] as f64,
-                at.subdomain[0] as f64,
-                at.subdomain[1] as f64,
-                at.subdomain[2] as f64,
-            ],
-        )
+        self.eval_on(at, |d| at.point[d])
     }
 
     /// The value and the gradient by (x, y, z) at `at`.
     pub fn eval_gradient(&self, at: &Variables) -> WithGradient {
-        let along = |d: usize| {
+        self.eval_on(at, |d| {
             let mut gradient = [0.0; 3];
             gradient[d] = 1.0;
             WithGradient {
                 value: at.point[d],
                 gradient,
             }
-        };
-        let constant = |k: usize| WithGradient::constant(k as f64);
-        evaluate(
-            &self.root,
-            &[
-                along(0),
-                along(1),
-                along(2),
-                constant(at.body[0]),
-                constant(at.body[1]),
-                constant(at.body[2]),
-                constant(at.subdomain[0]),
-                constant(at.subdomain[1]),
-                constant(at.subdomain[2]),
-            ],
-        )
+        })
+    }
+
+    fn eval_on<T: Real>(&self, at: &Variables, coordinate: impl Fn(usize) -> T) -> T {
+        let mut variables = [T::constant(0.0); 9];
+        for d in 0..3 {
+            variables[d] = coordinate(d);
+            variables[3 + d] = T::constant(at.body[d] as f64);
+            variables[6 + d] = T::constant(at.subdomain[d] as f64);
+        }
+        evaluate(&self.root, &variables)
     }
 }
 

@@ -100,14 +100,22 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    fn or(&mut self) -> Result<Ast, String> {
+    /// What `operand` parses, one level deeper.
+    fn nested(
+        &mut self,
+        operand: impl FnOnce(&mut Self) -> Result<Ast, String>,
+    ) -> Result<Ast, String> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
             return Err(format!("more than {MAX_DEPTH} levels of nesting"));
         }
-        let out = self.chain(&[("||", Binary::Or)], Self::and);
+        let out = operand(self)?;
         self.depth -= 1;
-        out
+        Ok(out)
+    }
+
+    fn or(&mut self) -> Result<Ast, String> {
+        self.nested(|parser| parser.chain(&[("||", Binary::Or)], Self::and))
     }
 
     fn and(&mut self) -> Result<Ast, String> {
@@ -144,12 +152,7 @@ impl Parser<'_> {
         match self.accept(&["-", "+", "!"]) {
             None => self.power(),
             Some(symbol) => {
-                self.depth += 1;
-                if self.depth > MAX_DEPTH {
-                    return Err(format!("more than {MAX_DEPTH} levels of nesting"));
-                }
-                let operand = self.unary()?;
-                self.depth -= 1;
+                let operand = self.nested(Self::unary)?;
                 Ok(match symbol {
                     "-" => Ast::Unary(Unary::Neg, Box::new(operand)),
                     "!" => Ast::Unary(Unary::Not, Box::new(operand)),
@@ -164,12 +167,7 @@ impl Parser<'_> {
         if self.accept(&["^"]).is_none() {
             return Ok(base);
         }
-        self.depth += 1;
-        if self.depth > MAX_DEPTH {
-            return Err(format!("more than {MAX_DEPTH} levels of nesting"));
-        }
-        let exponent = self.unary()?;
-        self.depth -= 1;
+        let exponent = self.nested(Self::unary)?;
         Ok(Ast::Binary(Binary::Pow, Box::new(base), Box::new(exponent)))
     }
 
@@ -214,37 +212,35 @@ impl Parser<'_> {
 
     fn call(&mut self, name: &str, place: usize) -> Result<Ast, String> {
         self.take();
-        let mut arguments = vec![self.or()?];
+        let mut arguments = vec![Box::new(self.or()?)];
         while self.accept(&[","]).is_some() {
-            arguments.push(self.or()?);
+            arguments.push(Box::new(self.or()?));
         }
         self.expect(&Token::Symbol(")"), "`,` or `)`")?;
-        let found = arguments.len();
-        let mut next = arguments.into_iter().map(Box::new);
-        let mut argument = || next.next().expect("the count was checked");
-        let wrong_count = |wanted: usize| {
-            Err(format!(
+        let wrong_count = |found: Vec<Box<Ast>>, wanted: usize| {
+            let found = found.len();
+            format!(
                 "`{name}` at character {place} has {found} arguments where {wanted} were expected"
-            ))
+            )
         };
         let alias = if name == "log" { "ln" } else { name };
         if alias == "if" {
-            return match found {
-                3 => Ok(Ast::If(argument(), argument(), argument())),
-                _ => wrong_count(3),
-            };
+            let [condition, a, b] = arguments
+                .try_into()
+                .map_err(|found| wrong_count(found, 3))?;
+            return Ok(Ast::If(condition, a, b));
         }
         if let Some(op) = Unary::by_name(alias) {
-            return match found {
-                1 => Ok(Ast::Unary(op, argument())),
-                _ => wrong_count(1),
-            };
+            let [a] = arguments
+                .try_into()
+                .map_err(|found| wrong_count(found, 1))?;
+            return Ok(Ast::Unary(op, a));
         }
         if let Some(op) = Binary::by_name(alias) {
-            return match found {
-                2 => Ok(Ast::Binary(op, argument(), argument())),
-                _ => wrong_count(2),
-            };
+            let [a, b] = arguments
+                .try_into()
+                .map_err(|found| wrong_count(found, 2))?;
+            return Ok(Ast::Binary(op, a, b));
         }
         Err(format!("unknown function `{name}` at character {place}"))
     }
