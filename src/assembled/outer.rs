@@ -203,7 +203,7 @@ pub fn solve(
             reason = why.name;
             residual = residual_of(reduced, &b, &v, &r)?;
         }
-        reduced.spread(&now, &v, &u)?;
+        reduced.trace.spread(session.comm(), &now, &v, &u)?;
 
         let at = reduced.trace.get(session.comm(), &u)?;
         let forces = match solve {

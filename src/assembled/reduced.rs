@@ -226,16 +226,6 @@ impl Reduced {
         Ok(v)
     }
 
-    /// u ← T v + u₀. Collective.
-    ///
-    /// # Errors
-    /// PETSc's.
-    pub fn spread(&self, groups: &Groups, v: &PetscVec, u: &PetscVec) -> Result<()> {
-        u.copy_from(v)?;
-        let at = self.trace.get(self.comm(), v)?;
-        self.trace.set(u, &groups.spread(&at))
-    }
-
     /// ‖f‖₂, or without a load the norm of the right-hand side `b`. Collective.
     ///
     /// # Errors

@@ -132,7 +132,7 @@ impl<'a> Refiner<'a> {
         };
         let (mut least, mut idle) = (f64::INFINITY, 0);
         while out.rounds < ROUNDS {
-            self.spread(groups, v, &u)?;
+            self.trace.spread(self.session.comm(), groups, v, &u)?;
             let [high, low] = self.halves(&u, &r)?;
             // The forces on the two ends of a row cancel: their high and low halves are summed separately.
             let [high, low] = [groups.fold(&high), groups.fold(&low)];
@@ -147,7 +147,7 @@ impl<'a> Refiner<'a> {
                 break;
             }
             v.axpy(1.0, &d)?;
-            self.spread(groups, v, &u)?;
+            self.trace.spread(self.session.comm(), groups, v, &u)?;
             // rᵀ d is the energy of the correction.
             let energy = r.dot(&d)?.max(0.0).sqrt();
             let whole = self.system.energy_norm(&u)?;
@@ -165,13 +165,6 @@ impl<'a> Refiner<'a> {
             least = least.min(out.correction);
         }
         Ok(out)
-    }
-
-    /// u ← T v + u₀. Collective.
-    fn spread(&self, groups: &Groups, v: &PetscVec, u: &PetscVec) -> Result<()> {
-        u.copy_from(v)?;
-        let at = self.trace.get(self.session.comm(), v)?;
-        self.trace.set(u, &groups.spread(&at))
     }
 }
 

@@ -127,22 +127,9 @@ impl<'a> Unknowns<'a> {
 
     /// The places in w of the entries `range` of v.
     pub fn places(&self, range: Range<usize>) -> Vec<u64> {
-        let mut at = 0;
-        let mut next = self.gone.iter().peekable();
-        let mut out = Vec::with_capacity(range.len());
-        for w in 0..self.layout.len() as u64 {
-            if at >= range.end {
-                break;
-            }
-            if next.next_if_eq(&&w).is_some() {
-                continue;
-            }
-            if at >= range.start {
-                out.push(w);
-            }
-            at += 1;
-        }
-        out
+        let mut gone = self.gone.iter().peekable();
+        let kept = (0..self.layout.len() as u64).filter(|w| gone.next_if_eq(&w).is_none());
+        kept.skip(range.start).take(range.len()).collect()
     }
 
     /// w = T v + w₀ in equal shares. Collective.
@@ -203,6 +190,22 @@ impl Trace {
         self.mine.iter().for_each(|&(k, i)| out[k] = array[i]);
         sum_all(comm, &mut out);
         Ok(out)
+    }
+
+    /// u ← T v + u₀. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn spread(
+        &self,
+        comm: &SimpleCommunicator,
+        groups: &Groups,
+        v: &PetscVec,
+        u: &PetscVec,
+    ) -> Result<()> {
+        u.copy_from(v)?;
+        let at = self.get(comm, v)?;
+        self.set(u, &groups.spread(&at))
     }
 
     /// Replaces the entries of `x`.

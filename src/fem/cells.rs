@@ -55,12 +55,7 @@ fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> Kind {
         cell::stiffness(mesh.dim, &points, mesh.form.element, &material, &mut out);
         out
     };
-    let Some(&first) = mesh.poisson.first() else {
-        return Kind::Boxes {
-            unit: vec![matrix(0.0)],
-            of: Vec::new(),
-        };
-    };
+    let first = mesh.poisson.first().copied().unwrap_or(0.0);
     if mesh.poisson.iter().all(|&p| p == first) {
         return Kind::Boxes {
             unit: vec![matrix(first)],

@@ -52,11 +52,8 @@ pub fn nnls(a: &Dense, b: &[f64], free: &[bool]) -> (Vec<f64>, Vec<f64>) {
                 x[j] += step * (z - x[j]);
             }
             passive.retain(|&j| free[j] || x[j] > 0.0);
-            (0..n)
-                .filter(|j| !passive.contains(j))
-                .collect::<Vec<_>>()
-                .into_iter()
-                .for_each(|j| x[j] = 0.0);
+            let left = (0..n).filter(|j| !passive.contains(j));
+            left.for_each(|j| x[j] = 0.0);
             if passive.is_empty() {
                 break;
             }

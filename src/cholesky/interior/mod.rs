@@ -27,7 +27,7 @@ mod triangle;
 #[path = "../../../tests/inside/cholesky/interior.rs"]
 mod tests;
 
-use super::symbolic::Keep;
+use super::symbolic::{Keep, Symbolic};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::petsc::Options;
@@ -124,14 +124,18 @@ impl LocalSolver {
         let ordering = self.ordering.taken();
         if (self.kind, ordering) == (Solver::Multifrontal, Ordering::Nd) {
             // Nested dissection yields the fronts directly: no elimination tree is needed.
-            return Ok(Box::new(own::Own::nested(k, interface, coordinates)));
+            let symbolic = Symbolic::new(k, interface, coordinates);
+            return Ok(Box::new(own::Own::new(symbolic)));
         }
         let order =
             Elimination::new(k, interface, coordinates, ordering).map_err(NoFactor::Failed)?;
         Ok(match self.kind {
             Solver::Faer if !order.interior.is_empty() => Box::new(faer::Faer::new(k, order)?),
             // This arm also serves an empty interior.
-            _ => Box::new(own::Own::new(k, &order)),
+            _ => {
+                let symbolic = Symbolic::with_supernodes(k, interface, &order.supernodes);
+                Box::new(own::Own::new(symbolic))
+            }
         })
     }
 

@@ -4,7 +4,6 @@ use std::sync::{Arc, OnceLock};
 
 use super::analysis::{Analysis, NoFactor};
 use super::factor::{Factor, SparseCholesky};
-use super::order::Elimination;
 use crate::cholesky::multifrontal::PartialCholesky;
 use crate::cholesky::symbolic::{Keep, Symbolic};
 use crate::linalg::csr::Csr;
@@ -14,27 +13,15 @@ use crate::linalg::dense::Dense;
 #[derive(Debug)]
 pub struct Own {
     symbolic: Arc<Symbolic>,
-    interface: Vec<u32>,
     /// The fronts without the rows of the interface, built on first use.
     inside: OnceLock<Arc<Symbolic>>,
 }
 
 impl Own {
-    /// One front for each set of the given order.
-    pub fn new(k: &Csr, order: &Elimination) -> Own {
-        let symbolic = Symbolic::with_supernodes(k, &order.interface, &order.supernodes);
-        Own::with(symbolic, &order.interface)
-    }
-
-    /// Fronts by nested dissection.
-    pub fn nested(k: &Csr, interface: &[u32], coordinates: Option<&[[f64; 3]]>) -> Own {
-        Own::with(Symbolic::new(k, interface, coordinates), interface)
-    }
-
-    fn with(symbolic: Symbolic, interface: &[u32]) -> Own {
+    /// The analysis with these fronts.
+    pub fn new(symbolic: Symbolic) -> Own {
         Own {
             symbolic: Arc::new(symbolic),
-            interface: interface.to_vec(),
             inside: OnceLock::new(),
         }
     }
@@ -56,7 +43,7 @@ impl Analysis for Own {
                 PartialCholesky::inside(k, &self.symbolic, inside)?
             }
         };
-        Ok((Factor::new(k, &self.interface, factor, keep), s))
+        Ok((Factor::new(k, &self.symbolic.interface, factor, keep), s))
     }
 }
 
