@@ -22,7 +22,7 @@ use first_rank::{on_first_rank, say};
 use parse::{Invocation, Wanted};
 
 use crate::petsc::{self, Comm, Ksp, Session};
-use crate::scene::distribution::Distribution;
+use crate::scene::distribution;
 use crate::{baselines, Result, Settings};
 
 /// Runs the program with the process's arguments and returns its exit code.
@@ -67,7 +67,7 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
 /// `fetifeti -help`: our options and those of the solvers behind them, without a scene.
 fn list_options(session: &Session) -> Result<()> {
     let settings = Settings::default().with_options(session)?;
-    Distribution::from_options(session)?;
+    distribution::is_cyclic(session)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_options_prefix(&settings.method.prefix)?;
     ksp.set_type("cg")?;

@@ -42,42 +42,23 @@ fn set_options<'a>(session: &Session, scene: &'a Scene) -> Result<Vec<&'a str>> 
     Ok(set)
 }
 
-/// How subdomains are dealt to ranks (`-fetifeti_distribution`).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Distribution {
-    /// Contiguous blocks of subdomains.
-    Block,
-    /// One after the other in turn.
-    Cyclic,
-}
-
-impl Distribution {
-    /// Reads the option `-fetifeti_distribution`.
-    pub(crate) fn from_options(session: &Session) -> Result<Distribution> {
-        let help = "how subdomains are dealt to ranks";
-        let names = ["block", "cyclic"];
-        Ok(
-            match Options::new(session, "fetifeti_").choice("distribution", &names, 0, help)? {
-                0 => Distribution::Block,
-                _ => Distribution::Cyclic,
-            },
-        )
-    }
-
-    /// Whether subdomain `s` of `n` belongs to rank `rank` of `size`.
-    fn owns(self, s: usize, n: usize, rank: usize, size: usize) -> bool {
-        match self {
-            Distribution::Block => contiguous_share(n, size, rank).contains(&s),
-            Distribution::Cyclic => s % size == rank,
-        }
-    }
+/// Whether subdomains are dealt to ranks one after the other in turn, and not in contiguous blocks. Reads the option
+/// `-fetifeti_distribution`.
+pub(crate) fn is_cyclic(session: &Session) -> Result<bool> {
+    let help = "how subdomains are dealt to ranks";
+    let options = Options::new(session, "fetifeti_");
+    Ok(options.choice("distribution", &["block", "cyclic"], 0, help)? == 1)
 }
 
 /// A predicate: whether this rank owns a subdomain, according to the options.
 pub(crate) fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -> bool> {
-    let deal = Distribution::from_options(session)?;
-    let (n, rank, size) = (scene.n_subdomains(), session.rank(), session.size());
-    Ok(move |s| deal.owns(s, n, rank, size))
+    let cyclic = is_cyclic(session)?;
+    let (size, rank) = (session.size(), session.rank());
+    let share = contiguous_share(scene.n_subdomains(), size, rank);
+    Ok(move |s: usize| match cyclic {
+        true => s % size == rank,
+        false => share.contains(&s),
+    })
 }
 
 /// This rank's part of the scene, assembled. Collective.

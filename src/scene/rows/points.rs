@@ -228,20 +228,19 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Shar
             });
         }
     }
-    let mut members: HashMap<usize, Vec<BodyNode>> = HashMap::new();
+    // The members and pairs of each set.
+    let mut found: HashMap<usize, (Vec<BodyNode>, Vec<Shared>)> = HashMap::new();
     for (id, member) in nodes.iter().enumerate() {
-        members.entry(sets.find(id)).or_default().push(*member);
+        found.entry(sets.find(id)).or_default().0.push(*member);
     }
-    let mut links: HashMap<usize, Vec<Shared>> = HashMap::new();
     for pair in pairs {
         let root = sets.find(pair.members[0]);
-        links.entry(root).or_default().push(pair);
+        found.entry(root).or_default().1.push(pair);
     }
-    let mut out: Vec<(Point, Vec<Shared>)> = members
-        .into_iter()
-        .map(|(root, mut members)| {
+    let mut out: Vec<(Point, Vec<Shared>)> = found
+        .into_values()
+        .map(|(mut members, mut links)| {
             members.sort_by_key(|m| m.body);
-            let mut links = links.remove(&root).unwrap_or_default();
             for pair in &mut links {
                 pair.members = pair.members.map(|id| {
                     let node = nodes[id];

@@ -51,7 +51,7 @@ impl Cells {
     /// `counts[0]` × `counts[1]` (× `counts[2]`, 1 in the plane) cells with these values. x runs fastest; the lowest
     /// row and layer come first.
     ///
-    /// # Errors [`Error::Input`] if the number of values differs.
+    /// # Errors
     /// [`Error::Input`] when the number of values is another one.
     pub fn new(name: impl Into<String>, counts: [usize; 3], values: Vec<f64>) -> Result<Cells> {
         let name = name.into();
