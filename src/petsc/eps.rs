@@ -1,6 +1,6 @@
 //! Eigenvalue solvers (SLEPc).
 
-use super::error::{c_string, rust_string};
+use super::error::{c_string, got, rust_string};
 use super::handle::Handle;
 use super::{Comm, ConvergedReason, Ksp, Mat, Session, Vec};
 use crate::Result;
@@ -34,22 +34,21 @@ pub enum Which {
 }
 
 /// An eigenvalue solver. Clones are handles to the same solver.
-#[derive(Clone)]
-pub struct Eps(pub(super) Handle<sys::_p_EPS>);
+pub type Eps = Handle<sys::_p_EPS>;
 
 impl Eps {
     /// A solver without operators. The first one initialises SLEPc. Collective.
     pub fn new(session: &Session, comm: Comm) -> Result<Eps> {
         session.need_slepc()?;
-        let mut raw = std::ptr::null_mut();
-        petsc!(EPSCreate(session.raw_comm(comm), &mut raw))?;
-        Ok(Eps(Handle::own(raw, session)))
+        Eps::made(session, |raw| {
+            petsc!(EPSCreate(session.raw_comm(comm), raw))
+        })
     }
 
     /// A, and B for a generalised problem.
     pub fn set_operators(&self, a: &Mat, b: Option<&Mat>) -> Result<()> {
         let b = b.map_or(std::ptr::null_mut(), Mat::raw);
-        petsc!(EPSSetOperators(self.0.raw(), a.raw(), b))
+        petsc!(EPSSetOperators(self.raw(), a.raw(), b))
     }
 
     /// The kind of problem.
@@ -60,12 +59,12 @@ impl Eps {
             ProblemType::Nhep => sys::EPS_NHEP,
             ProblemType::Ghiep => sys::EPS_GHIEP,
         };
-        petsc!(EPSSetProblemType(self.0.raw(), kind))
+        petsc!(EPSSetProblemType(self.raw(), kind))
     }
 
     /// The method by SLEPc's name (`"krylovschur"` is the default).
     pub fn set_type(&self, name: &str) -> Result<()> {
-        petsc!(EPSSetType(self.0.raw(), c_string(name).as_ptr()))
+        petsc!(EPSSetType(self.raw(), c_string(name).as_ptr()))
     }
 
     /// The end of the spectrum that is wanted.
@@ -76,13 +75,13 @@ impl Eps {
             Which::LargestReal => sys::EPS_LARGEST_REAL,
             Which::SmallestReal => sys::EPS_SMALLEST_REAL,
         };
-        petsc!(EPSSetWhichEigenpairs(self.0.raw(), which))
+        petsc!(EPSSetWhichEigenpairs(self.raw(), which))
     }
 
     /// Number of wanted eigenvalues and, if given, the size of the search space.
     pub fn set_dimensions(&self, nev: usize, ncv: Option<usize>) -> Result<()> {
         petsc!(EPSSetDimensions(
-            self.0.raw(),
+            self.raw(),
             nev as i32,
             ncv.map_or(sys::PETSC_DEFAULT, |n| n as i32),
             sys::PETSC_DEFAULT
@@ -92,27 +91,18 @@ impl Eps {
     /// Relative tolerance, and the largest number of restarts if given.
     pub fn set_tolerances(&self, tol: f64, max_it: Option<usize>) -> Result<()> {
         petsc!(EPSSetTolerances(
-            self.0.raw(),
+            self.raw(),
             tol,
             max_it.map_or(sys::PETSC_DEFAULT, |n| n as i32)
         ))
     }
 
-    /// Keeps the search orthogonal to these vectors (in the problem's inner product).
-    pub fn set_deflation_space(&self, vectors: &[Vec]) -> Result<()> {
-        let mut raw = readable(vectors)?;
-        petsc!(EPSSetDeflationSpace(
-            self.0.raw(),
-            raw.len() as i32,
-            raw.as_mut_ptr()
-        ))
-    }
-
     /// Starts the search from these vectors.
     pub fn set_initial_space(&self, vectors: &[Vec]) -> Result<()> {
-        let mut raw = readable(vectors)?;
+        let raw: Result<std::vec::Vec<sys::Vec>> = vectors.iter().map(Vec::read).collect();
+        let mut raw = raw?;
         petsc!(EPSSetInitialSpace(
-            self.0.raw(),
+            self.raw(),
             raw.len() as i32,
             raw.as_mut_ptr()
         ))
@@ -120,37 +110,34 @@ impl Eps {
 
     /// Apply the operator once more to computed eigenvectors (SLEPc does so for generalised problems by default).
     pub fn set_purify(&self, on: bool) -> Result<()> {
-        petsc!(EPSSetPurify(self.0.raw(), Flag::of(on)))
+        petsc!(EPSSetPurify(self.raw(), Flag::of(on)))
     }
 
     /// The prefix of this solver's options, without a dash.
     pub fn set_options_prefix(&self, prefix: &str) -> Result<()> {
-        petsc!(EPSSetOptionsPrefix(self.0.raw(), c_string(prefix).as_ptr()))
+        petsc!(EPSSetOptionsPrefix(self.raw(), c_string(prefix).as_ptr()))
     }
 
     /// Reads the options of this solver.
     pub fn set_from_options(&self) -> Result<()> {
-        petsc!(EPSSetFromOptions(self.0.raw()))
+        petsc!(EPSSetFromOptions(self.raw()))
     }
 
     /// Solves the eigenvalue problem; [`Eps::converged`] has the number of converged eigenvalues. Collective.
     ///
     /// # Errors The error of a shell operator if one failed; otherwise SLEPc's.
     pub fn solve(&self) -> Result<()> {
-        petsc!(EPSSolve(self.0.raw()))
+        petsc!(EPSSolve(self.raw()))
     }
 
     /// Number of converged eigenvalues.
     pub fn converged(&self) -> Result<usize> {
-        let mut n = 0;
-        petsc!(EPSGetConverged(self.0.raw(), &mut n))?;
-        Ok(n as usize)
+        Ok(got(|n| petsc!(EPSGetConverged(self.raw(), n)))? as usize)
     }
 
     /// Why the last solve stopped.
     pub fn converged_reason(&self) -> Result<ConvergedReason> {
-        let mut code = 0;
-        petsc!(EPSGetConvergedReason(self.0.raw(), &mut code))?;
+        let code = got(|code| petsc!(EPSGetConvergedReason(self.raw(), code)))?;
         // SAFETY: SLEPc's table is indexed by the code, from the smallest (negative) one up.
         let name = unsafe { rust_string(*sys::EPSConvergedReasons.offset(code as isize)) };
         Ok(ConvergedReason { code, name })
@@ -158,15 +145,13 @@ impl Eps {
 
     /// Number of restarts of the last solve.
     pub fn iterations(&self) -> Result<usize> {
-        let mut n = 0;
-        petsc!(EPSGetIterationNumber(self.0.raw(), &mut n))?;
-        Ok(n as usize)
+        Ok(got(|n| petsc!(EPSGetIterationNumber(self.raw(), n)))? as usize)
     }
 
     /// Real part of the i-th converged eigenvalue, the most wanted first.
     pub fn eigenvalue(&self, i: usize) -> Result<f64> {
         let (mut re, mut im) = (0.0, 0.0);
-        petsc!(EPSGetEigenvalue(self.0.raw(), i as i32, &mut re, &mut im))?;
+        petsc!(EPSGetEigenvalue(self.raw(), i as i32, &mut re, &mut im))?;
         Ok(re)
     }
 
@@ -174,7 +159,7 @@ impl Eps {
     pub fn eigenvector(&self, i: usize, x: &Vec) -> Result<()> {
         let x = x.write()?;
         petsc!(EPSGetEigenvector(
-            self.0.raw(),
+            self.raw(),
             i as i32,
             x,
             std::ptr::null_mut()
@@ -183,22 +168,13 @@ impl Eps {
 
     /// SLEPc's estimate of the relative error of the i-th eigenvalue.
     pub fn error_estimate(&self, i: usize) -> Result<f64> {
-        let mut error = 0.0;
-        petsc!(EPSGetErrorEstimate(self.0.raw(), i as i32, &mut error))?;
-        Ok(error)
+        got(|error| petsc!(EPSGetErrorEstimate(self.raw(), i as i32, error)))
     }
-}
 
-impl Eps {
     /// The solver for B in the spectral transformation.
     pub fn st_ksp(&self) -> Result<Ksp> {
-        let (mut st, mut ksp) = (std::ptr::null_mut(), std::ptr::null_mut());
-        petsc!(EPSGetST(self.0.raw(), &mut st))?;
-        petsc!(STGetKSP(st, &mut ksp))?;
-        Ksp::share(ksp, self.0.session())
+        let mut st = std::ptr::null_mut();
+        petsc!(EPSGetST(self.raw(), &mut st))?;
+        Ksp::borrowed(self.session(), |ksp| petsc!(STGetKSP(st, ksp)))
     }
-}
-
-fn readable(vectors: &[Vec]) -> Result<std::vec::Vec<sys::Vec>> {
-    vectors.iter().map(Vec::read).collect()
 }

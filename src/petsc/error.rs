@@ -129,6 +129,32 @@ pub(crate) fn rust_string(text: *const c_char) -> String {
         .into_owned()
 }
 
+/// The number that a call writes.
+pub(super) fn got<T: Default>(call: impl FnOnce(&mut T) -> Result<()>) -> Result<T> {
+    let mut value = T::default();
+    call(&mut value)?;
+    Ok(value)
+}
+
+/// The text whose pointer a call writes; empty for NULL.
+pub(super) fn text(call: impl FnOnce(&mut *const c_char) -> Result<()>) -> Result<String> {
+    let mut text = std::ptr::null();
+    call(&mut text)?;
+    Ok(rust_string(text))
+}
+
+/// A copy of an array that PETSc lends.
+///
+/// # Safety
+/// `data` has `n` entries, or `n` is zero.
+pub(super) unsafe fn copied<T: Clone>(data: *const T, n: c_int) -> Vec<T> {
+    if n == 0 {
+        return Vec::new();
+    }
+    // SAFETY: by the caller.
+    unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec()
+}
+
 /// Collects the frames of PETSc's errors on this thread instead of letting PETSc print them.
 pub(crate) fn collect_traces() -> Result<()> {
     petsc!(ff_push_error_handler(Some(frame)))

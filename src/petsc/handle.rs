@@ -6,8 +6,8 @@ use crate::Result;
 use petsc_sys as sys;
 
 /// A reference to a PETSc object of the struct `T` (`_p_Vec`, `_p_Mat`, …): never null, counted by PETSc, and holding
-/// the session so that PETSc is finalised after the last object.
-pub(crate) struct Handle<T> {
+/// the session so that PETSc is finalised after the last object. Clones are references to the same object.
+pub struct Handle<T> {
     raw: *mut T,
     session: Session,
 }
@@ -20,6 +20,26 @@ impl<T> Handle<T> {
             raw,
             session: session.clone(),
         }
+    }
+
+    /// The new object whose pointer a create routine writes.
+    pub(crate) fn made(
+        session: &Session,
+        create: impl FnOnce(&mut *mut T) -> Result<()>,
+    ) -> Result<Self> {
+        let mut raw = std::ptr::null_mut();
+        create(&mut raw)?;
+        Ok(Handle::own(raw, session))
+    }
+
+    /// The object that PETSc lends: its pointer is what `get` writes.
+    pub(crate) fn borrowed(
+        session: &Session,
+        get: impl FnOnce(&mut *mut T) -> Result<()>,
+    ) -> Result<Self> {
+        let mut raw = std::ptr::null_mut();
+        get(&mut raw)?;
+        Handle::share(raw, session)
     }
 
     /// Adds a reference to an object that PETSc lent.

@@ -1,6 +1,6 @@
 //! Krylov solvers.
 
-use super::error::{c_string, refused_option, rust_string};
+use super::error::{c_string, copied, got, refused_option, text};
 use super::handle::Handle;
 use super::{Comm, Mat, Pc, Session, Vec};
 use crate::{Error, Result};
@@ -54,23 +54,14 @@ impl ConvergedReason {
 }
 
 /// A linear solver. Clones are handles to the same solver.
-#[derive(Clone)]
-pub struct Ksp(Handle<sys::_p_KSP>);
+pub type Ksp = Handle<sys::_p_KSP>;
 
 impl Ksp {
     /// A solver without operators. Collective.
     pub fn new(session: &Session, comm: Comm) -> Result<Ksp> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(KSPCreate(session.raw_comm(comm), &mut raw))?;
-        Ok(Ksp(Handle::own(raw, session)))
-    }
-
-    pub(super) fn share(raw: sys::KSP, session: &Session) -> Result<Ksp> {
-        Ok(Ksp(Handle::share(raw, session)?))
-    }
-
-    pub(crate) fn raw(&self) -> sys::KSP {
-        self.0.raw()
+        Ksp::made(session, |raw| {
+            petsc!(KSPCreate(session.raw_comm(comm), raw))
+        })
     }
 
     /// The operator of the system and the matrix that the preconditioner is built from.
@@ -80,9 +71,9 @@ impl Ksp {
 
     /// The operator of the system.
     pub fn operator(&self) -> Result<Mat> {
-        let mut a = std::ptr::null_mut();
-        petsc!(KSPGetOperators(self.raw(), &mut a, std::ptr::null_mut()))?;
-        Mat::share(a, self.0.session())
+        Mat::borrowed(self.session(), |a| {
+            petsc!(KSPGetOperators(self.raw(), a, std::ptr::null_mut()))
+        })
     }
 
     /// Sets the type by PETSc's name (`"cg"`, `"preonly"`, `"fetidp"`, …).
@@ -92,9 +83,7 @@ impl Ksp {
 
     /// The type's name; empty if none is set.
     pub fn type_name(&self) -> Result<String> {
-        let mut name = std::ptr::null();
-        petsc!(KSPGetType(self.raw(), &mut name))?;
-        Ok(rust_string(name))
+        text(|name| petsc!(KSPGetType(self.raw(), name)))
     }
 
     /// Relative, absolute and divergence tolerance and the maximum number of iterations; `None` keeps the current
@@ -158,11 +147,6 @@ impl Ksp {
         petsc!(KSPSetComputeSingularValues(self.raw(), Flag::of(on)))
     }
 
-    /// Starts from the entries of the solution vector instead of zero.
-    pub fn set_initial_guess_nonzero(&self, on: bool) -> Result<()> {
-        petsc!(KSPSetInitialGuessNonzero(self.raw(), Flag::of(on)))
-    }
-
     /// Keeps the preconditioner although the matrix has changed.
     pub fn set_reuse_preconditioner(&self, on: bool) -> Result<()> {
         petsc!(KSPSetReusePreconditioner(self.raw(), Flag::of(on)))
@@ -187,9 +171,8 @@ impl Ksp {
     /// [`Error::Input`] for a value that PETSc refuses.
     pub fn set_from_options(&self) -> Result<()> {
         petsc!(KSPSetFromOptions(self.raw())).map_err(|e| {
-            let mut prefix = std::ptr::null();
-            let found = petsc!(PetscObjectGetOptionsPrefix(self.0.object(), &mut prefix));
-            refused_option(e, &found.map_or(String::new(), |()| rust_string(prefix)))
+            let prefix = text(|prefix| petsc!(PetscObjectGetOptionsPrefix(self.object(), prefix)));
+            refused_option(e, &prefix.unwrap_or_default())
         })
     }
 
@@ -218,16 +201,18 @@ impl Ksp {
         rest: f64,
     ) -> Result<bool> {
         let (b, x) = (b.read()?, x.write()?);
-        let mut tripped = 0;
-        petsc!(ff_ksp_solve_watched(
-            self.raw(),
-            b,
-            x,
-            first as i32,
-            limit,
-            rest,
-            &mut tripped
-        ))?;
+        let first = first as i32;
+        let tripped = got(|tripped| {
+            petsc!(ff_ksp_solve_watched(
+                self.raw(),
+                b,
+                x,
+                first,
+                limit,
+                rest,
+                tripped
+            ))
+        })?;
         Ok(tripped != 0)
     }
 
@@ -237,19 +222,11 @@ impl Ksp {
         petsc!(KSPSolveTranspose(self.raw(), b, x))
     }
 
-    /// Removes the operators and everything built from them.
-    pub fn reset(&self) -> Result<()> {
-        petsc!(KSPReset(self.raw()))
-    }
-
     /// Why the last solve stopped.
     pub fn converged_reason(&self) -> Result<ConvergedReason> {
-        let (mut code, mut name) = (0, std::ptr::null());
-        petsc!(KSPGetConvergedReason(self.raw(), &mut code))?;
-        petsc!(KSPGetConvergedReasonString(self.raw(), &mut name))?;
         Ok(ConvergedReason {
-            code,
-            name: rust_string(name),
+            code: got(|code| petsc!(KSPGetConvergedReason(self.raw(), code)))?,
+            name: text(|name| petsc!(KSPGetConvergedReasonString(self.raw(), name)))?,
         })
     }
 
@@ -261,16 +238,12 @@ impl Ksp {
 
     /// Number of iterations of the last solve.
     pub fn iterations(&self) -> Result<usize> {
-        let mut n = 0;
-        petsc!(KSPGetIterationNumber(self.raw(), &mut n))?;
-        Ok(n as usize)
+        Ok(got(|n| petsc!(KSPGetIterationNumber(self.raw(), n)))? as usize)
     }
 
     /// The last residual norm, in the norm of the convergence test.
     pub fn residual_norm(&self) -> Result<f64> {
-        let mut norm = 0.0;
-        petsc!(KSPGetResidualNorm(self.raw(), &mut norm))?;
-        Ok(norm)
+        got(|norm| petsc!(KSPGetResidualNorm(self.raw(), norm)))
     }
 
     /// Record the residual norms of the next solve, up to `length` of them.
@@ -287,11 +260,9 @@ impl Ksp {
     pub fn residual_history(&self) -> Result<std::vec::Vec<f64>> {
         let (mut data, mut n) = (std::ptr::null(), 0);
         petsc!(KSPGetResidualHistory(self.raw(), &mut data, &mut n))?;
-        if data.is_null() || n == 0 {
-            return Ok(std::vec::Vec::new());
-        }
+        let n = if data.is_null() { 0 } else { n };
         // SAFETY: PETSc keeps `n` norms until the next solve.
-        Ok(unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec())
+        Ok(unsafe { copied(data, n) })
     }
 
     /// (largest, smallest) singular value of the preconditioned operator, as estimated in the last solve.
@@ -331,22 +302,20 @@ impl Ksp {
 
     /// The preconditioner.
     pub fn pc(&self) -> Result<Pc> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(KSPGetPC(self.raw(), &mut raw))?;
-        Ok(Pc(Handle::share(raw, self.0.session())?))
+        Pc::borrowed(self.session(), |raw| petsc!(KSPGetPC(self.raw(), raw)))
     }
 
     /// KSPFETIDP: the inner solver for the multipliers, which has the iteration count and the spectrum.
     pub fn fetidp_inner_ksp(&self) -> Result<Ksp> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(KSPFETIDPGetInnerKSP(self.raw(), &mut raw))?;
-        Ok(Ksp(Handle::share(raw, self.0.session())?))
+        Ksp::borrowed(self.session(), |raw| {
+            petsc!(KSPFETIDPGetInnerKSP(self.raw(), raw))
+        })
     }
 
     /// KSPFETIDP: its inner PCBDDC.
     pub fn fetidp_inner_bddc(&self) -> Result<Pc> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(KSPFETIDPGetInnerBDDC(self.raw(), &mut raw))?;
-        Ok(Pc(Handle::share(raw, self.0.session())?))
+        Pc::borrowed(self.session(), |raw| {
+            petsc!(KSPFETIDPGetInnerBDDC(self.raw(), raw))
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Events and stages of `-log_view`.
 
-use super::error::c_string;
+use super::error::{c_string, got};
 use super::Session;
 use crate::Result;
 use std::cell::RefCell;
@@ -11,12 +11,12 @@ thread_local! {
     static KNOWN: RefCell<HashMap<(bool, String), i32>> = RefCell::default();
 }
 
-fn register(stage: bool, name: &str, make: impl FnOnce() -> Result<i32>) -> Result<i32> {
+fn register(stage: bool, name: &str, make: impl FnOnce(&mut i32) -> Result<()>) -> Result<i32> {
     let key = (stage, name.to_string());
     if let Some(id) = KNOWN.with_borrow(|known| known.get(&key).copied()) {
         return Ok(id);
     }
-    let id = make()?;
+    let id = got(make)?;
     KNOWN.with_borrow_mut(|known| known.insert(key, id));
     Ok(id)
 }
@@ -28,19 +28,11 @@ pub struct Event(i32);
 impl Event {
     /// The event of this name; repeated calls return the same event.
     pub fn register(_session: &Session, name: &str) -> Result<Event> {
-        let class = register(false, "", || {
-            let mut id = 0;
-            petsc!(PetscClassIdRegister(c"fetifeti".as_ptr(), &mut id))?;
-            Ok(id)
+        let class = register(false, "", |id| {
+            petsc!(PetscClassIdRegister(c"fetifeti".as_ptr(), id))
         })?;
-        let id = register(false, name, || {
-            let mut id = 0;
-            petsc!(PetscLogEventRegister(
-                c_string(name).as_ptr(),
-                class,
-                &mut id
-            ))?;
-            Ok(id)
+        let id = register(false, name, |id| {
+            petsc!(PetscLogEventRegister(c_string(name).as_ptr(), class, id))
         })?;
         Ok(Event(id))
     }
@@ -69,10 +61,8 @@ pub struct Stage(i32);
 impl Stage {
     /// The stage of this name; repeated calls return the same stage.
     pub fn register(_session: &Session, name: &str) -> Result<Stage> {
-        let id = register(true, name, || {
-            let mut id = 0;
-            petsc!(PetscLogStageRegister(c_string(name).as_ptr(), &mut id))?;
-            Ok(id)
+        let id = register(true, name, |id| {
+            petsc!(PetscLogStageRegister(c_string(name).as_ptr(), id))
         })?;
         Ok(Stage(id))
     }

@@ -1,5 +1,6 @@
 //! Matrices: assembled matrices (AIJ), and the functions common to all types.
 
+use super::error::copied;
 use super::handle::Handle;
 use super::{Comm, Session, Vec};
 use crate::linalg::csr::Csr;
@@ -17,39 +18,22 @@ pub enum MatFlag {
 }
 
 /// A linear operator: assembled, unassembled (MATIS) or a shell. Clones are handles to the same matrix.
-#[derive(Clone)]
-pub struct Mat(pub(super) Handle<sys::_p_Mat>);
+pub type Mat = Handle<sys::_p_Mat>;
 
 impl Mat {
-    pub(crate) fn own(raw: sys::Mat, session: &Session) -> Mat {
-        Mat(Handle::own(raw, session))
-    }
-
-    pub(crate) fn share(raw: sys::Mat, session: &Session) -> Result<Mat> {
-        Ok(Mat(Handle::share(raw, session)?))
-    }
-
-    pub(crate) fn raw(&self) -> sys::Mat {
-        self.0.raw()
-    }
-
-    pub(crate) fn session(&self) -> &Session {
-        self.0.session()
-    }
-
     /// An AIJ matrix of this size, without preallocation.
     fn empty_aij(session: &Session, comm: Comm, rows: usize, cols: usize) -> Result<Mat> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(MatCreate(session.raw_comm(comm), &mut raw))?;
-        let mat = Mat::own(raw, session);
+        let mat = Mat::made(session, |raw| {
+            petsc!(MatCreate(session.raw_comm(comm), raw))
+        })?;
         petsc!(MatSetSizes(
-            raw,
+            mat.raw(),
             count(rows)?,
             count(cols)?,
             sys::PETSC_DETERMINE,
             sys::PETSC_DETERMINE
         ))?;
-        petsc!(MatSetType(raw, c"aij".as_ptr()))?;
+        petsc!(MatSetType(mat.raw(), c"aij".as_ptr()))?;
         Ok(mat)
     }
 
@@ -218,17 +202,8 @@ impl Mat {
         let (mut n, mut cols, mut vals) = (0, std::ptr::null(), std::ptr::null());
         let row = count(row)?;
         petsc!(MatGetRow(self.raw(), row, &mut n, &mut cols, &mut vals))?;
-        let copy = if n == 0 {
-            Default::default()
-        } else {
-            // SAFETY: PETSc lends `n` columns and values until they are restored.
-            unsafe {
-                (
-                    std::slice::from_raw_parts(cols, n as usize).to_vec(),
-                    std::slice::from_raw_parts(vals, n as usize).to_vec(),
-                )
-            }
-        };
+        // SAFETY: PETSc lends `n` columns and values until they are restored.
+        let copy = unsafe { (copied(cols, n), copied(vals, n)) };
         petsc!(MatRestoreRow(self.raw(), row, &mut n, &mut cols, &mut vals))?;
         Ok(copy)
     }
@@ -241,16 +216,16 @@ impl Mat {
 
     /// A vector x with the layout of the columns.
     pub fn right_vec(&self) -> Result<Vec> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(MatCreateVecs(self.raw(), &mut raw, std::ptr::null_mut()))?;
-        Ok(Vec::own(raw, self.session()))
+        Vec::made(self.session(), |raw| {
+            petsc!(MatCreateVecs(self.raw(), raw, std::ptr::null_mut()))
+        })
     }
 
     /// A vector y with the layout of the rows.
     pub fn left_vec(&self) -> Result<Vec> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(MatCreateVecs(self.raw(), std::ptr::null_mut(), &mut raw))?;
-        Ok(Vec::own(raw, self.session()))
+        Vec::made(self.session(), |raw| {
+            petsc!(MatCreateVecs(self.raw(), std::ptr::null_mut(), raw))
+        })
     }
 
     /// Tells PETSc what the matrix is.
@@ -272,31 +247,21 @@ impl Mat {
         petsc!(MatSetBlockSize(self.raw(), count(size)?))
     }
 
-    /// Attaches the constants as the null space of the matrix.
-    pub fn set_constant_null_space(&self) -> Result<()> {
-        let space = self.null_space(true, &[])?;
-        petsc!(MatSetNullSpace(self.raw(), space.raw()))
-    }
-
     /// Attaches the constants and orthonormal vectors as the near-null space, for multigrid.
     pub fn set_near_null_space(&self, constants: bool, vectors: &[Vec]) -> Result<()> {
-        let space = self.null_space(constants, vectors)?;
-        petsc!(MatSetNearNullSpace(self.raw(), space.raw()))
-    }
-
-    fn null_space(&self, constants: bool, vectors: &[Vec]) -> Result<Handle<sys::_p_MatNullSpace>> {
-        let raw_vectors: std::vec::Vec<sys::Vec> = vectors.iter().map(Vec::raw).collect();
-        let mut raw = std::ptr::null_mut();
+        let list: std::vec::Vec<sys::Vec> = vectors.iter().map(Vec::raw).collect();
         // SAFETY: the matrix is alive, so its communicator is.
-        let comm = unsafe { sys::PetscObjectComm(self.0.object()) };
-        petsc!(MatNullSpaceCreate(
-            comm,
-            Flag::of(constants),
-            raw_vectors.len() as i32,
-            raw_vectors.as_ptr(),
-            &mut raw
-        ))?;
-        Ok(Handle::own(raw, self.session()))
+        let comm = unsafe { sys::PetscObjectComm(self.object()) };
+        let space = Handle::made(self.session(), |raw| {
+            petsc!(MatNullSpaceCreate(
+                comm,
+                Flag::of(constants),
+                list.len() as i32,
+                list.as_ptr(),
+                raw
+            ))
+        })?;
+        petsc!(MatSetNearNullSpace(self.raw(), space.raw()))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Unassembled matrices (MATIS): one local matrix per rank and a map of its dofs to global ones.
 
+use super::error::{c_string, copied, got, text};
 use super::handle::Handle;
 use super::mat::count;
 use super::{Comm, Mat, Session, Vec};
@@ -18,68 +19,57 @@ impl Mat {
         local: &Mat,
     ) -> Result<Mat> {
         let comm = session.raw_comm(Comm::World);
-        let mut map = std::ptr::null_mut();
-        petsc!(ISLocalToGlobalMappingCreate(
-            comm,
-            1,
-            count(local_to_global.len())?,
-            local_to_global.as_ptr(),
-            sys::PETSC_COPY_VALUES,
-            &mut map
-        ))?;
-        let map = Handle::own(map, session);
+        let n = count(local_to_global.len())?;
+        let map = Handle::made(session, |map| {
+            let numbers = local_to_global.as_ptr();
+            petsc!(ISLocalToGlobalMappingCreate(
+                comm,
+                1,
+                n,
+                numbers,
+                sys::PETSC_COPY_VALUES,
+                map
+            ))
+        })?;
         let owned = count(owned)?;
-        let mut raw = std::ptr::null_mut();
-        petsc!(MatCreateIS(
-            comm,
-            1,
-            owned,
-            owned,
-            sys::PETSC_DETERMINE,
-            sys::PETSC_DETERMINE,
-            map.raw(),
-            map.raw(),
-            &mut raw
-        ))?;
-        let mat = Mat::own(raw, session);
-        petsc!(MatISSetLocalMat(raw, local.raw()))?;
+        let mat = Mat::made(session, |raw| {
+            petsc!(MatCreateIS(
+                comm,
+                1,
+                owned,
+                owned,
+                sys::PETSC_DETERMINE,
+                sys::PETSC_DETERMINE,
+                map.raw(),
+                map.raw(),
+                raw
+            ))
+        })?;
+        petsc!(MatISSetLocalMat(mat.raw(), local.raw()))?;
         mat.assemble()?;
         Ok(mat)
     }
 
     /// Converts the matrix to another PETSc format (`"aij"`, `"is"`, …). Collective.
     pub fn convert(&self, format: &str) -> Result<Mat> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(MatConvert(
-            self.raw(),
-            super::error::c_string(format).as_ptr(),
-            sys::MAT_INITIAL_MATRIX,
-            &mut raw
-        ))?;
-        Ok(Mat::own(raw, self.session()))
+        Mat::made(self.session(), |raw| {
+            petsc!(MatConvert(
+                self.raw(),
+                c_string(format).as_ptr(),
+                sys::MAT_INITIAL_MATRIX,
+                raw
+            ))
+        })
     }
-}
 
-/// The vectors of a null space that a host program attached to its matrix.
-pub struct Attached {
-    /// Whether the constants belong to it.
-    pub constants: bool,
-    /// The other vectors.
-    pub vectors: std::vec::Vec<Vec>,
-}
-
-impl Mat {
     /// The type by PETSc's name.
     pub fn type_name(&self) -> Result<String> {
-        let mut name = std::ptr::null();
-        petsc!(MatGetType(self.raw(), &mut name))?;
-        Ok(super::error::rust_string(name))
+        text(|name| petsc!(MatGetType(self.raw(), name)))
     }
 
     /// The block size: the number of rows of a node.
     pub fn block_size(&self) -> Result<usize> {
-        let mut size = 1;
-        petsc!(MatGetBlockSize(self.raw(), &mut size))?;
+        let size = got(|size| petsc!(MatGetBlockSize(self.raw(), size)))?;
         Ok(size.max(1) as usize)
     }
 
@@ -102,9 +92,7 @@ impl Mat {
     /// For a MATIS: whether its map may list a dof several times, once for each of several subdomains on this rank
     /// (MatISSetAllowRepeated).
     pub fn is_repeated(&self) -> Result<bool> {
-        let mut repeated = 0;
-        petsc!(ff_is_repeated(self.raw(), &mut repeated))?;
-        Ok(repeated != 0)
+        Ok(got(|repeated| petsc!(ff_is_repeated(self.raw(), repeated)))? != 0)
     }
 
     /// The rows of a sequential matrix of any type.
@@ -148,19 +136,23 @@ impl Mat {
     pub fn attached_null_space(&self) -> Result<Option<Attached>> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatGetNullSpace(self.raw(), &mut raw))?;
-        self.attached(raw)
+        Attached::of(raw, self.session())
     }
 
     /// The near-null space that MatSetNearNullSpace attached.
     pub fn attached_near_null_space(&self) -> Result<Option<Attached>> {
         let mut raw = std::ptr::null_mut();
         petsc!(MatGetNearNullSpace(self.raw(), &mut raw))?;
-        self.attached(raw)
-    }
-
-    fn attached(&self, raw: sys::MatNullSpace) -> Result<Option<Attached>> {
         Attached::of(raw, self.session())
     }
+}
+
+/// The vectors of a null space that a host program attached to its matrix.
+pub struct Attached {
+    /// Whether the constants belong to it.
+    pub constants: bool,
+    /// The other vectors.
+    pub vectors: std::vec::Vec<Vec>,
 }
 
 impl Attached {
@@ -185,15 +177,11 @@ impl Attached {
 
 /// The global number of each local index of a map that a host program lent.
 fn mapped(map: sys::ISLocalToGlobalMapping) -> Result<std::vec::Vec<i32>> {
-    let (mut n, mut data) = (0, std::ptr::null());
-    petsc!(ISLocalToGlobalMappingGetSize(map, &mut n))?;
+    let n = got(|n| petsc!(ISLocalToGlobalMappingGetSize(map, n)))?;
+    let mut data = std::ptr::null();
     petsc!(ISLocalToGlobalMappingGetIndices(map, &mut data))?;
-    let copy = if n == 0 {
-        std::vec::Vec::new()
-    } else {
-        // SAFETY: PETSc lends `n` indices until they are restored.
-        unsafe { std::slice::from_raw_parts(data, n as usize) }.to_vec()
-    };
+    // SAFETY: PETSc lends `n` indices until they are restored.
+    let copy = unsafe { copied(data, n) };
     petsc!(ISLocalToGlobalMappingRestoreIndices(map, &mut data))?;
     Ok(copy)
 }

@@ -11,7 +11,7 @@ impl Vec {
     pub fn parts(&self) -> Result<Option<std::vec::Vec<Vec>>> {
         let mut nested = Flag::of(false);
         petsc!(PetscObjectTypeCompare(
-            self.0.object(),
+            self.object(),
             c"nest".as_ptr(),
             &mut nested
         ))?;

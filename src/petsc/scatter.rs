@@ -6,8 +6,7 @@ use crate::Result;
 use petsc_sys as sys;
 
 /// A plan that copies entries of one vector to another, and adds them back.
-#[derive(Clone)]
-pub struct Scatter(Handle<sys::_p_PetscSF>);
+pub type Scatter = Handle<sys::_p_PetscSF>;
 
 impl Scatter {
     /// Entry k of `to` (a vector of this rank alone) is entry `from_indices[k]` (global numbering) of `from`.
@@ -18,21 +17,21 @@ impl Scatter {
         let source = Is::general(session, Comm::Own, from_indices)?;
         let first: std::vec::Vec<i32> = (0..from_indices.len() as i32).collect();
         let target = Is::general(session, Comm::Own, &first)?;
-        let mut raw = std::ptr::null_mut();
-        petsc!(VecScatterCreate(
-            from.raw(),
-            source.0.raw(),
-            to.raw(),
-            target.0.raw(),
-            &mut raw
-        ))?;
-        Ok(Scatter(Handle::own(raw, session)))
+        Scatter::made(session, |raw| {
+            petsc!(VecScatterCreate(
+                from.raw(),
+                source.raw(),
+                to.raw(),
+                target.raw(),
+                raw
+            ))
+        })
     }
 
     /// to ← entries of from.
     pub fn forward(&self, from: &Vec, to: &Vec) -> Result<()> {
         let (x, y) = (from.read()?, to.write()?);
-        let (scatter, insert) = (self.0.raw(), sys::INSERT_VALUES);
+        let (scatter, insert) = (self.raw(), sys::INSERT_VALUES);
         petsc!(VecScatterBegin(scatter, x, y, insert, sys::SCATTER_FORWARD))?;
         petsc!(VecScatterEnd(scatter, x, y, insert, sys::SCATTER_FORWARD))
     }
@@ -41,14 +40,14 @@ impl Scatter {
     /// [`Scatter::new`].)
     pub fn reverse_add_begin(&self, local: &Vec, global: &Vec) -> Result<()> {
         let (x, y) = (local.read()?, global.write()?);
-        let (scatter, add) = (self.0.raw(), sys::ADD_VALUES);
+        let (scatter, add) = (self.raw(), sys::ADD_VALUES);
         petsc!(VecScatterBegin(scatter, x, y, add, sys::SCATTER_REVERSE))
     }
 
     /// Completes [`Scatter::reverse_add_begin`].
     pub fn reverse_add_end(&self, local: &Vec, global: &Vec) -> Result<()> {
         let (x, y) = (local.read()?, global.write()?);
-        let (scatter, add) = (self.0.raw(), sys::ADD_VALUES);
+        let (scatter, add) = (self.raw(), sys::ADD_VALUES);
         petsc!(VecScatterEnd(scatter, x, y, add, sys::SCATTER_REVERSE))
     }
 

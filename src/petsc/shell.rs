@@ -260,28 +260,19 @@ impl Mat {
         cols: usize,
         op: Box<dyn ShellMat>,
     ) -> Result<Mat> {
-        Mat::shell_on(session, Comm::World, rows, cols, op)
-    }
-
-    /// [`Mat::shell`] on all ranks or on this one alone.
-    pub fn shell_on(
-        session: &Session,
-        comm: Comm,
-        rows: usize,
-        cols: usize,
-        op: Box<dyn ShellMat>,
-    ) -> Result<Mat> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(MatCreateShell(
-            session.raw_comm(comm),
-            count(rows)?,
-            count(cols)?,
-            sys::PETSC_DETERMINE,
-            sys::PETSC_DETERMINE,
-            std::ptr::null_mut(),
-            &mut raw
-        ))?;
-        let mat = Mat::own(raw, session);
+        let (rows, cols) = (count(rows)?, count(cols)?);
+        let mat = Mat::made(session, |raw| {
+            petsc!(MatCreateShell(
+                session.raw_comm(Comm::World),
+                rows,
+                cols,
+                sys::PETSC_DETERMINE,
+                sys::PETSC_DETERMINE,
+                std::ptr::null_mut(),
+                raw
+            ))
+        })?;
+        let raw = mat.raw();
         let symmetric = op.symmetric();
         attach::<dyn ShellMat>(raw as _, session, op)?;
         petsc!(ff_mat_shell_set_mult(raw, Some(mat_mult)))?;
@@ -302,8 +293,8 @@ impl Pc {
     /// Makes this a preconditioner written in Rust; `name` is what `-ksp_view` shows.
     pub fn set_shell(&self, name: &str, op: Box<dyn ShellPc>) -> Result<()> {
         self.set_type("shell")?;
-        attach::<dyn ShellPc>(self.0.object(), self.0.session(), op)?;
-        let raw = self.0.raw();
+        attach::<dyn ShellPc>(self.object(), self.session(), op)?;
+        let raw = self.raw();
         petsc!(PCShellSetName(raw, c_string(name).as_ptr()))?;
         petsc!(ff_pc_shell_set_apply(raw, Some(pc_apply)))?;
         petsc!(ff_pc_shell_set_apply_transpose(
@@ -322,9 +313,9 @@ impl Eps {
     /// form); see `extreme_eigenvalues` for a workaround.
     pub fn set_st_shell(&self, op: Box<dyn ShellOp>) -> Result<()> {
         let mut st = std::ptr::null_mut();
-        petsc!(EPSGetST(self.0.raw(), &mut st))?;
+        petsc!(EPSGetST(self.raw(), &mut st))?;
         petsc!(STSetType(st, c"shell".as_ptr()))?;
-        attach::<dyn ShellOp>(st as _, self.0.session(), op)?;
+        attach::<dyn ShellOp>(st as _, self.session(), op)?;
         petsc!(ff_st_shell_set_apply(st, Some(st_apply)))
     }
 }

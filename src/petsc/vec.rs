@@ -1,6 +1,6 @@
 //! Vectors.
 
-use super::error::c_string;
+use super::error::{c_string, got};
 use super::handle::Handle;
 use super::{Comm, Session};
 use crate::{Error, Result};
@@ -23,8 +23,7 @@ thread_local! {
 /// Clones are handles to the same vector; [`Vec::duplicate`] makes a new one. Methods that write take `&self`, as PETSc
 /// does. While entries are lent out by [`Vec::array`] nothing may write to the vector, and while they are lent out by
 /// [`Vec::array_mut`] nothing may use it: such calls return an error.
-#[derive(Clone)]
-pub struct Vec(pub(super) Handle<sys::_p_Vec>);
+pub type Vec = Handle<sys::_p_Vec>;
 
 impl Vec {
     /// A zero vector with `local` entries on this rank.
@@ -67,9 +66,10 @@ impl Vec {
     }
 
     fn sized(session: &Session, comm: Comm, local: i32, global: i32) -> Result<Vec> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(VecCreate(session.raw_comm(comm), &mut raw))?;
-        let vec = Vec(Handle::own(raw, session));
+        let vec = Vec::made(session, |raw| {
+            petsc!(VecCreate(session.raw_comm(comm), raw))
+        })?;
+        let raw = vec.raw();
         petsc!(VecSetSizes(raw, local, global))?;
         let kind = match comm {
             Comm::World => c"standard",
@@ -78,22 +78,6 @@ impl Vec {
         petsc!(VecSetType(raw, kind.as_ptr()))?;
         petsc!(VecSet(raw, 0.0))?;
         Ok(vec)
-    }
-
-    pub(crate) fn own(raw: sys::Vec, session: &Session) -> Vec {
-        Vec(Handle::own(raw, session))
-    }
-
-    pub(crate) fn share(raw: sys::Vec, session: &Session) -> Result<Vec> {
-        Ok(Vec(Handle::share(raw, session)?))
-    }
-
-    pub(crate) fn raw(&self) -> sys::Vec {
-        self.0.raw()
-    }
-
-    pub(crate) fn session(&self) -> &Session {
-        self.0.session()
     }
 
     /// The pointer for a call that reads the entries.
@@ -185,10 +169,8 @@ impl Vec {
 
     /// A new zero vector of the same kind and sizes.
     pub fn duplicate(&self) -> Result<Vec> {
-        let mut raw = std::ptr::null_mut();
-        petsc!(VecDuplicate(self.raw(), &mut raw))?;
-        let copy = Vec::own(raw, self.session());
-        petsc!(VecSet(raw, 0.0))?;
+        let copy = Vec::made(self.session(), |raw| petsc!(VecDuplicate(self.raw(), raw)))?;
+        petsc!(VecSet(copy.raw(), 0.0))?;
         Ok(copy)
     }
 
@@ -225,17 +207,13 @@ impl Vec {
     /// selfᵀ x. Collective.
     pub fn dot(&self, x: &Vec) -> Result<f64> {
         let (a, b) = (self.read()?, x.read()?);
-        let mut value = 0.0;
-        petsc!(VecDot(a, b, &mut value))?;
-        Ok(value)
+        got(|value| petsc!(VecDot(a, b, value)))
     }
 
     /// Sum of all entries. Collective.
     pub fn sum(&self) -> Result<f64> {
         let x = self.read()?;
-        let mut value = 0.0;
-        petsc!(VecSum(x, &mut value))?;
-        Ok(value)
+        got(|value| petsc!(VecSum(x, value)))
     }
 
     /// Euclidean norm. Collective.
@@ -250,9 +228,7 @@ impl Vec {
 
     fn norm(&self, kind: sys::NormType) -> Result<f64> {
         let x = self.read()?;
-        let mut value = 0.0;
-        petsc!(VecNorm(x, kind, &mut value))?;
-        Ok(value)
+        got(|value| petsc!(VecNorm(x, kind, value)))
     }
 
     /// self_i ← x_i y_i.
@@ -273,11 +249,6 @@ impl Vec {
         petsc!(VecSetRandom(y, std::ptr::null_mut()))
     }
 
-    /// The name under which viewers show the vector.
-    pub fn set_name(&self, name: &str) -> Result<()> {
-        petsc!(PetscObjectSetName(self.0.object(), c_string(name).as_ptr()))
-    }
-
     /// Writes the vector to a file in PETSc's binary format. Collective.
     pub fn save(&self, path: &Path) -> Result<()> {
         let x = self.read()?;
@@ -294,12 +265,12 @@ impl Vec {
 }
 
 fn binary(vec: &Vec, path: &Path, mode: sys::PetscFileMode) -> Result<Handle<sys::_p_PetscViewer>> {
-    let mut raw = std::ptr::null_mut();
     // SAFETY: the vector is alive, so its communicator is.
-    let comm = unsafe { sys::PetscObjectComm(vec.0.object()) };
+    let comm = unsafe { sys::PetscObjectComm(vec.object()) };
     let name = c_string(&path.display().to_string());
-    petsc!(PetscViewerBinaryOpen(comm, name.as_ptr(), mode, &mut raw))?;
-    Ok(Handle::own(raw, vec.session()))
+    Handle::made(vec.session(), |raw| {
+        petsc!(PetscViewerBinaryOpen(comm, name.as_ptr(), mode, raw))
+    })
 }
 
 fn count(n: usize) -> Result<i32> {
