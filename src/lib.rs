@@ -48,7 +48,7 @@
 //! they came from. `feti` solves equations, `contact` says which rows of B are equations, [`FetiFeti`] combines both.
 //!
 //! The modules have an order, and each imports only from those before it. docs/architecture.md has the map, and follows
-//! a load, a contact row and a MATIS through the code. [`petsc`] and the C interface [`capi`] are the only
+//! a load, a contact row and a MATIS through the code. [`petsc`] and the C interface `capi` are the only
 //! modules with unsafe code.
 //!
 //! # Only what the problem needs
@@ -102,7 +102,7 @@ mod assembled;
 #[cfg(feature = "cli")]
 pub(crate) mod baselines;
 #[allow(unsafe_code)]
-pub mod capi;
+mod capi;
 #[cfg(feature = "cli")]
 pub mod checkpoint;
 pub(crate) mod cholesky;

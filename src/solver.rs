@@ -188,7 +188,7 @@ impl FetiFeti {
 
     /// Facts about the problem.
     pub fn facts(&self) -> &Facts {
-        self.method.facts()
+        &self.method.facts
     }
 
     /// The settings in force, with options applied.
@@ -198,17 +198,17 @@ impl FetiFeti {
 
     /// The problem.
     pub fn problem(&self) -> &Substructures {
-        self.method.problem()
+        &self.method.problem
     }
 
     /// The session.
     pub fn session(&self) -> &Session {
-        self.method.session()
+        &self.method.session
     }
 
     /// The Krylov solver of the dual problem.
     pub fn ksp(&self) -> &Ksp {
-        self.method.ksp()
+        &self.method.ksp
     }
 
     /// The linear method of this solver.

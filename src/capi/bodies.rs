@@ -1,17 +1,15 @@
 //! The functions of `wrappers/fetifeti.h` that take the bodies of a program: sizes, matrices, rigid motions; their
 //! manual pages are there.
-#![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::coordinates::Coordinates;
 use super::handle::{alone, array, list, not_null, starts, together, Handle};
-use super::object::Given;
+use super::stack::Given;
 use crate::error::Fault;
 use crate::linalg::csr::Csr;
 use crate::petsc::{raw, Attached, Mat};
 use std::ffi::c_int;
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetSizes(ff: Handle, local: c_int, global: c_int) -> c_int {
     alone(ff, c"FetiFetiSetSizes", |o| {
         // PETSC_DECIDE and PETSC_DETERMINE are negative.
@@ -28,7 +26,6 @@ pub unsafe extern "C" fn FetiFetiSetSizes(ff: Handle, local: c_int, global: c_in
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: Handle, bs: c_int) -> c_int {
     alone(ff, c"FetiFetiSetBlockSize", |o| {
         if bs < 1 {
@@ -43,7 +40,6 @@ pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: Handle, bs: c_int) -> c_int {
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiAddSubdomain(
     ff: Handle,
     body: c_int,
@@ -79,21 +75,17 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
             }
         }
         let k = Csr::from_triplets(n as usize, &triplets);
-        if n > 0 {
-            o.subdomains.push(Given {
-                k,
-                dofs,
-                copies: None,
-                body,
-            });
-        }
-        o.stale = true;
+        o.push(Given {
+            k,
+            dofs,
+            copies: None,
+            body,
+        });
         Ok(())
     })
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetMatIS(ff: Handle, a: raw::Mat, body: c_int) -> c_int {
     together(ff, c"FetiFetiSetMatIS", |o| {
         o.set_matis(&Mat::share(not_null(a, "Mat")?, &o.session)?, body)
@@ -101,7 +93,6 @@ pub unsafe extern "C" fn FetiFetiSetMatIS(ff: Handle, a: raw::Mat, body: c_int) 
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiAddMatIS(
     ff: Handle,
     a: raw::Mat,
@@ -118,7 +109,6 @@ pub unsafe extern "C" fn FetiFetiAddMatIS(
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetNearNullSpace(ff: Handle, space: raw::MatNullSpace) -> c_int {
     together(ff, c"FetiFetiSetNearNullSpace", |o| {
         o.near = Attached::of(space, &o.session)?;
@@ -128,7 +118,6 @@ pub unsafe extern "C" fn FetiFetiSetNearNullSpace(ff: Handle, space: raw::MatNul
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetCoordinates(
     ff: Handle,
     dim: c_int,

@@ -1,6 +1,5 @@
 //! The functions of `wrappers/fetifeti.h` for conditions: held unknowns, primal unknowns, contact; their manual pages
 //! are there.
-#![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::handle::{alone, array, list, not_null, starts, together, Handle};
 use super::object::Object;
@@ -11,7 +10,6 @@ use crate::Result;
 use std::ffi::c_int;
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetDirichletBoundaries(
     ff: Handle,
     dofs: raw::IS,
@@ -29,13 +27,11 @@ pub unsafe extern "C" fn FetiFetiSetDirichletBoundaries(
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetNeumannBoundaries(ff: Handle, _dofs: raw::IS) -> c_int {
     together(ff, c"FetiFetiSetNeumannBoundaries", |_| Ok(()))
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetPrimalDofs(ff: Handle, dofs: raw::IS) -> c_int {
     together(ff, c"FetiFetiSetPrimalDofs", |o| {
         o.primal = list(o, dofs)?;
@@ -45,7 +41,6 @@ pub unsafe extern "C" fn FetiFetiSetPrimalDofs(ff: Handle, dofs: raw::IS) -> c_i
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetContactRows(
     ff: Handle,
     n: c_int,
@@ -109,7 +104,6 @@ fn contact_row(
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetContactPairs(
     ff: Handle,
     a: c_int,

@@ -1,5 +1,4 @@
 //! The functions of `wrappers/fetifeti.h` that create, set up, use and destroy a solver; their manual pages are there.
-#![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::error::{classified, raise};
 use super::handle::{alone, destroy, not_null, put, together, Handle, Held};
@@ -10,7 +9,6 @@ use crate::Result;
 use std::ffi::{c_char, c_int, CStr};
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
     let code = classified("FetiFetiCreate", Fault::Wrong, |at_work| {
         // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin
@@ -29,14 +27,12 @@ pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) ->
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiCreateFortran(comm: c_int, ff: *mut Handle) -> c_int {
     // SAFETY: the number of a communicator in Fortran.
     unsafe { FetiFetiCreate(raw::ff_comm_f2c(comm), ff) }
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut Handle) -> c_int {
     // SAFETY: NULL, or a pointer to an object or NULL.
     if ff.is_null() || unsafe { *ff }.is_null() {
@@ -53,7 +49,6 @@ pub unsafe extern "C" fn FetiFetiDestroy(ff: *mut Handle) -> c_int {
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiReset(ff: Handle) -> c_int {
     together(ff, c"FetiFetiReset", |o| {
         let mut fresh = Object::new(o.session.clone());
@@ -65,7 +60,6 @@ pub unsafe extern "C" fn FetiFetiReset(ff: Handle) -> c_int {
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(ff: Handle, prefix: *const c_char) -> c_int {
     alone(ff, c"FetiFetiSetOptionsPrefix", |o| {
         o.prefix = match prefix.is_null() {
@@ -79,13 +73,11 @@ pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(ff: Handle, prefix: *const c_c
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetFromOptions(ff: Handle) -> c_int {
     together(ff, c"FetiFetiSetFromOptions", Object::set_from_options)
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiView(ff: Handle, viewer: raw::PetscViewer) -> c_int {
     together(ff, c"FetiFetiView", |o| show(o, viewer))
 }
@@ -99,13 +91,11 @@ fn show(o: &Object, viewer: raw::PetscViewer) -> Result<()> {
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSetUp(ff: Handle) -> c_int {
     together(ff, c"FetiFetiSetUp", Object::set_up)
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiSolve(ff: Handle, b: raw::Vec, x: raw::Vec) -> c_int {
     together(ff, c"FetiFetiSolve", |o| {
         let b = PetscVec::share(not_null(b, "right-hand side")?, &o.session)?;

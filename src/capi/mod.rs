@@ -4,16 +4,16 @@
 //! No panic unwinds into C. An error is one sentence: [`plugin`] stores it for the C side, which passes it to the
 //! host's error handler.
 
-pub mod bodies;
-pub mod conditions;
+mod bodies;
+mod conditions;
 mod coordinates;
 mod error;
 mod handle;
-pub mod life;
+mod life;
 mod nested;
 mod object;
-pub mod plugin;
-pub mod results;
+mod plugin;
+mod results;
 mod rows;
 mod solving;
 mod stack;

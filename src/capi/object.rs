@@ -3,29 +3,15 @@
 use super::coordinates::{rigid, Coordinates};
 use super::nested::Given as GivenVector;
 use super::rows::Row;
-use super::stack::{fits, LocalMatrix, Stack};
-use crate::embed::pieces::torn_from;
+use super::stack::{fits, Given, LocalMatrix, Stack, Told};
 use crate::embed::torn::spanned;
-use crate::embed::{Embedded, Grouping, Outcome, Torn};
+use crate::embed::{Embedded, Outcome, Torn};
 use crate::error::Fault;
-use crate::linalg::csr::Csr;
-use crate::parallel::exchange::{gather_all, max_all};
+use crate::parallel::exchange::{any, gather_all, highest};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, MethodSettings, Result};
 use std::collections::HashSet;
-
-/// A subdomain matrix from the host.
-pub struct Given {
-    /// The matrix in the host's order of rows and columns.
-    pub k: Csr,
-    /// Global number of each row; negative: the row has none.
-    pub dofs: Vec<i32>,
-    /// The block size if a dof may be listed several times, once for each subdomain that has it.
-    pub copies: Option<usize>,
-    /// The body; negative: not given.
-    pub body: i32,
-}
 
 /// The data of a `FetiFeti`.
 pub struct Object {
@@ -58,13 +44,6 @@ pub struct Object {
     pub outcome: Option<Outcome>,
     /// Plain copies of nested vectors: right-hand side, solution, held values.
     pub(super) work: [Option<PetscVec>; 3],
-}
-
-/// The data of a matrix of all unknowns, besides its entries.
-pub struct Told {
-    pub layout: PetscVec,
-    pub block_size: usize,
-    pub modes: Option<Vec<PetscVec>>,
 }
 
 impl Object {
@@ -110,15 +89,11 @@ impl Object {
 
     /// Replaces all subdomains by the local matrices of a MATIS of all unknowns. Collective.
     pub fn set_matis(&mut self, a: &Mat, body: i32) -> Result<()> {
-        let local = LocalMatrix::of(&self.session, a)?;
+        let local = LocalMatrix::of(&self.session, a, body)?;
         self.stack.clear();
         self.subdomains.clear();
-        self.push(local.k, local.map, local.copies, body);
-        self.matis = Some(Told {
-            layout: local.layout,
-            block_size: local.block_size,
-            modes: local.modes,
-        });
+        self.push(local.given);
+        self.matis = Some(local.told);
         Ok(())
     }
 
@@ -127,8 +102,8 @@ impl Object {
         let others = !self.subdomains.is_empty() || self.matis.is_some();
         let others = others.then(|| self.mixed()).map_or(Ok(()), Err);
         self.session.agree(others)?;
-        let local = LocalMatrix::of(&self.session, a)?;
-        self.stack.push(&self.session, local, body);
+        let local = LocalMatrix::of(&self.session, a, body)?;
+        self.stack.push(&self.session, local);
         self.stale = true;
         Ok(())
     }
@@ -138,23 +113,19 @@ impl Object {
         if !self.stack.is_empty() {
             return Err(self.mixed());
         }
-        let local = LocalMatrix::of(&self.session, a)?;
-        let dofs = self.renumbered(&local.layout, &local.map, numbers)?;
+        let LocalMatrix { mut given, told } = LocalMatrix::of(&self.session, a, body)?;
+        given.dofs = self.renumbered(&told.layout, &given.dofs, numbers)?;
         if self.block_size_of_added == 1 {
-            self.block_size_of_added = local.block_size;
+            self.block_size_of_added = told.block_size;
         }
-        self.push(local.k, dofs, local.copies, body);
+        self.push(given);
         Ok(())
     }
 
-    fn push(&mut self, k: Csr, dofs: Vec<i32>, copies: Option<usize>, body: i32) {
-        if k.n() > 0 {
-            self.subdomains.push(Given {
-                k,
-                dofs,
-                copies,
-                body,
-            });
+    /// Adds a subdomain in the numbering of all unknowns.
+    pub fn push(&mut self, given: Given) {
+        if given.k.n() > 0 {
+            self.subdomains.push(given);
         }
         self.stale = true;
     }
@@ -194,24 +165,18 @@ impl Object {
 
     /// Makes the solver if there is none, or if the input has changed. Collective.
     pub fn set_up(&mut self) -> Result<()> {
-        let mut stale = [f64::from(u8::from(self.stale || self.solver.is_none()))];
-        max_all(self.session.comm(), &mut stale);
-        if stale[0] == 0.0 {
+        if !any(self.session.comm(), self.stale || self.solver.is_none()) {
             return Ok(());
         }
         self.solver = None;
         self.outcome = None;
         self.work = [None, None, None];
         let torn = self.torn()?;
-        let grouping = match self.bodies {
-            0 => Grouping::Auto,
-            n => Grouping::Number(n),
-        };
         let settings = MethodSettings {
             prefix: format!("{}fetifeti_", self.prefix),
             ..MethodSettings::default()
         };
-        self.solver = Some(Embedded::new(&self.session, &torn, grouping, settings)?);
+        self.solver = Some(Embedded::new(&self.session, &torn, self.bodies, settings)?);
         self.stale = false;
         if self.view {
             self.print();
@@ -231,9 +196,7 @@ impl Object {
             )));
         }
         session.agree(self.in_range(n_global))?;
-        let numbered = self.subdomains.iter();
-        let numbered =
-            numbered.flat_map(|s| torn_from(&s.k, &s.dofs, s.copies, u64::try_from(s.body).ok()));
+        let numbered = self.subdomains.iter().flat_map(|s| s.pieces(&s.dofs));
         let mut torn = Torn {
             n_global,
             block_size: bs,
@@ -319,9 +282,9 @@ impl Object {
             return told.layout.duplicate();
         }
         let dofs = self.subdomains.iter().flat_map(|s| &s.dofs);
-        let mut n = [dofs.max().map_or(0.0, |&d| f64::from(d) + 1.0)];
-        max_all(self.session.comm(), &mut n);
-        PetscVec::over_ranks(&self.session, None, Some(n[0] as usize))
+        let n = dofs.max().map_or(0.0, |&d| f64::from(d) + 1.0);
+        let n = highest(self.session.comm(), n);
+        PetscVec::over_ranks(&self.session, None, Some(n as usize))
     }
 
     fn in_range(&self, n: usize) -> Result<()> {

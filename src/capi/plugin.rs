@@ -1,7 +1,7 @@
 //! The functions behind KSPFETIFETI (wrappers/kspfetifeti.h).
 
 use super::error::{status, UNFIT};
-use crate::embed::{Embedded, Grouping, Torn};
+use crate::embed::{Embedded, Torn};
 use crate::petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, MethodSettings, Result};
 use std::cell::Cell;
@@ -89,10 +89,7 @@ fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
     };
     let options = Options::new(session, &prefix);
     let help = "bodies to group the ranks into; 0: one for every eight subdomains";
-    let grouping = match options.usize("bodies", 0, help)? {
-        0 => Grouping::Auto,
-        n => Grouping::Number(n),
-    };
+    let bodies = options.usize("bodies", 0, help)?;
     let mut torn = Torn::from_matis(session, a, u64::try_from(wishes.body).ok())?;
     if !wishes.bodies.is_null() {
         torn.named = Some(numbers(
@@ -101,7 +98,7 @@ fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Em
             &Is::share(wishes.bodies, session)?,
         )?);
     }
-    Embedded::new(session, &torn, grouping, settings)
+    Embedded::new(session, &torn, bodies, settings)
 }
 
 /// An index set, as long as this rank's part of the layout, converted to a vector.

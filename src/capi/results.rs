@@ -1,5 +1,4 @@
 //! The functions of `wrappers/fetifeti.h` that return the results of a solve.
-#![allow(clippy::missing_safety_doc)] // the header says what each function needs
 
 use super::handle::{alone, put, Handle};
 use crate::error::Fault;
@@ -7,7 +6,6 @@ use crate::petsc::raw;
 use std::ffi::c_int;
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetIterations(ff: Handle, its: *mut c_int) -> c_int {
     alone(ff, c"FetiFetiGetIterations", |o| {
         put(its, o.outcome()?.iterations as c_int);
@@ -16,7 +14,6 @@ pub unsafe extern "C" fn FetiFetiGetIterations(ff: Handle, its: *mut c_int) -> c
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetConvergedReason(ff: Handle, reason: *mut c_int) -> c_int {
     alone(ff, c"FetiFetiGetConvergedReason", |o| {
         put(reason, o.outcome()?.status.number());
@@ -25,7 +22,6 @@ pub unsafe extern "C" fn FetiFetiGetConvergedReason(ff: Handle, reason: *mut c_i
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: Handle, steps: *mut c_int) -> c_int {
     alone(ff, c"FetiFetiGetContactSteps", |o| {
         put(steps, o.outcome()?.steps as c_int);
@@ -34,7 +30,6 @@ pub unsafe extern "C" fn FetiFetiGetContactSteps(ff: Handle, steps: *mut c_int) 
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetSpectrum(ff: Handle, min: *mut f64, max: *mut f64) -> c_int {
     alone(ff, c"FetiFetiGetSpectrum", |o| {
         let (largest, smallest) = o.outcome()?.spectrum.unwrap_or_default();
@@ -45,7 +40,6 @@ pub unsafe extern "C" fn FetiFetiGetSpectrum(ff: Handle, min: *mut f64, max: *mu
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetKKT(ff: Handle, kkt: *mut f64) -> c_int {
     alone(ff, c"FetiFetiGetKKT", |o| {
         let k = o.outcome()?.kkt;
@@ -63,7 +57,6 @@ pub unsafe extern "C" fn FetiFetiGetKKT(ff: Handle, kkt: *mut f64) -> c_int {
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *mut f64) -> c_int {
     alone(ff, c"FetiFetiGetMultipliers", |o| {
         o.outcome()?;
@@ -83,7 +76,6 @@ pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *m
 }
 
 #[no_mangle]
-#[allow(missing_docs)]
 pub unsafe extern "C" fn FetiFetiGetInnerKSP(ff: Handle, ksp: *mut raw::KSP) -> c_int {
     alone(ff, c"FetiFetiGetInnerKSP", |o| {
         put(ksp, o.solver()?.solver().ksp().raw());

@@ -12,41 +12,56 @@ use crate::parallel::exchange::gather_all;
 use crate::petsc::{Mat, Session, Vec as PetscVec};
 use crate::Result;
 
-/// A matrix with its own numbering.
-pub struct Member {
-    /// This rank's local matrix.
-    k: Csr,
-    /// Number in the matrix of each local row; negative: the row has none.
-    map: Vec<i32>,
-    copies: Option<usize>,
-    body: i32,
-    block_size: usize,
-    /// A vector with the layout of the matrix.
-    layout: PetscVec,
-    /// The first row of each rank.
-    starts: Vec<u32>,
-    modes: Option<Vec<PetscVec>>,
+/// A subdomain matrix from the host.
+pub struct Given {
+    /// The matrix in the host's order of rows and columns.
+    pub k: Csr,
+    /// Global number of each row; negative: the row has none.
+    pub dofs: Vec<i32>,
+    /// The block size if a dof may be listed several times, once for each subdomain that has it.
+    pub copies: Option<usize>,
+    /// The body; negative: not given.
+    pub body: i32,
 }
 
-/// The matrices in the order in which they were given.
-#[derive(Default)]
-pub struct Stack(Vec<Member>);
+impl Given {
+    /// The pieces of the matrix, with these numbers of its rows.
+    pub fn pieces(&self, dofs: &[i32]) -> Vec<Piece> {
+        torn_from(&self.k, dofs, self.copies, u64::try_from(self.body).ok())
+    }
+}
 
-/// The local matrix of a MATIS, the number of each of its rows, and the other data of the matrix.
-pub struct LocalMatrix {
-    pub k: Csr,
-    pub map: Vec<i32>,
-    /// The block size if the map may list a dof several times, once for each subdomain that has it.
-    pub copies: Option<usize>,
+/// The data of a matrix besides its entries.
+pub struct Told {
+    /// A vector with the layout of the matrix.
     pub layout: PetscVec,
     pub block_size: usize,
     /// Motions without energy, if the near-null space or the null space has them.
     pub modes: Option<Vec<PetscVec>>,
 }
 
+/// A matrix with its own numbering.
+struct Member {
+    /// This rank's local matrix, in the numbering of the matrix.
+    given: Given,
+    told: Told,
+    /// The first row of each rank.
+    starts: Vec<u32>,
+}
+
+/// The matrices in the order in which they were given.
+#[derive(Default)]
+pub struct Stack(Vec<Member>);
+
+/// The local matrix of a MATIS, and the other data of the matrix.
+pub struct LocalMatrix {
+    pub given: Given,
+    pub told: Told,
+}
+
 impl LocalMatrix {
     /// Extracts the local data of the matrix. Collective.
-    pub fn of(session: &Session, a: &Mat) -> Result<LocalMatrix> {
+    pub fn of(session: &Session, a: &Mat, body: i32) -> Result<LocalMatrix> {
         unassembled(a).map_err(|e| Fault::Unsupported.error(e.to_string()))?;
         let (rows, cols) = a.size()?;
         if rows != cols {
@@ -54,7 +69,7 @@ impl LocalMatrix {
                 "the matrix has {rows} rows and {cols} columns, expected a square one"
             )));
         }
-        let (k, map) = session.agree(a.local_part())?;
+        let (k, dofs) = session.agree(a.local_part())?;
         let (layout, block_size) = (a.right_vec()?, a.block_size()?);
         let modes = modes(&layout, block_size, a)?;
         for mode in modes.iter().flatten() {
@@ -66,12 +81,17 @@ impl LocalMatrix {
             ))?;
         }
         Ok(LocalMatrix {
-            k,
-            map,
-            copies: a.is_repeated()?.then_some(block_size),
-            layout,
-            block_size,
-            modes,
+            given: Given {
+                k,
+                dofs,
+                copies: a.is_repeated()?.then_some(block_size),
+                body,
+            },
+            told: Told {
+                layout,
+                block_size,
+                modes,
+            },
         })
     }
 }
@@ -102,24 +122,19 @@ impl Stack {
     }
 
     /// Appends a matrix. Collective.
-    pub fn push(&mut self, session: &Session, local: LocalMatrix, body: i32) {
-        let first = local.layout.ownership_range().start as u64;
+    pub fn push(&mut self, session: &Session, local: LocalMatrix) {
+        let first = local.told.layout.ownership_range().start as u64;
         let starts = gather_all(session.comm(), &[first]);
         self.0.push(Member {
-            k: local.k,
-            map: local.map,
-            copies: local.copies,
-            body,
-            block_size: local.block_size,
-            layout: local.layout,
+            given: local.given,
+            told: local.told,
             starts: starts.iter().map(|w| w[0] as u32).collect(),
-            modes: local.modes,
         });
     }
 
     /// Number of unknowns of a matrix.
     pub fn size_of(&self, matrix: usize) -> usize {
-        self.0[matrix].layout.global_len()
+        self.0[matrix].told.layout.global_len()
     }
 
     /// The largest block size that fits all matrices.
@@ -130,7 +145,7 @@ impl Stack {
             }
             a
         };
-        self.0.iter().fold(0, |bs, m| common(bs, m.block_size))
+        self.0.iter().fold(0, |bs, m| common(bs, m.told.block_size))
     }
 
     /// The number of a matrix's unknown in the numbering of all unknowns.
@@ -140,7 +155,7 @@ impl Stack {
         let rank = own.starts.partition_point(|&s| s <= dof) - 1;
         let end = |m: &Member| match m.starts.get(rank + 1) {
             Some(&next) => next,
-            None => m.layout.global_len() as u32,
+            None => m.told.layout.global_len() as u32,
         };
         let before: u32 = self.0.iter().map(|m| m.starts[rank]).sum();
         let above: u32 = self.0[..matrix]
@@ -158,7 +173,7 @@ impl Stack {
 
     /// A vector with the layout of each matrix.
     pub fn layouts(&self) -> impl Iterator<Item = &PetscVec> {
-        self.0.iter().map(|m| &m.layout)
+        self.0.iter().map(|m| &m.told.layout)
     }
 
     /// The local matrices cut into pieces, in the numbering of all unknowns.
@@ -168,15 +183,16 @@ impl Stack {
             Err(_) => d,
         };
         let one = move |(k, m): (usize, &Member)| {
-            let map: Vec<i32> = m.map.iter().map(|&d| number(k, d)).collect();
-            torn_from(&m.k, &map, m.copies, u64::try_from(m.body).ok())
+            let dofs: Vec<i32> = m.given.dofs.iter().map(|&d| number(k, d)).collect();
+            m.given.pieces(&dofs)
         };
         self.0.iter().enumerate().flat_map(one)
     }
 
     /// Vectors over all unknowns that combine the motions of the matrices; `None` if some matrix has none. Collective.
     pub fn modes(&self, whole: &PetscVec) -> Result<Option<Vec<PetscVec>>> {
-        let each: Option<Vec<&Vec<PetscVec>>> = self.0.iter().map(|m| m.modes.as_ref()).collect();
+        let each: Option<Vec<&Vec<PetscVec>>> =
+            self.0.iter().map(|m| m.told.modes.as_ref()).collect();
         let Some(each) = each else {
             return Ok(None);
         };

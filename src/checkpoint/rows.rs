@@ -97,7 +97,7 @@ pub struct Layout {
 impl Layout {
     /// The owners in this run. Collective.
     pub fn new(solver: &LinearMethod) -> Layout {
-        let (session, problem) = (solver.session(), solver.problem());
+        let (session, problem) = (&solver.session, &solver.problem);
         let dual = solver.dual();
         let jump = &dual.stiffness.jump;
         let subdomains = problem.local.iter().zip(jump.local_start.windows(2));

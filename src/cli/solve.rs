@@ -118,7 +118,7 @@ fn checks(solver: &FetiFeti) -> Result<BTreeMap<String, f64>> {
         .into_iter()
         .map(|(name, defect)| (name.to_string(), defect))
         .collect();
-    let kind = solver.dual().preconditioner.kind();
+    let kind = solver.dual().preconditioner.kind;
     if matches!(kind, PcType::Dirichlet | PcType::CoarseCorrected) {
         if let Some(s) = solver.spectrum()? {
             out.insert("lambda_min >= 1".into(), (1.0 - s.lambda_min).max(0.0));
@@ -213,7 +213,7 @@ fn report(
         operators: Some(operators(session, solver.facts())),
         converged_reason: solution.status.to_string(),
         ksp_type: solver.ksp().type_name()?,
-        preconditioner: dual.preconditioner.kind().name().into(),
+        preconditioner: dual.preconditioner.kind.name().into(),
         local_solver: solver.settings().method.local.kind.name().into(),
         local_ordering: solver
             .settings()

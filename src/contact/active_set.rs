@@ -12,7 +12,7 @@
 use std::time::Instant;
 
 use super::settings::{ContactSettings, ContactType};
-use super::state::{Caution, Observer, State, Step};
+use super::state::{changes, Caution, Observer, State, Step};
 use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
@@ -21,7 +21,7 @@ use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::rows::Rows;
 use crate::feti::{LinearMethod, LinearSolution, Spectrum};
-use crate::parallel::exchange::{gather_all, max_all, sum_all};
+use crate::parallel::exchange::{any, gather_all};
 use crate::status::Status;
 use crate::Result;
 
@@ -116,11 +116,11 @@ impl<'a> ActiveSet<'a> {
         settings: &'a ContactSettings,
         start: Option<&State>,
     ) -> Result<ActiveSet<'a>> {
-        let (session, problem, dual) = (method.session(), method.problem(), method.dual());
+        let (session, problem, dual) = (&method.session, &method.problem, method.dual());
         let jump = &dual.stiffness.jump;
-        let loads = Loads::new(session, problem, &dual);
-        let g = dual.natural.all_rows(session.comm(), &dual.stiffness);
-        motion::check(session.comm(), problem, &dual, &g, &loads.kernel)?;
+        let loads = Loads::new(problem, &dual);
+        let g = dual.natural.all_rows(&dual.stiffness);
+        motion::check(problem, &dual, &g, &loads.kernel)?;
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
         let n_rows = jump.n_global;
         let at = Iterate::new(&dual, loads)?;
@@ -165,38 +165,34 @@ impl<'a> ActiveSet<'a> {
         let method = self.method;
         let all = State::cold(&method.dual().stiffness.jump).active;
         method.set_active(&all)?;
-        let (session, dual) = (method.session(), method.dual());
+        let dual = method.dual();
         dual.natural
-            .check_held(method.problem(), &dual.stiffness, &self.at.loads.kernel)?;
+            .check_held(&method.problem, &dual.stiffness, &self.at.loads.kernel)?;
         self.at.lambda.set(0.0)?;
-        self.at.balance(session, &dual)?;
-        self.at.evaluate_projected(session, &dual)
+        self.at.balance(&dual)?;
+        self.at.evaluate_projected(&dual)
     }
 
     /// The tolerance of the residual, from the displacements of the last step.
     fn target(&self) -> Result<f64> {
-        let ksp = self.method.ksp();
+        let ksp = &self.method.ksp;
         target(ksp, self.state.reference, self.length, self.n_rows)
     }
 
     /// One outer step: solves the equations on the set, then determines the next set.
     pub fn step(&mut self) -> Result<(Step, Status, Verdict)> {
         let clock = Instant::now();
-        let (session, method) = (self.method.session(), self.method);
+        let (session, method) = (&self.method.session, self.method);
         let changed = method.set_active(&self.state.active)?;
         let dual = method.dual();
         if changed > 0 || !self.fresh {
-            for (l, on) in self
-                .at
-                .lambda
-                .array_mut()?
-                .iter_mut()
-                .zip(&self.state.active)
-            {
+            let mut lambda = self.at.lambda.array_mut()?;
+            for (l, on) in lambda.iter_mut().zip(&self.state.active) {
                 *l = if *on { *l } else { 0.0 };
             }
-            self.at.balance(session, &dual)?;
-            self.at.evaluate(session, &dual)?;
+            drop(lambda);
+            self.at.balance(&dual)?;
+            self.at.evaluate(&dual)?;
         }
         dual.p_transpose(&self.at.residual.r)?;
         drop(dual);
@@ -215,21 +211,15 @@ impl<'a> ActiveSet<'a> {
         let control = IterationControl::to(tolerance, self.at.residual.size);
         let inner = method.reach(&mut self.at, control)?;
         let dual = method.dual();
-        self.at.evaluate(session, &dual)?;
+        self.at.evaluate(&dual)?;
         let next = self.next(&dual)?;
         drop(dual);
 
         let comm = session.comm();
-        let now = &self.state.active;
         let rows = method.dual().stiffness.jump.rows_between_bodies();
-        let (was, now) = (&self.state.before[rows.clone()], &now[rows]);
-        let mut counts = [
-            count(was, now, |_, on| on),
-            count(was, now, |was, on| on && !was),
-            count(was, now, |was, on| was && !on),
-        ];
-        sum_all(comm, &mut counts);
-        let exact = match method.settings().spectrum {
+        let (was, now) = (&self.state.before, &self.state.active);
+        let [active, entered, left] = changes(comm, &was[rows.clone()], &now[rows]);
+        let exact = match method.settings.spectrum {
             true => method.spectrum()?,
             false => None,
         };
@@ -239,9 +229,9 @@ impl<'a> ActiveSet<'a> {
         };
         let step = Step {
             method: ContactType::ActiveSet,
-            active: counts[0] as usize,
-            entered: counts[1] as usize,
-            left: counts[2] as usize,
+            active,
+            entered,
+            left,
             iterations: inner.iterations,
             estimate: inner.estimate,
             exact,
@@ -270,7 +260,7 @@ impl<'a> ActiveSet<'a> {
     ) -> Result<LinearSolution> {
         let method = self.method;
         if !self.placed {
-            self.at.place(method.session(), &method.dual())?;
+            self.at.place(&method.dual())?;
         }
         let (residuals, estimate) = self.last;
         let run = Run {
@@ -285,10 +275,9 @@ impl<'a> ActiveSet<'a> {
 
     /// Judges the rows by the present λ and displacements.
     fn next(&mut self, dual: &Dual) -> Result<Next> {
-        let session = self.method.session();
-        let comm = session.comm();
+        let comm = dual.comm();
         let jump = &dual.stiffness.jump;
-        self.at.residual.add_rigid_motion(session, dual)?;
+        self.at.residual.add_rigid_motion(dual)?;
         self.placed = true;
         self.gaps = all_gaps(dual, &self.at.residual)?;
         let unheld = dual.natural.unheld();
@@ -321,14 +310,12 @@ impl<'a> ActiveSet<'a> {
 
     /// Moves on to the next set.
     fn advance(&mut self, next: Next, to_the_end: bool, closed: bool) -> Result<Verdict> {
-        let comm = self.method.session().comm();
+        let comm = self.method.session.comm();
         let state = &mut self.state;
         state.steps += 1;
         state.lambda = self.at.lambda.to_vec()?;
         state.before = std::mem::replace(&mut state.active, next.active);
-        let mut same = [f64::from(u8::from(state.active != state.before))];
-        max_all(comm, &mut same);
-        let stays = same[0] == 0.0;
+        let stays = !any(comm, state.active != state.before);
         self.fresh = stays;
         self.tight = stays;
         if stays {
@@ -380,11 +367,6 @@ struct Next {
     restored: usize,
 }
 
-fn count(before: &[bool], now: &[bool], test: impl Fn(bool, bool) -> bool) -> f64 {
-    let pairs = before.iter().zip(now);
-    pairs.filter(|(was, on)| test(**was, **on)).count() as f64
-}
-
 /// A number that identifies a set, the same on every rank and for every number of ranks. Collective.
 fn fingerprint(method: &LinearMethod, active: &[bool]) -> u64 {
     let mix = |x: u64| {
@@ -395,12 +377,12 @@ fn fingerprint(method: &LinearMethod, active: &[bool]) -> u64 {
     };
     let mut mine = 0u64;
     let jump = &method.dual().stiffness.jump;
-    for (block, rows) in jump.numbered_blocks(method.problem()) {
+    for (block, rows) in jump.numbered_blocks(&method.problem) {
         let on = rows.enumerate().filter(|(_, r)| active[*r]);
         for (k, _) in on {
             mine = mine.wrapping_add(mix(mix(block + 1).wrapping_add(k as u64)));
         }
     }
-    let all = gather_all(method.session().comm(), &[mine]);
+    let all = gather_all(method.session.comm(), &[mine]);
     all.iter().fold(0, |sum, w| sum.wrapping_add(w[0]))
 }

@@ -17,6 +17,7 @@ use super::balance::Balance;
 use super::mprgp::Bounded;
 use crate::feti::projector::rows::Rows;
 use crate::feti::LinearMethod;
+use crate::parallel::exchange::total;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -48,17 +49,17 @@ pub struct Augmented<'a> {
 impl<'a> Augmented<'a> {
     /// The operator on all candidate rows, all of which must hold in the dual operators now. Collective.
     pub fn new(method: &'a LinearMethod, precondition: bool) -> Result<Augmented<'a>> {
-        let comm = method.session().comm();
+        let comm = method.session.comm();
         let dual = method.dual();
         let (stiffness, natural) = (&dual.stiffness, &dual.natural);
-        let diagonal = natural.superlumped(method.session(), method.problem(), stiffness)?;
+        let diagonal = natural.superlumped(&method.problem, stiffness)?;
         let scale: Vec<f64> = (0..diagonal.len())
             .map(|i| match stiffness.jump.is_candidate(i) {
                 true => diagonal[i].sqrt(),
                 false => 0.0,
             })
             .collect();
-        let mut g = natural.all_rows(comm, stiffness);
+        let mut g = natural.all_rows(stiffness);
         g.scale_rows(&scale);
         let balance = Rc::new(Balance::new(comm, g.clone(), natural.r));
         let (lambda, image) = (dual.multipliers()?, dual.multipliers()?);
@@ -105,7 +106,7 @@ impl<'a> Augmented<'a> {
     /// The largest eigenvalue of Pᵀ F P by the power method. The method gives a lower bound; a few per cent are added.
     fn norm(&mut self) -> Result<f64> {
         let method = self.method;
-        let comm = method.session().comm();
+        let comm = method.session.comm();
         let balance = self.balance.clone();
         let first = method.dual().stiffness.jump.first;
         let mut x: Vec<f64> = (0..self.scale.len())
@@ -117,18 +118,15 @@ impl<'a> Augmented<'a> {
         let mut largest = 0.0;
         for _ in 0..POWER_STEPS {
             balance.project(comm, &mut x);
-            let mut size = [x.iter().map(|x| x * x).sum::<f64>()];
-            crate::parallel::exchange::sum_all(comm, &mut size);
-            if size[0] == 0.0 {
+            let square = total(comm, x.iter().map(|x| x * x).sum());
+            if square == 0.0 {
                 break;
             }
-            let root = size[0].sqrt();
+            let root = square.sqrt();
             x.iter_mut().for_each(|x| *x /= root);
             self.f(&x, &mut y)?;
             balance.project(comm, &mut y);
-            let mut size = [y.iter().map(|y| y * y).sum::<f64>()];
-            crate::parallel::exchange::sum_all(comm, &mut size);
-            largest = size[0].sqrt();
+            largest = total(comm, y.iter().map(|y| y * y).sum()).sqrt();
             std::mem::swap(&mut x, &mut y);
         }
         Ok(if largest > 0.0 { 1.1 * largest } else { 1.0 })
@@ -137,7 +135,7 @@ impl<'a> Augmented<'a> {
 
 impl Bounded for Augmented<'_> {
     fn apply(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
-        let comm = self.method.session().comm();
+        let comm = self.method.session.comm();
         let balance = self.balance.clone();
         let mut inside = x.to_vec();
         let c = balance.project(comm, &mut inside); /*    P x             */
@@ -151,8 +149,8 @@ impl Bounded for Augmented<'_> {
         if !self.precondition {
             return Ok(());
         }
-        let session = self.method.session();
-        self.method.system().set_face(free);
+        let session = &self.method.session;
+        self.method.system.set_face(free);
         let mut g = self.g.clone();
         let mask: Vec<f64> = free.iter().map(|&on| f64::from(u8::from(on))).collect();
         g.scale_rows(&mask);
@@ -165,7 +163,7 @@ impl Bounded for Augmented<'_> {
             z.copy_from_slice(v);
             return Ok(());
         };
-        let comm = self.method.session().comm();
+        let comm = self.method.session.comm();
         let mut inside = v.to_vec();
         let c = face.project(comm, &mut inside); /*       c = N_F⁺ G_Fᵀ v */
         let lambda = self.scaled(&inside);

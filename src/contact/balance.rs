@@ -18,15 +18,7 @@ pub struct Balance {
 impl Balance {
     /// Forms and factors N. Collective.
     pub fn new(comm: &SimpleCommunicator, g: Rows, r: usize) -> Balance {
-        let mut n = Dense::zeros(r, r);
-        for i in 0..g.n() {
-            for (p, gp) in g.row(i) {
-                for (q, gq) in g.row(i) {
-                    n.data[p + q * r] += gp * gq;
-                }
-            }
-        }
-        sum_all(comm, &mut n.data);
+        let n = g.product(comm, &g, r, |_| true);
         let factor = Semidefinite::new(&n);
         Balance { g, n, factor }
     }

@@ -7,7 +7,7 @@
 use crate::feti::operators::dual::Dual;
 use crate::linalg::dense::Dense;
 use crate::linalg::nnls::nnls;
-use crate::petsc::Session;
+use crate::linalg::sorted::distinct;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
@@ -15,8 +15,8 @@ use crate::{Error, Result};
 const CONTRADICTION: f64 = 1e-8;
 
 /// Returns an error that names the bodies and the place of the first contradiction. Collective.
-pub fn check(session: &Session, problem: &Substructures, dual: &Dual) -> Result<()> {
-    session.agree(check_mine(problem, dual))
+pub fn check(problem: &Substructures, dual: &Dual) -> Result<()> {
+    dual.stiffness.session.agree(check_mine(problem, dual))
 }
 
 fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
@@ -46,13 +46,8 @@ fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
         let free: Vec<bool> = rows.iter().map(|&r| equation(r)).collect();
         let (_, rest) = nnls(&a, &wanted, &free);
         if rest.iter().all(|v| v.abs() < CONTRADICTION) {
-            let mut bodies: Vec<String> = block
-                .bodies
-                .iter()
-                .map(|&b| format!("\"{}\"", problem.body_names[b as usize]))
-                .collect();
-            bodies.sort();
-            bodies.dedup();
+            let name = |&b: &u32| format!("\"{}\"", problem.body_names[b as usize]);
+            let bodies = distinct(block.bodies.iter().map(name));
             let place = block.place(problem).map_or(String::new(), |[x, y, z]| {
                 if z == 0.0 {
                     format!(" at ({x}, {y})")

@@ -4,7 +4,7 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use crate::feti::jump::operator::Jump;
-use crate::parallel::exchange::{gather_all, max_all, sum_all};
+use crate::parallel::exchange::{gather_all, highest, max_all, total};
 
 /// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
 /// depends on three others inherits the sum of their jumps.
@@ -110,9 +110,8 @@ impl JudgedRows {
 
     /// Number of rows on the wrong side over all ranks. Collective.
     pub fn wrong(&self, comm: &SimpleCommunicator) -> usize {
-        let mut total = [self.wrong.iter().filter(|w| **w > 0.0).count() as f64];
-        sum_all(comm, &mut total);
-        total[0] as usize
+        let mine = self.wrong.iter().filter(|w| **w > 0.0).count();
+        total(comm, mine as f64) as usize
     }
 
     /// λ + ρ (B u − c), with ρ such that both terms have the same scale.
@@ -124,9 +123,8 @@ impl JudgedRows {
     /// Keeps only the worst of all changes, the first one if several are equal. Collective.
     pub fn keep_worst(&mut self, comm: &SimpleCommunicator, jump: &Jump) {
         let (old, new) = (&jump.active, &mut self.active);
-        let mut largest = [self.wrong.iter().fold(0.0f64, |a, w| a.max(*w))];
-        max_all(comm, &mut largest);
-        let worst = |&r: &usize| old[r] != new[r] && self.wrong[r] == largest[0];
+        let largest = highest(comm, self.wrong.iter().fold(0.0, |a, w| w.max(a)));
+        let worst = |&r: &usize| old[r] != new[r] && self.wrong[r] == largest;
         let mine = (0..new.len()).find(worst);
         let holders = gather_all(comm, &[u64::from(mine.is_some())]);
         let here = holders.iter().position(|w| w[0] == 1) == Some(comm.rank() as usize);

@@ -38,7 +38,7 @@ pub fn solve(
     start: Option<&State>,
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
-    feasible::check(method.session(), method.problem(), &method.dual())?;
+    feasible::check(&method.problem, &method.dual())?;
     let ended = match settings.kind {
         ContactType::ActiveSet => active_set::solve(method, settings, start, observe)?,
         ContactType::Smalbe => {

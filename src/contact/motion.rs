@@ -19,7 +19,8 @@ use crate::feti::projector::rows::Rows;
 use crate::linalg::dense::Dense;
 use crate::linalg::nnls::nnls;
 use crate::linalg::semidefinite::Semidefinite;
-use crate::parallel::exchange::{gather_all, sum_all};
+use crate::linalg::sorted::distinct;
+use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
@@ -35,19 +36,13 @@ const BALANCE: f64 = 1e-9;
 
 /// Returns an error that names the bodies if the load moves some of them away for ever. `g` is B R with all rows.
 /// Collective.
-pub fn check(
-    comm: &SimpleCommunicator,
-    problem: &Substructures,
-    dual: &Dual,
-    g: &Rows,
-    load: &KernelLoad,
-) -> Result<()> {
+pub fn check(problem: &Substructures, dual: &Dual, g: &Rows, load: &KernelLoad) -> Result<()> {
     let r = dual.natural.r;
     if r == 0 {
         return Ok(());
     }
     let jump = &dual.stiffness.jump;
-    let (columns, free) = directions(comm, jump, g, r);
+    let (columns, free) = directions(dual.comm(), jump, g, r);
     let size = load.size.iter().fold(0.0f64, |a, s| a.max(*s));
     let (rest, tolerance) = if r <= EXACT {
         (nnls(&columns, &load.e, &free).1, BALANCE)
@@ -91,10 +86,8 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
         }
         mine.push(words);
     }
-    mine.sort_unstable();
-    mine.dedup();
     let mut all: Vec<Vec<u64>> = Vec::new();
-    for words in gather_all(comm, &mine.concat()) {
+    for words in gather_all(comm, &distinct(mine).concat()) {
         let mut rest = &words[..];
         while let [_, n, ..] = rest {
             let (one, tail) = rest.split_at(2 + 2 * *n as usize);
@@ -102,8 +95,7 @@ fn directions(comm: &SimpleCommunicator, jump: &Jump, g: &Rows, r: usize) -> (De
             rest = tail;
         }
     }
-    all.sort_unstable();
-    all.dedup();
+    let all = distinct(all);
     let mut columns = Dense::zeros(r, all.len());
     for (k, words) in all.iter().enumerate() {
         for pair in words[2..].chunks_exact(2) {
@@ -254,26 +246,8 @@ fn loose(
     r: usize,
     chosen: &dyn Fn(usize) -> bool,
 ) -> Vec<Vec<f64>> {
-    let mut a = Dense::zeros(r, r);
-    for i in (0..g.n()).filter(|&i| chosen(i)) {
-        for (p, gp) in g.row(i) {
-            for (q, gq) in g.row(i) {
-                a.data[p + q * r] += gp * gq;
-            }
-        }
-    }
-    sum_all(comm, &mut a.data);
-    let scale: Vec<f64> = (0..r)
-        .map(|i| match a.get(i, i) {
-            d if d > 0.0 => 1.0 / d.sqrt(),
-            _ => 1.0,
-        })
-        .collect();
-    for j in 0..r {
-        for i in 0..r {
-            a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
-        }
-    }
+    let mut a = g.product(comm, g, r, chosen);
+    let scale = a.scale_to_unit_diagonal();
     let factor = Semidefinite::new(&a);
     let vectors = null_vectors(&a, &factor).into_iter();
     vectors

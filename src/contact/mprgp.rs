@@ -7,7 +7,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use crate::parallel::exchange::{min_all, sum_all};
+use crate::parallel::exchange::{lowest, total};
 use crate::Result;
 
 /// Γ: a face is left if the chopped gradient is larger than this many times the free gradient.
@@ -50,9 +50,7 @@ pub struct Run {
 
 impl Setting<'_> {
     fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
-        let mut sum = [a.iter().zip(b).map(|(a, b)| a * b).sum()];
-        sum_all(self.comm, &mut sum);
-        sum[0]
+        total(self.comm, a.iter().zip(b).map(|(a, b)| a * b).sum())
     }
 
     fn free(&self, x: &[f64]) -> Vec<bool> {
@@ -124,13 +122,11 @@ impl Setting<'_> {
                     break;
                 }
                 let wish = along / curvature;
-                let mut room = [f64::INFINITY];
-                for i in (0..n).filter(|&i| p[i] > 0.0) {
-                    room[0] = room[0].min((run.x[i] - self.lower[i]) / p[i]);
-                }
-                min_all(self.comm, &mut room);
-                let inside = !flat && wish <= room[0];
-                let step = if inside { wish } else { room[0] };
+                let bounded = (0..n).filter(|&i| p[i] > 0.0);
+                let room = bounded.map(|i| (run.x[i] - self.lower[i]) / p[i]);
+                let room = lowest(self.comm, room.fold(f64::INFINITY, f64::min));
+                let inside = !flat && wish <= room;
+                let step = if inside { wish } else { room };
                 if !step.is_finite() {
                     break;
                 }

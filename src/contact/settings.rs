@@ -1,6 +1,6 @@
 //! Options of the contact loop (prefix `fetifeti_contact_`).
 
-use crate::petsc::Options;
+use crate::petsc::{named, Options};
 use crate::{Error, Result};
 
 /// The method of the outer loop.
@@ -12,15 +12,7 @@ pub enum ContactType {
     Smalbe,
 }
 
-impl ContactType {
-    /// Names as the option takes them.
-    pub const NAMES: [&'static str; 2] = ["active_set", "smalbe"];
-
-    /// The name as the option takes it.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-}
+named!(ContactType { ActiveSet = "active_set", Smalbe = "smalbe" });
 
 /// Settings of the contact loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,12 +42,8 @@ impl Default for ContactSettings {
 impl ContactSettings {
     /// These settings, overridden by the options.
     pub(crate) fn with_options(mut self, o: &Options) -> Result<ContactSettings> {
-        let names = ContactType::NAMES;
         let help = "method of the contact loop";
-        self.kind = match o.choice("contact_type", &names, self.kind as usize, help)? {
-            0 => ContactType::ActiveSet,
-            _ => ContactType::Smalbe,
-        };
+        self.kind = o.named("contact_type", self.kind, help)?;
         let help = "outer steps of the contact loop at most";
         self.max_it = o.usize("contact_max_it", self.max_it, help)?;
         let help = "reduction of the residual per contact step while the active set changes";

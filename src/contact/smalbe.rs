@@ -18,11 +18,11 @@ use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
 use super::mprgp::Setting;
 use super::settings::{ContactSettings, ContactType};
-use super::state::{Caution, Observer, State, Step};
+use super::state::{changes, Caution, Observer, State, Step};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::{LinearMethod, LinearSolution};
-use crate::parallel::exchange::sum_all;
+use crate::parallel::exchange::{any, total};
 use crate::status::Status;
 use crate::Result;
 
@@ -55,8 +55,8 @@ pub(super) fn solve(
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
     let clock = Instant::now();
-    let comm = method.session().comm();
-    let rtol = method.ksp().tolerances()?.0;
+    let comm = method.session.comm();
+    let rtol = method.ksp.tolerances()?.0;
     let finish = |run: ActiveSet, steps: Vec<Step>, status| {
         let seconds = seconds + clock.elapsed().as_secs_f64();
         Ok((run.finish(&steps, seconds, status)?, steps))
@@ -135,7 +135,7 @@ impl<'a> Search<'a> {
         settings: &ContactSettings,
         state: &State,
     ) -> Result<Search<'a>> {
-        let (session, problem) = (method.session(), method.problem());
+        let (session, problem) = (&method.session, &method.problem);
         let comm = session.comm();
         let all: Vec<bool> = {
             let jump = &method.dual().stiffness.jump;
@@ -145,14 +145,14 @@ impl<'a> Search<'a> {
         let a = Augmented::new(method, settings.face_pc)?;
         let dual = method.dual();
         let jump = &dual.stiffness.jump;
-        let loads = Loads::new(session, problem, &dual);
+        let loads = Loads::new(problem, &dual);
         let mut c = loads.kernel.e.clone();
         a.balance.solve(&mut c);
         let mut shift = vec![0.0; jump.n_owned];
         a.balance.add(1.0, &c, &mut shift); /*            λ̃ = G N⁺ e      */
         let mut at = Iterate::new(&dual, loads)?;
         at.lambda.array_mut()?.copy_from_slice(&a.unscaled(&shift));
-        at.evaluate(session, &dual)?;
+        at.evaluate(&dual)?;
         let mut r = at.residual.r.to_vec()?;
         // With all candidates active, rows may contradict each other and be held to other right-hand sides. The bound
         // constraints need c itself.
@@ -161,8 +161,7 @@ impl<'a> Search<'a> {
         }
         let mut b = a.unscaled(&r); /*                    b = S(d − F λ̃)  */
         a.balance.project(comm, &mut b);
-        let mut size = [b.iter().map(|b| b * b).sum::<f64>()];
-        sum_all(comm, &mut size);
+        let square = total(comm, b.iter().map(|b| b * b).sum());
         let lower: Vec<f64> = (0..jump.n_owned)
             .map(|i| match jump.inequality[i] {
                 true => -shift[i],
@@ -170,10 +169,9 @@ impl<'a> Search<'a> {
             })
             .collect();
         let warm = state.lambda.iter().any(|l| *l != 0.0);
-        let mut warm = [f64::from(u8::from(warm))];
-        sum_all(comm, &mut warm);
+        let warm = any(comm, warm);
         let start = a.scaled(&state.lambda);
-        let x = (0..jump.n_owned).map(|i| match warm[0] > 0.0 {
+        let x = (0..jump.n_owned).map(|i| match warm {
             true => (start[i] - shift[i]).max(lower[i]),
             false => lower[i].max(0.0),
         });
@@ -183,7 +181,7 @@ impl<'a> Search<'a> {
             contact: jump.rows_between_bodies(),
             a,
             b,
-            size: size[0].sqrt(),
+            size: square.sqrt(),
             shift,
             lower,
             m: M_START,
@@ -245,12 +243,11 @@ impl<'a> Search<'a> {
         let gradient = setting.projected_gradient(&run.x, &run.g);
         // L = ½ xᵀA x − bᵀx with A x = g + b
         let terms = run.x.iter().zip(&run.g).zip(&b);
-        let mut value = [terms.map(|((x, g), b)| 0.5 * x * (g - b)).sum::<f64>()];
-        sum_all(comm, &mut value);
-        if value[0] < self.lagrangian + 0.5 * rho * violation * violation {
+        let value = total(comm, terms.map(|((x, g), b)| 0.5 * x * (g - b)).sum());
+        if value < self.lagrangian + 0.5 * rho * violation * violation {
             self.m *= M_SHRINK;
         }
-        self.lagrangian = value[0];
+        self.lagrangian = value;
         let mut c = balance.forces(comm, &run.x);
         balance.solve(&mut c);
         state.mu.iter_mut().zip(&c).for_each(|(m, c)| *m += rho * c);
@@ -267,31 +264,23 @@ impl<'a> Search<'a> {
         let sum: Vec<f64> = self.x.iter().zip(&self.shift).map(|(x, s)| x + s).collect();
         state.lambda = self.a.unscaled(&sum);
         state.before = std::mem::replace(&mut state.active, free);
-        let (was, on) = (&state.before, &state.active);
-        let contact = self.contact.clone();
-        let count = |test: &dyn Fn(usize) -> bool| contact.clone().filter(|&i| test(i)).count();
-        let mut counts = [
-            count(&|i| on[i]) as f64,
-            count(&|i| on[i] && !was[i]) as f64,
-            count(&|i| was[i] && !on[i]) as f64,
-            wrong as f64,
-        ];
-        sum_all(comm, &mut counts);
+        let (rows, now) = (self.contact.clone(), &state.active);
+        let [active, entered, left] = changes(comm, &state.before[rows.clone()], &now[rows]);
         let residual = match size {
             size if size > 0.0 => gradient.max(rho * violation) / size,
             _ => 0.0,
         };
         let step = Step {
             method: ContactType::Smalbe,
-            active: counts[0] as usize,
-            entered: counts[1] as usize,
-            left: counts[2] as usize,
+            active,
+            entered,
+            left,
             iterations: run.products,
             estimate: None,
             exact: None,
             residual,
             tolerance: accuracy,
-            wrong: counts[3] as usize,
+            wrong: total(comm, wrong as f64) as usize,
             seconds: clock.elapsed().as_secs_f64(),
         };
         Ok((step, residual <= accuracy))

@@ -1,11 +1,13 @@
 //! The state of the contact loop, and a record of its steps.
 
+use mpi::topology::SimpleCommunicator;
 #[cfg(feature = "cli")]
 use serde::{Deserialize, Serialize};
 
 use super::settings::ContactType;
 use crate::feti::jump::operator::Jump;
 use crate::feti::Spectrum;
+use crate::parallel::exchange::sum_all;
 use crate::Result;
 
 /// Record of one step of the outer loop.
@@ -75,17 +77,23 @@ impl State {
 
     /// The start of a loop: λ = 0, and all candidate rows hold.
     pub fn cold(jump: &Jump) -> State {
-        State {
-            lambda: vec![0.0; jump.n_owned],
-            active: jump.initial.clone(),
-            before: jump.initial.clone(),
-            reference: 0.0,
-            steps: 0,
-            visited: Vec::new(),
-            caution: Caution::Loose,
-            mu: Vec::new(),
-        }
+        State::warm(&vec![0.0; jump.n_owned], &jump.initial)
     }
+}
+
+/// Numbers of rows over all ranks that hold now, that hold now and did not before, and the reverse. Collective.
+pub(super) fn changes(comm: &SimpleCommunicator, before: &[bool], now: &[bool]) -> [usize; 3] {
+    let count = |test: fn(bool, bool) -> bool| {
+        let pairs = before.iter().zip(now);
+        pairs.filter(|(was, on)| test(**was, **on)).count() as f64
+    };
+    let mut counts = [
+        count(|_, on| on),
+        count(|was, on| on && !was),
+        count(|was, on| was && !on),
+    ];
+    sum_all(comm, &mut counts);
+    counts.map(|n| n as usize)
 }
 
 /// The caution of the active-set loop.

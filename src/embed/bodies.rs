@@ -13,22 +13,11 @@ use std::collections::BTreeMap;
 /// Default number of subdomains per body of a partition.
 const USUAL: usize = 8;
 
-/// How subdomains are grouped into bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Grouping {
-    /// One body for every eight subdomains.
-    Auto,
-    /// This many bodies.
-    Number(usize),
-}
-
-impl Grouping {
-    /// The number of bodies for `n` subdomains.
-    pub fn bodies(self, n: usize) -> usize {
-        match self {
-            Grouping::Auto => n.div_ceil(USUAL),
-            Grouping::Number(wanted) => wanted.min(n),
-        }
+/// The number of bodies for `n` subdomains where the host wants `wanted`; 0: one for every eight subdomains.
+pub fn number(wanted: usize, n: usize) -> usize {
+    match wanted {
+        0 => n.div_ceil(USUAL),
+        wanted => wanted.min(n),
     }
 }
 

@@ -9,7 +9,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
-use crate::parallel::exchange::{exchange_words, max_all};
+use crate::parallel::exchange::{any, exchange_words};
 use crate::petsc::Session;
 use crate::substructures::EntityKind;
 use mpi::traits::Communicator;
@@ -110,9 +110,7 @@ pub fn classes(
 /// line of dofs. Collective.
 pub fn in_space(session: &Session, classes: &[Vec<Class>]) -> bool {
     let line = |c: &Class| c.sharers.len() > 2 && c.dofs.len() > 1;
-    let mut found = [f64::from(u8::from(classes.iter().flatten().any(line)))];
-    max_all(session.comm(), &mut found);
-    found[0] > 0.0
+    any(session.comm(), classes.iter().flatten().any(line))
 }
 
 /// The locally connected pieces of a subdomain's interface: lists of local dofs, increasing.

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::parts::{body_dof, Part};
 use super::states::State;
 use super::torn::Torn;
+use crate::linalg::sorted::distinct;
 use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::{exchange_words, gather_all};
 use crate::petsc::Session;
@@ -36,9 +37,9 @@ pub struct Contact {
     /// Whether a row on any rank has a term at a known dof.
     some_known: bool,
     /// Number of rows over all ranks.
-    n_global: usize,
-    /// Whether any row is an inequality.
-    inequalities: bool,
+    pub n_global: usize,
+    /// Whether any row on any rank is an inequality.
+    pub inequalities: bool,
 }
 
 /// A row as every rank sees it.
@@ -119,21 +120,6 @@ impl Contact {
     /// The block of a global dof, if a row contains the dof.
     pub fn block(&self, dof: u32) -> Option<u32> {
         self.block.get(&dof).copied()
-    }
-
-    /// Number of rows over all ranks.
-    pub fn n_global(&self) -> usize {
-        self.n_global
-    }
-
-    /// Whether there are rows on any rank.
-    pub fn is_any(&self) -> bool {
-        self.n_global > 0
-    }
-
-    /// Whether there are inequalities on any rank.
-    pub fn has_inequalities(&self) -> bool {
-        self.inequalities
     }
 
     /// This rank's rows for the method.
@@ -242,9 +228,7 @@ fn lowest_bodies(
     states: &HashMap<u32, State>,
     body_of: &[usize],
 ) -> HashMap<u32, u64> {
-    let mut touched: Vec<u32> = seen.iter().flat_map(|s| &s.terms).map(|t| t.0).collect();
-    touched.sort_unstable();
-    touched.dedup();
+    let touched = distinct(seen.iter().flat_map(|s| &s.terms).map(|t| t.0));
     let mut mine = Vec::new();
     for &dof in &touched {
         if states.get(&dof).is_some_and(|s| !s.is_free()) {
@@ -268,9 +252,7 @@ fn lowest_bodies(
 fn blocks(seen: &[Seen], free: impl Fn(&u32) -> bool) -> HashMap<u32, u32> {
     let unknowns = |row: &Seen| row.terms.iter().map(|t| t.0).filter(&free).collect();
     let rows: Vec<Vec<u32>> = seen.iter().map(unknowns).collect();
-    let mut dofs: Vec<u32> = rows.concat();
-    dofs.sort_unstable();
-    dofs.dedup();
+    let dofs = distinct(rows.concat());
     let place = |dof: &u32| dofs.binary_search(dof).expect("every dof is in the list");
     let mut sets = UnionFind::new(dofs.len());
     for row in &rows {

@@ -10,9 +10,10 @@ use std::collections::BTreeSet;
 use super::classes::Class;
 use super::kernels::{combinations, orthogonal, Columns};
 use super::parts::Part;
-use super::sharing::{gather_per_subdomain, Sharers};
+use super::sharing::Sharers;
 use super::torn::Torn;
 use crate::feti::Primal;
+use crate::parallel::exchange::gather_all;
 use crate::petsc::Session;
 use crate::substructures::EntityKind;
 
@@ -91,7 +92,7 @@ impl Motions {
             .zip(&self.bases)
             .flat_map(|(part, basis)| [basis.len() as u64, n_nodes(torn, &part.dofs) as u64])
             .collect();
-        let sizes = gather_per_subdomain(session, &sizes);
+        let sizes = gather_all(session.comm(), &sizes).concat();
         let mut mine = Vec::new();
         for (j, part) in parts.iter().enumerate() {
             let low = sharers.first + j;
@@ -114,7 +115,7 @@ impl Motions {
                 ]);
             }
         }
-        let words = gather_per_subdomain(session, &mine);
+        let words = gather_all(session.comm(), &mine).concat();
         let bond = |w: &[u64]| Bond {
             low: (w[0] >> 32) as usize,
             high: w[0] as u32 as usize,
@@ -200,7 +201,7 @@ impl Motions {
                 }
             }
         }
-        let averaged = gather_per_subdomain(session, &averaged);
+        let averaged = gather_all(session.comm(), &averaged).concat();
         let pair = |w: &u64| ((w >> 32) as u32, *w as u32);
         (averaged.iter().map(pair).collect(), nodes)
     }

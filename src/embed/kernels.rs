@@ -2,7 +2,7 @@
 //! body.
 
 use super::parts::Part;
-use crate::parallel::exchange::{max_all, sum_all};
+use crate::parallel::exchange::{any, highest, sum_all};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
@@ -39,9 +39,8 @@ pub fn modes(
         }
     }
     let wrong = |(part, list): (&Part, &Columns)| !part.touched && !annihilates(part, list);
-    let mut bad = [f64::from(u8::from(parts.iter().zip(&columns).any(wrong)))];
-    max_all(session.comm(), &mut bad);
-    Ok((bad[0] == 0.0).then_some(columns))
+    let wrong = any(session.comm(), parts.iter().zip(&columns).any(wrong));
+    Ok((!wrong).then_some(columns))
 }
 
 fn annihilates(part: &Part, columns: &Columns) -> bool {
@@ -94,9 +93,8 @@ pub fn orthogonal(columns: &Columns) -> Columns {
 /// Replaces the columns of every part by combinations that are orthogonal over the whole body, with entries of order
 /// one. All parts of a body use the same combinations. Collective.
 pub fn over_bodies(session: &Session, body_of: &[usize], n_bodies: usize, columns: &mut [Columns]) {
-    let mut k = [columns.iter().map(Vec::len).max().unwrap_or(0) as f64];
-    max_all(session.comm(), &mut k);
-    let k = k[0] as usize;
+    let k = columns.iter().map(Vec::len).max().unwrap_or(0);
+    let k = highest(session.comm(), k as f64) as usize;
     let width = k * k + 1;
     let mut gram = vec![0.0; n_bodies * width];
     for (&body, list) in body_of.iter().zip(columns.iter()) {

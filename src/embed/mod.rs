@@ -25,7 +25,6 @@ pub(crate) mod states;
 pub(crate) mod subdomains;
 pub(crate) mod torn;
 
-pub use bodies::Grouping;
 pub use pieces::Piece;
 pub use solver::{Embedded, Outcome};
 pub use torn::{GivenRow, Torn};

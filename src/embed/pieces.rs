@@ -1,6 +1,7 @@
 //! Local matrices as the host stores them, and the subdomain matrices extracted from them.
 
 use crate::linalg::csr::Csr;
+use crate::linalg::sorted::distinct;
 use std::collections::HashMap;
 
 /// One subdomain matrix of the host.
@@ -28,9 +29,7 @@ pub fn torn_from(k: &Csr, map: &[i32], copies: Option<usize>, body: Option<u64>)
 /// A local matrix by increasing global dofs. Rows of the same dof are added (a periodic mesh on one rank has such
 /// rows), rows without a dof are left out. `None` if no row is left.
 fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
-    let mut dofs: Vec<u32> = map.iter().filter(|&&g| g >= 0).map(|&g| g as u32).collect();
-    dofs.sort_unstable();
-    dofs.dedup();
+    let dofs = distinct(map.iter().filter(|&&g| g >= 0).map(|&g| g as u32));
     if dofs.is_empty() {
         return None;
     }

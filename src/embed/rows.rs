@@ -3,6 +3,7 @@
 use super::contact::Contact;
 use super::parts::{body_dof, Part};
 use super::sharing::Sharers;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::substructures::{BodyNode, InterfaceRow, RowKind, RowLabel, RowSource};
@@ -45,9 +46,7 @@ pub fn rows(
             if who.first() != Some(&me) {
                 continue;
             }
-            let mut bodies: Vec<u64> = who.iter().map(|&s| body_of[s as usize] as u64).collect();
-            bodies.sort_unstable();
-            bodies.dedup();
+            let bodies = distinct(who.iter().map(|&s| body_of[s as usize] as u64));
             for (k, &a) in bodies.iter().enumerate() {
                 for &b in &bodies[k + 1..] {
                     match contact.block(dof) {
@@ -60,7 +59,7 @@ pub fn rows(
             }
         }
     }
-    if contact.is_any() {
+    if contact.n_global > 0 {
         let received = exchange_words(session.comm(), elsewhere).concat();
         let words = received.chunks_exact(3);
         out.extend(words.map(|w| tie(w[0], w[1], w[2] as u32)));

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::parts::Part;
-use crate::parallel::exchange::{exchange_words, gather_all, offsets};
+use crate::parallel::exchange::{exchange_words, offsets};
 use crate::petsc::Session;
 use mpi::traits::Communicator;
 
@@ -90,9 +90,4 @@ impl Sharers {
         list.sort_unstable();
         list
     }
-}
-
-/// Concatenates the words of all subdomains in the order of the subdomains, on all ranks. Collective.
-pub fn gather_per_subdomain(session: &Session, mine: &[u64]) -> Vec<u64> {
-    gather_all(session.comm(), mine).concat()
 }

@@ -2,7 +2,7 @@
 
 use std::cell::{Ref, RefCell};
 
-use super::bodies::{bodies, by_most_dofs, named_groups, Grouping};
+use super::bodies::{self, bodies, by_most_dofs, named_groups};
 use super::classes::{classes, in_space};
 use super::contact::Contact;
 use super::hold::{Motions, Shape};
@@ -11,13 +11,14 @@ use super::partition::partition;
 use super::parts::parts;
 use super::rows::rows;
 use super::shares::{Shares, Values};
-use super::sharing::{gather_per_subdomain, Sharers};
+use super::sharing::Sharers;
 use super::states::states;
 use super::subdomains::{subdomain, Known};
 use super::torn::Torn;
 use crate::contact::State as ContactState;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
+use crate::parallel::exchange::gather_all;
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::status::Status;
@@ -57,14 +58,15 @@ pub struct Embedded {
 }
 
 impl Embedded {
-    /// Finds substructures and sets the solver up. Collective.
+    /// Finds substructures and sets the solver up. Where the host names no bodies, the subdomains are grouped into
+    /// `wanted` of them; 0: one for every eight subdomains. Collective.
     ///
     /// # Errors
     /// An operator that is not admissible (unsymmetric, indefinite, with empty rows among others), and PETSc's own.
     pub fn new(
         session: &Session,
         torn: &Torn,
-        grouping: Grouping,
+        wanted: usize,
         settings: MethodSettings,
     ) -> Result<Embedded> {
         let primal = settings.clone().with_options(session)?.primal;
@@ -81,14 +83,21 @@ impl Embedded {
         let motions = Motions::new(torn, &parts, modes.as_deref());
         let bonds = motions.bonds(session, torn, &parts, &sharers);
         let named: Vec<u64> = parts.iter().map(|p| p.body.map_or(0, |b| b + 1)).collect();
-        let named: Vec<Option<u64>> = gather_per_subdomain(session, &named)
+        let named: Vec<Option<u64>> = gather_all(session.comm(), &named)
+            .concat()
             .iter()
             .map(|&b| b.checked_sub(1))
             .collect();
         let n = sharers.n_subdomains;
         let group = match named_groups(&named)? {
             Some(group) => group,
-            None => partition(session, &settings.prefix, n, &bonds, grouping.bodies(n))?,
+            None => partition(
+                session,
+                &settings.prefix,
+                n,
+                &bonds,
+                bodies::number(wanted, n),
+            )?,
         };
         let body_of = bodies(&group, &bonds);
         let n_bodies = body_of.iter().max().map_or(0, |b| b + 1);
@@ -184,7 +193,7 @@ impl Embedded {
     ) -> Result<Outcome> {
         self.load(b, held)?;
         let start = self.reached.take().map(|(state, _)| state);
-        let start = start.filter(|_| self.contact.has_inequalities());
+        let start = start.filter(|_| self.contact.inequalities);
         let solution = self
             .solver()
             .solve_from(start.as_ref(), &mut |_, _| Ok(()))?;
@@ -197,7 +206,7 @@ impl Embedded {
 
     /// Number of the host's rows over all ranks.
     pub fn n_given_rows(&self) -> usize {
-        self.contact.n_global()
+        self.contact.n_global
     }
 
     /// After [`Embedded::solve_with_rows`]: the multipliers of the rows that this rank gave, in their order.

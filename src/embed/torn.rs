@@ -1,6 +1,7 @@
 //! The input of a host program: subdomain matrices, not yet grouped or classified.
 
 use super::pieces::{torn_from, Piece};
+use crate::linalg::sorted::distinct;
 use crate::parallel::halo::Halo;
 use crate::petsc::{Attached, Mat, Session, Vec as PetscVec};
 use crate::substructures::RowKind;
@@ -83,9 +84,7 @@ impl Torn {
 
     /// The global dofs that this rank's pieces touch, increasing, and a halo for them. Collective.
     pub fn halo(&self, session: &Session) -> Result<(Vec<u32>, Halo)> {
-        let mut ghosts: Vec<u32> = self.pieces.iter().flat_map(|p| p.dofs.clone()).collect();
-        ghosts.sort_unstable();
-        ghosts.dedup();
+        let ghosts = distinct(self.pieces.iter().flat_map(|p| p.dofs.clone()));
         let halo = Halo::new(session, &self.layout, &ghosts)?;
         Ok((ghosts, halo))
     }

@@ -15,14 +15,16 @@ use crate::Result;
 
 /// The operators, the Krylov method and facts about the problem.
 pub struct LinearMethod {
-    pub(super) session: Session,
-    pub(super) problem: Substructures,
-    pub(super) settings: MethodSettings,
-    pub(super) system: Rc<System>,
-    pub(super) ksp: Ksp,
-    pub(super) facts: Facts,
+    pub(crate) session: Session,
+    pub(crate) problem: Substructures,
+    /// With options applied.
+    pub(crate) settings: MethodSettings,
+    /// The dual problem as the Krylov method works on it.
+    pub(crate) system: Rc<System>,
+    pub(crate) ksp: Ksp,
+    pub(crate) facts: Facts,
     /// The largest ratio of coefficients inside a body.
-    pub(super) varies: f64,
+    pub(crate) varies: f64,
 }
 
 impl LinearMethod {
@@ -51,42 +53,12 @@ impl LinearMethod {
 
     /// The identities of the theory, each with its relative defect, which must be of the size of rounding. Collective.
     pub fn check(&self) -> Result<Vec<(&'static str, f64)>> {
-        check::identities(&self.session, &self.problem, &self.system)
-    }
-
-    /// The session.
-    pub fn session(&self) -> &Session {
-        &self.session
-    }
-
-    /// The problem.
-    pub fn problem(&self) -> &Substructures {
-        &self.problem
-    }
-
-    /// The settings in force, with options applied.
-    pub fn settings(&self) -> &MethodSettings {
-        &self.settings
-    }
-
-    /// The dual problem as the Krylov method works on it.
-    pub(crate) fn system(&self) -> &Rc<System> {
-        &self.system
+        check::identities(&self.problem, &self.system)
     }
 
     /// F, M⁻¹ and P for the rows that hold.
     pub fn dual(&self) -> Ref<'_, Dual> {
         self.system.dual()
-    }
-
-    /// The Krylov solver of the dual problem.
-    pub fn ksp(&self) -> &Ksp {
-        &self.ksp
-    }
-
-    /// Facts about the problem.
-    pub fn facts(&self) -> &Facts {
-        &self.facts
     }
 
     /// Messages and reductions per iteration, over all iterations of the Krylov method so far; `None` if there were
@@ -98,10 +70,5 @@ impl LinearMethod {
     /// Messages, reductions and seconds of the iterations on this rank.
     pub fn tally(&self) -> Tally {
         self.system.tally()
-    }
-
-    /// The largest ratio of coefficients inside a body.
-    pub(super) fn varies(&self) -> f64 {
-        self.varies
     }
 }

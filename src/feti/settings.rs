@@ -1,7 +1,7 @@
 //! Settings of the linear method, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
 use crate::cholesky::interior::LocalSolver;
-use crate::petsc::{Options, Session};
+use crate::petsc::{named, Options, Session};
 use crate::substructures::EntityKind;
 use crate::{Error, Result};
 
@@ -166,30 +166,12 @@ pub enum ProjectorKind {
     Auto,
 }
 
-macro_rules! names {
-    ($kind:ident { $($variant:ident = $name:literal),* $(,)? }) => {
-        impl $kind {
-            /// Names as the option takes them, in the order of the variants.
-            pub const NAMES: &'static [&'static str] = &[$($name),*];
-
-            /// The name as the option takes it.
-            pub fn name(self) -> &'static str {
-                match self { $($kind::$variant => $name),* }
-            }
-
-            fn from_index(index: usize) -> Self {
-                [$($kind::$variant),*][index]
-            }
-        }
-    };
-}
-
-names!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
-names!(CoarseFunctions { All = "all", Vertices = "vertices" });
-names!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness", Deluxe = "deluxe" });
-names!(Precision { Double = "double", Mixed = "mixed" });
-names!(Operators { Auto = "auto", Explicit = "explicit", Implicit = "implicit" });
-names!(ProjectorKind {
+named!(PcType { None = "none", Lumped = "lumped", Dirichlet = "dirichlet", CoarseCorrected = "coarse_corrected" });
+named!(CoarseFunctions { All = "all", Vertices = "vertices" });
+named!(Scaling { Multiplicity = "multiplicity", Rho = "rho", Stiffness = "stiffness", Deluxe = "deluxe" });
+named!(Precision { Double = "double", Mixed = "mixed" });
+named!(Operators { Auto = "auto", Explicit = "explicit", Implicit = "implicit" });
+named!(ProjectorKind {
     Identity = "identity",
     Diagonal = "diagonal",
     Preconditioner = "preconditioner",
@@ -286,51 +268,29 @@ impl MethodSettings {
     pub fn with_options(mut self, session: &Session) -> Result<MethodSettings> {
         let o = Options::new(session, &self.prefix);
         o.heading("FETI-FETI options")?;
-        let auto = [&["auto"], PcType::NAMES].concat();
-        let now = self.pc_type.map_or(0, |t| 1 + t as usize);
         let help = "preconditioner of the dual problem";
-        self.pc_type = match o.choice("pc_type", &auto, now, help)? {
-            0 => None,
-            i => Some(PcType::from_index(i - 1)),
-        };
-        let auto = [&["auto"], CoarseFunctions::NAMES].concat();
-        let now = self.lifting.map_or(0, |l| 1 + l as usize);
+        self.pc_type = o.named_or_auto("pc_type", self.pc_type, help)?;
         let help = "coarse functions that coarse_corrected takes away";
-        self.lifting = match o.choice("lifting", &auto, now, help)? {
-            0 => None,
-            i => Some(CoarseFunctions::from_index(i - 1)),
-        };
+        self.lifting = o.named_or_auto("lifting", self.lifting, help)?;
         let help = "weights of the scaled jump operator";
-        let i = o.choice("scaling", Scaling::NAMES, self.scaling as usize, help)?;
-        self.scaling = Scaling::from_index(i);
+        self.scaling = o.named("scaling", self.scaling, help)?;
         let help = "exponent of rho in the scaling, at least 0.5";
         self.gamma = o.f64("scaling_gamma", self.gamma, help)?;
         if !(self.gamma >= 0.5 && self.gamma.is_finite()) {
             return Err(Error::input(format!(
-                "option -{} is {}, expected a number of at least 0.5",
-                o.full_name("scaling_gamma").trim_start_matches('-'),
+                "option {} is {}, expected a number of at least 0.5",
+                o.full_name("scaling_gamma"),
                 self.gamma
             )));
         }
         let help = "digits of the preconditioner";
-        let i = o.choice("precision", Precision::NAMES, self.precision as usize, help)?;
-        self.precision = Precision::from_index(i);
+        self.precision = o.named("precision", self.precision, help)?;
         let help = "S and T as dense matrices or as sparse solves";
-        let i = o.choice("operators", Operators::NAMES, self.operators as usize, help)?;
-        self.operators = Operators::from_index(i);
+        self.operators = o.named("operators", self.operators, help)?;
         let help = "megabytes for dense operators on this rank; 0: half of what the machine has, divided by the ranks";
-        self.memory = match o.usize("memory", self.memory.unwrap_or(0), help)? {
-            0 => None,
-            n => Some(n),
-        };
+        self.memory = o.count("memory", self.memory, help)?;
         let help = "weight Q of the projector";
-        let i = o.choice(
-            "projector",
-            ProjectorKind::NAMES,
-            self.projector as usize,
-            help,
-        )?;
-        self.projector = ProjectorKind::from_index(i);
+        self.projector = o.named("projector", self.projector, help)?;
         let help = "primal constraints inside the bodies (some of vertices, edges, faces)";
         let text = o.string("primal", &self.primal.name(), help)?;
         self.primal = Primal::parse(&text).ok_or_else(|| {
@@ -354,35 +314,20 @@ impl MethodSettings {
             "search directions kept for the next load with the same matrices and active rows";
         self.recycle = o.usize("recycle", self.recycle, help)?;
         let help = "threads per rank; 0: the cores of the machine divided by the ranks on it";
-        self.threads = match o.usize("threads", self.threads.unwrap_or(0), help)? {
-            0 => None,
-            n => Some(n),
-        };
+        self.threads = o.count("threads", self.threads, help)?;
         self.local = self.local.from_options(&o)?;
         let help = "print the operator identities, which must be zero";
         self.check = o.bool("check", self.check, help)?;
         let help = "exact extreme eigenvalues of the preconditioned operator";
         self.spectrum = o.bool("spectrum", self.spectrum, help)?;
-        for (name, help) in [
-            (
-                "ksp_",
-                "the Krylov method of the dual problem (any KSP option)",
-            ),
-            (
-                "coarse_",
-                "the primal problem of the bodies (any KSP or PC option)",
-            ),
-            (
-                "gtg_",
-                "the natural coarse problem of floating bodies (any KSP or PC option)",
-            ),
-            (
-                "eps_",
-                "the eigensolver of -fetifeti_spectrum (any EPS option)",
-            ),
-        ] {
-            o.list(name, "...", help)?;
-        }
+        let krylov = "the Krylov method of the dual problem (any KSP option)";
+        let coarse = "the primal problem of the bodies (any KSP or PC option)";
+        let natural = "the natural coarse problem of floating bodies (any KSP or PC option)";
+        let spectrum = "the eigensolver of -fetifeti_spectrum (any EPS option)";
+        o.list("ksp_", "...", krylov)?;
+        o.list("coarse_", "...", coarse)?;
+        o.list("gtg_", "...", natural)?;
+        o.list("eps_", "...", spectrum)?;
         Ok(self)
     }
 

@@ -74,7 +74,7 @@ impl LinearMethod {
             (kind, &settings),
         )?; /* S, T, Ψ */
         let varies = variation::varies(comm, &problem);
-        team.set_load(locals.iter().map(|l| l.n_delta().pow(2)).sum());
+        team.set_load(locals.iter().map(|l| l.n_delta.pow(2)).sum());
         let stiffness = stiffness(
             session,
             &problem,
@@ -86,7 +86,7 @@ impl LinearMethod {
         let lifting = match kind {
             PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
                 let functions = settings.coarse_functions();
-                Lifting::new(session, &problem, &sharing, &stiffness, functions)
+                Lifting::new(&problem, &sharing, &stiffness, functions)
                 /* Z_c               */
             })?,
             _ => None,
@@ -102,16 +102,9 @@ impl LinearMethod {
         let natural = clock::timed(Phase::NaturalSetup, || {
             let projector = (settings.projector, varies);
             let prefix = format!("{}gtg_", settings.prefix);
-            NaturalCoarse::new(
-                session,
-                &problem,
-                &stiffness,
-                &preconditioner,
-                projector,
-                &prefix,
-            )
+            NaturalCoarse::new(&problem, &stiffness, &preconditioner, projector, &prefix)
         })?; /*                                                                 G, P                   */
-        let dual = Dual::new(session, stiffness, preconditioner, natural)?;
+        let dual = Dual::new(stiffness, preconditioner, natural)?;
         let facts = Facts::new(comm, &dual);
         let system = Rc::new(System::new(session, dual, settings.recycle)?);
         let ksp = krylov(session, &system, &settings)?;
@@ -147,7 +140,7 @@ fn subdomains(
     });
     let mut locals = session.agree(factored)?;
     for (j, local) in locals.iter().enumerate() {
-        jump.place(j, local.interface());
+        jump.place(j, &local.interface);
     }
     if settings.scaling == Scaling::Deluxe {
         deluxe::apply(comm, problem, sharing, jump, &locals);
@@ -184,7 +177,7 @@ fn stiffness(
     })?;
     let layout = PetscVec::mpi(session, jump.n_owned)?;
     let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
-    let mut stiffness = Stiffness::new(jump, locals, space, primal, dual_halo, team);
+    let mut stiffness = Stiffness::new(session, jump, locals, space, primal, dual_halo, team);
     if varies > refinement::PLAIN {
         stiffness.refine(Refinement::new(problem, &stiffness.locals));
     }
@@ -219,7 +212,7 @@ fn count(list: &str) -> Option<usize> {
 
 /// CG on Pᵀ F P with P M⁻¹ Pᵀ, stopped by ‖r_n‖₂ / ‖r_0‖₂ as in \[Lee\].
 fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> Result<Ksp> {
-    let a = shells::operator(session, system)?;
+    let a = shells::operator(system)?;
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_operators(&a, &a)?;
     // PETSc itself adds `ksp_` to this prefix. The PC gets another prefix: `pc_type` chooses among the M⁻¹ of this

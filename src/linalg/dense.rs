@@ -82,6 +82,32 @@ impl Dense {
         }
     }
 
+    /// A ← (A + Aᵀ) / 2.
+    pub fn symmetrise(&mut self) {
+        for j in 0..self.cols {
+            for i in 0..j {
+                let mean = 0.5 * (self.get(i, j) + self.get(j, i));
+                self.set(i, j, mean);
+                self.set(j, i, mean);
+            }
+        }
+    }
+
+    /// A ← D⁻¹ A D⁻¹, where D² is the diagonal of A, with ones in place of entries that are not positive. Returns 1/D.
+    pub fn scale_to_unit_diagonal(&mut self) -> Vec<f64> {
+        let diagonal = |i: usize| match self.get(i, i) {
+            d if d > 0.0 => 1.0 / d.sqrt(),
+            _ => 1.0,
+        };
+        let scale: Vec<f64> = (0..self.rows).map(diagonal).collect();
+        for j in 0..self.cols {
+            for i in 0..self.rows {
+                self.set(i, j, self.get(i, j) * scale[i] * scale[j]);
+            }
+        }
+        scale
+    }
+
     /// y ← y + A x.
     pub fn add_mul(&self, x: &[f64], y: &mut [f64]) {
         gemv(&self.data, self.rows, x, y);

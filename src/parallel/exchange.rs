@@ -107,6 +107,32 @@ pub fn min_all(comm: &SimpleCommunicator, values: &mut [f64]) {
     reduce(comm, values, SystemOperation::min());
 }
 
+/// Sum of a number over the ranks. Collective.
+pub fn total(comm: &SimpleCommunicator, value: f64) -> f64 {
+    let mut values = [value];
+    sum_all(comm, &mut values);
+    values[0]
+}
+
+/// Largest number of a rank. Collective.
+pub fn highest(comm: &SimpleCommunicator, value: f64) -> f64 {
+    let mut values = [value];
+    max_all(comm, &mut values);
+    values[0]
+}
+
+/// Smallest number of a rank. Collective.
+pub fn lowest(comm: &SimpleCommunicator, value: f64) -> f64 {
+    let mut values = [value];
+    min_all(comm, &mut values);
+    values[0]
+}
+
+/// Whether something is true on some rank. Collective.
+pub fn any(comm: &SimpleCommunicator, here: bool) -> bool {
+    highest(comm, f64::from(here)) > 0.0
+}
+
 fn reduce(comm: &SimpleCommunicator, values: &mut [f64], operation: SystemOperation) {
     if comm.size() > 1 && !values.is_empty() {
         traffic::count(Traffic::reduction(values.len()));

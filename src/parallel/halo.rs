@@ -8,6 +8,7 @@ use mpi::traits::Communicator;
 use super::clock::{self, Phase};
 use super::exchange::{exchange_words, gather_all};
 use super::traffic::{self, Traffic};
+use crate::linalg::sorted::distinct;
 use crate::petsc::{Scatter, Session, Vec as PetscVec};
 use crate::Result;
 
@@ -24,9 +25,7 @@ pub struct Halo {
 /// The union of the lists, increasing (the ghosts), and for every list the positions of its numbers in the union.
 pub fn numbered<L: AsRef<[u32]>>(lists: &[L]) -> (Vec<u32>, Vec<Vec<u32>>) {
     let each = || lists.iter().map(|l| l.as_ref());
-    let mut ghosts: Vec<u32> = each().flatten().copied().collect();
-    ghosts.sort_unstable();
-    ghosts.dedup();
+    let ghosts = distinct(each().flatten().copied());
     let place = |g: &u32| {
         let at = ghosts.binary_search(g);
         at.expect("every number was collected") as u32

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::exchange::{max_all, sum_all};
+use super::exchange::{highest, total};
 use crate::petsc::{max_memory, Session};
 use crate::Result;
 
@@ -11,17 +11,14 @@ pub(crate) fn timed<T>(session: &Session, work: impl FnOnce() -> Result<T>) -> R
     session.agree(Ok(()))?;
     let clock = Instant::now();
     let result = work()?;
-    let mut seconds = [clock.elapsed().as_secs_f64()];
-    max_all(session.comm(), &mut seconds);
-    Ok((result, seconds[0]))
+    let seconds = clock.elapsed().as_secs_f64();
+    Ok((result, highest(session.comm(), seconds)))
 }
 
 /// Largest resident memory of all ranks, in bytes. It excludes the shared segments through which ranks of one machine
 /// exchange messages: these belong to MPI, and would be counted in every rank that has mapped them.
 pub(crate) fn memory(session: &Session) -> f64 {
-    let mut bytes = [max_memory() - shared_memory()];
-    sum_all(session.comm(), &mut bytes);
-    bytes[0]
+    total(session.comm(), max_memory() - shared_memory())
 }
 
 /// Resident memory that this process shares with others, in bytes; zero if the system does not report it.

@@ -9,6 +9,29 @@ use std::fmt::Display;
 use std::ptr::null_mut;
 use std::str::FromStr;
 
+/// An enum whose values options take by name.
+pub trait Named: Copy + PartialEq + 'static {
+    /// The values and their names.
+    const VALUES: &'static [(Self, &'static str)];
+}
+
+/// Makes an enum [`Named`]: the names of all of its variants, as options take them.
+macro_rules! named {
+    ($kind:ident { $($variant:ident = $name:literal),* $(,)? }) => {
+        impl $crate::petsc::Named for $kind {
+            const VALUES: &'static [(Self, &'static str)] = &[$(($kind::$variant, $name)),*];
+        }
+
+        impl $kind {
+            /// The name as the option takes it.
+            pub fn name(self) -> &'static str {
+                match self { $($kind::$variant => $name),* }
+            }
+        }
+    };
+}
+pub(crate) use named;
+
 /// The options that begin with one prefix (`"fetifeti_"`; `""` for all).
 ///
 /// Names are written without the dash and without the prefix: with the prefix `fetifeti_`, the name `ksp_rtol` is
@@ -126,6 +149,12 @@ impl Options {
         Ok(value)
     }
 
+    /// [`usize`](Self::usize) where 0 stands for `None`.
+    pub fn count(&self, name: &str, default: Option<usize>, help: &str) -> Result<Option<usize>> {
+        let value = self.usize(name, default.unwrap_or(0), help)?;
+        Ok((value > 0).then_some(value))
+    }
+
     /// A text with default and help.
     pub fn string(&self, name: &str, default: &str, help: &str) -> Result<String> {
         let value = self.get_string(name)?.unwrap_or_else(|| default.into());
@@ -139,6 +168,28 @@ impl Options {
         let help = format!("{help} (one of {})", names.join(", "));
         self.list(name, names[value], &help)?;
         Ok(value)
+    }
+
+    /// A value by its name, with default and help.
+    pub fn named<T: Named>(&self, name: &str, default: T, help: &str) -> Result<T> {
+        let names: Vec<&str> = T::VALUES.iter().map(|value| value.1).collect();
+        let now = T::VALUES.iter().position(|value| value.0 == default);
+        let at = self.choice(name, &names, now.unwrap_or(0), help)?;
+        Ok(T::VALUES[at].0)
+    }
+
+    /// [`named`](Self::named) where `auto` stands for `None`.
+    pub fn named_or_auto<T: Named>(
+        &self,
+        name: &str,
+        default: Option<T>,
+        help: &str,
+    ) -> Result<Option<T>> {
+        let names: Vec<&str> = T::VALUES.iter().map(|value| value.1).collect();
+        let now = T::VALUES.iter().position(|value| Some(value.0) == default);
+        let names = [&["auto"], &names[..]].concat();
+        let at = self.choice(name, &names, now.map_or(0, |at| at + 1), help)?;
+        Ok(at.checked_sub(1).map(|at| T::VALUES[at].0))
     }
 
     /// Lists an option under `-help` that is read elsewhere, once per run.

@@ -30,7 +30,7 @@ mod tests;
 use super::symbolic::{Keep, Symbolic};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
-use crate::petsc::Options;
+use crate::petsc::{named, Options};
 use crate::{Error, Result};
 
 pub use analysis::{Analysis, NoFactor};
@@ -47,17 +47,11 @@ pub enum Solver {
     Faer,
 }
 
+named!(Solver { Multifrontal = "multifrontal", Faer = "faer" });
+
 impl Solver {
     /// All solvers.
     pub const ALL: [Solver; 2] = [Solver::Multifrontal, Solver::Faer];
-
-    /// The names as the option spells them.
-    pub const NAMES: &'static [&'static str] = &["multifrontal", "faer"];
-
-    /// The name as the option spells it.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
 }
 
 /// Names that the option accepted before 0.2.
@@ -83,16 +77,16 @@ impl LocalSolver {
             return Err(Error::input(format!(
                 "option {} is \"{name}\", which is not there any more: it was never faster; expected one of {}",
                 o.full_name("local_solver"),
-                Solver::NAMES.join(", ")
+                Solver::ALL.map(Solver::name).join(", ")
             )));
         }
         let help = "factorisation of the subdomains";
-        let kind = o.choice("local_solver", Solver::NAMES, self.kind as usize, help)?;
+        let kind = o.named("local_solver", self.kind, help)?;
         let help = "order of elimination in the subdomains";
         let names = Ordering::NAMES;
         let ordering = o.choice("local_ordering", names, self.ordering as usize, help)?;
         let chosen = LocalSolver {
-            kind: Solver::ALL[kind],
+            kind,
             ordering: match ordering {
                 0 => Ordering::Auto,
                 i => Ordering::ALL[i - 1],

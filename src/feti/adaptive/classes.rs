@@ -12,7 +12,7 @@ use mpi::traits::Communicator;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::parallel::exchange::{exchange_words, sum_all};
+use crate::parallel::exchange::{any, exchange_words};
 use crate::substructures::{Subdomain, Substructures};
 
 /// Diagonal entries of K along a class and beside it may differ by this factor. Smaller differences come from the mesh,
@@ -38,13 +38,18 @@ impl Class {
     }
 }
 
-/// The classes of a subdomain.
-pub fn of(sub: &Subdomain, sharing: &Sharing, local: &Scaled) -> Vec<Class> {
+/// The classes of a subdomain, of the dofs at the positions of Γ that `chosen` selects.
+pub fn of(
+    sub: &Subdomain,
+    sharing: &Sharing,
+    local: &Scaled,
+    chosen: impl Fn(usize) -> bool,
+) -> Vec<Class> {
     let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
-    for (i, &dof) in local.interface()[..local.n_delta()].iter().enumerate() {
+    for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
         let dof = sub.dofs[dof as usize];
         let copies = sharing.shared(dof);
-        if copies.len() > 1 {
+        if copies.len() > 1 && chosen(i) {
             let sharers = copies.iter().map(|c| c.subdomain).collect();
             found.entry(sharers).or_default().push((dof, i));
         }
@@ -74,7 +79,7 @@ pub fn rough(
     for (j, list) in classes.iter().enumerate() {
         let stiff = diagonal(&problem.local[j]);
         for class in list {
-            let dofs = class.at.iter().map(|&i| locals[j].interface()[i]);
+            let dofs = class.at.iter().map(|&i| locals[j].interface[i]);
             if varies(&problem.local[j], &stiff, dofs) {
                 for &to in &class.sharers {
                     outgoing[sharing.rank_of[to as usize] as usize].push(class.name());
@@ -96,12 +101,10 @@ pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Sc
     let mut seen = HashSet::new();
     let mut locals = locals.iter().zip(&problem.local);
     let found = locals.any(|(local, sub)| {
-        let shared = local.interface()[..local.n_delta()].iter().copied();
+        let shared = local.interface[..local.n_delta].iter().copied();
         seen.insert(Arc::as_ptr(local.kind())) && varies(sub, &diagonal(sub), shared)
     });
-    let mut found = [f64::from(u8::from(found))];
-    sum_all(comm, &mut found);
-    found[0] > 0.0
+    any(comm, found)
 }
 
 /// The diagonal of K.
@@ -125,7 +128,7 @@ fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bo
 pub fn means(local: &Scaled, class: &Class) -> Vec<Vec<usize>> {
     let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
     let inside = local
-        .basis()
+        .basis
         .supports()
         .filter(|at| place.contains_key(&at[0]));
     inside

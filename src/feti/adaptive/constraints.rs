@@ -19,7 +19,7 @@ use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Adaptive;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::{multiply, Dense};
-use crate::parallel::exchange::{exchange_words, sum_all};
+use crate::parallel::exchange::{any, exchange_words, sum_all};
 use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
@@ -47,7 +47,7 @@ pub fn find(
         return Vec::new();
     }
     let mut classes: Vec<Vec<Class>> = (0..locals.len())
-        .map(|j| classes::of(&problem.local[j], sharing, &locals[j]))
+        .map(|j| classes::of(&problem.local[j], sharing, &locals[j], |_| true))
         .collect();
     if !all {
         let rough = classes::rough(comm, problem, sharing, locals, &classes);
@@ -57,9 +57,7 @@ pub fn find(
             list.retain(|_| rough.next() == Some(true));
         });
     }
-    let mut left = [classes.iter().map(Vec::len).sum::<usize>() as f64];
-    sum_all(comm, &mut left);
-    if left[0] == 0.0 {
+    if !any(comm, classes.iter().any(|list| !list.is_empty())) {
         return Vec::new();
     }
 
@@ -150,7 +148,7 @@ pub fn find(
         while let [to, name, k, tail @ ..] = rest {
             let (j, class) = here[&(*name, *to)];
             let (values, tail) = tail.split_at(*k as usize * class.dofs.len());
-            let interface = locals[j].interface();
+            let interface = &locals[j].interface;
             let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
             added.extend(functionals.map(|(values, &key)| {
                 let average = Average {
@@ -192,7 +190,7 @@ pub fn constrain(
     let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
     let held = |&j: &usize| Mutex::new(Some(locals[j].kind().clone()));
     let held: Vec<_> = kinds.iter().map(held).collect();
-    let factors: Vec<f64> = locals.iter().map(Scaled::factor).collect();
+    let factors: Vec<f64> = locals.iter().map(|l| l.factor).collect();
     drop(locals);
     let renewed = team.map(kinds.len(), |k| {
         let (j, old) = (kinds[k], held[k].lock().expect("nobody panics").take());
@@ -229,7 +227,7 @@ fn signature(
     for &(j, class) in sharers {
         out.extend([
             Arc::as_ptr(locals[j].kind()) as u64,
-            locals[j].factor().to_bits(),
+            locals[j].factor.to_bits(),
             class.at.len() as u64,
         ]);
         out.extend(class.at.iter().map(|&i| i as u64));
@@ -248,10 +246,10 @@ fn signature(
 
 /// Names of the primal dofs of local subdomain `j`. Subdomains that share a primal dof have the same name for it.
 fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]> {
-    let vertices = local.interface()[local.n_delta()..].iter();
+    let vertices = local.interface[local.n_delta..].iter();
     let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
     let averages = jump.averages[j].iter().map(|a| [1, a.key]);
-    let fixing = local.fixing().iter();
+    let fixing = local.fixing.iter();
     let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
     vertices.chain(averages).chain(fixing).collect()
 }
@@ -269,7 +267,7 @@ fn part(problem: &Substructures, jump: &Jump, local: &Scaled, j: usize, class: &
     let mut psi = Dense::zeros(n, local.n_pi());
     for p in 0..psi.cols {
         for (k, &i) in at.iter().enumerate() {
-            psi.set(k, p, local.psi().get(i, p));
+            psi.set(k, p, local.psi.get(i, p));
         }
     }
     Part {

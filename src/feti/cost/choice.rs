@@ -12,7 +12,7 @@ use super::forms::{APPLICATIONS, DENSE_SHARED, FLOP};
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::{CoarseFunctions, PcType};
-use crate::parallel::exchange::sum_all;
+use crate::parallel::exchange::{sum_all, total};
 use crate::substructures::Substructures;
 
 /// Columns that each neighbour adds to those that a subdomain sees, relative to the subdomain's own columns, in the
@@ -100,10 +100,9 @@ pub fn preconditioner(
         (others.len() as f64 - 1.0).max(0.0)
     };
     let neighbours: Vec<f64> = (0..problem.local.len()).map(neighbours).collect();
-    let mut seen = [neighbours.iter().sum()];
-    sum_all(comm, &mut seen);
+    let seen = total(comm, neighbours.iter().sum());
     let (n, bodies) = (problem.n_subdomains as f64, problem.n_bodies as f64);
-    let space = usize::from(seen[0] / n > PLANE);
+    let space = usize::from(seen / n > PLANE);
     let mut sum = Estimate::default();
     let mut primal = 0.0;
     for (j, m) in neighbours.iter().enumerate() {

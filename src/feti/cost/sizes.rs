@@ -12,7 +12,7 @@ use crate::feti::settings::{CoarseFunctions, Operators, PcType, Primal};
 use crate::feti::subdomain::equal;
 use crate::feti::subdomain::which::OperatorForm;
 use crate::linalg::dense::Dense;
-use crate::parallel::exchange::{exchange_words, max_all, sum_all};
+use crate::parallel::exchange::{exchange_words, highest, sum_all};
 use crate::parallel::team::Team;
 use crate::substructures::Substructures;
 use crate::Result;
@@ -91,10 +91,10 @@ impl Sizes {
                 OperatorForm::Implicit => sums[5] += 1.0,
             }
         }
-        let mut largest = [0.0f64];
+        let mut largest = 0.0f64;
         for (j, sub) in problem.local.iter().enumerate() {
             let n_gamma = jump.delta[j].len() + jump.primal[j].len();
-            largest[0] = largest[0].max(n_gamma as f64);
+            largest = largest.max(n_gamma as f64);
             let averages = jump.averages[j].iter().map(|a| &a.dofs[0]);
             for &i in jump.primal[j].iter().chain(averages) {
                 // Every primal dof is counted by its lowest subdomain. An average belongs to the subdomains of its
@@ -111,7 +111,6 @@ impl Sizes {
         sums[3] = contact.filter(|&r| jump.inequality[r]).count() as f64;
         sum_all(comm, &mut sums);
         sum_all(comm, &mut primal);
-        max_all(comm, &mut largest);
         Ok(Sizes {
             multipliers_local: jump.n_local,
             multipliers_global: jump.n_global - jump.n_local,
@@ -119,7 +118,7 @@ impl Sizes {
             inequalities: sums[3] as usize,
             primal: primal.iter().sum::<f64>() as usize,
             largest_primal: primal.iter().fold(0.0f64, |a, &b| a.max(b)) as usize,
-            largest_interface: largest[0] as usize,
+            largest_interface: highest(comm, largest) as usize,
             defect: defects(comm, problem),
             kinds: sums[4] as usize,
             implicit_kinds: sums[5] as usize,

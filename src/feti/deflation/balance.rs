@@ -15,7 +15,7 @@ use crate::feti::operators::dual::Dual;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::parallel::exchange::sum_all;
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
 /// f_i of all bodies.
@@ -43,7 +43,7 @@ impl Balance {
     }
 
     /// Computes f_i of all bodies. Collective.
-    pub fn take(&mut self, session: &Session, dual: &Dual, pencil: &Pencil) -> Result<()> {
+    pub fn take(&mut self, dual: &Dual, pencil: &Pencil) -> Result<()> {
         let stiffness = &dual.stiffness;
         let defect = |b: usize| self.start[b + 1] - self.start[b];
         let most = pencil.bodies.iter().map(|&b| defect(b as usize)).max();
@@ -74,20 +74,14 @@ impl Balance {
                     r.add_mul_transpose(f.col(q), e.col_mut(q));
                 }
             }
-            sum_all(session.comm(), &mut e.data);
+            sum_all(dual.comm(), &mut e.data);
             self.e[b] = Some(Semidefinite::new(&e));
         }
         Ok(())
     }
 
     /// ys ← F xs with forces balanced. Collective.
-    pub fn f(
-        &self,
-        session: &Session,
-        dual: &Dual,
-        xs: &[PetscVec],
-        ys: &[PetscVec],
-    ) -> Result<()> {
+    pub fn f(&self, dual: &Dual, xs: &[PetscVec], ys: &[PetscVec]) -> Result<()> {
         let natural = &dual.natural;
         dual.stiffness.f_mult_many(xs, ys, |work| {
             if natural.r == 0 {
@@ -98,7 +92,7 @@ impl Balance {
                 let range = self.start[self.body[j]]..self.start[self.body[j] + 1];
                 natural.kernels[j].add_mul_transpose(&w.v, &mut load[range]);
             }
-            sum_all(session.comm(), &mut load);
+            sum_all(dual.comm(), &mut load);
             for (b, e) in self.e.iter().enumerate() {
                 let part = &mut load[self.start[b]..self.start[b + 1]];
                 match e {

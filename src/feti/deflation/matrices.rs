@@ -1,5 +1,7 @@
 //! W, F W and Wᵀ F W for the rows that hold, and P_2 built from them.
 
+use mpi::topology::SimpleCommunicator;
+
 use super::balance::Balance;
 use super::panels::Panels;
 use crate::feti::operators::dual::Dual;
@@ -24,6 +26,7 @@ struct Split {
 
 /// P_2 in terms of P W = W − Q G X.
 pub struct Matrices {
+    session: Session,
     /// P W and F P W.
     w: Split,
     fw: Split,
@@ -38,7 +41,6 @@ pub struct Matrices {
 impl Matrices {
     /// Applies F to the columns and builds the matrices. Collective.
     pub fn new(
-        session: &Session,
         dual: &Dual,
         graph: &BodyGraph,
         balance: &Balance,
@@ -46,7 +48,7 @@ impl Matrices {
     ) -> Result<Matrices> {
         let (k, r) = (columns.len(), dual.natural.r);
         let like = dual.multipliers()?;
-        let f = |x: &[PetscVec], y: &[PetscVec]| balance.f(session, dual, x, y);
+        let f = |x: &[PetscVec], y: &[PetscVec]| balance.f(dual, x, y);
         let w = Panels::new(columns);
         let fw = Panels::new(&sweep::images(&like, graph, columns, f)?);
         let mut x = Dense::zeros(r, k);
@@ -55,9 +57,9 @@ impl Matrices {
             let natural = &dual.natural;
             let start = &dual.stiffness.space.kernel_start;
             let near = |b: usize| graph.near[b].clone();
-            let g = Panels::new(&sweep::kernel_columns(natural.g(), start, near));
+            let g = Panels::new(&sweep::kernel_columns(&natural.g, start, near));
             g.add_product(&w, &mut x, (0, 0));
-            sum_all(session.comm(), &mut x.data);
+            sum_all(dual.comm(), &mut x.data);
             for c in 0..k {
                 natural.solve_gtg(x.col_mut(c))?;
             }
@@ -67,8 +69,9 @@ impl Matrices {
             qg = Panels::new(&columns);
         }
         let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
-        let e = gram(session, &w, &fw, &x);
+        let e = gram(dual.comm(), &w, &fw, &x);
         Ok(Matrices {
+            session: dual.stiffness.session.clone(),
             w,
             fw,
             x,
@@ -83,35 +86,35 @@ impl Matrices {
     }
 
     /// λ ← P_2 λ for λ in V. Collective.
-    pub fn project(&self, session: &Session, lambda: &PetscVec) -> Result<()> {
-        let mut c = self.transpose(session, &self.fw, lambda)?; /* c ← (F P W)ᵀ λ     */
+    pub fn project(&self, lambda: &PetscVec) -> Result<()> {
+        let mut c = self.transpose(&self.fw, lambda)?; /* c ← (F P W)ᵀ λ     */
         self.e.solve(&mut c); /*                                    c ← E⁺ c           */
         self.add(-1.0, &self.w, &c, lambda) /*                      λ ← λ − P W c      */
     }
 
     /// r ← P_2ᵀ r. Collective.
-    pub fn project_transpose(&self, session: &Session, residual: &PetscVec) -> Result<()> {
-        let mut c = self.transpose(session, &self.w, residual)?; /* c ← (P W)ᵀ r       */
+    pub fn project_transpose(&self, residual: &PetscVec) -> Result<()> {
+        let mut c = self.transpose(&self.w, residual)?; /* c ← (P W)ᵀ r       */
         self.e.solve(&mut c); /*                                    c ← E⁺ c           */
         self.add(-1.0, &self.fw, &c, residual) /*                   r ← r − F P W c    */
     }
 
     /// out ← out + W (Wᵀ F W)⁺ Wᵀ r: the part of the solution in range W. Collective.
-    pub fn solve(&self, session: &Session, residual: &PetscVec, out: &PetscVec) -> Result<()> {
-        let mut c = self.transpose(session, &self.w, residual)?;
+    pub fn solve(&self, residual: &PetscVec, out: &PetscVec) -> Result<()> {
+        let mut c = self.transpose(&self.w, residual)?;
         self.e.solve(&mut c);
         self.add(1.0, &self.w, &c, out)
     }
 
     /// The size of Wᵀ r; each entry is relative to the F-norm of its vector. Collective.
-    pub fn part_of(&self, session: &Session, residual: &PetscVec) -> Result<f64> {
-        let c = self.transpose(session, &self.w, residual)?;
+    pub fn part_of(&self, residual: &PetscVec) -> Result<f64> {
+        let c = self.transpose(&self.w, residual)?;
         let of = |(c, norm): (&f64, &f64)| if *norm > 0.0 { (c / norm).abs() } else { 0.0 };
         Ok(c.iter().zip(&self.norms).map(of).fold(0.0, f64::max))
     }
 
     /// (Y − Q X)ᵀ v.
-    fn transpose(&self, session: &Session, of: &Split, v: &PetscVec) -> Result<Vec<f64>> {
+    fn transpose(&self, of: &Split, v: &PetscVec) -> Result<Vec<f64>> {
         let (k, r) = (self.x.cols, self.x.rows);
         let mut c = vec![0.0; k + r];
         {
@@ -120,7 +123,7 @@ impl Matrices {
             of.y.add_transpose(&v, columns);
             of.q.add_transpose(&v, kernels);
         }
-        sum_all(session.comm(), &mut c);
+        sum_all(self.session.comm(), &mut c);
         let mut kernels = c.split_off(k);
         kernels.iter_mut().for_each(|v| *v = -*v);
         self.x.add_mul_transpose(&kernels, &mut c);
@@ -139,16 +142,16 @@ impl Matrices {
 }
 
 /// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
-fn gram(session: &Session, w: &Split, f: &Split, x: &Dense) -> Dense {
+fn gram(comm: &SimpleCommunicator, w: &Split, f: &Split, x: &Dense) -> Dense {
     let k = x.cols;
     // The products of all columns, the kernel columns last: [Y Q]ᵀ F [Y Q].
-    let m = k + w.q.cols();
+    let m = k + w.q.cols;
     let mut a = Dense::zeros(m, m);
     w.y.add_product(&f.y, &mut a, (0, 0));
     w.y.add_product(&f.q, &mut a, (0, k));
     w.q.add_product(&f.y, &mut a, (k, 0));
     w.q.add_product(&f.q, &mut a, (k, k));
-    sum_all(session.comm(), &mut a.data);
+    sum_all(comm, &mut a.data);
     let entry = |i: usize, j: usize| 0.5 * (a.get(i, j) + a.get(j, i));
     let mut e = Dense::zeros(k, k);
     let mut column = vec![0.0; m];

@@ -31,7 +31,6 @@ use super::projector::graph::BodyGraph;
 use super::projector::sweep::{self, Column};
 use super::settings::Adaptive;
 use super::spectrum::Spectrum;
-use crate::petsc::Session;
 use crate::substructures::Substructures;
 use crate::Result;
 use balance::Balance;
@@ -93,15 +92,9 @@ pub struct Deflation {
 
 impl Deflation {
     /// Searches all bodies for vectors above `tau`, at most `most` in each. Collective.
-    pub fn new(
-        session: &Session,
-        problem: &Substructures,
-        dual: &Dual,
-        tau: f64,
-        most: usize,
-    ) -> Result<Deflation> {
+    pub fn new(problem: &Substructures, dual: &Dual, tau: f64, most: usize) -> Result<Deflation> {
         let clock = Instant::now();
-        let graph = BodyGraph::new(session.comm(), problem, &dual.stiffness);
+        let graph = BodyGraph::new(problem, &dual.stiffness);
         let mut cost = Cost {
             tau,
             vectors: vec![0; graph.n],
@@ -110,8 +103,8 @@ impl Deflation {
         let mut jumps: Vec<(u32, Column)> = Vec::new();
         let owners: Vec<usize> = problem.local.iter().map(|s| s.body).collect();
         let mut balance = Balance::new(dual, &owners, graph.n);
-        let pencil = Pencil::new(session, problem, dual, &graph)?;
-        balance.take(session, dual, &pencil)?;
+        let pencil = Pencil::new(problem, dual, &graph)?;
+        balance.take(dual, &pencil)?;
         let found = search::top(&pencil, tau, most, |slot, _, image| {
             let entries = pencil.parts[slot]
                 .clone()
@@ -139,7 +132,7 @@ impl Deflation {
         let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| {
             dual.m_many(x, y)
         })?;
-        let matrices = Matrices::new(session, dual, &graph, &balance, &columns)?;
+        let matrices = Matrices::new(dual, &graph, &balance, &columns)?;
         cost.dependent = columns.len() - matrices.rank();
         cost.seconds = clock.elapsed().as_secs_f64();
         Ok(Deflation {
@@ -154,17 +147,11 @@ impl Deflation {
 
     /// Deflates the eigenvalues of the whole problem that are still above `bound`, at most `most` vectors. Returns the
     /// number of vectors found. Collective.
-    pub fn polish(
-        &mut self,
-        session: &Session,
-        dual: &Dual,
-        bound: f64,
-        most: usize,
-    ) -> Result<usize> {
+    pub fn polish(&mut self, dual: &Dual, bound: f64, most: usize) -> Result<usize> {
         let clock = Instant::now();
         let everywhere: Vec<u32> = (0..self.graph.n as u32).collect();
         let mut found = Vec::new();
-        let whole = Whole::new(session, dual, self)?;
+        let whole = Whole::new(dual, self)?;
         search::top(&whole, bound, most, |_, vector, _| {
             let entries = vector.iter().enumerate().filter(|e| *e.1 != 0.0);
             found.push(Column {
@@ -175,8 +162,7 @@ impl Deflation {
         let n = found.len();
         if n > 0 {
             self.columns.extend(found);
-            self.matrices =
-                Matrices::new(session, dual, &self.graph, &self.balance, &self.columns)?;
+            self.matrices = Matrices::new(dual, &self.graph, &self.balance, &self.columns)?;
             self.cost.shared += n;
         }
         self.cost.seconds += clock.elapsed().as_secs_f64();
@@ -184,7 +170,7 @@ impl Deflation {
     }
 
     /// Masks W by the rows that hold now and rebuilds the matrices that depend on it. Collective.
-    pub fn renew(&mut self, session: &Session, dual: &Dual) -> Result<()> {
+    pub fn renew(&mut self, dual: &Dual) -> Result<()> {
         if self.columns.is_empty() {
             return Ok(());
         }
@@ -199,7 +185,7 @@ impl Deflation {
             reach: column.reach.clone(),
         };
         let columns: Vec<Column> = self.columns.iter().map(mask).collect();
-        self.matrices = Matrices::new(session, dual, &self.graph, &self.balance, &columns)?;
+        self.matrices = Matrices::new(dual, &self.graph, &self.balance, &columns)?;
         Ok(())
     }
 

@@ -21,7 +21,7 @@ struct Panel {
 pub struct Panels {
     panels: Vec<Panel>,
     /// Number of columns.
-    cols: usize,
+    pub cols: usize,
 }
 
 impl Panels {
@@ -37,11 +37,6 @@ impl Panels {
             panels,
             cols: columns.len(),
         }
-    }
-
-    /// Number of columns.
-    pub fn cols(&self) -> usize {
-        self.cols
     }
 
     /// out ← out + Aᵀ v, this rank's share.

@@ -18,13 +18,12 @@ use crate::feti::projector::graph::BodyGraph;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
 use crate::parallel::exchange::sum_all;
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
 
 /// The pencils of all bodies. A vector holds the rows of one body after those of another, colour after colour.
 pub struct Pencil<'a> {
-    session: &'a Session,
     dual: &'a Dual,
     /// The bodies.
     pub bodies: Vec<u32>,
@@ -51,12 +50,7 @@ struct Kernel {
 
 impl<'a> Pencil<'a> {
     /// Prepares rows and projections. Collective.
-    pub fn new(
-        session: &'a Session,
-        problem: &Substructures,
-        dual: &'a Dual,
-        graph: &BodyGraph,
-    ) -> Result<Pencil<'a>> {
+    pub fn new(problem: &Substructures, dual: &'a Dual, graph: &BodyGraph) -> Result<Pencil<'a>> {
         let all: Vec<u32> = (0..graph.n as u32).collect();
         let groups = graph.colours(&all);
         let bodies = groups.concat();
@@ -99,7 +93,6 @@ impl<'a> Pencil<'a> {
         };
         let (x, y) = (vectors()?, vectors()?);
         let mut pencil = Pencil {
-            session,
             dual,
             bodies,
             rows,
@@ -125,7 +118,7 @@ impl<'a> Pencil<'a> {
         for (part, body) in self.parts.iter().zip(&self.bodies) {
             let columns = of(body);
             for i in part.clone() {
-                for (c, value) in self.dual.natural.g().row(self.rows[i] as usize) {
+                for (c, value) in self.dual.natural.g.row(self.rows[i] as usize) {
                     if columns.contains(&c) {
                         g[c - columns.start][i] = value;
                     }
@@ -142,7 +135,7 @@ impl<'a> Pencil<'a> {
                 sums.extend(self.dots(gp, mq));
             }
         }
-        sum_all(self.session.comm(), &mut sums);
+        sum_all(self.dual.comm(), &mut sums);
         let factor = |s: usize| {
             let mut a = Dense::zeros(most, most);
             let mut k = s;
@@ -188,7 +181,7 @@ impl<'a> Pencil<'a> {
     fn remove(&self, v: &mut [f64], kernel: &Kernel, from: &[Vec<f64>], along: &[Vec<f64>]) {
         let n = self.bodies.len();
         let mut sums: Vec<f64> = from.iter().flat_map(|c| self.dots(c, v)).collect();
-        sum_all(self.session.comm(), &mut sums);
+        sum_all(self.dual.comm(), &mut sums);
         for s in 0..n {
             let mut c: Vec<f64> = (0..from.len()).map(|p| sums[p * n + s]).collect();
             kernel.factors[s].solve(&mut c);
@@ -244,6 +237,6 @@ impl Pencils for Pencil<'_> {
     }
 
     fn sum(&self, values: &mut [f64]) {
-        sum_all(self.session.comm(), values);
+        sum_all(self.dual.comm(), values);
     }
 }

@@ -15,12 +15,11 @@ use super::search::Pencils;
 use super::Deflation;
 use crate::feti::operators::dual::Dual;
 use crate::parallel::exchange::sum_all;
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
 /// The pencil of the whole problem.
 pub struct Whole<'a> {
-    session: &'a Session,
     dual: &'a Dual,
     deflation: &'a Deflation,
     part: Vec<Range<usize>>,
@@ -30,13 +29,8 @@ pub struct Whole<'a> {
 
 impl<'a> Whole<'a> {
     /// The pencil that `deflation` leaves.
-    pub fn new(
-        session: &'a Session,
-        dual: &'a Dual,
-        deflation: &'a Deflation,
-    ) -> Result<Whole<'a>> {
+    pub fn new(dual: &'a Dual, deflation: &'a Deflation) -> Result<Whole<'a>> {
         Ok(Whole {
-            session,
             dual,
             deflation,
             part: std::iter::once(0..dual.stiffness.jump.n_owned).collect(),
@@ -72,7 +66,7 @@ impl Pencils for Whole<'_> {
         self.dual.m(&self.x, &self.y)?;
         self.dual.p(&self.y)?;
         if let Some(p2) = self.deflation.matrices() {
-            p2.project(self.session, &self.y)?;
+            p2.project(&self.y)?;
         }
         self.y.to_vec()
     }
@@ -80,7 +74,7 @@ impl Pencils for Whole<'_> {
     fn jump_part(&self, v: &mut Vec<f64>) -> Result<()> {
         *v = self.with(v, |x| {
             if let Some(p2) = self.deflation.matrices() {
-                p2.project_transpose(self.session, x)?;
+                p2.project_transpose(x)?;
             }
             self.dual.p_transpose(x)
         })?;
@@ -88,6 +82,6 @@ impl Pencils for Whole<'_> {
     }
 
     fn sum(&self, values: &mut [f64]) {
-        sum_all(self.session.comm(), values);
+        sum_all(self.dual.comm(), values);
     }
 }

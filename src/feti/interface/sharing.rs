@@ -10,6 +10,7 @@ use mpi::traits::Communicator;
 use super::candidates::{candidates, DofMap};
 use super::entities::{self, Average};
 use crate::feti::settings::Primal;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange, exchange_words, gather_all, Record};
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
@@ -133,12 +134,12 @@ impl Sharing {
         {
             queries[home(dof)].push(dof);
         }
-        for list in &mut queries {
-            list.sort_unstable();
-            list.dedup();
+        let queries = queries.into_iter().map(|list| {
+            let mut list = distinct(list);
             list.retain(|dof| !sharing.copies.contains_key(dof));
-        }
-        let answers: Vec<Vec<(u64, Copy)>> = exchange_words(comm, queries)
+            list
+        });
+        let answers: Vec<Vec<(u64, Copy)>> = exchange_words(comm, queries.collect())
             .iter()
             .map(|asked| {
                 let find = |&dof: &u64| {

@@ -10,6 +10,7 @@ use super::operator::Jump;
 use super::scaling;
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::linalg::dense::Dense;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange, Record};
 use crate::substructures::Substructures;
 
@@ -183,9 +184,7 @@ pub(crate) fn collect(
     let mut start = first;
     for rows in order.chunk_by(|&a, &b| problem.rows[a].block == problem.rows[b].block) {
         let terms = rows.iter().flat_map(|&r| &problem.rows[r].terms);
-        let mut dofs: Vec<u64> = terms.map(|t| t.0).collect();
-        dofs.sort_unstable();
-        dofs.dedup();
+        let dofs = distinct(terms.map(|t| t.0));
         let mut b = Dense::zeros(rows.len(), dofs.len());
         for (i, &r) in rows.iter().enumerate() {
             for (dof, coefficient) in &problem.rows[r].terms {

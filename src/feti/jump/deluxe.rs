@@ -15,21 +15,12 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::operator::Jump;
+use crate::feti::adaptive::classes::{self, Class};
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::{self, Dense, Scratch};
 use crate::parallel::exchange::exchange_words;
 use crate::substructures::Substructures;
-
-/// Dofs of one subdomain that the same subdomains share, in the order of body dof.
-struct Group {
-    /// The subdomains, increasing.
-    sharers: Vec<u32>,
-    /// Positions in Γ.
-    at: Vec<usize>,
-    /// The lowest body dof, which is the name of the group.
-    name: u64,
-}
 
 /// Replaces the weights of B_loc in `jump`, whose entries are on interface positions. Collective.
 pub fn apply(
@@ -39,8 +30,11 @@ pub fn apply(
     jump: &mut Jump,
     locals: &[Scaled],
 ) {
-    let groups: Vec<Vec<Group>> = (0..locals.len())
-        .map(|j| groups(problem, sharing, jump, &locals[j], j))
+    let groups: Vec<Vec<Class>> = (0..locals.len())
+        .map(|j| {
+            let between = jump.columns[j].between_bodies(locals[j].n_gamma());
+            classes::of(&problem.local[j], sharing, &locals[j], |i| !between[i])
+        })
         .collect();
     // [to, from, group, m², entries] to every sharer
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
@@ -52,7 +46,7 @@ pub fn apply(
                 list.extend([
                     u64::from(to),
                     sub.index as u64,
-                    group.name,
+                    group.name(),
                     s.data.len() as u64,
                 ]);
                 list.extend(s.data.iter().map(|v| v.to_bits()));
@@ -74,7 +68,7 @@ pub fn apply(
     }
     for (j, sub) in problem.local.iter().enumerate() {
         for group in &groups[j] {
-            let schur = &received[&(sub.index as u64, group.name)];
+            let schur = &received[&(sub.index as u64, group.name())];
             // All sharers add the same numbers in the same order, so that their results are identical.
             if let Some(weights) = group.weights(schur.values()) {
                 let own = group.sharers.binary_search(&(sub.index as u32));
@@ -84,41 +78,7 @@ pub fn apply(
     }
 }
 
-/// The groups of local subdomain `j`.
-fn groups(
-    problem: &Substructures,
-    sharing: &Sharing,
-    jump: &Jump,
-    local: &Scaled,
-    j: usize,
-) -> Vec<Group> {
-    let dofs = &problem.local[j].dofs;
-    let columns = &jump.columns[j];
-    let mut plain = vec![false; local.n_gamma()];
-    for &(k, _) in &columns.contact {
-        plain[columns.at[k as usize] as usize] = true;
-    }
-    let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
-    for (i, &dof) in local.interface()[..local.n_delta()].iter().enumerate() {
-        let copies = sharing.shared(dofs[dof as usize]);
-        if copies.len() > 1 && !plain[i] {
-            let sharers = copies.iter().map(|c| c.subdomain).collect();
-            let of = found.entry(sharers).or_default();
-            of.push((dofs[dof as usize], i));
-        }
-    }
-    let group = |(sharers, mut members): (Vec<u32>, Vec<(u64, usize)>)| {
-        members.sort_unstable();
-        Group {
-            sharers,
-            name: members[0].0,
-            at: members.into_iter().map(|(_, i)| i).collect(),
-        }
-    };
-    found.into_iter().map(group).collect()
-}
-
-impl Group {
+impl Class {
     /// (Σ S)⁻¹ S_k for every sharer; `None` if nothing holds the group.
     fn weights<'a>(&self, schur: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Option<Vec<Dense>> {
         let m = self.at.len();

@@ -13,7 +13,8 @@ use super::blocks::{self, Block, Entry};
 use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::{Copy, Sharing};
-use crate::parallel::exchange::{exchange, offsets, sum_all};
+use crate::linalg::sorted::distinct;
+use crate::parallel::exchange::{exchange, offsets, total};
 use crate::substructures::{RowKind, Substructures};
 
 /// The entries of B and B_D in the columns of one subdomain.
@@ -55,6 +56,14 @@ impl JumpColumns {
             let k = k as usize;
             ghost[self.row[k] as usize] += full * y[self.at[k] as usize];
         }
+    }
+
+    /// The interface positions that may be in contact, of `n_gamma`: those with an entry of B_gl.
+    pub fn between_bodies(&self, n_gamma: usize) -> Vec<bool> {
+        let mut out = vec![false; n_gamma];
+        let at = self.contact.iter().map(|&(k, _)| self.at[k as usize]);
+        at.for_each(|at| out[at as usize] = true);
+        out
     }
 
     /// v ← B_Dᵀ λ on this subdomain's interface.
@@ -193,14 +202,12 @@ impl Jump {
         let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
         let zeros = std::iter::repeat_n(0.0, n_owned_local);
         let never = std::iter::repeat_n(false, n_owned_local);
-        let mut n_local = [n_owned_local as f64];
-        sum_all(comm, &mut n_local);
         let mut jump = Jump {
             first,
             n_owned,
             n_global,
             n_owned_local,
-            n_local: n_local[0] as usize,
+            n_local: total(comm, n_owned_local as f64) as usize,
             gap: zeros.chain(rows.iter().map(|r| r.gap)).collect(),
             inequality: never
                 .chain(rows.iter().map(|r| r.kind == RowKind::Inequality))
@@ -362,8 +369,7 @@ impl GhostRows {
                 None => others.push((row, e.contact)),
             }
         }
-        others.sort_unstable();
-        others.dedup();
+        let others = distinct(others);
         let before = others.partition_point(|o| o.0 < first) as u32;
         let mut n_own = 0;
         for seen in own.iter_mut().flatten() {

@@ -5,6 +5,7 @@
 //! follows from B P_D = B.
 
 use crate::linalg::dense::Dense;
+use crate::linalg::sorted::distinct;
 
 /// Rank tolerance of a block: singular values below this, relative to the largest, are zero. Entries of B are of order
 /// one, and nonzero singular values are far larger.
@@ -92,9 +93,7 @@ fn connected_parts(b: &faer::Mat<f64>, rank: usize) -> Option<Vec<usize>> {
                 .for_each(|p| *p = keep);
         }
     }
-    let mut names = part.clone();
-    names.sort_unstable();
-    names.dedup();
+    let names = distinct(part.clone());
     let differences = (0..b.nrows()).all(|r| {
         let sum = |p: &usize| {
             (0..n)

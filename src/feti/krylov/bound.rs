@@ -20,16 +20,16 @@ const WATCHED_FROM_IN_STEPS: usize = 20;
 impl LinearMethod {
     /// The condition for breaking an iteration off to deflate eigenvalues above τ; `None` if it runs to its end.
     pub(super) fn watch(&self) -> Option<Watch> {
-        let adaptive = self.settings().adaptive;
-        let limit = match &*self.system().deflation() {
-            None => deflation::watch(adaptive, self.varies()),
+        let adaptive = self.settings.adaptive;
+        let limit = match &*self.system.deflation() {
+            None => deflation::watch(adaptive, self.varies),
             Some(d) if d.cost.given_up || d.exhausted => None,
             Some(_) => match adaptive {
                 Adaptive::Below(tau) => Some(KEPT * tau),
                 _ => None,
             },
         };
-        let from = match self.facts().inequalities {
+        let from = match self.facts.inequalities {
             0 => WATCHED_FROM,
             _ => WATCHED_FROM_IN_STEPS,
         };
@@ -40,10 +40,10 @@ impl LinearMethod {
     /// the Krylov method is not CG, the only one whose Ritz values can be read.
     pub(super) fn is_blind(&self) -> Result<bool> {
         let expected = self.watch().is_some_and(|watch| {
-            let bounded = matches!(self.settings().adaptive, Adaptive::Below(_));
+            let bounded = matches!(self.settings.adaptive, Adaptive::Below(_));
             bounded || watch.limit <= deflation::EXPECTED
         });
-        Ok(expected && !self.is_deflated() && self.ksp().type_name()? != "cg")
+        Ok(expected && !self.is_deflated() && self.ksp.type_name()? != "cg")
     }
 
     /// Finds the eigenvectors above τ with all candidate rows and deflates them from now on, whatever the spectrum of
@@ -55,7 +55,7 @@ impl LinearMethod {
     /// Searches with the rows that hold, or with all candidate rows if there are inequalities. `seen` is the spectrum
     /// that the iterations have shown.
     pub(super) fn search(&self, seen: Option<Spectrum>) -> Result<()> {
-        match self.facts().inequalities {
+        match self.facts.inequalities {
             0 => self.deflate_held(seen),
             _ => self.deflate_candidates(seen),
         }
@@ -79,21 +79,20 @@ impl LinearMethod {
 
     /// A first search body by body. A second one for shared modes follows only if a bound is asked for.
     fn deflate_held(&self, before: Option<Spectrum>) -> Result<()> {
-        let tau = match self.settings().adaptive {
+        let tau = match self.settings.adaptive {
             Adaptive::Below(tau) => tau,
             _ => Adaptive::USUAL,
         };
-        let most = self.settings().adaptive_max;
+        let most = self.settings.adaptive_max;
         if self.is_deflated() {
             let more = self.deflate_shared(SHARED * tau)?;
-            if let Some(deflation) = self.system().change_deflation().as_mut() {
+            if let Some(deflation) = self.system.change_deflation().as_mut() {
                 deflation.exhausted = !more;
             }
         } else {
-            let (session, dual) = (self.session(), self.dual());
-            let mut deflation = Deflation::new(session, self.problem(), &dual, tau, most)?;
+            let mut deflation = Deflation::new(&self.problem, &self.dual(), tau, most)?;
             deflation.cost.before = before;
-            self.system().change_deflation().replace(deflation);
+            self.system.change_deflation().replace(deflation);
         }
         Ok(())
     }
@@ -101,10 +100,10 @@ impl LinearMethod {
     /// Deflates the eigenvalues above `bound` with the rows that hold. Returns `false` if none is found or deflation
     /// has been given up.
     fn deflate_shared(&self, bound: f64) -> Result<bool> {
-        let most = self.settings().adaptive_max;
-        match self.system().change_deflation().as_mut() {
+        let most = self.settings.adaptive_max;
+        match self.system.change_deflation().as_mut() {
             Some(deflation) if !deflation.cost.given_up => {
-                let found = deflation.polish(self.session(), &self.dual(), bound, most)?;
+                let found = deflation.polish(&self.dual(), bound, most)?;
                 Ok(found > 0)
             }
             _ => Ok(false),
@@ -115,29 +114,29 @@ impl LinearMethod {
     /// of the search is kept.
     pub(super) fn give_deflation_up(&self) -> bool {
         let useful = |d: &Deflation| d.matrices().is_some();
-        if !self.system().deflation().as_ref().is_some_and(useful) {
+        if !self.system.deflation().as_ref().is_some_and(useful) {
             return false;
         }
-        if let Some(deflation) = self.system().change_deflation().as_mut() {
+        if let Some(deflation) = self.system.change_deflation().as_mut() {
             deflation.give_up();
         }
         true
     }
 
     fn is_deflated(&self) -> bool {
-        self.system().deflation().is_some()
+        self.system.deflation().is_some()
     }
 
     /// Result and cost of the deflation; `None` if there was no search.
     pub fn deflated(&self) -> Option<Cost> {
-        let deflation = self.system().deflation();
+        let deflation = self.system.deflation();
         deflation.as_ref().map(|d| d.cost.clone())
     }
 
     /// Exact extreme eigenvalues of the preconditioned operator; `None` without multipliers. If a bound is asked for
     /// and nothing has been deflated yet, deflation comes first. Collective.
     pub fn spectrum(&self) -> Result<Option<Spectrum>> {
-        let bound = match self.settings().adaptive {
+        let bound = match self.settings.adaptive {
             Adaptive::Below(tau) => Some(tau),
             _ => None,
         };
@@ -158,14 +157,14 @@ impl LinearMethod {
 
     /// [`spectrum`](Self::spectrum) without deflation. Collective.
     pub fn plain_spectrum(&self) -> Result<Option<Spectrum>> {
-        let kept = self.system().change_deflation().take();
+        let kept = self.system.change_deflation().take();
         let spectrum = self.present_spectrum();
-        *self.system().change_deflation() = kept;
+        *self.system.change_deflation() = kept;
         spectrum
     }
 
     fn present_spectrum(&self) -> Result<Option<Spectrum>> {
         // SLEPc's options begin with `eps_` themselves.
-        eigenvalues::exact(self.session(), self.system(), &self.settings().prefix)
+        eigenvalues::exact(&self.system, &self.settings.prefix)
     }
 }

@@ -5,19 +5,17 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::Work;
 use crate::feti::subdomain::which::Operator;
 use crate::parallel::exchange::{max_all, sum_all};
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
 
 /// (name, relative defect) of each identity that applies to the problem. Collective.
 pub(crate) fn identities(
-    session: &Session,
     problem: &Substructures,
     system: &System,
 ) -> Result<Vec<(&'static str, f64)>> {
     let dual = &*system.dual();
     let check = Check {
-        session,
         problem,
         system,
         dual,
@@ -51,7 +49,7 @@ pub(crate) fn identities(
         ));
         out.push(("W^T F P_2 = 0", check.complement()?));
     }
-    if dual.preconditioner.lifting().is_some() {
+    if dual.preconditioner.lifting.is_some() {
         out.push(("B Z_c = 0", check.lifted()?));
         out.push(("A = Z_c^T S Z_c", check.removed()?));
     }
@@ -59,7 +57,6 @@ pub(crate) fn identities(
 }
 
 struct Check<'a> {
-    session: &'a Session,
     problem: &'a Substructures,
     system: &'a System,
     dual: &'a Dual,
@@ -79,8 +76,8 @@ impl Check<'_> {
         let mut work = stiffness.work();
         for (j, w) in work.iter_mut().enumerate() {
             let (sub, local) = (&self.problem.local[j], &stiffness.locals[j]);
-            for (i, &dof) in local.interface().iter().enumerate() {
-                let copy = if i < local.n_delta() {
+            for (i, &dof) in local.interface.iter().enumerate() {
+                let copy = if i < local.n_delta {
                     sub.index as u64 + 1
                 } else {
                     0
@@ -89,7 +86,7 @@ impl Check<'_> {
             }
             let averages = stiffness.jump.averages[j].iter();
             let values: Vec<f64> = averages.map(|a| noise(a.key)).collect();
-            local.basis().set_values(&values, &mut w.y);
+            local.basis.set_values(&values, &mut w.y);
         }
         work
     }
@@ -109,7 +106,7 @@ impl Check<'_> {
         for size in &mut sizes {
             dual.f(&y, &image)?;
             *size = match self.system.deflation().as_ref().and_then(|d| d.matrices()) {
-                Some(p2) => p2.part_of(self.session, &image)?,
+                Some(p2) => p2.part_of(&image)?,
                 None => 0.0,
             };
             self.system.p2(&y)?;
@@ -119,7 +116,7 @@ impl Check<'_> {
 
     fn relative(&self, defect: f64, size: f64) -> f64 {
         let mut both = [defect, size];
-        max_all(self.session.comm(), &mut both);
+        max_all(self.dual.comm(), &mut both);
         if both[1] > 0.0 {
             both[0] / both[1]
         } else {
@@ -230,7 +227,7 @@ impl Check<'_> {
             .collect();
         let lambda = self.dual.multipliers()?;
         lambda.set(0.0)?;
-        let comm = self.session.comm();
+        let comm = self.dual.comm();
         let f: Vec<&[f64]> = self.problem.local.iter().map(|s| &s.f[..]).collect();
         let load = natural.kernel_load(comm, &f, &g);
         natural.balance(comm, &load, &lambda)?;
@@ -261,7 +258,7 @@ impl Check<'_> {
                 }
             }
         }
-        sum_all(self.session.comm(), &mut sums);
+        sum_all(self.dual.comm(), &mut sums);
         let (work, size) = sums.split_at(natural.r);
         let largest = |s: &[f64]| s.iter().fold(0.0f64, |a, v| a.max(v.abs()));
         Ok(self.relative(largest(work), largest(size).max(scale)))
@@ -285,7 +282,7 @@ impl Check<'_> {
 
     /// B Z_c x for a random x.
     fn lifted(&self) -> Result<f64> {
-        let Some(lifting) = self.dual.preconditioner.lifting() else {
+        let Some(lifting) = &self.dual.preconditioner.lifting else {
             return Ok(0.0);
         };
         let stiffness = &self.dual.stiffness;
@@ -303,7 +300,7 @@ impl Check<'_> {
 
     /// Part of S Z_c x that M_C leaves for a random x. It vanishes if A is Z_cᵀ S̃ Z_c and A⁺ its inverse on its range.
     fn removed(&self) -> Result<f64> {
-        let Some(lifting) = self.dual.preconditioner.lifting() else {
+        let Some(lifting) = &self.dual.preconditioner.lifting else {
             return Ok(0.0);
         };
         let stiffness = &self.dual.stiffness;

@@ -6,7 +6,7 @@ use super::shells;
 use super::system::System;
 use crate::feti::operators::dual::Dual;
 use crate::feti::spectrum::Spectrum;
-use crate::petsc::{extreme_eigenvalues, Session};
+use crate::petsc::extreme_eigenvalues;
 use crate::Result;
 
 /// Residual tolerance of the eigensolver, relative to the eigenvalue. An eigenvalue of a self-adjoint operator lies
@@ -18,17 +18,18 @@ const TOLERANCE: f64 = 4e-7;
 ///
 /// C A with A = Pᵀ F P and C = P M⁻¹ Pᵀ is self-adjoint in the inner product of A. Redundant multipliers and the range
 /// of G are in the kernel of A; the projection E = Π P takes them out, so that they are never reported.
-pub fn exact(session: &Session, system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
+pub fn exact(system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
     if system.dual().stiffness.jump.n_global == 0 {
         return Ok(None);
     }
     let a = match system.deflation().is_some() {
-        true => shells::deflated_operator(session, system)?,
-        false => shells::operator(session, system)?,
+        true => shells::deflated_operator(system)?,
+        false => shells::operator(system)?,
     };
-    let c = shells::preconditioner(session, system)?;
-    let e = shells::range(session, system)?;
+    let c = shells::preconditioner(system)?;
+    let e = shells::range(system)?;
     let start = start_vector(&system.dual())?;
+    let session = &system.session;
     let (lambda_min, lambda_max) =
         extreme_eigenvalues(session, &a, &c, Some(&e), &start, TOLERANCE, prefix)?;
     Ok(Some(Spectrum {

@@ -121,7 +121,7 @@ pub fn iterate(
     lambda: &PetscVec,
     control: &IterationControl,
 ) -> Result<Run> {
-    let (system, ksp) = (method.system(), method.ksp());
+    let (system, ksp) = (&method.system, &method.ksp);
     // Project a second time. The first projection of a large jump leaves a part outside the range of Pᵀ by rounding.
     // The iteration cannot reduce that part: it would stall on it and diverge. The second projection starts from a
     // small residual and leaves a negligible part.

@@ -7,7 +7,6 @@
 use crate::cholesky::lanes::LANES;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::natural::KernelLoad;
-use crate::petsc::Session;
 use crate::substructures::Substructures;
 
 /// The data of the right-hand side of the dual problem.
@@ -25,14 +24,14 @@ pub struct Loads {
 
 impl Loads {
     /// Condenses the loads of the problem. Collective.
-    pub fn new(session: &Session, problem: &Substructures, dual: &Dual) -> Loads {
+    pub fn new(problem: &Substructures, dual: &Dual) -> Loads {
         let f: Vec<&[f64]> = problem.local.iter().map(|s| &s.f[..]).collect();
-        Loads::of(session, dual, &f, None)
+        Loads::of(dual, &f, None)
     }
 
     /// Condenses given loads, one vector for each local subdomain. If `jumps` is given, the rows are B u = `jumps`.
     /// Collective.
-    pub fn of(session: &Session, dual: &Dual, f: &[&[f64]], jumps: Option<Vec<f64>>) -> Loads {
+    pub fn of(dual: &Dual, f: &[&[f64]], jumps: Option<Vec<f64>>) -> Loads {
         let stiffness = &dual.stiffness;
         let batches = stiffness.batches(LANES);
         let condensed = stiffness.by_batch(&batches, |locals, members| {
@@ -40,7 +39,7 @@ impl Loads {
             locals[0].kind().condense_many(&loads)
         });
         let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
-        let kernel = dual.natural.kernel_load(session.comm(), f, &g);
+        let kernel = dual.natural.kernel_load(dual.comm(), f, &g);
         Loads {
             interiors,
             g,

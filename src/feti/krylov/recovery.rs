@@ -57,10 +57,10 @@ impl LinearMethod {
         solve_seconds: f64,
     ) -> Result<LinearSolution> {
         let clock = Instant::now();
-        let (session, dual) = (self.session(), self.dual());
+        let dual = self.dual();
         let u = displacements(&dual, &at.loads, &mut at.residual)?;
         let recover_seconds = clock.elapsed().as_secs_f64();
-        let certificate = Certificate::new(session, self.problem(), &dual, &u, &at.lambda)?;
+        let certificate = Certificate::new(&self.problem, &dual, &u, &at.lambda)?;
         Ok(LinearSolution {
             u,
             lambda: at.lambda.to_vec()?,
@@ -83,18 +83,18 @@ impl LinearMethod {
     /// # Errors
     /// PETSc's own.
     pub fn current(&self) -> Result<Option<Vec<Vec<f64>>>> {
-        let (session, system) = (self.session(), self.system());
+        let system = &self.system;
         let Some(start) = system.start() else {
             return Ok(None);
         };
         let dual = self.dual();
-        let loads = Loads::new(session, self.problem(), &dual);
+        let loads = Loads::new(&self.problem, &dual);
         let mut at = Iterate::new(&dual, loads)?;
-        self.ksp().current_solution(&at.lambda)?;
+        self.ksp.current_solution(&at.lambda)?;
         dual.p(&at.lambda)?;
         system.p2(&at.lambda)?;
         at.lambda.axpy(1.0, &start)?;
-        at.place(session, &dual)?;
+        at.place(&dual)?;
         displacements(&dual, &at.loads, &mut at.residual).map(Some)
     }
 }

@@ -16,7 +16,7 @@ use mpi::topology::SimpleCommunicator;
 
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::Semidefinite;
-use crate::parallel::exchange::sum_all;
+use crate::parallel::exchange::{any, sum_all};
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -70,9 +70,7 @@ impl Recycle {
         if !self.is_on() {
             return;
         }
-        let mut differs = [f64::from(u8::from(self.active != active))];
-        sum_all(comm, &mut differs);
-        if differs[0] > 0.0 {
+        if any(comm, self.active != active) {
             *self = Recycle::new(self.most);
             self.active = active.to_vec();
         }

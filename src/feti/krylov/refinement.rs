@@ -46,7 +46,7 @@ const STEPS: usize = 4;
 impl LinearMethod {
     /// Refines a solution towards the tolerance of the user, as far as it helps. Collective.
     pub(crate) fn refine(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
-        let rtol = self.ksp().tolerances()?.0;
+        let rtol = self.ksp.tolerances()?.0;
         for _ in 0..STEPS {
             let now = distance(&solution.kkt);
             let asked = rtol < TIGHT && now > WORTH * rtol;
@@ -72,25 +72,25 @@ impl LinearMethod {
 
     /// One step; `None` where it does not help. Collective.
     fn refined(&self, solution: &LinearSolution, reduction: f64) -> Result<Option<LinearSolution>> {
-        let (session, problem, dual) = (self.session(), self.problem(), &*self.dual());
+        let (problem, dual) = (&self.problem, &*self.dual());
         let lambda = dual.multipliers()?;
         lambda.array_mut()?.copy_from_slice(&solution.lambda);
         let (forces, jumps) = remainder(problem, dual, solution, &lambda)?;
         let forces: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
-        let loads = Loads::of(session, dual, &forces, Some(jumps));
+        let loads = Loads::of(dual, &forces, Some(jumps));
         let mut at = Iterate::new(dual, loads)?;
-        at.balance(session, dual)?;
-        let first = at.evaluate_projected(session, dual)?;
+        at.balance(dual)?;
+        let first = at.evaluate_projected(dual)?;
         let control = IterationControl::to(reduction * first, at.residual.size);
         let run = iterate(self, &at.residual.r, &at.lambda, &control)?;
-        at.place(session, dual)?;
+        at.place(dual)?;
         let du = displacements(dual, &at.loads, &mut at.residual)?;
         let mut u = solution.u.clone();
         for (u, du) in u.iter_mut().flatten().zip(du.iter().flatten()) {
             *u += du;
         }
         lambda.axpy(1.0, &at.lambda)?;
-        let certificate = Certificate::new(session, problem, dual, &u, &lambda)?;
+        let certificate = Certificate::new(problem, dual, &u, &lambda)?;
         let better = distance(&certificate.kkt) < 0.5 * distance(&solution.kkt);
         if !better {
             return Ok(None);
@@ -125,7 +125,7 @@ fn remainder(
     let mut work = stiffness.work();
     let mut forces = Vec::new();
     for (j, (sub, w)) in problem.local.iter().zip(&mut work).enumerate() {
-        let interface = stiffness.locals[j].interface();
+        let interface = &stiffness.locals[j].interface;
         stiffness.jump.columns[j].b_transpose(&ghost, &mut w.v);
         let mut f = sub.f.clone();
         for (&i, v) in interface.iter().zip(&w.v) {

@@ -7,8 +7,8 @@
 use super::loads::Loads;
 use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::Work;
-use crate::parallel::exchange::{max_all, sum_all};
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::parallel::exchange::{highest, total};
+use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
 /// A residual below this fraction of the displacements it was formed from is rounding; there is nothing left to iterate
@@ -36,13 +36,7 @@ impl Residual {
     }
 
     /// Computes y and r for `lambda`. Collective.
-    pub fn evaluate(
-        &mut self,
-        session: &Session,
-        dual: &Dual,
-        loads: &Loads,
-        lambda: &PetscVec,
-    ) -> Result<()> {
+    pub fn evaluate(&mut self, dual: &Dual, loads: &Loads, lambda: &PetscVec) -> Result<()> {
         let stiffness = &dual.stiffness;
         let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
         stiffness.dual_halo.fetch(lambda, &mut ghost)?;
@@ -63,9 +57,8 @@ impl Residual {
                 *r -= if *on { *c } else { 0.0 };
             }
         }
-        let mut norm = [self.work.iter().flat_map(|w| &w.y).map(|y| y * y).sum()];
-        sum_all(session.comm(), &mut norm);
-        self.size = norm[0].sqrt();
+        let square = self.work.iter().flat_map(|w| &w.y).map(|y| y * y).sum();
+        self.size = total(dual.comm(), square).sqrt();
         Ok(())
     }
 
@@ -76,10 +69,8 @@ impl Residual {
     }
 
     /// Largest |y| over all ranks. Collective.
-    pub fn length(&self, session: &Session) -> f64 {
-        let mut largest = [self.largest()];
-        max_all(session.comm(), &mut largest);
-        largest[0]
+    pub fn length(&self, dual: &Dual) -> f64 {
+        highest(dual.comm(), self.largest())
     }
 
     /// y ← y + R α for given α.
@@ -90,8 +81,8 @@ impl Residual {
     }
 
     /// y ← y + R α with the rigid motions α that close the jumps of the holding rows as far as possible. Collective.
-    pub fn add_rigid_motion(&mut self, session: &Session, dual: &Dual) -> Result<()> {
-        let alpha = dual.natural.alpha(session.comm(), &self.r)?;
+    pub fn add_rigid_motion(&mut self, dual: &Dual) -> Result<()> {
+        let alpha = dual.natural.alpha(dual.comm(), &self.r)?;
         self.shift(dual, &alpha); /*                          y ← y + R α       */
         Ok(())
     }
@@ -119,27 +110,26 @@ impl Iterate {
 
     /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.
     /// Collective.
-    pub fn balance(&self, session: &Session, dual: &Dual) -> Result<()> {
+    pub fn balance(&self, dual: &Dual) -> Result<()> {
         let load = &self.loads.kernel;
-        dual.natural.balance(session.comm(), load, &self.lambda)
+        dual.natural.balance(dual.comm(), load, &self.lambda)
     }
 
     /// Computes y and r of λ. Collective.
-    pub fn evaluate(&mut self, session: &Session, dual: &Dual) -> Result<()> {
-        self.residual
-            .evaluate(session, dual, &self.loads, &self.lambda)
+    pub fn evaluate(&mut self, dual: &Dual) -> Result<()> {
+        self.residual.evaluate(dual, &self.loads, &self.lambda)
     }
 
     /// Computes y of λ and Pᵀ r; returns the norm of Pᵀ r. Collective.
-    pub fn evaluate_projected(&mut self, session: &Session, dual: &Dual) -> Result<f64> {
-        self.evaluate(session, dual)?;
+    pub fn evaluate_projected(&mut self, dual: &Dual) -> Result<f64> {
+        self.evaluate(dual)?;
         dual.p_transpose(&self.residual.r)?;
         self.residual.r.norm2()
     }
 
     /// Computes y of λ with the rigid motions that close the jumps, and r without these motions. Collective.
-    pub fn place(&mut self, session: &Session, dual: &Dual) -> Result<()> {
-        self.evaluate(session, dual)?;
-        self.residual.add_rigid_motion(session, dual)
+    pub fn place(&mut self, dual: &Dual) -> Result<()> {
+        self.evaluate(dual)?;
+        self.residual.add_rigid_motion(dual)
     }
 }

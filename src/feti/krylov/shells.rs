@@ -3,106 +3,83 @@
 use std::rc::Rc;
 
 use super::system::System;
-use crate::petsc::{Mat, Session, ShellMat, ShellPc, Vec as PetscVec};
+use crate::petsc::{Mat, ShellMat, ShellPc, Vec as PetscVec};
 use crate::Result;
 
-/// Pᵀ F P.
-struct Operator(Rc<System>);
+/// A product: (system, x, y) with y ← A x.
+type Product = fn(&System, &PetscVec, &PetscVec) -> Result<()>;
 
-/// P_2ᵀ Pᵀ F P P_2.
-struct Deflated(Rc<System>);
+/// An operator of the system.
+struct Shell {
+    system: Rc<System>,
+    apply: Product,
+    /// The product with the transpose; `None` for a symmetric operator.
+    transpose: Option<Product>,
+}
 
-/// P M⁻¹ Pᵀ, with deflation if it is in use.
-struct Preconditioner(Rc<System>);
-
-/// E.
-struct Range(Rc<System>);
-
-impl ShellMat for Operator {
+impl ShellMat for Shell {
     fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.apply(x, y)
+        (self.apply)(&self.system, x, y)
     }
     fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.apply(x, y)
+        self.transpose.unwrap_or(self.apply)(&self.system, x, y)
     }
     fn symmetric(&self) -> bool {
-        true
+        self.transpose.is_none()
     }
     fn view(&self) -> String {
-        self.0.dual().describe()
+        self.system.dual().describe()
     }
 }
 
-impl ShellMat for Deflated {
-    fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.apply_deflated(x, y)
-    }
-    fn symmetric(&self) -> bool {
-        true
-    }
-}
-
-impl ShellMat for Preconditioner {
-    fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.precondition(x, y)
-    }
-    fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.precondition(x, y)
-    }
-    fn symmetric(&self) -> bool {
-        true
-    }
-}
-
-impl ShellPc for Preconditioner {
+impl ShellPc for Shell {
     fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.precondition(x, y)
-    }
-    fn apply_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.precondition(x, y)
+        self.mult(x, y)
     }
     fn view(&self) -> String {
-        self.0.dual().describe()
+        ShellMat::view(self)
     }
 }
 
-impl ShellMat for Range {
-    fn mult(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.to_range(x, y)
-    }
-    fn mult_transpose(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
-        self.0.to_range_transpose(x, y)
-    }
+fn shell(system: &Rc<System>, apply: Product, transpose: Option<Product>) -> Box<Shell> {
+    let system = system.clone();
+    Box::new(Shell {
+        system,
+        apply,
+        transpose,
+    })
 }
 
-fn shell(session: &Session, system: &Rc<System>, context: Box<dyn ShellMat>) -> Result<Mat> {
-    let n = system.dual().stiffness.jump.n_owned;
-    Mat::shell(session, n, n, context)
+fn matrix(shell: Box<Shell>) -> Result<Mat> {
+    let n = shell.system.dual().stiffness.jump.n_owned;
+    let session = shell.system.session.clone();
+    Mat::shell(&session, n, n, shell)
 }
 
 /// Pᵀ F P as a matrix. Collective.
-pub fn operator(session: &Session, system: &Rc<System>) -> Result<Mat> {
-    shell(session, system, Box::new(Operator(system.clone())))
+pub fn operator(system: &Rc<System>) -> Result<Mat> {
+    matrix(shell(system, System::apply, None))
 }
 
 /// P_2ᵀ Pᵀ F P P_2 as a matrix: the operator of CG with deflation. Collective.
-pub fn deflated_operator(session: &Session, system: &Rc<System>) -> Result<Mat> {
-    shell(session, system, Box::new(Deflated(system.clone())))
+pub fn deflated_operator(system: &Rc<System>) -> Result<Mat> {
+    matrix(shell(system, System::apply_deflated, None))
 }
 
 /// P M⁻¹ Pᵀ as a matrix, with deflation if it is in use. Collective.
-pub fn preconditioner(session: &Session, system: &Rc<System>) -> Result<Mat> {
-    shell(session, system, Box::new(Preconditioner(system.clone())))
+pub fn preconditioner(system: &Rc<System>) -> Result<Mat> {
+    matrix(shell(system, System::precondition, None))
 }
 
 /// E = Π P as a matrix, with Π the orthogonal projection onto range B. From F (I − Π) = 0 and P (I − Π) = I − Π it
 /// follows that E is a projection with Pᵀ F P E = Pᵀ F P, and Pᵀ F P is definite on its range V ∩ range B. With
 /// deflation the matrix is E P_2 E. Its range is the F-orthogonal complement of W in that space. Collective.
-pub fn range(session: &Session, system: &Rc<System>) -> Result<Mat> {
-    shell(session, system, Box::new(Range(system.clone())))
+pub fn range(system: &Rc<System>) -> Result<Mat> {
+    let transpose = Some(System::to_range_transpose as Product);
+    matrix(shell(system, System::to_range, transpose))
 }
 
 /// P M⁻¹ Pᵀ as the operator of a PCShell.
 pub fn preconditioner_shell(system: &Rc<System>) -> Box<dyn ShellPc> {
-    Box::new(Preconditioner(system.clone()))
+    shell(system, System::precondition, None)
 }

@@ -41,9 +41,8 @@ impl LinearMethod {
     /// A load that moves a body which nothing holds; PETSc's own errors, and those of `enough`.
     pub fn solve(&self, enough: Option<&Judge>) -> Result<LinearSolution> {
         let clock = Instant::now();
-        let session = self.session();
         let mut at = self.start()?; /*                                  λ₀ = Q G (Gᵀ Q G)⁻¹ e            */
-        let r = at.evaluate_projected(session, &self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
+        let r = at.evaluate_projected(&self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
         let target = Target::new(self, r)?;
         let control = IterationControl::to(target.at_first(), at.residual.size).observed();
         let run = self.reach(&mut at, control)?; /*                     Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x */
@@ -64,7 +63,6 @@ impl LinearMethod {
     /// eigenvalues and starts anew where rounding has ended a run. On return the residual belongs to an earlier λ.
     /// Collective.
     pub(crate) fn reach(&self, at: &mut Iterate, control: IterationControl) -> Result<Run> {
-        let session = self.session();
         if self.is_blind()? {
             self.search(None)?;
         }
@@ -93,12 +91,12 @@ impl LinearMethod {
                 // Rounding has made P_2 useless (elements a thousand times as long as high): the plain iteration begins
                 // at λ₀.
                 at.lambda.set(0.0)?;
-                at.balance(session, &self.dual())?;
+                at.balance(&self.dual())?;
             } else {
                 return Ok(all);
             }
             so_far = Some(all);
-            at.evaluate_projected(session, &self.dual())?;
+            at.evaluate_projected(&self.dual())?;
         }
     }
 
@@ -113,7 +111,6 @@ impl LinearMethod {
         target: &Target,
         enough: Option<&Judge>,
     ) -> Result<Run> {
-        let session = self.session();
         let IterationControl {
             mut tolerance,
             mut size,
@@ -121,11 +118,11 @@ impl LinearMethod {
         } = control;
         let (mut asked, mut idle, mut stalled) = (0, false, false);
         loop {
-            at.place(session, &self.dual())?; /*              y ← S̃⁺(g − Bᵀ λ) + R α                     */
+            at.place(&self.dual())?; /*              y ← S̃⁺(g − Bᵀ λ) + R α                     */
             // The interface may not move at all in the solution. Rounding then has the size of S̃⁺ applied to the loads
             // at the start.
             size = size.max(at.residual.size);
-            let wanted = target.of_displacements(at.residual.length(session), size);
+            let wanted = target.of_displacements(at.residual.length(&self.dual()), size);
             if stalled || !run.status.converged() {
                 break;
             }
@@ -137,7 +134,7 @@ impl LinearMethod {
                 let Some(factor) = enough(&u)? else { break };
                 asked += 1;
                 // The last iteration may have ended far below its tolerance.
-                tolerance = factor * tolerance.min(at.evaluate_projected(session, &self.dual())?);
+                tolerance = factor * tolerance.min(at.evaluate_projected(&self.dual())?);
             } else {
                 tolerance = wanted;
             }
@@ -162,7 +159,7 @@ impl LinearMethod {
     /// The certificate has the last word. Displacements far from equilibrium, or rows far from holding, are not a
     /// solution, whatever the status of the iteration.
     pub(crate) fn certify(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
-        let rtol = self.ksp().tolerances()?.0;
+        let rtol = self.ksp.tolerances()?.0;
         if solution.status.converged() && !solution.kkt.is_credible(rtol) {
             solution.status = Status::Certificate;
         }
@@ -171,12 +168,12 @@ impl LinearMethod {
 
     /// λ₀ = Q G (Gᵀ Q G)⁻¹ e for the loads of the problem. Collective.
     fn start(&self) -> Result<Iterate> {
-        let (session, dual) = (self.session(), self.dual());
-        let loads = Loads::new(session, self.problem(), &dual);
+        let dual = self.dual();
+        let loads = Loads::new(&self.problem, &dual);
         dual.natural
-            .check_held(self.problem(), &dual.stiffness, &loads.kernel)?;
+            .check_held(&self.problem, &dual.stiffness, &loads.kernel)?;
         let at = Iterate::new(&dual, loads)?;
-        at.balance(session, &dual)?;
+        at.balance(&dual)?;
         Ok(at)
     }
 }

@@ -16,7 +16,7 @@ use crate::Result;
 
 /// F, M⁻¹, P, P_2, and the directions of earlier iterations.
 pub struct System {
-    session: Session,
+    pub(super) session: Session,
     dual: RefCell<Dual>,
     /// P_2, where it is in use.
     deflation: RefCell<Option<Deflation>>,
@@ -72,7 +72,7 @@ impl System {
     pub(crate) fn set_active(&self, problem: &Substructures, active: &[bool]) -> Result<usize> {
         let (changed, renewed) = self.dual.borrow_mut().set_active(problem, active)?;
         if let Some(deflation) = self.deflation.borrow_mut().as_mut().filter(|_| renewed) {
-            deflation.renew(&self.session, &self.dual())?;
+            deflation.renew(&self.dual())?;
         }
         Ok(changed)
     }
@@ -131,7 +131,7 @@ impl System {
     /// x ← P_2 x for x in V. Collective.
     pub fn p2(&self, x: &PetscVec) -> Result<()> {
         match self.p2_matrices() {
-            Some(p2) => p2.project(&self.session, x),
+            Some(p2) => p2.project(x),
             None => Ok(()),
         }
     }
@@ -139,7 +139,7 @@ impl System {
     /// x ← P_2ᵀ x. Collective.
     pub fn p2_transpose(&self, x: &PetscVec) -> Result<()> {
         match self.p2_matrices() {
-            Some(p2) => p2.project_transpose(&self.session, x),
+            Some(p2) => p2.project_transpose(x),
             None => Ok(()),
         }
     }
@@ -150,8 +150,8 @@ impl System {
             // A residual in range F W would stay there, because the preconditioner does not see it. The second pass
             // removes the rounding of the first.
             for _ in 0..2 {
-                p2.solve(&self.session, residual, lambda)?;
-                p2.project_transpose(&self.session, residual)?;
+                p2.solve(residual, lambda)?;
+                p2.project_transpose(residual)?;
                 let natural = &self.dual().natural;
                 natural.project_transpose(self.session.comm(), residual)?;
             }

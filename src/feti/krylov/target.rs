@@ -42,7 +42,7 @@ pub struct Target {
 impl Target {
     /// A tolerance relative to `reference`, with the tolerances of the KSP.
     pub fn new(method: &LinearMethod, reference: f64) -> Result<Target> {
-        let (rtol, atol, _, _) = method.ksp().tolerances()?;
+        let (rtol, atol, _, _) = method.ksp.tolerances()?;
         Ok(Target {
             rtol,
             atol,

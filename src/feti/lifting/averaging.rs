@@ -12,12 +12,12 @@ use std::collections::{BTreeSet, HashMap};
 
 use mpi::traits::Communicator;
 
-use super::coarse_functions::candidates;
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::feti::operators::stiffness::Stiffness;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, offsets};
 use crate::parallel::halo::Halo;
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -56,21 +56,21 @@ pub(crate) enum Transposition {
 impl Averaging {
     /// Numbers the shared dofs. Collective.
     pub fn new(
-        session: &Session,
         problem: &Substructures,
         sharing: &Sharing,
         stiffness: &Stiffness,
     ) -> Result<Averaging> {
-        let (comm, jump) = (session.comm(), &stiffness.jump);
+        let (session, jump) = (&stiffness.session, &stiffness.jump);
+        let comm = session.comm();
         let me = comm.rank() as u32;
         let mut found: Vec<Vec<(u64, u32, f64)>> = Vec::new();
         let mut vertices = Vec::new();
         let mut far: BTreeSet<u64> = BTreeSet::new();
         let rank_of = |c: &Copy| sharing.rank_of[c.subdomain as usize];
         for (j, (sub, local)) in problem.local.iter().zip(&stiffness.locals).enumerate() {
-            let candidate = candidates(jump, local, j);
+            let candidate = jump.columns[j].between_bodies(local.n_gamma());
             let mut here = Vec::new();
-            for (i, &at) in local.interface()[..local.n_delta()].iter().enumerate() {
+            for (i, &at) in local.interface[..local.n_delta].iter().enumerate() {
                 let dof = sub.dofs[at as usize];
                 let copies = sharing.shared(dof);
                 let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
@@ -84,7 +84,7 @@ impl Averaging {
                 }
             }
             found.push(here);
-            let held = local.n_delta()..local.n_delta() + jump.n_shared[j];
+            let held = local.n_delta..local.n_delta + jump.n_shared[j];
             vertices.push(held.filter(|&i| !candidate[i]).map(|i| i as u32).collect());
         }
         // The rank of the lowest copy numbers a dof that several ranks share.
@@ -93,9 +93,7 @@ impl Averaging {
         let mut asked: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
         far.iter().for_each(|dof| asked[owner(dof)].push(*dof));
         let received = exchange_words(comm, asked);
-        let mut own: Vec<u64> = received.concat();
-        own.sort_unstable();
-        own.dedup();
+        let own = distinct(received.concat());
         let (first, _) = offsets(comm, own.len());
         let number = |dof: &u64| (first + own.binary_search(dof).expect("it was asked for")) as u64;
         let replies = received.iter().map(|l| l.iter().map(number).collect());

@@ -39,7 +39,7 @@ impl Groups {
         // Rows are sorted by the groups that have them, with one bit for each group. The last bit stands for all groups
         // beyond.
         let has = |rows: &[u64], i: usize| rows[i / 64] >> (i % 64) & 1 == 1;
-        let mut owners: Vec<(u128, u32)> = (0..recipe.rows() as u32).map(|i| (0, i)).collect();
+        let mut owners: Vec<(u128, u32)> = (0..recipe.rows as u32).map(|i| (0, i)).collect();
         for (set, g) in by_rows.keys().zip(0u32..) {
             for owner in owners.iter_mut().filter(|o| has(set, o.1 as usize)) {
                 owner.0 |= 1 << g.min(127);

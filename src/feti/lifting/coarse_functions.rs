@@ -11,18 +11,16 @@ use mpi::traits::Communicator;
 
 use super::interpolation::Functions;
 use crate::feti::interface::sharing::Sharing;
-use crate::feti::jump::operator::Jump;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::dense::Dense;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::exchange_words;
-use crate::petsc::Session;
 use crate::substructures::Substructures;
 
 /// The recipe of Z_c on one subdomain.
 pub(crate) struct Recipe {
     /// Order of Γ.
-    rows: usize,
+    pub rows: usize,
     /// Global numbers of the columns, increasing.
     pub columns: Vec<u32>,
     contributions: Vec<Contribution>,
@@ -51,13 +49,12 @@ enum Source {
 
 /// The recipes of every local subdomain; exchanges rows of Ψ between ranks.
 pub(crate) fn recipes(
-    session: &Session,
     problem: &Substructures,
     sharing: &Sharing,
     stiffness: &Stiffness,
     functions: &[Functions],
 ) -> Vec<Recipe> {
-    let (comm, team) = (session.comm(), &stiffness.team);
+    let (comm, team) = (stiffness.comm(), &stiffness.team);
     let (space, locals, jump) = (&stiffness.space, &stiffness.locals, &stiffness.jump);
     let me = comm.rank() as u32;
     let global = |j: usize, p: usize| space.ghosts[space.of_subdomain[j][p] as usize];
@@ -67,18 +64,18 @@ pub(crate) fn recipes(
     };
     let places: Vec<Vec<u32>> = team.map(locals.len(), |j| {
         let mut place = vec![u32::MAX; problem.local[j].k.n()];
-        let interface = locals[j].interface().iter().zip(0..);
+        let interface = locals[j].interface.iter().zip(0..);
         interface.for_each(|(&i, p)| place[i as usize] = p);
         place
     });
     let candidate: Vec<Vec<bool>> = (0..locals.len())
-        .map(|j| candidates(jump, &locals[j], j))
+        .map(|j| jump.columns[j].between_bodies(locals[j].n_gamma()))
         .collect();
     // (target, (local dof of the target, row, factor)) by subdomain.
     let given = team.map(locals.len(), |j| {
         let (sub, local) = (&problem.local[j], &locals[j]);
         let mut lists: BTreeMap<u32, Vec<(u32, u32, f64)>> = BTreeMap::new();
-        for (i, &dof) in local.interface()[..local.n_delta()].iter().enumerate() {
+        for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
             let copies = sharing.shared(sub.dofs[dof as usize]);
             let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
             let Some(own) = own.filter(|_| !candidate[j][i]) else {
@@ -147,7 +144,7 @@ pub(crate) fn recipes(
     let recipe = |(j, mut contributions): (usize, Vec<Contribution>)| {
         // Sorted, so that the order of additions does not depend on the ranks.
         contributions.sort_unstable_by_key(|c| c.from);
-        let n_delta = locals[j].n_delta();
+        let n_delta = locals[j].n_delta;
         let held = (0..jump.n_shared[j]).filter(|p| !candidate[j][n_delta + p]);
         let held: Vec<(u32, u32)> = held.map(|p| ((n_delta + p) as u32, global(j, p))).collect();
         Recipe::new(locals[j].n_gamma(), contributions, held)
@@ -155,25 +152,10 @@ pub(crate) fn recipes(
     received.into_iter().enumerate().map(recipe).collect()
 }
 
-/// The interface positions of local subdomain `j` that may be in contact: those with an entry of B_gl.
-pub(crate) fn candidates(jump: &Jump, local: &Scaled, j: usize) -> Vec<bool> {
-    let columns = &jump.columns[j];
-    let mut out = vec![false; local.n_gamma()];
-    for (&row, &at) in columns.row.iter().zip(&columns.at) {
-        out[at as usize] |= jump.ghost_is_contact[row as usize];
-    }
-    out
-}
-
 impl Recipe {
     fn new(rows: usize, mut contributions: Vec<Contribution>, held: Vec<(u32, u32)>) -> Recipe {
-        let mut columns: Vec<u32> = contributions
-            .iter()
-            .flat_map(|c| c.columns.iter().copied())
-            .chain(held.iter().map(|h| h.1))
-            .collect();
-        columns.sort_unstable();
-        columns.dedup();
+        let theirs = contributions.iter().flat_map(|c| &c.columns).copied();
+        let columns = distinct(theirs.chain(held.iter().map(|h| h.1)));
         let place = |g: &mut u32| {
             let at = columns.binary_search(g);
             *g = at.expect("every column was collected") as u32;
@@ -188,11 +170,6 @@ impl Recipe {
             contributions,
             vertices,
         }
-    }
-
-    /// Order of Γ.
-    pub fn rows(&self) -> usize {
-        self.rows
     }
 
     /// For each column, the rows in which it may be nonzero, one bit for each row.

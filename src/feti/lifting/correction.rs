@@ -30,8 +30,8 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::operators::work::{Columns, Work};
 use crate::feti::settings::CoarseFunctions;
 use crate::parallel::clock::{self, Phase};
-use crate::parallel::exchange::{exchange_words, sum_all};
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::parallel::exchange::{any, exchange_words, sum_all};
+use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -63,18 +63,17 @@ const AVERAGES: f64 = 30.0;
 impl Lifting {
     /// Builds Z_c; `None` if no body has a column. Collective.
     pub fn new(
-        session: &Session,
         problem: &Substructures,
         sharing: &Sharing,
         stiffness: &Stiffness,
         which: CoarseFunctions,
     ) -> Result<Option<Lifting>> {
-        let comm = session.comm();
+        let (session, comm) = (&stiffness.session, stiffness.comm());
         let (space, locals, jump) = (&stiffness.space, &stiffness.locals, &stiffness.jump);
         let functions = stiffness.team.map(locals.len(), |j| {
             Functions::new(which, &problem.local[j], sharing, jump, &locals[j], j)
         });
-        let recipes = recipes(session, problem, sharing, stiffness, &functions);
+        let recipes = recipes(problem, sharing, stiffness, &functions);
         // Cost of an application: Y twice, for one vector; or S once more, in a product that equal subdomains share,
         // and E_D.
         let mut entries = [0.0; 2];
@@ -103,9 +102,7 @@ impl Lifting {
         });
         let sizes = bodies.iter().map(BodyFactor::rank_and_order);
         let (rank, order) = sizes.fold((0, 0), |(r, o), (rank, order)| (r + rank, o + order));
-        let mut total = [order as f64];
-        sum_all(comm, &mut total);
-        if total[0] == 0.0 {
+        if !any(comm, order > 0) {
             return Ok(None);
         }
         let vector = PetscVec::mpi(session, space.n_owned)?;
@@ -113,7 +110,7 @@ impl Lifting {
             let columns: Vec<&[u32]> = recipes.iter().map(|r| &r.columns[..]).collect();
             Kept::Stored(Box::new(Stored::new(session, &vector, kept, &columns)?))
         } else {
-            let averaging = Averaging::new(session, problem, sharing, stiffness)?;
+            let averaging = Averaging::new(problem, sharing, stiffness)?;
             let applied = Applied::new(session, &vector, space, functions, averaging)?;
             Kept::Applied(Box::new(applied))
         };

@@ -9,6 +9,7 @@ use crate::cholesky::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::{Semidefinite, DEPENDENT, ZERO};
+use crate::linalg::sorted::distinct;
 
 /// Number of columns below which a dense factor is used: it stays in the cache.
 const MANY: usize = 200;
@@ -37,8 +38,7 @@ impl BodyFactor {
     pub fn new(received: &[Vec<u64>], body: Range<u32>, first: usize) -> BodyFactor {
         let mut columns = Vec::new();
         each(received, &body, |c, _| columns.extend_from_slice(c));
-        columns.sort_unstable();
-        columns.dedup();
+        let columns = distinct(columns);
         let place = |g: &u64| columns.binary_search(g).expect("it was collected") as u32;
         let (mut lists, mut blocks) = (Vec::new(), Vec::new());
         each(received, &body, |theirs, values| {

@@ -12,6 +12,7 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::{multiply, Dense};
+use crate::linalg::sorted::distinct;
 use crate::substructures::Substructures;
 
 /// Number of subdomains of a body whose blocks are added up before the sum is sent to the rank that factors A.
@@ -64,9 +65,7 @@ impl Sums {
         });
         let mut sums: Vec<Sum> = each.into_iter().flatten().collect();
         let first = representatives(locals, functions, recipes);
-        let mut kinds: Vec<usize> = first.clone();
-        kinds.sort_unstable();
-        kinds.dedup();
+        let kinds = distinct(first.clone());
         let products =
             |&j: &usize| recipes[j].columns.len() as f64 * (locals[j].n_gamma() as f64).powi(2);
         let total = kinds.iter().map(products).sum();
@@ -122,7 +121,7 @@ fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe
         let mut key = recipe.signature(|i| names[i]);
         key.extend([
             Arc::as_ptr(locals[j].kind()) as u64,
-            locals[j].factor().to_bits(),
+            locals[j].factor.to_bits(),
         ]);
         *known.entry(key).or_insert(j)
     };
@@ -163,9 +162,7 @@ impl Sum {
         };
         let words = |n: usize| n * (n + 1) / 2;
         let each = members.iter().map(|&j| &recipes[j].columns);
-        let mut columns: Vec<u32> = each.clone().flatten().copied().collect();
-        columns.sort_unstable();
-        columns.dedup();
+        let columns = distinct(each.clone().flatten().copied());
         if words(columns.len()) < each.map(|c| words(c.len())).sum() {
             return vec![empty(members, columns)];
         }

@@ -3,11 +3,13 @@
 //! They are immutable except for Z^k. The rows that hold change between the steps of the contact loop, and with them G
 //! and some blocks of B_D. Nothing that depends on K changes.
 
+use mpi::topology::SimpleCommunicator;
+
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::projector::natural::NaturalCoarse;
-use crate::parallel::exchange::sum_all;
-use crate::petsc::{Event, Session, Vec as PetscVec};
+use crate::parallel::exchange::total;
+use crate::petsc::{Event, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
 
@@ -19,7 +21,6 @@ pub struct Dual {
     pub preconditioner: Preconditioner,
     /// G and P.
     pub natural: NaturalCoarse,
-    session: Session,
     /// Whether G belongs to an earlier set of rows.
     stale: bool,
     events: [Event; 3],
@@ -29,20 +30,18 @@ pub struct Dual {
 impl Dual {
     /// Builds the operators. Collective.
     pub fn new(
-        session: &Session,
         stiffness: Stiffness,
         preconditioner: Preconditioner,
         natural: NaturalCoarse,
     ) -> Result<Dual> {
-        let like = PetscVec::mpi(session, stiffness.jump.n_owned)?;
-        let event = |name| Event::register(session, name);
+        let like = PetscVec::mpi(&stiffness.session, stiffness.jump.n_owned)?;
+        let event = |name| Event::register(&stiffness.session, name);
         Ok(Dual {
             events: [
                 event("FetiFetiF")?,
                 event("FetiFetiM")?,
                 event("FetiFetiP")?,
             ],
-            session: session.clone(),
             stale: false,
             like,
             stiffness,
@@ -58,24 +57,29 @@ impl Dual {
         problem: &Substructures,
         active: &[bool],
     ) -> Result<(usize, bool)> {
-        let comm = self.session.comm();
-        let mut changed = [self.stiffness.jump.set_active(comm, active) as f64];
-        sum_all(comm, &mut changed);
-        let renewed = changed[0] > 0.0 || self.stale;
+        let session = self.stiffness.session.clone();
+        let changed = self.stiffness.jump.set_active(session.comm(), active);
+        let changed = total(session.comm(), changed as f64);
+        let renewed = changed > 0.0 || self.stale;
         if renewed {
             let (stiffness, preconditioner) = (&self.stiffness, &self.preconditioner);
-            self.natural
-                .renew(&self.session, problem, stiffness, preconditioner)?;
+            self.natural.renew(problem, stiffness, preconditioner)?;
             self.stale = false;
         }
-        Ok((changed[0] as usize, renewed))
+        Ok((changed as usize, renewed))
     }
 
     /// Changes Z^k in B and B_D alone and leaves G as it is. This is enough for M⁻¹ in a face of a bound-constrained
     /// problem. Collective.
     pub(crate) fn set_face(&mut self, free: &[bool]) {
-        self.stiffness.jump.set_active(self.session.comm(), free);
+        let Stiffness { session, jump, .. } = &mut self.stiffness;
+        jump.set_active(session.comm(), free);
         self.stale = true;
+    }
+
+    /// The ranks.
+    pub fn comm(&self) -> &SimpleCommunicator {
+        self.stiffness.comm()
     }
 
     /// A zero vector of multipliers.
@@ -104,19 +108,19 @@ impl Dual {
     /// x ← P x.
     pub fn p(&self, x: &PetscVec) -> Result<()> {
         let _timed = self.events[2].scope()?;
-        self.natural.project(self.session.comm(), x)
+        self.natural.project(self.comm(), x)
     }
 
     /// x ← Pᵀ x.
     pub fn p_transpose(&self, x: &PetscVec) -> Result<()> {
         let _timed = self.events[2].scope()?;
-        self.natural.project_transpose(self.session.comm(), x)
+        self.natural.project_transpose(self.comm(), x)
     }
 
     /// Description of the operators for `-fetifeti_ksp_view`.
     pub fn describe(&self) -> String {
         let (jump, natural) = (&self.stiffness.jump, &self.natural);
-        let lifted = match self.preconditioner.lifting() {
+        let lifted = match &self.preconditioner.lifting {
             Some(l) => {
                 let (rank, order) = l.rank_and_order;
                 format!(", {rank} independent of {order} coarse functions on this rank")
@@ -130,7 +134,7 @@ impl Dual {
             jump.n_global - jump.n_local,
             natural.projector.name(),
             natural.r,
-            self.preconditioner.kind().name(),
+            self.preconditioner.kind.name(),
         )
     }
 }

@@ -23,15 +23,17 @@ use crate::feti::subdomain::which::Operator;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::single::Single;
-use crate::parallel::exchange::{max_all, min_all};
+use crate::parallel::exchange::{highest, lowest};
 use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
 
 /// The preconditioner of the dual problem.
 pub struct Preconditioner {
-    kind: PcType,
-    lifting: Option<Lifting>,
+    /// Its kind.
+    pub kind: PcType,
+    /// Z_c, where it is used.
+    pub lifting: Option<Lifting>,
     /// K_ΓΓ of each local subdomain in the order of Γ, for the lumped preconditioner.
     k_gamma: Vec<Csr>,
     /// S of each local subdomain in single precision; `None` unless that is asked for and S is a dense matrix. Equal
@@ -57,7 +59,7 @@ impl Preconditioner {
                 .local
                 .iter()
                 .zip(&stiffness.locals)
-                .map(|(sub, local)| sub.k.block(local.interface(), local.interface()))
+                .map(|(sub, local)| sub.k.block(&local.interface, &local.interface))
                 .collect(),
             _ => Vec::new(),
         };
@@ -79,16 +81,6 @@ impl Preconditioner {
     /// Number of local subdomains with S in single precision.
     pub fn in_single(&self) -> usize {
         self.single.iter().flatten().count()
-    }
-
-    /// Its kind.
-    pub fn kind(&self) -> PcType {
-        self.kind
-    }
-
-    /// Z_c, where it is used.
-    pub fn lifting(&self) -> Option<&Lifting> {
-        self.lifting.as_ref()
     }
 
     /// out ← M⁻¹ λ. Collective.
@@ -142,7 +134,7 @@ impl Preconditioner {
         team.for_each(work, |j, w| {
             let v = &w.v;
             products.take(j, &locals[j], &mut w.y, |y| match rounded(j) {
-                Some(s) => s.mul(locals[j].factor(), v, y),
+                Some(s) => s.mul(locals[j].factor, v, y),
                 None => locals[j].apply_one(Operator::S, v, y),
             });
         });
@@ -206,10 +198,7 @@ const ALIKE: f64 = 1e3;
 fn in_single(comm: &SimpleCommunicator, stiffness: &Stiffness) -> Vec<Option<Arc<Single>>> {
     let each = stiffness.locals.iter().map(Scaled::stiffness);
     let (low, high) = each.fold((f64::INFINITY, 0.0f64), |(l, h), s| (l.min(s), h.max(s)));
-    let (mut low, mut high) = ([low], [high]);
-    min_all(comm, &mut low);
-    max_all(comm, &mut high);
-    if high[0] > ALIKE * low[0] {
+    if highest(comm, high) > ALIKE * lowest(comm, low) {
         return vec![None; stiffness.locals.len()];
     }
     let mut known: HashMap<*const LocalProblem, Arc<Single>> = HashMap::new();

@@ -8,6 +8,8 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use mpi::topology::SimpleCommunicator;
+
 use super::products::Products;
 use super::work::Work;
 use crate::feti::jump::operator::Jump;
@@ -20,11 +22,13 @@ use crate::feti::subdomain::which::Operator;
 use crate::linalg::dense::Dense;
 use crate::parallel::halo::Halo;
 use crate::parallel::team::Team;
-use crate::petsc::Vec as PetscVec;
+use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
 
 /// S̃⁺, which depends on the matrices alone, and the jump operator.
 pub struct Stiffness {
+    /// The session.
+    pub session: Session,
     /// B and B_D.
     pub jump: Jump,
     /// The factored subdomains of this rank.
@@ -53,6 +57,7 @@ struct Buffers {
 impl Stiffness {
     /// Builds the operator from its parts.
     pub fn new(
+        session: &Session,
         jump: Jump,
         locals: Vec<Scaled>,
         space: PrimalSpace,
@@ -66,6 +71,7 @@ impl Stiffness {
         };
         let products = Products::new(&locals, |most| batches(&locals, most));
         Stiffness {
+            session: session.clone(),
             products,
             jump,
             locals,
@@ -76,6 +82,11 @@ impl Stiffness {
             refinement: None,
             buffers: RefCell::new(buffers),
         }
+    }
+
+    /// The ranks.
+    pub fn comm(&self) -> &SimpleCommunicator {
+        self.session.comm()
     }
 
     /// Makes `refinement` correct S_Π⁺ from now on.
@@ -206,7 +217,7 @@ impl Stiffness {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&self.jump.columns, &self.locals);
         let room = |local: &Scaled| {
-            let zeros = || Dense::zeros(local.n_delta(), lambdas.len());
+            let zeros = || Dense::zeros(local.n_delta, lambdas.len());
             (zeros(), zeros())
         };
         let mut blocks: Vec<(Dense, Dense)> = locals.iter().map(room).collect();
@@ -266,7 +277,7 @@ impl Stiffness {
         for (j, w) in work.iter_mut().enumerate() {
             let columns = &self.jump.columns[j];
             columns.bd_transpose_of(ghost, &mut w.y, |r| !contact[r]);
-            self.locals[j].basis().remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
+            self.locals[j].basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
             columns.add_b(&w.y, &mut inside); /*          inside ← B y     */
             columns.bd_transpose_of(ghost, &mut w.y, |r| contact[r]);
             columns.add_b(&w.y, &mut between); /*         between ← B B_D,glᵀ λ */

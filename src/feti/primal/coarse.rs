@@ -8,6 +8,7 @@ use super::space::PrimalSpace;
 use crate::cholesky::multifrontal::PartialCholesky;
 use crate::cholesky::symbolic::Symbolic;
 use crate::parallel::clock::{self, Phase};
+use crate::parallel::exchange::any;
 use crate::parallel::halo::Halo;
 use crate::parallel::team::Team;
 use crate::petsc::{Comm, Ksp, Mat, MatFlag, Options, Session, Vec as PetscVec};
@@ -143,9 +144,8 @@ fn own(
     });
     let factors: Option<Vec<_>> = factors.into_iter().collect();
     // All ranks make the same choice.
-    let mut failed = [f64::from(u8::from(factors.is_none()))];
-    crate::parallel::exchange::sum_all(session.comm(), &mut failed);
-    factors.filter(|_| failed[0] == 0.0)
+    let failed = any(session.comm(), factors.is_none());
+    factors.filter(|_| !failed)
 }
 
 /// The KSP with the prefix `fetifeti_coarse_`.

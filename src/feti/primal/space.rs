@@ -15,6 +15,7 @@ use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, offsets, sum_all};
 use crate::parallel::halo::numbered;
 use crate::substructures::Substructures;
@@ -102,11 +103,11 @@ impl PrimalSpace {
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
             // A vertex is identified by its body dof, an average by its entity, another functional by a body dof. A
             // fixing dof belongs to its subdomain alone.
-            let vertices = local.interface()[local.n_delta()..].iter();
+            let vertices = local.interface[local.n_delta..].iter();
             let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
             let averages = averages[j].iter();
             let averages = averages.map(|a| (if a.weights.is_some() { 3 } else { 1 }, a.key));
-            let fixing = local.fixing().iter();
+            let fixing = local.fixing.iter();
             let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
             for (kind, key) in vertices.chain(averages).chain(fixing) {
                 let body = (sub.body as u64) << 2 | kind;
@@ -118,9 +119,7 @@ impl PrimalSpace {
         let pairs = |words: &[u64]| -> Vec<(u64, u64)> {
             words.chunks_exact(2).map(|w| (w[0], w[1])).collect()
         };
-        let mut all: Vec<(u64, u64)> = received.iter().flat_map(|w| pairs(w)).collect();
-        all.sort_unstable();
-        all.dedup();
+        let all = distinct(received.iter().flat_map(|w| pairs(w)));
         self.n_owned = all.len();
         (self.first, self.n_global) = offsets(comm, all.len());
         let first = self.first;
@@ -192,7 +191,7 @@ impl PrimalSpace {
                 continue;
             }
             let on_gamma = |c: &Vec<f64>| {
-                let values = local.interface().iter().map(|&i| c[i as usize]);
+                let values = local.interface.iter().map(|&i| c[i as usize]);
                 local.primal_values(&values.collect::<Vec<f64>>())
             };
             let primal: Vec<Vec<f64>> = columns.iter().map(on_gamma).collect();
@@ -247,7 +246,7 @@ impl PrimalSpace {
             .iter()
             .zip(locals)
             .filter(|(sub, _)| sub.body == body)
-            .map(|(sub, local)| of(&sub.k, local.interface()))
+            .map(|(sub, local)| of(&sub.k, &local.interface))
             .fold(0.0, f64::max)
     }
 

@@ -1,8 +1,7 @@
 //! The bodies that meet in each row, and groups of bodies that do not interact.
 
-use mpi::topology::SimpleCommunicator;
-
 use crate::feti::operators::stiffness::Stiffness;
+use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;
 
@@ -19,10 +18,8 @@ impl Lists {
             start: vec![0],
             item: Vec::new(),
         };
-        for mut list in lists {
-            list.sort_unstable();
-            list.dedup();
-            out.item.extend(list);
+        for list in lists {
+            out.item.extend(distinct(list));
             out.start.push(out.item.len());
         }
         out
@@ -48,11 +45,7 @@ pub struct BodyGraph {
 
 impl BodyGraph {
     /// Reads the rows. Collective.
-    pub fn new(
-        comm: &SimpleCommunicator,
-        problem: &Substructures,
-        stiffness: &Stiffness,
-    ) -> BodyGraph {
+    pub fn new(problem: &Substructures, stiffness: &Stiffness) -> BodyGraph {
         let jump = &stiffness.jump;
         let n = problem.n_bodies;
         let mut local = vec![0u32; jump.n_owned_local];
@@ -77,31 +70,22 @@ impl BodyGraph {
                 );
             }
         }
-        pairs.sort_unstable();
-        pairs.dedup();
         let mut near: Vec<Vec<u32>> = (0..n as u32).map(|b| vec![b]).collect();
-        for pair in gather_all(comm, &pairs).concat() {
+        for pair in gather_all(stiffness.comm(), &distinct(pairs)).concat() {
             near[(pair >> 32) as usize].push(pair as u32);
-        }
-        for list in &mut near {
-            list.sort_unstable();
-            list.dedup();
         }
         BodyGraph {
             n,
             terms: Lists::new(terms.into_iter()),
             touched: Lists::new(touched.into_iter()),
-            near,
+            near: near.into_iter().map(distinct).collect(),
         }
     }
 
     /// All bodies near one of `bodies`.
     pub fn around(&self, bodies: &[u32]) -> Vec<u32> {
         let lists = bodies.iter().flat_map(|&b| &self.near[b as usize]);
-        let mut out: Vec<u32> = lists.copied().collect();
-        out.sort_unstable();
-        out.dedup();
-        out
+        distinct(lists.copied())
     }
 
     /// Groups of `bodies` such that no body is near two bodies of one group. M⁻¹ applied to a jump at one body of a

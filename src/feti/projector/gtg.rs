@@ -40,22 +40,14 @@ pub struct Gtg {
 impl Gtg {
     /// Assembles and factors the r × r matrix Gᵀ (Q G). Collective.
     pub fn new(session: &Session, r: usize, g: &Rows, qg: &Rows, prefix: &str) -> Result<Gtg> {
-        let mut a = product(session, r, g, qg);
-        let diagonal = |i: usize| match a.get(i, i) {
-            d if d > 0.0 => 1.0 / d.sqrt(),
-            _ => 1.0,
-        };
-        let scale: Vec<f64> = (0..r).map(diagonal).collect();
-        for j in 0..r {
-            for i in 0..r {
-                a.set(i, j, a.get(i, j) * scale[i] * scale[j]);
-            }
-        }
+        let mut a = g.product(session.comm(), qg, r, |_| true);
+        let scale = a.scale_to_unit_diagonal();
         // G alone decides which bodies are held. With Q = M⁻¹ two stiff bodies that soft ones hold would look unheld.
-        let (dropped, unheld) = dependent(session, r, g);
+        let gtg = g.product(session.comm(), g, r, |_| true);
+        let factor = Semidefinite::new(&gtg);
         // One dependent column of each unheld motion is held. This makes the matrix regular and does not change the
         // solution for right-hand sides in its range.
-        for i in dropped {
+        for i in factor.dropped() {
             a.set(i, i, a.get(i, i) + 1.0);
         }
         let triplets: Vec<(i32, i32, f64)> = (0..r)
@@ -78,7 +70,7 @@ impl Gtg {
             scale,
             rhs: PetscVec::seq(session, r)?,
             solution: PetscVec::seq(session, r)?,
-            unheld,
+            unheld: null_vectors(&gtg, &factor),
             matrix,
             scratch: RefCell::new(vec![0.0; r]),
         })
@@ -135,27 +127,6 @@ impl Gtg {
         along.add(-1.0, &c, &mut x.array_mut()?);
         Ok(())
     }
-}
-
-/// The r × r matrix Gᵀ H of matrices whose rows are distributed alike. Collective.
-fn product(session: &Session, r: usize, g: &Rows, h: &Rows) -> Dense {
-    let mut a = Dense::zeros(r, r);
-    for i in 0..g.n() {
-        for (p, gp) in g.row(i) {
-            for (q, hq) in h.row(i) {
-                a.data[p + q * r] += gp * hq;
-            }
-        }
-    }
-    sum_all(session.comm(), &mut a.data);
-    a
-}
-
-/// Columns of G that depend on the others, and the combinations of columns that vanish. Collective.
-fn dependent(session: &Session, r: usize, g: &Rows) -> (Vec<usize>, Vec<Vec<f64>>) {
-    let a = product(session, r, g, g);
-    let factor = Semidefinite::new(&a);
-    (factor.dropped(), null_vectors(&a, &factor))
 }
 
 /// Vectors v with A v = 0, one per dropped column.

@@ -20,7 +20,7 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::{PcType, ProjectorKind};
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{exchange, gather_all, max_all, sum_all};
-use crate::petsc::{Ksp, Session, Vec as PetscVec};
+use crate::petsc::{Ksp, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
@@ -42,7 +42,8 @@ pub struct NaturalCoarse {
     pub kernels: Vec<Dense>,
     /// First column of R of each local subdomain's body.
     first_column: Vec<usize>,
-    g: Rows,
+    /// G on the owned rows.
+    pub g: Rows,
     /// Q G where it differs from G.
     qg: Option<Rows>,
     gtg: Option<Gtg>,
@@ -62,14 +63,13 @@ impl NaturalCoarse {
     /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body.
     /// Collective.
     pub fn new(
-        session: &Session,
         problem: &Substructures,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
         (wanted, varies): (ProjectorKind, f64),
         prefix: &str,
     ) -> Result<NaturalCoarse> {
-        let comm = session.comm();
+        let comm = stiffness.comm();
         let space = &stiffness.space;
         let r = *space
             .kernel_start
@@ -96,13 +96,13 @@ impl NaturalCoarse {
         };
         if r > 0 {
             natural.projector = choose(comm, problem, stiffness, preconditioner, wanted, varies);
-            natural.renew(session, problem, stiffness, preconditioner)?;
+            natural.renew(problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
             if auto && natural.projector == ProjectorKind::Preconditioner {
                 let defect = natural.gtg.as_ref().map_or(Ok(0.0), Gtg::defect)?;
                 if defect.is_nan() || defect > SOUND {
                     natural.projector = ProjectorKind::Diagonal;
-                    natural.renew(session, problem, stiffness, preconditioner)?;
+                    natural.renew(problem, stiffness, preconditioner)?;
                 }
             }
         }
@@ -112,7 +112,6 @@ impl NaturalCoarse {
     /// Assembles G, Q G and Gᵀ Q G for the rows that hold now. Collective.
     pub fn renew(
         &mut self,
-        session: &Session,
         problem: &Substructures,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
@@ -120,26 +119,27 @@ impl NaturalCoarse {
         if self.r == 0 {
             return Ok(());
         }
-        self.g = self.assemble_g(session.comm(), stiffness);
+        self.g = self.assemble_g(stiffness);
         self.qg = match self.projector {
             ProjectorKind::Diagonal => {
                 let mut qg = self.g.clone();
-                qg.scale_rows(&self.superlumped(session, problem, stiffness)?);
+                qg.scale_rows(&self.superlumped(problem, stiffness)?);
                 Some(qg)
             }
             ProjectorKind::Preconditioner => {
-                let rigid = self.rigid_rows(session, problem, stiffness)?;
-                Some(self.probe(session, problem, stiffness, preconditioner, &rigid)?)
+                let rigid = self.rigid_rows(problem, stiffness)?;
+                Some(self.probe(problem, stiffness, preconditioner, &rigid)?)
             }
             _ => None,
         };
+        let session = &stiffness.session;
         self.gtg = Some(Gtg::new(session, self.r, &self.g, self.qg(), &self.prefix)?);
         Ok(())
     }
 
     /// G = Z B R for the rows that hold.
-    fn assemble_g(&self, comm: &SimpleCommunicator, stiffness: &Stiffness) -> Rows {
-        let mut g = self.all_rows(comm, stiffness);
+    fn assemble_g(&self, stiffness: &Stiffness) -> Rows {
+        let mut g = self.all_rows(stiffness);
         let held = stiffness
             .jump
             .active
@@ -151,8 +151,8 @@ impl NaturalCoarse {
 
     /// B R with all rows of B_gl, including those that do not hold. Rows of B_loc are left out, because kernels are
     /// continuous inside a body. Collective.
-    pub fn all_rows(&self, comm: &SimpleCommunicator, stiffness: &Stiffness) -> Rows {
-        let jump = &stiffness.jump;
+    pub fn all_rows(&self, stiffness: &Stiffness) -> Rows {
+        let (comm, jump) = (stiffness.comm(), &stiffness.jump);
         let starts: Vec<u32> = gather_all(comm, &[jump.first as u64])
             .iter()
             .map(|w| w[0] as u32)
@@ -202,22 +202,17 @@ impl NaturalCoarse {
     }
 
     /// diag(B_D diag(K) B_Dᵀ) on the owned rows. Collective.
-    pub fn superlumped(
-        &self,
-        session: &Session,
-        problem: &Substructures,
-        stiffness: &Stiffness,
-    ) -> Result<Vec<f64>> {
+    pub fn superlumped(&self, problem: &Substructures, stiffness: &Stiffness) -> Result<Vec<f64>> {
         let jump = &stiffness.jump;
         let mut ghost = vec![0.0; jump.ghosts.len()];
         for (j, columns) in jump.columns.iter().enumerate() {
             let k = &problem.local[j].k;
             for ((&row, &at), bd) in columns.row.iter().zip(&columns.at).zip(&columns.bd) {
-                let dof = stiffness.locals[j].interface()[at as usize] as usize;
+                let dof = stiffness.locals[j].interface[at as usize] as usize;
                 ghost[row as usize] += bd * bd * k.get(dof, dof);
             }
         }
-        let q = PetscVec::mpi(session, jump.n_owned)?;
+        let q = PetscVec::mpi(&stiffness.session, jump.n_owned)?;
         stiffness.dual_halo.sum(&ghost, &q)?;
         q.to_vec()
     }
@@ -225,13 +220,8 @@ impl NaturalCoarse {
     /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, zero on the others. A
     /// row of a single term has something rigid on its other side, which M⁻¹ does not contain. For a floating body that
     /// touches nothing else, M⁻¹ G vanishes.
-    fn rigid_rows(
-        &self,
-        session: &Session,
-        problem: &Substructures,
-        stiffness: &Stiffness,
-    ) -> Result<Vec<f64>> {
-        let mut out = self.superlumped(session, problem, stiffness)?;
+    fn rigid_rows(&self, problem: &Substructures, stiffness: &Stiffness) -> Result<Vec<f64>> {
+        let mut out = self.superlumped(problem, stiffness)?;
         let jump = &stiffness.jump;
         out[..jump.n_owned_local].fill(0.0);
         for (q, &r) in out[jump.n_owned_local..].iter_mut().zip(&jump.order) {
@@ -245,17 +235,16 @@ impl NaturalCoarse {
     /// Q G with Q = M⁻¹ + diag(`rigid`). Columns of bodies that are far from each other share a product with M⁻¹.
     fn probe(
         &self,
-        session: &Session,
         problem: &Substructures,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
         rigid: &[f64],
     ) -> Result<Rows> {
         let n = stiffness.jump.n_owned;
-        let graph = BodyGraph::new(session.comm(), problem, stiffness);
+        let graph = BodyGraph::new(problem, stiffness);
         let start = &stiffness.space.kernel_start;
         let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
-        let like = PetscVec::mpi(session, n)?;
+        let like = PetscVec::mpi(&stiffness.session, n)?;
         let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
         let images = sweep::images(&like, &graph, &columns, apply)?;
         let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
@@ -268,11 +257,6 @@ impl NaturalCoarse {
         let mut entries = of(&images, &|_| 1.0);
         entries.extend(of(&columns, &|row| rigid[row as usize]));
         Ok(Rows::from_triplets(n, entries))
-    }
-
-    /// G on the owned rows.
-    pub fn g(&self) -> &Rows {
-        &self.g
     }
 
     /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank.
@@ -430,7 +414,7 @@ fn choose(
     varies: f64,
 ) -> ProjectorKind {
     if wanted != ProjectorKind::Auto {
-        return match (wanted, preconditioner.kind()) {
+        return match (wanted, preconditioner.kind) {
             // Without a preconditioner Q = M⁻¹ is the identity.
             (ProjectorKind::Preconditioner, PcType::None) => ProjectorKind::Identity,
             _ => wanted,
@@ -441,7 +425,7 @@ fn choose(
     let n = problem.n_bodies;
     let mut sums = vec![0.0; 2 * n];
     for (sub, local) in problem.local.iter().zip(&stiffness.locals) {
-        for &i in local.interface() {
+        for &i in &local.interface {
             sums[sub.body] += sub.k.get(i as usize, i as usize);
             sums[n + sub.body] += 1.0;
         }
@@ -455,7 +439,7 @@ fn choose(
     });
     // Corners and mesh sizes alone cause a factor of two.
     let differ = high > 3.0 * low || varies > JUMPS;
-    match (differ, preconditioner.kind()) {
+    match (differ, preconditioner.kind) {
         (false, _) => ProjectorKind::Identity,
         (true, PcType::None) => ProjectorKind::Diagonal,
         (true, _) => ProjectorKind::Preconditioner,

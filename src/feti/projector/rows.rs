@@ -1,6 +1,9 @@
 //! Sparse rows with few columns, such as those of G: one row for every multiplier that this rank owns.
 
-use crate::parallel::exchange::Record;
+use mpi::topology::SimpleCommunicator;
+
+use crate::linalg::dense::Dense;
+use crate::parallel::exchange::{sum_all, Record};
 
 /// An entry on its way to the rank that owns its row.
 #[derive(Debug, Clone, Copy)]
@@ -69,6 +72,26 @@ impl Rows {
     /// Number of rows.
     pub fn n(&self) -> usize {
         self.start.len() - 1
+    }
+
+    /// Aᵀ B for matrices of r columns whose rows are distributed alike, over the rows that `chosen` selects. Collective.
+    pub fn product(
+        &self,
+        comm: &SimpleCommunicator,
+        b: &Rows,
+        r: usize,
+        chosen: impl Fn(usize) -> bool,
+    ) -> Dense {
+        let mut product = Dense::zeros(r, r);
+        for i in (0..self.n()).filter(|&i| chosen(i)) {
+            for (p, ap) in self.row(i) {
+                for (q, bq) in b.row(i) {
+                    product.data[p + q * r] += ap * bq;
+                }
+            }
+        }
+        sum_all(comm, &mut product.data);
+        product
     }
 
     /// out ← out + Aᵀ λ, this rank's share.

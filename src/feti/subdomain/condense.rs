@@ -34,7 +34,7 @@ impl LocalProblem {
                 // Hold the dofs that keep S_ΔΔ from being definite.
                 let fixing = weakest(s, &stiff, n);
                 let moved = moved_to_the_end(n_gamma, n, &fixing);
-                self.fixing = fixing.iter().map(|&i| order[i]).collect();
+                self.gamma.fixing = fixing.iter().map(|&i| order[i]).collect();
                 order = moved.iter().map(|&i| order[i]).collect();
                 let stiff: Vec<f64> = moved.iter().map(|&i| stiff[i]).collect();
                 held = permuted(s, &moved);
@@ -65,7 +65,7 @@ impl LocalProblem {
             s_delta_pi.transpose(),
             psi.view(),
         );
-        symmetrise(&mut sigma);
+        sigma.symmetrise();
         if n == n_delta {
             self.set_condensed(t, psi, sigma);
         } else {
@@ -174,14 +174,4 @@ fn permuted(s: &Dense, order: &[usize]) -> Dense {
         }
     }
     out
-}
-
-fn symmetrise(a: &mut Dense) {
-    for j in 0..a.cols {
-        for i in 0..j {
-            let mean = 0.5 * (a.get(i, j) + a.get(j, i));
-            a.set(i, j, mean);
-            a.set(j, i, mean);
-        }
-    }
 }

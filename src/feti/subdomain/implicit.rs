@@ -159,13 +159,7 @@ impl Implicit {
                 sigma.set(n_v + i, j, basis.factor(i) * c);
             }
         }
-        for j in 0..n_pi {
-            for i in 0..j {
-                let mean = 0.5 * (sigma.get(i, j) + sigma.get(j, i));
-                sigma.set(i, j, mean);
-                sigma.set(j, i, mean);
-            }
-        }
+        sigma.symmetrise();
         Coarse { psi, sigma }
     }
 

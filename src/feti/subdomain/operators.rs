@@ -57,11 +57,6 @@ impl LocalProblem {
         (self.s, self.t) = (OnceLock::new(), OnceLock::new());
     }
 
-    /// Whether [`pack`](Self::pack) has been called.
-    pub fn is_packed(&self) -> bool {
-        self.packed.is_some()
-    }
-
     /// An entry of one of the operators.
     pub fn entry(&self, which: Operator, i: usize, j: usize) -> f64 {
         match (&self.packed, which) {
@@ -81,7 +76,7 @@ impl LocalProblem {
     }
 
     pub(crate) fn set_condensed(&mut self, t: Dense, psi: Dense, sigma: Dense) {
-        (self.t, self.psi, self.sigma) = (OnceLock::from(t), psi, sigma);
+        (self.t, self.gamma.psi, self.sigma) = (OnceLock::from(t), psi, sigma);
     }
 
     /// The diagonal of K on Γ.

@@ -20,6 +20,7 @@
 #[path = "../../../tests/inside/feti/subdomain/problem.rs"]
 mod tests;
 
+use std::ops::Deref;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -45,9 +46,9 @@ pub fn factorisations() -> usize {
     FACTORISATIONS.load(Ordering::Relaxed)
 }
 
-/// One subdomain, factored.
-#[derive(Debug)]
-pub struct LocalProblem {
+/// Γ of one subdomain, and Ψ on it.
+#[derive(Debug, Clone, Default)]
+pub struct Gamma {
     /// Local dofs of the interface in the order [Δ, vertices]; length n_Γ.
     pub interface: Vec<u32>,
     /// Number of dual interface dofs. Those of averages and the fixing dofs are among them.
@@ -58,6 +59,12 @@ pub struct LocalProblem {
     pub fixing: Vec<usize>,
     /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
     pub psi: Dense,
+}
+
+/// One subdomain, factored. What all multiples of its matrix have in common is read from its [`Gamma`].
+#[derive(Debug)]
+pub struct LocalProblem {
+    pub(crate) gamma: Gamma,
     /// Σ, n_Π × n_Π.
     pub(crate) sigma: Dense,
     /// S on Γ, n_Γ × n_Γ, both triangles. With sparse solves it is filled at the first request.
@@ -87,6 +94,57 @@ pub(crate) enum Inside {
     Implicit(Box<Implicit>),
 }
 
+impl Gamma {
+    /// Number of interface dofs n_Γ.
+    pub fn n_gamma(&self) -> usize {
+        self.interface.len()
+    }
+
+    /// Number of vertices: the first primal dofs, each a single dof of Γ.
+    pub fn n_vertices(&self) -> usize {
+        self.interface.len() - self.n_delta
+    }
+
+    /// Number of primal dofs n_Π: vertices, functionals, fixing dofs.
+    pub fn n_pi(&self) -> usize {
+        self.n_vertices() + self.basis.len() + self.fixing.len()
+    }
+
+    /// The primal dofs of a function on Γ.
+    pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
+        let mut changed = u.to_vec();
+        if !self.fixing.is_empty() {
+            self.basis.to_coordinates(&mut changed);
+        }
+        let vertices = u[self.n_delta..].iter().copied();
+        let fixing = self.fixing.iter().map(|&i| changed[i]);
+        vertices.chain(self.basis.values(u)).chain(fixing).collect()
+    }
+
+    /// p ← Ψᵀ v, v on Γ.
+    pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
+        let (vertices, others) = p.split_at_mut(self.n_vertices());
+        vertices.copy_from_slice(&v[self.n_delta..]);
+        others.fill(0.0);
+        self.psi.add_mul_transpose(&v[..self.n_delta], p);
+    }
+
+    /// y ← y + Ψ c.
+    pub fn add_psi(&self, c: &[f64], y: &mut [f64]) {
+        self.psi.add_mul(c, &mut y[..self.n_delta]);
+        for (yi, ci) in y[self.n_delta..].iter_mut().zip(c) {
+            *yi += ci;
+        }
+    }
+}
+
+impl Deref for LocalProblem {
+    type Target = Gamma;
+    fn deref(&self) -> &Gamma {
+        &self.gamma
+    }
+}
+
 impl LocalProblem {
     /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists the dual dofs of
     /// each primal average. An analysis inside `condenser` must belong to the interface [delta, primal].
@@ -114,11 +172,13 @@ impl LocalProblem {
             if let Ok(Some((implicit, coarse))) = made {
                 return Ok(LocalProblem {
                     stiff: diagonal(k, &interface),
-                    interface,
-                    n_delta: delta.len(),
-                    basis,
-                    fixing: Vec::new(),
-                    psi: coarse.psi,
+                    gamma: Gamma {
+                        interface,
+                        n_delta: delta.len(),
+                        basis,
+                        fixing: Vec::new(),
+                        psi: coarse.psi,
+                    },
                     sigma: coarse.sigma,
                     s: OnceLock::new(),
                     t: OnceLock::new(),
@@ -143,11 +203,12 @@ impl LocalProblem {
         };
         let mut out = LocalProblem {
             stiff: diagonal(k, &interface),
-            interface,
-            n_delta: delta.len(),
-            basis,
-            fixing: Vec::new(),
-            psi: Dense::default(),
+            gamma: Gamma {
+                interface,
+                n_delta: delta.len(),
+                basis,
+                ..Gamma::default()
+            },
             sigma: Dense::default(),
             s: OnceLock::from(Arc::new(s)),
             t: OnceLock::new(),
@@ -176,11 +237,12 @@ impl LocalProblem {
             }
         };
         let mut out = LocalProblem {
-            interface: self.interface.clone(),
-            n_delta: self.n_delta,
-            basis: self.basis.clone(),
-            fixing: Vec::new(),
-            psi: Dense::default(),
+            gamma: Gamma {
+                interface: self.interface.clone(),
+                n_delta: self.n_delta,
+                basis: self.basis.clone(),
+                ..Gamma::default()
+            },
             sigma: Dense::default(),
             s: OnceLock::from(s),
             t: OnceLock::new(),
@@ -190,7 +252,7 @@ impl LocalProblem {
         };
         let delta = positions(&self.interface[..self.n_delta]);
         for (dofs, weights) in functionals {
-            let new = out.basis.push(delta.of(dofs), weights);
+            let new = out.gamma.basis.push(delta.of(dofs), weights);
             debug_assert!(new, "functionals are independent");
         }
         out.condense_dual()?;
@@ -198,32 +260,6 @@ impl LocalProblem {
             out.pack_beside(packed.s.clone());
         }
         Ok(out)
-    }
-
-    /// Number of interface dofs n_Γ.
-    pub fn n_gamma(&self) -> usize {
-        self.interface.len()
-    }
-
-    /// Number of vertices: the first primal dofs, each a single dof of Γ.
-    pub fn n_vertices(&self) -> usize {
-        self.interface.len() - self.n_delta
-    }
-
-    /// Number of primal dofs n_Π: vertices, functionals, fixing dofs.
-    pub fn n_pi(&self) -> usize {
-        self.n_vertices() + self.basis.len() + self.fixing.len()
-    }
-
-    /// The primal dofs of a function on Γ.
-    pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
-        let mut changed = u.to_vec();
-        if !self.fixing.is_empty() {
-            self.basis.to_coordinates(&mut changed);
-        }
-        let vertices = u[self.n_delta..].iter().copied();
-        let fixing = self.fixing.iter().map(|&i| changed[i]);
-        vertices.chain(self.basis.values(u)).chain(fixing).collect()
     }
 
     /// A stiffness of each primal dof that is positive even where Σ vanishes: the energy of moving its dofs alone.
@@ -239,22 +275,6 @@ impl LocalProblem {
         let vertices = (self.n_delta..n).map(own);
         let fixing = self.fixing.iter().map(|&i| own(i));
         vertices.chain(vectors.map(along)).chain(fixing).collect()
-    }
-
-    /// p ← Ψᵀ v, v on Γ.
-    pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
-        let (vertices, others) = p.split_at_mut(self.n_vertices());
-        vertices.copy_from_slice(&v[self.n_delta..]);
-        others.fill(0.0);
-        self.psi.add_mul_transpose(&v[..self.n_delta], p);
-    }
-
-    /// y ← y + Ψ c.
-    pub fn add_psi(&self, c: &[f64], y: &mut [f64]) {
-        self.psi.add_mul(c, &mut y[..self.n_delta]);
-        for (yi, ci) in y[self.n_delta..].iter_mut().zip(c) {
-            *yi += ci;
-        }
     }
 
     /// Bytes of the factor and of the dense operators: (sparse, dense).

@@ -5,12 +5,12 @@
 //! ```
 //!
 //! Subdomains with different coefficients share one factorisation in this way. Every operator that depends on the
-//! stiffness is applied through this type.
+//! stiffness is applied through this type. All multiples have the same [`Gamma`], which is read through it.
 
+use std::ops::Deref;
 use std::sync::Arc;
 
-use super::basis::Basis;
-use super::problem::LocalProblem;
+use super::problem::{Gamma, LocalProblem};
 use super::which::Operator;
 use crate::linalg::dense::Dense;
 
@@ -18,18 +18,21 @@ use crate::linalg::dense::Dense;
 #[derive(Debug, Clone)]
 pub struct Scaled {
     problem: Arc<LocalProblem>,
-    factor: f64,
+    /// φ.
+    pub factor: f64,
+}
+
+impl Deref for Scaled {
+    type Target = Gamma;
+    fn deref(&self) -> &Gamma {
+        &self.problem.gamma
+    }
 }
 
 impl Scaled {
     /// The subdomain with `factor` times the matrix of `problem`.
     pub fn new(problem: Arc<LocalProblem>, factor: f64) -> Scaled {
         Scaled { problem, factor }
-    }
-
-    /// φ.
-    pub fn factor(&self) -> f64 {
-        self.factor
     }
 
     /// The operators that it shares with others.
@@ -42,64 +45,9 @@ impl Scaled {
         Arc::ptr_eq(&self.problem, &other.problem)
     }
 
-    /// Local dofs of the interface in the order [Δ, vertices]; length n_Γ.
-    pub fn interface(&self) -> &[u32] {
-        &self.problem.interface
-    }
-
-    /// Number of interface dofs n_Γ.
-    pub fn n_gamma(&self) -> usize {
-        self.problem.n_gamma()
-    }
-
-    /// Number of dual interface dofs n_Δ.
-    pub fn n_delta(&self) -> usize {
-        self.problem.n_delta
-    }
-
-    /// Number of vertices.
-    pub fn n_vertices(&self) -> usize {
-        self.problem.n_vertices()
-    }
-
-    /// Number of primal dofs n_Π.
-    pub fn n_pi(&self) -> usize {
-        self.problem.n_pi()
-    }
-
-    /// The primal functionals of dual dofs.
-    pub fn basis(&self) -> &Basis {
-        &self.problem.basis
-    }
-
-    /// Positions in Γ of the fixing dofs: coordinates that were added to the primal dofs.
-    pub fn fixing(&self) -> &[usize] {
-        &self.problem.fixing
-    }
-
     /// Whether S and T are sparse solves.
     pub fn is_implicit(&self) -> bool {
         self.problem.is_implicit()
-    }
-
-    /// Ψ on Δ, n_Δ × n_Π: the same for all multiples.
-    pub fn psi(&self) -> &Dense {
-        &self.problem.psi
-    }
-
-    /// p ← Ψᵀ v, v on Γ.
-    pub fn psi_transpose(&self, v: &[f64], p: &mut [f64]) {
-        self.problem.psi_transpose(v, p);
-    }
-
-    /// y ← y + Ψ c.
-    pub fn add_psi(&self, c: &[f64], y: &mut [f64]) {
-        self.problem.add_psi(c, y);
-    }
-
-    /// The primal dofs of a function on Γ.
-    pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
-        self.problem.primal_values(u)
     }
 
     /// The factor by which this subdomain's operator differs from that of `problem`.

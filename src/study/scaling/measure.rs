@@ -179,7 +179,7 @@ fn work(session: &Session, solver: &FetiFeti) -> Work {
         ..Work::default()
     };
     for (sub, local) in solver.problem().local.iter().zip(&stiffness.locals) {
-        let (gamma, delta) = (local.n_gamma() as f64, local.n_delta() as f64);
+        let (gamma, delta) = (local.n_gamma() as f64, local.n_delta as f64);
         own.subdomains += 1.0;
         own.unknowns += sub.k.n() as f64;
         own.interface_squares += gamma * gamma + delta * delta;
@@ -193,7 +193,7 @@ fn work(session: &Session, solver: &FetiFeti) -> Work {
         own.primal += n;
         own.primal_factor += n * (n + 1.0).log2();
     }
-    if let Some(lifting) = dual.preconditioner.lifting() {
+    if let Some(lifting) = &dual.preconditioner.lifting {
         own.ghosts += 2.0 * space.ghosts.len() as f64;
         own.lifting_products += lifting.products;
         let bodies = space.owned.len().max(1) as f64;
