@@ -33,7 +33,7 @@
 //! | P | m × m | I − Q G (Gᵀ Q G)⁻¹ Gᵀ, \[Lee\] (2.11) | `feti::projector::natural` |
 //! | M_D⁻¹ | m × m | Z B_D S̃ B_Dᵀ Z, \[Lee\] section 3.1 | `feti::operators::preconditioner` |
 //! | Z_c, M_C⁻¹ | dim W̃ × n_c, m × m | coarse functions that vanish where bodies may touch; M_D⁻¹ with their span removed | `feti::lifting` |
-//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | `feti::spectrum` |
+//! | κ | | λ_max / λ_min of P M⁻¹ Pᵀ F on ker Gᵀ ∩ range B | [`Spectrum`] |
 //!
 //! # The way data flows
 //!
@@ -94,8 +94,6 @@
 //! has every option. `docs/README.md` says which page is for whom.
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
-// Some functions are used by the program alone.
-#![cfg_attr(not(feature = "cli"), allow(dead_code))]
 
 #[cfg(feature = "cli")]
 mod assembled;
@@ -109,7 +107,7 @@ pub(crate) mod cholesky;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
-pub mod embed;
+pub(crate) mod embed;
 pub mod error;
 pub mod fem;
 pub mod feti;
@@ -140,18 +138,18 @@ mod inside;
 mod testing;
 
 pub use error::{Error, Result};
-pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling, Spectrum};
+pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling};
 pub use linalg::csr::Csr;
 pub use parallel::exchange::{gather_all, max_all, sum_all};
 pub use petsc::Session;
 pub use scene::Scene;
 pub use settings::Settings;
-pub use solution::Solution;
+pub use solution::{Solution, Spectrum};
 pub use solver::FetiFeti;
 pub use status::Status;
 pub use substructures::{
-    Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow, Subdomain,
-    Substructures,
+    BodyNode, Entity, EntityKind, InterfaceRow, RowKind, RowLabel, RowSource, RowState, SolvedRow,
+    Subdomain, Substructures,
 };
 
 /// Runs `work` as the whole program. It starts PETSc with the process's arguments (so that PETSc options work) and ends

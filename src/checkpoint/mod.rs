@@ -195,7 +195,7 @@ impl Checkpoints {
     /// A checkpoint whose rows are not those of the solver.
     pub fn attach(mut self, session: &Session, solver: &FetiFeti) -> Result<Attached> {
         let wanted = self.file.is_some() || self.resume.is_some();
-        let layout = wanted.then(|| Layout::new(solver.method()));
+        let layout = wanted.then(|| Layout::new(&solver.method));
         let start = match (&layout, &self.resume) {
             (Some(layout), Some(file)) => {
                 let state = self.found.take().map(|found| found.state);

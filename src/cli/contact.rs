@@ -137,7 +137,7 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
 
 /// The record of one outer step in the report.
 pub fn outer_step(load_step: usize, number: usize, step: &Step) -> OuterStep {
-    let spectrum = |s: crate::feti::Spectrum| json::Spectrum::new(s.lambda_min, s.lambda_max);
+    let spectrum = |s: crate::Spectrum| json::Spectrum::new(s.lambda_min, s.lambda_max);
     OuterStep {
         load_step,
         step: number,

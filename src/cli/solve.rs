@@ -14,7 +14,7 @@ use super::{maps, physics, picture};
 use crate::checkpoint::Checkpoints;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
-use crate::feti::{MethodSettings, PcType, Spectrum};
+use crate::feti::{MethodSettings, PcType};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
 use crate::report::destination::Destination;
@@ -25,7 +25,7 @@ use crate::report::pictures::contact_map;
 use crate::report::plots::{load_steps, profile};
 use crate::report::tables::summary;
 use crate::scene::{distribution, Scene};
-use crate::{Error, FetiFeti, Result, Status};
+use crate::{Error, FetiFeti, Result, Spectrum, Status};
 
 /// Number of directions that a load step passes on to the next one.
 const DIRECTIONS: usize = 30;

@@ -4,14 +4,14 @@ use super::args::Table1;
 use super::first_rank::on_first_rank;
 use super::solve::not_converged;
 use crate::feti::settings::Adaptive;
-use crate::feti::{MethodSettings, PcType, Spectrum};
+use crate::feti::{MethodSettings, PcType};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
 use crate::report::plots::figure3;
 use crate::report::tables::{paper, summary};
 use crate::scene::{distribution, Faces, Scene};
-use crate::{Error, FetiFeti, Result, Solution};
+use crate::{Error, FetiFeti, Result, Solution, Spectrum};
 
 /// Computes the rows and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: Table1) -> Result<()> {

@@ -5,39 +5,41 @@
 //! ```
 //!
 //! The loop calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are factored
-//! once. There are two methods: a primal-dual active set ([`active_set`]) and SMALBE with MPRGP ([`smalbe`]). The first
+//! once. There are two methods: a primal-dual active set (`active_set`) and SMALBE with MPRGP (`smalbe`). The first
 //! hands over to the second if its sets cycle. A check before the loop finds out whether a solution exists
-//! ([`feasible`]).
+//! (`feasible`).
 
-pub mod active_set;
-pub mod augmented;
-pub mod balance;
+mod active_set;
+mod augmented;
+mod balance;
 mod cone;
-pub mod feasible;
-pub mod judge;
-pub mod motion;
-pub mod mprgp;
-pub mod settings;
-pub mod smalbe;
+mod feasible;
+mod judge;
+mod motion;
+mod mprgp;
+mod settings;
+mod smalbe;
 mod state;
 
-pub use settings::{ContactSettings, ContactType};
-pub use state::{Caution, Observer, State, Step};
+pub use crate::solution::{ContactType, Step};
+pub use settings::ContactSettings;
+pub use state::{Caution, Observer, State};
 
-use crate::feti::{LinearMethod, LinearSolution};
+use crate::feti::LinearMethod;
+use crate::solution::Solution;
 use crate::Result;
 use active_set::Ended;
 
-/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. Collective.
+/// Solves the problem with its inequalities. Collective.
 ///
 /// # Errors
 /// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
-pub fn solve(
+pub(crate) fn solve(
     method: &LinearMethod,
     settings: &ContactSettings,
     start: Option<&State>,
     observe: &mut Observer,
-) -> Result<(LinearSolution, Vec<Step>)> {
+) -> Result<Solution> {
     feasible::check(&method.problem, &method.dual())?;
     let ended = match settings.kind {
         ContactType::ActiveSet => active_set::solve(method, settings, start, observe)?,
@@ -50,14 +52,13 @@ pub fn solve(
             }
         }
     };
-    let (found, steps) = match ended {
-        Ended::Found(found, steps) => (found, steps),
+    let found = match ended {
+        Ended::Found(found) => found,
         Ended::HandedOver {
             state,
             steps,
             seconds,
         } => smalbe::solve(method, settings, state, steps, seconds, observe)?,
     };
-    let refined = method.refine(found)?;
-    Ok((method.certify(refined)?, steps))
+    method.certify(method.refine(found)?)
 }

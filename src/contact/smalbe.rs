@@ -17,12 +17,13 @@ use mpi::topology::SimpleCommunicator;
 use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
 use super::mprgp::Setting;
-use super::settings::{ContactSettings, ContactType};
-use super::state::{changes, Caution, Observer, State, Step};
+use super::settings::ContactSettings;
+use super::state::{changes, Caution, Observer, State};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
-use crate::feti::{LinearMethod, LinearSolution};
+use crate::feti::LinearMethod;
 use crate::parallel::exchange::{any, total};
+use crate::solution::{ContactType, Solution, Step};
 use crate::status::Status;
 use crate::Result;
 
@@ -53,13 +54,13 @@ pub(super) fn solve(
     mut steps: Vec<Step>,
     seconds: f64,
     observe: &mut Observer,
-) -> Result<(LinearSolution, Vec<Step>)> {
+) -> Result<Solution> {
     let clock = Instant::now();
     let comm = method.session.comm();
     let rtol = method.ksp.tolerances()?.0;
     let finish = |run: ActiveSet, steps: Vec<Step>, status| {
         let seconds = seconds + clock.elapsed().as_secs_f64();
-        Ok((run.finish(&steps, seconds, status)?, steps))
+        run.finish(steps, seconds, status)
     };
     let mut search = Search::new(method, settings, &state)?;
     state.mu.resize(search.a.balance.n.rows, 0.0);

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::facts::Facts;
 use super::krylov::check;
 use super::krylov::system::System;
-use super::krylov::tally::{Communication, Tally};
+use super::krylov::tally::Communication;
 use super::operators::dual::Dual;
 use super::settings::MethodSettings;
 use crate::petsc::{Ksp, Session};
@@ -65,10 +65,5 @@ impl LinearMethod {
     /// none. Collective.
     pub fn communication(&self) -> Option<Communication> {
         Communication::of(self.session.comm(), &self.system.tally())
-    }
-
-    /// Messages, reductions and seconds of the iterations on this rank.
-    pub fn tally(&self) -> Tally {
-        self.system.tally()
     }
 }

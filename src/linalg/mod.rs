@@ -10,6 +10,7 @@ pub mod symmetric;
 #[cfg(test)]
 #[path = "../../tests/inside/linalg/testing.rs"]
 pub(crate) mod testing;
+#[cfg(feature = "cli")]
 pub(crate) mod twice;
 pub(crate) mod union_find;
 pub(crate) mod vec3;

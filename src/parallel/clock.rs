@@ -39,6 +39,7 @@ pub struct Times([f64; PHASES]);
 
 impl Times {
     /// Seconds of one phase.
+    #[cfg(feature = "cli")]
     pub fn of(&self, phase: Phase) -> f64 {
         self.0[phase as usize]
     }

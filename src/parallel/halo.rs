@@ -17,7 +17,8 @@ pub struct Halo {
     scatter: Scatter,
     /// Sequential vector through which the ghost entries are sent.
     buffer: RefCell<PetscVec>,
-    n_ghosts: usize,
+    /// Number of ghost entries.
+    pub n_ghosts: usize,
     /// The traffic of this rank in one [`fetch`](Self::fetch) and in one [`sum`](Self::sum).
     sent: (Traffic, Traffic),
 }
@@ -45,16 +46,6 @@ impl Halo {
             n_ghosts: ghosts.len(),
             sent: of_ghosts(session.comm(), layout.ownership_range().start, ghosts),
         })
-    }
-
-    /// The traffic of this rank in one [`fetch`](Self::fetch) and in one [`sum`](Self::sum).
-    pub fn sent(&self) -> (Traffic, Traffic) {
-        self.sent
-    }
-
-    /// Number of ghost entries.
-    pub fn n_ghosts(&self) -> usize {
-        self.n_ghosts
     }
 
     /// `ghost` ← the entries of `x`. Collective.

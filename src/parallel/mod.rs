@@ -3,6 +3,7 @@
 pub mod clock;
 pub mod exchange;
 pub mod halo;
+#[cfg(feature = "cli")]
 pub(crate) mod meter;
 pub mod team;
 pub mod traffic;

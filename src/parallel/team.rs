@@ -35,6 +35,7 @@ impl Team {
     }
 
     /// Number of threads that work.
+    #[cfg(feature = "cli")]
     pub fn threads(&self) -> usize {
         self.pool.as_ref().map_or(1, |p| p.current_num_threads())
     }

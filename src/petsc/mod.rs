@@ -32,6 +32,7 @@ mod vec;
 
 pub use citations::cite;
 pub use eps::{Eps, ProblemType, Which};
+pub use handle::Handle;
 pub use heap::let_threads_allocate;
 pub use is::Is;
 pub use ksp::{ConvergedReason, Ksp, NormType};

@@ -78,6 +78,7 @@ impl Scene {
     }
 
     /// The nodes of a body that springs support.
+    #[cfg(feature = "cli")]
     pub(crate) fn sprung(&self, body: &Body) -> Vec<[usize; 3]> {
         let mesh = body.mesh();
         let held = |stiffness: &Field, place: &[usize; 3]| {

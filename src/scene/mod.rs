@@ -14,6 +14,7 @@
 mod body;
 mod checked;
 mod coefficient;
+#[cfg(feature = "cli")]
 pub(crate) mod distribution;
 pub(crate) mod geometry;
 mod joint;

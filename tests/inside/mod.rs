@@ -1,6 +1,7 @@
 //! Tests of parts that only the crate itself can access: operators compared with dense algebra, the PETSc layer, the
 //! files of the report.
 
+mod coarse_solvers;
 mod dense;
 mod operators;
 mod petsc;

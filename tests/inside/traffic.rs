@@ -23,7 +23,7 @@ fn against_petsc(session: &Session, text: &str) -> Result<()> {
     let solver = FetiFeti::new(session, problem, Settings::default())?;
     // PETSc completes the set-up of a scatter in its first use, with messages of its own.
     solver.solve()?;
-    let read = || (traffic::sent(), counters(), solver.method().tally());
+    let read = || (traffic::sent(), counters(), solver.method.system.tally());
     let (ours, theirs, tally) = read();
     let solution = solver.solve()?;
     let (ours_after, theirs_after, tally_after) = read();

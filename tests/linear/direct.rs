@@ -2,7 +2,7 @@
 
 use crate::support::direct;
 use crate::support::session::with_session;
-use direct::{tight, with_options, Direct};
+use direct::{floating_scenes, tight, with_options, Direct};
 use fetifeti::feti::{MethodSettings, PcType, ProjectorKind, Scaling};
 use fetifeti::scene::Scene;
 
@@ -78,20 +78,6 @@ fn jumps_of_ten_thousand() {
 #[test]
 fn jumps_of_a_million_each_way() {
     agrees("jump_1e6");
-}
-
-/// 4 × 4 bodies, the inner ones floating, and the three bodies of the partly tied scene.
-fn floating_scenes() -> Vec<(&'static str, Direct)> {
-    let grid = "[grid]\nbodies = 4\nsubdomains = 2\nelements_per_subdomain = 3\n\
-                dirichlet = \"all\"\nload = \"1 + x - 2*y\"\n\
-                rho = { checkerboard = [1, 20], by = \"body\" }\n";
-    vec![
-        (
-            "grid",
-            Direct::new(Scene::parse("grid.toml", grid).unwrap()),
-        ),
-        ("partly_tied", Direct::example("partly_tied")),
-    ]
 }
 
 #[test]
@@ -179,46 +165,6 @@ fn krylov_methods_reach_the_same_solution() {
                 assert_eq!(kind, method);
                 assert!(solution.converged(), "{name} {method}: {}", solution.status);
                 assert!(distance < 1e-8, "{name} {method}: {distance:.1e}");
-            }
-        }
-    });
-}
-
-#[test]
-fn coarse_solvers_may_be_exchanged() {
-    with_session(|session| {
-        for (name, direct) in floating_scenes() {
-            let iterative = [
-                ("coarse_ksp_type", "cg"),
-                ("coarse_pc_type", "jacobi"),
-                ("coarse_ksp_rtol", "1e-14"),
-                ("coarse_ksp_max_it", "1000"),
-            ];
-            let natural = [
-                ("gtg_ksp_type", "cg"),
-                ("gtg_pc_type", "jacobi"),
-                ("gtg_ksp_rtol", "1e-15"),
-            ];
-            for options in [&iterative[..], &natural[..]] {
-                let (kind, (solution, distance)) = with_options(session, options, || {
-                    let solver = direct.solver(session, &tight());
-                    let gtg = solver.dual().natural.ksp().map(|k| k.type_name().unwrap());
-                    let solution = solver.solve().expect("solved");
-                    let distance = direct.distance(&solution.u);
-                    (gtg, (solution, distance))
-                });
-                println!(
-                    "{name} {options:?}: {distance:.1e}, {} iterations",
-                    solution.iterations
-                );
-                let expected = if options[0].0 == "gtg_ksp_type" {
-                    "cg"
-                } else {
-                    "preonly"
-                };
-                assert_eq!(kind.as_deref(), Some(expected));
-                assert!(solution.converged());
-                assert!(distance < 1e-8, "{name} {options:?}: {distance:.1e}");
             }
         }
     });

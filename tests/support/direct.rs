@@ -163,3 +163,17 @@ pub fn with_options<T>(session: &Session, options: &[(&str, &str)], work: impl F
     }
     work()
 }
+
+/// 4 × 4 bodies, the inner ones floating, and the three bodies of the partly tied scene.
+pub fn floating_scenes() -> Vec<(&'static str, Direct)> {
+    let grid = "[grid]\nbodies = 4\nsubdomains = 2\nelements_per_subdomain = 3\n\
+                dirichlet = \"all\"\nload = \"1 + x - 2*y\"\n\
+                rho = { checkerboard = [1, 20], by = \"body\" }\n";
+    vec![
+        (
+            "grid",
+            Direct::new(Scene::parse("grid.toml", grid).unwrap()),
+        ),
+        ("partly_tied", Direct::example("partly_tied")),
+    ]
+}

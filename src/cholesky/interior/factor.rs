@@ -10,6 +10,7 @@ use crate::linalg::dense::Dense;
 /// L Lᵀ of a symmetric positive definite matrix; any thread may use it.
 pub trait SparseCholesky: Debug + Send + Sync {
     /// x ← K⁻¹ x.
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))] // the study of kernels
     fn solve(&self, x: &mut [f64]);
 
     /// The same for several vectors of equal length.

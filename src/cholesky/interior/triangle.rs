@@ -93,6 +93,7 @@ impl Triangle {
     }
 
     /// Applies `solve`, which works in the order of elimination, to a vector by dof.
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))] // the study of kernels
     pub fn solve(&self, x: &mut [f64], solve: impl FnOnce(&mut [f64])) {
         let mut b: Vec<f64> = self.gather(x).collect();
         solve(&mut b);

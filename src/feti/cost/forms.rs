@@ -83,6 +83,7 @@ pub struct Kind<'a> {
 
 impl Kind<'_> {
     /// Entries of the sparse factors in the given form.
+    #[cfg(feature = "cli")]
     pub fn factor_entries(&self, form: OperatorForm) -> usize {
         let (k, x) = (&self.sub.k, self.sub.coordinates.as_deref());
         match form {

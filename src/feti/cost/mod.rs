@@ -2,5 +2,6 @@
 
 pub mod choice;
 pub mod forms;
+#[cfg(feature = "cli")]
 pub mod sizes;
 pub mod variation;

@@ -42,7 +42,8 @@ pub struct Lifting {
     vector: PetscVec,
     /// Rank of A and its order (columns that are not zero), over this rank's bodies.
     pub rank_and_order: (usize, usize),
-    /// Σ n_Γ² · columns of Z_c over the blocks of A that this rank has made.
+    /// Σ n_Γ² · columns of Z_c over the blocks of A that this rank has made; a study reads it.
+    #[cfg_attr(not(feature = "cli"), allow(dead_code))]
     pub products: f64,
 }
 

@@ -115,7 +115,7 @@ impl Stored {
             pairs[j].y.add_mul_transpose_columns(&inputs[j].v, &mut t); /*  t ← Yᵀ v        */
             t
         });
-        let mut all = Dense::zeros(self.halo.n_ghosts(), n);
+        let mut all = Dense::zeros(self.halo.n_ghosts, n);
         for (t, places) in products.iter().zip(columns) {
             for c in 0..n {
                 let column = all.col_mut(c);

@@ -20,7 +20,7 @@ use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::{PcType, ProjectorKind};
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{exchange, gather_all, max_all, sum_all};
-use crate::petsc::{Ksp, Vec as PetscVec};
+use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
@@ -46,7 +46,8 @@ pub struct NaturalCoarse {
     pub g: Rows,
     /// Q G where it differs from G.
     qg: Option<Rows>,
-    gtg: Option<Gtg>,
+    /// (Gᵀ Q G)⁻¹, where a body floats.
+    pub gtg: Option<Gtg>,
     prefix: String,
 }
 
@@ -377,11 +378,6 @@ impl NaturalCoarse {
     pub fn add_kernel(&self, j: usize, alpha: &[f64], y: &mut [f64]) {
         let kernel = &self.kernels[j];
         kernel.add_mul(&alpha[self.first_column[j]..][..kernel.cols], y);
-    }
-
-    /// The solver of Gᵀ Q G, where a body floats.
-    pub fn ksp(&self) -> Option<&Ksp> {
-        self.gtg.as_ref().map(|s| &s.ksp)
     }
 }
 

@@ -74,7 +74,8 @@ impl Rows {
         self.start.len() - 1
     }
 
-    /// Aᵀ B for matrices of r columns whose rows are distributed alike, over the rows that `chosen` selects. Collective.
+    /// Aᵀ B for matrices of r columns whose rows are distributed alike, over the rows that `chosen` selects.
+    /// Collective.
     pub fn product(
         &self,
         comm: &SimpleCommunicator,

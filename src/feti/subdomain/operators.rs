@@ -1,6 +1,5 @@
 //! Application of S and T, as dense matrices or as sparse solves.
 
-use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use super::problem::{Inside, LocalProblem, Packed};
@@ -24,19 +23,11 @@ impl LocalProblem {
         }
     }
 
-    /// T as a dense matrix, built as [`s`](Self::s) is.
-    pub fn t(&self) -> Cow<'_, Dense> {
-        match &self.packed {
-            Some(packed) => Cow::Owned(packed.t.to_dense()),
-            None => Cow::Borrowed(self.whole_t()),
-        }
-    }
-
     fn whole_s(&self) -> &Arc<Dense> {
         self.s.get_or_init(|| Arc::new(self.assembled(Operator::S)))
     }
 
-    fn whole_t(&self) -> &Dense {
+    pub(super) fn whole_t(&self) -> &Dense {
         self.t.get_or_init(|| self.assembled(Operator::T))
     }
 

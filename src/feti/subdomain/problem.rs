@@ -42,6 +42,7 @@ const MOST_FREE: usize = 12;
 static FACTORISATIONS: AtomicUsize = AtomicUsize::new(0);
 
 /// Number of subdomains that this process has factored so far. A contact loop must not increase it.
+#[cfg(feature = "cli")]
 pub fn factorisations() -> usize {
     FACTORISATIONS.load(Ordering::Relaxed)
 }

@@ -189,7 +189,7 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
     record.multipliers = facts.multipliers_local + facts.multipliers_global;
-    let small = |s: &crate::feti::Spectrum| s.kappa() < ESTIMATED;
+    let small = |s: &crate::Spectrum| s.kappa() < ESTIMATED;
     let exact = match record.multipliers <= effort.plain && solution.estimate.iter().all(small) {
         // If the eigensolver fails, the solution remains valid.
         true => solver.plain_spectrum().ok().flatten(),

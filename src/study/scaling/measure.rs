@@ -132,7 +132,7 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<Point> {
             solution.status
         )));
     }
-    let tally = solver.method().tally();
+    let tally = solver.method.system.tally();
     let n = tally.iterations.max(1) as f64;
     let phases = [Phase::Primal, Phase::Lifting, Phase::Natural];
     let coarse = phases.map(|p| tally.times.of(p) / n);

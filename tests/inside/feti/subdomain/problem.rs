@@ -120,7 +120,7 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
     close(&dense.psi.data, &sparse.psi.data);
     close(&dense.sigma.data, &sparse.sigma.data);
     close(&dense.s().data, &sparse.s().data);
-    close(&dense.t().data, &sparse.t().data);
+    close(&dense.whole_t().data, &sparse.whole_t().data);
     // More columns than are processed side by side, and a load.
     let v = Dense {
         rows: dense.n_gamma(),
