@@ -7,15 +7,15 @@ use mpi::point_to_point::{Destination as _, Source as _};
 use mpi::traits::Communicator;
 
 use super::launch::{Failure, Launcher, Workspace};
-use super::methods::{forwarded, inequalities, row, sentence, Methods, Ran};
+use super::methods::{facts, forwarded, judged, row, sentence, stopped, Methods, Ran};
 use super::plan::{Layouts, Plan};
 use super::table::{self, Case};
 use crate::petsc::{Options, Session};
 use crate::report::destination::Destination;
-use crate::report::json::{CompareReport, CompareRow};
+use crate::report::json::CompareReport;
 use crate::report::tables::compare;
-use crate::scene::{distribution, Numbering, Scene};
-use crate::{Error, Result};
+use crate::scene::{distribution, Scene};
+use crate::Result;
 
 /// The arguments of a comparison: what is compared, and where the results go.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -110,34 +110,20 @@ fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
     progress("direct solution");
     let verdict = methods.judge(solutions)?;
     for (k, judgement) in solved.into_iter().zip(&verdict.solutions) {
-        sentence(&mut rows[k], judgement);
+        sentence(&mut rows[k].run, judgement);
     }
     destination.progress("");
-    let report = CompareReport {
-        scene: scene.title.clone(),
-        bodies: scene.n_bodies(),
-        subdomains: scene.n_subdomains(),
-        dofs: Numbering::new(scene).len() as usize,
-        rtol: plan.rtol,
+    let mut report = CompareReport {
+        facts: facts(scene, plan),
         cores: plan.cores,
         supports: methods.layout.loose(),
-        reference_residual: verdict.reference.and_then(|r| r.residual),
-        contact: inequalities(scene, &verdict),
         rows,
     };
+    judged(&mut report.facts, scene, &verdict);
     destination.finish("compare", &compare::text(&report), &report, |dir| {
         compare::csv(&report.rows).write_csv(&dir.join("compare.csv"))?;
         Ok(vec!["compare.csv".into()])
     })?;
-    // Where rounding keeps the assembled residual above its target, the table says so; the method itself has converged.
-    let stopped =
-        |r: &&CompareRow| r.method == "fetifeti" && !r.converged_reason.starts_with("CONVERGED");
-    match report.rows.iter().find(stopped) {
-        None => Ok(()),
-        Some(row) => Err(Error::NotConverged(format!(
-            "fetifeti on {}: {}",
-            wanted.scene.display(),
-            row.message.as_deref().unwrap_or(&row.converged_reason)
-        ))),
-    }
+    let rows = report.rows.iter();
+    stopped(rows.map(|r| (&r.run, wanted.scene.display().to_string())))
 }

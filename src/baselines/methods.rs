@@ -8,9 +8,11 @@ use super::plan::{Plan, Run};
 use super::task::{Job, Outcome, Task};
 use crate::assembled::layout::Layout;
 use crate::assembled::system::Format;
-use crate::report::json::{CompareContact, CompareInequalities, CompareRow, CompareSeconds};
-use crate::scene::Scene;
-use crate::Result;
+use crate::report::json::{
+    CompareContact, CompareInequalities, CompareRow, ComparedScene, MethodRun, PhaseSeconds,
+};
+use crate::scene::{Numbering, Scene};
+use crate::{Error, Result};
 
 /// The methods of a plan on one scene.
 pub struct Methods<'a> {
@@ -205,67 +207,106 @@ pub fn forwarded(petsc: &[String]) -> Vec<String> {
     forwarded
 }
 
-/// The row of a table for a run and its result.
-pub fn row(run: &Run, ran: Ran) -> CompareRow {
-    let blank = CompareRow {
+/// The run in a table before it has a result.
+pub fn blank(run: &Run) -> MethodRun {
+    MethodRun {
         method: run.name().to_string(),
         subdomains: run.parts,
         ranks: run.ranks,
         threads: run.threads,
-        rescue: ran.rescue,
+        ..MethodRun::default()
+    }
+}
+
+/// The row of a table for a run and its result.
+pub fn row(run: &Run, ran: Ran) -> CompareRow {
+    let mut row = CompareRow {
+        run: blank(run),
         ..CompareRow::default()
     };
+    row.run.rescue = ran.rescue;
     match ran.outcome {
-        Err(failure) => CompareRow {
-            message: Some(failure.message),
-            ..blank
-        },
-        Ok(o) => CompareRow {
-            kappa: o.kappa,
-            iterations: o.iterations,
-            seconds: CompareSeconds {
-                assemble: Some(o.assemble),
-                setup: Some(o.setup),
-                solve: Some(o.solve),
-                total: Some(o.setup + o.solve),
-            },
-            memory_mb: Some(o.memory / 1e6),
-            memory_at_start_mb: Some(o.memory_at_start / 1e6),
-            residual: o.residual,
-            contact: o.contact.map(|c| CompareContact {
-                outer: c.steps,
-                active: c.active.len(),
-                ..CompareContact::default()
-            }),
-            rtol: o.rtol,
-            converged: o.message.is_none(),
-            converged_reason: o.reason,
-            message: o.message,
-            ..blank
-        },
+        Err(failure) => row.run.message = Some(failure.message),
+        Ok(o) => {
+            row.seconds = seconds(&o);
+            row.memory_mb = Some(o.memory / 1e6);
+            row.memory_at_start_mb = Some(o.memory_at_start / 1e6);
+            row.run = MethodRun {
+                kappa: o.kappa,
+                iterations: o.iterations,
+                residual: o.residual,
+                contact: o.contact.map(|c| CompareContact {
+                    outer: c.steps,
+                    active: c.active.len(),
+                    ..CompareContact::default()
+                }),
+                rtol: o.rtol,
+                converged: o.message.is_none(),
+                converged_reason: o.reason,
+                message: o.message,
+                ..row.run
+            };
+        }
+    }
+    row
+}
+
+/// The seconds of a run.
+pub fn seconds(o: &Outcome) -> PhaseSeconds<f64> {
+    PhaseSeconds {
+        assemble: Some(o.assemble),
+        setup: Some(o.setup),
+        solve: Some(o.solve),
+        total: Some(o.setup + o.solve),
     }
 }
 
 /// Enters a judgement into a row.
-pub fn sentence(row: &mut CompareRow, judgement: &Judgement) {
-    row.error = judgement.error;
-    row.residual = judgement.residual;
-    if let Some(contact) = &mut row.contact {
+pub fn sentence(run: &mut MethodRun, judgement: &Judgement) {
+    run.error = judgement.error;
+    run.residual = judgement.residual;
+    if let Some(contact) = &mut run.contact {
         contact.differ = judgement.differ;
         contact.feasibility = judgement.feasibility;
         contact.min_multiplier = judgement.min_multiplier;
     }
 }
 
-/// The state of the inequalities in the direct solution; `None` without any.
-pub fn inequalities(scene: &Scene, verdict: &Verdict) -> Option<CompareInequalities> {
+/// Facts about the scene, without its direct solution.
+pub fn facts(scene: &Scene, plan: &Plan) -> ComparedScene {
+    ComparedScene {
+        scene: scene.title.clone(),
+        bodies: scene.n_bodies(),
+        subdomains: scene.n_subdomains(),
+        dofs: Numbering::new(scene).len() as usize,
+        rtol: plan.rtol,
+        ..ComparedScene::default()
+    }
+}
+
+/// Enters the judge's findings about the direct solution.
+pub fn judged(facts: &mut ComparedScene, scene: &Scene, verdict: &Verdict) {
     let reference = verdict.reference;
-    scene.has_contact().then(|| CompareInequalities {
+    facts.reference_residual = reference.and_then(|r| r.residual);
+    facts.contact = scene.has_contact().then(|| CompareInequalities {
         rows: verdict.rows,
         active: reference.map(|_| verdict.active),
         outer: verdict.steps,
         feasibility: reference.and_then(|r| r.feasibility),
         min_multiplier: reference.and_then(|r| r.min_multiplier),
         load_steps: scene.n_steps(),
-    })
+    });
+}
+
+/// The error of a comparison in which ours stopped early, if it did. Where rounding keeps the assembled residual above
+/// its target, the table says so; the method itself has converged.
+pub fn stopped<'a>(mut runs: impl Iterator<Item = (&'a MethodRun, String)>) -> Result<()> {
+    let early = |run: &MethodRun| run.is_ours() && !run.converged_reason.starts_with("CONVERGED");
+    match runs.find(|(run, _)| early(run)) {
+        None => Ok(()),
+        Some((run, scene)) => Err(Error::NotConverged(format!(
+            "fetifeti on {scene}: {}",
+            run.message.as_deref().unwrap_or(&run.converged_reason)
+        ))),
+    }
 }

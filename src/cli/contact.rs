@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::contact::Step;
 use crate::petsc::Session;
+use crate::report::interfaces::InterfaceNodes;
 use crate::report::json;
 use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::plots::profile::Profile;
@@ -96,43 +97,48 @@ fn pressures<'a>(
     some.then(|| contact().filter_map(SolvedRow::pressure))
 }
 
+/// The rows of each interface or obstacle that has inequalities.
+pub(super) fn with_inequalities(rows: &[SolvedRow]) -> impl Iterator<Item = &[SolvedRow]> {
+    by_source(rows).filter(|rows| rows.iter().any(|r| r.is_inequality()))
+}
+
+/// The nodes of one interface or obstacle, with their areas if `areas` is set.
+pub(super) fn nodes(scene: &Scene, rows: &[SolvedRow], areas: bool) -> InterfaceNodes {
+    let column = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    InterfaceNodes {
+        name: name(scene, rows[0].label.source),
+        t: rows.iter().map(|r| r.label.t).collect(),
+        points: rows.iter().map(|r| r.label.point).collect(),
+        gap: column(|r| r.gap),
+        multiplier: column(|r| r.multiplier),
+        active: rows.iter().map(|r| r.holds()).collect(),
+        area: if areas {
+            column(|r| r.label.area)
+        } else {
+            Vec::new()
+        },
+    }
+}
+
 /// The profiles of multiplier and gap along every interface that has inequalities.
 pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
-    by_source(rows)
-        .filter(|rows| rows.iter().any(|r| r.is_inequality()))
-        .map(|rows| {
-            let along = match rows[0].label.source {
-                RowSource::Obstacle(k) => usize::from(scene.obstacles[k].side < 2),
-                RowSource::Interface(k) => match scene.interfaces[k].shape {
-                    Shape::Face => usize::from(scene.interfaces[k].sides[0] < 2),
-                    Shape::Corner => 0,
-                },
-            };
-            // Along a curved side no coordinate increases monotonically.
-            let curved = rows[0]
-                .body()
-                .is_some_and(|b| scene.bodies[b].spec.map.is_some());
-            let label = if curved { "t" } else { ["x", "y"][along] };
-            let column = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
-            Profile {
-                name: name(scene, rows[0].label.source),
-                label: label.into(),
-                t: column(|r| r.label.t[0]),
-                points: rows
-                    .iter()
-                    .map(|r| [r.label.point[0], r.label.point[1]])
-                    .collect(),
-                gap: column(|r| r.gap),
-                multiplier: column(|r| r.multiplier),
-                active: rows.iter().map(|r| r.holds()).collect(),
-                area: if scene.has_pressure() {
-                    column(|r| r.label.area)
-                } else {
-                    Vec::new()
-                },
-            }
-        })
-        .collect()
+    let profile = |rows: &[SolvedRow]| {
+        let along = match rows[0].label.source {
+            RowSource::Obstacle(k) => usize::from(scene.obstacles[k].side < 2),
+            RowSource::Interface(k) => match scene.interfaces[k].shape {
+                Shape::Face => usize::from(scene.interfaces[k].sides[0] < 2),
+                Shape::Corner => 0,
+            },
+        };
+        // Along a curved side no coordinate increases monotonically.
+        let body = rows[0].body();
+        let curved = body.is_some_and(|b| scene.bodies[b].spec.map.is_some());
+        Profile {
+            nodes: nodes(scene, rows, scene.has_pressure()),
+            label: if curved { "t" } else { ["x", "y"][along] }.into(),
+        }
+    };
+    with_inequalities(rows).map(profile).collect()
 }
 
 /// The record of one outer step in the report.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::contact::{by_source, name, side};
+use super::contact::{nodes, side, with_inequalities};
 use crate::report::pictures::contact_map::ContactMap;
 use crate::scene::Scene;
 use crate::substructures::SolvedRow;
@@ -13,8 +13,7 @@ const STEEP: f64 = 0.4;
 
 /// The maps of all interfaces and obstacles that have inequalities.
 pub(super) fn of(scene: &Scene, rows: &[SolvedRow]) -> Vec<ContactMap> {
-    by_source(rows)
-        .filter(|rows| rows.iter().any(|r| r.is_inequality()))
+    with_inequalities(rows)
         .map(|rows| map(scene, rows))
         .collect()
 }
@@ -56,17 +55,10 @@ fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
             }
         }
     }
-    let column = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
     ContactMap {
-        name: name(scene, rows[0].label.source),
+        nodes: nodes(scene, rows, true),
         labels,
         at,
         cells,
-        t: rows.iter().map(|r| r.label.t).collect(),
-        points: rows.iter().map(|r| r.label.point).collect(),
-        gap: column(|r| r.gap),
-        multiplier: column(|r| r.multiplier),
-        area: column(|r| r.label.area),
-        active: rows.iter().map(|r| r.holds()).collect(),
     }
 }

@@ -15,7 +15,7 @@ use crate::feti::settings::Adaptive;
 use crate::feti::{MethodSettings, PcType};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
-use crate::report::tables::table::{Align, Table};
+use crate::report::tables::table::Table;
 use crate::scene::{distribution, Plan, Scene};
 use crate::substructures::Substructures;
 use crate::{FetiFeti, Result};
@@ -112,39 +112,30 @@ fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
 }
 
 fn bodies(plan: &Plan, sizes: &Sizes) -> String {
-    let header = [
-        "body",
-        "elements",
-        "subdomains",
-        "dofs",
-        "prescribed",
-        "primal",
-        "kernel",
-    ];
-    let mut table = Table::new(header).align(0, Align::Left);
     // Only solids have elements in z.
     let dim = if plan.bodies[0].elements[2] > 0 { 3 } else { 2 };
-    for (b, defect) in plan.bodies.iter().zip(&sizes.defect).take(LIST) {
-        table.row([
-            b.name.clone(),
-            grid(b.elements, dim),
-            grid(b.subdomains, dim),
-            b.dofs.to_string(),
-            b.prescribed.to_string(),
-            b.primal.to_string(),
-            match defect {
-                0 => "held".into(),
-                d => format!("floats ({d})"),
-            },
-        ]);
-    }
-    let more = plan.bodies.len().saturating_sub(LIST);
-    let rest = if more > 0 {
-        format!("... and {more} more bodies\n")
-    } else {
-        String::new()
+    let kernel = |defect: usize| match defect {
+        0 => "held".into(),
+        d => format!("floats ({d})"),
     };
-    format!("{table}{rest}\n")
+    let table = Table::of(plan.bodies.iter().zip(&sizes.defect).take(LIST))
+        .words("body", |(b, _)| &b.name)
+        .numbers("elements", |(b, _)| grid(b.elements, dim))
+        .numbers("subdomains", |(b, _)| grid(b.subdomains, dim))
+        .numbers("dofs", |(b, _)| b.dofs)
+        .numbers("prescribed", |(b, _)| b.prescribed)
+        .numbers("primal", |(b, _)| b.primal)
+        .numbers("kernel", |(_, defect)| kernel(**defect))
+        .table();
+    format!("{table}{}\n", more(plan.bodies.len(), "bodies"))
+}
+
+/// A line on what a list has beyond the first [`LIST`].
+fn more(count: usize, what: &str) -> String {
+    match count.saturating_sub(LIST) {
+        0 => String::new(),
+        n => format!("... and {n} more {what}\n"),
+    }
 }
 
 /// Counts in x, y and z, such as "16 x 16 x 16".
@@ -157,27 +148,19 @@ fn interfaces(plan: &Plan) -> String {
     if plan.interfaces.is_empty() {
         return String::new();
     }
-    // The table drops the cells of a row beyond its columns.
-    let columns = ["touch", "nodes", "tied", "contact"];
-    let shown = if plan.contact_pairs > 0 { 4 } else { 3 };
-    let mut table = Table::new(columns.into_iter().take(shown)).align(0, Align::Left);
     let faces = plan.interfaces.iter().filter(|i| !i.corner);
-    for i in faces.clone().take(LIST) {
-        let [a, b] = i.bodies.map(|b| plan.bodies[b].name.as_str());
-        table.row([
-            format!("{a} - {b}"),
-            i.nodes.to_string(),
-            i.tied.to_string(),
-            i.contact.to_string(),
-        ]);
-    }
-    let more = faces.count().saturating_sub(LIST);
-    let rest = if more > 0 {
-        format!("... and {more} more faces\n")
-    } else {
-        String::new()
-    };
-    format!("{table}{rest}\n")
+    let name = |b: usize| &plan.bodies[b].name;
+    let table = Table::of(faces.clone().take(LIST))
+        .words("touch", |i| {
+            format!("{} - {}", name(i.bodies[0]), name(i.bodies[1]))
+        })
+        .numbers("nodes", |i| i.nodes)
+        .numbers("tied", |i| i.tied)
+        .when(plan.contact_pairs > 0, |t| {
+            t.numbers("contact", |i| i.contact)
+        })
+        .table();
+    format!("{table}{}\n", more(faces.count(), "faces"))
 }
 
 fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {

@@ -4,14 +4,14 @@ use super::args::Table1;
 use super::first_rank::on_first_rank;
 use super::solve::not_converged;
 use crate::feti::settings::Adaptive;
-use crate::feti::{MethodSettings, PcType};
+use crate::feti::{Facts, MethodSettings, PcType};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
-use crate::report::json::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
+use crate::report::json::{PaperSide, PcResult, Table1Row, Table1Side};
 use crate::report::plots::figure3;
 use crate::report::tables::{paper, summary};
 use crate::scene::{distribution, Faces, Scene};
-use crate::{Error, FetiFeti, Result, Solution, Spectrum};
+use crate::{Error, FetiFeti, Result};
 
 /// Computes the rows and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: Table1) -> Result<()> {
@@ -68,7 +68,7 @@ fn side(
     paper: Option<PaperSide>,
     stopped: &mut Option<Error>,
 ) -> Result<Table1Side> {
-    let mut run = |pc| -> Result<(FetiFeti, Solution, Option<Spectrum>)> {
+    let mut run = |pc| -> Result<(Facts, PcResult)> {
         let substructures = distribution::substructures(session, scene)?;
         let settings = MethodSettings {
             pc_type: Some(pc),
@@ -86,27 +86,23 @@ fn side(
             ));
         }
         let exact = solver.spectrum()?;
-        Ok((solver, solution, exact))
+        let result = PcResult {
+            exact: exact.map(|s| s.kappa()),
+            estimate: solution.estimate.map(|s| s.kappa()),
+            lambda_min: exact.map(|s| s.lambda_min),
+            lambda_max: exact.map(|s| s.lambda_max),
+            iterations: solution.iterations,
+        };
+        Ok((solver.facts().clone(), result))
     };
-    let (solver, plain, exact) = run(PcType::Dirichlet)?;
-    let (_, lifted, exact_c) = run(PcType::CoarseCorrected)?;
-    let facts = solver.facts();
+    let (facts, dirichlet) = run(PcType::Dirichlet)?;
+    let (_, coarse_corrected) = run(PcType::CoarseCorrected)?;
     Ok(Table1Side {
         multipliers: facts.multipliers_local + facts.multipliers_active,
         local_multipliers: facts.multipliers_local,
         floating_bodies: facts.floating_bodies,
-        iterations: plain.iterations,
-        exact: exact.map(|s| s.kappa()),
-        estimate: plain.estimate.map(|s| s.kappa()),
-        lambda_min: exact.map(|s| s.lambda_min),
-        lambda_max: exact.map(|s| s.lambda_max),
+        dirichlet,
         paper,
-        coarse_corrected: CoarseCorrected {
-            exact: exact_c.map(|s| s.kappa()),
-            estimate: lifted.estimate.map(|s| s.kappa()),
-            lambda_min: exact_c.map(|s| s.lambda_min),
-            lambda_max: exact_c.map(|s| s.lambda_max),
-            iterations: lifted.iterations,
-        },
+        coarse_corrected,
     })
 }

@@ -1,38 +1,104 @@
-//! Functions that plots along interfaces and maps of interfaces share.
+//! The data along interfaces, which plots of plane problems and maps of solids show, and all of it as CSV.
 
+use crate::report::tables::table::Table;
 use crate::{Error, Result};
 
-/// Checks that the lists of an interface have one entry per node; `what` names the lists in the error.
-pub(super) fn check_lengths(
-    name: &str,
-    n: usize,
-    what: &str,
-    lists: &[(usize, &str)],
-) -> Result<()> {
-    match lists.iter().find(|list| list.0 != n) {
-        None => Ok(()),
-        Some((found, list)) => Err(Error::input(format!(
-            "the interface '{name}' lists {found} {list}, expected one for each of {n} {what}"
-        ))),
+/// The nodes of one interface. All lists have one entry per node.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct InterfaceNodes {
+    /// `left|right` for two bodies, `left.top above` for an obstacle.
+    pub name: String,
+    /// Parameters along the interface; in the plane the second one is zero.
+    pub t: Vec<[f64; 2]>,
+    /// Position.
+    pub points: Vec<[f64; 3]>,
+    /// Remaining distance between the sides.
+    pub gap: Vec<f64>,
+    /// Force at the node; positive where the sides press against each other.
+    pub multiplier: Vec<f64>,
+    /// Whether the sides touch.
+    pub active: Vec<bool>,
+    /// The part of the side that belongs to the node: in the plane a length. Empty if forces are not reported as
+    /// pressures.
+    pub area: Vec<f64>,
+}
+
+impl InterfaceNodes {
+    /// Checks that the lists have one entry per node.
+    pub(super) fn check(&self) -> Result<()> {
+        let n = self.t.len();
+        let areas = if self.has_pressure() {
+            self.area.len()
+        } else {
+            n
+        };
+        let lists = [
+            (self.points.len(), "points"),
+            (self.gap.len(), "gaps"),
+            (self.multiplier.len(), "multipliers"),
+            (self.active.len(), "states"),
+            (areas, "areas"),
+        ];
+        match lists.iter().find(|list| list.0 != n) {
+            None => Ok(()),
+            Some((found, list)) => Err(Error::input(format!(
+                "the interface '{}' lists {found} {list}, expected one for each of {n} nodes",
+                self.name
+            ))),
+        }
+    }
+
+    /// Whether pressures are shown: whether there are areas.
+    pub(super) fn has_pressure(&self) -> bool {
+        !self.area.is_empty()
+    }
+
+    /// Force per area, node by node; NaN where a node has no area.
+    pub fn pressure(&self) -> Vec<f64> {
+        let each = self.multiplier.iter().zip(&self.area);
+        each.map(|(&force, &area)| if area > 0.0 { force / area } else { f64::NAN })
+            .collect()
+    }
+
+    /// Sum of the multipliers.
+    pub fn force(&self) -> f64 {
+        self.multiplier.iter().sum()
     }
 }
 
-/// Force per area by node; NaN where a node has no area.
-pub(super) fn pressure(force: &[f64], area: &[f64]) -> Vec<f64> {
-    let each = force.iter().zip(area);
-    each.map(|(&force, &area)| if area > 0.0 { force / area } else { f64::NAN })
-        .collect()
+/// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), and with areas
+/// pressure and area; in the plane without s and z.
+pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, solid: bool) -> Table {
+    let interfaces: Vec<_> = interfaces.map(|i| (i, i.pressure())).collect();
+    let areas = solid || interfaces.iter().any(|(i, _)| i.has_pressure());
+    let nodes = interfaces.iter();
+    let nodes = nodes.flat_map(|(i, pressure)| (0..i.t.len()).map(move |k| (*i, pressure, k)));
+    Table::of(nodes)
+        .exact("name", |(i, _, _)| i.name.as_str())
+        .exact("t", |(i, _, k)| i.t[*k][0])
+        .when(solid, |t| t.exact("s", |(i, _, k)| i.t[*k][1]))
+        .exact("x", |(i, _, k)| i.points[*k][0])
+        .exact("y", |(i, _, k)| i.points[*k][1])
+        .when(solid, |t| t.exact("z", |(i, _, k)| i.points[*k][2]))
+        .exact("gap", |(i, _, k)| i.gap[*k])
+        .exact("multiplier", |(i, _, k)| i.multiplier[*k])
+        .exact("active", |(i, _, k)| u8::from(i.active[*k]))
+        .when(areas, |t| {
+            t.exact("pressure", |(_, pressure, k)| pressure.get(*k).copied())
+                .exact("area", |(i, _, k)| i.area.get(*k).copied())
+        })
+        .table()
 }
 
 /// The interfaces with the largest forces, at most `shown`, and the title, which gives the total number where there are
 /// more. Forces that are not finite come first: the reader must see them.
 pub(super) fn largest<'a, T>(
     interfaces: impl Iterator<Item = &'a T>,
-    force: fn(&T) -> f64,
+    nodes: fn(&T) -> &InterfaceNodes,
     shown: usize,
     title: &str,
 ) -> (Vec<&'a T>, String) {
-    let size = |t: &T| match force(t).abs() {
+    let size = |t: &T| match nodes(t).force().abs() {
         force if force.is_nan() => f64::INFINITY,
         force => force,
     };

@@ -9,6 +9,7 @@
 //! | [`destination`] | the destination of a command's results: terminal, JSON file, directory |
 //! | [`output`] | files that are written as a whole or not at all; standard output |
 //! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`], [`json::BenchReport`] |
+//! | [`interfaces`] | the data along interfaces, and their CSV |
 //! | [`drawing`] | pixels, vectors, text, colours, ticks |
 //! | [`tables`] | aligned text for terminals, CSV, and the tables of the commands; Table 1 of Lee (2010) as printed |
 //! | [`plots`] | line and scatter plots: Figure 3 of Lee (2010), contact along interfaces, energy and force over load steps |
@@ -18,7 +19,7 @@
 
 pub mod destination;
 pub mod drawing;
-mod interfaces;
+pub mod interfaces;
 pub mod json;
 pub mod output;
 pub mod paraview;

@@ -11,7 +11,7 @@ use crate::feti::settings::Adaptive;
 use crate::feti::{MethodSettings, PcType};
 use crate::mesh::contiguous_share;
 use crate::petsc::Session;
-use crate::report::tables::table::{Align, Table};
+use crate::report::tables::table::Table;
 use crate::scene::Scene;
 use crate::{Error, FetiFeti, Result};
 
@@ -220,36 +220,22 @@ fn text(family: &Family, [bodies, subdomains, elements]: [usize; 3]) -> String {
 
 /// The table that is printed and written as CSV.
 pub fn table(report: &Report) -> Table {
-    let exact = report.rows.iter().any(|r| r.dirichlet.exact.is_some());
-    let mut header = vec![
-        "problem",
-        "H_b/H_s",
-        "H_s/h",
-        "dofs",
-        "κ of M_D",
-        "it",
-        "κ of M_C",
-        "it",
-    ];
-    if exact {
-        header.extend(["exact M_D", "exact M_C"]);
-    }
-    let mut table = Table::new(header).align(0, Align::Left);
-    for r in &report.rows {
-        let mut cells = vec![
-            r.family.clone(),
-            r.subdomains.to_string(),
-            r.elements.to_string(),
-            r.dofs.to_string(),
-        ];
-        for found in [&r.dirichlet, &r.coarse_corrected] {
-            cells.extend([format!("{:.3}", found.kappa), found.iterations.to_string()]);
-        }
-        if exact {
-            let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
-            cells.extend([&r.dirichlet, &r.coarse_corrected].map(|f| number(f.exact)));
-        }
-        table.row(cells);
-    }
-    table
+    let exact = |of: &KappaOf| of.exact.map_or(String::new(), |v| format!("{v:.3}"));
+    Table::of(&report.rows)
+        .words("problem", |r| &r.family)
+        .numbers("H_b/H_s", |r| r.subdomains)
+        .numbers("H_s/h", |r| r.elements)
+        .numbers("dofs", |r| r.dofs)
+        .numbers("κ of M_D", |r| format!("{:.3}", r.dirichlet.kappa))
+        .numbers("it", |r| r.dirichlet.iterations)
+        .numbers("κ of M_C", |r| format!("{:.3}", r.coarse_corrected.kappa))
+        .numbers("it", |r| r.coarse_corrected.iterations)
+        .when(
+            report.rows.iter().any(|r| r.dirichlet.exact.is_some()),
+            |t| {
+                t.numbers("exact M_D", |r| exact(&r.dirichlet))
+                    .numbers("exact M_C", |r| exact(&r.coarse_corrected))
+            },
+        )
+        .table()
 }

@@ -57,40 +57,44 @@ fn bench(args: &[&str]) -> BenchReport {
 /// Whether a row has a solution. Ours must have one; another method may give a reason instead, and then has no times to
 /// compare.
 fn solved(row: &BenchRow) -> bool {
-    let what = format!("{} {}: {row:?}", row.method, row.layout);
-    let Some(message) = &row.message else {
-        assert!(row.converged, "{what}");
+    let what = format!("{} {}: {row:?}", row.run.method, row.layout);
+    let Some(message) = &row.run.message else {
+        assert!(row.run.converged, "{what}");
         return true;
     };
-    assert!(!row.is_ours() && !row.converged, "{what}");
+    assert!(!row.run.is_ours() && !row.run.converged, "{what}");
     assert!(!message.trim().is_empty(), "{what}");
     assert!(row.ratio.is_none(), "{what}");
-    println!("{}: {message}", row.method);
+    println!("{}: {message}", row.run.method);
     false
 }
 
 /// Properties of every case.
 fn check(case: &BenchCase, rounds: usize) {
     assert_eq!(case.rounds, rounds);
-    assert!(case.reference_residual.expect("a direct solution") < 1e-10);
+    assert!(case.facts.reference_residual.expect("a direct solution") < 1e-10);
     for row in case.methods.iter().filter(|r| solved(r)) {
-        let what = format!("{} {}: {row:?}", row.method, row.layout);
-        assert!(row.error.expect("an error") < 1e-4, "{what}");
-        assert!(row.residual.expect("a residual") <= case.rtol, "{what}");
+        let what = format!("{} {}: {row:?}", row.run.method, row.layout);
+        assert!(row.run.error.expect("an error") < 1e-4, "{what}");
+        assert!(
+            row.run.residual.expect("a residual") <= case.facts.rtol,
+            "{what}"
+        );
         assert_eq!(row.samples.len(), rounds, "{what}");
         for (round, sample) in (1..).zip(&row.samples) {
             assert!(sample.converged && sample.round == round, "{what}");
-            let [setup, solve, total] =
-                [sample.setup, sample.solve, sample.total].map(|s| s.expect("seconds"));
+            let s = sample.seconds;
+            let [setup, solve, total] = [s.setup, s.solve, s.total].map(|s| s.expect("seconds"));
             // Reading JSON may change the last digit.
             assert!((setup + solve - total).abs() <= 1e-14 * total);
             assert!(sample.recover.is_none_or(|r| r <= solve), "{what}");
-            assert_eq!(sample.recover.is_some(), row.is_ours(), "{what}");
+            assert_eq!(sample.recover.is_some(), row.run.is_ours(), "{what}");
         }
+        let phases = row.seconds.phases;
         let seconds = [
-            (row.seconds.setup, (|s| s.setup) as fn(&BenchSample) -> _),
-            (row.seconds.solve, |s| s.solve),
-            (row.seconds.total, |s| s.total),
+            (phases.setup, (|s| s.seconds.setup) as fn(&BenchSample) -> _),
+            (phases.solve, |s| s.seconds.solve),
+            (phases.total, |s| s.seconds.total),
             (row.seconds.again, |s| s.again),
             (row.memory_mb, |s| s.memory_mb),
         ];
@@ -139,7 +143,7 @@ fn interleaved(case: &BenchCase, rounds: usize) {
 
 fn names(rows: &[BenchRow]) -> Vec<(&str, &str, usize)> {
     rows.iter()
-        .map(|r| (r.method.as_str(), r.layout.as_str(), r.ranks))
+        .map(|r| (r.run.method.as_str(), r.layout.as_str(), r.run.ranks))
         .collect()
 }
 
@@ -154,10 +158,13 @@ fn every_method_runs_in_every_round() {
         panic!("one case")
     };
     assert_eq!(
-        (case.case.as_str(), case.scene.as_str()),
+        (case.case.as_str(), case.facts.scene.as_str()),
         ("four", "four bodies")
     );
-    assert_eq!((case.bodies, case.subdomains, case.dofs), (4, 8, 16 * 9));
+    assert_eq!(
+        (case.facts.bodies, case.facts.subdomains, case.facts.dofs),
+        (4, 8, 16 * 9)
+    );
     assert_eq!(
         names(&case.methods),
         [
@@ -203,17 +210,17 @@ fn contact_cases_have_their_steps() {
     ]);
     let case = &report.cases[0];
     check(case, 2);
-    let contact = case.contact.expect("inequalities");
+    let contact = case.facts.contact.expect("inequalities");
     assert_eq!(contact.rows, 9);
     for row in case.methods.iter().filter(|r| solved(r)) {
-        let found = row.contact.expect("a set");
+        let found = row.run.contact.expect("a set");
         assert_eq!(found.differ, Some(0), "{row:?}");
-        assert_eq!(row.set_given(), row.method == "bddc");
+        assert_eq!(row.run.set_given(), row.run.method == "bddc");
         match row.seconds.step {
-            None => assert!(row.set_given()),
+            None => assert!(row.run.set_given()),
             Some(step) => {
                 let steps = found.outer.expect("steps") as f64;
-                let total = row.seconds.total.expect("seconds");
+                let total = row.seconds.phases.total.expect("seconds");
                 assert!((step.median * steps / total.median - 1.0).abs() < 1e-12);
             }
         }
@@ -242,21 +249,21 @@ fn what_fails_is_said_and_not_run_again() {
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(dir.path("b.json")).expect("a report");
     let report: BenchReport = keys::read(&text, KEYS);
-    let rtol: Vec<f64> = report.cases.iter().map(|c| c.rtol).collect();
+    let rtol: Vec<f64> = report.cases.iter().map(|c| c.facts.rtol).collect();
     assert_eq!(rtol, [1e-9, 1e-6]);
     for case in &report.cases {
         let gamg = case
             .methods
             .iter()
-            .find(|r| r.method == "gamg")
+            .find(|r| r.run.method == "gamg")
             .expect("gamg");
-        let message = gamg.message.as_deref().expect("a message");
+        let message = gamg.run.message.as_deref().expect("a message");
         assert!(
             message.contains("round 1") && message.contains("DIVERGED_ITS"),
             "{message}"
         );
-        assert_eq!((gamg.samples.len(), gamg.converged), (1, false));
-        assert!(!solved(gamg) && gamg.seconds.total.is_none());
+        assert_eq!((gamg.samples.len(), gamg.run.converged), (1, false));
+        assert!(!solved(gamg) && gamg.seconds.phases.total.is_none());
         for row in case.methods.iter().filter(|r| solved(r)) {
             assert_eq!(row.samples.len(), 2, "{row:?}");
         }

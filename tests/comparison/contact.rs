@@ -7,24 +7,24 @@ use fetifeti::report::json::{CompareContact, CompareReport, CompareRow};
 use program::fetifeti;
 
 fn contact(row: &CompareRow) -> CompareContact {
-    row.contact.expect("what became of the inequalities")
+    row.run.contact.expect("what became of the inequalities")
 }
 
 /// Properties of every row, for any scene.
 fn check(report: &CompareReport, rtol: f64) {
-    let reference = report.contact.expect("inequalities");
-    assert!(report.reference_residual.expect("a direct solution") < 1e-11);
+    let reference = report.facts.contact.expect("inequalities");
+    assert!(report.facts.reference_residual.expect("a direct solution") < 1e-11);
     assert!(reference.feasibility.expect("a direct solution") < 1e-13);
     assert!(reference.min_multiplier.expect("a direct solution") > -1e-13);
     for r in report.rows.iter().filter(|r| solved(r)) {
-        let what = format!("{} on {} ranks: {r:?}", r.method, r.ranks);
+        let what = format!("{} on {} ranks: {r:?}", r.run.method, r.run.ranks);
         let c = contact(r);
-        assert!(r.residual.expect("a residual") <= rtol, "{what}");
-        assert!(r.error.expect("an error") < 10.0 * rtol, "{what}");
+        assert!(r.run.residual.expect("a residual") <= rtol, "{what}");
+        assert!(r.run.error.expect("an error") < 10.0 * rtol, "{what}");
         assert_eq!(c.differ, Some(0), "{what}");
         assert!(c.feasibility.expect("a violation") < 10.0 * rtol, "{what}");
         assert!(c.min_multiplier.expect("signs") > -100.0 * rtol, "{what}");
-        let last_set = ["bddc", "fetidp"].contains(&r.method.as_str());
+        let last_set = ["bddc", "fetidp"].contains(&r.run.method.as_str());
         assert_eq!(c.outer.is_none(), last_set, "{what}");
     }
 }
@@ -43,32 +43,32 @@ fn all_methods_agree_on_the_model_problem() {
     let scene = SceneFile::new("model", &model("[2, 1]", "16"));
     let report = scene.compare(&["-fetifeti_ksp_rtol", "1e-8"]);
     check(&report, 1e-8);
-    let methods: Vec<&str> = report.rows.iter().map(|r| r.method.as_str()).collect();
+    let methods: Vec<&str> = report.rows.iter().map(|r| r.run.method.as_str()).collect();
     assert_eq!(
         methods,
         ["fetifeti", "fetifeti", "bddc", "bddc", "fetidp", "fetidp", "gamg", "hypre", "mumps"]
     );
-    let reference = report.contact.expect("inequalities");
+    let reference = report.facts.contact.expect("inequalities");
     assert_eq!((reference.rows, reference.load_steps), (17, 1));
     // The upper part stays in contact, because the left body is pushed down there; in the lower part the right body
     // would have to pull.
     let active = reference.active.expect("a direct solution");
     assert!((1..17).contains(&active), "{active}");
     let [one, two] = [&report.rows[0], &report.rows[1]];
-    assert_eq!(one.iterations, two.iterations);
+    assert_eq!(one.run.iterations, two.run.iterations);
     assert_eq!(contact(one), contact(two));
     for row in report.rows.iter().filter(|r| solved(r)) {
-        assert_eq!(contact(row).active, active, "{}", row.method);
+        assert_eq!(contact(row).active, active, "{}", row.run.method);
         let outer = contact(row).outer;
         assert!(outer.is_none_or(|n| (2..12).contains(&n)), "{row:?}");
         // `iterations` are inner iterations of all steps; they are fewer than those of as many full solves.
-        let direct = row.method == "mumps";
-        assert_eq!(row.iterations.is_none(), direct, "{row:?}");
+        let direct = row.run.method == "mumps";
+        assert_eq!(row.run.iterations.is_none(), direct, "{row:?}");
     }
     // The loop with the direct solver needs one solve per set.
     let mumps = report.rows.last().expect("a row");
     if solved(mumps) {
-        assert!(mumps.error.is_some_and(|e| e < 1e-12), "{mumps:?}");
+        assert!(mumps.run.error.is_some_and(|e| e < 1e-12), "{mumps:?}");
         assert_eq!(contact(mumps).outer, reference.outer);
     }
 }
@@ -116,7 +116,7 @@ fn floating_bodies_gaps_and_obstacles_come_out_the_same() {
     let scene = SceneFile::new("pile", PILE);
     let report = scene.compare(&[]);
     check(&report, 1e-9);
-    let reference = report.contact.expect("inequalities");
+    let reference = report.facts.contact.expect("inequalities");
     let active = reference.active.expect("a direct solution");
     assert!(0 < active && active < reference.rows, "{reference:?}");
 }
@@ -146,7 +146,7 @@ fn the_last_load_step_is_solved_and_that_is_said() {
     let scene = SceneFile::new("steps", STEPS);
     let report = scene.compare(&["--with", "hypre,mumps,bddc"]);
     check(&report, 1e-6);
-    let reference = report.contact.expect("inequalities");
+    let reference = report.facts.contact.expect("inequalities");
     // The load has changed its sign: all nine nodes lie on the lower bound.
     assert_eq!((reference.rows, reference.active), (18, Some(9)));
     assert_eq!(reference.load_steps, 4);
@@ -175,7 +175,7 @@ fn the_tolerance_of_the_inner_solves_is_an_option() {
         let report = scene.compare(&options);
         check(&report, 1e-10);
         let gamg = report.rows.last().expect("gamg");
-        solved(gamg).then_some(gamg.iterations).flatten()
+        solved(gamg).then_some(gamg.run.iterations).flatten()
     };
     let both = iterations("1e-6").zip(iterations("0.3"));
     assert!(both.is_none_or(|(tight, loose)| tight > loose), "{both:?}");

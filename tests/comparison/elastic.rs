@@ -13,20 +13,20 @@ fn compare(name: &str, text: &str, more: &[&str]) -> CompareReport {
 
 /// Every method that claims a solution has found the same one; ours must claim one.
 fn check(report: &CompareReport) {
-    assert!(report.reference_residual.expect("a direct solution") < 1e-10);
+    assert!(report.facts.reference_residual.expect("a direct solution") < 1e-10);
     for r in report.rows.iter().filter(|r| solved(r)) {
-        let what = format!("{} on {} ranks: {r:?}", r.method, r.ranks);
-        assert!(r.residual.expect("a residual") <= 1e-9, "{what}");
-        assert!(r.error.expect("an error") < 1e-8, "{what}");
+        let what = format!("{} on {} ranks: {r:?}", r.run.method, r.run.ranks);
+        assert!(r.run.residual.expect("a residual") <= 1e-9, "{what}");
+        assert!(r.run.error.expect("an error") < 1e-8, "{what}");
     }
-    if let Some(reference) = report.contact {
+    if let Some(reference) = report.facts.contact {
         assert!(reference.feasibility.expect("a direct solution") < 1e-12);
         assert!(reference.min_multiplier.expect("a direct solution") > -1e-12);
         let active = reference.active.expect("a direct solution");
         assert!(0 < active && active < reference.rows, "{reference:?}");
         for r in report.rows.iter().filter(|r| solved(r)) {
-            let what = format!("{} on {} ranks: {r:?}", r.method, r.ranks);
-            let c = r.contact.expect("what became of the inequalities");
+            let what = format!("{} on {} ranks: {r:?}", r.run.method, r.run.ranks);
+            let c = r.run.contact.expect("what became of the inequalities");
             assert_eq!(c.differ, Some(0), "{what}");
             assert!(c.feasibility.expect("a violation") < 1e-7, "{what}");
             assert!(c.min_multiplier.expect("signs") > -1e-6, "{what}");
@@ -35,11 +35,11 @@ fn check(report: &CompareReport) {
 }
 
 fn methods(report: &CompareReport) -> Vec<&str> {
-    report.rows.iter().map(|r| r.method.as_str()).collect()
+    report.rows.iter().map(|r| r.run.method.as_str()).collect()
 }
 
 fn best<'a>(report: &'a CompareReport, method: &str) -> &'a CompareRow {
-    let row = report.rows.iter().find(|r| r.method == method);
+    let row = report.rows.iter().find(|r| r.run.method == method);
     row.expect("a row of this method")
 }
 
@@ -63,7 +63,7 @@ load = "1 + x*y"
     let report = compare("scalar", scene, &[]);
     check(&report);
     assert_eq!(methods(&report), ALL);
-    assert_eq!(report.dofs, 12 * 7 * 7);
+    assert_eq!(report.facts.dofs, 12 * 7 * 7);
 }
 
 /// Single components are prescribed on different sides; the stiffness jumps; the bodies have four and two subdomains.
@@ -94,11 +94,14 @@ fn all_methods_agree_on_tied_plates() {
     let report = compare("plane", PLANE, &[]);
     check(&report);
     assert_eq!(methods(&report), ALL);
-    assert_eq!((report.dofs, report.supports), (2 * 25 * 13 - 13 - 13, 0));
+    assert_eq!(
+        (report.facts.dofs, report.supports),
+        (2 * 25 * 13 - 13 - 13, 0)
+    );
     // With the rigid motions smoothed aggregation needs few iterations; without them it needs several times as many.
     let gamg = best(&report, "gamg");
     assert!(
-        !solved(gamg) || gamg.iterations.expect("iterations") < 100,
+        !solved(gamg) || gamg.run.iterations.expect("iterations") < 100,
         "{gamg:?}"
     );
 }
@@ -244,15 +247,18 @@ side = "right"
 plane = { point = [1.02, 0], normal = [-0.714, 0.70] }
 "#;
     let report = compare("wedge", scene, &["--with", "bddc,mumps"]);
-    assert_eq!(report.reference_residual, None);
+    assert_eq!(report.facts.reference_residual, None);
     for r in &report.rows {
-        if r.method == "fetifeti" {
+        if r.run.method == "fetifeti" {
             assert!(solved(r), "{r:?}");
-            assert_eq!((r.residual, r.error), (None, None));
+            assert_eq!((r.run.residual, r.run.error), (None, None));
             continue;
         }
-        let message = r.message.as_deref().expect("a message");
+        let message = r.run.message.as_deref().expect("a message");
         assert!(message.contains("at (1, 0, 0)"), "{message}");
-        assert_eq!((r.error, r.iterations, r.converged), (None, None, false));
+        assert_eq!(
+            (r.run.error, r.run.iterations, r.run.converged),
+            (None, None, false)
+        );
     }
 }

@@ -6,7 +6,8 @@ use fetifeti::report::json::{CompareReport, CompareRow};
 use program::fetifeti;
 
 fn row<'a>(report: &'a CompareReport, method: &str, parts: Option<usize>) -> &'a CompareRow {
-    let fits = |r: &&CompareRow| r.method == method && (parts.is_none() || r.subdomains == parts);
+    let fits =
+        |r: &&CompareRow| r.run.method == method && (parts.is_none() || r.run.subdomains == parts);
     report
         .rows
         .iter()
@@ -16,25 +17,25 @@ fn row<'a>(report: &'a CompareReport, method: &str, parts: Option<usize>) -> &'a
 
 /// Properties of every row, for any scene.
 fn check(report: &CompareReport, rtol: f64) {
-    assert_eq!(report.rtol, rtol);
-    assert!(report.reference_residual.expect("a direct solution") < 1e-11);
+    assert_eq!(report.facts.rtol, rtol);
+    assert!(report.facts.reference_residual.expect("a direct solution") < 1e-11);
     for r in report.rows.iter().filter(|r| solved(r)) {
-        let what = format!("{} on {} ranks: {r:?}", r.method, r.ranks);
-        assert!(r.residual.expect("a residual") <= rtol, "{what}");
+        let what = format!("{} on {} ranks: {r:?}", r.run.method, r.run.ranks);
+        assert!(r.run.residual.expect("a residual") <= rtol, "{what}");
         // ‖e‖_A ≤ ‖r‖ / √λ_min: the residual bounds the error up to the mesh's condition.
-        assert!(r.error.expect("an error") < 10.0 * rtol, "{what}");
+        assert!(r.run.error.expect("an error") < 10.0 * rtol, "{what}");
         assert!(r.seconds.total.expect("seconds") > 0.0, "{what}");
         let net = r.memory_mb.expect("MB") - r.memory_at_start_mb.expect("MB");
         assert!((0.0..2000.0).contains(&net), "{what}");
         assert_eq!(
-            r.kappa.is_some(),
-            r.iterations.is_some_and(|n| n > 0),
+            r.run.kappa.is_some(),
+            r.run.iterations.is_some_and(|n| n > 0),
             "{what}"
         );
     }
     let mumps = row(report, "mumps", None);
-    assert!(!solved(mumps) || mumps.error.expect("an error") < 1e-12);
-    assert_eq!((mumps.kappa, mumps.iterations), (None, None));
+    assert!(!solved(mumps) || mumps.run.error.expect("an error") < 1e-12);
+    assert_eq!((mumps.run.kappa, mumps.run.iterations), (None, None));
 }
 
 /// Two bodies with 2 + 4 subdomains, a jump of the coefficient, a load without symmetry; tied all along.
@@ -66,11 +67,11 @@ fn all_methods_agree_on_tied_bodies() {
     let report = scene.compare(&["-fetifeti_ksp_rtol", "1e-7"]);
     check(&report, 1e-7);
     // Nodes of both bodies, minus the held ones and the second copies on the common face.
-    assert_eq!(report.dofs, 13 * 12 + 13 * 13 - 13);
+    assert_eq!(report.facts.dofs, 13 * 12 + 13 * 13 - 13);
     let methods: Vec<(&str, Option<usize>, usize)> = report
         .rows
         .iter()
-        .map(|r| (r.method.as_str(), r.subdomains, r.ranks))
+        .map(|r| (r.run.method.as_str(), r.run.subdomains, r.run.ranks))
         .collect();
     assert_eq!(
         methods,
@@ -89,15 +90,15 @@ fn all_methods_agree_on_tied_bodies() {
     for parts in [6, 2] {
         // With the same primal space and scaling, the spectra of BDDC and FETI-DP agree except for eigenvalues 1.
         let both = ["bddc", "fetidp"].map(|m| row(&report, m, Some(parts)));
-        let same_try = both[0].rescue == both[1].rescue;
+        let same_try = both[0].run.rescue == both[1].run.rescue;
         if same_try && both.iter().all(|r| solved(r)) {
-            let [bddc, fetidp] = both.map(|r| r.kappa.expect("κ"));
+            let [bddc, fetidp] = both.map(|r| r.run.kappa.expect("κ"));
             let ratio = bddc / fetidp;
             assert!((ratio - 1.0).abs() < 0.1, "{parts}: {bddc} and {fetidp}");
         }
     }
     let [one, two] = [&report.rows[0], &report.rows[1]];
-    assert_eq!(one.iterations, two.iterations);
+    assert_eq!(one.run.iterations, two.run.iterations);
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn all_methods_agree_on_partly_tied_bodies() {
     let report = scene.compare(&[]);
     check(&report, 1e-6);
     // Five of the thirteen nodes of the face are tied.
-    assert_eq!(report.dofs, 13 * 12 + 13 * 13 - 5);
+    assert_eq!(report.facts.dofs, 13 * 12 + 13 * 13 - 5);
 }
 
 #[test]
@@ -124,18 +125,18 @@ fn options_of_a_baseline_reach_it_alone_and_its_failure_is_a_row() {
     ];
     let report = scene.compare(&options);
     let gamg = row(&report, "gamg", None);
-    assert!(!gamg.converged);
-    assert_eq!(gamg.converged_reason, "DIVERGED_ITS");
+    assert!(!gamg.run.converged);
+    assert_eq!(gamg.run.converged_reason, "DIVERGED_ITS");
     assert!(
-        !solved(gamg) && gamg.error.is_some_and(|e| e > 1e-6),
+        !solved(gamg) && gamg.run.error.is_some_and(|e| e > 1e-6),
         "{gamg:?}"
     );
     let hypre = row(&report, "hypre", None);
-    let message = hypre.message.as_deref().expect("a message");
+    let message = hypre.run.message.as_deref().expect("a message");
     assert!(message.contains("no_such_thing"), "{message}");
-    assert_eq!((hypre.error, hypre.iterations), (None, None));
+    assert_eq!((hypre.run.error, hypre.run.iterations), (None, None));
     assert!(solved(row(&report, "fetifeti", None)));
-    let mumps = row(&report, "mumps", None).message.as_deref();
+    let mumps = row(&report, "mumps", None).run.message.as_deref();
     assert!(
         mumps.is_none_or(|m| !m.contains("no_such_thing")),
         "{mumps:?}"
@@ -147,8 +148,8 @@ fn options_of_a_baseline_reach_it_alone_and_its_failure_is_a_row() {
 fn a_second_try_is_told_with_its_options() {
     let scene = SceneFile::new("rescue", TIED);
     let report = scene.compare(&["--with", "bddc", "-bddc_ksp_max_it", "1"]);
-    for bddc in report.rows.iter().filter(|r| r.method == "bddc") {
-        let options = bddc.rescue.as_deref().expect("options of a second try");
+    for bddc in report.rows.iter().filter(|r| r.run.method == "bddc") {
+        let options = bddc.run.rescue.as_deref().expect("options of a second try");
         assert!(options.starts_with("-bddc_"), "{options}");
         assert!(!solved(bddc), "one iteration is too few: {bddc:?}");
     }

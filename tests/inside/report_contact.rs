@@ -1,6 +1,7 @@
 //! The files about contact, written as for a run with 2 and with 180 interfaces and read back: pictures, profiles, and
 //! a time series as ParaView reads it. They stay in target/tmp/report_contact for inspection.
 
+use fetifeti::report::interfaces::InterfaceNodes;
 use fetifeti::report::json::contact::LoadStep;
 use fetifeti::report::paraview::contact_fields::ContactFields;
 use fetifeti::report::paraview::pvd::Pvd;
@@ -101,20 +102,23 @@ impl Bodies {
             };
             let s: Vec<f64> = (0..=self.n).map(|i| i as f64 / self.n as f64).collect();
             let shape: Vec<f64> = s.iter().map(|s| height - (s - middle).powi(2)).collect();
-            Profile {
+            let nodes = InterfaceNodes {
                 name,
-                label: if along[0] > 0.0 { "x" } else { "y" }.into(),
                 t: s.iter()
-                    .map(|s| from[0] * along[0] + from[1] * along[1] + s)
+                    .map(|s| [from[0] * along[0] + from[1] * along[1] + s, 0.0])
                     .collect(),
                 points: s
                     .iter()
-                    .map(|s| [from[0] + s * along[0], from[1] + s * along[1]])
+                    .map(|s| [from[0] + s * along[0], from[1] + s * along[1], 0.0])
                     .collect(),
                 gap: shape.iter().map(|v| 0.01 * (-v).max(0.0)).collect(),
                 multiplier: shape.iter().map(|v| scale * v.max(0.0)).collect(),
                 active: shape.iter().map(|&v| v > 0.0).collect(),
                 area: Vec::new(),
+            };
+            Profile {
+                nodes,
+                label: if along[0] > 0.0 { "x" } else { "y" }.into(),
             }
         };
         faces.map(profile).collect()
@@ -123,12 +127,14 @@ impl Bodies {
     /// The faces of the elements along the interfaces: closed where both ends are.
     fn marks(&self, profiles: &[Profile]) -> Vec<ContactMark> {
         let of = |p: &Profile| {
+            let nodes = &p.nodes;
+            let at = |k: usize| [nodes.points[k][0], nodes.points[k][1]];
             let mark = |k: usize| ContactMark {
-                from: p.points[k],
-                to: p.points[k + 1],
-                closed: p.active[k] && p.active[k + 1],
+                from: at(k),
+                to: at(k + 1),
+                closed: nodes.active[k] && nodes.active[k + 1],
             };
-            (0..p.t.len() - 1).map(mark).collect::<Vec<_>>()
+            (0..nodes.t.len() - 1).map(mark).collect::<Vec<_>>()
         };
         profiles.iter().flat_map(of).collect()
     }
@@ -340,9 +346,9 @@ fn a_time_series_reads_back() {
         let t = f64::from(step) / 3.0;
         let profiles = bodies.profiles(t);
         let mut contact = ContactFields::new(points.len());
-        for p in &profiles {
+        for p in profiles.iter().map(|p| &p.nodes) {
             for k in 0..p.t.len() {
-                let here = |q: &&usize| bodies.points[**q] == p.points[k];
+                let here = |q: &&usize| bodies.points[**q] == p.points[k][..2];
                 for &point in (0..points.len()).collect::<Vec<_>>().iter().filter(here) {
                     contact
                         .add(point, p.multiplier[k], p.gap[k], p.active[k])
@@ -362,9 +368,9 @@ fn a_time_series_reads_back() {
             t,
             outer_iterations: 3,
             iterations: 40,
-            active: profiles[0].active.iter().filter(|a| **a).count(),
+            active: profiles[0].nodes.active.iter().filter(|a| **a).count(),
             energy: -t * t,
-            contact_force: profiles[0].force(),
+            contact_force: profiles[0].nodes.force(),
         });
 
         // After every step the collection exists and lists every file so far.
@@ -383,7 +389,7 @@ fn a_time_series_reads_back() {
             let named = |name: &str| arrays.iter().find(|a| a.get("Name") == name).expect(name);
             let (multiplier, gap) = (floats(named("multiplier")), floats(named("gap")));
             let (touches, candidate) = (integers(named("contact")), integers(named("candidate")));
-            let p = &bodies.profiles(time)[0];
+            let p = &bodies.profiles(time)[0].nodes;
             assert!(multiplier.iter().chain(&gap).all(|v| v.is_finite()));
             // Both sides of the interface have multipliers, the rest of the bodies has none.
             let total: f64 = multiplier.iter().sum();

@@ -21,21 +21,21 @@ pub const KEYS: Keys = &[
 /// Whether a row has a solution. Ours must have one. A row of another method may give a reason instead: whether PETSc's
 /// solvers converge is beyond our control and differs from processor to processor.
 pub fn solved(row: &CompareRow) -> bool {
-    let what = format!("{} on {} ranks: {row:?}", row.method, row.ranks);
-    let Some(message) = &row.message else {
-        assert!(row.converged, "{what}");
-        assert!(row.converged_reason.starts_with("CONVERGED"), "{what}");
+    let what = format!("{} on {} ranks: {row:?}", row.run.method, row.run.ranks);
+    let Some(message) = &row.run.message else {
+        assert!(row.run.converged, "{what}");
+        assert!(row.run.converged_reason.starts_with("CONVERGED"), "{what}");
         return true;
     };
-    assert_ne!(row.method, "fetifeti", "{what}");
-    assert!(!message.trim().is_empty() && !row.converged, "{what}");
+    assert_ne!(row.run.method, "fetifeti", "{what}");
+    assert!(!message.trim().is_empty() && !row.run.converged, "{what}");
     // A method that broke down has no measurements; one that stopped early has those of the judge.
-    let left = row.converged_reason.is_empty();
+    let left = row.run.converged_reason.is_empty();
     assert!(
-        !left || (row.error, row.iterations, row.kappa) == (None, None, None),
+        !left || (row.run.error, row.run.iterations, row.run.kappa) == (None, None, None),
         "{what}"
     );
-    println!("{}: {message}", row.method);
+    println!("{}: {message}", row.run.method);
     false
 }
 

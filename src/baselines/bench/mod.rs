@@ -13,15 +13,15 @@ use std::path::PathBuf;
 
 use super::compare::on_first_rank;
 use super::launch::{Launcher, Workspace};
-use super::methods::{forwarded, inequalities, row, sentence, Left, Methods, Ran};
-use super::plan::{Layouts, Plan, Run};
+use super::methods::{self, facts, forwarded, judged, row, sentence, stopped, Left, Methods, Ran};
+use super::plan::{Layouts, Plan};
 use super::table::{self, Baseline};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
-use crate::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, CompareRow};
+use crate::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, MethodRun};
 use crate::report::output;
 use crate::report::tables::bench as tables;
-use crate::scene::{distribution, Numbering, Scene};
+use crate::scene::{distribution, Scene};
 use crate::{Error, Result};
 use cases::{Named, CASES};
 
@@ -160,17 +160,9 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
                 progress(wanted, &format!("{}, direct solution", case.name));
                 let (numbers, solutions): (Vec<usize>, Vec<_>) = first.into_iter().unzip();
                 let verdict = methods.judge(solutions)?;
-                now.reference_residual = verdict.reference.and_then(|r| r.residual);
-                now.contact = inequalities(&case.scene, &verdict);
+                judged(&mut now.facts, &case.scene, &verdict);
                 for (k, judgement) in numbers.into_iter().zip(&verdict.solutions) {
-                    let row = &mut now.methods[k];
-                    let mut judged = CompareRow {
-                        contact: row.contact,
-                        ..CompareRow::default()
-                    };
-                    sentence(&mut judged, judgement);
-                    (row.error, row.residual) = (judged.error, judged.residual);
-                    row.contact = judged.contact;
+                    sentence(&mut now.methods[k].run, judgement);
                 }
             }
             now.rounds = round;
@@ -182,19 +174,8 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
         }
     }
     write(destination, cases, &report)?;
-    let stopped = report.cases.iter().flat_map(|c| {
-        let rows = c.methods.iter();
-        rows.filter(|r| r.is_ours() && !r.converged_reason.starts_with("CONVERGED"))
-            .map(move |r| (c, r))
-    });
-    match stopped.into_iter().next() {
-        None => Ok(()),
-        Some((case, row)) => Err(Error::NotConverged(format!(
-            "fetifeti on {}: {}",
-            case.case,
-            row.message.as_deref().unwrap_or(&row.converged_reason)
-        ))),
-    }
+    let cases = report.cases.iter();
+    stopped(cases.flat_map(|c| c.methods.iter().map(|r| (&r.run, c.case.clone()))))
 }
 
 /// Runs every method that has not failed so far. Returns the numbers of the methods that have left a solution, with the
@@ -208,7 +189,7 @@ fn one_round(
 ) -> Result<Vec<(usize, Left)>> {
     let mut solutions = Vec::new();
     for (k, run) in case.plan.runs.iter().enumerate() {
-        let known = &now.methods[k];
+        let known = &now.methods[k].run;
         if known.message.is_some() {
             continue;
         }
@@ -231,38 +212,29 @@ fn one_round(
             solutions.push((k, solution));
         }
         let sample = sample(&ran, round, *sequence);
-        let seconds = match (sample.setup, sample.solve) {
+        let seconds = match (sample.seconds.setup, sample.seconds.solve) {
             (Some(setup), Some(solve)) => format!("{setup:.3} s + {solve:.3} s"),
             _ => "failed".to_string(),
         };
         let of = format!("round {round} of {}", wanted.rounds);
         progress(wanted, &format!("{}, {of}, {title}: {seconds}", case.name));
-        record(&mut now.methods[k], row(run, ran), sample);
+        record(&mut now.methods[k], row(run, ran).run, sample);
     }
     Ok(solutions)
 }
 
 /// The record of a case before its first round.
 fn blank(case: &Case) -> BenchCase {
-    let row = |run: &Run| BenchRow {
-        method: run.name().into(),
+    let rows = case.plan.runs.iter().map(|run| BenchRow {
+        run: methods::blank(run),
         layout: run.layout.into(),
-        subdomains: run.parts,
-        ranks: run.ranks,
-        threads: run.threads,
         ..BenchRow::default()
-    };
+    });
     BenchCase {
         case: case.name.clone(),
-        scene: case.scene.title.clone(),
-        bodies: case.scene.n_bodies(),
-        subdomains: case.scene.n_subdomains(),
-        dofs: Numbering::new(&case.scene).len() as usize,
-        rtol: case.plan.rtol,
+        facts: facts(&case.scene, &case.plan),
         rounds: 0,
-        reference_residual: None,
-        contact: None,
-        methods: case.plan.runs.iter().map(row).collect(),
+        methods: rows.collect(),
     }
 }
 
@@ -277,11 +249,8 @@ fn sample(ran: &Ran, round: usize, sequence: usize) -> BenchSample {
         return blank;
     };
     BenchSample {
-        assemble: Some(o.assemble),
-        setup: Some(o.setup),
-        solve: Some(o.solve),
+        seconds: methods::seconds(o),
         recover: o.recover,
-        total: Some(o.setup + o.solve),
         again: o.again,
         outer: o.contact.as_ref().and_then(|c| c.steps),
         iterations: o.iterations,
@@ -294,19 +263,18 @@ fn sample(ran: &Ran, round: usize, sequence: usize) -> BenchSample {
 
 /// Enters a run into its row. Facts that do not change from round to round are those of the first round, unless a later
 /// round fails.
-fn record(row: &mut BenchRow, ran: CompareRow, sample: BenchSample) {
-    if sample.round == 1 {
-        row.kappa = ran.kappa;
-        row.iterations = ran.iterations;
-        row.residual = ran.residual;
-        row.contact = ran.contact;
-        row.rtol = ran.rtol;
-        row.rescue = ran.rescue;
-    }
-    row.converged = ran.converged;
-    row.converged_reason = ran.converged_reason;
-    let several = |m: String| format!("round {}: {m}", sample.round);
-    row.message = ran.message.map(several);
+fn record(row: &mut BenchRow, ran: MethodRun, sample: BenchSample) {
+    let known = std::mem::take(&mut row.run);
+    let message = ran.message.clone();
+    row.run = match sample.round {
+        1 => ran,
+        _ => MethodRun {
+            converged: ran.converged,
+            converged_reason: ran.converged_reason,
+            ..known
+        },
+    };
+    row.run.message = message.map(|m| format!("round {}: {m}", sample.round));
     row.samples.push(sample);
 }
 

@@ -1,7 +1,6 @@
 //! The record of `bench`.
 
-use super::compare::{CompareContact, CompareInequalities};
-use super::number;
+use super::compare::{ComparedScene, MethodRun, PhaseSeconds};
 use serde::{Deserialize, Serialize};
 
 /// The report of `bench`: one document for all cases.
@@ -29,28 +28,15 @@ impl BenchReport {
 }
 
 /// One scene.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchCase {
     /// Its name; the stem of the file for a scene of the user.
     pub case: String,
-    /// The scene's title.
-    pub scene: String,
-    /// Bodies.
-    pub bodies: usize,
-    /// Subdomains over all bodies.
-    pub subdomains: usize,
-    /// Unknowns of the assembled problem.
-    pub dofs: usize,
-    /// Target for every method: the relative residual of the assembled problem.
-    #[serde(with = "number")]
-    pub rtol: f64,
+    /// The scene and its direct solution.
+    #[serde(flatten)]
+    pub facts: ComparedScene,
     /// Number of finished rounds.
     pub rounds: usize,
-    /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
-    pub reference_residual: Option<f64>,
-    /// In scenes with inequalities: their state in the direct solution.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<CompareInequalities>,
     /// The methods, in the order in which every round runs them.
     pub methods: Vec<BenchRow>,
 }
@@ -58,21 +44,12 @@ pub struct BenchCase {
 /// One method in one layout.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchRow {
-    /// The method, such as `fetifeti`, `bddc`, `gamg`.
-    pub method: String,
+    /// The method and its result.
+    #[serde(flatten)]
+    pub run: MethodRun,
     /// How the method uses the machine: `threads` or `ranks` for ours, for the others a rank per `core`, `body` or
     /// `subdomain`.
     pub layout: String,
-    /// Number of parts of the domain for the method; `null` for methods without parts.
-    pub subdomains: Option<usize>,
-    /// MPI ranks.
-    pub ranks: usize,
-    /// Threads per rank.
-    pub threads: usize,
-    /// CG's estimate of κ in the first round.
-    pub kappa: Option<f64>,
-    /// Iterations of all contact steps in the first round; `null` for a direct solver.
-    pub iterations: Option<usize>,
     /// Wall-clock time over the rounds that converged.
     pub seconds: BenchSeconds,
     /// The median total over that of the fastest variant of ours.
@@ -81,25 +58,6 @@ pub struct BenchRow {
     pub memory_mb: Option<Spread>,
     /// The part of `memory_mb` that was used before the problem was read: program and libraries, once per rank.
     pub memory_at_start_mb: Option<Spread>,
-    /// Relative error in the energy norm against the direct solution, in the first round.
-    pub error: Option<f64>,
-    /// Relative residual of the assembled problem, in the first round.
-    pub residual: Option<f64>,
-    /// In scenes with inequalities: their state in the first round.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub contact: Option<CompareContact>,
-    /// Relative tolerance of the method's own residual in the first round.
-    pub rtol: Option<f64>,
-    /// Whether every run reached the residual; a method that did not is not run again.
-    pub converged: bool,
-    /// PETSc's name for the reason why the last iteration ended.
-    pub converged_reason: String,
-    /// Options of a second try, if the method needs one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rescue: Option<String>,
-    /// One sentence if a run failed or did not converge.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub message: Option<String>,
     /// All runs.
     pub samples: Vec<BenchSample>,
 }
@@ -107,16 +65,11 @@ pub struct BenchRow {
 /// Wall-clock seconds of one method over the rounds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct BenchSeconds {
-    /// Mesh and matrices; not part of the total.
-    pub assemble: Option<Spread>,
-    /// Factorisations, hierarchies, coarse problems.
-    pub setup: Option<Spread>,
-    /// Iterations and recovery.
-    pub solve: Option<Spread>,
+    /// The phases.
+    #[serde(flatten)]
+    pub phases: PhaseSeconds<Spread>,
     /// The part of `solve` for the recovery of displacements from multipliers.
     pub recover: Option<Spread>,
-    /// Set-up and solve.
-    pub total: Option<Spread>,
     /// A solve for another load with the set-up of the first; in contact scenes the whole loop, including the set-up
     /// for its active sets.
     pub again: Option<Spread>,
@@ -131,16 +84,11 @@ pub struct BenchSample {
     pub round: usize,
     /// The position of this run among all runs of the case, from 1.
     pub sequence: usize,
-    /// Seconds of assembly.
-    pub assemble: Option<f64>,
-    /// Seconds of set-up.
-    pub setup: Option<f64>,
-    /// Seconds of the solve, with the recovery.
-    pub solve: Option<f64>,
+    /// Seconds of the phases.
+    #[serde(flatten)]
+    pub seconds: PhaseSeconds<f64>,
     /// Seconds of the recovery.
     pub recover: Option<f64>,
-    /// Set-up and solve.
-    pub total: Option<f64>,
     /// Seconds of the second solve.
     pub again: Option<f64>,
     /// Number of active sets that were solved for.
@@ -187,27 +135,24 @@ impl BenchRow {
         let converged = || self.samples.iter().filter(|s| s.converged);
         let spread = |of: fn(&BenchSample) -> Option<f64>| Spread::of(converged().filter_map(of));
         let seconds = BenchSeconds {
-            assemble: spread(|s| s.assemble),
-            setup: spread(|s| s.setup),
-            solve: spread(|s| s.solve),
+            phases: PhaseSeconds {
+                assemble: spread(|s| s.seconds.assemble),
+                setup: spread(|s| s.seconds.setup),
+                solve: spread(|s| s.seconds.solve),
+                total: spread(|s| s.seconds.total),
+            },
             recover: spread(|s| s.recover),
-            total: spread(|s| s.total),
             again: spread(|s| s.again),
-            step: spread(|s| Some(s.total? / s.outer.filter(|n| *n > 0)? as f64)),
+            step: spread(|s| Some(s.seconds.total? / s.outer.filter(|n| *n > 0)? as f64)),
         };
         let memory = [spread(|s| s.memory_mb), spread(|s| s.memory_at_start_mb)];
         self.seconds = seconds;
         [self.memory_mb, self.memory_at_start_mb] = memory;
     }
 
-    /// Whether this is our method.
-    pub fn is_ours(&self) -> bool {
-        self.method == "fetifeti"
-    }
-
-    /// Whether the method solves only the equations of an active set that another method has found.
-    pub fn set_given(&self) -> bool {
-        self.contact.is_some_and(|c| c.outer.is_none())
+    /// The median total.
+    pub fn total(&self) -> Option<f64> {
+        self.seconds.phases.total.map(|t| t.median)
     }
 }
 
@@ -215,25 +160,19 @@ impl BenchCase {
     /// Computes medians and ranges of every method, and their ratios to the fastest variant of ours.
     pub fn sum_up(&mut self) {
         self.methods.iter_mut().for_each(BenchRow::sum_up);
-        let ours = self.fastest(true).and_then(|r| r.seconds.total);
+        let ours = self.fastest(true).and_then(BenchRow::total);
         for row in &mut self.methods {
-            row.ratio = row
-                .seconds
-                .total
-                .zip(ours)
-                .map(|(t, ours)| t.median / ours.median);
+            row.ratio = row.total().zip(ours).map(|(total, ours)| total / ours);
         }
     }
 
     /// The fastest variant of ours, or of the others. Only methods that solve the whole problem and always converged
     /// are compared, by the median total.
     pub fn fastest(&self, ours: bool) -> Option<&BenchRow> {
-        let total = |r: &BenchRow| r.seconds.total.map_or(f64::INFINITY, |t| t.median);
-        let fit = |r: &&BenchRow| {
-            r.is_ours() == ours && r.converged && !r.set_given() && r.seconds.total.is_some()
-        };
-        let rows = self.methods.iter().filter(fit);
-        rows.min_by(|a, b| total(a).total_cmp(&total(b)))
+        let fit = |run: &MethodRun| run.is_ours() == ours && run.converged && !run.set_given();
+        let rows = self.methods.iter().filter(|r| fit(&r.run));
+        let timed = rows.filter_map(|r| Some((r, r.total()?)));
+        timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(row, _)| row)
     }
 }
 

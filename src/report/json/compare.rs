@@ -1,4 +1,4 @@
-//! The record of `compare`.
+//! The record of `compare`, and what it shares with that of `bench`.
 
 use super::number;
 use serde::{Deserialize, Serialize};
@@ -6,6 +6,22 @@ use serde::{Deserialize, Serialize};
 /// The report of `compare`: facts about the problem, then one row per method and layout.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CompareReport {
+    /// The scene and its direct solution.
+    #[serde(flatten)]
+    pub facts: ComparedScene,
+    /// Number of cores given to methods without a layout of their own.
+    pub cores: usize,
+    /// Number of rigid motions that nothing in the scene holds. The assembled problem has the same number of supports,
+    /// which bear no force.
+    #[serde(default)]
+    pub supports: usize,
+    /// The methods.
+    pub rows: Vec<CompareRow>,
+}
+
+/// A scene on which methods are compared, and its direct solution.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ComparedScene {
     /// The scene's title.
     pub scene: String,
     /// Bodies.
@@ -17,24 +33,30 @@ pub struct CompareReport {
     /// Target for every method: the relative residual ‖b − A u‖₂ / ‖b‖₂ of the assembled problem.
     #[serde(with = "number")]
     pub rtol: f64,
-    /// Number of cores given to methods without a layout of their own.
-    pub cores: usize,
-    /// Number of rigid motions that nothing in the scene holds. The assembled problem has the same number of supports,
-    /// which bear no force.
-    #[serde(default)]
-    pub supports: usize,
     /// Relative residual of the refined direct solution that errors are measured against; `null` if there is none.
     pub reference_residual: Option<f64>,
     /// In scenes with inequalities: their state in the direct solution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<CompareInequalities>,
-    /// The methods.
-    pub rows: Vec<CompareRow>,
 }
 
 /// One method in one layout.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompareRow {
+    /// The method and its result.
+    #[serde(flatten)]
+    pub run: MethodRun,
+    /// Wall-clock time by phase.
+    pub seconds: PhaseSeconds<f64>,
+    /// Largest resident memory over the ranks, summed, in MB of 10⁶ bytes.
+    pub memory_mb: Option<f64>,
+    /// The part of `memory_mb` that was used before the problem was read: program and libraries, once per rank.
+    pub memory_at_start_mb: Option<f64>,
+}
+
+/// A method in one layout, and the result of its run; in `bench` of the first round.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct MethodRun {
     /// The method, such as `fetifeti`, `bddc`, `gamg`.
     pub method: String,
     /// Number of parts of the domain for the method; `null` for methods without parts.
@@ -47,12 +69,6 @@ pub struct CompareRow {
     pub kappa: Option<f64>,
     /// Iterations of all contact steps; `null` for a direct solver or a run that failed.
     pub iterations: Option<usize>,
-    /// Wall-clock time by phase.
-    pub seconds: CompareSeconds,
-    /// Largest resident memory over the ranks, summed, in MB of 10⁶ bytes.
-    pub memory_mb: Option<f64>,
-    /// The part of `memory_mb` that was used before the problem was read: program and libraries, once per rank.
-    pub memory_at_start_mb: Option<f64>,
     /// Relative error in the energy norm against the assembled direct solution.
     pub error: Option<f64>,
     /// The relative residual of the assembled problem that was reached.
@@ -62,9 +78,9 @@ pub struct CompareRow {
     pub contact: Option<CompareContact>,
     /// Relative tolerance of the method's own residual in the run that reached `residual`.
     pub rtol: Option<f64>,
-    /// Whether the residual was reached.
+    /// Whether the residual was reached; in `bench` in every round. A method that did not reach it is not run again.
     pub converged: bool,
-    /// PETSc's name for the reason why the iteration ended.
+    /// PETSc's name for the reason why the iteration ended; in `bench` the last one.
     pub converged_reason: String,
     /// Options of the second try, where the first one failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -72,6 +88,18 @@ pub struct CompareRow {
     /// One sentence if the method could not run or did not converge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
+}
+
+impl MethodRun {
+    /// Whether this is our method.
+    pub fn is_ours(&self) -> bool {
+        self.method == "fetifeti"
+    }
+
+    /// Whether the method solves only the equations of an active set that another method has found.
+    pub fn set_given(&self) -> bool {
+        self.contact.is_some_and(|c| c.outer.is_none())
+    }
 }
 
 /// The inequalities in the direct solution of `compare`.
@@ -107,17 +135,17 @@ pub struct CompareContact {
     pub min_multiplier: Option<f64>,
 }
 
-/// Wall-clock seconds of one method in `compare`.
+/// Wall-clock seconds by phase; each is a number, or the spread of several.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct CompareSeconds {
-    /// Mesh and matrices.
-    pub assemble: Option<f64>,
+pub struct PhaseSeconds<T> {
+    /// Mesh and matrices; not part of the total.
+    pub assemble: Option<T>,
     /// Factorisations, hierarchies, coarse problems.
-    pub setup: Option<f64>,
+    pub setup: Option<T>,
     /// Iterations and recovery.
-    pub solve: Option<f64>,
+    pub solve: Option<T>,
     /// Set-up and solve.
-    pub total: Option<f64>,
+    pub total: Option<T>,
 }
 
 #[cfg(test)]

@@ -12,13 +12,16 @@ mod spectrum;
 mod table1;
 
 pub use bench::{BenchCase, BenchReport, BenchRow, BenchSample, BenchSeconds, Spread};
-pub use compare::{CompareContact, CompareInequalities, CompareReport, CompareRow, CompareSeconds};
+pub use compare::{
+    CompareContact, CompareInequalities, CompareReport, CompareRow, ComparedScene, MethodRun,
+    PhaseSeconds,
+};
 pub use solve::{
     Communication, ErrorNorms, Iterations, Kkt, Multipliers, Operators, PerIteration, Seconds,
     SolveReport,
 };
 pub use spectrum::{Condition, Spectrum};
-pub use table1::{CoarseCorrected, PaperSide, Table1Row, Table1Side};
+pub use table1::{PaperSide, PcResult, Table1Row, Table1Side};
 
 use super::output;
 use crate::{Error, Result};

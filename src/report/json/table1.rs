@@ -17,7 +17,7 @@ pub struct Table1Row {
     pub middle_third: Table1Side,
 }
 
-/// One column of a row of `table1`. Every κ is a plain number.
+/// One column of a row of `table1`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Table1Side {
     /// Rows of B, B_loc and B_gl together.
@@ -26,39 +26,37 @@ pub struct Table1Side {
     pub local_multipliers: usize,
     /// Bodies that touch no Dirichlet side.
     pub floating_bodies: usize,
-    /// Iterations with M_D.
-    pub iterations: usize,
-    /// Exact κ with M_D; `null` where it was not asked for.
-    pub exact: Option<f64>,
-    /// CG's estimate of κ with M_D.
-    pub estimate: Option<f64>,
-    /// Exact λ_min with M_D.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lambda_min: Option<f64>,
-    /// Exact λ_max with M_D.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lambda_max: Option<f64>,
+    /// The results with M_D.
+    #[serde(flatten)]
+    pub dirichlet: PcResult,
     /// The paper's printed numbers; `null` in a row that the paper does not have.
     pub paper: Option<PaperSide>,
     /// The results with M_C.
-    pub coarse_corrected: CoarseCorrected,
+    pub coarse_corrected: PcResult,
 }
 
-/// The M_C part of [`Table1Side`].
+/// The results with one preconditioner. Every κ is a plain number.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CoarseCorrected {
-    /// Exact κ with M_C; `null` where it was not asked for.
+pub struct PcResult {
+    /// Exact κ; `null` where it was not asked for.
     pub exact: Option<f64>,
-    /// CG's estimate of κ with M_C.
+    /// CG's estimate of κ.
     pub estimate: Option<f64>,
-    /// Exact λ_min with M_C.
+    /// Exact λ_min.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lambda_min: Option<f64>,
-    /// Exact λ_max with M_C.
+    /// Exact λ_max.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lambda_max: Option<f64>,
-    /// Iterations with M_C.
+    /// Iterations.
     pub iterations: usize,
+}
+
+impl PcResult {
+    /// The exact κ, or else CG's estimate.
+    pub fn kappa(&self) -> Option<f64> {
+        self.exact.or(self.estimate)
+    }
 }
 
 /// The paper's numbers for one column of one row.

@@ -7,10 +7,7 @@ use super::values::{Field, Values};
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use crate::report::drawing::raster::Raster;
 use crate::report::drawing::ticks::Scale;
-use crate::report::interfaces;
-use crate::report::output;
-use crate::report::tables::summary::exactly;
-use crate::report::tables::table::quoted;
+use crate::report::interfaces::{self, InterfaceNodes};
 use crate::{Error, Result};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -24,65 +21,35 @@ const PANEL: (f64, f64) = (300.0, 260.0);
 /// Height below a map, for numbers and the name of the axis.
 const BELOW: f64 = 44.0;
 
-/// The data of one interface, node by node.
+/// An interface of solids.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactMap {
-    /// `left|right` for two bodies, `left.top above` for an obstacle.
-    pub name: String,
+    /// Its nodes, with areas.
+    pub nodes: InterfaceNodes,
     /// The names of the coordinates `at`, such as `x` and `z`.
     pub labels: [String; 2],
     /// Position of the node in the map.
     pub at: Vec<[f64; 2]>,
     /// Faces of elements: four nodes each, in the order around the face.
     pub cells: Vec<[u32; 4]>,
-    /// Parameters along the face.
-    pub t: Vec<[f64; 2]>,
-    /// Position in space.
-    pub points: Vec<[f64; 3]>,
-    /// Remaining distance between the sides.
-    pub gap: Vec<f64>,
-    /// Force at the node; positive where the sides press against each other.
-    pub multiplier: Vec<f64>,
-    /// The nodal area: the part of the side that belongs to the node.
-    pub area: Vec<f64>,
-    /// Whether the sides touch.
-    pub active: Vec<bool>,
 }
 
 impl ContactMap {
     fn check(&self) -> Result<()> {
+        self.nodes.check()?;
         let n = self.at.len();
-        let lists = [
-            (self.t.len(), "parameters"),
-            (self.points.len(), "points"),
-            (self.gap.len(), "gaps"),
-            (self.multiplier.len(), "multipliers"),
-            (self.area.len(), "areas"),
-            (self.active.len(), "states"),
-        ];
-        interfaces::check_lengths(&self.name, n, "nodes", &lists)?;
         match self.cells.iter().flatten().find(|&&k| k as usize >= n) {
             Some(bad) => Err(Error::input(format!(
                 "the interface '{}' has a face with node {bad}, expected one below {n}",
-                self.name
+                self.nodes.name
             ))),
             None => Ok(()),
         }
     }
 
-    /// Force per area by node; NaN where a node has no area.
-    pub fn pressure(&self) -> Vec<f64> {
-        interfaces::pressure(&self.multiplier, &self.area)
-    }
-
-    /// Sum of the multipliers.
-    fn force(&self) -> f64 {
-        self.multiplier.iter().sum()
-    }
-
     /// The outlines of the faces in contact, and of all faces that may touch.
     fn outlines(&self) -> Vec<ContactMark> {
-        let closed = |cell: &[u32; 4]| cell.iter().all(|&k| self.active[k as usize]);
+        let closed = |cell: &[u32; 4]| cell.iter().all(|&k| self.nodes.active[k as usize]);
         let boundary = |cells: &mut dyn Iterator<Item = &[u32; 4]>, closed: bool| {
             let mut edges: HashMap<(u32, u32), usize> = HashMap::new();
             for cell in cells {
@@ -112,42 +79,22 @@ impl ContactMap {
     }
 }
 
-/// Writes `interfaces.png` and `interfaces.csv` into a directory; returns their paths. The CSV has all interfaces:
-/// name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure, area.
+/// Writes `interfaces.png` and `interfaces.csv` into a directory; returns their paths. The CSV has all interfaces.
 ///
 /// # Errors
-/// [`Error::Input`] when the arrays of an interface differ in length; [`Error::Environment`] with the path.
+/// [`Error::Input`] when the lists of an interface differ in length; [`Error::Environment`] with the path.
 pub fn write(maps: &[ContactMap], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     maps.iter().try_for_each(ContactMap::check)?;
-    let png = dir.join("interfaces.png");
+    let [png, csv] = ["interfaces.png", "interfaces.csv"].map(|name| dir.join(name));
     draw(maps, title).write_png(&png)?;
-    let csv = dir.join("interfaces.csv");
-    output::write_file(&csv, |out| {
-        writeln!(out, "name,t,s,x,y,z,gap,multiplier,active,pressure,area")?;
-        for m in maps {
-            let (name, pressure) = (quoted(&m.name), m.pressure());
-            for (k, pressure) in pressure.into_iter().enumerate() {
-                let ([t, s], [x, y, z]) = (m.t[k], m.points[k]);
-                let first = [t, s, x, y, z, m.gap[k], m.multiplier[k]].map(|v| exactly(Some(v)));
-                let last = [pressure, m.area[k]].map(|v| exactly(Some(v)));
-                let active = u8::from(m.active[k]);
-                writeln!(
-                    out,
-                    "{name},{},{active},{}",
-                    first.join(","),
-                    last.join(",")
-                )?;
-            }
-        }
-        Ok(())
-    })?;
+    interfaces::csv(maps.iter().map(|m| &m.nodes), true).write_csv(&csv)?;
     Ok(vec![png, csv])
 }
 
 /// The maps of the interfaces with the largest forces; an interface without faces has none.
 fn draw(maps: &[ContactMap], title: &str) -> Raster {
     let known = maps.iter().filter(|m| !m.cells.is_empty());
-    let (order, title) = interfaces::largest(known, ContactMap::force, SHOWN, title);
+    let (order, title) = interfaces::largest(known, |m| &m.nodes, SHOWN, title);
     let columns = match order.len() {
         0 | 1 => 1,
         2 | 4 => 2,
@@ -193,14 +140,14 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
         origin: (at.0 + LEFT, at.1 + 2.4 * TEXT + h),
     };
     let name = canvas::shortened(
-        &format!("{}: pressure", map.name),
+        &format!("{}: pressure", map.nodes.name),
         TEXT,
         true,
         PANEL.0 + LABELS,
     );
     let middle = (view.origin.0 + 0.5 * w.max(120.0), at.1 + 1.2 * TEXT);
     raster.text(middle, &name, &TextStyle::title(TEXT));
-    let pressure = map.pressure();
+    let pressure = map.nodes.pressure();
     let field = Field {
         title: "pressure",
         values: Values::Nodal(&pressure),

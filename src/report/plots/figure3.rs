@@ -3,7 +3,7 @@
 use super::plot::{Axis, Figure, Line, Marker, Panel, Series};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
-use crate::report::json::{Table1Row, Table1Side};
+use crate::report::json::Table1Row;
 use crate::report::tables::paper;
 use crate::Result;
 use std::path::{Path, PathBuf};
@@ -78,79 +78,60 @@ fn panel(family: Family, rows: &[Table1Row]) -> Panel {
         .collect();
     printed.sort_by(|a, b| a.0.total_cmp(&b.0));
 
-    let ours = |value: fn(&Table1Row) -> Option<f64>| {
-        rows.iter()
-            .filter_map(|(x, r)| Some((*x, value(r)?)))
-            .collect::<Vec<_>>()
+    let [blue, red, light_blue, light_red] = [0, 1, 5, 4].map(|k| Colour::CYCLE[k]);
+    let paper = |label: &str, cond: fn(&paper::PaperRow) -> f64, colour, marker| {
+        let points = printed.iter().map(|(x, r)| (*x, cond(r))).collect();
+        let series = Series::new(label, points, colour);
+        series.marker(marker, false, 6.5).line(Line::None)
     };
-    let (blue, red) = (Colour::CYCLE[0], Colour::CYCLE[1]);
-    let (light_blue, light_red) = (Colour::CYCLE[5], Colour::CYCLE[4]);
+    let ours = |label: &str, kappa: fn(&Table1Row) -> Option<f64>, colour, marker, line| {
+        let points = rows.iter().filter_map(|(x, r)| Some((*x, kappa(r)?)));
+        let series = Series::new(label, points.collect(), colour);
+        series.marker(marker, true, 3.4).line(line)
+    };
+    let with_m_d: [fn(&Table1Row) -> Option<f64>; 2] = [
+        |r| r.whole_interface.dirichlet.kappa(),
+        |r| r.middle_third.dirichlet.kappa(),
+    ];
+    let with_m_c: [fn(&Table1Row) -> Option<f64>; 2] = [
+        |r| r.whole_interface.coarse_corrected.kappa(),
+        |r| r.middle_third.coarse_corrected.kappa(),
+    ];
+    let (dashed, diamond, triangle) = (Line::Dashed, Marker::Diamond, Marker::Triangle);
     // The paper's hollow markers come first: ours fill them where both agree.
     let series = vec![
-        Series::new(
+        paper(
             "(I) paper, M_{D}",
-            printed
-                .iter()
-                .map(|(x, r)| (*x, r.whole_interface.cond))
-                .collect(),
+            |r| r.whole_interface.cond,
             blue,
-        )
-        .marker(Marker::Circle, false, 6.5)
-        .line(Line::None),
-        Series::new(
-            "(II) paper, M_{D}",
-            printed
-                .iter()
-                .map(|(x, r)| (*x, r.middle_third.cond))
-                .collect(),
-            red,
-        )
-        .marker(Marker::Square, false, 6.5)
-        .line(Line::None),
-        Series::new(
-            "(I) ours, M_{D}",
-            ours(|r| with_m_d(&r.whole_interface)),
-            blue,
-        )
-        .marker(Marker::Circle, true, 3.4),
-        Series::new("(II) ours, M_{D}", ours(|r| with_m_d(&r.middle_third)), red).marker(
-            Marker::Square,
-            true,
-            3.4,
+            Marker::Circle,
         ),
-        Series::new(
-            "(I) ours, M_{C}",
-            ours(|r| with_m_c(&r.whole_interface)),
-            light_blue,
-        )
-        .marker(Marker::Diamond, true, 3.4)
-        .line(Line::Dashed),
-        Series::new(
-            "(II) ours, M_{C}",
-            ours(|r| with_m_c(&r.middle_third)),
-            light_red,
-        )
-        .marker(Marker::Triangle, true, 3.4)
-        .line(Line::Dashed),
+        paper(
+            "(II) paper, M_{D}",
+            |r| r.middle_third.cond,
+            red,
+            Marker::Square,
+        ),
+        ours(
+            "(I) ours, M_{D}",
+            with_m_d[0],
+            blue,
+            Marker::Circle,
+            Line::Full,
+        ),
+        ours(
+            "(II) ours, M_{D}",
+            with_m_d[1],
+            red,
+            Marker::Square,
+            Line::Full,
+        ),
+        ours("(I) ours, M_{C}", with_m_c[0], light_blue, diamond, dashed),
+        ours("(II) ours, M_{C}", with_m_c[1], light_red, triangle, dashed),
     ];
     let abscissas: Vec<f64> = printed.iter().map(|(x, _)| *x).collect();
-    Panel {
-        title: family.title().to_string(),
-        x: family.axis().at(abscissas),
-        y: Axis::new("condition number κ", Scale::Linear),
-        series,
-        bands: Vec::new(),
-    }
-}
-
-fn with_m_d(side: &Table1Side) -> Option<f64> {
-    side.exact.or(side.estimate)
-}
-
-fn with_m_c(side: &Table1Side) -> Option<f64> {
-    side.coarse_corrected
-        .exact
-        .or(side.coarse_corrected.estimate)
+    let y = Axis::new("condition number κ", Scale::Linear);
+    Panel::new(family.title(), family.axis().at(abscissas), y, series)
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@ use super::plot::{Axis, Figure, Marker, Panel, Series};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
 use crate::report::json::contact::LoadStep;
-use crate::report::tables::summary::exactly;
 use crate::report::tables::table::Table;
 use crate::Result;
 use std::path::{Path, PathBuf};
@@ -21,13 +20,9 @@ pub fn figure(steps: &[LoadStep], title: &str) -> Figure {
         } else {
             Marker::None
         };
-        Panel {
-            title: label.to_string(),
-            x: Axis::new("t", Scale::Linear),
-            y: Axis::new("", Scale::Linear),
-            series: vec![Series::new("", points, Colour::CYCLE[colour]).marker(marker, true, 3.0)],
-            bands: Vec::new(),
-        }
+        let series = Series::new("", points, Colour::CYCLE[colour]).marker(marker, true, 3.0);
+        let [x, y] = ["t", ""].map(|name| Axis::new(name, Scale::Linear));
+        Panel::new(label, x, y, vec![series])
     };
     let mut figure = Figure::new(
         title,
@@ -58,25 +53,14 @@ fn counts(most: usize) -> Vec<f64> {
 
 /// The table for programs: full precision, empty cells for unknown values.
 pub fn csv(steps: &[LoadStep]) -> Table {
-    let mut table = Table::new([
-        "t",
-        "outer_iterations",
-        "iterations",
-        "active",
-        "energy",
-        "contact_force",
-    ]);
-    for s in steps {
-        table.row([
-            exactly(Some(s.t)),
-            s.outer_iterations.to_string(),
-            s.iterations.to_string(),
-            s.active.to_string(),
-            exactly(Some(s.energy)),
-            exactly(Some(s.contact_force)),
-        ]);
-    }
-    table
+    Table::of(steps)
+        .exact("t", |s| s.t)
+        .exact("outer_iterations", |s| s.outer_iterations)
+        .exact("iterations", |s| s.iterations)
+        .exact("active", |s| s.active)
+        .exact("energy", |s| s.energy)
+        .exact("contact_force", |s| s.contact_force)
+        .table()
 }
 
 /// Writes `steps.png`, `steps.svg` and `steps.csv` into a directory; returns their paths.

@@ -88,15 +88,21 @@ pub struct Band {
 }
 
 impl Panel {
-    /// A place in a figure's grid that stays empty.
-    pub fn blank() -> Self {
+    /// A panel without bands.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
         Panel {
-            title: String::new(),
-            x: Axis::new("", Scale::Linear),
-            y: Axis::new("", Scale::Linear),
-            series: Vec::new(),
+            title: title.into(),
+            x,
+            y,
+            series,
             bands: Vec::new(),
         }
+    }
+
+    /// A place in a figure's grid that stays empty.
+    pub fn blank() -> Self {
+        let axis = || Axis::new("", Scale::Linear);
+        Panel::new("", axis(), axis(), Vec::new())
     }
 
     fn is_blank(&self) -> bool {

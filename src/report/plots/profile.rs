@@ -3,11 +3,8 @@
 use super::plot::{Axis, Band, Figure, Line, Marker, Panel, Series};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::{self, Scale};
-use crate::report::interfaces;
-use crate::report::output;
+use crate::report::interfaces::{self, InterfaceNodes};
 use crate::report::pictures::values::extremes;
-use crate::report::tables::summary::exactly;
-use crate::report::tables::table::quoted;
 use crate::Result;
 use std::path::{Path, PathBuf};
 
@@ -23,70 +20,32 @@ const CLOSED_IN_SPACE: f64 = 1e-6;
 /// Background of the contact zone.
 const ZONE: Colour = Colour(0xde, 0xea, 0xd8);
 
-/// The data along one interface, node by node.
+/// An interface in the plane.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Profile {
-    /// `left|right` for two bodies, `left.top above` for an obstacle.
-    pub name: String,
-    /// Name of the coordinate `t`, such as `y`.
+    /// Its nodes.
+    pub nodes: InterfaceNodes,
+    /// Name of the coordinate along the interface, such as `y`.
     pub label: String,
-    /// Position along the interface.
-    pub t: Vec<f64>,
-    /// Position in the plane.
-    pub points: Vec<[f64; 2]>,
-    /// Remaining distance between the sides.
-    pub gap: Vec<f64>,
-    /// Force at the node; positive where the sides press against each other.
-    pub multiplier: Vec<f64>,
-    /// Whether the sides touch.
-    pub active: Vec<bool>,
-    /// The nodal area (in the plane a length); empty if forces are not reported as pressures.
-    pub area: Vec<f64>,
 }
 
 impl Profile {
-    fn check(&self) -> Result<()> {
-        let n = self.t.len();
-        let areas = if self.has_pressure() {
-            self.area.len()
-        } else {
-            n
-        };
-        let lists = [
-            (self.points.len(), "points"),
-            (self.gap.len(), "gaps"),
-            (self.multiplier.len(), "multipliers"),
-            (self.active.len(), "states"),
-            (areas, "areas"),
-        ];
-        interfaces::check_lengths(&self.name, n, "positions", &lists)
-    }
-
-    /// Whether pressures are shown: whether there are areas.
-    fn has_pressure(&self) -> bool {
-        !self.area.is_empty()
-    }
-
-    /// Force per area, node by node; NaN where a node has no area.
-    pub fn pressure(&self) -> Vec<f64> {
-        interfaces::pressure(&self.multiplier, &self.area)
-    }
-
-    /// Sum of the multipliers.
-    pub fn force(&self) -> f64 {
-        self.multiplier.iter().sum()
+    /// Position of a node along the interface.
+    fn t(&self, k: usize) -> f64 {
+        self.nodes.t[k][0]
     }
 
     /// The nodes in order of their position.
     fn order(&self) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..self.t.len()).collect();
-        order.sort_by(|&a, &b| self.t[a].total_cmp(&self.t[b]));
+        let mut order: Vec<usize> = (0..self.nodes.t.len()).collect();
+        order.sort_by(|&a, &b| self.t(a).total_cmp(&self.t(b)));
         order
     }
 
     /// Smallest and largest position, with a margin.
     fn range(&self) -> (f64, f64) {
-        let (low, high) = extremes(&self.t);
+        let t: Vec<f64> = self.nodes.t.iter().map(|t| t[0]).collect();
+        let (low, high) = extremes(&t);
         let air = if high > low {
             0.02 * (high - low)
         } else {
@@ -102,12 +61,12 @@ impl Profile {
     /// The contact zone. Its ends are half-way between the last node in contact and the next open one.
     fn zone(&self) -> Vec<Band> {
         let order = self.order();
-        let t = |k: usize| self.t[order[k]];
+        let t = |k: usize| self.t(order[k]);
         let mut out = Vec::new();
         let mut k = 0;
         while k < order.len() {
             let first = k;
-            while k < order.len() && self.active[order[k]] {
+            while k < order.len() && self.nodes.active[order[k]] {
                 k += 1;
             }
             if k > first {
@@ -141,24 +100,20 @@ impl Profile {
             Marker::None
         };
         let curve = |name: &str, values: &[f64], colour: Colour| {
-            let points = order.iter().map(|&k| (self.t[k], values[k])).collect();
+            let points = order.iter().map(|&k| (self.t(k), values[k])).collect();
             Series::new(name, points, colour).marker(marker, true, 2.6)
         };
         let zero = |x: (f64, f64)| {
             Series::new("", vec![(x.0, 0.0), (x.1, 0.0)], Colour::CYCLE[7])
-                .marker(Marker::None, true, 0.0)
+                .line_only()
                 .line(Line::Dotted)
         };
         let x = self.range();
-        let axis = |label: &str| Axis {
-            range: Some(x),
-            ..Axis::new(label, Scale::Linear)
-        };
         // Rounding errors are not magnified to the size of the panel, and the range always contains zero, the gap of
         // closed contact.
-        let (low, high) = extremes(&self.gap);
+        let (low, high) = extremes(&self.nodes.gap);
         let length = x.1 - x.0;
-        let closed = match self.has_pressure() {
+        let closed = match self.nodes.has_pressure() {
             true => CLOSED_IN_SPACE * length,
             false => CLOSED * length,
         };
@@ -173,10 +128,10 @@ impl Profile {
             let (low, high) = ticks::range([0.0, low, high].into_iter(), Scale::Linear);
             (low.min(-0.05 * (high - low)), high)
         };
-        let (what, force) = if self.has_pressure() {
-            ("pressure", &self.pressure())
+        let (what, force) = if self.nodes.has_pressure() {
+            ("pressure", &self.nodes.pressure())
         } else {
-            ("multiplier", &self.multiplier)
+            ("multiplier", &self.nodes.multiplier)
         };
         let (least, most) = extremes(force);
         let (least, most) = (least.min(0.0), most.max(0.0));
@@ -186,27 +141,19 @@ impl Profile {
         } else {
             (-0.05, 1.0)
         };
+        let within = |label: &str, range: (f64, f64)| Axis {
+            range: Some(range),
+            ..Axis::new(label, Scale::Linear)
+        };
+        let panel = |title: &str, below: &str, y: Axis, series: Series| Panel {
+            bands: self.zone(),
+            ..Panel::new(title, within(below, x), y, vec![zero(x), series])
+        };
+        let force = curve(what, force, Colour::CYCLE[0]);
+        let gap = curve("gap", &self.nodes.gap, Colour::CYCLE[1]);
         [
-            Panel {
-                title: self.name.clone(),
-                x: axis(""),
-                y: Axis {
-                    range: Some(shown),
-                    ..Axis::new(what, Scale::Linear)
-                },
-                series: vec![zero(x), curve(what, force, Colour::CYCLE[0])],
-                bands: self.zone(),
-            },
-            Panel {
-                title: String::new(),
-                x: axis(&self.label),
-                y: Axis {
-                    range: Some(y),
-                    ..Axis::new("gap", Scale::Linear)
-                },
-                series: vec![zero(x), curve("gap", &self.gap, Colour::CYCLE[1])],
-                bands: self.zone(),
-            },
+            panel(&self.nodes.name, "", within(what, shown), force),
+            panel("", &self.label, within("gap", y), gap),
         ]
     }
 }
@@ -216,16 +163,17 @@ impl Profile {
 /// # Errors
 /// [`crate::Error::Input`] when the arrays of an interface differ in length.
 pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
-    profiles.iter().try_for_each(Profile::check)?;
-    let known = profiles.iter().filter(|p| !p.t.is_empty());
-    let (order, title) = interfaces::largest(known, Profile::force, SHOWN, title);
+    profiles.iter().try_for_each(|p| p.nodes.check())?;
+    let known = profiles.iter().filter(|p| !p.nodes.t.is_empty());
+    let (order, title) = interfaces::largest(known, |p| &p.nodes, SHOWN, title);
     let columns = match order.len() {
         0 | 1 => 1,
         2 | 4 => 2,
         10.. => 4,
         _ => 3,
     };
-    let largest_gap = order.iter().map(|p| extremes(&p.gap).1).fold(0.0, f64::max);
+    let gaps = order.iter().map(|p| extremes(&p.nodes.gap).1);
+    let largest_gap = gaps.fold(0.0, f64::max);
     let mut panels = Vec::new();
     for row in order.chunks(columns) {
         let pairs: Vec<[Panel; 2]> = row.iter().map(|p| p.panels(largest_gap)).collect();
@@ -247,35 +195,14 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
 }
 
 /// Writes `interfaces.png`, `interfaces.svg` and `interfaces.csv` into a directory; returns their paths. The CSV has
-/// all interfaces: name, t, x, y, gap, multiplier, active (0 or 1), and with areas pressure and area.
+/// all interfaces.
 ///
 /// # Errors
-/// [`crate::Error::Input`] when the arrays of an interface differ in length; [`crate::Error::Environment`] with the
-/// path.
+/// [`crate::Error::Input`] when the lists of an interface differ in length; [`crate::Error::Environment`] with the path.
 pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
     let csv = dir.join("interfaces.csv");
-    output::write_file(&csv, |out| {
-        let pressures = profiles.iter().any(Profile::has_pressure);
-        let more = if pressures { ",pressure,area" } else { "" };
-        writeln!(out, "name,t,x,y,gap,multiplier,active{more}")?;
-        for p in profiles {
-            let pressure = p.pressure();
-            let name = quoted(&p.name);
-            for k in 0..p.t.len() {
-                let [x, y] = p.points[k];
-                let numbers = [p.t[k], x, y, p.gap[k], p.multiplier[k]].map(|v| exactly(Some(v)));
-                let active = u8::from(p.active[k]);
-                write!(out, "{name},{},{active}", numbers.join(","))?;
-                if pressures {
-                    let number = |list: &[f64]| exactly(list.get(k).copied());
-                    write!(out, ",{},{}", number(&pressure), number(&p.area))?;
-                }
-                writeln!(out)?;
-            }
-        }
-        Ok(())
-    })?;
+    interfaces::csv(profiles.iter().map(|p| &p.nodes), false).write_csv(&csv)?;
     paths.push(csv);
     Ok(paths)
 }

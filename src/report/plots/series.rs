@@ -70,15 +70,19 @@ impl Series {
         self
     }
 
+    /// Removes the markers.
+    #[must_use]
+    pub fn line_only(self) -> Self {
+        self.marker(Marker::None, false, 0.0)
+    }
+
     /// Changes the line.
     #[must_use]
     pub fn line(mut self, line: Line) -> Self {
         self.line = line;
         self
     }
-}
 
-impl Series {
     pub(super) fn draw(&self, canvas: &mut dyn Canvas, lines: &[Vec<Point>], points: &[Point]) {
         let dash: &[f64] = match self.line {
             Line::Dashed => &[7.0, 4.0],

@@ -1,8 +1,7 @@
 //! The benchmark as tables and as a picture.
 
-use super::methods::{counted, outcome, outer, ranks_and_threads, without};
-use super::summary::exactly;
-use super::table::{count, fixed, scientific, Align, Table};
+use super::methods::{outcome, outer, ranks_and_threads};
+use super::table::{count, fixed, scientific, Table};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
 use crate::report::json::{BenchCase, BenchReport, BenchRow, Spread};
@@ -26,7 +25,7 @@ pub fn text(report: &BenchReport) -> String {
         cases.join("\n"),
         report.rounds,
         report.cores,
-        match report.cases.iter().any(|c| c.contact.is_some()) {
+        match report.cases.iter().any(|c| c.facts.contact.is_some()) {
             true => " (with contact the whole loop; last set: only the equations of our last active set)",
             false => "",
         },
@@ -43,56 +42,38 @@ fn median(spread: Option<Spread>) -> Option<f64> {
 
 /// One case with its caption.
 fn case_text(case: &BenchCase) -> String {
-    let contact = case.contact.is_some();
-    let header = [
-        "method", "parts", "ranks", "outer", "it", "set-up s", "solve s", "recover", "total s",
-        "min", "max", "ratio", "again s", "MB", "MB net", "error", "residual", "outcome",
-    ];
-    let dropped: &[usize] = if contact { &[] } else { &[3] };
-    let last = if contact { 17 } else { 16 };
-    let mut table = Table::new(without(dropped, header))
-        .align(0, Align::Left)
-        .align(last, Align::Left);
+    let contact = case.facts.contact.is_some();
     let mut notes = String::new();
-    for r in &case.methods {
-        let note = |text: String| notes += &format!("{}: {text}\n", label(r));
-        let (rescue, message) = (r.rescue.as_deref(), r.message.as_deref());
-        let outcome = outcome(&r.converged_reason, rescue, message, note);
-        let net = r
-            .memory_mb
-            .zip(r.memory_at_start_mb)
-            .map(|(all, start)| all.median - start.median);
-        let total = r.seconds.total;
-        let cells = [
-            r.method.clone(),
-            count(r.subdomains),
-            ranks_and_threads(r.ranks, r.threads),
-            outer(r.contact),
-            count(r.iterations),
-            fixed(median(r.seconds.setup), 3),
-            fixed(median(r.seconds.solve), 3),
-            fixed(median(r.seconds.recover), 3),
-            fixed(median(total), 3),
-            fixed(total.map(|t| t.min), 3),
-            fixed(total.map(|t| t.max), 3),
-            fixed(r.ratio, 2),
-            fixed(median(r.seconds.again), 3),
-            fixed(median(r.memory_mb), 0),
-            fixed(net, 0),
-            scientific(r.error),
-            scientific(r.residual),
-            outcome,
-        ];
-        table.row(without(dropped, cells));
-    }
+    let mut note = |r: &BenchRow, text: String| notes += &format!("{}: {text}\n", label(r));
+    let net = |r: &BenchRow| Some(median(r.memory_mb)? - median(r.memory_at_start_mb)?);
+    let table = Table::of(&case.methods)
+        .words("method", |r| &r.run.method)
+        .numbers("parts", |r| count(r.run.subdomains))
+        .numbers("ranks", |r| ranks_and_threads(&r.run))
+        .when(contact, |t| t.numbers("outer", |r| outer(&r.run)))
+        .numbers("it", |r| count(r.run.iterations))
+        .numbers("set-up s", |r| fixed(median(r.seconds.phases.setup), 3))
+        .numbers("solve s", |r| fixed(median(r.seconds.phases.solve), 3))
+        .numbers("recover", |r| fixed(median(r.seconds.recover), 3))
+        .numbers("total s", |r| fixed(r.total(), 3))
+        .numbers("min", |r| fixed(r.seconds.phases.total.map(|t| t.min), 3))
+        .numbers("max", |r| fixed(r.seconds.phases.total.map(|t| t.max), 3))
+        .numbers("ratio", |r| fixed(r.ratio, 2))
+        .numbers("again s", |r| fixed(median(r.seconds.again), 3))
+        .numbers("MB", |r| fixed(median(r.memory_mb), 0))
+        .numbers("MB net", |r| fixed(net(r), 0))
+        .numbers("error", |r| scientific(r.run.error))
+        .numbers("residual", |r| scientific(r.run.residual))
+        .words("outcome", |r| outcome(&r.run, |text| note(r, text)))
+        .table();
     format!(
         "{}: {}, {} bodies, {} subdomains, {} unknowns, ‖b − Au‖ ≤ {} ‖b‖, {} rounds\n\n{table}{notes}{}\n",
         case.case,
-        case.scene,
-        case.bodies,
-        case.subdomains,
-        case.dofs,
-        scientific(Some(case.rtol)),
+        case.facts.scene,
+        case.facts.bodies,
+        case.facts.subdomains,
+        case.facts.dofs,
+        scientific(Some(case.facts.rtol)),
         case.rounds,
         sum(case)
     )
@@ -103,7 +84,7 @@ fn sum(case: &BenchCase) -> String {
     let [Some(ours), Some(other)] = [true, false].map(|ours| case.fastest(ours)) else {
         return String::new();
     };
-    let seconds = |r: &BenchRow| fixed(median(r.seconds.total), 3);
+    let seconds = |r: &BenchRow| fixed(r.total(), 3);
     format!(
         "Fastest of ours: {} s ({}); fastest other: {} s ({}), {} times as long.\n",
         seconds(ours),
@@ -116,73 +97,51 @@ fn sum(case: &BenchCase) -> String {
 
 /// A method with its layout; the label is the same in every case.
 fn label(row: &BenchRow) -> String {
-    match (row.layout.as_str(), row.subdomains) {
-        (layout @ ("threads" | "ranks"), _) => format!("{}, {layout}", row.method),
-        (layout, Some(_)) => format!("{}, a part per {layout}", row.method),
-        (_, None) => row.method.clone(),
+    match (row.layout.as_str(), row.run.subdomains) {
+        (layout @ ("threads" | "ranks"), _) => format!("{}, {layout}", row.run.method),
+        (layout, Some(_)) => format!("{}, a part per {layout}", row.run.method),
+        (_, None) => row.run.method.clone(),
     }
 }
 
 /// All rows for programs: full precision, empty cells for unknown values.
 pub fn csv(report: &BenchReport) -> Table {
+    let cases = report.cases.iter();
+    let rows = cases.flat_map(|case| case.methods.iter().map(move |row| (case, row)));
+    let mut table = Table::of(rows)
+        .exact("case", |(c, _)| c.case.as_str())
+        .exact("method", |(_, r)| r.run.method.as_str())
+        .exact("layout", |(_, r)| r.layout.as_str())
+        .exact("subdomains", |(_, r)| r.run.subdomains)
+        .exact("ranks", |(_, r)| r.run.ranks)
+        .exact("threads", |(_, r)| r.run.threads);
     let phases = ["setup", "solve", "recover", "total", "again"];
-    let mut header: Vec<String> = ["case", "method", "layout", "subdomains", "ranks", "threads"]
-        .map(String::from)
-        .to_vec();
-    for phase in phases {
-        header.extend(["median", "min", "max"].map(|of| format!("{phase}_{of}")));
+    for (k, phase) in phases.into_iter().enumerate() {
+        let spread = |r: &BenchRow| {
+            let (s, phases) = (r.seconds, r.seconds.phases);
+            [phases.setup, phases.solve, s.recover, phases.total, s.again][k]
+        };
+        table = table
+            .exact(format!("{phase}_median"), |(_, r)| median(spread(r)))
+            .exact(format!("{phase}_min"), |(_, r)| spread(r).map(|s| s.min))
+            .exact(format!("{phase}_max"), |(_, r)| spread(r).map(|s| s.max));
     }
-    let tail = [
-        "ratio",
-        "memory_mb",
-        "memory_at_start_mb",
-        "kappa",
-        "iterations",
-        "outer_steps",
-        "error",
-        "residual",
-        "rounds",
-        "converged",
-        "converged_reason",
-        "rescue",
-        "message",
-    ];
-    header.extend(tail.map(String::from));
-    let mut table = Table::new(header);
-    for case in &report.cases {
-        for r in &case.methods {
-            let s = &r.seconds;
-            let mut cells = vec![
-                case.case.clone(),
-                r.method.clone(),
-                r.layout.clone(),
-                counted(r.subdomains),
-                r.ranks.to_string(),
-                r.threads.to_string(),
-            ];
-            for spread in [s.setup, s.solve, s.recover, s.total, s.again] {
-                let of = |pick: fn(Spread) -> f64| exactly(spread.map(pick));
-                cells.extend([of(|s| s.median), of(|s| s.min), of(|s| s.max)]);
-            }
-            cells.extend([
-                exactly(r.ratio),
-                exactly(median(r.memory_mb)),
-                exactly(median(r.memory_at_start_mb)),
-                exactly(r.kappa),
-                counted(r.iterations),
-                counted(r.contact.and_then(|c| c.outer)),
-                exactly(r.error),
-                exactly(r.residual),
-                r.samples.iter().filter(|s| s.converged).count().to_string(),
-                r.converged.to_string(),
-                r.converged_reason.clone(),
-                r.rescue.clone().unwrap_or_default(),
-                r.message.clone().unwrap_or_default(),
-            ]);
-            table.row(cells);
-        }
-    }
+    let converged = |r: &BenchRow| r.samples.iter().filter(|s| s.converged).count();
     table
+        .exact("ratio", |(_, r)| r.ratio)
+        .exact("memory_mb", |(_, r)| median(r.memory_mb))
+        .exact("memory_at_start_mb", |(_, r)| median(r.memory_at_start_mb))
+        .exact("kappa", |(_, r)| r.run.kappa)
+        .exact("iterations", |(_, r)| r.run.iterations)
+        .exact("outer_steps", |(_, r)| r.run.contact.and_then(|c| c.outer))
+        .exact("error", |(_, r)| r.run.error)
+        .exact("residual", |(_, r)| r.run.residual)
+        .exact("rounds", |(_, r)| converged(r))
+        .exact("converged", |(_, r)| r.run.converged)
+        .exact("converged_reason", |(_, r)| r.run.converged_reason.as_str())
+        .exact("rescue", |(_, r)| r.run.rescue.as_deref())
+        .exact("message", |(_, r)| r.run.message.as_deref())
+        .table()
 }
 
 /// A figure of the error over the seconds of set-up and solve. Each case has a panel; each method has a marker at its
@@ -191,45 +150,45 @@ pub fn figure(report: &BenchReport) -> Figure {
     // A method has the same colour in all panels; a layout has the same shape.
     let mut methods: Vec<&str> = Vec::new();
     for row in report.cases.iter().flat_map(|c| &c.methods) {
-        if !methods.contains(&row.method.as_str()) {
-            methods.push(&row.method);
+        if !methods.contains(&row.run.method.as_str()) {
+            methods.push(&row.run.method);
         }
     }
     let colour = |row: &BenchRow| {
-        let k = methods.iter().position(|m| *m == row.method).unwrap_or(0);
+        let k = methods
+            .iter()
+            .position(|m| *m == row.run.method)
+            .unwrap_or(0);
         Colour::CYCLE[k % Colour::CYCLE.len()]
     };
     let marker = |row: &BenchRow| match row.layout.as_str() {
         "ranks" | "subdomain" => Marker::Square,
         "body" => Marker::Diamond,
-        "core" if row.subdomains.is_some() => Marker::Triangle,
+        "core" if row.run.subdomains.is_some() => Marker::Triangle,
         _ => Marker::Circle,
     };
     let panel = |case: &BenchCase| {
         let mut series = Vec::new();
-        for row in case.methods.iter().filter(|r| r.converged) {
-            let (Some(total), Some(error)) = (row.seconds.total, row.error) else {
+        for row in case.methods.iter().filter(|r| r.run.converged) {
+            let (Some(total), Some(error)) = (row.seconds.phases.total, row.run.error) else {
                 continue;
             };
             let ends = vec![(total.min, error), (total.max, error)];
-            series.push(Series::new("", ends, colour(row)).marker(Marker::None, false, 0.0));
-            let name = match row.set_given() {
+            series.push(Series::new("", ends, colour(row)).line_only());
+            let given = row.run.set_given();
+            let name = match given {
                 true => format!("{} (set given)", label(row)),
                 false => label(row),
             };
             series.push(
                 Series::new(name, vec![(total.median, error)], colour(row))
-                    .marker(marker(row), !row.set_given(), 4.5)
+                    .marker(marker(row), !given, 4.5)
                     .line(Line::None),
             );
         }
-        Panel {
-            title: case.case.clone(),
-            x: Axis::new("seconds, set-up and solve", Scale::Log),
-            y: Axis::new("relative error, energy norm", Scale::Log),
-            series,
-            bands: Vec::new(),
-        }
+        let x = Axis::new("seconds, set-up and solve", Scale::Log);
+        let y = Axis::new("relative error, energy norm", Scale::Log);
+        Panel::new(&case.case, x, y, series)
     };
     let panels: Vec<Panel> = report.cases.iter().map(panel).collect();
     Figure::new(

@@ -1,73 +1,55 @@
 //! The comparison of methods as a table.
 
-use super::methods::{counted, outcome, outer, ranks_and_threads, without};
-use super::summary::{exactly, ranks};
-use super::table::{count, fixed, scientific, Align, Table};
+use super::methods::{outcome, outer, ranks_and_threads};
+use super::summary::ranks;
+use super::table::{count, fixed, scientific, Table};
 use crate::report::json::{CompareInequalities, CompareReport, CompareRow};
-
-/// Number of columns for scenes with inequalities only.
-const OUTER: usize = 4;
-const SET: usize = 13;
 
 /// The comparison for terminals, with a caption.
 pub fn text(report: &CompareReport) -> String {
     // Outer steps and the active set are shown only where there are inequalities.
-    let contact = report.contact.is_some();
-    let dropped: &[usize] = if contact { &[] } else { &[OUTER, SET] };
-    let header = [
-        "method", "parts", "ranks", "κ", "outer", "it", "set-up s", "solve s", "total s", "MB",
-        "MB net", "error", "residual", "set", "outcome",
-    ];
-    let mut table = Table::new(without(dropped, header)).align(0, Align::Left);
-    table = table.align(if contact { 14 } else { 12 }, Align::Left);
+    let contact = report.facts.contact.is_some();
     let mut notes = String::new();
-    for r in &report.rows {
-        let net = r
-            .memory_mb
-            .zip(r.memory_at_start_mb)
-            .map(|(all, start)| all - start);
-        let note = |text: String| {
-            notes += if notes.is_empty() { "\n" } else { "" };
-            notes += &format!("{} on {}: {text}\n", r.method, ranks(r.ranks));
-        };
-        let (rescue, message) = (r.rescue.as_deref(), r.message.as_deref());
-        let outcome = outcome(&r.converged_reason, rescue, message, note);
-        let cells = [
-            r.method.clone(),
-            count(r.subdomains),
-            ranks_and_threads(r.ranks, r.threads),
-            fixed(r.kappa, 3),
-            outer(r.contact),
-            count(r.iterations),
-            fixed(r.seconds.setup, 3),
-            fixed(r.seconds.solve, 3),
-            fixed(r.seconds.total, 3),
-            fixed(r.memory_mb, 0),
-            fixed(net, 0),
-            scientific(r.error),
-            scientific(r.residual),
-            match r.contact.and_then(|c| c.differ) {
-                None => "–".to_string(),
-                Some(0) => "same".to_string(),
-                Some(n) => format!("{n} differ"),
-            },
-            outcome,
-        ];
-        table.row(without(dropped, cells));
-    }
+    let mut note = |r: &CompareRow, text: String| {
+        notes += if notes.is_empty() { "\n" } else { "" };
+        notes += &format!("{} on {}: {text}\n", r.run.method, ranks(r.run.ranks));
+    };
+    let net = |r: &CompareRow| Some(r.memory_mb? - r.memory_at_start_mb?);
+    let set = |r: &CompareRow| match r.run.contact.and_then(|c| c.differ) {
+        None => "–".to_string(),
+        Some(0) => "same".to_string(),
+        Some(n) => format!("{n} differ"),
+    };
+    let table = Table::of(&report.rows)
+        .words("method", |r| &r.run.method)
+        .numbers("parts", |r| count(r.run.subdomains))
+        .numbers("ranks", |r| ranks_and_threads(&r.run))
+        .numbers("κ", |r| fixed(r.run.kappa, 3))
+        .when(contact, |t| t.numbers("outer", |r| outer(&r.run)))
+        .numbers("it", |r| count(r.run.iterations))
+        .numbers("set-up s", |r| fixed(r.seconds.setup, 3))
+        .numbers("solve s", |r| fixed(r.seconds.solve, 3))
+        .numbers("total s", |r| fixed(r.seconds.total, 3))
+        .numbers("MB", |r| fixed(r.memory_mb, 0))
+        .numbers("MB net", |r| fixed(net(r), 0))
+        .numbers("error", |r| scientific(r.run.error))
+        .numbers("residual", |r| scientific(r.run.residual))
+        .when(contact, |t| t.numbers("set", |r| set(r)))
+        .words("outcome", |r| outcome(&r.run, |text| note(r, text)))
+        .table();
     format!(
         "{}: {} bodies, {} subdomains, {} unknowns, {} cores\n\n{table}{notes}\n\
          All methods were driven to ‖b − Au‖ ≤ {} ‖b‖ of the assembled problem; its assembly is not in the times.\n\
          parts: pieces of the domain that the method sees; ranks: MPI ranks (x threads); error: in the energy norm,\n\
          against a refined direct solution{}; MB: largest resident memory, summed over the ranks;\n\
          net: without what each rank holds before it has read the problem.\n{}{}",
-        report.scene,
-        report.bodies,
-        report.subdomains,
-        report.dofs,
+        report.facts.scene,
+        report.facts.bodies,
+        report.facts.subdomains,
+        report.facts.dofs,
         report.cores,
-        scientific(Some(report.rtol)),
-        match report.reference_residual {
+        scientific(Some(report.facts.rtol)),
+        match report.facts.reference_residual {
             Some(r) => format!(" (residual {})", scientific(Some(r))),
             None => " (not available)".to_string(),
         },
@@ -79,7 +61,7 @@ pub fn text(report: &CompareReport) -> String {
                 if n == 1 { "" } else { "s" }
             ),
         },
-        report.contact.map(|c| inequalities(&c)).unwrap_or_default(),
+        report.facts.contact.map(|c| inequalities(&c)).unwrap_or_default(),
     )
 }
 
@@ -108,61 +90,34 @@ fn inequalities(c: &CompareInequalities) -> String {
 
 /// The comparison for programs: full precision, empty cells for unknown values.
 pub fn csv(rows: &[CompareRow]) -> Table {
-    let mut table = Table::new([
-        "method",
-        "subdomains",
-        "ranks",
-        "threads",
-        "kappa",
-        "iterations",
-        "assemble_seconds",
-        "setup_seconds",
-        "solve_seconds",
-        "total_seconds",
-        "memory_mb",
-        "memory_at_start_mb",
-        "error",
-        "residual",
-        "outer_steps",
-        "active_rows",
-        "active_differ",
-        "feasibility",
-        "min_multiplier",
-        "rtol",
-        "converged",
-        "converged_reason",
-        "rescue",
-        "message",
-    ]);
-    for r in rows {
-        table.row([
-            r.method.clone(),
-            counted(r.subdomains),
-            r.ranks.to_string(),
-            r.threads.to_string(),
-            exactly(r.kappa),
-            counted(r.iterations),
-            exactly(r.seconds.assemble),
-            exactly(r.seconds.setup),
-            exactly(r.seconds.solve),
-            exactly(r.seconds.total),
-            exactly(r.memory_mb),
-            exactly(r.memory_at_start_mb),
-            exactly(r.error),
-            exactly(r.residual),
-            counted(r.contact.and_then(|c| c.outer)),
-            counted(r.contact.map(|c| c.active)),
-            counted(r.contact.and_then(|c| c.differ)),
-            exactly(r.contact.and_then(|c| c.feasibility)),
-            exactly(r.contact.and_then(|c| c.min_multiplier)),
-            exactly(r.rtol),
-            r.converged.to_string(),
-            r.converged_reason.clone(),
-            r.rescue.clone().unwrap_or_default(),
-            r.message.clone().unwrap_or_default(),
-        ]);
-    }
-    table
+    Table::of(rows)
+        .exact("method", |r| r.run.method.as_str())
+        .exact("subdomains", |r| r.run.subdomains)
+        .exact("ranks", |r| r.run.ranks)
+        .exact("threads", |r| r.run.threads)
+        .exact("kappa", |r| r.run.kappa)
+        .exact("iterations", |r| r.run.iterations)
+        .exact("assemble_seconds", |r| r.seconds.assemble)
+        .exact("setup_seconds", |r| r.seconds.setup)
+        .exact("solve_seconds", |r| r.seconds.solve)
+        .exact("total_seconds", |r| r.seconds.total)
+        .exact("memory_mb", |r| r.memory_mb)
+        .exact("memory_at_start_mb", |r| r.memory_at_start_mb)
+        .exact("error", |r| r.run.error)
+        .exact("residual", |r| r.run.residual)
+        .exact("outer_steps", |r| r.run.contact.and_then(|c| c.outer))
+        .exact("active_rows", |r| r.run.contact.map(|c| c.active))
+        .exact("active_differ", |r| r.run.contact.and_then(|c| c.differ))
+        .exact("feasibility", |r| r.run.contact.and_then(|c| c.feasibility))
+        .exact("min_multiplier", |r| {
+            r.run.contact.and_then(|c| c.min_multiplier)
+        })
+        .exact("rtol", |r| r.run.rtol)
+        .exact("converged", |r| r.run.converged)
+        .exact("converged_reason", |r| r.run.converged_reason.as_str())
+        .exact("rescue", |r| r.run.rescue.as_deref())
+        .exact("message", |r| r.run.message.as_deref())
+        .table()
 }
 
 #[cfg(test)]

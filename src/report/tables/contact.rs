@@ -1,6 +1,6 @@
 //! The output of `solve` about contact: outer steps, certificate, forces per interface, equilibrium per body.
 
-use super::table::{fixed, scientific, value, Align, Table};
+use super::table::{fixed, scientific, value, Table};
 use crate::report::json::contact::{BodyBalance, ContactReport, InterfaceForce, OuterStep};
 use crate::report::json::Kkt;
 
@@ -66,56 +66,30 @@ fn outer(r: &ContactReport) -> String {
     if steps.is_empty() {
         return String::new();
     }
-    let loads = steps.iter().any(|s| s.load_step > 0);
-    // If all steps have the same method, the heading names it.
-    let methods = steps.iter().any(|s| s.method != steps[0].method);
-    let names = "step,active,entered,left,it,κ est.,residual,tolerance,seconds";
-    let mut header: Vec<&str> = names.split(',').collect();
-    if loads {
-        header.insert(0, "load");
-    }
-    if methods {
-        header.push("method");
-    }
-    let mut table = Table::new(header.clone());
-    if methods {
-        table = table.align(header.len() - 1, Align::Left);
-    }
-    let row = |s: &OuterStep| {
-        let mut cells = vec![
-            s.step.to_string(),
-            s.active.to_string(),
-            s.entered.to_string(),
-            s.left.to_string(),
-            s.iterations.to_string(),
-            fixed(s.estimate.map(|e| e.kappa), 3),
-            scientific(Some(s.residual)),
-            scientific(Some(s.tolerance)),
-            fixed(Some(s.seconds), 3),
-        ];
-        if loads {
-            cells.insert(0, s.load_step.to_string());
-        }
-        if methods {
-            cells.push(s.method.clone());
-        }
-        cells
-    };
     // The start and the end of a long run are enough here; the JSON record has all steps.
     let hidden = steps.len().saturating_sub(STEPS);
     let head = if hidden > 0 { STEPS / 3 } else { steps.len() };
-    let mut before: Option<usize> = None;
-    for (k, s) in steps.iter().enumerate() {
-        if k >= head && k < head + hidden {
-            continue;
-        }
-        if before.is_some_and(|b| b != s.load_step) || (hidden > 0 && k == head + hidden) {
-            table.rule();
-        }
-        before = Some(s.load_step);
-        table.row(row(s));
-    }
-    let mut text = table.to_string();
+    let shown = |(k, _): &(usize, &OuterStep)| *k < head || *k >= head + hidden;
+    let mut text = Table::of(steps.iter().enumerate().filter(shown))
+        .when(steps.iter().any(|s| s.load_step > 0), |t| {
+            t.numbers("load", |(_, s)| s.load_step)
+        })
+        .numbers("step", |(_, s)| s.step)
+        .numbers("active", |(_, s)| s.active)
+        .numbers("entered", |(_, s)| s.entered)
+        .numbers("left", |(_, s)| s.left)
+        .numbers("it", |(_, s)| s.iterations)
+        .numbers("κ est.", |(_, s)| fixed(s.estimate.map(|e| e.kappa), 3))
+        .numbers("residual", |(_, s)| scientific(Some(s.residual)))
+        .numbers("tolerance", |(_, s)| scientific(Some(s.tolerance)))
+        .numbers("seconds", |(_, s)| fixed(Some(s.seconds), 3))
+        // If all steps have the same method, the heading names it.
+        .when(steps.iter().any(|s| s.method != steps[0].method), |t| {
+            t.words("method", |(_, s)| &s.method)
+        })
+        .rules(|(k, a), (l, b)| a.load_step != b.load_step || k + 1 < *l)
+        .table()
+        .to_string();
     if hidden > 0 {
         text += &format!(
             "steps {} to {} of {} are not shown\n",
@@ -131,18 +105,15 @@ fn load_steps(r: &ContactReport) -> String {
     if r.load_steps.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(["t", "outer", "it", "active", "contact force", "energy"]);
     let hidden = r.load_steps.len().saturating_sub(STEPS);
-    for s in &r.load_steps[hidden..] {
-        table.row([
-            value(s.t),
-            s.outer_iterations.to_string(),
-            s.iterations.to_string(),
-            s.active.to_string(),
-            value(s.contact_force),
-            value(s.energy),
-        ]);
-    }
+    let table = Table::of(&r.load_steps[hidden..])
+        .numbers("t", |s| value(s.t))
+        .numbers("outer", |s| s.outer_iterations)
+        .numbers("it", |s| s.iterations)
+        .numbers("active", |s| s.active)
+        .numbers("contact force", |s| value(s.contact_force))
+        .numbers("energy", |s| value(s.energy))
+        .table();
     let more = if hidden > 0 {
         format!("and {} before\n", plural(hidden, "load step"))
     } else {
@@ -167,35 +138,27 @@ fn forces(r: &ContactReport) -> String {
     order.sort_by(|a, b| size(b).total_cmp(&size(a)));
     // Pressures replace multipliers where they are known.
     let pressures = order.iter().any(|f| f.max_pressure.is_some());
-    let names = if pressures {
-        "interface,kind,rows,active,force,resultant,area,largest pressure,least gap,largest gap"
-    } else {
-        "interface,kind,rows,active,force,least mult.,largest mult.,least gap,largest gap"
-    };
     let directed = order.iter().any(|f| f.resultant.is_some());
-    let shown = |name: &&str| directed || *name != "resultant";
-    let mut table = Table::new(names.split(',').filter(shown))
-        .align(0, Align::Left)
-        .align(1, Align::Left);
-    for f in order.iter().take(INTERFACES) {
-        let mut cells = vec![
-            f.name.clone(),
-            f.kind.name().to_string(),
-            f.candidates.to_string(),
-            f.active.to_string(),
-            value(f.force),
-        ];
-        if pressures {
-            if directed {
-                cells.push(f.resultant.as_deref().map_or("–".into(), vector));
-            }
-            cells.extend([f.area, f.max_pressure].map(|x| x.map_or("–".into(), value)));
-        } else {
-            cells.extend([f.min_multiplier, f.max_multiplier].map(value));
-        }
-        cells.extend([f.smallest_gap, f.largest_gap].map(value));
-        table.row(cells);
-    }
+    let known = |x: Option<f64>| x.map_or("–".into(), value);
+    let resultant = |f: &InterfaceForce| f.resultant.as_deref().map_or("–".into(), vector);
+    let table = Table::of(order.iter().take(INTERFACES))
+        .words("interface", |f| &f.name)
+        .words("kind", |f| f.kind.name())
+        .numbers("rows", |f| f.candidates)
+        .numbers("active", |f| f.active)
+        .numbers("force", |f| value(f.force))
+        .when(pressures, |t| {
+            t.when(directed, |t| t.numbers("resultant", |f| resultant(f)))
+                .numbers("area", |f| known(f.area))
+                .numbers("largest pressure", |f| known(f.max_pressure))
+        })
+        .when(!pressures, |t| {
+            t.numbers("least mult.", |f| value(f.min_multiplier))
+                .numbers("largest mult.", |f| value(f.max_multiplier))
+        })
+        .numbers("least gap", |f| value(f.smallest_gap))
+        .numbers("largest gap", |f| value(f.largest_gap))
+        .table();
     let rest = &order[order.len().min(INTERFACES)..];
     let more = match rest {
         [] => String::new(),
@@ -232,31 +195,21 @@ fn balance(r: &ContactReport) -> String {
     order.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
     let moments = order.iter().any(|b| b.moment_imbalance.is_some());
     let shown = &order[..order.len().min(BODIES)];
-    let mut header = vec!["body", "load", "contact", "reaction", "imbalance"];
-    if moments {
-        header.push("of moments");
-    }
-    let mut table = Table::new(header).align(0, Align::Left);
-    for b in shown {
-        let mut cells = vec![
-            b.name.clone(),
-            vector(&b.load.0),
-            vector(&b.contact.0),
-            match &b.reaction {
-                Some(reaction) => vector(&reaction.0),
-                None if b.floating => "floating".to_string(),
-                None => "–".to_string(),
-            },
-            scientific(Some(b.imbalance)),
-        ];
-        if moments {
-            cells.push(
-                b.moment_imbalance
-                    .map_or("–".into(), |m| scientific(Some(m))),
-            );
-        }
-        table.row(cells);
-    }
+    let reaction = |b: &BodyBalance| match &b.reaction {
+        Some(reaction) => vector(&reaction.0),
+        None if b.floating => "floating".to_string(),
+        None => "–".to_string(),
+    };
+    let table = Table::of(shown)
+        .words("body", |b| &b.name)
+        .numbers("load", |b| vector(&b.load.0))
+        .numbers("contact", |b| vector(&b.contact.0))
+        .numbers("reaction", |b| reaction(b))
+        .numbers("imbalance", |b| scientific(Some(b.imbalance)))
+        .when(moments, |t| {
+            t.numbers("of moments", |b| scientific(b.moment_imbalance))
+        })
+        .table();
     let more = match order.len() - shown.len() {
         0 => String::new(),
         n => format!("… and {n} more, none of them with a larger imbalance\n"),

@@ -1,50 +1,34 @@
 //! Functions shared by the tables of `compare` and `bench`, which have a method in each row.
 
 use super::table::count;
-use crate::report::json::CompareContact;
-
-/// The cells of a row, without those at certain positions.
-pub(super) fn without<T>(places: &[usize], cells: impl IntoIterator<Item = T>) -> Vec<T> {
-    let kept = (0..).zip(cells).filter(|(k, _)| !places.contains(k));
-    kept.map(|(_, cell)| cell).collect()
-}
+use crate::report::json::{CompareContact, MethodRun};
 
 /// Ranks, and threads where a rank has several.
-pub(super) fn ranks_and_threads(ranks: usize, threads: usize) -> String {
-    match threads {
-        0 | 1 => ranks.to_string(),
-        n => format!("{ranks} x {n}"),
+pub(super) fn ranks_and_threads(run: &MethodRun) -> String {
+    match run.threads {
+        0 | 1 => run.ranks.to_string(),
+        n => format!("{} x {n}", run.ranks),
     }
 }
 
 /// The number of active sets that were solved for.
-pub(super) fn outer(contact: Option<CompareContact>) -> String {
-    match contact {
+pub(super) fn outer(run: &MethodRun) -> String {
+    match run.contact {
         Some(CompareContact { outer: None, .. }) => "last set".to_string(),
         contact => count(contact.and_then(|c| c.outer)),
     }
 }
 
 /// The end of a run in a word; longer messages go to `note`.
-pub(super) fn outcome(
-    reason: &str,
-    rescue: Option<&str>,
-    message: Option<&str>,
-    mut note: impl FnMut(String),
-) -> String {
-    if let Some(options) = rescue {
+pub(super) fn outcome(run: &MethodRun, mut note: impl FnMut(String)) -> String {
+    if let Some(options) = &run.rescue {
         note(format!("second try, with {options}"));
     }
-    match message {
-        None => reason.to_string(),
+    match &run.message {
+        None => run.converged_reason.clone(),
         Some(message) => {
-            note(message.to_string());
+            note(message.clone());
             "see below".to_string()
         }
     }
-}
-
-/// A count for programs; empty if unknown.
-pub(super) fn counted(n: Option<usize>) -> String {
-    n.map(|n| n.to_string()).unwrap_or_default()
 }

@@ -2,7 +2,7 @@
 
 use super::contact as contact_summary;
 use super::table::{count, fixed, Table};
-use crate::report::json::{Communication, SolveReport, Spectrum, Table1Row, Table1Side};
+use crate::report::json::{Communication, PcResult, SolveReport, Spectrum, Table1Row, Table1Side};
 
 /// The result of `solve` as lines "name  value".
 pub fn solve(r: &SolveReport) -> String {
@@ -167,203 +167,60 @@ fn communication(c: &Communication) -> String {
 
 /// Table 1 for terminals: the paper's numbers, then ours with M_D and M_C, columns (I) and (II) side by side.
 pub fn table1(rows: &[Table1Row]) -> Table {
-    let mut header: Vec<String> = ["1/H_b", "H_b/H_s", "H_s/h"].map(String::from).to_vec();
-    for column in ["I", "II"] {
-        for name in ["paper κ", "it", "κ(M_D)", "CG est.", "it", "κ(M_C)", "it"] {
-            header.push(if name == "paper κ" {
-                format!("({column}) {name}")
-            } else {
-                name.to_string()
-            });
-        }
+    let mut table = Table::of(rows)
+        .numbers("1/H_b", |r| r.bodies)
+        .numbers("H_b/H_s", |r| r.subdomains)
+        .numbers("H_s/h", |r| r.elements);
+    for (k, column) in ["I", "II"].into_iter().enumerate() {
+        table = table
+            .numbers(format!("({column}) paper κ"), |r| {
+                fixed(sides(r)[k].paper.map(|p| p.cond), 4)
+            })
+            .numbers("it", |r| count(sides(r)[k].paper.map(|p| p.iter)))
+            .numbers("κ(M_D)", |r| fixed(sides(r)[k].dirichlet.exact, 4))
+            .numbers("CG est.", |r| fixed(sides(r)[k].dirichlet.estimate, 4))
+            .numbers("it", |r| sides(r)[k].dirichlet.iterations)
+            .numbers("κ(M_C)", |r| fixed(sides(r)[k].coarse_corrected.exact, 4))
+            .numbers("it", |r| sides(r)[k].coarse_corrected.iterations);
     }
-    let mut table = Table::new(header);
-    for row in rows {
-        let mut cells = vec![
-            row.bodies.to_string(),
-            row.subdomains.to_string(),
-            row.elements.to_string(),
-        ];
-        for side in [&row.whole_interface, &row.middle_third] {
-            cells.extend([
-                fixed(side.paper.map(|p| p.cond), 4),
-                count(side.paper.map(|p| p.iter)),
-                fixed(side.exact, 4),
-                fixed(side.estimate, 4),
-                side.iterations.to_string(),
-                fixed(side.coarse_corrected.exact, 4),
-                side.coarse_corrected.iterations.to_string(),
-            ]);
-        }
-        table.row(cells);
-    }
-    table
+    table.table()
+}
+
+/// The columns (I) and (II) of a row.
+fn sides(row: &Table1Row) -> [&Table1Side; 2] {
+    [&row.whole_interface, &row.middle_third]
+}
+
+/// The results with M_D and with M_C in column `k` of a row.
+fn results(row: &Table1Row, k: usize) -> [&PcResult; 2] {
+    let side = sides(row)[k];
+    [&side.dirichlet, &side.coarse_corrected]
 }
 
 /// Table 1 for programs: one line per size, full precision, empty cells for unknown values.
 pub fn table1_csv(rows: &[Table1Row]) -> Table {
-    const NAMES: [&str; 10] = [
-        "multipliers",
-        "floating_bodies",
-        "paper_cond",
-        "paper_iter",
-        "exact",
-        "estimate",
-        "iterations",
-        "coarse_corrected_exact",
-        "coarse_corrected_estimate",
-        "coarse_corrected_iterations",
-    ];
-    let mut header: Vec<String> = ["bodies", "subdomains", "elements"]
-        .map(String::from)
-        .to_vec();
-    for side in ["whole_interface", "middle_third"] {
-        header.extend(NAMES.iter().map(|name| format!("{side}_{name}")));
+    let mut table = Table::of(rows)
+        .exact("bodies", |r| r.bodies)
+        .exact("subdomains", |r| r.subdomains)
+        .exact("elements", |r| r.elements);
+    for (k, column) in ["whole_interface", "middle_third"].into_iter().enumerate() {
+        let name = |quantity: &str| format!("{column}_{quantity}");
+        table = table
+            .exact(name("multipliers"), |r| sides(r)[k].multipliers)
+            .exact(name("floating_bodies"), |r| sides(r)[k].floating_bodies)
+            .exact(name("paper_cond"), |r| sides(r)[k].paper.map(|p| p.cond))
+            .exact(name("paper_iter"), |r| sides(r)[k].paper.map(|p| p.iter));
+        for (pc, mark) in ["", "coarse_corrected_"].into_iter().enumerate() {
+            let name = |quantity: &str| name(&format!("{mark}{quantity}"));
+            table = table
+                .exact(name("exact"), |r| results(r, k)[pc].exact)
+                .exact(name("estimate"), |r| results(r, k)[pc].estimate)
+                .exact(name("iterations"), |r| results(r, k)[pc].iterations);
+        }
     }
-    let mut table = Table::new(header);
-    let cells_of = |s: &Table1Side| -> [String; 10] {
-        [
-            s.multipliers.to_string(),
-            s.floating_bodies.to_string(),
-            exactly(s.paper.map(|p| p.cond)),
-            s.paper.map(|p| p.iter.to_string()).unwrap_or_default(),
-            exactly(s.exact),
-            exactly(s.estimate),
-            s.iterations.to_string(),
-            exactly(s.coarse_corrected.exact),
-            exactly(s.coarse_corrected.estimate),
-            s.coarse_corrected.iterations.to_string(),
-        ]
-    };
-    for row in rows {
-        let mut cells = vec![
-            row.bodies.to_string(),
-            row.subdomains.to_string(),
-            row.elements.to_string(),
-        ];
-        cells.extend(cells_of(&row.whole_interface));
-        cells.extend(cells_of(&row.middle_third));
-        table.row(cells);
-    }
-    table
-}
-
-/// The shortest text that reads back as the same number; empty if the number is unknown or not finite.
-pub(crate) fn exactly(x: Option<f64>) -> String {
-    match x {
-        Some(x) if x.is_finite() && (x == 0.0 || (1e-4..1e15).contains(&x.abs())) => format!("{x}"),
-        Some(x) if x.is_finite() => format!("{x:e}"),
-        _ => String::new(),
-    }
+    table.table()
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
-    use super::*;
-    use crate::report::json::{CoarseCorrected, PaperSide};
-
-    /// A row whose numbers are simple functions of the size.
-    pub(crate) fn sample_row(bodies: usize, subdomains: usize, elements: usize) -> Table1Row {
-        let paper = crate::report::tables::paper::lookup(bodies, subdomains, elements);
-        let side = |paper: Option<PaperSide>, kappa: f64| Table1Side {
-            multipliers: 34,
-            local_multipliers: 16,
-            floating_bodies: 0,
-            iterations: 7,
-            exact: Some(kappa),
-            estimate: None,
-            lambda_min: None,
-            lambda_max: None,
-            paper,
-            coarse_corrected: CoarseCorrected {
-                exact: Some(1.0 + 0.3 * kappa),
-                estimate: Some(f64::NAN),
-                lambda_min: None,
-                lambda_max: None,
-                iterations: 6,
-            },
-        };
-        Table1Row {
-            bodies,
-            subdomains,
-            elements,
-            whole_interface: side(
-                paper.map(|p| p.whole_interface),
-                paper.map_or(9.0, |p| p.whole_interface.cond),
-            ),
-            middle_third: side(
-                paper.map(|p| p.middle_third),
-                paper.map_or(9.0, |p| p.middle_third.cond),
-            ),
-        }
-    }
-
-    #[test]
-    fn solve_says_what_was_solved_and_leaves_out_what_is_not_known() {
-        let mut report: SolveReport = serde_json::from_value(serde_json::json!({
-            "scene": "four bodies", "ranks": 1, "threads": 2, "bodies": 4, "floating_bodies": 1, "subdomains": 16,
-            "dofs": 225, "multipliers": {"local": 64, "global": 60, "active": 60}, "outer_iterations": 1,
-            "iterations": {"inner": [9], "total": 9},
-            "condition": {"exact": null, "estimate": {"lambda_min": 1.0, "lambda_max": 3.25, "kappa": 3.25}},
-            "kkt": {"stationarity": 1e-9, "feasibility": 2e-10, "complementarity": 0.0, "min_multiplier": null},
-            "energy": -0.25, "seconds": {"assemble": 0.1, "setup": 0.2, "solve": 0.3, "recover": 0.1, "total": 0.7},
-            "memory_mb": 80.4, "converged_reason": "CONVERGED_RTOL", "ksp_type": "cg",
-            "preconditioner": "coarse_corrected", "projector": "identity", "rtol": 1e-6,
-        }))
-        .unwrap();
-        let text = solve(&report);
-        let line = |name: &str| {
-            text.lines()
-                .find(|l| l.starts_with(name))
-                .map(|l| l[name.len()..].trim())
-        };
-        assert_eq!(
-            line("bodies"),
-            Some("4 (1 floating), 16 subdomains on 1 rank")
-        );
-        assert_eq!(
-            line("multipliers"),
-            Some("64 in bodies, 60 between bodies (60 active)")
-        );
-        assert_eq!(line("iterations"), Some("9, CONVERGED_RTOL at rtol 1e-6"));
-        assert_eq!(
-            line("estimate of the run"),
-            Some("κ = 3.2500   (λ_min 1.000000, λ_max 3.2500)")
-        );
-        assert_eq!(
-            (line("exact spectrum"), line("error"), line("contact")),
-            (None, None, None)
-        );
-        // With inequalities: the whole certificate in one line, and what is known about contact at the end.
-        report.kkt.min_multiplier = Some(0.5);
-        report.contact = Some(crate::report::json::contact::ContactReport::default());
-        let text = solve(&report);
-        assert!(
-            text.contains("\nKKT conditions ") && text.contains("2.0e-10, complementarity 0.0e0")
-        );
-        assert!(text.find("\ncontact by ").unwrap() > text.find("\nmemory ").unwrap());
-    }
-
-    #[test]
-    fn table1_shows_both_columns() {
-        let text = table1(&[sample_row(2, 4, 2), sample_row(3, 3, 3)]).to_string();
-        let words: Vec<&str> = text.lines().nth(2).unwrap().split_whitespace().collect();
-        let expected = "2 4 2 7.1076 10 7.1076 – 7 3.1323 6 4.9790 9 4.9790 – 7 2.4937 6"
-            .split(' ')
-            .collect::<Vec<_>>();
-        assert_eq!(words, expected);
-        assert!(text.lines().nth(3).unwrap().contains('–'));
-    }
-
-    #[test]
-    fn csv_leaves_unknown_cells_empty() {
-        let csv = table1_csv(&[sample_row(3, 3, 3)]).to_csv();
-        let mut lines = csv.lines();
-        assert_eq!(lines.next().unwrap().split(',').count(), 23);
-        assert_eq!(
-            lines.next().unwrap(),
-            "3,3,3,34,0,,,9,,7,3.6999999999999997,,6,34,0,,,9,,7,3.6999999999999997,,6"
-        );
-        assert_eq!(exactly(Some(1.5e-9)), "1.5e-9");
-    }
-}
+#[path = "../../../tests/inside/report/tables/summary.rs"]
+pub(crate) mod tests;

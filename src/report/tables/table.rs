@@ -2,79 +2,59 @@
 
 use crate::report::output;
 use crate::Result;
+use serde_json::Value;
 use std::fmt;
 use std::path::Path;
 
-/// Alignment of a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Align {
-    /// For words.
-    Left,
-    /// For numbers.
-    Right,
-}
-
-/// A table of texts. Rules may be put between rows; only terminals show them.
+/// A table of texts. Rules may stand between rows; only terminals show them.
 #[derive(Debug, Clone)]
 pub struct Table {
-    header: Vec<String>,
-    align: Vec<Align>,
-    rows: Vec<Vec<String>>,
+    columns: Vec<Column>,
+    rows: usize,
+    /// Rows below a rule.
     rules: Vec<usize>,
 }
 
+#[derive(Debug, Clone)]
+struct Column {
+    name: String,
+    /// Words are aligned on the left, numbers on the right.
+    words: bool,
+    cells: Vec<String>,
+}
+
+/// A table that is being built, with a row for each item. A column is a name, and a cell as a function of the item.
+pub struct Columns<R> {
+    items: Vec<R>,
+    table: Table,
+}
+
 impl Table {
-    /// An empty table with right-aligned columns of these names.
-    pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
-        let header: Vec<String> = header.into_iter().map(Into::into).collect();
-        Table {
-            align: vec![Align::Right; header.len()],
-            header,
-            rows: Vec::new(),
+    /// A table without columns, with a row for each of these items.
+    pub fn of<R>(items: impl IntoIterator<Item = R>) -> Columns<R> {
+        let items: Vec<R> = items.into_iter().collect();
+        let table = Table {
+            columns: Vec::new(),
+            rows: items.len(),
             rules: Vec::new(),
-        }
+        };
+        Columns { items, table }
     }
 
-    /// Changes the alignment of one column, counted from zero; a column that does not exist is ignored.
-    #[must_use]
-    pub fn align(mut self, column: usize, align: Align) -> Self {
-        if let Some(a) = self.align.get_mut(column) {
-            *a = align;
-        }
-        self
-    }
-
-    /// Appends a row; missing cells are empty, surplus ones are dropped.
-    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
-        let mut cells: Vec<String> = cells.into_iter().map(Into::into).collect();
-        cells.resize(self.header.len(), String::new());
-        self.rows.push(cells);
-    }
-
-    /// Puts a rule after the last row.
-    pub fn rule(&mut self) {
-        self.rules.push(self.rows.len());
-    }
-
-    /// Number of rows.
-    pub fn len(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// Whether there is no row.
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+    /// The names of the columns, then the cells of each row.
+    fn lines(&self) -> impl Iterator<Item = Vec<&str>> {
+        let names = self.columns.iter().map(|c| c.name.as_str()).collect();
+        let row = |k: usize| self.columns.iter().map(|c| c.cells[k].as_str()).collect();
+        std::iter::once(names).chain((0..self.rows).map(row))
     }
 
     /// The table as CSV by RFC 4180 (with plain line feeds), header first.
     pub fn to_csv(&self) -> String {
-        let mut text = String::new();
-        for row in std::iter::once(&self.header).chain(&self.rows) {
-            let cells: Vec<String> = row.iter().map(|c| quoted(c)).collect();
-            text.push_str(&cells.join(","));
-            text.push('\n');
-        }
-        text
+        let line = |cells: Vec<&str>| {
+            let cells: Vec<String> = cells.into_iter().map(quoted).collect();
+            cells.join(",") + "\n"
+        };
+        self.lines().map(line).collect()
     }
 
     /// Writes [`Table::to_csv`] to a file, or to standard output for `-`.
@@ -86,50 +66,128 @@ impl Table {
     }
 }
 
+impl<R> Columns<R> {
+    /// Adds a column of words.
+    #[must_use]
+    pub fn words<D: fmt::Display>(
+        self,
+        name: impl Into<String>,
+        cell: impl FnMut(&R) -> D,
+    ) -> Self {
+        self.column(name, true, cell)
+    }
+
+    /// Adds a column of numbers.
+    #[must_use]
+    pub fn numbers<D: fmt::Display>(
+        self,
+        name: impl Into<String>,
+        cell: impl FnMut(&R) -> D,
+    ) -> Self {
+        self.column(name, false, cell)
+    }
+
+    /// Adds a column for programs: numbers in full precision, nothing for unknown values.
+    #[must_use]
+    pub fn exact<V: Into<Value>>(
+        self,
+        name: impl Into<String>,
+        mut cell: impl FnMut(&R) -> V,
+    ) -> Self {
+        let text = |value: Value| match value {
+            Value::Null => String::new(),
+            Value::String(text) => text,
+            Value::Number(n) if n.is_f64() => exactly(n.as_f64()),
+            other => other.to_string(),
+        };
+        self.column(name, false, |item| text(cell(item).into()))
+    }
+
+    fn column<D: fmt::Display>(
+        mut self,
+        name: impl Into<String>,
+        words: bool,
+        mut cell: impl FnMut(&R) -> D,
+    ) -> Self {
+        self.table.columns.push(Column {
+            name: name.into(),
+            words,
+            cells: self.items.iter().map(|r| cell(r).to_string()).collect(),
+        });
+        self
+    }
+
+    /// Adds the columns of `more`, if they are to be shown.
+    #[must_use]
+    pub fn when(self, shown: bool, more: impl FnOnce(Self) -> Self) -> Self {
+        if shown {
+            more(self)
+        } else {
+            self
+        }
+    }
+
+    /// Puts a rule between two rows where `between` says so.
+    #[must_use]
+    pub fn rules(mut self, between: impl Fn(&R, &R) -> bool) -> Self {
+        let pairs = self.items.windows(2).zip(1..);
+        let ruled = pairs.filter(|(pair, _)| between(&pair[0], &pair[1]));
+        self.table.rules = ruled.map(|(_, below)| below).collect();
+        self
+    }
+
+    /// The finished table.
+    pub fn table(self) -> Table {
+        self.table
+    }
+}
+
 impl fmt::Display for Table {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut widths = vec![0; self.header.len()];
-        for row in std::iter::once(&self.header).chain(&self.rows) {
-            for (w, cell) in widths.iter_mut().zip(row) {
-                *w = (*w).max(cell.chars().count());
-            }
-        }
-        let rule = widths
-            .iter()
-            .map(|&w| "─".repeat(w))
-            .collect::<Vec<_>>()
-            .join("──");
-        let line = |row: &[String]| {
-            let mut text = String::new();
-            for (k, ((cell, &w), align)) in row.iter().zip(&widths).zip(&self.align).enumerate() {
-                if k > 0 {
-                    text.push_str("  ");
-                }
-                match align {
-                    Align::Left => text.push_str(&format!("{cell:<w$}")),
-                    Align::Right => text.push_str(&format!("{cell:>w$}")),
-                }
-            }
-            text.trim_end().to_string()
+        let widest = |c: &Column| {
+            let texts = c.cells.iter().chain([&c.name]);
+            texts.map(|t| t.chars().count()).max().unwrap_or(0)
         };
-        writeln!(out, "{}", line(&self.header))?;
-        writeln!(out, "{rule}")?;
-        for (k, row) in self.rows.iter().enumerate() {
-            if k > 0 && self.rules.contains(&k) {
+        let widths: Vec<usize> = self.columns.iter().map(widest).collect();
+        let dashes: Vec<String> = widths.iter().map(|&w| "─".repeat(w)).collect();
+        let rule = dashes.join("──");
+        for (k, line) in self.lines().enumerate() {
+            if k > 1 && self.rules.contains(&(k - 1)) {
                 writeln!(out, "{rule}")?;
             }
-            writeln!(out, "{}", line(row))?;
+            let columns = self.columns.iter().zip(&widths);
+            let padded = line
+                .iter()
+                .zip(columns)
+                .map(|(cell, (c, &w))| match c.words {
+                    true => format!("{cell:<w$}"),
+                    false => format!("{cell:>w$}"),
+                });
+            let text = padded.collect::<Vec<_>>().join("  ");
+            writeln!(out, "{}", text.trim_end())?;
+            if k == 0 {
+                writeln!(out, "{rule}")?;
+            }
         }
         Ok(())
     }
 }
 
 /// A cell of a CSV file.
-pub(crate) fn quoted(cell: &str) -> String {
+fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {
         cell.to_string()
+    }
+}
+
+/// The shortest text that reads back as the same number; empty if the number is unknown or not finite.
+fn exactly(x: Option<f64>) -> String {
+    match x {
+        Some(x) if x.is_finite() && (x == 0.0 || (1e-4..1e15).contains(&x.abs())) => format!("{x}"),
+        Some(x) if x.is_finite() => format!("{x:e}"),
+        _ => String::new(),
     }
 }
 
@@ -146,6 +204,14 @@ pub fn scientific(x: Option<f64>) -> String {
     match x {
         Some(x) if x.is_finite() => format!("{x:.1e}"),
         _ => "–".to_string(),
+    }
+}
+
+/// A condition number; in fixed notation while it is small.
+pub fn condition(x: Option<f64>) -> String {
+    match x {
+        Some(v) if v < 1e4 => fixed(x, 2),
+        _ => scientific(x),
     }
 }
 

@@ -21,6 +21,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::petsc::Session;
+use crate::report::tables::table::condition;
 use crate::Result;
 
 /// Relative residual that is asked of all methods.
@@ -189,7 +190,7 @@ impl Run {
         }
         match self.kappa {
             Some(kappa) if kappa <= OVER * self.tau => {}
-            Some(kappa) => fails.push(format!("κ = {}", table::number(Some(kappa)))),
+            Some(kappa) => fails.push(format!("κ = {}", condition(Some(kappa)))),
             None => fails.push("no exact κ".into()),
         }
         let low = |l: &f64| l.is_nan() || *l < 1.0 - BELOW_ONE;

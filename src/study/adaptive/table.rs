@@ -1,133 +1,79 @@
 //! The tables.
 
-use super::{Bddc, Record, Report, USUAL};
-use crate::report::tables::table::{count, fixed, scientific, Align, Table};
+use super::{Bddc, Fine, Record, Report, Run, USUAL};
+use crate::report::tables::table::{condition, count, fixed, scientific, Table};
 
 /// All runs, one row for each τ.
 pub fn table(report: &Report) -> Table {
-    let header = [
-        "case",
-        "dofs",
-        "κ plain",
-        "it",
-        "s",
-        "error",
-        "MUMPS",
-        "last place",
-        "τ",
-        "κ",
-        "λ_min − 1",
-        "vectors",
-        "most",
-        "search s",
-        "it τ",
-        "s τ",
-        "error τ",
-        "attainable",
-        "BDDC it",
-        "BDDC κ",
-        "BDDC s",
-        "verdict",
-    ];
-    let last = header.len() - 1;
-    let mut table = Table::new(header)
-        .align(0, Align::Left)
-        .align(last, Align::Left);
-    for record in &report.cases {
-        for row in rows(record) {
-            table.row(row);
-        }
-    }
-    table
-}
-
-fn rows(record: &Record) -> Vec<Vec<String>> {
-    let plain = &record.plain;
     // An estimate is a lower bound.
-    let kappa = match plain.exact {
-        Some(_) => number(plain.exact),
-        None => format!("≥ {}", number(plain.estimate)),
+    let plain = |c: &Record| match c.plain.exact {
+        Some(_) => condition(c.plain.exact),
+        None => format!("≥ {}", condition(c.plain.estimate)),
     };
-    let mut out = Vec::new();
-    for run in &record.runs {
-        let bddc = run.bddc.as_ref();
-        out.push(vec![
-            record.case.clone(),
-            record.dofs.to_string(),
-            kappa.clone(),
-            plain.iterations.to_string(),
-            fixed(Some(plain.seconds), 2),
-            scientific(plain.error),
-            scientific(record.mumps),
-            scientific(record.last_place),
-            run.tau.to_string(),
-            number(run.kappa),
-            scientific(run.lambda_min.map(|l| l - 1.0)),
-            run.vectors.to_string(),
-            run.most.to_string(),
-            fixed(run.searched.then_some(run.search), 2),
-            run.iterations.to_string(),
-            fixed(Some(run.seconds), 2),
-            scientific(run.error),
-            scientific(run.attainable),
-            count(bddc.and_then(|b| b.iterations)),
-            number(bddc.and_then(|b| b.kappa)),
-            fixed(
-                bddc.filter(|b| b.iterations.is_some()).map(|b| b.seconds),
-                2,
-            ),
-            match run.fails.is_empty() {
-                true => "OK".to_string(),
-                false => run.fails.join("; "),
-            },
-        ]);
-    }
-    out
+    let bddc_seconds = |r: &Run| {
+        let ran = r.bddc.as_ref().filter(|b| b.iterations.is_some());
+        ran.map(|b| b.seconds)
+    };
+    let verdict = |r: &Run| match r.fails.is_empty() {
+        true => "OK".to_string(),
+        false => r.fails.join("; "),
+    };
+    let runs = report
+        .cases
+        .iter()
+        .flat_map(|c| c.runs.iter().map(move |r| (c, r)));
+    Table::of(runs)
+        .words("case", |(c, _)| &c.case)
+        .numbers("dofs", |(c, _)| c.dofs)
+        .numbers("κ plain", |(c, _)| plain(c))
+        .numbers("it", |(c, _)| c.plain.iterations)
+        .numbers("s", |(c, _)| fixed(Some(c.plain.seconds), 2))
+        .numbers("error", |(c, _)| scientific(c.plain.error))
+        .numbers("MUMPS", |(c, _)| scientific(c.mumps))
+        .numbers("last place", |(c, _)| scientific(c.last_place))
+        .numbers("τ", |(_, r)| r.tau)
+        .numbers("κ", |(_, r)| condition(r.kappa))
+        .numbers("λ_min − 1", |(_, r)| {
+            scientific(r.lambda_min.map(|l| l - 1.0))
+        })
+        .numbers("vectors", |(_, r)| r.vectors)
+        .numbers("most", |(_, r)| r.most)
+        .numbers("search s", |(_, r)| {
+            fixed(r.searched.then_some(r.search), 2)
+        })
+        .numbers("it τ", |(_, r)| r.iterations)
+        .numbers("s τ", |(_, r)| fixed(Some(r.seconds), 2))
+        .numbers("error τ", |(_, r)| scientific(r.error))
+        .numbers("attainable", |(_, r)| scientific(r.attainable))
+        .numbers("BDDC it", |(_, r)| {
+            count(r.bddc.as_ref().and_then(|b| b.iterations))
+        })
+        .numbers("BDDC κ", |(_, r)| {
+            condition(r.bddc.as_ref().and_then(|b| b.kappa))
+        })
+        .numbers("BDDC s", |(_, r)| fixed(bddc_seconds(r), 2))
+        .words("verdict", |(_, r)| verdict(r))
+        .table()
 }
 
 /// Seconds on finer elements.
 pub fn fine(report: &Report) -> Table {
-    let header = [
-        "case",
-        "dofs",
-        "κ plain ≥",
-        "it",
-        "s",
-        "vectors",
-        "search s",
-        "it τ",
-        "s τ",
-        "s τ / s",
-    ];
-    let mut table = Table::new(header).align(0, Align::Left);
-    for (record, f) in report
-        .cases
-        .iter()
-        .filter_map(|r| r.fine.as_ref().map(|f| (r, f)))
-    {
-        let ratio = f.seconds / f.plain_seconds;
-        table.row(vec![
-            record.case.clone(),
-            f.dofs.to_string(),
-            number(f.estimate),
-            f.plain_iterations.to_string(),
-            fixed(Some(f.plain_seconds), 3),
-            f.vectors.to_string(),
-            fixed((f.search > 0.0).then_some(f.search), 3),
-            f.iterations.to_string(),
-            fixed(Some(f.seconds), 3),
-            fixed(ratio.is_finite().then_some(ratio), 2),
-        ]);
-    }
-    table
-}
-
-/// A condition number; in fixed notation while it is small.
-pub(super) fn number(x: Option<f64>) -> String {
-    match x {
-        Some(v) if v < 1e4 => fixed(x, 2),
-        _ => scientific(x),
-    }
+    let cases = report.cases.iter();
+    let ratio = |f: &Fine| Some(f.seconds / f.plain_seconds);
+    Table::of(cases.filter_map(|c| Some((&c.case, c.fine.as_ref()?))))
+        .words("case", |(case, _)| *case)
+        .numbers("dofs", |(_, f)| f.dofs)
+        .numbers("κ plain ≥", |(_, f)| condition(f.estimate))
+        .numbers("it", |(_, f)| f.plain_iterations)
+        .numbers("s", |(_, f)| fixed(Some(f.plain_seconds), 3))
+        .numbers("vectors", |(_, f)| f.vectors)
+        .numbers("search s", |(_, f)| {
+            fixed((f.search > 0.0).then_some(f.search), 3)
+        })
+        .numbers("it τ", |(_, f)| f.iterations)
+        .numbers("s τ", |(_, f)| fixed(Some(f.seconds), 3))
+        .numbers("s τ / s", |(_, f)| fixed(ratio(f), 2))
+        .table()
 }
 
 /// The table for terminals, with the messages of runs that failed.

@@ -17,7 +17,7 @@ use crate::assembled::system::Copies;
 use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::json;
-use crate::report::tables::table::{count, fixed, scientific, Align, Table};
+use crate::report::tables::table::{condition, count, fixed, scientific, Table};
 use crate::{Error, Result};
 
 /// Relative residual that is asked of the method.
@@ -235,62 +235,34 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
 
 /// All cases.
 pub fn table(report: &Report) -> Table {
-    let header = [
-        "case",
-        "dofs",
-        "sub",
-        "mult",
-        "outer",
-        "it",
-        "κ exact",
-        "κ est",
-        "kkt",
-        "error energy",
-        "error max",
-        "set",
-        "direct",
-        "s",
-        "verdict",
-    ];
-    let mut table = Table::new(header)
-        .align(0, Align::Left)
-        .align(14, Align::Left);
-    for c in &report.cases {
-        let kappa = |s: Option<json::Spectrum>| scientific_or_fixed(s.map(|s| s.kappa));
-        let kkt = c
-            .kkt
-            .map(|k| k.stationarity.max(k.feasibility).max(k.complementarity));
-        let set = match c.active {
-            [Some(ours), Some(direct)] => format!("{ours}/{direct}"),
-            [Some(ours), None] => ours.to_string(),
-            _ => String::new(),
-        };
-        table.row([
-            c.case.clone(),
-            c.dofs.to_string(),
-            c.subdomains.to_string(),
-            c.multipliers.to_string(),
-            count((c.outer_iterations > 0).then_some(c.outer_iterations)),
-            c.iterations.to_string(),
-            kappa(c.condition.exact),
-            kappa(c.condition.estimate),
-            scientific(kkt),
-            scientific(c.error_energy),
-            scientific(c.error_max),
-            set,
-            scientific(c.reference),
-            fixed(Some(c.seconds), 2),
-            c.verdict.name().to_string(),
-        ]);
-    }
-    table
-}
-
-fn scientific_or_fixed(x: Option<f64>) -> String {
-    match x {
-        Some(v) if v < 1e4 => fixed(x, 2),
-        _ => scientific(x),
-    }
+    let largest = |k: json::Kkt| k.stationarity.max(k.feasibility).max(k.complementarity);
+    let outer = |c: &Record| Some(c.outer_iterations).filter(|n| *n > 0);
+    let set = |c: &Record| match c.active {
+        [Some(ours), Some(direct)] => format!("{ours}/{direct}"),
+        [Some(ours), None] => ours.to_string(),
+        _ => String::new(),
+    };
+    Table::of(&report.cases)
+        .words("case", |c| &c.case)
+        .numbers("dofs", |c| c.dofs)
+        .numbers("sub", |c| c.subdomains)
+        .numbers("mult", |c| c.multipliers)
+        .numbers("outer", |c| count(outer(c)))
+        .numbers("it", |c| c.iterations)
+        .numbers("κ exact", |c| {
+            condition(c.condition.exact.map(|s| s.kappa))
+        })
+        .numbers("κ est", |c| {
+            condition(c.condition.estimate.map(|s| s.kappa))
+        })
+        .numbers("kkt", |c| scientific(c.kkt.map(largest)))
+        .numbers("error energy", |c| scientific(c.error_energy))
+        .numbers("error max", |c| scientific(c.error_max))
+        .numbers("set", |c| set(c))
+        .numbers("direct", |c| scientific(c.reference))
+        .numbers("s", |c| fixed(Some(c.seconds), 2))
+        .words("verdict", |c| c.verdict.name())
+        .table()
 }
 
 /// The table for terminals, with descriptions of the cases and messages of the program.

@@ -1,64 +1,37 @@
 //! The results of the study: the table, the nodal pressures as CSV, and their picture with the theory.
 
-use super::{CaseReport, Contact, Quantity, Report};
+use super::{CaseReport, Contact, Mesh, Report};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
 use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
-use crate::report::tables::table::{Align, Table};
+use crate::report::tables::table::Table;
 
 /// All meshes of all problems.
 pub fn table(report: &Report) -> Table {
-    let header = [
-        "problem",
-        "n",
-        "dofs",
-        "nodes",
-        "force",
-        "a fit",
-        "a last",
-        "a theory",
-        "error %",
-        "p0 fit",
-        "p0 node",
-        "p0 theory",
-        "error %",
-        "p rms %",
-        "outer",
-        "it",
-        "kkt",
-        "s",
-    ];
-    let mut table = Table::new(header).align(0, Align::Left);
-    for case in &report.cases {
-        for m in &case.meshes {
-            let triple = |q: &Quantity| {
-                [
-                    format!("{:.5}", q.fit),
-                    format!("{:.5}", q.node),
-                    format!("{:.5}", q.theory),
-                    format!("{:+.2}", 100.0 * q.error),
-                ]
-            };
-            let mut cells = vec![
-                case.case.clone(),
-                m.elements.to_string(),
-                m.dofs.to_string(),
-                m.active.to_string(),
-                format!("{:.3e}", m.force),
-            ];
-            cells.extend(triple(&m.half_width));
-            cells.extend(triple(&m.peak));
-            cells.push(format!("{:.2}", 100.0 * m.curve));
-            cells.extend([
-                m.outer_iterations.to_string(),
-                m.iterations.to_string(),
-                format!("{:.0e}", m.kkt),
-                format!("{:.2}", m.seconds),
-            ]);
-            table.row(cells);
-        }
-    }
-    table
+    let cases = report.cases.iter();
+    let meshes = cases.flat_map(|c| c.meshes.iter().map(move |m| (c, m)));
+    Table::of(meshes)
+        .words("problem", |(c, _)| &c.case)
+        .numbers("n", |(_, m)| m.elements)
+        .numbers("dofs", |(_, m)| m.dofs)
+        .numbers("nodes", |(_, m)| m.active)
+        .numbers("force", |(_, m)| format!("{:.3e}", m.force))
+        .numbers("a fit", |(_, m)| format!("{:.5}", m.half_width.fit))
+        .numbers("a last", |(_, m)| format!("{:.5}", m.half_width.node))
+        .numbers("a theory", |(_, m)| format!("{:.5}", m.half_width.theory))
+        .numbers("error %", |(_, m)| {
+            format!("{:+.2}", 100.0 * m.half_width.error)
+        })
+        .numbers("p0 fit", |(_, m)| format!("{:.5}", m.peak.fit))
+        .numbers("p0 node", |(_, m)| format!("{:.5}", m.peak.node))
+        .numbers("p0 theory", |(_, m)| format!("{:.5}", m.peak.theory))
+        .numbers("error %", |(_, m)| format!("{:+.2}", 100.0 * m.peak.error))
+        .numbers("p rms %", |(_, m)| format!("{:.2}", 100.0 * m.curve))
+        .numbers("outer", |(_, m)| m.outer_iterations)
+        .numbers("it", |(_, m)| m.iterations)
+        .numbers("kkt", |(_, m)| format!("{:.0e}", m.kkt))
+        .numbers("s", |(_, m)| format!("{:.2}", m.seconds))
+        .table()
 }
 
 /// The table for terminals.
@@ -79,18 +52,14 @@ pub fn text(report: &Report) -> String {
 
 /// The nodal pressures of all meshes of one problem.
 pub fn csv(case: &CaseReport) -> Table {
-    let mut table = Table::new(["elements", "x", "pressure", "hertz"]);
-    for m in &case.meshes {
-        for node in &m.pressure {
-            table.row([
-                m.elements.to_string(),
-                format!("{:.12e}", node.x),
-                format!("{:.12e}", node.p),
-                format!("{:.12e}", node.theory),
-            ]);
-        }
-    }
-    table
+    let meshes = case.meshes.iter();
+    let nodes = meshes.flat_map(|m| m.pressure.iter().map(move |node| (m, node)));
+    Table::of(nodes)
+        .numbers("elements", |(m, _)| m.elements)
+        .numbers("x", |(_, node)| format!("{:.12e}", node.x))
+        .numbers("pressure", |(_, node)| format!("{:.12e}", node.p))
+        .numbers("hertz", |(_, node)| format!("{:.12e}", node.theory))
+        .table()
 }
 
 /// A figure of pressure over distance in units of the theory, and of the errors over the mesh.
@@ -103,8 +72,7 @@ pub fn figure(case: &CaseReport) -> Figure {
         })
         .filter(|(x, _)| case.finest().pressure.iter().any(|n| n.x < 0.0) || *x >= 0.0)
         .collect();
-    let mut series =
-        vec![Series::new("Hertz", curve, Colour::CYCLE[7]).marker(Marker::None, true, 1.0)];
+    let mut series = vec![Series::new("Hertz", curve, Colour::CYCLE[7]).line_only()];
     let markers = [Marker::Triangle, Marker::Square, Marker::Circle];
     // The two coarsest meshes and the finest one: more curves would hide each other.
     let n = case.meshes.len();
@@ -121,61 +89,34 @@ pub fn figure(case: &CaseReport) -> Figure {
                 .line(Line::None),
         );
     }
-    let pressure = Panel {
-        title: "Nodal pressure".into(),
-        x: Axis::new("x / a", Scale::Linear),
-        y: Axis::new("p / p_{0}", Scale::Linear),
-        series,
-        bands: Vec::new(),
-    };
-    let errors = |pick: fn(&super::Mesh) -> f64| {
-        let list = case.meshes.iter();
-        list.map(|m| (m.elements as f64, 100.0 * pick(m).abs()))
-            .collect::<Vec<_>>()
-    };
+    let [x, y] = ["x / a", "p / p_{0}"].map(|name| Axis::new(name, Scale::Linear));
+    let pressure = Panel::new("Nodal pressure", x, y, series);
     let counts: Vec<f64> = case.meshes.iter().map(|m| m.elements as f64).collect();
-    let mut limit = vec![(counts[0], 2.0)];
-    limit.push((counts[n - 1], 2.0));
-    let convergence = Panel {
-        title: "Distance from the theory".into(),
-        x: Axis::new("elements per radius", Scale::Log).at(counts),
-        y: Axis::new("error in %", Scale::Log),
-        series: vec![
-            Series::new(
-                "half-width, fit",
-                errors(|m| m.half_width.error),
-                Colour::CYCLE[0],
-            ),
-            Series::new("peak, fit", errors(|m| m.peak.error), Colour::CYCLE[1]).marker(
-                Marker::Square,
-                true,
-                4.0,
-            ),
-            Series::new(
-                "pressure, root mean square",
-                errors(|m| m.curve),
-                Colour::CYCLE[2],
-            )
-            .marker(Marker::Diamond, true, 4.0),
-            Series::new(
-                "half-width, last node",
-                errors(|m| m.half_width.node / m.half_width.theory - 1.0),
-                Colour::CYCLE[5],
-            )
-            .marker(Marker::Circle, false, 4.0)
-            .line(Line::Dotted),
-            Series::new(
-                "peak, largest node",
-                errors(|m| m.peak.node / m.peak.theory - 1.0),
-                Colour::CYCLE[4],
-            )
-            .marker(Marker::Square, false, 4.0)
-            .line(Line::Dotted),
-            Series::new("2 %", limit, Colour::CYCLE[7])
-                .marker(Marker::None, true, 1.0)
-                .line(Line::Dashed),
-        ],
-        bands: Vec::new(),
+    let errors = |label: &str, colour: usize, error: fn(&Mesh) -> f64| {
+        let each = case.meshes.iter().map(|m| 100.0 * error(m).abs());
+        let points = counts.iter().copied().zip(each).collect();
+        Series::new(label, points, Colour::CYCLE[colour])
     };
+    let limit = vec![(counts[0], 2.0), (counts[n - 1], 2.0)];
+    let limit = Series::new("2 %", limit, Colour::CYCLE[7]);
+    let convergence = vec![
+        errors("half-width, fit", 0, |m| m.half_width.error),
+        errors("peak, fit", 1, |m| m.peak.error).marker(Marker::Square, true, 4.0),
+        errors("pressure, root mean square", 2, |m| m.curve).marker(Marker::Diamond, true, 4.0),
+        errors("half-width, last node", 5, |m| {
+            m.half_width.node / m.half_width.theory - 1.0
+        })
+        .marker(Marker::Circle, false, 4.0)
+        .line(Line::Dotted),
+        errors("peak, largest node", 4, |m| {
+            m.peak.node / m.peak.theory - 1.0
+        })
+        .marker(Marker::Square, false, 4.0)
+        .line(Line::Dotted),
+        limit.line_only().line(Line::Dashed),
+    ];
+    let x = Axis::new("elements per radius", Scale::Log).at(counts);
+    let y = Axis::new("error in %", Scale::Log);
+    let convergence = Panel::new("Distance from the theory", x, y, convergence);
     Figure::new(case.title.clone(), vec![pressure, convergence])
 }

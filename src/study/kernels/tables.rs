@@ -2,33 +2,57 @@
 
 use super::{Report, Row, WORTH_CHANGING};
 use crate::cholesky::interior::{Ordering, Solver};
-use crate::report::tables::table::{Align, Table};
+use crate::report::tables::table::Table;
 
-/// A column of seconds.
-struct Kernel {
-    name: &'static str,
-    of: fn(&Row) -> f64,
-}
+/// A kernel: its name and its seconds.
+type Kernel = (&'static str, fn(&Row) -> f64);
 
 const KERNELS: [Kernel; 3] = [
-    Kernel {
-        name: "factor",
-        of: |r| r.factor,
-    },
-    Kernel {
-        name: "solve",
-        of: |r| r.solve,
-    },
-    Kernel {
-        name: "S",
-        of: |r| r.schur,
-    },
+    ("factor", |r| r.factor),
+    ("solve", |r| r.solve),
+    ("S", |r| r.schur),
 ];
 
-/// The rows of one case and size.
-fn cases(report: &Report) -> Vec<&[Row]> {
-    let same = |a: &Row, b: &Row| (&a.case, a.elements) == (&b.case, b.elements);
-    report.rows.chunk_by(same).collect()
+/// Whether two rows are of one case and size.
+fn same(a: &Row, b: &Row) -> bool {
+    (&a.case, a.elements) == (&b.case, b.elements)
+}
+
+/// A kernel on one case and size: all rows, the default's, the fastest, and the seconds.
+struct Race<'a> {
+    kernel: &'static str,
+    rows: &'a [Row],
+    default: &'a Row,
+    fastest: &'a Row,
+    seconds: fn(&Row) -> f64,
+}
+
+impl Race<'_> {
+    /// The speed-up of the fastest over the default.
+    fn gain(&self) -> f64 {
+        (self.seconds)(self.default) / (self.seconds)(self.fastest)
+    }
+}
+
+/// All kernels, by case and size.
+fn races(report: &Report) -> Vec<Race<'_>> {
+    let mut out = Vec::new();
+    for rows in report.rows.chunk_by(same) {
+        let Some(default) = rows.iter().find(|r| r.default) else {
+            continue;
+        };
+        for (kernel, seconds) in KERNELS {
+            let fastest = least(rows.iter(), seconds).unwrap_or(default);
+            out.push(Race {
+                kernel,
+                rows,
+                default,
+                fastest,
+                seconds,
+            });
+        }
+    }
+    out
 }
 
 fn least<'a>(rows: impl Iterator<Item = &'a Row>, of: fn(&Row) -> f64) -> Option<&'a Row> {
@@ -41,114 +65,68 @@ pub type Faster = (String, usize, &'static str, String, String, f64);
 
 /// All such combinations; the fastest one for each case and kernel.
 pub fn faster(report: &Report) -> Vec<Faster> {
-    let mut out = Vec::new();
-    for rows in cases(report) {
-        let Some(ours) = rows.iter().find(|r| r.default) else {
-            continue;
-        };
-        for kernel in &KERNELS {
-            let Some(best) = least(rows.iter(), kernel.of) else {
-                continue;
-            };
-            let factor = (kernel.of)(ours) / (kernel.of)(best);
-            if factor > WORTH_CHANGING {
-                out.push((
-                    best.case.clone(),
-                    best.elements,
-                    kernel.name,
-                    best.solver.clone(),
-                    best.ordering.clone(),
-                    factor,
-                ));
-            }
-        }
-    }
-    out
+    let races = races(report).into_iter();
+    let worth = races.filter(|r| r.gain() > WORTH_CHANGING);
+    let named = |r: Race| {
+        let Row {
+            case,
+            elements,
+            solver,
+            ordering,
+            ..
+        } = r.fastest.clone();
+        (case, elements, r.kernel, solver, ordering, r.gain())
+    };
+    worth.map(named).collect()
 }
 
 /// One row for every case and kernel: the default in milliseconds, and every solver in its best ordering as a ratio to
 /// it.
 pub fn summary(report: &Report) -> Table {
-    let mut header = vec!["case", "n", "n_I", "n_Γ", "kernel", "default ms"];
-    header.extend(Solver::ALL.map(Solver::name));
-    header.extend(["fastest", "default / fastest"]);
-    let columns = header.len();
-    let mut table = Table::new(header)
-        .align(0, Align::Left)
-        .align(4, Align::Left);
-    for c in 6..columns - 1 {
-        table = table.align(c, Align::Left);
-    }
-    for rows in cases(report) {
-        let Some(ours) = rows.iter().find(|r| r.default) else {
-            continue;
-        };
-        for kernel in &KERNELS {
-            let base = (kernel.of)(ours);
-            let mut cells = vec![
-                ours.case.clone(),
-                ours.elements.to_string(),
-                ours.interior.to_string(),
-                ours.interface.to_string(),
-                kernel.name.to_string(),
-                milliseconds(base),
-            ];
-            for solver in Solver::ALL {
-                let of = rows.iter().filter(|r| r.solver == solver.name());
-                cells.push(least(of, kernel.of).map_or(String::new(), |best| {
-                    format!("{:.2} {}", (kernel.of)(best) / base, best.ordering)
-                }));
-            }
-            let best = least(rows.iter(), kernel.of).unwrap_or(ours);
-            cells.push(format!("{} {}", best.solver, best.ordering));
-            cells.push(format!("{:.2}", base / (kernel.of)(best)));
-            table.row(cells);
-        }
-        table.rule();
+    let mut table = Table::of(races(report))
+        .words("case", |r| &r.default.case)
+        .numbers("n", |r| r.default.elements)
+        .numbers("n_I", |r| r.default.interior)
+        .numbers("n_Γ", |r| r.default.interface)
+        .words("kernel", |r| r.kernel)
+        .numbers("default ms", |r| milliseconds((r.seconds)(r.default)));
+    for solver in Solver::ALL.map(Solver::name) {
+        table = table.words(solver, |r| {
+            let best = least(r.rows.iter().filter(|r| r.solver == solver), r.seconds);
+            best.map_or(String::new(), |best| {
+                let ratio = (r.seconds)(best) / (r.seconds)(r.default);
+                format!("{ratio:.2} {}", best.ordering)
+            })
+        });
     }
     table
+        .words("fastest", |r| {
+            format!("{} {}", r.fastest.solver, r.fastest.ordering)
+        })
+        .numbers("default / fastest", |r| format!("{:.2}", r.gain()))
+        .rules(|a, b| !same(a.default, b.default))
+        .table()
 }
 
 /// Every combination.
 pub fn table(report: &Report) -> Table {
-    let mut table = Table::new([
-        "case",
-        "n",
-        "n_I",
-        "n_Γ",
-        "solver",
-        "ordering",
-        "rounds",
-        "analyse ms",
-        "factor ms",
-        "solve ms",
-        "S ms",
-        "MB",
-        "error",
-        "error of S",
-    ]);
-    for c in [0, 4, 5] {
-        table = table.align(c, Align::Left);
-    }
-    for rows in cases(report) {
-        for r in rows {
-            let mut cells = vec![
-                r.case.clone(),
-                r.elements.to_string(),
-                r.interior.to_string(),
-                r.interface.to_string(),
-                r.solver.clone(),
-                r.ordering.clone(),
-                r.rounds.to_string(),
-            ];
-            cells.extend([r.analyse, r.factor, r.solve, r.schur].map(milliseconds));
-            cells.push(format!("{:.2}", r.bytes as f64 / 1e6));
-            cells.extend([r.error, r.schur_error].map(|e| format!("{e:.0e}")));
-            table.row(cells);
-        }
-        table.rule();
-    }
-    table
+    Table::of(&report.rows)
+        .words("case", |r| &r.case)
+        .numbers("n", |r| r.elements)
+        .numbers("n_I", |r| r.interior)
+        .numbers("n_Γ", |r| r.interface)
+        .words("solver", |r| &r.solver)
+        .words("ordering", |r| &r.ordering)
+        .numbers("rounds", |r| r.rounds)
+        .numbers("analyse ms", |r| milliseconds(r.analyse))
+        .numbers("factor ms", |r| milliseconds(r.factor))
+        .numbers("solve ms", |r| milliseconds(r.solve))
+        .numbers("S ms", |r| milliseconds(r.schur))
+        .numbers("MB", |r| format!("{:.2}", r.bytes as f64 / 1e6))
+        .numbers("error", |r| format!("{:.0e}", r.error))
+        .numbers("error of S", |r| format!("{:.0e}", r.schur_error))
+        .rules(|a, b| !same(a, b))
+        .table()
 }
 
 /// A number of milliseconds with three digits.

@@ -12,16 +12,6 @@ fn colour(k: usize) -> Colour {
     Colour::CYCLE[k % Colour::CYCLE.len()]
 }
 
-fn panel(title: &str, x: Axis, y: Axis, series: Vec<Series>) -> Panel {
-    Panel {
-        title: title.into(),
-        x,
-        y,
-        series,
-        bands: Vec::new(),
-    }
-}
-
 /// Measured and modelled seconds of set-up and solve over ranks; hollow where there are more ranks than cores.
 fn over_ranks(report: &Report, runs: Runs, title: &str) -> Panel {
     let mut series = Vec::new();
@@ -46,7 +36,7 @@ fn over_ranks(report: &Report, runs: Runs, title: &str) -> Panel {
             let curve = of.iter().map(model).collect();
             series.push(
                 Series::new(format!("{name}, model"), curve, colour(k))
-                    .marker(Marker::None, false, 0.0)
+                    .line_only()
                     .line(Line::Dashed),
             );
         }
@@ -64,7 +54,7 @@ fn over_ranks(report: &Report, runs: Runs, title: &str) -> Panel {
     }
     let x = Axis::new("ranks", Scale::Log).at(RANKS);
     let y = Axis::new("seconds, set-up and solve", Scale::Log);
-    panel(title, x, y, series)
+    Panel::new(title, x, y, series)
 }
 
 /// Iterations over the number of subdomains, a curve for each size of body.
@@ -91,7 +81,7 @@ fn iterations(report: &Report) -> Panel {
     let most = runs().map(|p| p.iterations).max().unwrap_or(0);
     y.range = Some((0.0, 1.15 * most as f64));
     let x = Axis::new("subdomains", Scale::Log);
-    panel("Bodies of one size, tied", x, y, series)
+    Panel::new("Bodies of one size, tied", x, y, series)
 }
 
 /// The figure of the runs.
@@ -139,13 +129,13 @@ fn measured_phases(report: &Report) -> Panel {
             continue;
         }
         let line = Series::new(label(name), modelled, phase_colour(name));
-        series.push(line.marker(Marker::None, false, 0.0));
+        series.push(line.line_only());
         let dots = Series::new("", curve(&|p| p.iteration.all()[k]), phase_colour(name));
         series.push(dots.marker(Marker::Circle, true, 3.5).line(Line::None));
     }
     let x = Axis::new("bodies of 2 x 2 subdomains", Scale::Log);
     let y = Axis::new("milliseconds per iteration", Scale::Log);
-    panel("One rank: measured, and fitted (lines)", x, y, series)
+    Panel::new("One rank: measured, and fitted (lines)", x, y, series)
 }
 
 /// Predicted seconds over ranks by phase.
@@ -164,7 +154,7 @@ fn predicted(report: &Report, iteration: bool) -> Panel {
         let points: Vec<(f64, f64)> = rows.iter().map(|r| (r.ranks as f64, of(r))).collect();
         if points.iter().any(|p| p.1 > 0.0) {
             let line = Series::new(label(name), points, phase_colour(name));
-            series.push(line.marker(Marker::None, false, 0.0));
+            series.push(line.line_only());
         }
     }
     let (title, y) = match iteration {
@@ -172,7 +162,7 @@ fn predicted(report: &Report, iteration: bool) -> Panel {
         false => ("Predicted set-up", "seconds"),
     };
     let x = Axis::new("ranks, a body on each", Scale::Log);
-    panel(title, x, Axis::new(y, Scale::Log), series)
+    Panel::new(title, x, Axis::new(y, Scale::Log), series)
 }
 
 /// The figure of the model: the runs it is fitted to, and the predictions for the stated network.

@@ -1,7 +1,9 @@
 //! Tables of the study, and conclusions in words.
 
-use super::{IterationSeconds, Limit, Point, Prediction, Report, Row, SetupSeconds, Work};
-use crate::report::tables::table::{fixed, scientific, value, Align, Table};
+use super::{
+    IterationSeconds, Law, Limit, Point, Prediction, Report, Row, SetupSeconds, Timing, Work,
+};
+use crate::report::tables::table::{fixed, scientific, value, Columns, Table};
 
 /// A number with three digits; a dash for zero.
 fn short(x: f64) -> String {
@@ -30,165 +32,130 @@ fn percent(deviation: f64) -> String {
 }
 
 /// Ranks, with a star where there are more than cores.
-fn ranks(p: &Point) -> String {
-    format!("{}{}", p.ranks, if p.oversubscribed { "*" } else { "" })
+fn ranks(ranks: usize, crowded: bool) -> String {
+    format!("{ranks}{}", if crowded { "*" } else { "" })
 }
 
-/// The description of a run: the first columns of both tables.
-fn what(p: &Point) -> [String; 6] {
-    [
-        p.series.name().into(),
-        p.problem.name().into(),
-        ranks(p),
-        p.bodies.to_string(),
-        p.subdomains.to_string(),
-        p.elements.to_string(),
-    ]
-}
-
-const WHAT: [&str; 6] = ["series", "problem", "ranks", "bodies", "subdomains", "el"];
-
-fn table(header: impl IntoIterator<Item = &'static str>) -> Table {
-    Table::new(header)
-        .align(0, Align::Left)
-        .align(1, Align::Left)
+/// The runs with their description, the first columns of two tables.
+fn described(report: &Report) -> Columns<&Point> {
+    Table::of(&report.points)
+        .words("series", |p| p.series.name())
+        .words("problem", |p| p.problem.name())
+        .numbers("ranks", |p| ranks(p.ranks, p.oversubscribed))
+        .numbers("bodies", |p| p.bodies)
+        .numbers("subdomains", |p| p.subdomains)
+        .numbers("el", |p| p.elements)
 }
 
 fn runs(report: &Report) -> Table {
-    let more = [
-        "rows of B",
-        "floating",
-        "it",
-        "κ",
-        "set-up s",
-        "solve s",
-        "MB",
-        "messages",
-        "kB",
-        "all-reduces",
-    ];
-    let mut out = table(WHAT.into_iter().chain(more));
-    for p in &report.points {
-        let c = &p.communication;
-        let more = [
-            p.multipliers.to_string(),
-            p.floating_bodies.to_string(),
-            p.iterations.to_string(),
-            fixed(p.kappa, 2),
-            fixed(Some(p.total[0]), 3),
-            fixed(Some(p.total[1]), 3),
-            fixed(Some(p.memory_mb[0] - p.memory_mb[1]), 0),
-            fixed(Some(c.messages_per_iteration.max), 0),
-            fixed(Some(1e-3 * c.bytes_per_iteration.max), 1),
-            fixed(Some(c.reductions_per_iteration), 1),
-        ];
-        out.row(what(p).into_iter().chain(more));
-    }
-    out
+    described(report)
+        .numbers("rows of B", |p| p.multipliers)
+        .numbers("floating", |p| p.floating_bodies)
+        .numbers("it", |p| p.iterations)
+        .numbers("κ", |p| fixed(p.kappa, 2))
+        .numbers("set-up s", |p| fixed(Some(p.total[0]), 3))
+        .numbers("solve s", |p| fixed(Some(p.total[1]), 3))
+        .numbers("MB", |p| fixed(Some(p.memory_mb[0] - p.memory_mb[1]), 0))
+        .numbers("messages", |p| {
+            fixed(Some(p.communication.messages_per_iteration.max), 0)
+        })
+        .numbers("kB", |p| {
+            fixed(Some(1e-3 * p.communication.bytes_per_iteration.max), 1)
+        })
+        .numbers("all-reduces", |p| {
+            fixed(Some(p.communication.reductions_per_iteration), 1)
+        })
+        .table()
 }
 
-/// Names of the phases with a mark in front.
-fn marked(mark: &str, names: &[&str]) -> Vec<String> {
-    names.iter().map(|n| format!("{mark} {n}")).collect()
+/// Adds a column for each of the numbers of a record; `mark` stands in front of their names.
+fn each<R, const N: usize>(
+    mut table: Columns<R>,
+    mark: &str,
+    names: [&str; N],
+    numbers: impl Fn(&R) -> [f64; N],
+    text: fn(f64) -> String,
+) -> Columns<R> {
+    for (k, name) in names.into_iter().enumerate() {
+        table = table.numbers(format!("{mark} {name}"), |r| text(numbers(r)[k]));
+    }
+    table
 }
 
 fn phases(report: &Report) -> Table {
-    let mut header: Vec<String> = WHAT.map(String::from).to_vec();
-    header.extend(marked("S", &SetupSeconds::NAMES));
-    header.push("model %".into());
-    header.extend(marked("I", &IterationSeconds::NAMES));
-    header.push("model %".into());
-    let mut out = Table::new(header)
-        .align(0, Align::Left)
-        .align(1, Align::Left);
-    for p in &report.points {
-        let mut cells = what(p).to_vec();
-        cells.extend(p.setup.all().map(ms));
-        cells.push(percent(p.setup_deviation));
-        cells.extend(p.iteration.all().map(us));
-        cells.push(percent(p.iteration_deviation));
-        out.row(cells);
-    }
-    out
+    let table = described(report);
+    let table = each(table, "S", SetupSeconds::NAMES, |p| p.setup.all(), ms);
+    let table = table.numbers("model %", |p| percent(p.setup_deviation));
+    let table = each(
+        table,
+        "I",
+        IterationSeconds::NAMES,
+        |p| p.iteration.all(),
+        us,
+    );
+    table
+        .numbers("model %", |p| percent(p.iteration_deviation))
+        .table()
 }
 
 fn laws(report: &Report) -> Table {
-    let header = ["phase", "seconds", "runs", "median off %", "largest off %"];
-    let mut out = table(header);
-    for law in &report.model.laws {
+    let term = |(term, seconds): (&String, &f64)| match term.as_str() {
+        "1" => scientific(Some(*seconds)),
+        term => format!("{} {term}", scientific(Some(*seconds))),
+    };
+    let sum = |law: &Law| {
         let terms = law.terms.iter().zip(&law.seconds);
-        let sum: Vec<String> = terms
-            .filter(|(_, c)| **c > 0.0)
-            .map(|(t, c)| match t.as_str() {
-                "1" => scientific(Some(*c)),
-                t => format!("{} {t}", scientific(Some(*c))),
-            })
-            .collect();
-        out.row([
-            law.phase.clone(),
-            sum.join(" + "),
-            law.points.to_string(),
-            fixed(Some(100.0 * law.median_deviation), 0),
-            fixed(Some(100.0 * law.largest_deviation), 0),
-        ]);
-    }
-    out
+        let terms: Vec<String> = terms.filter(|t| *t.1 > 0.0).map(term).collect();
+        terms.join(" + ")
+    };
+    Table::of(&report.model.laws)
+        .words("phase", |law| &law.phase)
+        .words("seconds", |law| sum(law))
+        .numbers("runs", |law| law.points)
+        .numbers("median off %", |law| {
+            fixed(Some(100.0 * law.median_deviation), 0)
+        })
+        .numbers("largest off %", |law| {
+            fixed(Some(100.0 * law.largest_deviation), 0)
+        })
+        .table()
 }
 
 fn messages(report: &Report) -> Table {
-    let mut out = table(["what", "ranks", "bytes", "µs", "model µs"]);
     let net = &report.network;
-    for t in &net.messages {
-        let model = net.network.messages(1.0, t.bytes as f64);
-        out.row([
-            "message".into(),
-            t.ranks.to_string(),
-            t.bytes.to_string(),
-            us(t.seconds),
-            us(model),
-        ]);
-    }
-    for (t, model) in net.reductions.iter().zip(&net.modelled_reductions) {
-        let star = if t.ranks > report.cores { "*" } else { "" };
-        out.row([
-            "all-reduce".into(),
-            format!("{}{star}", t.ranks),
-            t.bytes.to_string(),
-            us(t.seconds),
-            us(*model),
-        ]);
-    }
-    out
+    let model = |t: &Timing| net.network.messages(1.0, t.bytes as f64);
+    let messages = net.messages.iter().map(|t| ("message", t, false, model(t)));
+    let reductions = net.reductions.iter().zip(&net.modelled_reductions);
+    let reductions = reductions.map(|(t, model)| ("all-reduce", t, t.ranks > report.cores, *model));
+    Table::of(messages.chain(reductions))
+        .words("what", |(what, ..)| *what)
+        .words("ranks", |(_, t, crowded, _)| ranks(t.ranks, *crowded))
+        .numbers("bytes", |(_, t, ..)| t.bytes)
+        .numbers("µs", |(_, t, ..)| us(t.seconds))
+        .numbers("model µs", |(.., model)| us(*model))
+        .table()
 }
 
 fn prediction(p: &Prediction) -> Table {
-    let mut header: Vec<String> = ["ranks", "unknowns", "r", "MB of r x r"]
-        .map(String::from)
-        .to_vec();
-    header.extend(marked("S", &SetupSeconds::NAMES));
-    header.extend(marked("I", &IterationSeconds::NAMES));
-    let sums = ["set-up s", "iteration ms", "total s", "without r s"];
-    header.extend(sums.map(String::from));
-    let mut out = Table::new(header);
-    for row in &p.rows {
-        let s = &row.seconds;
-        let mut cells = vec![
-            row.ranks.to_string(),
-            scientific(Some(row.unknowns)),
-            row.kernels.to_string(),
-            short(1e-6 * row.replicated_bytes),
-        ];
-        cells.extend(s.setup.all().map(ms));
-        cells.extend(s.iteration.all().map(us));
-        cells.extend([
-            short(s.setup.sum()),
-            ms(s.iteration.sum()),
-            short(row.total),
-            short(row.without_kernels),
-        ]);
-        out.row(cells);
-    }
-    out
+    let table = Table::of(&p.rows)
+        .numbers("ranks", |r| r.ranks)
+        .numbers("unknowns", |r| scientific(Some(r.unknowns)))
+        .numbers("r", |r| r.kernels)
+        .numbers("MB of r x r", |r| short(1e-6 * r.replicated_bytes));
+    let table = each(
+        table,
+        "S",
+        SetupSeconds::NAMES,
+        |r| r.seconds.setup.all(),
+        ms,
+    );
+    let iteration = |r: &&Row| r.seconds.iteration.all();
+    each(table, "I", IterationSeconds::NAMES, iteration, us)
+        .numbers("set-up s", |r| short(r.seconds.setup.sum()))
+        .numbers("iteration ms", |r| ms(r.seconds.iteration.sum()))
+        .numbers("total s", |r| short(r.total))
+        .numbers("without r s", |r| short(r.without_kernels))
+        .table()
 }
 
 /// Sentences about the limits of scaling.
@@ -279,123 +246,82 @@ pub fn text(report: &Report) -> String {
     out
 }
 
-fn exact(x: f64) -> String {
-    match x.is_finite() {
-        true => x.to_string(),
-        false => String::new(),
+/// As [`each`], for programs.
+fn each_exact<R, const N: usize>(
+    mut table: Columns<R>,
+    mark: &str,
+    names: [&str; N],
+    numbers: impl Fn(&R) -> [f64; N],
+) -> Columns<R> {
+    for (k, name) in names.into_iter().enumerate() {
+        table = table.exact(format!("{mark} {name}"), |r| numbers(r)[k]);
     }
+    table
 }
 
 /// All runs for programs.
 pub fn points_csv(report: &Report) -> Table {
-    let first = [
-        "series",
-        "problem",
-        "ranks",
-        "oversubscribed",
-        "fitted",
-        "bodies",
-        "floating_bodies",
-        "subdomains",
-        "elements",
-        "multipliers",
-        "iterations",
-        "steps",
-        "kappa",
-        "setup_total",
-        "solve_total",
-        "solve_outside",
-        "memory_mb",
-        "memory_at_start_mb",
-        "messages_sum",
-        "messages_max",
-        "bytes_sum",
-        "bytes_max",
-        "reductions",
-        "reduced_bytes",
-    ];
-    let mut header: Vec<String> = first.map(String::from).to_vec();
-    for of in ["measured", "model"] {
-        header.extend(marked(&format!("{of} set-up"), &SetupSeconds::NAMES));
-        header.extend(marked(&format!("{of} iteration"), &IterationSeconds::NAMES));
-    }
-    header.extend(marked("work", &Work::NAMES));
-    let mut out = Table::new(header);
-    for p in &report.points {
-        let c = &p.communication;
-        let mut cells = vec![
-            p.series.name().into(),
-            p.problem.name().into(),
-            p.ranks.to_string(),
-            p.oversubscribed.to_string(),
-            p.fitted.to_string(),
-            p.bodies.to_string(),
-            p.floating_bodies.to_string(),
-            p.subdomains.to_string(),
-            p.elements.to_string(),
-            p.multipliers.to_string(),
-            p.iterations.to_string(),
-            p.steps.to_string(),
-            p.kappa.map(exact).unwrap_or_default(),
-        ];
-        let numbers = [
-            p.total[0],
-            p.total[1],
-            p.outside,
-            p.memory_mb[0],
-            p.memory_mb[1],
-            c.messages_per_iteration.sum,
-            c.messages_per_iteration.max,
-            c.bytes_per_iteration.sum,
-            c.bytes_per_iteration.max,
-            c.reductions_per_iteration,
-            c.reduced_bytes_per_iteration,
-        ];
-        cells.extend(numbers.map(exact));
-        for (setup, iteration) in [
-            (&p.setup, &p.iteration),
-            (&p.model.setup, &p.model.iteration),
-        ] {
-            cells.extend(setup.all().map(exact));
-            cells.extend(iteration.all().map(exact));
-        }
-        cells.extend(p.work.all().map(exact));
-        out.row(cells);
-    }
-    out
+    let table = Table::of(&report.points)
+        .exact("series", |p| p.series.name())
+        .exact("problem", |p| p.problem.name())
+        .exact("ranks", |p| p.ranks)
+        .exact("oversubscribed", |p| p.oversubscribed)
+        .exact("fitted", |p| p.fitted)
+        .exact("bodies", |p| p.bodies)
+        .exact("floating_bodies", |p| p.floating_bodies)
+        .exact("subdomains", |p| p.subdomains)
+        .exact("elements", |p| p.elements)
+        .exact("multipliers", |p| p.multipliers)
+        .exact("iterations", |p| p.iterations)
+        .exact("steps", |p| p.steps)
+        .exact("kappa", |p| p.kappa)
+        .exact("setup_total", |p| p.total[0])
+        .exact("solve_total", |p| p.total[1])
+        .exact("solve_outside", |p| p.outside)
+        .exact("memory_mb", |p| p.memory_mb[0])
+        .exact("memory_at_start_mb", |p| p.memory_mb[1])
+        .exact("messages_sum", |p| {
+            p.communication.messages_per_iteration.sum
+        })
+        .exact("messages_max", |p| {
+            p.communication.messages_per_iteration.max
+        })
+        .exact("bytes_sum", |p| p.communication.bytes_per_iteration.sum)
+        .exact("bytes_max", |p| p.communication.bytes_per_iteration.max)
+        .exact("reductions", |p| p.communication.reductions_per_iteration)
+        .exact("reduced_bytes", |p| {
+            p.communication.reduced_bytes_per_iteration
+        });
+    let (setup, iteration) = (SetupSeconds::NAMES, IterationSeconds::NAMES);
+    let table = each_exact(table, "measured set-up", setup, |p| p.setup.all());
+    let table = each_exact(table, "measured iteration", iteration, |p| {
+        p.iteration.all()
+    });
+    let table = each_exact(table, "model set-up", setup, |p| p.model.setup.all());
+    let table = each_exact(table, "model iteration", iteration, |p| {
+        p.model.iteration.all()
+    });
+    each_exact(table, "work", Work::NAMES, |p| p.work.all()).table()
 }
 
 /// The predictions for programs.
 pub fn prediction_csv(report: &Report) -> Table {
-    let first = [
-        "network",
-        "alpha",
-        "beta",
-        "ranks",
-        "unknowns",
-        "r",
-        "replicated_bytes",
-    ];
-    let mut header: Vec<String> = first.map(String::from).to_vec();
-    header.extend(marked("set-up", &SetupSeconds::NAMES));
-    header.extend(marked("iteration", &IterationSeconds::NAMES));
-    header.extend(["outside", "total", "without_kernels"].map(String::from));
-    let mut out = Table::new(header);
     let all = report.predictions.iter();
-    for (p, row) in all.flat_map(|p| p.rows.iter().map(move |r: &Row| (p, r))) {
-        let mut cells = vec![
-            p.network_name.clone(),
-            exact(p.network.alpha),
-            exact(p.network.beta),
-            row.ranks.to_string(),
-            exact(row.unknowns),
-            row.kernels.to_string(),
-            exact(row.replicated_bytes),
-        ];
-        cells.extend(row.seconds.setup.all().map(exact));
-        cells.extend(row.seconds.iteration.all().map(exact));
-        cells.extend([row.seconds.outside, row.total, row.without_kernels].map(exact));
-        out.row(cells);
-    }
-    out
+    let table = Table::of(all.flat_map(|p| p.rows.iter().map(move |row| (p, row))))
+        .exact("network", |(p, _)| p.network_name.as_str())
+        .exact("alpha", |(p, _)| p.network.alpha)
+        .exact("beta", |(p, _)| p.network.beta)
+        .exact("ranks", |(_, r)| r.ranks)
+        .exact("unknowns", |(_, r)| r.unknowns)
+        .exact("r", |(_, r)| r.kernels)
+        .exact("replicated_bytes", |(_, r)| r.replicated_bytes);
+    let (setup, iteration) = (SetupSeconds::NAMES, IterationSeconds::NAMES);
+    let table = each_exact(table, "set-up", setup, |(_, r)| r.seconds.setup.all());
+    each_exact(table, "iteration", iteration, |(_, r)| {
+        r.seconds.iteration.all()
+    })
+    .exact("outside", |(_, r)| r.seconds.outside)
+    .exact("total", |(_, r)| r.total)
+    .exact("without_kernels", |(_, r)| r.without_kernels)
+    .table()
 }

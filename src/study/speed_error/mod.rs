@@ -189,35 +189,34 @@ fn rows(
 ) -> Vec<Run> {
     let mut out = Vec::new();
     for row in &report.rows {
-        let ours = row.method == "fetifeti";
+        let run = &row.run;
         let (Some(setup), Some(solve), Some(error)) =
-            (row.seconds.setup, row.seconds.solve, row.error)
+            (row.seconds.setup, row.seconds.solve, run.error)
         else {
             continue;
         };
-        if !(ours || baselines) {
+        if !(run.is_ours() || baselines) {
             continue;
         }
         // Methods that are set up for a mesh and its parts do not search for the active set.
-        let given = row.contact.is_some_and(|c| c.outer.is_none());
-        let method = match (ours, given) {
+        let method = match (run.is_ours(), run.set_given()) {
             (true, _) => variant.name.into(),
-            (false, true) => format!("{} (set given)", row.method),
-            (false, false) => row.method.clone(),
+            (false, true) => format!("{} (set given)", run.method),
+            (false, false) => run.method.clone(),
         };
         out.push(Run {
             method,
             elements: mesh.elements,
             dofs: mesh.dofs,
             rtol,
-            ranks: row.ranks,
-            threads: row.threads,
-            iterations: row.iterations,
+            ranks: run.ranks,
+            threads: run.threads,
+            iterations: run.iterations,
             setup,
             solve,
             solver_error: error,
             error: mesh.error.hypot(error),
-            converged: row.converged,
+            converged: run.converged,
         });
     }
     out

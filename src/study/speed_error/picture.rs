@@ -4,48 +4,27 @@ use super::{CaseReport, Report, Run};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
 use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
-use crate::report::tables::table::{count, scientific, Align, Table};
+use crate::report::tables::table::{count, scientific, Table};
 
 /// All runs.
 pub fn table(report: &Report) -> Table {
-    let header = [
-        "scene",
-        "method",
-        "n",
-        "dofs",
-        "rtol",
-        "ranks",
-        "threads",
-        "it",
-        "set-up s",
-        "solve s",
-        "solver error",
-        "error",
-        "converged",
-    ];
-    let mut table = Table::new(header)
-        .align(0, Align::Left)
-        .align(1, Align::Left);
-    for case in &report.cases {
-        for r in &case.runs {
-            table.row([
-                case.case.clone(),
-                r.method.clone(),
-                r.elements.to_string(),
-                r.dofs.to_string(),
-                format!("{:e}", r.rtol),
-                r.ranks.to_string(),
-                r.threads.to_string(),
-                count(r.iterations),
-                format!("{:.4}", r.setup),
-                format!("{:.4}", r.solve),
-                scientific(Some(r.solver_error)),
-                format!("{:.3e}", r.error),
-                if r.converged { "yes" } else { "no" }.to_string(),
-            ]);
-        }
-    }
-    table
+    let cases = report.cases.iter();
+    let runs = cases.flat_map(|c| c.runs.iter().map(move |r| (&c.case, r)));
+    Table::of(runs)
+        .words("scene", |(case, _)| *case)
+        .words("method", |(_, r)| &r.method)
+        .numbers("n", |(_, r)| r.elements)
+        .numbers("dofs", |(_, r)| r.dofs)
+        .numbers("rtol", |(_, r)| format!("{:e}", r.rtol))
+        .numbers("ranks", |(_, r)| r.ranks)
+        .numbers("threads", |(_, r)| r.threads)
+        .numbers("it", |(_, r)| count(r.iterations))
+        .numbers("set-up s", |(_, r)| format!("{:.4}", r.setup))
+        .numbers("solve s", |(_, r)| format!("{:.4}", r.solve))
+        .numbers("solver error", |(_, r)| scientific(Some(r.solver_error)))
+        .numbers("error", |(_, r)| format!("{:.3e}", r.error))
+        .numbers("converged", |(_, r)| if r.converged { "yes" } else { "no" })
+        .table()
 }
 
 /// The table for terminals.
@@ -98,13 +77,9 @@ pub fn figure(case: &CaseReport) -> Figure {
                     .marker(marker, true, 3.6),
             );
         }
-        Panel {
-            title: title.into(),
-            x: Axis::new("seconds", Scale::Log),
-            y: Axis::new("relative error, energy norm", Scale::Log),
-            series,
-            bands: Vec::new(),
-        }
+        let [x, y] =
+            ["seconds", "relative error, energy norm"].map(|name| Axis::new(name, Scale::Log));
+        Panel::new(title, x, y, series)
     };
     Figure::new(
         case.title.clone(),

@@ -1,10 +1,14 @@
 //! Unit tests of `src/report/json/bench.rs`.
 
 use super::*;
+use crate::report::json::CompareContact;
 
 fn sample(total: f64, converged: bool) -> BenchSample {
     BenchSample {
-        total: Some(total),
+        seconds: PhaseSeconds {
+            total: Some(total),
+            ..PhaseSeconds::default()
+        },
         outer: Some(4),
         converged,
         ..BenchSample::default()
@@ -22,7 +26,7 @@ fn medians_are_those_of_what_converged() {
     };
     row.samples.push(sample(100.0, false));
     row.sum_up();
-    let total = row.seconds.total.expect("three");
+    let total = row.seconds.phases.total.expect("three");
     assert_eq!((total.median, total.min, total.max), (3.0, 1.0, 9.0));
     assert_eq!(row.seconds.step.expect("steps").median, 0.75);
     assert!(row.seconds.again.is_none() && row.memory_mb.is_none());
@@ -31,25 +35,21 @@ fn medians_are_those_of_what_converged() {
 #[test]
 fn who_was_given_the_set_or_failed_is_not_the_fastest() {
     let row = |method: &str, total: f64, outer: Option<usize>, converged: bool| BenchRow {
-        method: method.into(),
-        contact: Some(CompareContact {
-            outer,
-            ..CompareContact::default()
-        }),
-        converged,
+        run: MethodRun {
+            method: method.into(),
+            contact: Some(CompareContact {
+                outer,
+                ..CompareContact::default()
+            }),
+            converged,
+            ..MethodRun::default()
+        },
         samples: vec![sample(total, true)],
         ..BenchRow::default()
     };
     let mut case = BenchCase {
         case: "c".into(),
-        scene: "s".into(),
-        bodies: 2,
-        subdomains: 4,
-        dofs: 9,
-        rtol: 1e-6,
         rounds: 1,
-        reference_residual: None,
-        contact: None,
         methods: vec![
             row("fetifeti", 2.0, Some(3), true),
             row("fetifeti", 1.0, Some(3), true),
@@ -57,9 +57,10 @@ fn who_was_given_the_set_or_failed_is_not_the_fastest() {
             row("gamg", 0.2, Some(3), false),
             row("mumps", 5.0, Some(3), true),
         ],
+        ..BenchCase::default()
     };
     case.sum_up();
-    assert_eq!(case.fastest(false).expect("one").method, "mumps");
+    assert_eq!(case.fastest(false).expect("one").run.method, "mumps");
     let ratios: Vec<f64> = case.methods.iter().filter_map(|r| r.ratio).collect();
     assert_eq!(ratios, [2.0, 1.0, 0.1, 0.2, 5.0]);
 }

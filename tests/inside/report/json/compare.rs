@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn what_is_not_known_is_null() {
-    let nothing = CompareSeconds {
+    let nothing = PhaseSeconds {
         assemble: Some(0.5),
         setup: Some(f64::NAN),
         solve: None,

@@ -9,16 +9,18 @@ fn table1_kappas_are_plain_numbers() {
         multipliers: 34,
         local_multipliers: 16,
         floating_bodies: 0,
-        iterations: 7,
-        exact: Some(2.718541),
-        estimate: Some(2.55),
-        lambda_min: None,
-        lambda_max: None,
+        dirichlet: PcResult {
+            exact: Some(2.718541),
+            estimate: Some(2.55),
+            lambda_min: None,
+            lambda_max: None,
+            iterations: 7,
+        },
         paper: Some(PaperSide {
             cond: 2.5536,
             iter: 7,
         }),
-        coarse_corrected: CoarseCorrected {
+        coarse_corrected: PcResult {
             exact: Some(2.1189),
             estimate: None,
             lambda_min: None,

@@ -23,15 +23,17 @@ fn sample(name: &str, n: usize, size: f64) -> ContactMap {
         [a, a + 1, a + n as u32 + 2, a + n as u32 + 1]
     };
     ContactMap {
-        name: name.into(),
+        nodes: InterfaceNodes {
+            name: name.into(),
+            t: at.clone(),
+            points: at.iter().map(|p| [p[0], 1.0, p[1]]).collect(),
+            gap: vec![0.0; at.len()],
+            multiplier,
+            active: at.iter().map(|p| pressure(p) > 0.0).collect(),
+            area,
+        },
         labels: ["x".into(), "z".into()],
         cells: (0..n * n).map(cell).collect(),
-        t: at.clone(),
-        points: at.iter().map(|p| [p[0], 1.0, p[1]]).collect(),
-        gap: vec![0.0; at.len()],
-        multiplier,
-        active: at.iter().map(|p| pressure(p) > 0.0).collect(),
-        area,
         at,
     }
 }
@@ -39,11 +41,11 @@ fn sample(name: &str, n: usize, size: f64) -> ContactMap {
 #[test]
 fn pressure_is_force_over_area() {
     let map = sample("a|b", 8, 3.0);
-    let largest = map.pressure().into_iter().fold(0.0, f64::max);
+    let largest = map.nodes.pressure().into_iter().fold(0.0, f64::max);
     assert!((largest - 3.0).abs() < 1e-12);
     let mut corner = map.clone();
-    corner.area[0] = 0.0;
-    assert!(corner.pressure()[0].is_nan());
+    corner.nodes.area[0] = 0.0;
+    assert!(corner.nodes.pressure()[0].is_nan());
 }
 
 #[test]
@@ -87,10 +89,10 @@ fn files_hold_everything_and_misfits_are_refused() {
     );
     write(&[], "", &dir.0).unwrap();
     let mut bad = sample("bad", 2, 1.0);
-    bad.area.pop();
+    bad.nodes.area.pop();
     let message = write(&[bad.clone()], "", &dir.0).unwrap_err().to_string();
     assert!(message.contains("'bad' lists 8 areas"), "{message}");
-    bad.area.push(1.0);
+    bad.nodes.area.push(1.0);
     bad.cells[0][0] = 9;
     let message = write(&[bad], "", &dir.0).unwrap_err().to_string();
     assert!(message.contains("node 9"), "{message}");

@@ -1,24 +1,29 @@
 //! Unit tests of `src/report/tables/bench.rs`.
 
 use super::*;
-use crate::report::json::{BenchSample, BenchSeconds};
+use crate::report::json::{BenchSample, ComparedScene, MethodRun, PhaseSeconds};
 
 fn report() -> BenchReport {
     let row = |method: &str, layout: &str, seconds: &[f64]| BenchRow {
-        method: method.into(),
+        run: MethodRun {
+            method: method.into(),
+            ranks: 2,
+            threads: 1,
+            error: Some(1e-8),
+            converged: true,
+            converged_reason: "CONVERGED_RTOL".into(),
+            ..MethodRun::default()
+        },
         layout: layout.into(),
-        ranks: 2,
-        threads: 1,
-        error: Some(1e-8),
-        converged: true,
-        converged_reason: "CONVERGED_RTOL".into(),
-        seconds: BenchSeconds::default(),
         samples: seconds
             .iter()
             .map(|&s| BenchSample {
-                setup: Some(0.5 * s),
-                solve: Some(0.5 * s),
-                total: Some(s),
+                seconds: PhaseSeconds {
+                    assemble: None,
+                    setup: Some(0.5 * s),
+                    solve: Some(0.5 * s),
+                    total: Some(s),
+                },
                 converged: true,
                 ..BenchSample::default()
             })
@@ -26,18 +31,19 @@ fn report() -> BenchReport {
         ..BenchRow::default()
     };
     let mut failed = row("mumps", "core", &[]);
-    failed.converged = false;
-    failed.message = Some("round 1: out of memory".into());
+    failed.run.converged = false;
+    failed.run.message = Some("round 1: out of memory".into());
     let mut case = BenchCase {
         case: "square".into(),
-        scene: "A square".into(),
-        bodies: 4,
-        subdomains: 16,
-        dofs: 225,
-        rtol: 1e-6,
+        facts: ComparedScene {
+            scene: "A square".into(),
+            bodies: 4,
+            subdomains: 16,
+            dofs: 225,
+            rtol: 1e-6,
+            ..ComparedScene::default()
+        },
         rounds: 3,
-        reference_residual: None,
-        contact: None,
         methods: vec![
             row("fetifeti", "threads", &[0.25, 0.5, 1.0]),
             row("gamg", "core", &[2.0, 4.0, 1.5]),

@@ -1,17 +1,23 @@
 //! Unit tests of `src/report/tables/compare.rs`.
 
 use super::*;
-use crate::report::json::{CompareContact, CompareSeconds};
+use crate::report::json::{CompareContact, ComparedScene, MethodRun, PhaseSeconds};
 
 #[test]
 fn compare_names_the_outcome() {
     let row = CompareRow {
-        method: "hypre".into(),
-        ranks: 2,
-        threads: 1,
-        kappa: Some(1.25),
-        iterations: Some(8),
-        seconds: CompareSeconds {
+        run: MethodRun {
+            method: "hypre".into(),
+            ranks: 2,
+            threads: 1,
+            kappa: Some(1.25),
+            iterations: Some(8),
+            error: Some(1.24e-9),
+            converged: true,
+            converged_reason: "CONVERGED_RTOL".into(),
+            ..MethodRun::default()
+        },
+        seconds: PhaseSeconds {
             assemble: Some(0.125),
             setup: Some(0.5),
             solve: Some(0.25),
@@ -19,24 +25,21 @@ fn compare_names_the_outcome() {
         },
         memory_mb: Some(99.6),
         memory_at_start_mb: Some(50.0),
-        error: Some(1.24e-9),
-        converged: true,
-        converged_reason: "CONVERGED_RTOL".into(),
-        ..CompareRow::default()
     };
     let mut failed = row.clone();
-    failed.converged = false;
-    failed.message = Some("PETSc was built without hypre".into());
+    failed.run.converged = false;
+    failed.run.message = Some("PETSc was built without hypre".into());
     let report = CompareReport {
-        scene: "four bodies".into(),
-        bodies: 4,
-        subdomains: 16,
-        dofs: 225,
-        rtol: 1e-6,
+        facts: ComparedScene {
+            scene: "four bodies".into(),
+            bodies: 4,
+            subdomains: 16,
+            dofs: 225,
+            rtol: 1e-6,
+            ..ComparedScene::default()
+        },
         cores: 2,
         supports: 0,
-        reference_residual: None,
-        contact: None,
         rows: vec![row.clone(), failed.clone()],
     };
     let text = text(&report);
@@ -58,17 +61,20 @@ fn compare_names_the_outcome() {
 #[test]
 fn contact_has_columns_of_its_own() {
     let row = |outer: Option<usize>, differ: Option<usize>| CompareRow {
-        method: "mumps".into(),
-        ranks: 2,
-        contact: Some(CompareContact {
-            outer,
-            active: 9,
-            differ,
-            feasibility: Some(0.5),
-            min_multiplier: Some(-0.25),
-        }),
-        converged: true,
-        converged_reason: "CONVERGED_ITS".into(),
+        run: MethodRun {
+            method: "mumps".into(),
+            ranks: 2,
+            contact: Some(CompareContact {
+                outer,
+                active: 9,
+                differ,
+                feasibility: Some(0.5),
+                min_multiplier: Some(-0.25),
+            }),
+            converged: true,
+            converged_reason: "CONVERGED_ITS".into(),
+            ..MethodRun::default()
+        },
         ..CompareRow::default()
     };
     let rows = vec![
@@ -77,21 +83,23 @@ fn contact_has_columns_of_its_own() {
         row(Some(5), None),
     ];
     let report = CompareReport {
-        scene: "model".into(),
-        bodies: 2,
-        subdomains: 2,
-        dofs: 10,
-        rtol: 1e-6,
+        facts: ComparedScene {
+            scene: "model".into(),
+            bodies: 2,
+            subdomains: 2,
+            dofs: 10,
+            rtol: 1e-6,
+            reference_residual: None,
+            contact: Some(CompareInequalities {
+                rows: 33,
+                active: Some(9),
+                outer: Some(6),
+                load_steps: 4,
+                ..CompareInequalities::default()
+            }),
+        },
         cores: 2,
         supports: 2,
-        reference_residual: None,
-        contact: Some(CompareInequalities {
-            rows: 33,
-            active: Some(9),
-            outer: Some(6),
-            load_steps: 4,
-            ..CompareInequalities::default()
-        }),
         rows,
     };
     let text = text(&report);

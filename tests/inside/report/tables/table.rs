@@ -3,12 +3,17 @@
 use super::*;
 
 fn sample() -> Table {
-    let mut t = Table::new(["method", "κ", "it"]).align(0, Align::Left);
-    t.row(["fetifeti", "3.18", "9"]);
-    t.rule();
-    t.row(["a, \"b\"", "10", "100"]);
-    t.row(["mumps"]);
-    t
+    let rows = [
+        ("fetifeti", "3.18", 9),
+        ("a, \"b\"", "10", 100),
+        ("mumps", "", 1),
+    ];
+    Table::of(rows)
+        .words("method", |r| r.0)
+        .numbers("κ", |r| r.1)
+        .numbers("it", |r| r.2)
+        .rules(|a, _| a.0 == "fetifeti")
+        .table()
 }
 
 #[test]
@@ -19,7 +24,7 @@ method       κ   it
 fetifeti  3.18    9
 ───────────────────
 a, \"b\"      10  100
-mumps
+mumps             1
 ";
     assert_eq!(sample().to_string(), expected);
 }
@@ -28,8 +33,23 @@ mumps
 fn csv_quotes_what_needs_it() {
     assert_eq!(
         sample().to_csv(),
-        "method,κ,it\nfetifeti,3.18,9\n\"a, \"\"b\"\"\",10,100\nmumps,,\n"
+        "method,κ,it\nfetifeti,3.18,9\n\"a, \"\"b\"\"\",10,100\nmumps,,1\n"
     );
+}
+
+#[test]
+fn columns_for_programs_are_exact() {
+    let rows = [Some(0.1 + 0.2), Some(1.5e-9), Some(f64::NAN), None];
+    let csv = Table::of(rows)
+        .exact("x", |x| *x)
+        .when(false, |t| t.exact("hidden", |_| true))
+        .exact("known", Option::is_some)
+        .table()
+        .to_csv();
+    let expected = "x,known\n0.30000000000000004,true\n1.5e-9,true\n,true\n,false\n";
+    assert_eq!(csv, expected);
+    let empty = Table::of([0; 0]).words("a", |n| *n).table();
+    assert_eq!(empty.to_string(), "a\n─\n");
 }
 
 #[test]
