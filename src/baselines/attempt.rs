@@ -1,6 +1,6 @@
 //! One solve, and its repetition with smaller tolerances until a given residual of the assembled problem is met.
 
-use super::task::{ContactOutcome, Outcome};
+use super::task::Outcome;
 use crate::petsc::Vec as PetscVec;
 use crate::Result;
 
@@ -10,48 +10,29 @@ pub struct Attempt {
     pub u: PetscVec,
     /// ‖b − A u‖₂ / ‖f‖₂ of the assembled problem.
     pub residual: f64,
-    /// κ by CG.
-    pub kappa: Option<f64>,
-    /// Iterations; `None` for a direct solver.
-    pub iterations: Option<usize>,
-    /// Wall-clock time.
-    pub seconds: f64,
-    /// The part of `seconds` for the recovery of displacements from multipliers, where there is one.
-    pub recover: Option<f64>,
-    /// Seconds of set-ups between solves; `seconds` does not include them.
-    pub setup: f64,
-    /// The result of the contact loop, if there was one.
-    pub contact: Option<ContactOutcome>,
     /// Whether the method's own tolerance was reached.
     pub converged: bool,
-    /// PETSc's name for the reason why the solve ended.
-    pub reason: String,
+    /// The report on the solve. Of the seconds of set-up it has those between solves.
+    pub outcome: Outcome,
 }
 
-impl Outcome {
-    /// Takes the solve that counts, its own tolerance, a message if the target was missed, the seconds of assembly and
-    /// set-up, and the memory.
-    pub(super) fn new(
-        attempt: Attempt,
+impl Attempt {
+    /// The method's report, if this solve is the one that counts: with its own tolerance, a message if the target was
+    /// missed, the seconds of assembly and set-up, and the memory.
+    pub(super) fn report(
+        self,
         rtol: f64,
         message: Option<String>,
         [assemble, setup, memory]: [f64; 3],
     ) -> Outcome {
         Outcome {
-            kappa: attempt.kappa,
-            iterations: attempt.iterations,
             assemble,
-            setup: setup + attempt.setup,
-            solve: attempt.seconds,
-            recover: attempt.recover,
-            again: None,
+            setup: setup + self.outcome.setup,
             memory,
-            memory_at_start: 0.0,
-            rtol: attempt.iterations.is_some().then_some(rtol),
-            residual: Some(attempt.residual),
-            contact: attempt.contact,
-            reason: attempt.reason,
+            rtol: self.outcome.iterations.is_some().then_some(rtol),
+            residual: Some(self.residual),
             message,
+            ..self.outcome
         }
     }
 }
@@ -80,12 +61,13 @@ pub fn solve_to(
             return Ok((now, rtol, None));
         }
         if !now.converged && best.is_none() {
-            let message = format!("did not converge: {}", now.reason);
+            let message = format!("did not converge: {}", now.outcome.reason);
             return Ok((now, rtol, Some(message)));
         }
         // Stuck: further iterations gain nothing, or none are left.
         let stuck = best.as_ref().is_some_and(|(best, _)| {
-            let more = now.iterations.is_none() || now.iterations > best.iterations;
+            let [before, after] = [best, &now].map(|a| a.outcome.iterations);
+            let more = after.is_none() || after > before;
             !now.converged || (more && now.residual > GAIN * best.residual)
         });
         let residual = now.residual;

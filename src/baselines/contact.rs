@@ -76,17 +76,19 @@ pub fn baseline(
         let (found, kappa) = find(&reduced, rtol)?;
         Ok(Attempt {
             residual: found.residual,
-            kappa,
-            iterations: (!direct).then_some(found.iterations),
-            seconds: found.solve,
-            recover: None,
-            setup: found.setup,
-            contact: Some(ContactOutcome {
-                steps: Some(found.steps),
-                active: rows.list(&found.active),
-            }),
             converged: found.converged,
-            reason: found.reason,
+            outcome: Outcome {
+                kappa,
+                iterations: (!direct).then_some(found.iterations),
+                setup: found.setup,
+                solve: found.solve,
+                contact: Some(ContactOutcome {
+                    steps: Some(found.steps),
+                    active: rows.list(&found.active),
+                }),
+                reason: found.reason,
+                ..Outcome::default()
+            },
             u: found.u,
         })
     })?;
@@ -100,6 +102,6 @@ pub fn baseline(
         }
         _ => None,
     };
-    let outcome = Outcome::new(attempt, rtol, message, [assemble, 0.0, memory]);
+    let outcome = attempt.report(rtol, message, [assemble, 0.0, memory]);
     Ok(Outcome { again, ..outcome })
 }

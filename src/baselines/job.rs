@@ -50,15 +50,12 @@ pub fn run(session: &Session, file: &Path) -> Result<()> {
         }
         Task::Judge { solutions } => {
             let verdict = judge(session, &scene, solutions)?;
-            return leave(session, &job.result, &verdict);
+            return leave(session, file, &verdict);
         }
     };
-    leave(
-        session,
-        &job.result,
-        &Outcome {
-            memory_at_start,
-            ..outcome
-        },
-    )
+    let outcome = Outcome {
+        memory_at_start,
+        ..outcome
+    };
+    leave(session, file, &outcome)
 }

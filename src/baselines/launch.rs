@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use serde::de::DeserializeOwned;
 use serde::Serialize;
 
-use super::task::Job;
 use crate::petsc::Session;
 use crate::report::json;
 use crate::{Error, Result};
@@ -87,38 +86,32 @@ impl Failure {
     }
 }
 
-/// A job that ran: what it printed, and its record as JSON text.
-pub struct Finished {
+/// A job that ran: what it printed, and its record.
+pub struct Finished<T> {
     /// Standard output of all ranks: PETSc's monitors and views.
     pub printed: String,
-    /// The record that the job has written, or why there is none.
-    pub record: std::result::Result<String, Failure>,
+    /// The record that the job has left, or why there is none.
+    pub record: std::result::Result<T, Failure>,
 }
 
 impl Launcher {
-    /// Runs a job on `ranks` ranks and waits until it ends.
+    /// Runs `fetifeti VERB FILE` on `ranks` ranks and waits until it ends. The file contains `task`; the record that the
+    /// job leaves is the file beside it that ends in `json`.
     ///
     /// # Errors
-    /// [`Error::Environment`] where the job cannot be started at all: no disk, no mpirun.
-    pub fn run(&self, name: &str, job: &Job, ranks: usize) -> Result<Finished> {
-        self.run_task(name, ("baseline", job), &job.result, ranks)
-    }
-
-    /// As `run`, for any command of the program with a task file. `result` is the file in which the command leaves its
-    /// record.
-    ///
-    /// # Errors
-    /// As [`run`](Self::run).
-    pub fn run_task<T: Serialize>(
+    /// [`Error::Environment`] where the job cannot be started at all: no disk, no mpirun; or where its record cannot be
+    /// read.
+    pub fn run<T: DeserializeOwned>(
         &self,
         name: &str,
-        (verb, task_record): (&str, &T),
-        result: &Path,
+        (verb, task): (&str, &impl Serialize),
         ranks: usize,
-    ) -> Result<Finished> {
+    ) -> Result<Finished<T>> {
         let files = ["job", "out", "err"].map(|end| self.workspace.file(&format!("{name}.{end}")));
-        let [task, out, err] = &files;
-        json::write(task, task_record)?;
+        let [job, out, err] = &files;
+        // The record of an earlier job must not be taken for that of this one.
+        let _ = std::fs::remove_file(record(job));
+        json::write(job, task)?;
         let create = |path: &Path| {
             File::create(path)
                 .map_err(|e| Error::environment(format!("cannot write {}: {e}", path.display())))
@@ -129,7 +122,7 @@ impl Launcher {
             .arg(ranks.to_string())
             .arg(own()?)
             .arg(verb)
-            .arg(task);
+            .arg(job);
         command.args(&self.petsc);
         environment(&mut command, self.limit);
         command
@@ -164,8 +157,8 @@ impl Launcher {
             String::from_utf8_lossy(&bytes).into_owned()
         };
         // The record is the last act of a job: if hundreds of ranks fail while they finalise, it remains valid.
-        let record = match std::fs::read_to_string(result) {
-            Ok(text) => Ok(text),
+        let record = match std::fs::read_to_string(record(job)) {
+            Ok(text) => Ok(read(&text)?),
             Err(e) if status.success() => Err(Failure {
                 code: None,
                 message: format!("left no result: {e}"),
@@ -220,15 +213,20 @@ pub fn task<T: DeserializeOwned>(session: &Session, file: &Path, what: &str) -> 
     }))
 }
 
-/// Writes a record on rank 0. Collective.
+/// Writes the record of the job in `file` on rank 0. Collective.
 ///
 /// # Errors
 /// [`Error::Environment`] with the path.
-pub fn leave<T: Serialize>(session: &Session, file: &Path, record: &T) -> Result<()> {
+pub fn leave<T: Serialize>(session: &Session, file: &Path, found: &T) -> Result<()> {
     session.agree(match session.rank() {
-        0 => json::write(file, record),
+        0 => json::write(&record(file), found),
         _ => Ok(()),
     })
+}
+
+/// The file for the record of the job in `file`.
+fn record(file: &Path) -> PathBuf {
+    file.with_extension("json")
 }
 
 /// The program's own error message among the output of mpirun and other ranks, or else the first message of mpirun.

@@ -143,17 +143,18 @@ pub fn baseline(
         Ok(Attempt {
             residual: system.relative_residual(&u)?,
             u,
-            kappa: kappa(&krylov)?,
-            iterations: (!direct).then_some(iterations),
-            seconds,
-            recover: None,
-            setup: 0.0,
-            contact: scene.has_contact().then(|| ContactOutcome {
-                steps: None,
-                active: active.to_vec(),
-            }),
             converged: reason.converged(),
-            reason: reason.name,
+            outcome: Outcome {
+                kappa: kappa(&krylov)?,
+                iterations: (!direct).then_some(iterations),
+                solve: seconds,
+                contact: scene.has_contact().then(|| ContactOutcome {
+                    steps: None,
+                    active: active.to_vec(),
+                }),
+                reason: reason.name,
+                ..Outcome::default()
+            },
         })
     })?;
     let memory = memory(session);
@@ -170,6 +171,6 @@ pub fn baseline(
         }
         false => None,
     };
-    let outcome = Outcome::new(attempt, rtol, message, [assemble, setup, memory]);
+    let outcome = attempt.report(rtol, message, [assemble, setup, memory]);
     Ok(Outcome { again, ..outcome })
 }

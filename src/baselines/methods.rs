@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use serde::de::DeserializeOwned;
+
 use super::judge::{Judgement, Verdict};
-use super::launch::{read, Failure, Launcher};
+use super::launch::{Failure, Finished, Launcher};
 use super::plan::{Plan, Run};
 use super::task::{Job, Outcome, Task};
 use crate::assembled::layout::Layout;
@@ -129,25 +131,27 @@ impl<'a> Methods<'a> {
         rescue: bool,
     ) -> Result<(std::result::Result<Outcome, Failure>, String)> {
         let run = &self.plan.runs[k];
-        let name = format!("{k}-{rescue}");
-        let result = self.launcher.workspace.file(&format!("{name}.json"));
-        // The result of an earlier round must not be taken for that of this one.
-        let _ = std::fs::remove_file(&result);
         let active = self.active.as_deref().unwrap_or_default();
+        let task = run.task(&self.solution(k), rescue, active);
+        let finished = self.start(&format!("{k}-{rescue}"), task, self.again, run.ranks)?;
+        Ok((finished.record, finished.printed))
+    }
+
+    fn start<T: DeserializeOwned>(
+        &self,
+        name: &str,
+        task: Task,
+        again: bool,
+        ranks: usize,
+    ) -> Result<Finished<T>> {
         let job = Job {
             scene: self.file.clone(),
-            result,
             rtol: self.plan.rtol,
             inner: self.plan.inner,
-            again: self.again,
-            task: run.task(&self.solution(k), rescue, active),
+            again,
+            task,
         };
-        let finished = self.launcher.run(&name, &job, run.ranks)?;
-        let outcome = match finished.record {
-            Ok(text) => Ok(read(&text)?),
-            Err(failure) => Err(failure),
-        };
-        Ok((outcome, finished.printed))
+        self.launcher.run(name, ("baseline", &job), ranks)
     }
 
     /// The judge's verdict on solutions; an empty one where there is no direct solution.
@@ -161,24 +165,15 @@ impl<'a> Methods<'a> {
                 ..Verdict::default()
             });
         }
-        let job = Job {
-            scene: self.file.clone(),
-            result: self.launcher.workspace.file("verdict.json"),
-            rtol: self.plan.rtol,
-            inner: self.plan.inner,
-            again: false,
-            task: Task::Judge { solutions },
-        };
-        match self.launcher.run("judge", &job, self.plan.cores)?.record {
-            Ok(text) => read(&text),
-            Err(failure) => {
-                eprintln!(
-                    "Warning: no direct solution, so no errors: {}",
-                    failure.message
-                );
-                Ok(Verdict::default())
-            }
-        }
+        let judge = Task::Judge { solutions };
+        let finished = self.start("judge", judge, false, self.plan.cores)?;
+        Ok(finished.record.unwrap_or_else(|failure| {
+            eprintln!(
+                "Warning: no direct solution, so no errors: {}",
+                failure.message
+            );
+            Verdict::default()
+        }))
     }
 }
 

@@ -79,14 +79,16 @@ pub fn solve(
         Ok(Attempt {
             residual,
             u,
-            kappa: solution.estimate.map(|s| s.kappa()),
-            iterations: Some(solution.iterations),
-            seconds: seconds[0],
-            recover: Some(seconds[1]),
-            setup: 0.0,
-            contact,
             converged: solution.converged(),
-            reason: solution.status.to_string(),
+            outcome: Outcome {
+                kappa: solution.estimate.map(|s| s.kappa()),
+                iterations: Some(solution.iterations),
+                solve: seconds[0],
+                recover: Some(seconds[1]),
+                contact,
+                reason: solution.status.to_string(),
+                ..Outcome::default()
+            },
         })
     })?;
     attempt.u.save(file)?;
@@ -94,7 +96,7 @@ pub fn solve(
         true => Some(again(session, &mut solver, &layout, rtol)?),
         false => None,
     };
-    let mut outcome = Outcome::new(attempt, rtol, message, [assemble, setup, bytes]);
+    let mut outcome = attempt.report(rtol, message, [assemble, setup, bytes]);
     outcome.again = again;
     if layout.trouble.is_some() {
         outcome.residual = None;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use super::launch::{read, Launcher, Workspace};
+use super::launch::{Launcher, Workspace};
 use super::task::{Job, Outcome, Task};
 use crate::Result;
 
@@ -29,7 +29,6 @@ pub fn baseline(
     };
     let job = Job {
         scene: scene.to_path_buf(),
-        result: launcher.workspace.file("result.json"),
         rtol,
         inner: rtol,
         again: false,
@@ -40,8 +39,6 @@ pub fn baseline(
             solution: launcher.workspace.file("result.u"),
         },
     };
-    match launcher.run(name, &job, ranks)?.record {
-        Ok(text) => read(&text).map(Ok),
-        Err(failure) => Ok(Err(failure.message)),
-    }
+    let finished = launcher.run(name, ("baseline", &job), ranks)?;
+    Ok(finished.record.map_err(|failure| failure.message))
 }

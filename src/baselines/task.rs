@@ -10,8 +10,6 @@ use serde::{Deserialize, Serialize};
 pub struct Job {
     /// The scene file.
     pub scene: PathBuf,
-    /// Where the result goes, as JSON.
-    pub result: PathBuf,
     /// The bound for ‖b − A u‖₂ / ‖f‖₂.
     pub rtol: f64,
     /// Reduction of the residual in a contact step while the active set changes, for solvers that iterate on the

@@ -1,6 +1,6 @@
 //! One measurement in a process group of its own: the repeated solve of one scene, or the network.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
@@ -17,18 +17,9 @@ use crate::petsc::Session;
 use crate::scene::Scene;
 use crate::{Error, FetiFeti, Result};
 
-/// A task for a process group.
+/// A measurement for a process group.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Task {
-    /// Where the record goes, as JSON.
-    pub result: PathBuf,
-    /// The measurement.
-    pub what: What,
-}
-
-/// The kinds of measurement.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub enum What {
+pub enum Task {
     /// Messages and all-reduces.
     Network,
     /// Set-up and solve of a scene.
@@ -55,18 +46,18 @@ pub struct NetworkRecord {
 /// [`Error::Input`] for a file that the study has not written; those of the method; [`Error::NotConverged`].
 pub fn run_task(session: &Session, file: &Path) -> Result<()> {
     let task: Task = launch::task(session, file, "a task that study scaling has written")?;
-    match &task.what {
-        What::Network => {
+    match &task {
+        Task::Network => {
             let (messages, reductions) = network::measure(session.comm());
             let record = NetworkRecord {
                 messages,
                 reductions,
             };
-            launch::leave(session, &task.result, &record)
+            launch::leave(session, file, &record)
         }
-        What::Solve { scene, repeats } => {
+        Task::Solve { scene, repeats } => {
             let record = solve(session, scene, *repeats)?;
-            launch::leave(session, &task.result, &record)
+            launch::leave(session, file, &record)
         }
     }
 }

@@ -33,7 +33,7 @@ use serde::{Deserialize, Serialize};
 use crate::baselines::launch::{Launcher, Workspace};
 use crate::petsc::{Options, Session};
 use crate::{Error, Result};
-use measure::{NetworkRecord, Task, What};
+use measure::{NetworkRecord, Task};
 use model::Sent;
 use predict::Basis;
 use scenes::Setup;
@@ -209,29 +209,20 @@ fn largest_like(points: &[Point], [s, e]: [usize; 2]) -> &Point {
 fn started<T: serde::de::DeserializeOwned>(
     launcher: &Launcher,
     name: &str,
-    what: What,
+    task: &Task,
     ranks: usize,
 ) -> Result<T> {
-    let result = launcher.workspace.file("record.json");
-    // The record of an earlier run must not be taken for that of one that fails.
-    let _ = std::fs::remove_file(&result);
-    let task = Task {
-        result: result.clone(),
-        what,
-    };
-    let finished = launcher.run_task("run", ("measure", &task), &result, ranks)?;
-    let text = finished.record.map_err(|mut failure| {
+    let finished = launcher.run("run", ("measure", task), ranks)?;
+    finished.record.map_err(|mut failure| {
         failure.message = format!("{name}: {}", failure.message);
         failure.into_error()
-    })?;
-    serde_json::from_str(&text)
-        .map_err(|e| Error::environment(format!("{name}: a run left an unreadable record: {e}")))
+    })
 }
 
 fn messages(launcher: &Launcher) -> Result<Measured> {
     let [two, four]: [NetworkRecord; 2] = [
-        started(launcher, "messages", What::Network, 2)?,
-        started(launcher, "messages", What::Network, 4)?,
+        started(launcher, "messages", &Task::Network, 2)?,
+        started(launcher, "messages", &Task::Network, 4)?,
     ];
     let reductions = [two.reductions, four.reductions].concat();
     Ok(Measured::new(two.messages, reductions))
@@ -244,11 +235,11 @@ fn point(launcher: &Launcher, setup: &Setup, cores: usize, quick: bool) -> Resul
         _ if quick => 2,
         _ => 3,
     };
-    let what = What::Solve {
+    let task = Task::Solve {
         scene: setup.scene(),
         repeats,
     };
-    let measured: Point = started(launcher, &setup.name(), what, setup.ranks)?;
+    let measured: Point = started(launcher, &setup.name(), &task, setup.ranks)?;
     Ok(Point {
         series: setup.series,
         problem: setup.problem,

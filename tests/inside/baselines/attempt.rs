@@ -20,20 +20,17 @@ fn drive(target: f64, factor: f64, floor: f64, breaks_at: f64) -> (End, Option<S
             Ok(Attempt {
                 u: PetscVec::seq(session, 1)?,
                 residual: (factor * 10_f64.powf(-steps)).max(floor),
-                kappa: None,
-                iterations: Some(steps as usize),
-                seconds: 0.0,
-                recover: None,
-                setup: 0.0,
-                contact: None,
                 converged: rtol > breaks_at,
-                reason: String::new(),
+                outcome: Outcome {
+                    iterations: Some(steps as usize),
+                    ..Outcome::default()
+                },
             })
         })
         .expect("nothing fails");
         let end = End {
             residual: end.residual,
-            iterations: end.iterations,
+            iterations: end.outcome.iterations,
             converged: end.converged,
         };
         (end, message)
