@@ -15,7 +15,7 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Caution, State};
+use crate::contact::State;
 use crate::feti::LinearMethod;
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
@@ -28,22 +28,8 @@ pub struct GlobalState {
     pub local: Vec<u64>,
     /// Blocks of B_gl, increasing, and their numbers of rows.
     pub blocks: Vec<(u64, u64)>,
-    /// Multipliers: rows of B_loc, then of B_gl.
-    pub lambda: Vec<f64>,
-    /// Rows of B_gl that are active in the next step.
-    pub active: Vec<bool>,
-    /// Rows of B_gl that were active in the step before.
-    pub before: Vec<bool>,
-    /// As [`State::reference`].
-    pub reference: f64,
-    /// As [`State::steps`].
-    pub steps: u64,
-    /// As [`State::visited`].
-    pub visited: Vec<u64>,
-    /// As [`State::caution`].
-    pub caution: Caution,
-    /// As [`State::mu`].
-    pub mu: Vec<f64>,
+    /// The state of all ranks: λ on rows of B_loc, then of B_gl; the sets on rows of B_gl.
+    pub all: State,
 }
 
 impl GlobalState {
@@ -51,9 +37,9 @@ impl GlobalState {
     pub(super) fn is_consistent(&self) -> bool {
         let contact = checked_sum(self.blocks.iter().map(|b| b.1));
         let all = checked_sum(self.local.iter().copied().chain(contact));
-        contact == Some(self.active.len() as u64)
-            && contact == Some(self.before.len() as u64)
-            && all == Some(self.lambda.len() as u64)
+        contact == Some(self.all.active.len() as u64)
+            && contact == Some(self.all.before.len() as u64)
+            && all == Some(self.all.lambda.len() as u64)
     }
 }
 
@@ -152,17 +138,15 @@ impl Layout {
         Some(GlobalState {
             local: self.local.iter().map(|c| c.n as u64).collect(),
             blocks: self.blocks.iter().map(|c| (c.key, c.n as u64)).collect(),
-            lambda: all
-                .flat_map(|c| &parts[c.rank].lambda[c.rows()])
-                .copied()
-                .collect(),
-            active: set(|s| &s.active),
-            before: set(|s| &s.before),
-            reference: first.reference,
-            steps: first.steps as u64,
-            visited: first.visited.clone(),
-            caution: first.caution,
-            mu: first.mu.clone(),
+            all: State {
+                lambda: all
+                    .flat_map(|c| &parts[c.rank].lambda[c.rows()])
+                    .copied()
+                    .collect(),
+                active: set(|s| &s.active),
+                before: set(|s| &s.before),
+                ..first.clone()
+            },
         })
     }
 
@@ -191,28 +175,23 @@ impl Layout {
 
     /// The states of all ranks.
     fn deal(&self, global: &GlobalState) -> Vec<State> {
-        let owned = self.owned.iter();
-        let mut out: Vec<State> = owned
-            .map(|&n| State {
-                lambda: vec![0.0; n],
-                active: vec![true; n],
-                before: vec![true; n],
-                reference: global.reference,
-                steps: global.steps as usize,
-                visited: global.visited.clone(),
-                caution: global.caution,
-                mu: global.mu.clone(),
-            })
-            .collect();
+        let all = &global.all;
+        let part = |&n: &usize| State {
+            lambda: vec![0.0; n],
+            active: vec![true; n],
+            before: vec![true; n],
+            ..all.clone()
+        };
+        let mut out: Vec<State> = self.owned.iter().map(part).collect();
         let mut next = 0;
         for c in self.local.iter().chain(&self.blocks) {
-            out[c.rank].lambda[c.rows()].copy_from_slice(&global.lambda[next..next + c.n]);
+            out[c.rank].lambda[c.rows()].copy_from_slice(&all.lambda[next..next + c.n]);
             next += c.n;
         }
         let mut next = 0;
         for c in &self.blocks {
-            out[c.rank].active[c.rows()].copy_from_slice(&global.active[next..next + c.n]);
-            out[c.rank].before[c.rows()].copy_from_slice(&global.before[next..next + c.n]);
+            out[c.rank].active[c.rows()].copy_from_slice(&all.active[next..next + c.n]);
+            out[c.rank].before[c.rows()].copy_from_slice(&all.before[next..next + c.n]);
             next += c.n;
         }
         out
@@ -225,23 +204,23 @@ impl Layout {
         let same =
             local.eq(global.local.iter().copied()) && blocks.eq(global.blocks.iter().copied());
         if !same {
-            let n = global.active.len();
+            let n = global.all.active.len();
             return Err(Error::input(format!(
                 "{}: the checkpoint is for {} subdomains with {} local and {n} global multipliers, \
                  expected {} with {} and {} numbered alike",
                 file.display(),
                 global.local.len(),
-                global.lambda.len() - n,
+                global.all.lambda.len() - n,
                 self.local.len(),
                 here[0],
                 here[1],
             )));
         }
-        if !global.mu.is_empty() && global.mu.len() != self.r {
+        if !global.all.mu.is_empty() && global.all.mu.len() != self.r {
             return Err(Error::input(format!(
                 "{}: the checkpoint is for bodies with {} rigid motions, expected {}",
                 file.display(),
-                global.mu.len(),
+                global.all.mu.len(),
                 self.r
             )));
         }

@@ -98,7 +98,7 @@ fn goes_on(scratch: &Scratch, scene: &str, method: &str, cut: &str, resume: &[(u
     let early = solve(1, scene, 1, &[&kind[..], &limit].concat());
     assert_eq!(early["converged_reason"], "DIVERGED_CONTACT_ITS");
     let (whole, found) = (checkpoint(&whole), checkpoint(&part));
-    assert_eq!(found.state.steps.to_string(), cut);
+    assert_eq!(found.state.all.steps.to_string(), cut);
     assert_eq!(found.scene, whole.scene);
     let end = scratch.path("end");
     for &(ranks, method) in resume {
@@ -117,12 +117,12 @@ fn goes_on(scratch: &Scratch, scene: &str, method: &str, cut: &str, resume: &[(u
             assert_eq!(warm["contact"][key], cold["contact"][key], "{what}: {key}");
         }
         let end = checkpoint(&end);
-        assert_eq!(end.state.active, whole.state.active, "{what}");
-        let own = end.state.steps - found.state.steps;
-        assert!(own < whole.state.steps, "{what}: {own} steps");
+        assert_eq!(end.state.all.active, whole.state.all.active, "{what}");
+        let own = end.state.all.steps - found.state.all.steps;
+        assert!(own < whole.state.all.steps, "{what}: {own} steps");
         // The report covers both parts of the run.
         let steps = warm["contact"]["steps"].as_array().expect("a list");
-        assert_eq!(steps.len() as u64, end.state.steps, "{what}");
+        assert_eq!(steps.len(), end.state.all.steps, "{what}");
         assert_eq!(warm["outer_iterations"], steps.len(), "{what}");
         assert!(count(&warm) > count(&early), "{what}");
     }
@@ -188,6 +188,7 @@ fn a_solved_run_is_confirmed_on_any_ranks() {
         let (a, b) = (&one.state, &other.state);
         assert_eq!((one.scene, &one.title), (other.scene, &other.title));
         assert_eq!((&a.local, &a.blocks), (&b.local, &b.blocks));
+        let (a, b) = (&a.all, &b.all);
         assert_eq!((&a.active, &a.before), (&b.active, &b.before));
         assert_eq!((&a.visited, a.caution), (&b.visited, b.caution));
         let largest = a.lambda.iter().fold(0.0f64, |m, l| m.max(l.abs()));
@@ -201,9 +202,9 @@ fn a_solved_run_is_confirmed_on_any_ranks() {
         let files = ["--resume", &file, "--checkpoint", &file];
         let report = solve(ranks, &scene, 0, &files);
         let after = checkpoint(&file).state;
-        assert_eq!(after.steps, before.steps + 1);
-        assert_eq!(after.active, before.active);
-        let last = &report["contact"]["steps"].as_array().expect("a list")[before.steps as usize];
+        assert_eq!(after.all.steps, before.all.steps + 1);
+        assert_eq!(after.all.active, before.all.active);
+        let last = &report["contact"]["steps"].as_array().expect("a list")[before.all.steps];
         assert!(last["iterations"].as_u64().expect("a count") <= 1, "{last}");
         assert!(near(&report["energy"], energy.as_ref().expect("known")));
     }
@@ -245,7 +246,7 @@ fn load_steps_go_on() {
     );
     let found = checkpoint(&file);
     assert_eq!(found.load_step, cut - 1);
-    assert_eq!(found.state.steps as usize, most - 1);
+    assert_eq!(found.state.all.steps, most - 1);
     for ranks in [2, 1] {
         let warm = solve(
             ranks,
@@ -410,7 +411,7 @@ fn a_place_that_cannot_be_written_is_found_before_the_work() {
         1,
         &["--checkpoint", &file, "-fetifeti_contact_max_it", "1"],
     );
-    assert_eq!(checkpoint(&file).state.steps, 1);
+    assert_eq!(checkpoint(&file).state.all.steps, 1);
     assert_eq!(scratch.files().len(), 1, "{:?}", scratch.files());
 }
 
@@ -432,7 +433,7 @@ fn a_run_that_is_killed_leaves_a_whole_file() {
     let _ = child.kill();
     child.wait().expect("it ends");
     let found = checkpoint(&file);
-    assert!(found.state.steps > 0 || found.load_step > 0);
+    assert!(found.state.all.steps > 0 || found.load_step > 0);
     let cold = solve(1, PRESS, 0, &["-fetifeti_ksp_rtol", "1e-10"]);
     let warm = solve(
         1,

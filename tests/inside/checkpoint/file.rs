@@ -2,7 +2,7 @@
 
 use super::super::rows::GlobalState;
 use super::*;
-use crate::contact::Caution;
+use crate::contact::{Caution, State};
 
 fn example() -> Checkpoint {
     Checkpoint {
@@ -13,14 +13,16 @@ fn example() -> Checkpoint {
         state: GlobalState {
             local: vec![2, 0, 1],
             blocks: vec![(7, 2), (40, 1)],
-            lambda: vec![0.5, -1e-300, f64::MAX, 3.0, 0.0, -0.0],
-            active: vec![true, false, true],
-            before: vec![true, true, false],
-            reference: 0.1,
-            steps: 12,
-            visited: vec![u64::MAX, 5],
-            caution: Caution::Single,
-            mu: vec![-2.5],
+            all: State {
+                lambda: vec![0.5, -1e-300, f64::MAX, 3.0, 0.0, -0.0],
+                active: vec![true, false, true],
+                before: vec![true, true, false],
+                reference: 0.1,
+                steps: 12,
+                visited: vec![u64::MAX, 5],
+                caution: Caution::Single,
+                mu: vec![-2.5],
+            },
         },
     }
 }
@@ -56,8 +58,8 @@ fn contents_that_contradict_themselves_are_refused() {
     let wrong: [fn(&mut GlobalState); 4] = [
         |s| s.local[0] = u64::MAX,
         |s| s.blocks[0].1 = 1,
-        |s| s.lambda.truncate(5),
-        |s| s.before.truncate(2),
+        |s| s.all.lambda.truncate(5),
+        |s| s.all.before.truncate(2),
     ];
     for change in wrong {
         let mut c = example();
