@@ -8,8 +8,9 @@ use super::contact::{by_source, side};
 use super::fields::Gathered;
 use crate::fem::cell::CellStress;
 use crate::linalg::vec3::{minus, norm};
-use crate::report::drawing::ticks::{number, Scale};
-use crate::report::pictures::field::{self, ContactMark, Field, Mesh, Values};
+use crate::report::drawing::ticks::number;
+use crate::report::pictures::field::{self, ContactMark, Field, Mesh};
+use crate::report::pictures::mesh::bounds;
 use crate::report::pictures::solid::{self, FaceMark, Solid};
 use crate::scene::Scene;
 use crate::substructures::SolvedRow;
@@ -35,26 +36,21 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         })
         .collect();
     let von_mises: Vec<f64> = all.stress.iter().map(CellStress::von_mises).collect();
-    let field = |title, values| Field {
-        title,
-        values,
-        scale: Scale::Linear,
-    };
+    let coefficient = ["coefficient ρ", "Young's modulus E"][usize::from(elastic)];
+    let coefficient = Field::coefficient(coefficient, &all.rho);
     let first = match elastic {
-        true => field("displacement |u|", Values::Nodal(&u)),
-        false => field("solution u", Values::Nodal(&u)),
+        true => Field::nodal("displacement |u|", &u),
+        false => Field::nodal("solution u", &u),
     };
-    let second = match elastic {
-        true => field("von Mises stress", Values::Cell(&von_mises)),
-        false => first,
-    };
-    let mut fields = vec![first, second];
-    if varies_inside_bodies(&all.rho, &all.body) {
-        fields.push(Field {
-            title: ["coefficient ρ", "Young's modulus E"][usize::from(elastic)],
-            values: Values::Cell(&all.rho),
-            scale: field::coefficient_scale(&all.rho),
-        });
+    let mut fields = vec![first];
+    if elastic {
+        fields.push(Field::cell("von Mises stress", &von_mises));
+    } else if scene.dim() == 3 {
+        // The second picture shows the bodies moved apart.
+        fields.push(first);
+    }
+    if (!elastic && scene.dim() == 2) || varies_inside_bodies(&all.rho, &all.body) {
+        fields.push(coefficient);
     }
     let title = match elastic {
         true => format!("{} (displacements {} ×)", scene.title, number(moved.factor)),
@@ -69,7 +65,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         let solid = Solid {
             points: &all.points,
             shown: &moved.points,
-            hexahedra: &hexahedra,
+            corners: &hexahedra,
             body: &all.body,
             subdomain: &all.subdomain,
         };
@@ -84,25 +80,24 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         .chunks_exact(4)
         .map(|q| [q[0], q[1], q[2], q[3]])
         .collect();
+    let shown = flat(&moved.points);
     let mesh = Mesh {
         points: &points,
-        quads: &quads,
+        shown: &shown,
+        corners: &quads,
         body: &all.body,
         subdomain: &all.subdomain,
     };
-    if !elastic {
-        let marks = line_marks(rows, &|r| [r.label.point[0], r.label.point[1]]);
-        return field::write_solution(&mesh, &all.u, &all.rho, &marks, &title, &path);
-    }
     let copies = all.copies(scene, rows);
     let at = |row: &SolvedRow| {
         let copy = row.label.members[0].and_then(|m| copies.get(&m));
-        let point = copy.map_or(row.label.point, |c| moved.points[c[0]]);
+        let point = copy
+            .filter(|_| elastic)
+            .map_or(row.label.point, |c| moved.points[c[0]]);
         [point[0], point[1]]
     };
     let marks = line_marks(rows, &at);
-    let shown = flat(&moved.points);
-    field::write_displaced(&mesh, &shown, &fields, &marks, &title, &path)
+    field::write(&mesh, &fields, &marks, elastic, &title, &path)
 }
 
 /// Whether two cells of one body have different values.
@@ -132,7 +127,7 @@ impl Moved {
             .map(norm)
             .filter(|x| x.is_finite())
             .fold(0.0, f64::max);
-        let [low, high] = bounds(&all.points);
+        let [low, high] = bounds(all.points.iter().copied());
         let size = norm(minus(high, low));
         let from = if contact { VISIBLE_CONTACT } else { VISIBLE[0] };
         let factor = factor(largest, size, from);
@@ -160,17 +155,6 @@ fn factor(largest: f64, size: f64, from: f64) -> f64 {
     } else {
         1.0
     }
-}
-
-fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
-    let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for p in points {
-        for d in 0..3 {
-            out[0][d] = out[0][d].min(p[d]);
-            out[1][d] = out[1][d].max(p[d]);
-        }
-    }
-    out
 }
 
 /// The segments between neighbouring nodes that may touch, and whether they do.

@@ -7,7 +7,7 @@ use fetifeti::report::paraview::contact_fields::ContactFields;
 use fetifeti::report::paraview::pvd::Pvd;
 use fetifeti::report::paraview::vtu::{Shape, Vtu};
 use fetifeti::report::pictures::field;
-use fetifeti::report::pictures::field::{ContactMark, Mesh};
+use fetifeti::report::pictures::field::{ContactMark, Field, Mesh};
 use fetifeti::report::plots::load_steps;
 use fetifeti::report::plots::profile;
 use fetifeti::report::plots::profile::Profile;
@@ -63,7 +63,8 @@ impl Bodies {
     fn mesh(&self) -> Mesh<'_> {
         Mesh {
             points: &self.points,
-            quads: &self.quads,
+            shown: &self.points,
+            corners: &self.quads,
             body: &self.body,
             subdomain: &self.body,
         }
@@ -182,22 +183,28 @@ fn two_interfaces() {
         closed: true,
     });
     let path = dir.join("solution.png");
-    field::write_solution(
+    field::write(
         &bodies.mesh(),
-        &u,
-        &rho,
+        &[
+            Field::nodal("solution u", &u),
+            Field::coefficient("coefficient ρ", &rho),
+        ],
         &marks,
+        false,
         "three bodies in a row",
         &path,
     )
     .unwrap();
     let with = png(&path);
     let plain = dir.join("plain.png");
-    field::write_solution(
+    field::write(
         &bodies.mesh(),
-        &u,
-        &rho,
+        &[
+            Field::nodal("solution u", &u),
+            Field::coefficient("coefficient ρ", &rho),
+        ],
         &[],
+        false,
         "three bodies in a row",
         &plain,
     )
@@ -226,7 +233,18 @@ fn one_hundred_and_eighty_interfaces() {
     );
     let marks = bodies.marks(&profiles);
     let path = dir.join("solution.png");
-    field::write_solution(&bodies.mesh(), &u, &rho, &marks, "10 × 10 bodies", &path).unwrap();
+    field::write(
+        &bodies.mesh(),
+        &[
+            Field::nodal("solution u", &u),
+            Field::coefficient("coefficient ρ", &rho),
+        ],
+        &marks,
+        false,
+        "10 × 10 bodies",
+        &path,
+    )
+    .unwrap();
     assert!(png(&path).2 > 1000);
 }
 

@@ -1,9 +1,9 @@
 //! Pressure on the faces where solids may touch: maps of the interfaces with the largest forces, and all rows as CSV.
 
 use super::marks::{self, ContactMark};
-use super::outline::Mesh;
+use super::mesh::{bounds, Mesh};
 use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
-use super::values::{Field, Values};
+use super::values::Field;
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use crate::report::drawing::raster::Raster;
 use crate::report::drawing::ticks::Scale;
@@ -126,11 +126,12 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
     let zeros = vec![0; map.cells.len()];
     let mesh = Mesh {
         points: &map.at,
-        quads: &map.cells,
+        shown: &map.at,
+        corners: &map.cells,
         body: &zeros,
         subdomain: &zeros,
     };
-    let (low, high) = mesh.bounds();
+    let [low, high] = bounds(map.at.iter().copied());
     let size = [0, 1].map(|d| (high[d] - low[d]).max(1e-300));
     let scale = (PANEL.0 / size[0]).min(PANEL.1 / size[1]);
     let (w, h) = (scale * size[0], scale * size[1]);
@@ -148,11 +149,7 @@ fn panel(raster: &mut Raster, map: &ContactMap, outline: &[ContactMark], at: Poi
     let middle = (view.origin.0 + 0.5 * w.max(120.0), at.1 + 1.2 * TEXT);
     raster.text(middle, &name, &TextStyle::title(TEXT));
     let pressure = map.nodes.pressure();
-    let field = Field {
-        title: "pressure",
-        values: Values::Nodal(&pressure),
-        scale: Scale::Linear,
-    };
+    let field = Field::nodal("pressure", &pressure);
     // The range always contains zero, the value outside contact.
     let (least, most) = field.range();
     let range = match (least, most) {

@@ -4,90 +4,35 @@
 //! per body or once per subdomain: lines between bodies and subdomains are found from the coordinates.
 
 use super::marks;
-use super::outline::Lines;
+use super::mesh::bounds;
 use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
 use crate::report::drawing::canvas::{Canvas, Colour, TextStyle};
 use crate::report::drawing::raster::Raster;
-use crate::report::drawing::ticks::Scale;
-use crate::{Error, Result};
+use crate::Result;
 use std::path::Path;
 
 pub use super::marks::ContactMark;
-pub use super::outline::Mesh;
-pub use super::values::{coefficient_scale, Field, Values};
+pub use super::mesh::Mesh;
+pub use super::values::Field;
 
-/// Writes u (nodal) and ρ (per cell) side by side as PNG; ρ on a logarithmic scale where it varies by more than 100.
-/// `contact` lists the parts of sides that may touch another body or an obstacle; they are marked on u.
+/// Writes fields of one mesh as PNG: side by side, or one below the other where the mesh is wide. `contact` lists the
+/// parts of sides that may touch another body or an obstacle, as they are shown; they are marked on the first field. If
+/// the bodies are `displaced`, every body has its own outline, with a thin outline of its undeformed shape.
 ///
 /// # Errors
-/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
-pub fn write_solution(
+/// [`crate::Error::Input`] when an array does not fit the mesh; [`crate::Error::Environment`] with the path.
+pub fn write(
     mesh: &Mesh,
-    u: &[f64],
-    rho: &[f64],
-    contact: &[ContactMark],
-    title: &str,
-    path: &Path,
-) -> Result<()> {
-    let fields = [
-        Field {
-            title: "solution u",
-            values: Values::Nodal(u),
-            scale: Scale::Linear,
-        },
-        Field {
-            title: "coefficient ρ",
-            values: Values::Cell(rho),
-            scale: coefficient_scale(rho),
-        },
-    ];
-    check(mesh, &fields)?;
-    draw(mesh, &fields, contact, title).write_png(path)
-}
-
-/// Writes any fields of one mesh as PNG: side by side, or one below the other where the mesh is wide.
-///
-/// # Errors
-/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
-pub fn write(mesh: &Mesh, fields: &[Field], title: &str, path: &Path) -> Result<()> {
-    check(mesh, fields)?;
-    draw(mesh, fields, &[], title).write_png(path)
-}
-
-/// As [`write()`] for displaced bodies: `mesh` is undeformed, `shown` are the displaced points. Every body has its own
-/// outline, with a thin outline of its undeformed shape. `contact` is in displaced coordinates.
-///
-/// # Errors
-/// [`Error::Input`] when an array does not fit the mesh; [`Error::Environment`] with the path.
-pub fn write_displaced(
-    mesh: &Mesh,
-    shown: &[[f64; 2]],
     fields: &[Field],
     contact: &[ContactMark],
+    displaced: bool,
     title: &str,
     path: &Path,
 ) -> Result<()> {
-    check(mesh, fields)?;
-    if shown.len() != mesh.points.len() {
-        return Err(Error::input(format!(
-            "the picture's mesh lists {} displaced points, expected {}",
-            shown.len(),
-            mesh.points.len()
-        )));
-    }
-    let moved = Mesh {
-        points: shown,
-        ..*mesh
-    };
-    let before = mesh.lines_at(mesh.points, true).bodies;
-    let lines = mesh.lines_at(shown, true);
-    draw_lines(&moved, fields, contact, title, &lines, &before).write_png(path)
-}
-
-fn check(mesh: &Mesh, fields: &[Field]) -> Result<()> {
     mesh.check()?;
-    let (points, cells) = (mesh.points.len(), mesh.quads.len());
-    fields.iter().try_for_each(|f| f.check(points, cells))
+    let (points, cells) = (mesh.points.len(), mesh.corners.len());
+    fields.iter().try_for_each(|f| f.check(points, cells))?;
+    draw(mesh, fields, contact, displaced, title).write_png(path)
 }
 
 const LEFT: f64 = 52.0;
@@ -95,26 +40,21 @@ const BAR_GAP: f64 = 12.0;
 /// Colour of the outlines of undeformed bodies.
 const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
-fn draw(mesh: &Mesh, fields: &[Field], contact: &[ContactMark], title: &str) -> Raster {
-    draw_lines(mesh, fields, contact, title, &mesh.lines(), &[])
-}
-
-/// Draws the fields, with `before`, the outlines of undeformed bodies, below them and `lines` above.
-fn draw_lines(
+fn draw(
     mesh: &Mesh,
     fields: &[Field],
     contact: &[ContactMark],
+    displaced: bool,
     title: &str,
-    lines: &Lines,
-    before: &[Vec<[f64; 2]>],
 ) -> Raster {
-    let (mut low, mut high) = mesh.bounds();
-    for p in before.iter().flatten() {
-        for d in 0..2 {
-            low[d] = low[d].min(p[d]);
-            high[d] = high[d].max(p[d]);
-        }
-    }
+    let lines = mesh.lines(mesh.shown, displaced);
+    // The outlines of undeformed bodies, below the fields.
+    let before = match displaced {
+        true => mesh.lines(mesh.points, true).bodies,
+        false => Vec::new(),
+    };
+    let ends = before.iter().flatten();
+    let [low, high] = bounds(mesh.shown.iter().chain(ends).copied());
     let size = [
         (high[0] - low[0]).max(1e-300),
         (high[1] - low[1]).max(1e-300),
@@ -151,7 +91,7 @@ fn draw_lines(
         let middle = (view.origin.0 + 0.5 * w.max(60.0), at.1 + 1.2 * TEXT);
         raster.text(middle, field.title, &TextStyle::title(TEXT));
         let range = field.range();
-        for line in before {
+        for line in &before {
             view.line(&mut raster, line, 0.7, BEFORE);
         }
         paint(&mut raster, mesh, field, range, &view);

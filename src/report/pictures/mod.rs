@@ -3,6 +3,7 @@
 pub mod contact_map;
 pub mod field;
 mod marks;
+pub mod mesh;
 mod outline;
 mod paint;
 pub mod solid;

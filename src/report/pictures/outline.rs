@@ -1,21 +1,8 @@
-//! A mesh of quadrilaterals for pictures, and the lines between its bodies and subdomains.
+//! The lines between the bodies and subdomains of a mesh of quadrilaterals.
 
-use crate::{Error, Result};
+use super::mesh::{bounds, rounding, Mesh};
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
-
-/// Quadrilaterals with the body and the subdomain of each.
-#[derive(Debug, Clone, Copy)]
-pub struct Mesh<'a> {
-    /// Positions. A position may be listed several times: once per body, or once per subdomain.
-    pub points: &'a [[f64; 2]],
-    /// Corners of every cell, in the order around it.
-    pub quads: &'a [[u32; 4]],
-    /// Body of every cell.
-    pub body: &'a [u32],
-    /// Subdomain of every cell; numbers continue from body to body.
-    pub subdomain: &'a [u32],
-}
 
 /// Polylines.
 pub(super) struct Lines {
@@ -26,69 +13,20 @@ pub(super) struct Lines {
 }
 
 /// A position rounded to a millionth of the mesh: equal for all copies of a point.
-type Key = (i64, i64);
+type Key = [i64; 2];
 
 impl Mesh<'_> {
-    /// Checks that the sizes of the arrays agree.
-    pub(super) fn check(&self) -> Result<()> {
-        for (found, what) in [
-            (self.body.len(), "bodies"),
-            (self.subdomain.len(), "subdomains"),
-        ] {
-            if found != self.quads.len() {
-                let expected = self.quads.len();
-                return Err(Error::input(format!(
-                    "the picture's mesh lists {found} {what} of cells, expected one for each of {expected} cells"
-                )));
-            }
-        }
-        match self
-            .quads
-            .iter()
-            .flatten()
-            .find(|&&p| p as usize >= self.points.len())
-        {
-            Some(bad) => Err(Error::input(format!(
-                "a cell names point {bad}, but the picture's mesh has {} points",
-                self.points.len()
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    /// Smallest and largest coordinates; those of the unit square if there are no points.
-    pub(super) fn bounds(&self) -> ([f64; 2], [f64; 2]) {
-        let mut low = [f64::INFINITY; 2];
-        let mut high = [f64::NEG_INFINITY; 2];
-        for p in self.points {
-            for d in 0..2 {
-                low[d] = low[d].min(p[d]);
-                high[d] = high[d].max(p[d]);
-            }
-        }
-        if low[0] <= high[0] && low[1] <= high[1] {
-            (low, high)
-        } else {
-            ([0.0; 2], [1.0; 2])
-        }
-    }
-
     /// The number of different bodies or subdomains in a list by cell, if they are numbered consecutively.
     pub(super) fn count(&self, numbers: &[u32]) -> usize {
         numbers.iter().max().map_or(0, |&m| m as usize + 1)
     }
 
-    /// The lines around bodies and between subdomains.
-    pub(super) fn lines(&self) -> Lines {
-        self.lines_at(self.points, false)
-    }
-
-    /// The lines for points displaced to `shown`. With `apart` every body gets its own outline, because bodies that
-    /// touched may have separated.
-    pub(super) fn lines_at(&self, shown: &[[f64; 2]], apart: bool) -> Lines {
+    /// The lines around bodies and between subdomains, with the points at `shown`. With `apart` every body gets its own
+    /// outline, because bodies that touched may have separated.
+    pub(super) fn lines(&self, shown: &[[f64; 2]], apart: bool) -> Lines {
         // Edges by point numbers: most edges occur twice in one subdomain, and so lie inside it.
-        let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.quads.len());
-        for (cell, quad) in self.quads.iter().enumerate() {
+        let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.corners.len());
+        for (cell, quad) in self.corners.iter().enumerate() {
             for k in 0..4 {
                 let (a, b) = (quad[k], quad[(k + 1) % 4]);
                 edges.push((
@@ -99,17 +37,13 @@ impl Mesh<'_> {
         }
         edges.par_sort_unstable();
         // The remaining edges are compared by position, which is the same for copies of one edge.
-        let (low, high) = self.bounds();
-        let grid = f64::from(1 << 20) / (high[0] - low[0]).max(high[1] - low[1]).max(1e-300);
+        let key = self.rounding();
         let key_in = |p: u32, body: u32| -> Key {
-            let q = self.points[p as usize];
+            let [x, y] = key(self.points[p as usize]);
             // With `apart`, the keys of different bodies are far from each other; differences within a body do not
             // change.
             let far = if apart { i64::from(body) << 24 } else { 0 };
-            (
-                ((q[0] - low[0]) * grid).round() as i64 + far,
-                ((q[1] - low[1]) * grid).round() as i64,
-            )
+            [x + far, y]
         };
         let mut at: HashMap<(Key, Key), (bool, u32, usize)> = HashMap::new(); // all of one body?, which, how many
         let mut position: HashMap<Key, [f64; 2]> = HashMap::new();
@@ -150,17 +84,7 @@ impl Mesh<'_> {
 pub(super) fn joined(segments: impl Iterator<Item = ([f64; 2], [f64; 2])>) -> Vec<Vec<[f64; 2]>> {
     let segments: Vec<_> = segments.collect();
     let ends = || segments.iter().flat_map(|s| [s.0, s.1]);
-    let (low, high) = ends().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(l, h), p| {
-        let low = [l[0].min(p[0]), l[1].min(p[1])];
-        (low, [h[0].max(p[0]), h[1].max(p[1])])
-    });
-    let grid = f64::from(1 << 20) / (high[0] - low[0]).max(high[1] - low[1]).max(1e-300);
-    let key = |p: [f64; 2]| -> Key {
-        (
-            ((p[0] - low[0]) * grid).round() as i64,
-            ((p[1] - low[1]) * grid).round() as i64,
-        )
-    };
+    let key = rounding(bounds(ends()));
     let position: HashMap<Key, [f64; 2]> = ends().map(|p| (key(p), p)).collect();
     let mut edges: Vec<(Key, Key)> = segments
         .iter()
@@ -191,16 +115,16 @@ fn chains(mut edges: Vec<(Key, Key)>, position: &HashMap<Key, [f64; 2]>) -> Vec<
             loop {
                 let (before, end) = (chain[chain.len() - 2], chain[chain.len() - 1]);
                 let there = &touching[&end];
-                let ahead = (end.0 - before.0, end.1 - before.1);
+                let ahead = [end[0] - before[0], end[1] - before[1]];
                 let next = there.iter().copied().filter(|&k| !used[k]).find_map(|k| {
                     let far = if edges[k].0 == end {
                         edges[k].1
                     } else {
                         edges[k].0
                     };
-                    let step = (far.0 - end.0, far.1 - end.1);
-                    let cross = (ahead.0 * step.1 - ahead.1 * step.0).abs() as f64;
-                    let dot = (ahead.0 * step.0 + ahead.1 * step.1) as f64;
+                    let step = [far[0] - end[0], far[1] - end[1]];
+                    let cross = (ahead[0] * step[1] - ahead[1] * step[0]).abs() as f64;
+                    let dot = (ahead[0] * step[0] + ahead[1] * step[1]) as f64;
                     // Rounded positions: straight to within a few degrees; around a bend only where nothing else ends.
                     (dot > 0.0 && (cross < 0.1 * dot || there.len() == 2)).then_some((k, far))
                 });

@@ -1,6 +1,6 @@
 //! Painting a field on a mesh of quadrilaterals: its position in the picture, cells, axes and colour bar.
 
-use super::outline::Mesh;
+use super::mesh::Mesh;
 use super::values::Field;
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Colour, Point, TextStyle};
 use crate::report::drawing::colormap::viridis;
@@ -84,9 +84,9 @@ pub(super) fn paint(
 ) {
     let s = raster.scale();
     let shade = field.colour(range);
-    for (cell, quad) in mesh.quads.iter().enumerate() {
+    for (cell, quad) in mesh.corners.iter().enumerate() {
         let corner = quad.map(|p| {
-            let (x, y) = view.place(mesh.points[p as usize]);
+            let (x, y) = view.place(mesh.shown[p as usize]);
             [x * s, y * s]
         });
         let value = field.at(cell, *quad);

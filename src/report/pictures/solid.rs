@@ -4,18 +4,21 @@
 //! The projection is parallel and from a fixed direction, y upwards, so that pictures of different scenes and meshes
 //! can be compared. Hidden parts are found pixel by pixel.
 
+use super::mesh::bounds;
 use super::paint::{colour_bar, legend, sheet, BAR, LABELS, TEXT};
 use super::space::Camera;
-use super::stage::{diagonals, pale, Stage, CLOSED};
-use super::surface::Surface;
+use super::stage::{pale, Stage, CLOSED};
+use super::surface::{diagonals, Surface};
 use super::values::Field;
+use crate::linalg::vec3::{cross, dot};
 use crate::report::drawing::canvas::{Anchor, Canvas, Colour, TextStyle};
 use crate::report::drawing::colormap::viridis;
 use crate::report::drawing::raster::Raster;
 use crate::Result;
 use std::path::Path;
 
-pub use super::surface::{FaceMark, Solid};
+pub use super::mesh::Solid;
+pub use super::surface::FaceMark;
 
 const SMALL_TEXT: f64 = 11.5;
 const MARGIN: f64 = 16.0;
@@ -45,7 +48,7 @@ pub fn write_solution(
 
 fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Result<Raster> {
     solid.check()?;
-    let (points, cells) = (solid.points.len(), solid.hexahedra.len());
+    let (points, cells) = (solid.points.len(), solid.corners.len());
     fields.iter().try_for_each(|f| f.check(points, cells))?;
     let surface = solid.surface(marks);
     let shifts = shifts(solid);
@@ -113,9 +116,9 @@ fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Res
 /// The shift of each body away from the common middle.
 fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
     let n = solid.body.iter().max().map_or(0, |&b| b as usize + 1);
-    let mut bounds = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; n];
-    for (cell, &body) in solid.hexahedra.iter().zip(solid.body) {
-        let [low, high] = &mut bounds[body as usize];
+    let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; n];
+    for (cell, &body) in solid.corners.iter().zip(solid.body) {
+        let [low, high] = &mut boxes[body as usize];
         for p in cell.map(|p| solid.points[p as usize]) {
             for d in 0..3 {
                 low[d] = low[d].min(p[d]);
@@ -123,7 +126,7 @@ fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
             }
         }
     }
-    let [low, high] = Solid::bounds(solid.points);
+    let [low, high] = bounds(solid.points.iter().copied());
     let apart = APART[usize::from(n > 3)];
     let shift = |[a, b]: [[f64; 3]; 2]| {
         [0, 1, 2].map(|d| {
@@ -136,7 +139,7 @@ fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
             }
         })
     };
-    bounds.into_iter().map(shift).collect()
+    boxes.into_iter().map(shift).collect()
 }
 
 /// The viewpoint that shows most of the marked area; the viewpoint of the first picture if no other is clearly better.
@@ -146,12 +149,8 @@ fn second_camera(solid: &Solid, surface: &Surface, several: bool) -> Camera {
         marked
             .map(|f| {
                 let ([u, v], _) = diagonals(f.corners.map(|p| solid.points[p as usize]));
-                let n = [0, 1, 2].map(|d| {
-                    let (e, g) = ((d + 1) % 3, (d + 2) % 3);
-                    u[e] * v[g] - u[g] * v[e]
-                });
-                let facing: f64 = (0..3).map(|d| n[d] * camera.towards[d]).sum();
-                facing.max(0.0) * if f.mark == Some(true) { 1.0 } else { 0.5 }
+                dot(cross(u, v), camera.towards).max(0.0)
+                    * if f.mark == Some(true) { 1.0 } else { 0.5 }
             })
             .sum()
     };
@@ -184,7 +183,7 @@ fn triad(raster: &mut Raster, at: (f64, f64), camera: &Camera) {
 
 /// Prints the extent of the undeformed scene.
 fn extent(raster: &mut Raster, solid: &Solid, at: (f64, f64)) {
-    let [low, high] = Solid::bounds(solid.points);
+    let [low, high] = bounds(solid.points.iter().copied());
     let size = (0..3).fold(0.0_f64, |a, d| a.max(high[d] - low[d]));
     let range = |d: usize| {
         // Coordinates of curved bodies contain rounding errors.

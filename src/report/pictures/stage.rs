@@ -1,9 +1,11 @@
 //! A solid from one viewpoint: its surface in the colours of a field, lit, with lines around bodies and between
 //! subdomains.
 
+use super::mesh::{bounds, Solid};
 use super::space::{Buffer, Camera};
-use super::surface::{unit_cross, Solid, Surface};
+use super::surface::{diagonals, unit_cross, Surface};
 use super::values::Field;
+use crate::linalg::vec3::dot;
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::raster::Raster;
 
@@ -13,16 +15,6 @@ const PANEL: (f64, f64) = (470.0, 440.0);
 pub(super) const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
 /// The part of white in the colour of faces that may touch and do not.
 const PALE: f64 = 0.45;
-
-/// The diagonals of a quadrilateral, and its middle.
-pub(super) fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]) {
-    let across = [
-        [0, 1, 2].map(|i| c[i] - a[i]),
-        [0, 1, 2].map(|i| d[i] - b[i]),
-    ];
-    let middle = [0, 1, 2].map(|i| 0.25 * (a[i] + b[i] + c[i] + d[i]));
-    (across, middle)
-}
 
 /// A solid from one viewpoint, its bodies shifted.
 pub(super) struct Stage<'a> {
@@ -48,20 +40,13 @@ impl<'a> Stage<'a> {
             surface,
             camera,
             shifts,
-            low: [f64::INFINITY; 2],
-            high: [f64::NEG_INFINITY; 2],
+            low: [0.0; 2],
+            high: [1.0; 2],
             scale: 1.0,
         };
-        for face in &surface.faces {
-            for p in face.corners {
-                let at = stage.projected(p, solid.body[face.cell as usize]);
-                stage.low = [0, 1].map(|d| stage.low[d].min(at[d]));
-                stage.high = [0, 1].map(|d| stage.high[d].max(at[d]));
-            }
-        }
-        if stage.low[0] > stage.high[0] {
-            (stage.low, stage.high) = ([0.0; 2], [1.0; 2]);
-        }
+        let corners = surface.faces.iter().flat_map(|f| f.corners.map(|p| (f, p)));
+        let places = corners.map(|(f, p)| stage.projected(p, solid.body[f.cell as usize]));
+        [stage.low, stage.high] = bounds(places.map(|[x, y, _]| [x, y]));
         let size = [0, 1].map(|d| (stage.high[d] - stage.low[d]).max(1e-300));
         stage.scale = (PANEL.0 / size[0]).min(PANEL.1 / size[1]);
         stage
@@ -96,8 +81,7 @@ impl<'a> Stage<'a> {
             let positions = face.corners.map(|p| self.solid.shown[p as usize]);
             let ([u, v], _) = diagonals(positions);
             let normal = unit_cross(u, v);
-            let facing: f64 = (0..3).map(|d| normal[d] * self.camera.towards[d]).sum();
-            if facing <= 0.0 {
+            if dot(normal, self.camera.towards) <= 0.0 {
                 continue;
             }
             let light = light(normal, &self.camera);
@@ -150,6 +134,5 @@ pub(super) fn pale(Colour(r, g, b): Colour) -> Colour {
 fn light(normal: [f64; 3], camera: &Camera) -> f64 {
     let seen = camera.project(normal);
     let from = [-0.35, 0.65, 0.67];
-    let facing: f64 = (0..3).map(|d| seen[d] * from[d]).sum();
-    0.82 + 0.18 * facing.clamp(0.0, 1.0)
+    0.82 + 0.18 * dot(seen, from).clamp(0.0, 1.0)
 }

@@ -1,25 +1,9 @@
 //! The surface of bodies of hexahedra for pictures: outer faces, edges of bodies, lines between subdomains.
 
-use crate::linalg::vec3::{cross, norm};
-use crate::{Error, Result};
+use super::mesh::Solid;
+use crate::linalg::vec3::{cross, dot, minus, norm};
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
-
-/// Hexahedra with the body and the subdomain of each.
-#[derive(Debug, Clone, Copy)]
-pub struct Solid<'a> {
-    /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per
-    /// subdomain.
-    pub points: &'a [[f64; 3]],
-    /// Positions of the points in the picture: as `points`, or displaced.
-    pub shown: &'a [[f64; 3]],
-    /// Corners of every cell in VTK's order, x, y, z right-handed.
-    pub hexahedra: &'a [[u32; 8]],
-    /// Body of every cell.
-    pub body: &'a [u32],
-    /// Subdomain of every cell; numbers continue from body to body.
-    pub subdomain: &'a [u32],
-}
 
 /// The face of an element that may touch another body or an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,60 +56,13 @@ const CREASE: f64 = 0.8;
 type Key = [i64; 3];
 
 impl Solid<'_> {
-    /// Checks that the sizes of the arrays agree.
-    pub(super) fn check(&self) -> Result<()> {
-        let (cells, points) = (self.hexahedra.len(), self.points.len());
-        for (found, expected, what) in [
-            (self.body.len(), cells, "bodies of cells"),
-            (self.subdomain.len(), cells, "subdomains of cells"),
-            (self.shown.len(), points, "displaced points"),
-        ] {
-            if found != expected {
-                return Err(Error::input(format!(
-                    "the picture's mesh lists {found} {what}, expected {expected}"
-                )));
-            }
-        }
-        match self
-            .hexahedra
-            .iter()
-            .flatten()
-            .find(|&&p| p as usize >= points)
-        {
-            Some(bad) => Err(Error::input(format!(
-                "a cell names point {bad}, but the picture's mesh has {points} points"
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    /// Least and greatest coordinates of `points`; those of the unit cube if there are no points.
-    pub(super) fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
-        let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        for p in points {
-            for d in 0..3 {
-                out[0][d] = out[0][d].min(p[d]);
-                out[1][d] = out[1][d].max(p[d]);
-            }
-        }
-        if out[0][0] <= out[1][0] {
-            out
-        } else {
-            [[0.0; 3], [1.0; 3]]
-        }
-    }
-
     /// The outer surface: the faces that belong to only one cell of a body.
     pub(super) fn surface(&self, marks: &[FaceMark]) -> Surface {
-        let [low, high] = Self::bounds(self.points);
-        let size = (0..3).fold(1e-300_f64, |a, d| a.max(high[d] - low[d]));
-        let grid = f64::from(1 << 20) / size;
-        let key =
-            |p: [f64; 3]| -> Key { [0, 1, 2].map(|d| ((p[d] - low[d]) * grid).round() as i64) };
+        let key = self.rounding();
         // Four times the centre of a face.
         let middle = |corners: [[f64; 3]; 4]| {
             let mut sum = [0; 3];
-            for corner in corners.map(key) {
+            for corner in corners.map(&key) {
                 (0..3).for_each(|d| sum[d] += corner[d]);
             }
             sum
@@ -164,8 +101,8 @@ impl Solid<'_> {
 
     /// Faces that occur once in a subdomain, by point numbers; most faces occur twice and lie inside it.
     fn faces_of_one_subdomain(&self) -> Vec<Face> {
-        let mut all: Vec<([u32; 4], u32, u8)> = Vec::with_capacity(6 * self.hexahedra.len());
-        for (cell, hexahedron) in self.hexahedra.iter().enumerate() {
+        let mut all: Vec<([u32; 4], u32, u8)> = Vec::with_capacity(6 * self.corners.len());
+        for (cell, hexahedron) in self.corners.iter().enumerate() {
             for (f, face) in FACES.iter().enumerate() {
                 let mut corners = face.map(|a| hexahedron[a]);
                 corners.sort_unstable();
@@ -175,7 +112,7 @@ impl Solid<'_> {
         all.par_sort_unstable();
         let single = all.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() == 1);
         let face = |g: &[([u32; 4], u32, u8)]| Face {
-            corners: FACES[g[0].2 as usize].map(|a| self.hexahedra[g[0].1 as usize][a]),
+            corners: FACES[g[0].2 as usize].map(|a| self.corners[g[0].1 as usize][a]),
             cell: g[0].1,
             mark: None,
         };
@@ -197,17 +134,13 @@ impl Solid<'_> {
             }
         }
         let normal = |f: usize| {
-            let [a, b, c, d] = faces[f].corners.map(|p| self.points[p as usize]);
-            let (u, v) = (
-                [0, 1, 2].map(|i| c[i] - a[i]),
-                [0, 1, 2].map(|i| d[i] - b[i]),
-            );
+            let ([u, v], _) = diagonals(faces[f].corners.map(|p| self.points[p as usize]));
             unit_cross(u, v)
         };
         let mut out = Vec::new();
         for ((body, ..), (ends, [f, g], count)) in found {
             let (m, n) = (normal(f), normal(g));
-            let crease = count != 2 || m[0] * n[0] + m[1] * n[1] + m[2] * n[2] < CREASE;
+            let crease = count != 2 || dot(m, n) < CREASE;
             let subdomain = |f: usize| self.subdomain[faces[f].cell as usize];
             if crease || subdomain(f) != subdomain(g) {
                 out.push(Edge { ends, body, crease });
@@ -218,6 +151,12 @@ impl Solid<'_> {
         out.sort_unstable_by_key(|e| (e.crease, e.ends));
         out
     }
+}
+
+/// The diagonals of a quadrilateral, and its middle.
+pub(super) fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]) {
+    let middle = [0, 1, 2].map(|i| 0.25 * (a[i] + b[i] + c[i] + d[i]));
+    ([minus(c, a), minus(d, b)], middle)
 }
 
 /// The unit vector along a × b; zero if a × b is zero.

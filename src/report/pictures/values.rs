@@ -33,7 +33,39 @@ pub struct Field<'a> {
     pub scale: Scale,
 }
 
-impl Field<'_> {
+impl<'a> Field<'a> {
+    /// Numbers on points.
+    pub fn nodal(title: &'a str, values: &'a [f64]) -> Self {
+        Field {
+            title,
+            values: Values::Nodal(values),
+            scale: Scale::Linear,
+        }
+    }
+
+    /// Numbers on cells.
+    pub fn cell(title: &'a str, values: &'a [f64]) -> Self {
+        Field {
+            title,
+            values: Values::Cell(values),
+            scale: Scale::Linear,
+        }
+    }
+
+    /// A coefficient by cell, on a logarithmic scale where it varies by more than 100.
+    pub fn coefficient(title: &'a str, values: &'a [f64]) -> Self {
+        let (low, high) = extremes(values);
+        let scale = if low > 0.0 && high > 100.0 * low {
+            Scale::Log
+        } else {
+            Scale::Linear
+        };
+        Field {
+            scale,
+            ..Field::cell(title, values)
+        }
+    }
+
     /// Checks that the numbers fit a mesh with these numbers of points and cells.
     pub(super) fn check(&self, points: usize, cells: usize) -> Result<()> {
         let (expected, what) = match self.values {
@@ -86,16 +118,6 @@ impl Field<'_> {
             true => viridis((scale.forward(v) - low) / (high - low)),
             false => viridis(f64::NAN),
         }
-    }
-}
-
-/// The scale that shows a coefficient: logarithmic where it varies by more than 100.
-pub fn coefficient_scale(values: &[f64]) -> Scale {
-    let (low, high) = extremes(values);
-    if low > 0.0 && high > 100.0 * low {
-        Scale::Log
-    } else {
-        Scale::Linear
     }
 }
 

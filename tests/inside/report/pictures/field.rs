@@ -9,16 +9,7 @@ fn colours_stand_for_values() {
     // u = x on the unit square: the left end is dark violet, the right end yellow, the middle teal.
     let mesh = grid(2, 2, 4, false);
     let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
-    let picture = draw(
-        &mesh.view(),
-        &[Field {
-            title: "u",
-            values: Values::Nodal(&u),
-            scale: Scale::Linear,
-        }],
-        &[],
-        "",
-    );
+    let picture = draw(&mesh.view(), &[Field::nodal("u", &u)], &[], false, "");
     let (_, origin) = (0, (LEFT, 6.0 + 2.4 * TEXT + 400.0));
     let at = |x: f64, y: f64| {
         let p = ((origin.0 + 400.0 * x) * 2.0, (origin.1 - 400.0 * y) * 2.0);
@@ -46,11 +37,7 @@ fn the_contact_zone_is_marked_on_u() {
     // Two bodies that touch along x = 1/2 in its lower half; the upper half is open.
     let mesh = grid(2, 2, 4, false);
     let u = vec![0.5; mesh.points.len()];
-    let field = [Field {
-        title: "u",
-        values: Values::Nodal(&u),
-        scale: Scale::Linear,
-    }; 2];
+    let field = [Field::nodal("u", &u); 2];
     let marks: Vec<ContactMark> = (0..16)
         .map(|k| ContactMark {
             from: [0.5, f64::from(k) / 16.0],
@@ -58,8 +45,8 @@ fn the_contact_zone_is_marked_on_u() {
             closed: k < 8,
         })
         .collect();
-    let plain = draw(&mesh.view(), &field, &[], "");
-    let marked = draw(&mesh.view(), &field, &marks, "");
+    let plain = draw(&mesh.view(), &field, &[], false, "");
+    let marked = draw(&mesh.view(), &field, &marks, false, "");
     let (w, h) = plain.size();
     assert_eq!(marked.size().0, w);
     assert!(marked.size().1 > h, "room for the legend");
@@ -82,6 +69,12 @@ fn the_contact_zone_is_marked_on_u() {
     assert!((30..80).contains(&changes), "{changes}");
 }
 
+/// u and ρ.
+fn both<'a>(u: &'a [f64], rho: &'a [f64]) -> [Field<'a>; 2] {
+    let rho = Field::coefficient("coefficient ρ", rho);
+    [Field::nodal("solution u", u), rho]
+}
+
 #[test]
 fn arrays_of_the_wrong_length_are_refused() {
     let mesh = grid(1, 1, 2, false);
@@ -89,9 +82,16 @@ fn arrays_of_the_wrong_length_are_refused() {
         vec![0.0; mesh.points.len()],
         vec![1.0; mesh.quads.len() + 1],
     );
-    let message = write_solution(&mesh.view(), &u, &rho, &[], "", Path::new("/dev/null"))
-        .unwrap_err()
-        .to_string();
+    let message = write(
+        &mesh.view(),
+        &both(&u, &rho),
+        &[],
+        false,
+        "",
+        Path::new("/dev/null"),
+    )
+    .unwrap_err()
+    .to_string();
     assert!(
         message.contains("'coefficient ρ' has 5 numbers"),
         "{message}"
@@ -104,5 +104,13 @@ fn a_million_cells_are_painted() {
     let u: Vec<f64> = mesh.points.iter().map(|p| p[0] * p[1]).collect();
     let rho = vec![1.0; mesh.quads.len()];
     let dir = crate::report::output::tests::Scratch::new("field");
-    write_solution(&mesh.view(), &u, &rho, &[], "", &dir.0.join("u.png")).unwrap();
+    write(
+        &mesh.view(),
+        &both(&u, &rho),
+        &[],
+        false,
+        "",
+        &dir.0.join("u.png"),
+    )
+    .unwrap();
 }

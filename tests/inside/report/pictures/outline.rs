@@ -14,7 +14,8 @@ impl Grid {
     pub(crate) fn view(&self) -> Mesh<'_> {
         Mesh {
             points: &self.points,
-            quads: &self.quads,
+            shown: &self.points,
+            corners: &self.quads,
             body: &self.body,
             subdomain: &self.subdomain,
         }
@@ -73,7 +74,7 @@ fn length(lines: &[Vec<[f64; 2]>]) -> f64 {
 fn lines_have_the_right_length_however_points_are_listed() {
     for per_subdomain in [false, true] {
         let mesh = grid(3, 2, 5, per_subdomain);
-        let lines = mesh.view().lines();
+        let lines = mesh.view().lines(&mesh.points, false);
         // 4 + 4 lines of length 1 around 3×3 bodies; 3 + 3 between their subdomains.
         assert!((length(&lines.bodies) - 8.0).abs() < 1e-12);
         assert!((length(&lines.subdomains) - 6.0).abs() < 1e-12);
@@ -119,6 +120,7 @@ fn misfits_are_refused() {
     assert!(short.check().unwrap_err().to_string().contains("3 bodies"));
     let far = Mesh {
         points: &mesh.points[..8],
+        shown: &mesh.points[..8],
         ..mesh.view()
     };
     assert!(far.check().unwrap_err().to_string().contains("point 8"));

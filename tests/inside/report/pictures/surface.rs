@@ -48,7 +48,7 @@ impl Blocks {
         Solid {
             points: &self.points,
             shown: &self.points,
-            hexahedra: &self.hexahedra,
+            corners: &self.hexahedra,
             body: &self.body,
             subdomain: &self.subdomain,
         }
