@@ -95,8 +95,8 @@ pub struct Finished<T> {
 }
 
 impl Launcher {
-    /// Runs `fetifeti VERB FILE` on `ranks` ranks and waits until it ends. The file contains `task`; the record that the
-    /// job leaves is the file beside it that ends in `json`.
+    /// Runs `fetifeti VERB FILE` on `ranks` ranks and waits until it ends. The file contains `task`; the record that
+    /// the job leaves is the file beside it that ends in `json`.
     ///
     /// # Errors
     /// [`Error::Environment`] where the job cannot be started at all: no disk, no mpirun; or where its record cannot be

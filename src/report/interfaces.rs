@@ -24,8 +24,8 @@ pub struct InterfaceNodes {
 }
 
 impl InterfaceNodes {
-    /// Checks that the lists have one entry per node.
-    pub(super) fn check(&self) -> Result<()> {
+    /// Checks that the lists, and those in `more`, have one entry per node.
+    pub(super) fn check(&self, more: &[(usize, &str)]) -> Result<()> {
         let n = self.t.len();
         let areas = if self.has_pressure() {
             self.area.len()
@@ -39,7 +39,7 @@ impl InterfaceNodes {
             (self.active.len(), "states"),
             (areas, "areas"),
         ];
-        match lists.iter().find(|list| list.0 != n) {
+        match lists.iter().chain(more).find(|list| list.0 != n) {
             None => Ok(()),
             Some((found, list)) => Err(Error::input(format!(
                 "the interface '{}' lists {found} {list}, expected one for each of {n} nodes",

@@ -36,7 +36,11 @@ pub struct ContactMap {
 
 impl ContactMap {
     fn check(&self) -> Result<()> {
-        self.nodes.check()?;
+        let more = [
+            (self.at.len(), "positions"),
+            (self.nodes.area.len(), "areas"),
+        ];
+        self.nodes.check(&more)?;
         let n = self.at.len();
         match self.cells.iter().flatten().find(|&&k| k as usize >= n) {
             Some(bad) => Err(Error::input(format!(

@@ -163,7 +163,7 @@ impl Profile {
 /// # Errors
 /// [`crate::Error::Input`] when the arrays of an interface differ in length.
 pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
-    profiles.iter().try_for_each(|p| p.nodes.check())?;
+    profiles.iter().try_for_each(|p| p.nodes.check(&[]))?;
     let known = profiles.iter().filter(|p| !p.nodes.t.is_empty());
     let (order, title) = interfaces::largest(known, |p| &p.nodes, SHOWN, title);
     let columns = match order.len() {
@@ -198,7 +198,8 @@ pub fn figure(profiles: &[Profile], title: &str) -> Result<Figure> {
 /// all interfaces.
 ///
 /// # Errors
-/// [`crate::Error::Input`] when the lists of an interface differ in length; [`crate::Error::Environment`] with the path.
+/// [`crate::Error::Input`] when the lists of an interface differ in length; [`crate::Error::Environment`] with the
+/// path.
 pub fn write(profiles: &[Profile], title: &str, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = figure(profiles, title)?.save(&dir.join("interfaces"))?;
     let csv = dir.join("interfaces.csv");
