@@ -9,38 +9,9 @@ use crate::scene::{Body, Scene};
 use crate::substructures::{BodyNode, SolvedRow};
 use crate::{FetiFeti, Result};
 
-/// The forces and moments on a body. Moments are about its centre.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    load: [f64; 3],
-    contact: [f64; 3],
-    /// Σ |multiplier|.
-    size: f64,
-    moment: [f64; 3],
-    /// Sizes of the moments of the forces on rows, and of the load.
-    moment_size: [f64; 2],
-}
-
-const WORDS: usize = 12;
-
-impl Sums {
-    fn words(&self) -> [f64; WORDS] {
-        let ([a, b, c], [d, e, f], [g, h, i]) = (self.load, self.contact, self.moment);
-        let [j, k] = self.moment_size;
-        [a, b, c, d, e, f, self.size, g, h, i, j, k]
-    }
-
-    fn from_words(w: &[f64]) -> Sums {
-        let three = |k: usize| [w[k], w[k + 1], w[k + 2]];
-        Sums {
-            load: three(0),
-            contact: three(3),
-            size: w[6],
-            moment: three(7),
-            moment_size: [w[10], w[11]],
-        }
-    }
-}
+/// The forces and moments on a body: its load, the forces of contact, their moments about its centre, and three sizes:
+/// Σ |multiplier|, and those of the moments of the forces on rows and of the load.
+type Sums = [[f64; 3]; 4];
 
 /// Loads, forces of contact and reactions of every body; `rows` are all rows on rank 0. Collective.
 pub(super) fn bodies(
@@ -51,15 +22,14 @@ pub(super) fn bodies(
     step: usize,
 ) -> Result<Vec<BodyBalance>> {
     let mut sums = vec![Sums::default(); scene.n_bodies()];
+    let add = |to: &mut [f64; 3], v: [f64; 3]| (0..3).for_each(|d| to[d] += v[d]);
     for sub in &solver.problem().local {
         let body = &scene.bodies[sub.body];
         let (force, moment) = scene.wrench(sub.index, step, body.ball().0)?;
-        let to = &mut sums[sub.body];
-        for d in 0..3 {
-            to.load[d] += force[d];
-            to.moment[d] += moment[d];
-        }
-        to.moment_size[1] += norm(moment);
+        let [load, _, moments, sizes] = &mut sums[sub.body];
+        add(load, force);
+        add(moments, moment);
+        sizes[2] += norm(moment);
     }
     // Rank 0 has all rows; the lists of the other ranks are empty.
     for row in rows {
@@ -71,34 +41,32 @@ pub(super) fn bodies(
                 _ => row.normal(),
             };
             let force = n.map(|n| sign * row.multiplier * n);
-            let to = &mut sums[b];
-            (0..3).for_each(|d| to.contact[d] += force[d]);
-            to.size += norm(force);
             let at = body.spec.position(body.mesh().place(node));
             let moment = cross(minus(at, body.ball().0), force);
-            (0..3).for_each(|d| to.moment[d] += moment[d]);
-            to.moment_size[0] += norm(moment);
+            let [_, contact, moments, sizes] = &mut sums[b];
+            add(contact, force);
+            add(moments, moment);
+            sizes[0] += norm(force);
+            sizes[1] += norm(moment);
         }
     }
-    let mut words: Vec<f64> = sums.iter().flat_map(Sums::words).collect();
-    sum_all(session.comm(), &mut words);
+    sum_all(session.comm(), sums.as_flattened_mut().as_flattened_mut());
     let floating = &solver.dual().stiffness.space.defect;
-    let each = scene.bodies.iter().zip(words.chunks_exact(WORDS));
-    let out = each.enumerate().map(|(b, (body, words))| {
-        let sums = Sums::from_words(words);
-        if scene.form.is_elastic() {
-            elastic(body, &sums, floating[b] > 0)
-        } else {
-            scalar(body, &sums, floating[b] > 0)
-        }
-    });
-    Ok(out.collect())
+    let balance = if scene.form.is_elastic() {
+        elastic
+    } else {
+        scalar
+    };
+    let each = scene.bodies.iter().zip(&sums).zip(floating);
+    Ok(each
+        .map(|((body, sums), &defect)| balance(body, sums, defect > 0))
+        .collect())
 }
 
 fn scalar(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
-    let (load, contact) = (sums.load[0], sums.contact[0]);
+    let [[load, ..], [contact, ..], _, [size, ..]] = *sums;
     let rest = load + contact;
-    let scale = load.abs().max(sums.size);
+    let scale = load.abs().max(size);
     BodyBalance {
         name: body.spec.name.clone(),
         floating: floats,
@@ -117,26 +85,27 @@ fn scalar(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
 /// In components that are prescribed somewhere, reactions balance the other forces. In the other components the forces
 /// themselves must balance, and the moments must where nothing is prescribed at all.
 fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
+    let [load, contact, moment, [size, of_rows, of_load]] = *sums;
     let c = body.components;
     let mut held = [false; 3];
     for &(dof, _) in &body.prescribed {
         held[dof % c] = true;
     }
-    let rest = [0, 1, 2].map(|d| sums.load[d] + sums.contact[d]);
+    let rest = [0, 1, 2].map(|d| load[d] + contact[d]);
     let free = |d: usize| if held[d] { 0.0 } else { rest[d] };
     let relative = |rest: f64, scale: f64| if scale > 0.0 { rest / scale } else { 0.0 };
     let loose = body.prescribed.is_empty();
     let vector = |f: &dyn Fn(usize) -> f64| Amount((0..c).map(f).collect());
-    let lever = sums.moment_size[0].max(sums.moment_size[1]);
+    let lever = of_rows.max(of_load);
     // Forces through the centre have no lever arm; their rounding must not count as a moment.
-    let lever = lever.max(sums.size * body.ball().1 * 1e-3);
+    let lever = lever.max(size * body.ball().1 * 1e-3);
     BodyBalance {
         name: body.spec.name.clone(),
         floating: floats,
-        load: vector(&|d| sums.load[d]),
-        contact: vector(&|d| sums.contact[d]),
+        load: vector(&|d| load[d]),
+        contact: vector(&|d| contact[d]),
         reaction: (!loose).then(|| vector(&|d| if held[d] { -rest[d] } else { 0.0 })),
-        imbalance: relative(norm([0, 1, 2].map(free)), norm(sums.load).max(sums.size)),
-        moment_imbalance: loose.then(|| relative(norm(sums.moment), lever)),
+        imbalance: relative(norm([0, 1, 2].map(free)), norm(load).max(size)),
+        moment_imbalance: loose.then(|| relative(norm(moment), lever)),
     }
 }

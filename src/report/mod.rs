@@ -6,24 +6,24 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | [`destination`] | the destination of a command's results: terminal, JSON file, directory |
-//! | [`output`] | files that are written as a whole or not at all; standard output |
+//! | `destination` | the destination of a command's results: terminal, JSON file, directory |
+//! | `output` | files that are written as a whole or not at all; standard output |
 //! | [`json`] | the records of the commands: [`json::SolveReport`], [`json::Table1Row`], [`json::CompareRow`], [`json::BenchReport`] |
-//! | [`interfaces`] | the data along interfaces, and their CSV |
-//! | [`drawing`] | pixels, vectors, text, colours, ticks |
-//! | [`tables`] | aligned text for terminals, CSV, and the tables of the commands; Table 1 of Lee (2010) as printed |
-//! | [`plots`] | line and scatter plots: Figure 3 of Lee (2010), contact along interfaces, energy and force over load steps |
-//! | [`pictures`] | fields on quadrilaterals and on the surface of solids, with the contact zone; pressure on faces of contact |
-//! | [`paraview`] | VTU files, contact as point data, time series |
-//! | [`progress`] | the progress line of a contact solve |
+//! | `interfaces` | the data along interfaces, and their CSV |
+//! | `drawing` | pixels, vectors, text, colours, ticks |
+//! | `tables` | aligned text for terminals, CSV, and the tables of the commands; Table 1 of Lee (2010) as printed |
+//! | `plots` | line and scatter plots: Figure 3 of Lee (2010), contact along interfaces, energy and force over load steps |
+//! | `pictures` | fields on quadrilaterals and on the surface of solids, with the contact zone; pressure on faces of contact |
+//! | `paraview` | VTU files, contact as point data, time series |
+//! | `progress` | the progress line of a contact solve |
 
-pub mod destination;
-pub mod drawing;
-pub mod interfaces;
+pub(crate) mod destination;
+pub(crate) mod drawing;
+pub(crate) mod interfaces;
 pub mod json;
-pub mod output;
-pub mod paraview;
-pub mod pictures;
-pub mod plots;
-pub mod progress;
-pub mod tables;
+pub(crate) mod output;
+pub(crate) mod paraview;
+pub(crate) mod pictures;
+pub(crate) mod plots;
+pub(crate) mod progress;
+pub(crate) mod tables;

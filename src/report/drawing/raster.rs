@@ -43,12 +43,6 @@ impl Raster {
         }
     }
 
-    /// One real pixel.
-    pub fn get(&self, x: usize, y: usize) -> Colour {
-        let pixel = self.pixels.pixels()[y * self.size().0 + x];
-        Colour(pixel.red(), pixel.green(), pixel.blue())
-    }
-
     /// Writes the picture as PNG.
     ///
     /// # Errors

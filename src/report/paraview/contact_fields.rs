@@ -90,11 +90,6 @@ impl ContactFields {
         }
     }
 
-    /// Force per area by point; empty where no areas were added.
-    pub fn pressure(&self) -> &[f64] {
-        &self.pressure
-    }
-
     /// The grid with the arrays attached as point data.
     #[must_use]
     pub fn on<'a>(&'a self, grid: Vtu<'a>) -> Vtu<'a> {

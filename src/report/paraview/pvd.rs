@@ -53,11 +53,6 @@ impl Pvd {
         output::write_text(&self.path, &self.to_text())
     }
 
-    /// Times and files so far.
-    pub fn entries(&self) -> &[(f64, String)] {
-        &self.entries
-    }
-
     fn to_text(&self) -> String {
         let mut text = String::from(
             "<?xml version=\"1.0\"?>\n\

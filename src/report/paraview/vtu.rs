@@ -11,14 +11,8 @@ use std::path::Path;
 /// Shape of all cells of a grid; corners in VTK's order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// Two points.
-    Line,
-    /// Three points, counterclockwise.
-    Triangle,
     /// Four points, counterclockwise.
     Quad,
-    /// Four points.
-    Tetrahedron,
     /// Eight points: bottom counterclockwise, then top.
     Hexahedron,
 }
@@ -27,9 +21,7 @@ impl Shape {
     /// Corners per cell.
     pub fn corners(self) -> usize {
         match self {
-            Shape::Line => 2,
-            Shape::Triangle => 3,
-            Shape::Quad | Shape::Tetrahedron => 4,
+            Shape::Quad => 4,
             Shape::Hexahedron => 8,
         }
     }
@@ -37,10 +29,7 @@ impl Shape {
     /// VTK's number for the shape.
     fn vtk(self) -> u8 {
         match self {
-            Shape::Line => 3,
-            Shape::Triangle => 5,
             Shape::Quad => 9,
-            Shape::Tetrahedron => 10,
             Shape::Hexahedron => 12,
         }
     }
@@ -203,74 +192,40 @@ impl<'a> Vtu<'a> {
         ] {
             writeln!(out, "<{tag}>")?;
             for a in arrays {
+                let head = (&a.name[..], a.components);
                 match a.values {
                     Values::Float(v) => {
-                        array(
-                            out,
-                            &a.name,
-                            "Float64",
-                            a.components,
-                            v.len(),
-                            v.iter().map(|x| x.to_le_bytes()),
-                        )?;
+                        array(out, head, "Float64", v.iter().copied(), f64::to_le_bytes)
                     }
                     Values::Int(v) => {
-                        array(
-                            out,
-                            &a.name,
-                            "Int32",
-                            a.components,
-                            v.len(),
-                            v.iter().map(|x| x.to_le_bytes()),
-                        )?;
+                        array(out, head, "Int32", v.iter().copied(), i32::to_le_bytes)
                     }
-                }
+                }?;
             }
             writeln!(out, "</{tag}>")?;
         }
         writeln!(out, "<Points>")?;
-        let coordinates = self.points.iter().flatten().map(|x| x.to_le_bytes());
-        array(
-            out,
-            "Points",
-            "Float64",
-            3,
-            3 * self.points.len(),
-            coordinates,
-        )?;
+        let coordinates = self.points.as_flattened().iter().copied();
+        array(out, ("Points", 3), "Float64", coordinates, f64::to_le_bytes)?;
         writeln!(out, "</Points>\n<Cells>")?;
-        let corners = self.shape.corners() as i64;
-        let connectivity = self.cells.iter().map(|&c| i64::from(c).to_le_bytes());
-        array(
-            out,
-            "connectivity",
-            "Int64",
-            1,
-            self.cells.len(),
-            connectivity,
-        )?;
-        let offsets = (1..=n_cells as i64).map(|k| (k * corners).to_le_bytes());
-        array(out, "offsets", "Int64", 1, n_cells, offsets)?;
-        array(
-            out,
-            "types",
-            "UInt8",
-            1,
-            n_cells,
-            (0..n_cells).map(|_| [self.shape.vtk()]),
-        )?;
+        let corner = |c| i64::from(c).to_le_bytes();
+        let cells = self.cells.iter().copied();
+        array(out, ("connectivity", 1), "Int64", cells, corner)?;
+        let end = |k: usize| (((k + 1) * self.shape.corners()) as i64).to_le_bytes();
+        array(out, ("offsets", 1), "Int64", 0..n_cells, end)?;
+        let shape = |_| [self.shape.vtk()];
+        array(out, ("types", 1), "UInt8", 0..n_cells, shape)?;
         writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
     }
 }
 
-/// One DataArray element of `count` numbers of N bytes.
-fn array<const N: usize>(
+/// One DataArray element of numbers of N bytes each.
+fn array<T, const N: usize>(
     out: &mut dyn Write,
-    name: &str,
+    (name, components): (&str, usize),
     kind: &str,
-    components: usize,
-    count: usize,
-    numbers: impl Iterator<Item = [u8; N]>,
+    numbers: impl ExactSizeIterator<Item = T>,
+    bytes: impl Fn(T) -> [u8; N],
 ) -> io::Result<()> {
     let name = name
         .replace('&', "&amp;")
@@ -287,9 +242,9 @@ fn array<const N: usize>(
     )?;
     // The encoder is a stream: arrays of any length need no second copy.
     let mut base64 = EncoderWriter::new(&mut *out, &STANDARD);
-    base64.write_all(&((count * N) as u64).to_le_bytes())?;
+    base64.write_all(&((numbers.len() * N) as u64).to_le_bytes())?;
     for number in numbers {
-        base64.write_all(&number)?;
+        base64.write_all(&bytes(number))?;
     }
     base64.finish()?;
     drop(base64);

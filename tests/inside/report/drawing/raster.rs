@@ -3,6 +3,14 @@
 use super::super::canvas::Anchor;
 use super::*;
 
+impl Raster {
+    /// One real pixel.
+    pub(crate) fn get(&self, x: usize, y: usize) -> Colour {
+        let pixel = self.pixels.pixels()[y * self.size().0 + x];
+        Colour(pixel.red(), pixel.green(), pixel.blue())
+    }
+}
+
 const RED: Colour = Colour(255, 0, 0);
 
 #[test]

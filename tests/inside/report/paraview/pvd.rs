@@ -26,7 +26,7 @@ fn the_file_is_complete_after_every_step() {
     // The same step once more, as after a restart.
     pvd.add(0.1, &dir.0.join("again.vtu")).unwrap();
     assert_eq!(count(), 2);
-    assert_eq!(pvd.entries()[0], (0.1, "again.vtu".to_string()));
+    assert_eq!(pvd.entries[0], (0.1, "again.vtu".to_string()));
     // No other file is left behind.
     assert_eq!(std::fs::read_dir(&dir.0).unwrap().count(), 1);
 }
@@ -35,7 +35,7 @@ fn the_file_is_complete_after_every_step() {
 fn a_collection_without_a_directory() {
     let mut pvd = Pvd::new("x.pvd");
     assert!(pvd.add(0.0, Path::new("/elsewhere/1.vtu")).is_err());
-    assert!(pvd.entries().is_empty());
+    assert!(pvd.entries.is_empty());
 }
 
 #[test]
@@ -51,5 +51,5 @@ fn bad_times_and_places_are_refused() {
         let message = pvd.add(t, &file).unwrap_err().to_string();
         assert!(message.contains(part), "{message}");
     }
-    assert_eq!(pvd.entries().len(), 1);
+    assert_eq!(pvd.entries.len(), 1);
 }
