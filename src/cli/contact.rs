@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use crate::contact::Step;
 use crate::petsc::Session;
 use crate::report::interfaces::InterfaceNodes;
-use crate::report::json;
 use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::plots::profile::Profile;
 use crate::scene::{Scene, Shape};
@@ -143,7 +142,6 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
 
 /// The record of one outer step in the report.
 pub fn outer_step(load_step: usize, number: usize, step: &Step) -> OuterStep {
-    let spectrum = |s: crate::Spectrum| json::Spectrum::new(s.lambda_min, s.lambda_max);
     OuterStep {
         load_step,
         step: number,
@@ -152,8 +150,8 @@ pub fn outer_step(load_step: usize, number: usize, step: &Step) -> OuterStep {
         entered: step.entered,
         left: step.left,
         iterations: step.iterations,
-        estimate: step.estimate.map(spectrum),
-        exact: step.exact.map(spectrum),
+        estimate: step.estimate.map(Into::into),
+        exact: step.exact.map(Into::into),
         wrong: step.wrong,
         residual: step.residual,
         tolerance: step.tolerance,

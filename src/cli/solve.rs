@@ -127,10 +127,6 @@ fn checks(solver: &FetiFeti) -> Result<BTreeMap<String, f64>> {
     Ok(out)
 }
 
-fn spectrum(s: Spectrum) -> json::Spectrum {
-    json::Spectrum::new(s.lambda_min, s.lambda_max)
-}
-
 fn report(
     session: &Session,
     scene: &Scene,
@@ -155,7 +151,6 @@ fn report(
     sum_all(session.comm(), &mut errors);
     let [l2, h1, energy_norm] = errors.map(f64::sqrt);
     let floating = dual.natural.r > 0;
-    let inequalities = facts.inequalities > 0;
     let rows = solution.rows();
     let mut active = [rows.iter().filter(|r| r.holds()).count() as f64];
     sum_all(session.comm(), &mut active);
@@ -184,16 +179,11 @@ fn report(
         outer_iterations: course.iterations.len(),
         iterations: json::Iterations::new(course.iterations.clone()),
         condition: json::Condition {
-            exact: exact.map(spectrum),
-            estimate: solution.estimate.map(spectrum),
+            exact: exact.map(Into::into),
+            estimate: solution.estimate.map(Into::into),
         },
         adaptive: adaptive(solver)?,
-        kkt: json::Kkt {
-            stationarity: solution.kkt.stationarity,
-            feasibility: solution.kkt.feasibility,
-            complementarity: solution.kkt.complementarity,
-            min_multiplier: inequalities.then_some(solution.kkt.min_multiplier),
-        },
+        kkt: json::Kkt::new(&solution.kkt, facts.inequalities > 0),
         energy: solution.energy,
         contact,
         error: scene.exact.is_some().then_some(json::ErrorNorms {
@@ -201,7 +191,7 @@ fn report(
             h1,
             energy_norm,
         }),
-        communication: solver.communication().map(Into::into),
+        communication: solver.communication(),
         seconds: json::Seconds {
             assemble: 0.0,
             setup: facts.setup_seconds,
@@ -266,8 +256,8 @@ fn deflation(solver: &FetiFeti) -> Result<Option<Deflation>> {
         capped: cost.capped.iter().map(|&b| names[b].clone()).collect(),
         by_body: cost.vectors,
         seconds: cost.seconds,
-        exact_without: exact_without.map(spectrum),
-        estimate_without: cost.before.map(spectrum),
+        exact_without: exact_without.map(Into::into),
+        estimate_without: cost.before.map(Into::into),
     }))
 }
 

@@ -63,15 +63,12 @@ fn counts_and_model() {
 fn sends(report: &Report) {
     for p in &report.points {
         let c = &p.communication;
-        let (messages, bytes) = (c.messages_per_iteration, c.bytes_per_iteration);
+        let (messages, bytes) = (c.messages, c.bytes);
         assert_eq!(p.oversubscribed, p.ranks > report.cores);
         assert!(p.work.subdomains * p.ranks as f64 >= p.subdomains as f64);
         assert!(p.work.kernels as usize >= p.floating_bodies.min(1));
         if p.ranks == 1 {
-            assert_eq!(
-                (messages.sum, bytes.sum, c.reductions_per_iteration),
-                (0.0, 0.0, 0.0)
-            );
+            assert_eq!((messages.sum, bytes.sum, c.reductions), (0.0, 0.0, 0.0));
             continue;
         }
         assert!(messages.max <= messages.sum && bytes.max <= bytes.sum);
@@ -79,14 +76,14 @@ fn sends(report: &Report) {
         assert!(bytes.sum >= 8.0 * messages.sum);
         // CG: three all-reduces and, at times, a first norm. With floating bodies: four more.
         let floats = if p.floating_bodies > 0 { 4.0 } else { 0.0 };
-        let reductions = c.reductions_per_iteration - floats;
+        let reductions = c.reductions - floats;
         let most = 3.0 + p.steps as f64 / p.iterations as f64;
         assert!((3.0..=most + 1e-9).contains(&reductions), "{p:?}");
     }
     // The body in the middle of 3 × 3 sends λ and the jump of λ, around F and around M⁻¹, to each of at most eight
     // neighbours.
     let middle = runs(report, Series::Neighbours, Problem::Tied)[0];
-    let most = middle.communication.messages_per_iteration.max;
+    let most = middle.communication.messages.max;
     assert!((8.0..=32.0).contains(&most), "{most}");
     assert_eq!(
         (middle.ranks, middle.bodies, middle.floating_bodies),

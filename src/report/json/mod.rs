@@ -16,10 +16,7 @@ pub use compare::{
     CompareContact, CompareInequalities, CompareReport, CompareRow, ComparedScene, MethodRun,
     PhaseSeconds,
 };
-pub use solve::{
-    Communication, ErrorNorms, Iterations, Kkt, Multipliers, Operators, PerIteration, Seconds,
-    SolveReport,
-};
+pub use solve::{ErrorNorms, Iterations, Kkt, Multipliers, Operators, Seconds, SolveReport};
 pub use spectrum::{Condition, Spectrum};
 pub use table1::{PaperSide, PcResult, Table1Row, Table1Side};
 

@@ -4,6 +4,7 @@ use super::adaptive::Adaptive;
 use super::contact::ContactReport;
 use super::number;
 use super::spectrum::Condition;
+use crate::feti::Communication;
 use serde::{Deserialize, Serialize};
 
 /// The report of `solve`.
@@ -153,40 +154,21 @@ pub struct Kkt {
     pub min_multiplier: Option<f64>,
 }
 
-/// The messages of one Krylov iteration: means over all iterations.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Communication {
-    /// Messages from rank to rank.
-    pub messages_per_iteration: PerIteration,
-    /// Their bytes.
-    pub bytes_per_iteration: PerIteration,
-    /// Number of all-reduces; every rank takes part in each.
-    pub reductions_per_iteration: f64,
-    /// Bytes that a rank contributes to them.
-    pub reduced_bytes_per_iteration: f64,
-}
-
-/// A quantity of all ranks.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct PerIteration {
-    /// Sum over the ranks.
-    pub sum: f64,
-    /// Largest value of a rank.
-    pub max: f64,
-}
-
-impl From<crate::feti::Communication> for Communication {
-    fn from(c: crate::feti::Communication) -> Communication {
-        let both = |q: crate::feti::krylov::tally::PerIteration| PerIteration {
-            sum: q.sum,
-            max: q.max,
-        };
-        Communication {
-            messages_per_iteration: both(c.messages),
-            bytes_per_iteration: both(c.bytes),
-            reductions_per_iteration: c.reductions,
-            reduced_bytes_per_iteration: c.reduced_bytes,
+impl Kkt {
+    /// The record of these residuals.
+    pub fn new(kkt: &crate::solution::Kkt, inequalities: bool) -> Kkt {
+        Kkt {
+            stationarity: kkt.stationarity,
+            feasibility: kkt.feasibility,
+            complementarity: kkt.complementarity,
+            min_multiplier: inequalities.then_some(kkt.min_multiplier),
         }
+    }
+
+    /// The largest residual of stationarity, feasibility and complementarity.
+    pub fn largest(&self) -> f64 {
+        let larger = self.stationarity.max(self.feasibility);
+        larger.max(self.complementarity)
     }
 }
 

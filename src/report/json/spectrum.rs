@@ -36,3 +36,9 @@ impl Spectrum {
         }
     }
 }
+
+impl From<crate::Spectrum> for Spectrum {
+    fn from(s: crate::Spectrum) -> Spectrum {
+        Spectrum::new(s.lambda_min, s.lambda_max)
+    }
+}

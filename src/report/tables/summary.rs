@@ -2,7 +2,8 @@
 
 use super::contact as contact_summary;
 use super::table::{count, fixed, Table};
-use crate::report::json::{Communication, PcResult, SolveReport, Spectrum, Table1Row, Table1Side};
+use crate::feti::Communication;
+use crate::report::json::{PcResult, SolveReport, Spectrum, Table1Row, Table1Side};
 
 /// The result of `solve` as lines "name  value".
 pub fn solve(r: &SolveReport) -> String {
@@ -153,15 +154,15 @@ pub(crate) fn ranks(n: usize) -> String {
 
 /// One line on the messages of an iteration.
 fn communication(c: &Communication) -> String {
-    let (messages, bytes) = (c.messages_per_iteration, c.bytes_per_iteration);
+    let (messages, bytes) = (c.messages, c.bytes);
     format!(
         "{:.0} messages, {:.1} kB (most of a rank {:.0}, {:.1} kB), {:.1} all-reduces of {:.0} B",
         messages.sum,
         1e-3 * bytes.sum,
         messages.max,
         1e-3 * bytes.max,
-        c.reductions_per_iteration,
-        c.reduced_bytes_per_iteration / c.reductions_per_iteration.max(1.0)
+        c.reductions,
+        c.reduced_bytes / c.reductions.max(1.0)
     )
 }
 

@@ -6,134 +6,103 @@ pub struct Case {
     /// Its name, a word.
     pub name: &'static str,
     /// The difficulty of the case.
-    pub title: &'static str,
+    pub title: String,
     /// The scene.
     pub text: String,
 }
 
-/// A scene of equal bodies.
-struct Grid<'a> {
-    /// The keys of the scene before the grid.
-    head: &'a str,
-    bodies: &'a [usize],
-    subdomains: usize,
-    /// Elements across a subdomain.
-    elements: usize,
-    /// The other keys of the grid, and the rest of the scene.
-    rest: &'a str,
-}
-
+/// The keys of a scene before its bodies.
 const SCALAR: &str = "";
 const ELASTIC: &str = "physics = \"elasticity\"\n";
 const BBAR: &str = "physics = \"elasticity\"\nlocking = \"bbar\"\n";
 const SOLID: &str = "dimension = 3\nphysics = \"elasticity\"\n";
 
-impl Grid<'_> {
-    fn text(&self) -> String {
-        let list: Vec<String> = self.bodies.iter().map(usize::to_string).collect();
+/// A load without symmetry: symmetry would make the problem easy.
+const PULL: &str = "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\"]\n";
+const PULL3: &str =
+    "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\", \"z - 0.3*x\"]\n";
+
+/// A scene of equal bodies: its keys, the bodies, subdomains and elements of a subdomain in each direction, the other
+/// keys of the grid, and the rest of the scene.
+fn grid(head: &str, bodies: &[usize], [subdomains, elements]: [usize; 2], rest: &str) -> String {
+    format!(
+        "{head}[grid]\nbodies = {bodies:?}\nsubdomains = {subdomains}\nelements_per_subdomain = {elements}\n{rest}"
+    )
+}
+
+/// Two blocks, one on the other, the lower one fixed: the keys of the scene, of the upper block, and of the interface.
+fn blocks(head: &str, upper: &str, rest: &str) -> String {
+    let body = |name: &str, y: f64, keys: &str| {
         format!(
-            "{}[grid]\nbodies = [{}]\nsubdomains = {}\nelements_per_subdomain = {}\n{}",
-            self.head,
-            list.join(", "),
-            self.subdomains,
-            self.elements,
-            self.rest
+            "[[body]]\nname = \"{name}\"\norigin = [0, {y}]\nsize = [1, 1]\nsubdomains = [2, 2]\n\
+             elements = [16, 16]\n{keys}"
         )
-    }
+    };
+    let lower = body("lower", 0.0, "dirichlet = [\"bottom\"]\n");
+    format!("{head}{lower}{}{rest}", body("upper", 1.0, upper))
 }
 
 /// All cases; with `quick` on smaller meshes.
 pub fn cases(quick: bool) -> Vec<Case> {
-    let mut out = coefficients();
-    out.extend(shapes(quick));
-    out.extend(contacts());
+    let mut out = Vec::new();
+    let mut add = |name, title: &str, text| {
+        let title = title.to_string();
+        out.push(Case { name, title, text });
+    };
+    coefficients(&mut add);
+    shapes(quick, &mut add);
+    contacts(&mut add);
     out
 }
 
-fn case(name: &'static str, title: &'static str, grid: Grid) -> Case {
-    Case {
-        name,
-        title,
-        text: grid.text(),
-    }
-}
-
 /// Cases with large jumps of stiffness, and near-incompressible ones.
-fn coefficients() -> Vec<Case> {
-    // A load without symmetry: symmetry would make the problem easy.
-    const PULL: &str = "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\"]\n";
-    const PULL3: &str =
-        "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\", \"z - 0.3*x\"]\n";
-    let mut out = Vec::new();
-    let plane = |name, title, head, young: &str| {
+fn coefficients(add: &mut dyn FnMut(&'static str, &str, String)) {
+    let by =
+        |least: &str, part: &str| format!("{{ checkerboard = [1, {least}], by = \"{part}\" }}");
+    let elements = "\"if(mod(floor(48*x), 3) == 1 && mod(floor(32*y), 3) == 1, 1e6, 1)\"";
+    for (name, title, young) in [
+        ("jump-bodies", "E = 1 and 1e6 by body", by("1e6", "body")),
+        (
+            "jump-bodies-soft",
+            "E = 1 and 1e-6 by body",
+            by("1e-6", "body"),
+        ),
+        (
+            "jump-inside",
+            "E = 1 and 1e6 by subdomain",
+            by("1e6", "subdomain"),
+        ),
+        (
+            "jump-inside-soft",
+            "E = 1 and 1e-6 by subdomain",
+            by("1e-6", "subdomain"),
+        ),
+        (
+            "jump-elements",
+            "E = 1e6 in every third element of every third row",
+            elements.into(),
+        ),
+    ] {
         let rest = format!("young = {young}\n{PULL}");
-        case(
-            name,
-            title,
-            Grid {
-                head,
-                bodies: &[3, 2],
-                subdomains: 4,
-                elements: 4,
-                rest: &rest,
-            },
-        )
-    };
-    out.push(plane(
-        "jump-bodies",
-        "E = 1 and 1e6 by body",
-        ELASTIC,
-        "{ checkerboard = [1, 1e6], by = \"body\" }",
-    ));
-    out.push(plane(
-        "jump-bodies-soft",
-        "E = 1 and 1e-6 by body",
-        ELASTIC,
-        "{ checkerboard = [1, 1e-6], by = \"body\" }",
-    ));
-    out.push(plane(
-        "jump-inside",
-        "E = 1 and 1e6 by subdomain",
-        ELASTIC,
-        "{ checkerboard = [1, 1e6], by = \"subdomain\" }",
-    ));
-    out.push(plane(
-        "jump-inside-soft",
-        "E = 1 and 1e-6 by subdomain",
-        ELASTIC,
-        "{ checkerboard = [1, 1e-6], by = \"subdomain\" }",
-    ));
-    out.push(plane(
-        "jump-elements",
-        "E = 1e6 in every third element of every third row",
-        ELASTIC,
-        "\"if(mod(floor(48*x), 3) == 1 && mod(floor(32*y), 3) == 1, 1e6, 1)\"",
-    ));
-    let rest = format!("young = {{ checkerboard = [1, 1e6], by = \"body\" }}\n{PULL3}");
-    out.push(case(
-        "jump-bodies-3d",
-        "E = 1 and 1e6 by body, solid",
-        Grid {
-            head: SOLID,
-            bodies: &[2, 2, 2],
-            subdomains: 2,
-            elements: 2,
-            rest: &rest,
-        },
-    ));
-    let rest = format!("young = {{ checkerboard = [1, 1e6], by = \"subdomain\" }}\n{PULL3}");
-    out.push(case(
-        "jump-inside-3d",
-        "E = 1 and 1e6 by subdomain, solid",
-        Grid {
-            head: SOLID,
-            bodies: &[2, 2, 1],
-            subdomains: 2,
-            elements: 2,
-            rest: &rest,
-        },
-    ));
-    let rest = format!("poisson = 0.4999\n{PULL}");
+        add(name, title, grid(ELASTIC, &[3, 2], [4, 4], &rest));
+    }
+    for (name, title, bodies, part) in [
+        (
+            "jump-bodies-3d",
+            "E = 1 and 1e6 by body, solid",
+            [2, 2, 2],
+            "body",
+        ),
+        (
+            "jump-inside-3d",
+            "E = 1 and 1e6 by subdomain, solid",
+            [2, 2, 1],
+            "subdomain",
+        ),
+    ] {
+        let rest = format!("young = {}\n{PULL3}", by("1e6", part));
+        add(name, title, grid(SOLID, &bodies, [2, 2], &rest));
+    }
     for (name, title, head) in [
         ("incompressible", "ν = 0.4999, full integration", ELASTIC),
         (
@@ -142,232 +111,141 @@ fn coefficients() -> Vec<Case> {
             BBAR,
         ),
     ] {
-        out.push(case(
-            name,
-            title,
-            Grid {
-                head,
-                bodies: &[2, 2],
-                subdomains: 4,
-                elements: 4,
-                rest: &rest,
-            },
-        ));
+        let rest = format!("poisson = 0.4999\n{PULL}");
+        add(name, title, grid(head, &[2, 2], [4, 4], &rest));
     }
-    out
 }
 
 /// Cases with flat elements, many subdomains, or fine subdomains.
-fn shapes(quick: bool) -> Vec<Case> {
-    let mut out = Vec::new();
-    let flat = "size = [1, 0.001]\ndirichlet = [\"left\"]\nload = \"1 + x\"\n";
-    out.push(case(
+fn shapes(quick: bool, add: &mut dyn FnMut(&'static str, &str, String)) {
+    let flat = |load: &str| format!("size = [1, 0.001]\ndirichlet = [\"left\"]\nload = {load}\n");
+    add(
         "flat",
         "elements 1000 times as long as high, scalar",
-        Grid {
-            head: SCALAR,
-            bodies: &[2, 2],
-            subdomains: 4,
-            elements: 4,
-            rest: flat,
-        },
-    ));
-    let flat = "size = [1, 0.001]\ndirichlet = [\"left\"]\nload = [\"1 + x\", \"1e-6*(2 - x)\"]\n";
-    out.push(case(
+        grid(SCALAR, &[2, 2], [4, 4], &flat("\"1 + x\"")),
+    );
+    add(
         "flat-elastic",
         "elements 1000 times as long as high, elastic: a thin sheet that bends",
-        Grid {
-            head: ELASTIC,
-            bodies: &[2, 2],
-            subdomains: 4,
-            elements: 4,
-            rest: flat,
-        },
-    ));
-    let held = "dirichlet = [\"left\", \"bottom\"]\nload = \"1 + x*y\"\n";
+        grid(
+            ELASTIC,
+            &[2, 2],
+            [4, 4],
+            &flat("[\"1 + x\", \"1e-6*(2 - x)\"]"),
+        ),
+    );
     let (many, fine) = if quick { (16, 32) } else { (32, 128) };
-    out.push(case(
+    let held = "dirichlet = [\"left\", \"bottom\"]\nload = \"1 + x*y\"\n";
+    let scalar = |parts| grid(SCALAR, &[2, 2], parts, held);
+    add(
         "many-subdomains",
-        if quick {
-            "H_b/H_s = 16"
-        } else {
-            "H_b/H_s = 32"
-        },
-        Grid {
-            head: SCALAR,
-            bodies: &[2, 2],
-            subdomains: many,
-            elements: 2,
-            rest: held,
-        },
-    ));
-    out.push(case(
+        &format!("H_b/H_s = {many}"),
+        scalar([many, 2]),
+    );
+    add(
         "fine-subdomains",
-        if quick { "H_s/h = 32" } else { "H_s/h = 128" },
-        Grid {
-            head: SCALAR,
-            bodies: &[2, 2],
-            subdomains: 2,
-            elements: fine,
-            rest: held,
-        },
-    ));
-    let pull = "dirichlet = [\"left\"]\nload = [\"1 + x*y\", \"sin(3*x) - y\"]\n";
+        &format!("H_s/h = {fine}"),
+        scalar([2, fine]),
+    );
     let (many, fine) = if quick { (8, 16) } else { (16, 64) };
-    out.push(case(
-        "many-subdomains-elastic",
-        if quick {
-            "H_b/H_s = 8, elastic"
-        } else {
-            "H_b/H_s = 16, elastic"
-        },
-        Grid {
-            head: ELASTIC,
-            bodies: &[2, 2],
-            subdomains: many,
-            elements: 2,
-            rest: pull,
-        },
-    ));
-    out.push(case(
-        "fine-subdomains-elastic",
-        if quick {
-            "H_s/h = 16, elastic"
-        } else {
-            "H_s/h = 64, elastic"
-        },
-        Grid {
-            head: ELASTIC,
-            bodies: &[2, 2],
-            subdomains: 2,
-            elements: fine,
-            rest: pull,
-        },
-    ));
-    out
-}
-
-/// Two blocks, one on the other: the keys of the scene, of the lower and the upper block, and of the interface.
-fn blocks(head: &str, lower: &str, upper: &str, rest: &str) -> String {
-    let body = |name: &str, y: f64, keys: &str| {
-        format!(
-            "[[body]]\nname = \"{name}\"\norigin = [0, {y}]\n\
-             size = [1, 1]\nsubdomains = [2, 2]\nelements = [16, 16]\n{keys}"
-        )
-    };
-    format!(
-        "{head}{}{}{rest}",
-        body("lower", 0.0, lower),
-        body("upper", 1.0, upper)
-    )
+    let elastic = |parts| grid(ELASTIC, &[2, 2], parts, PULL);
+    let title = format!("H_b/H_s = {many}, elastic");
+    add("many-subdomains-elastic", &title, elastic([many, 2]));
+    let title = format!("H_s/h = {fine}, elastic");
+    add("fine-subdomains-elastic", &title, elastic([2, fine]));
 }
 
 /// Cases in which contacts are too few, too loose, too deep, or absent.
-fn contacts() -> Vec<Case> {
-    const SLIDES: &str = "dirichlet = { left = { x = 0 }, right = { x = 0 } }\n";
-    const FIXED: &str = "dirichlet = [\"bottom\"]\n";
+fn contacts(add: &mut dyn FnMut(&'static str, &str, String)) {
     const CONTACT: &str = "[[contact]]\nbodies = [\"lower\", \"upper\"]\n";
-    let mut out = Vec::new();
-    let mut add = |name, title, text| out.push(Case { name, title, text });
-    let upper = format!("{SLIDES}load = [0, \"-1 - x\"]\n");
-    let one = format!("{CONTACT}points = [0.5]\n");
+    let slides = |keys: &str, load: &str| {
+        let walls = "dirichlet = { left = { x = 0 }, right = { x = 0 } }";
+        format!("{keys}{walls}\nload = [0, {load}]\n")
+    };
+    let sprung = |load: &str| format!("load = {load}\nspring = {{ left = 1e-8, right = 1e-8 }}\n");
+    let moved = |top: &str, more: &str| format!("dirichlet = {{ top = {top} }}\n{more}");
+    let at = |point: &str| format!("{CONTACT}points = [{point}]\n");
+    let deep = format!("{CONTACT}gap = \"-0.1*(1 + x)\"\n");
+    let pressed = slides("", "\"-1 - x\"");
     add(
         "one-node",
         "a floating block on one node",
-        blocks(ELASTIC, FIXED, &upper, &one),
+        blocks(ELASTIC, &pressed, &at("0.5")),
     );
     // Scalar inequalities are u_first − u_second ≤ gap: the upper body stays above the lower one.
     add(
         "one-node-scalar",
         "a floating body on one node, scalar",
-        blocks(SCALAR, FIXED, "load = \"-1 - x\"\n", &one),
+        blocks(SCALAR, "load = \"-1 - x\"\n", &at("0.5")),
     );
-    let corner = format!("{CONTACT}points = [0]\n");
     add(
         "one-corner",
         "a floating block on its corner",
-        blocks(ELASTIC, FIXED, &upper, &corner),
+        blocks(ELASTIC, &pressed, &at("0")),
     );
-    let upper = "load = [0, \"-1 + 0.5*x\"]\nspring = { left = 1e-8, right = 1e-8 }\n";
     add(
         "springs-pressed",
         "a block held by springs of 1e-8 and pressed onto another",
-        blocks(ELASTIC, FIXED, upper, CONTACT),
+        blocks(ELASTIC, &sprung("[0, \"-1 + 0.5*x\"]"), CONTACT),
     );
-    let upper = "load = [\"1e-9*y\", \"1e-8*(1 + x)\"]\nspring = { left = 1e-8, right = 1e-8 }\n";
     add(
         "springs-lifted",
         "a block held by springs of 1e-8 only, lifted off",
-        blocks(ELASTIC, FIXED, upper, CONTACT),
+        blocks(ELASTIC, &sprung("[\"1e-9*y\", \"1e-8*(1 + x)\"]"), CONTACT),
     );
+    let sprung = "spring = { bottom = 1e-8 }\nload = [\"1e-9*x\", \"1e-8*(y - x)\"]\n";
     add(
         "springs-tied",
         "bodies tied to each other, held by springs of 1e-8 only",
-        Grid {
-            head: ELASTIC,
-            bodies: &[2, 2],
-            subdomains: 2,
-            elements: 4,
-            rest: "spring = { bottom = 1e-8 }\nload = [\"1e-9*x\", \"1e-8*(y - x)\"]\n",
-        }
-        .text(),
+        grid(ELASTIC, &[2, 2], [2, 4], sprung),
     );
+    let sprung = "load = \"1e-8*(1 + x)\"\nspring = { top = 1e-8 }\n";
     add(
         "springs-scalar",
         "a body held by springs of 1e-8 only, scalar",
-        blocks(
-            SCALAR,
-            FIXED,
-            "load = \"1e-8*(1 + x)\"\nspring = { top = 1e-8 }\n",
-            CONTACT,
-        ),
+        blocks(SCALAR, sprung, CONTACT),
     );
-    let deep = format!("{CONTACT}gap = \"-0.1*(1 + x)\"\n");
-    let upper = "dirichlet = { top = [0, -0.05] }\n";
     add(
         "interpenetrating",
         "blocks that begin up to 0.2 inside each other",
-        blocks(ELASTIC, FIXED, upper, &deep),
+        blocks(ELASTIC, &moved("[0, -0.05]", ""), &deep),
     );
-    let upper = format!("{SLIDES}load = [0, -0.1]\n");
     add(
         "interpenetrating-floating",
         "the same with a floating block",
-        blocks(ELASTIC, FIXED, &upper, &deep),
+        blocks(ELASTIC, &slides("", "-0.1"), &deep),
     );
-    let upper = "dirichlet = { top = [0, 0.05] }\nload = [0, \"0.1*x\"]\n";
     add(
         "no-contact",
         "a held block that is lifted off everywhere",
-        blocks(ELASTIC, FIXED, upper, CONTACT),
+        blocks(
+            ELASTIC,
+            &moved("[0, 0.05]", "load = [0, \"0.1*x\"]\n"),
+            CONTACT,
+        ),
     );
     add(
         "no-contact-scalar",
         "a held body that is lifted off everywhere, scalar",
-        blocks(
-            SCALAR,
-            FIXED,
-            "dirichlet = { top = 0.1 }\nload = 1\n",
-            CONTACT,
-        ),
+        blocks(SCALAR, &moved("0.1", "load = 1\n"), CONTACT),
     );
-    let upper = format!("young = 1e6\n{SLIDES}load = [0, \"-1 - x\"]\n");
     add(
         "stiff-on-soft",
         "a block 1e6 times as stiff pressed into another",
-        blocks(ELASTIC, FIXED, &upper, CONTACT),
+        blocks(ELASTIC, &slides("young = 1e6\n", "\"-1 - x\""), CONTACT),
     );
-    let upper = format!("young = 1e-6\n{SLIDES}load = [0, \"-1e-7*(1 + x)\"]\n");
     add(
         "soft-on-stiff",
         "a block 1e-6 times as stiff pressed onto another",
-        blocks(ELASTIC, FIXED, &upper, CONTACT),
+        blocks(
+            ELASTIC,
+            &slides("young = 1e-6\n", "\"-1e-7*(1 + x)\""),
+            CONTACT,
+        ),
     );
-    let upper = format!("{SLIDES}load = [0, \"1 + x\"]\n");
     add(
         "flies-away",
         "a floating block that the load pulls away: no solution",
-        blocks(ELASTIC, FIXED, &upper, CONTACT),
+        blocks(ELASTIC, &slides("", "\"1 + x\""), CONTACT),
     );
-    out
 }

@@ -146,7 +146,7 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
     let scene = session.agree(crate::Scene::parse(&file, &case.text))?;
     let mut record = Record {
         case: case.name.into(),
-        title: case.title.into(),
+        title: case.title.clone(),
         dofs: crate::scene::Numbering::new(&scene).len() as usize,
         subdomains: scene.n_subdomains(),
         ..Record::default()
@@ -178,22 +178,16 @@ pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
 fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -> Result<()> {
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
-    let spectrum = |s: crate::Spectrum| json::Spectrum::new(s.lambda_min, s.lambda_max);
     record.multipliers = facts.multipliers_local + facts.multipliers_global;
     record.outer_iterations = solution.steps.len();
     record.iterations = solution.iterations;
     record.seconds = solved.seconds;
     if record.multipliers <= exact {
         // If the eigensolver fails, the solution remains valid.
-        record.condition.exact = solver.spectrum().ok().flatten().map(spectrum);
+        record.condition.exact = solver.spectrum().ok().flatten().map(Into::into);
     }
-    record.condition.estimate = solution.estimate.map(spectrum);
-    record.kkt = Some(json::Kkt {
-        stationarity: solution.kkt.stationarity,
-        feasibility: solution.kkt.feasibility,
-        complementarity: solution.kkt.complementarity,
-        min_multiplier: (facts.inequalities > 0).then_some(solution.kkt.min_multiplier),
-    });
+    record.condition.estimate = solution.estimate.map(Into::into);
+    record.kkt = Some(json::Kkt::new(&solution.kkt, facts.inequalities > 0));
     let rows = solved.rows(session);
     let active = rows
         .iter()
@@ -235,7 +229,6 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
 
 /// All cases.
 pub fn table(report: &Report) -> Table {
-    let largest = |k: json::Kkt| k.stationarity.max(k.feasibility).max(k.complementarity);
     let outer = |c: &Record| Some(c.outer_iterations).filter(|n| *n > 0);
     let set = |c: &Record| match c.active {
         [Some(ours), Some(direct)] => format!("{ours}/{direct}"),
@@ -255,7 +248,7 @@ pub fn table(report: &Report) -> Table {
         .numbers("κ est", |c| {
             condition(c.condition.estimate.map(|s| s.kappa))
         })
-        .numbers("kkt", |c| scientific(c.kkt.map(largest)))
+        .numbers("kkt", |c| scientific(c.kkt.map(|kkt| kkt.largest())))
         .numbers("error energy", |c| scientific(c.error_energy))
         .numbers("error max", |c| scientific(c.error_max))
         .numbers("set", |c| set(c))

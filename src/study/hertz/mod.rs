@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use super::solved::Solved;
 use crate::feti::MethodSettings;
 use crate::petsc::Session;
+use crate::report::json::Kkt;
 use crate::{Error, Result};
 
 /// The study.
@@ -169,7 +170,6 @@ pub fn mesh(session: &Session, case: Case, n: usize) -> Result<Mesh> {
     })?;
     let theory = measure::theory(&case.pair(), &measured, case.share());
     let solution = &solved.solution;
-    let kkt = solution.kkt;
     let mut squares = [0.0; 2];
     for p in &pressures {
         let hertz = theory.pressure(p.x);
@@ -196,10 +196,7 @@ pub fn mesh(session: &Session, case: Case, n: usize) -> Result<Mesh> {
         curve: (squares[0] / squares[1]).sqrt(),
         outer_iterations: solution.steps.len(),
         iterations: solution.iterations,
-        kkt: kkt
-            .stationarity
-            .max(kkt.feasibility)
-            .max(kkt.complementarity),
+        kkt: Kkt::new(&solution.kkt, true).largest(),
         converged: solution.converged(),
         seconds: solved.seconds,
         pressure,

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 use super::network::{self, Timing};
 use super::{IterationSeconds, Point, SetupSeconds, Work};
 use crate::baselines::launch;
-use crate::feti::krylov::tally::Communication;
 use crate::feti::MethodSettings;
 use crate::mesh::contiguous_share;
 use crate::parallel::clock::{self, Phase};
@@ -135,7 +134,6 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<Point> {
     let mut least = sent;
     min_all(comm, &mut least);
     let [local, primal, lifting, natural, iterating] = slowest;
-    let sent = solver.communication().unwrap_or(Communication::default());
     let facts = solver.facts();
     Ok(Point {
         subdomains,
@@ -156,7 +154,7 @@ fn once(session: &Session, problem: crate::Substructures) -> Result<Point> {
         outside: (solve_total - iterating).max(0.0),
         total: [setup_total, solve_total],
         work: work(session, &solver),
-        communication: sent.into(),
+        communication: solver.communication().unwrap_or_default(),
         ..Point::default()
     })
 }

@@ -129,9 +129,9 @@ impl Sent {
         let counted = &point.communication;
         let projections = PROJECTIONS * any(point.work.kernels);
         Sent {
-            messages: counted.messages_per_iteration.max,
-            bytes: counted.bytes_per_iteration.max,
-            dots: (counted.reductions_per_iteration - projections).max(0.0),
+            messages: counted.messages.max,
+            bytes: counted.bytes.max,
+            dots: (counted.reductions - projections).max(0.0),
         }
     }
 }

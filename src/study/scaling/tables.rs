@@ -56,14 +56,10 @@ fn runs(report: &Report) -> Table {
         .numbers("set-up s", |p| fixed(Some(p.total[0]), 3))
         .numbers("solve s", |p| fixed(Some(p.total[1]), 3))
         .numbers("MB", |p| fixed(Some(p.memory_mb[0] - p.memory_mb[1]), 0))
-        .numbers("messages", |p| {
-            fixed(Some(p.communication.messages_per_iteration.max), 0)
-        })
-        .numbers("kB", |p| {
-            fixed(Some(1e-3 * p.communication.bytes_per_iteration.max), 1)
-        })
+        .numbers("messages", |p| fixed(Some(p.communication.messages.max), 0))
+        .numbers("kB", |p| fixed(Some(1e-3 * p.communication.bytes.max), 1))
         .numbers("all-reduces", |p| {
-            fixed(Some(p.communication.reductions_per_iteration), 1)
+            fixed(Some(p.communication.reductions), 1)
         })
         .table()
 }
@@ -280,18 +276,12 @@ pub fn points_csv(report: &Report) -> Table {
         .exact("solve_outside", |p| p.outside)
         .exact("memory_mb", |p| p.memory_mb[0])
         .exact("memory_at_start_mb", |p| p.memory_mb[1])
-        .exact("messages_sum", |p| {
-            p.communication.messages_per_iteration.sum
-        })
-        .exact("messages_max", |p| {
-            p.communication.messages_per_iteration.max
-        })
-        .exact("bytes_sum", |p| p.communication.bytes_per_iteration.sum)
-        .exact("bytes_max", |p| p.communication.bytes_per_iteration.max)
-        .exact("reductions", |p| p.communication.reductions_per_iteration)
-        .exact("reduced_bytes", |p| {
-            p.communication.reduced_bytes_per_iteration
-        });
+        .exact("messages_sum", |p| p.communication.messages.sum)
+        .exact("messages_max", |p| p.communication.messages.max)
+        .exact("bytes_sum", |p| p.communication.bytes.sum)
+        .exact("bytes_max", |p| p.communication.bytes.max)
+        .exact("reductions", |p| p.communication.reductions)
+        .exact("reduced_bytes", |p| p.communication.reduced_bytes);
     let (setup, iteration) = (SetupSeconds::NAMES, IterationSeconds::NAMES);
     let table = each_exact(table, "measured set-up", setup, |p| p.setup.all());
     let table = each_exact(table, "measured iteration", iteration, |p| {

@@ -2,7 +2,7 @@
 
 use super::super::{Problem, Series};
 use super::*;
-use crate::report::json::{Communication, PerIteration};
+use crate::feti::krylov::tally::{Communication, PerIteration};
 
 /// Seconds per term of an iteration on the subdomains, as chosen for the tests.
 const KNOWN: [f64; 6] = [4e-7, 3e-10, 2e-8, 0.0, 2e-9, 0.0];
@@ -49,16 +49,16 @@ fn point(n: f64, subdomains: f64) -> Point {
         memory_mb: [0.0; 2],
         work,
         communication: Communication {
-            messages_per_iteration: PerIteration {
+            messages: PerIteration {
                 sum: 20.0,
                 max: 10.0,
             },
-            bytes_per_iteration: PerIteration {
+            bytes: PerIteration {
                 sum: 2000.0,
                 max: 1000.0,
             },
-            reductions_per_iteration: 7.0,
-            reduced_bytes_per_iteration: 56.0,
+            reductions: 7.0,
+            reduced_bytes: 56.0,
         },
         model: Modelled::default(),
         setup_deviation: 0.0,
