@@ -39,8 +39,7 @@ pub struct PartialCholesky {
 impl PartialCholesky {
     /// Factors the interior of `k` and returns the factor with S (both triangles), in the order of the interface.
     pub fn new(k: &Csr, symbolic: Arc<Symbolic>) -> Result<(Self, Dense), SingularInterior> {
-        let (panels, s) = factor(k, &symbolic, &symbolic)?;
-        Ok((PartialCholesky { symbolic, panels }, s))
+        PartialCholesky::inside(k, &symbolic, symbolic.clone())
     }
 
     /// The same, but stores only the part of the factor that `inside` lists: this part can

@@ -48,11 +48,7 @@ where
                 );
             }
         }
-        for (node, values) in nodes.iter().zip(local.chunks_exact(c)) {
-            for (entry, value) in out[c * node..].iter_mut().zip(values) {
-                *entry += value;
-            }
-        }
+        add(&mut out, c, nodes.into_iter().zip(local.chunks_exact(c)));
     }
     out
 }
@@ -106,11 +102,7 @@ where
 {
     let c = mesh.components();
     let side = Side::of_index(side);
-    let level = if side.upper {
-        mesh.elements[side.axis] - 1
-    } else {
-        0
-    };
+    let level = side.level(mesh.elements);
     let corners: Vec<usize> = side.corners(mesh.dim).collect();
     let mut local = vec![0.0; corners.len() * c];
     for place in mesh.element_places().filter(|p| p[side.axis] == level) {
@@ -120,10 +112,15 @@ where
         let outward = side.outward(mesh.dim);
         let element = mesh.form.element;
         cell::side_load(mesh.dim, &points, outward, element, c, &mut f, &mut local);
-        for (&a, values) in corners.iter().zip(local.chunks_exact(c)) {
-            for (entry, value) in out[c * nodes[a]..].iter_mut().zip(values) {
-                *entry += value;
-            }
-        }
+        let nodes = corners.iter().map(|&a| nodes[a]);
+        add(out, c, nodes.zip(local.chunks_exact(c)));
+    }
+}
+
+/// Adds the values of some nodes, C each.
+fn add<'v>(out: &mut [f64], c: usize, values: impl Iterator<Item = (usize, &'v [f64])>) {
+    for (node, values) in values {
+        let entries = out[c * node..].iter_mut().zip(values);
+        entries.for_each(|(entry, value)| *entry += value);
     }
 }

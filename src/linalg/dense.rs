@@ -115,22 +115,13 @@ impl Dense {
 
     /// Y ← Y + A X; zero columns of X are skipped.
     pub fn add_mul_columns(&self, x: &Dense, y: &mut Dense) {
-        match live(x) {
-            few if few.len() < 2 => few
-                .iter()
-                .for_each(|&c| self.add_mul(x.col(c), y.col_mut(c))),
-            live => add_packed(self.view(), x, &live, y),
-        }
+        add_live(self.view(), x, y, |x, y| self.add_mul(x, y));
     }
 
     /// Y ← Y + Aᵀ X; zero columns of X are skipped.
     pub fn add_mul_transpose_columns(&self, x: &Dense, y: &mut Dense) {
-        match live(x) {
-            few if few.len() < 2 => few
-                .iter()
-                .for_each(|&c| self.add_mul_transpose(x.col(c), y.col_mut(c))),
-            live => add_packed(self.view().transpose(), x, &live, y),
-        }
+        let a = self.view().transpose();
+        add_live(a, x, y, |x, y| self.add_mul_transpose(x, y));
     }
 
     /// y ← y + Aᵀ x.
@@ -144,13 +135,13 @@ impl Dense {
     }
 }
 
-/// The columns of `x` that are not zero.
-fn live(x: &Dense) -> Vec<usize> {
-    (0..x.cols).filter(|&c| !is_zero(x.col(c))).collect()
-}
-
-/// Y ← Y + A X for the columns in `live`.
-fn add_packed(a: MatRef<'_, f64>, x: &Dense, live: &[usize], y: &mut Dense) {
+/// Y ← Y + A X for the columns of X that are not zero; `one` does the same for a single column.
+fn add_live(a: MatRef<'_, f64>, x: &Dense, y: &mut Dense, one: impl Fn(&[f64], &mut [f64])) {
+    let live: Vec<usize> = (0..x.cols).filter(|&c| !is_zero(x.col(c))).collect();
+    if live.len() < 2 {
+        live.iter().for_each(|&c| one(x.col(c), y.col_mut(c)));
+        return;
+    }
     let mut packed = Dense::zeros(x.rows, live.len());
     for (p, &c) in live.iter().enumerate() {
         packed.col_mut(p).copy_from_slice(x.col(c));

@@ -23,9 +23,12 @@ impl Side {
         }
     }
 
-    /// All sides of a cell.
-    pub fn all(dim: usize) -> impl Iterator<Item = Side> {
-        (0..2 * dim).map(Side::of_index)
+    /// Place along the axis of the elements on this side of a box of `elements`.
+    pub(crate) fn level(self, elements: [usize; 3]) -> usize {
+        match self.upper {
+            true => elements[self.axis] - 1,
+            false => 0,
+        }
     }
 
     /// The cell's corners on the side, 2 or 4, in lexicographic order of the other axes: the order in which the

@@ -13,11 +13,7 @@ impl BodySpec {
         let (dim, at) = (mesh.dim(), Side::of_index(side));
         let mut counts = mesh.elements.map(|n| n.max(1));
         counts[at.axis] = 1;
-        let level = if at.upper {
-            mesh.elements[at.axis] - 1
-        } else {
-            0
-        };
+        let level = at.level(mesh.elements);
         places(counts).map(move |mut cell| {
             cell[at.axis] = level;
             let corner = |a: usize| [0, 1, 2].map(|d| cell[d] + (a >> d & 1));

@@ -145,7 +145,7 @@ impl<'a> Checks<'a> {
                     continue;
                 }
                 let &mut (p, m) = index.entry(member).or_insert_with(|| {
-                    points.push(member.alone(self.bodies));
+                    points.push(BodyNode::point(vec![member], self.bodies));
                     (points.len() - 1, 0)
                 });
                 let rows = &mut points[p].rows;

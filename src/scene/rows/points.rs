@@ -175,13 +175,8 @@ impl BodyNode {
         spec.spot(spec.mesh.place(self.node))
     }
 
-    /// The point that has this node as its only member.
-    pub(crate) fn alone(self, bodies: &[Body]) -> Point {
-        BodyNode::point(vec![self], bodies)
-    }
-
     /// The point of these members, the lowest body first.
-    fn point(members: Vec<BodyNode>, bodies: &[Body]) -> Point {
+    pub(crate) fn point(members: Vec<BodyNode>, bodies: &[Body]) -> Point {
         let first = members[0];
         let body = &bodies[first.body];
         let place = body.mesh().place(first.node);
