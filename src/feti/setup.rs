@@ -74,7 +74,7 @@ impl LinearMethod {
             (kind, &settings),
         )?; /* S, T, Ψ */
         let varies = variation::varies(comm, &problem);
-        team.set_load(locals.iter().map(|l| l.n_delta.pow(2)).sum());
+        team.set_load(locals.iter().map(|l| l.gamma().n_delta.pow(2)).sum());
         let stiffness = stiffness(
             session,
             &problem,
@@ -140,7 +140,7 @@ fn subdomains(
     });
     let mut locals = session.agree(factored)?;
     for (j, local) in locals.iter().enumerate() {
-        jump.place(j, &local.interface);
+        jump.place(j, &local.gamma().interface);
     }
     if settings.scaling == Scaling::Deluxe {
         deluxe::apply(comm, problem, sharing, jump, &locals);

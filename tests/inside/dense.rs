@@ -227,7 +227,8 @@ pub fn jump_of(solver: &FetiFeti) -> (Mat<f64>, Mat<f64>) {
         let columns = &stiffness.jump.columns[j];
         for e in 0..columns.row.len() {
             let row = stiffness.jump.ghosts[columns.row[e] as usize] as usize;
-            let copy = start + stiffness.locals[j].interface[columns.at[e] as usize] as usize;
+            let copy =
+                start + stiffness.locals[j].gamma().interface[columns.at[e] as usize] as usize;
             b[(row, copy)] += columns.b[e];
             bd[(row, copy)] += columns.bd[e];
         }

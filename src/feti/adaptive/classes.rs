@@ -46,7 +46,10 @@ pub fn of(
     chosen: impl Fn(usize) -> bool,
 ) -> Vec<Class> {
     let mut found: BTreeMap<Vec<u32>, Vec<(u64, usize)>> = BTreeMap::new();
-    for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+    for (i, &dof) in local.gamma().interface[..local.gamma().n_delta]
+        .iter()
+        .enumerate()
+    {
         let dof = sub.dofs[dof as usize];
         let copies = sharing.shared(dof);
         if copies.len() > 1 && chosen(i) {
@@ -79,7 +82,7 @@ pub fn rough(
     for (j, list) in classes.iter().enumerate() {
         let stiff = diagonal(&problem.local[j]);
         for class in list {
-            let dofs = class.at.iter().map(|&i| locals[j].interface[i]);
+            let dofs = class.at.iter().map(|&i| locals[j].gamma().interface[i]);
             if varies(&problem.local[j], &stiff, dofs) {
                 for &to in &class.sharers {
                     outgoing[sharing.rank_of[to as usize] as usize].push(class.name());
@@ -101,7 +104,9 @@ pub fn anywhere(comm: &SimpleCommunicator, problem: &Substructures, locals: &[Sc
     let mut seen = HashSet::new();
     let mut locals = locals.iter().zip(&problem.local);
     let found = locals.any(|(local, sub)| {
-        let shared = local.interface[..local.n_delta].iter().copied();
+        let shared = local.gamma().interface[..local.gamma().n_delta]
+            .iter()
+            .copied();
         seen.insert(Arc::as_ptr(local.kind())) && varies(sub, &diagonal(sub), shared)
     });
     any(comm, found)
@@ -128,6 +133,7 @@ fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bo
 pub fn means(local: &Scaled, class: &Class) -> Vec<Vec<usize>> {
     let place: HashMap<usize, usize> = class.at.iter().copied().zip(0..).collect();
     let inside = local
+        .gamma()
         .basis
         .supports()
         .filter(|at| place.contains_key(&at[0]));

@@ -62,7 +62,7 @@ pub fn find(
     }
 
     for (j, list) in classes.iter_mut().enumerate() {
-        classes::collect_entries(jump, j, locals[j].n_gamma(), list);
+        classes::collect_entries(jump, j, locals[j].gamma().n_gamma(), list);
     }
     // Each sharer sends its part to the rank of the lowest sharer.
     let rank = comm.rank() as u32;
@@ -148,7 +148,7 @@ pub fn find(
         while let [to, name, k, tail @ ..] = rest {
             let (j, class) = here[&(*name, *to)];
             let (values, tail) = tail.split_at(*k as usize * class.dofs.len());
-            let interface = &locals[j].interface;
+            let interface = &locals[j].gamma().interface;
             let functionals = values.chunks_exact(class.dofs.len()).zip(&class.dofs);
             added.extend(functionals.map(|(values, &key)| {
                 let average = Average {
@@ -246,10 +246,10 @@ fn signature(
 
 /// Names of the primal dofs of local subdomain `j`. Subdomains that share a primal dof have the same name for it.
 fn names(sub: &Subdomain, jump: &Jump, local: &Scaled, j: usize) -> Vec<[u64; 2]> {
-    let vertices = local.interface[local.n_delta..].iter();
+    let vertices = local.gamma().interface[local.gamma().n_delta..].iter();
     let vertices = vertices.map(|&i| [0, sub.dofs[i as usize]]);
     let averages = jump.averages[j].iter().map(|a| [1, a.key]);
-    let fixing = local.fixing.iter();
+    let fixing = local.gamma().fixing.iter();
     let fixing = fixing.map(|&i| [2 + sub.index as u64, i as u64]);
     vertices.chain(averages).chain(fixing).collect()
 }
@@ -264,10 +264,10 @@ fn part(problem: &Substructures, jump: &Jump, local: &Scaled, j: usize, class: &
     multiply(sq.view_mut(), false, 1.0, s.view(), q.view());
     let mut a = Dense::zeros(q.cols, q.cols);
     multiply(a.view_mut(), false, 1.0, q.view().transpose(), sq.view());
-    let mut psi = Dense::zeros(n, local.n_pi());
+    let mut psi = Dense::zeros(n, local.gamma().n_pi());
     for p in 0..psi.cols {
         for (k, &i) in at.iter().enumerate() {
-            psi.set(k, p, local.psi.get(i, p));
+            psi.set(k, p, local.gamma().psi.get(i, p));
         }
     }
     Part {

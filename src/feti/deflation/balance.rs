@@ -55,7 +55,7 @@ impl Balance {
                 for (j, f) in self.f.iter_mut().enumerate() {
                     if pencil.colour(j) == colour && p < defect(self.body[j]) {
                         v.clear();
-                        v.resize(stiffness.locals[j].n_gamma(), 0.0);
+                        v.resize(stiffness.locals[j].gamma().n_gamma(), 0.0);
                         stiffness.jump.columns[j].b_transpose(&ghost, &mut v);
                         f.rows = v.len();
                         f.cols = p + 1;

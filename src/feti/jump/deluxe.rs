@@ -32,7 +32,7 @@ pub fn apply(
 ) {
     let groups: Vec<Vec<Class>> = (0..locals.len())
         .map(|j| {
-            let between = jump.columns[j].between_bodies(locals[j].n_gamma());
+            let between = jump.columns[j].between_bodies(locals[j].gamma().n_gamma());
             classes::of(&problem.local[j], sharing, &locals[j], |i| !between[i])
         })
         .collect();

@@ -134,37 +134,44 @@ fn examine(
     let d = sub.k.diagonal();
     sums[1] = sub.f.iter().zip(&d).map(|(f, d)| f * f / d).sum();
     r.iter_mut().zip(&sub.f).for_each(|(r, f)| *r -= f);
-    let mut pull = vec![0.0; local.n_gamma()];
+    let mut pull = vec![0.0; local.gamma().n_gamma()];
     columns.b_transpose_all(ghost, &mut pull);
-    for (&i, v) in local.interface.iter().zip(&pull) {
+    for (&i, v) in local.gamma().interface.iter().zip(&pull) {
         r[i as usize] += v;
         sums[2] += v * v / d[i as usize];
     }
-    let on = |x: &[f64]| -> Vec<f64> { local.interface.iter().map(|&i| x[i as usize]).collect() };
+    let on = |x: &[f64]| -> Vec<f64> {
+        local
+            .gamma()
+            .interface
+            .iter()
+            .map(|&i| x[i as usize])
+            .collect()
+    };
     // A copy takes forces over from other copies: at a vertex a force, on an edge or face a force along a functional.
     let (mut on_gamma, stiff) = (on(&r), on(&d));
-    for (i, &at) in (local.n_delta..local.n_gamma()).zip(places) {
+    for (i, &at) in (local.gamma().n_delta..local.gamma().n_gamma()).zip(places) {
         primal.push((at, std::mem::take(&mut on_gamma[i]), stiff[i]));
     }
-    if !local.basis.is_empty() {
-        local.basis.to_coordinates(&mut on_gamma);
-        let vectors = local.basis.vectors(stiff.len());
-        let pivots = local.basis.pivots().into_iter().zip(&vectors);
-        for ((p, q), &at) in pivots.zip(&places[local.n_vertices()..]) {
+    if !local.gamma().basis.is_empty() {
+        local.gamma().basis.to_coordinates(&mut on_gamma);
+        let vectors = local.gamma().basis.vectors(stiff.len());
+        let pivots = local.gamma().basis.pivots().into_iter().zip(&vectors);
+        for ((p, q), &at) in pivots.zip(&places[local.gamma().n_vertices()..]) {
             let weights = q.iter().zip(&stiff);
             let d = weights.map(|(q, d)| q * q * d).sum::<f64>();
             primal.push((at, std::mem::take(&mut on_gamma[p]), d));
         }
-        local.basis.to_nodes(&mut on_gamma);
+        local.gamma().basis.to_nodes(&mut on_gamma);
     }
-    for (&i, v) in local.interface.iter().zip(&on_gamma) {
+    for (&i, v) in local.gamma().interface.iter().zip(&on_gamma) {
         r[i as usize] = *v;
     }
     sums[0] = r.iter().zip(&d).map(|(r, d)| r * r / d).sum();
     Examined {
         sums,
         primal,
-        fixing: places[local.n_pi() - local.fixing.len()..].to_vec(),
+        fixing: places[local.gamma().n_pi() - local.gamma().fixing.len()..].to_vec(),
         on_interface: on(u),
     }
 }

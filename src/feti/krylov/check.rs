@@ -76,8 +76,8 @@ impl Check<'_> {
         let mut work = stiffness.work();
         for (j, w) in work.iter_mut().enumerate() {
             let (sub, local) = (&self.problem.local[j], &stiffness.locals[j]);
-            for (i, &dof) in local.interface.iter().enumerate() {
-                let copy = if i < local.n_delta {
+            for (i, &dof) in local.gamma().interface.iter().enumerate() {
+                let copy = if i < local.gamma().n_delta {
                     sub.index as u64 + 1
                 } else {
                     0
@@ -86,7 +86,7 @@ impl Check<'_> {
             }
             let averages = stiffness.jump.averages[j].iter();
             let values: Vec<f64> = averages.map(|a| noise(a.key)).collect();
-            local.basis.set_values(&values, &mut w.y);
+            local.gamma().basis.set_values(&values, &mut w.y);
         }
         work
     }
@@ -273,7 +273,7 @@ impl Check<'_> {
         stiffness.dual_halo.fetch(&x, &mut ghost)?;
         let loads = stiffness.jump.columns.iter().zip(&stiffness.locals);
         let loads = loads.map(|(columns, local)| {
-            let mut v = vec![0.0; local.n_gamma()];
+            let mut v = vec![0.0; local.gamma().n_gamma()];
             columns.b_transpose(&ghost, &mut v);
             v
         });

@@ -67,8 +67,8 @@ impl Applied {
         self.averaging.apply(Transposition::Transposed, w)?;
         let (functions, locals) = (&self.functions, &stiffness.locals);
         stiffness.team.for_each(w, |j, w| {
-            let mut p = vec![0.0; locals[j].n_pi()];
-            locals[j].psi_transpose(w, &mut p); /*        p ← Ψᵀ E_Dᵀ w   */
+            let mut p = vec![0.0; locals[j].gamma().n_pi()];
+            locals[j].gamma().psi_transpose(w, &mut p); /*        p ← Ψᵀ E_Dᵀ w   */
             w.resize(functions[j].columns.len(), 0.0);
             functions[j].gather(&p, w); /*                c ← Iᵀ p        */
         });
@@ -89,11 +89,11 @@ impl Applied {
         let (functions, locals, columns) = (&self.functions, &stiffness.locals, &self.columns);
         stiffness.team.for_each(w, |j, w| {
             let c: Vec<f64> = columns[j].iter().map(|&g| c[g as usize]).collect();
-            let mut p = vec![0.0; locals[j].n_pi()];
+            let mut p = vec![0.0; locals[j].gamma().n_pi()];
             functions[j].spread(&c, &mut p); /*           p ← I c         */
             w.clear();
-            w.resize(locals[j].n_gamma(), 0.0);
-            locals[j].add_psi(&p, w); /*                  w ← Ψ p         */
+            w.resize(locals[j].gamma().n_gamma(), 0.0);
+            locals[j].gamma().add_psi(&p, w); /*                  w ← Ψ p         */
         });
         self.averaging.apply(Transposition::Plain, w) /*            w ← E_D w       */
     }

@@ -68,9 +68,12 @@ impl Averaging {
         let mut far: BTreeSet<u64> = BTreeSet::new();
         let rank_of = |c: &Copy| sharing.rank_of[c.subdomain as usize];
         for (j, (sub, local)) in problem.local.iter().zip(&stiffness.locals).enumerate() {
-            let candidate = jump.columns[j].between_bodies(local.n_gamma());
+            let candidate = jump.columns[j].between_bodies(local.gamma().n_gamma());
             let mut here = Vec::new();
-            for (i, &at) in local.interface[..local.n_delta].iter().enumerate() {
+            for (i, &at) in local.gamma().interface[..local.gamma().n_delta]
+                .iter()
+                .enumerate()
+            {
                 let dof = sub.dofs[at as usize];
                 let copies = sharing.shared(dof);
                 let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
@@ -84,7 +87,7 @@ impl Averaging {
                 }
             }
             found.push(here);
-            let held = local.n_delta..local.n_delta + jump.n_shared[j];
+            let held = local.gamma().n_delta..local.gamma().n_delta + jump.n_shared[j];
             vertices.push(held.filter(|&i| !candidate[i]).map(|i| i as u32).collect());
         }
         // The rank of the lowest copy numbers a dof that several ranks share.

@@ -64,18 +64,21 @@ pub(crate) fn recipes(
     };
     let places: Vec<Vec<u32>> = team.map(locals.len(), |j| {
         let mut place = vec![u32::MAX; problem.local[j].k.n()];
-        let interface = locals[j].interface.iter().zip(0..);
+        let interface = locals[j].gamma().interface.iter().zip(0..);
         interface.for_each(|(&i, p)| place[i as usize] = p);
         place
     });
     let candidate: Vec<Vec<bool>> = (0..locals.len())
-        .map(|j| jump.columns[j].between_bodies(locals[j].n_gamma()))
+        .map(|j| jump.columns[j].between_bodies(locals[j].gamma().n_gamma()))
         .collect();
     // (target, (local dof of the target, row, factor)) by subdomain.
     let given = team.map(locals.len(), |j| {
         let (sub, local) = (&problem.local[j], &locals[j]);
         let mut lists: BTreeMap<u32, Vec<(u32, u32, f64)>> = BTreeMap::new();
-        for (i, &dof) in local.interface[..local.n_delta].iter().enumerate() {
+        for (i, &dof) in local.gamma().interface[..local.gamma().n_delta]
+            .iter()
+            .enumerate()
+        {
             let copies = sharing.shared(sub.dofs[dof as usize]);
             let own = copies.iter().find(|c| c.subdomain as usize == sub.index);
             let Some(own) = own.filter(|_| !candidate[j][i]) else {
@@ -144,10 +147,10 @@ pub(crate) fn recipes(
     let recipe = |(j, mut contributions): (usize, Vec<Contribution>)| {
         // Sorted, so that the order of additions does not depend on the ranks.
         contributions.sort_unstable_by_key(|c| c.from);
-        let n_delta = locals[j].n_delta;
+        let n_delta = locals[j].gamma().n_delta;
         let held = (0..jump.n_shared[j]).filter(|p| !candidate[j][n_delta + p]);
         let held: Vec<(u32, u32)> = held.map(|p| ((n_delta + p) as u32, global(j, p))).collect();
-        Recipe::new(locals[j].n_gamma(), contributions, held)
+        Recipe::new(locals[j].gamma().n_gamma(), contributions, held)
     };
     received.into_iter().enumerate().map(recipe).collect()
 }

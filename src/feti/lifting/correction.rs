@@ -79,7 +79,7 @@ impl Lifting {
         // and E_D.
         let mut entries = [0.0; 2];
         for (recipe, local) in recipes.iter().zip(locals) {
-            let n_gamma = local.n_gamma() as f64;
+            let n_gamma = local.gamma().n_gamma() as f64;
             entries[0] += ALONE * 2.0 * n_gamma * recipe.columns.len() as f64;
             entries[1] += n_gamma * (n_gamma + AVERAGES);
         }

@@ -51,10 +51,10 @@ impl Functions {
             psi: Dense::default(),
         };
         (0..n_shared).for_each(|p| out.keep(p));
-        let vertices = &local.interface[local.n_delta..][..n_shared];
+        let vertices = &local.gamma().interface[local.gamma().n_delta..][..n_shared];
         let copies = |dof: u32| sharing.shared(sub.dofs[dof as usize]);
         for (a, average) in jump.averages[j].iter().enumerate() {
-            let p = local.n_vertices() + a;
+            let p = local.gamma().n_vertices() + a;
             let mean = average.weights.is_none() && which == CoarseFunctions::Vertices;
             let weights = sub
                 .near_kernel
@@ -74,10 +74,10 @@ impl Functions {
                 None => out.keep(p),
             }
         }
-        out.psi = Dense::zeros(local.n_delta, out.columns.len());
+        out.psi = Dense::zeros(local.gamma().n_delta, out.columns.len());
         for &(p, c, w) in &out.weights {
             let terms = out.psi.col_mut(c as usize).iter_mut();
-            let terms = terms.zip(local.psi.col(p as usize));
+            let terms = terms.zip(local.gamma().psi.col(p as usize));
             terms.for_each(|(y, x)| *y += w * x);
         }
         out

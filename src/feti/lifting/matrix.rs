@@ -66,8 +66,9 @@ impl Sums {
         let mut sums: Vec<Sum> = each.into_iter().flatten().collect();
         let first = representatives(locals, functions, recipes);
         let kinds = distinct(first.clone());
-        let products =
-            |&j: &usize| recipes[j].columns.len() as f64 * (locals[j].n_gamma() as f64).powi(2);
+        let products = |&j: &usize| {
+            recipes[j].columns.len() as f64 * (locals[j].gamma().n_gamma() as f64).powi(2)
+        };
         let total = kinds.iter().map(products).sum();
         let mut pairs: Vec<Arc<Pair>> = Vec::new();
         for some in kinds.chunks(BLOCKS) {

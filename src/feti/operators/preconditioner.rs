@@ -59,7 +59,10 @@ impl Preconditioner {
                 .local
                 .iter()
                 .zip(&stiffness.locals)
-                .map(|(sub, local)| sub.k.block(&local.interface, &local.interface))
+                .map(|(sub, local)| {
+                    sub.k
+                        .block(&local.gamma().interface, &local.gamma().interface)
+                })
                 .collect(),
             _ => Vec::new(),
         };
@@ -155,8 +158,8 @@ impl Preconditioner {
         let (_, ghost) = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&stiffness.jump.columns, &stiffness.locals);
         let room = |local: &Scaled| Columns {
-            v: Dense::zeros(local.n_gamma(), lambdas.len()),
-            y: Dense::zeros(local.n_gamma(), lambdas.len()),
+            v: Dense::zeros(local.gamma().n_gamma(), lambdas.len()),
+            y: Dense::zeros(local.gamma().n_gamma(), lambdas.len()),
         };
         let mut blocks: Vec<Columns> = locals.iter().map(room).collect();
         for (c, lambda) in lambdas.iter().enumerate() {

@@ -39,7 +39,7 @@ pub struct Panel {
 impl Products {
     /// `batches(n)` returns the local subdomains in groups of at most n that share their operators.
     pub fn new(locals: &[Scaled], batches: impl Fn(usize) -> Vec<Vec<usize>>) -> Products {
-        let worth = |l: &Scaled| l.is_implicit() || l.n_delta >= WORTH_PACKING;
+        let worth = |l: &Scaled| l.is_implicit() || l.gamma().n_delta >= WORTH_PACKING;
         let together = |b: &Vec<usize>| b.len() > 1 && worth(&locals[b[0]]);
         let batches: Vec<Vec<usize>> = batches(WIDTH).into_iter().filter(together).collect();
         let mut place = vec![None; locals.len()];

@@ -122,7 +122,7 @@ impl Stiffness {
     fn coarse_begin(&self, work: &mut [Work]) -> Result<Vec<f64>> {
         let locals = &self.locals;
         self.team.for_each(work, |j, w| {
-            locals[j].psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
+            locals[j].gamma().psi_transpose(&w.v, &mut w.p); /*   p ← Ψᵀ v       */
         });
         let mut sum = vec![0.0; self.space.ghosts.len()];
         for (w, places) in work.iter().zip(&self.space.of_subdomain) {
@@ -159,7 +159,7 @@ impl Stiffness {
         self.primal_finish(&mut coarse)?; /*              c ← S_Π⁺ p     */
         self.team.for_each(work, |j, w| {
             Self::local_values(space, j, &coarse, &mut w.p);
-            locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
+            locals[j].gamma().add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
         });
         Ok(())
     }
@@ -217,7 +217,7 @@ impl Stiffness {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         let (columns, locals) = (&self.jump.columns, &self.locals);
         let room = |local: &Scaled| {
-            let zeros = || Dense::zeros(local.n_delta, lambdas.len());
+            let zeros = || Dense::zeros(local.gamma().n_delta, lambdas.len());
             (zeros(), zeros())
         };
         let mut blocks: Vec<(Dense, Dense)> = locals.iter().map(room).collect();
@@ -245,7 +245,7 @@ impl Stiffness {
                 let y = blocks[j].1.col(c);
                 w.y[..y.len()].copy_from_slice(y);
                 Self::local_values(space, j, sum, &mut w.p);
-                locals[j].add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
+                locals[j].gamma().add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
             });
             self.jump_of(work, out)?; /*                      out ← B y      */
         }
@@ -277,7 +277,7 @@ impl Stiffness {
         for (j, w) in work.iter_mut().enumerate() {
             let columns = &self.jump.columns[j];
             columns.bd_transpose_of(ghost, &mut w.y, |r| !contact[r]);
-            self.locals[j].basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
+            self.locals[j].gamma().basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
             columns.add_b(&w.y, &mut inside); /*          inside ← B y     */
             columns.bd_transpose_of(ghost, &mut w.y, |r| contact[r]);
             columns.add_b(&w.y, &mut between); /*         between ← B B_D,glᵀ λ */

@@ -27,9 +27,9 @@ impl Work {
     /// Zeros in the sizes of this subdomain.
     pub fn for_subdomain(local: &Scaled) -> Work {
         Work {
-            v: vec![0.0; local.n_gamma()],
-            y: vec![0.0; local.n_gamma()],
-            p: vec![0.0; local.n_pi()],
+            v: vec![0.0; local.gamma().n_gamma()],
+            y: vec![0.0; local.gamma().n_gamma()],
+            p: vec![0.0; local.gamma().n_pi()],
         }
     }
 }

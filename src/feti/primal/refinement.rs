@@ -68,11 +68,11 @@ fn remove(n: &Dense, x: &mut [f64]) {
 }
 
 fn motions(sub: &Subdomain, local: &Scaled) -> Dense {
-    let n_pi = local.n_pi();
+    let n_pi = local.gamma().n_pi();
     let mut out = Dense::zeros(n_pi, 0);
     for column in sub.near_kernel.iter().flatten() {
-        let on_gamma = local.interface.iter().map(|&i| column[i as usize]);
-        let mut x = local.primal_values(&on_gamma.collect::<Vec<f64>>());
+        let on_gamma = local.gamma().interface.iter().map(|&i| column[i as usize]);
+        let mut x = local.gamma().primal_values(&on_gamma.collect::<Vec<f64>>());
         let before: f64 = x.iter().map(|v| v * v).sum();
         remove(&out, &mut x);
         let after: f64 = x.iter().map(|v| v * v).sum();

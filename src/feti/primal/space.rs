@@ -78,7 +78,7 @@ impl PrimalSpace {
         let mut room = vec![0; comm.size() as usize];
         let to = |j: usize| space.owner[problem.local[j].body] as usize;
         for (j, local) in locals.iter().enumerate() {
-            room[to(j)] += Outgoing::words(local.n_pi());
+            room[to(j)] += Outgoing::words(local.gamma().n_pi());
         }
         let mut outgoing = Outgoing::with_capacity(&room);
         for (j, local) in locals.iter().enumerate() {
@@ -103,11 +103,11 @@ impl PrimalSpace {
         for (j, (sub, local)) in problem.local.iter().zip(locals).enumerate() {
             // A vertex is identified by its body dof, an average by its entity, another functional by a body dof. A
             // fixing dof belongs to its subdomain alone.
-            let vertices = local.interface[local.n_delta..].iter();
+            let vertices = local.gamma().interface[local.gamma().n_delta..].iter();
             let vertices = vertices.map(|&i| (0, sub.dofs[i as usize]));
             let averages = averages[j].iter();
             let averages = averages.map(|a| (if a.weights.is_some() { 3 } else { 1 }, a.key));
-            let fixing = local.fixing.iter();
+            let fixing = local.gamma().fixing.iter();
             let fixing = fixing.map(|&i| (2, (sub.index as u64) << 32 | i as u64));
             for (kind, key) in vertices.chain(averages).chain(fixing) {
                 let body = (sub.body as u64) << 2 | kind;
@@ -157,7 +157,7 @@ impl PrimalSpace {
             .zip(locals)
             .map(|(sub, local)| {
                 let r = self.owner[sub.body] as usize;
-                let n = local.n_pi();
+                let n = local.gamma().n_pi();
                 next[r] += n;
                 answers[r][next[r] - n..next[r]]
                     .iter()
@@ -191,8 +191,8 @@ impl PrimalSpace {
                 continue;
             }
             let on_gamma = |c: &Vec<f64>| {
-                let values = local.interface.iter().map(|&i| c[i as usize]);
-                local.primal_values(&values.collect::<Vec<f64>>())
+                let values = local.gamma().interface.iter().map(|&i| c[i as usize]);
+                local.gamma().primal_values(&values.collect::<Vec<f64>>())
             };
             let primal: Vec<Vec<f64>> = columns.iter().map(on_gamma).collect();
             for (p, &place) in self.of_subdomain[j].iter().enumerate() {
@@ -246,7 +246,7 @@ impl PrimalSpace {
             .iter()
             .zip(locals)
             .filter(|(sub, _)| sub.body == body)
-            .map(|(sub, local)| of(&sub.k, &local.interface))
+            .map(|(sub, local)| of(&sub.k, &local.gamma().interface))
             .fold(0.0, f64::max)
     }
 
@@ -325,13 +325,13 @@ impl PrimalSpace {
 
     /// R of local subdomain `j` on its interface, n_Γ × defect of its body: Ψ times the kernel at the primal dofs.
     pub fn kernel_on_interface(&self, j: usize, body: usize, local: &Scaled) -> Dense {
-        let mut r = Dense::zeros(local.n_gamma(), self.defect[body]);
+        let mut r = Dense::zeros(local.gamma().n_gamma(), self.defect[body]);
         for c in 0..r.cols {
             let z: Vec<f64> = self.of_subdomain[j]
                 .iter()
                 .map(|&g| self.z_at_ghosts[g as usize][c])
                 .collect();
-            local.add_psi(&z, r.col_mut(c));
+            local.gamma().add_psi(&z, r.col_mut(c));
         }
         r
     }

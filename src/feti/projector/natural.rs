@@ -209,7 +209,7 @@ impl NaturalCoarse {
         for (j, columns) in jump.columns.iter().enumerate() {
             let k = &problem.local[j].k;
             for ((&row, &at), bd) in columns.row.iter().zip(&columns.at).zip(&columns.bd) {
-                let dof = stiffness.locals[j].interface[at as usize] as usize;
+                let dof = stiffness.locals[j].gamma().interface[at as usize] as usize;
                 ghost[row as usize] += bd * bd * k.get(dof, dof);
             }
         }
@@ -421,7 +421,7 @@ fn choose(
     let n = problem.n_bodies;
     let mut sums = vec![0.0; 2 * n];
     for (sub, local) in problem.local.iter().zip(&stiffness.locals) {
-        for &i in &local.interface {
+        for &i in &local.gamma().interface {
             sums[sub.body] += sub.k.get(i as usize, i as usize);
             sums[n + sub.body] += 1.0;
         }

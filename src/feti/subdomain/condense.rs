@@ -14,14 +14,14 @@ impl LocalProblem {
     /// Computes T, Ψ and Σ from S, in the basis in which averages are coordinates and in the order [Δ, vertices,
     /// functionals, fixing dofs]; then changes back to the nodal dofs.
     pub(crate) fn condense_dual(&mut self) -> Result<(), SingularInterior> {
-        let (n_delta, n_gamma) = (self.n_delta, self.n_gamma());
+        let (n_delta, n_gamma) = (self.gamma.n_delta, self.gamma.n_gamma());
         let schur = self.s().clone();
-        let pivots = self.basis.pivots();
+        let pivots = self.gamma.basis.pivots();
         let mut order = moved_to_the_end(n_gamma, n_delta, &pivots);
         let mut n = n_delta - pivots.len();
         let changed = (!pivots.is_empty()).then(|| {
             let mut s = Dense::clone(&schur);
-            self.basis.congruence_to_coordinates(&mut s);
+            self.gamma.basis.congruence_to_coordinates(&mut s);
             permuted(&s, &order)
         });
         let mut s = changed.as_ref().unwrap_or(&schur);
@@ -41,7 +41,7 @@ impl LocalProblem {
                 s = &held;
                 n -= fixing.len();
                 let singular = SingularInterior {
-                    dof: self.interface[order[n]],
+                    dof: self.gamma.interface[order[n]],
                 };
                 try_cholesky(s, &stiff, n, &mut scratch).ok_or(singular)?
             }
@@ -76,14 +76,14 @@ impl LocalProblem {
 
     /// Changes T and Ψ to the nodal dofs of Δ, with primal values in units of the functionals.
     fn back_to_nodes(&mut self, t: &Dense, psi: &Dense, mut sigma: Dense, order: &[usize]) {
-        let (n_delta, n) = (self.n_delta, t.rows);
+        let (n_delta, n) = (self.gamma.n_delta, t.rows);
         let mut nodal = Dense::zeros(n_delta, n_delta);
         for (j, &oj) in order[..n].iter().enumerate() {
             for (i, &oi) in order[..n].iter().enumerate() {
                 nodal.set(oi, oj, t.get(i, j));
             }
         }
-        self.basis.congruence_to_nodes(&mut nodal);
+        self.gamma.basis.congruence_to_nodes(&mut nodal);
         let t = nodal;
         let mut nodal = Dense::zeros(n_delta, psi.cols);
         for p in 0..psi.cols {
@@ -94,9 +94,9 @@ impl LocalProblem {
                 nodal.set(order[n + p], p, 1.0);
             }
         }
-        let first = self.n_vertices();
-        for k in 0..self.basis.len() {
-            let (p, factor) = (first + k, self.basis.factor(k));
+        let first = self.gamma.n_vertices();
+        for k in 0..self.gamma.basis.len() {
+            let (p, factor) = (first + k, self.gamma.basis.factor(k));
             nodal.col_mut(p).iter_mut().for_each(|v| *v *= factor);
             sigma.col_mut(p).iter_mut().for_each(|v| *v *= factor);
             for q in 0..sigma.cols {
@@ -104,7 +104,7 @@ impl LocalProblem {
                 sigma.set(p, q, value);
             }
         }
-        self.basis.columns_to_nodes(&mut nodal);
+        self.gamma.basis.columns_to_nodes(&mut nodal);
         self.set_condensed(t, nodal, sigma);
     }
 }

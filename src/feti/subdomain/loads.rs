@@ -22,7 +22,12 @@ impl LocalProblem {
             several => factor.forward_many(several),
         }
         let with_gamma = |w: Vec<f64>| {
-            let g = self.interface.iter().map(|&i| w[i as usize]).collect();
+            let g = self
+                .gamma
+                .interface
+                .iter()
+                .map(|&i| w[i as usize])
+                .collect();
             (w, g)
         };
         work.into_iter().map(with_gamma).collect()
@@ -37,7 +42,7 @@ impl LocalProblem {
                 1.0 => work.to_vec(),
                 scale => work.iter().map(|w| w / scale).collect(),
             };
-            for (&i, &u) in self.interface.iter().zip(*u_gamma) {
+            for (&i, &u) in self.gamma.interface.iter().zip(*u_gamma) {
                 x[i as usize] = u;
             }
             x

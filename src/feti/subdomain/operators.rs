@@ -78,8 +78,8 @@ impl LocalProblem {
     /// The order of an operator.
     pub fn order(&self, which: Operator) -> usize {
         match which {
-            Operator::S => self.n_gamma(),
-            Operator::T => self.n_delta,
+            Operator::S => self.gamma.n_gamma(),
+            Operator::T => self.gamma.n_delta,
         }
     }
 
@@ -149,7 +149,7 @@ impl LocalProblem {
     /// A lower bound of the condition number of S on Δ: max T_ii max S_ii.
     pub fn condition(&self) -> f64 {
         let largest = |which| {
-            let diagonal = (0..self.n_delta).map(|i| self.entry(which, i, i));
+            let diagonal = (0..self.gamma.n_delta).map(|i| self.entry(which, i, i));
             diagonal.fold(0.0, f64::max)
         };
         largest(Operator::T) * largest(Operator::S)
@@ -157,7 +157,7 @@ impl LocalProblem {
 
     /// The largest diagonal entry of S, or of K on Γ where S is not available.
     pub(crate) fn stiffness(&self) -> f64 {
-        let diagonal = (0..self.n_gamma()).map(|i| self.s_diagonal(i));
+        let diagonal = (0..self.gamma.n_gamma()).map(|i| self.s_diagonal(i));
         diagonal.fold(0.0, f64::max)
     }
 }

@@ -20,7 +20,6 @@
 #[path = "../../../tests/inside/feti/subdomain/problem.rs"]
 mod tests;
 
-use std::ops::Deref;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -139,13 +138,6 @@ impl Gamma {
     }
 }
 
-impl Deref for LocalProblem {
-    type Target = Gamma;
-    fn deref(&self) -> &Gamma {
-        &self.gamma
-    }
-}
-
 impl LocalProblem {
     /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists the dual dofs of
     /// each primal average. An analysis inside `condenser` must belong to the interface [delta, primal].
@@ -233,15 +225,15 @@ impl LocalProblem {
             Inside::Partial(factor) => (self.s(), factor.clone()),
             Inside::Implicit(_) => {
                 let condenser = LocalSolver::default().condenser(Keep::Interior);
-                let (factor, s) = condenser.condense(k, &self.interface, coordinates)?;
+                let (factor, s) = condenser.condense(k, &self.gamma.interface, coordinates)?;
                 (Arc::new(s), Arc::new(factor))
             }
         };
         let mut out = LocalProblem {
             gamma: Gamma {
-                interface: self.interface.clone(),
-                n_delta: self.n_delta,
-                basis: self.basis.clone(),
+                interface: self.gamma.interface.clone(),
+                n_delta: self.gamma.n_delta,
+                basis: self.gamma.basis.clone(),
                 ..Gamma::default()
             },
             sigma: Dense::default(),
@@ -251,7 +243,7 @@ impl LocalProblem {
             stiff: self.stiff.clone(),
             inside: Inside::Partial(factor),
         };
-        let delta = positions(&self.interface[..self.n_delta]);
+        let delta = positions(&self.gamma.interface[..self.gamma.n_delta]);
         for (dofs, weights) in functionals {
             let new = out.gamma.basis.push(delta.of(dofs), weights);
             debug_assert!(new, "functionals are independent");
@@ -265,16 +257,16 @@ impl LocalProblem {
 
     /// A stiffness of each primal dof that is positive even where Σ vanishes: the energy of moving its dofs alone.
     pub(crate) fn primal_stiffness(&self) -> Vec<f64> {
-        let n = self.n_gamma();
+        let n = self.gamma.n_gamma();
         // The diagonal of K bounds that of S where S is not available.
         let own = |i: usize| self.s_diagonal(i);
         let along = |(k, q): (usize, Vec<f64>)| {
             let terms = q.iter().enumerate().map(|(i, q)| q * q * own(i));
-            self.basis.factor(k).powi(2) * terms.sum::<f64>()
+            self.gamma.basis.factor(k).powi(2) * terms.sum::<f64>()
         };
-        let vectors = self.basis.vectors(n).into_iter().enumerate();
-        let vertices = (self.n_delta..n).map(own);
-        let fixing = self.fixing.iter().map(|&i| own(i));
+        let vectors = self.gamma.basis.vectors(n).into_iter().enumerate();
+        let vertices = (self.gamma.n_delta..n).map(own);
+        let fixing = self.gamma.fixing.iter().map(|&i| own(i));
         vertices.chain(vectors.map(along)).chain(fixing).collect()
     }
 
@@ -286,7 +278,7 @@ impl LocalProblem {
         };
         let s = self.s.get().map_or(0, |s| s.data.len());
         let t = self.t.get().map_or(0, |t| t.data.len());
-        let dense = s + t + self.psi.data.len() + self.sigma.data.len();
+        let dense = s + t + self.gamma.psi.data.len() + self.sigma.data.len();
         let packed = self.packed.as_ref();
         let packed = packed.map_or(0, |p| p.s.bytes() + p.t.bytes());
         (sparse, more + packed + dense * std::mem::size_of::<f64>())

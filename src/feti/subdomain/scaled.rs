@@ -5,9 +5,8 @@
 //! ```
 //!
 //! Subdomains with different coefficients share one factorisation in this way. Every operator that depends on the
-//! stiffness is applied through this type. All multiples have the same [`Gamma`], which is read through it.
+//! stiffness is applied through this type. All multiples have the same [`Gamma`], which `gamma` gives.
 
-use std::ops::Deref;
 use std::sync::Arc;
 
 use super::problem::{Gamma, LocalProblem};
@@ -22,17 +21,15 @@ pub struct Scaled {
     pub factor: f64,
 }
 
-impl Deref for Scaled {
-    type Target = Gamma;
-    fn deref(&self) -> &Gamma {
-        &self.problem.gamma
-    }
-}
-
 impl Scaled {
     /// The subdomain with `factor` times the matrix of `problem`.
     pub fn new(problem: Arc<LocalProblem>, factor: f64) -> Scaled {
         Scaled { problem, factor }
+    }
+
+    /// Γ and Ψ, which do not depend on φ.
+    pub fn gamma(&self) -> &Gamma {
+        &self.problem.gamma
     }
 
     /// The operators that it shares with others.

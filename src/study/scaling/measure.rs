@@ -168,7 +168,7 @@ fn work(session: &Session, solver: &FetiFeti) -> Work {
         ..Work::default()
     };
     for (sub, local) in solver.problem().local.iter().zip(&stiffness.locals) {
-        let (gamma, delta) = (local.n_gamma() as f64, local.n_delta as f64);
+        let (gamma, delta) = (local.gamma().n_gamma() as f64, local.gamma().n_delta as f64);
         own.subdomains += 1.0;
         own.unknowns += sub.k.n() as f64;
         own.interface_squares += gamma * gamma + delta * delta;

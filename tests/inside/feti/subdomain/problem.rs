@@ -26,24 +26,24 @@ fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: OperatorForm) {
     )
     .expect("definite");
     assert_eq!(local.is_implicit(), form == OperatorForm::Implicit);
-    assert!(local.fixing.is_empty());
+    assert!(local.gamma.fixing.is_empty());
     let u = random(k.n(), 5);
     let mut f = vec![0.0; k.n()];
     k.mul(&u, &mut f);
     let (work, g) = local.condense(&f);
     let mut p = vec![0.0; 2];
-    local.psi_transpose(&g, &mut p);
+    local.gamma.psi_transpose(&g, &mut p);
     let s = |i, j| local.sigma.get(i, j);
     let det = s(0, 0) * s(1, 1) - s(0, 1) * s(1, 0);
     let c = [
         (s(1, 1) * p[0] - s(0, 1) * p[1]) / det,
         (s(0, 0) * p[1] - s(1, 0) * p[0]) / det,
     ];
-    let mut u_gamma = vec![0.0; local.n_gamma()];
-    let n_delta = local.n_delta;
+    let mut u_gamma = vec![0.0; local.gamma.n_gamma()];
+    let n_delta = local.gamma.n_delta;
     local.apply_one(Operator::T, &g, &mut u_gamma);
-    assert_eq!(local.n_delta, n_delta);
-    local.add_psi(&c, &mut u_gamma);
+    assert_eq!(local.gamma.n_delta, n_delta);
+    local.gamma.add_psi(&c, &mut u_gamma);
     let back = &local.recover_many(&[(&work, &u_gamma)], &[1.0])[0];
     let error = distance(back, &u);
     assert!(error < 1e-12, "error {error:.1e}");
@@ -87,9 +87,9 @@ fn a_floating_subdomain_holds_one_dof_and_its_primal_matrix_vanishes() {
     )
     .expect("one is held");
     assert!(!local.is_implicit());
-    assert_eq!((local.fixing.len(), local.n_pi()), (1, 1));
+    assert_eq!((local.gamma.fixing.len(), local.gamma.n_pi()), (1, 1));
     assert!(local.sigma.get(0, 0).abs() < 1e-13);
-    assert!(local.psi.data.iter().all(|v| (v - 1.0).abs() < 1e-12));
+    assert!(local.gamma.psi.data.iter().all(|v| (v - 1.0).abs() < 1e-12));
 }
 
 #[test]
@@ -117,15 +117,15 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
         let far = distance(a, b);
         assert!(far < 1e-12, "{far:.1e}");
     };
-    close(&dense.psi.data, &sparse.psi.data);
+    close(&dense.gamma.psi.data, &sparse.gamma.psi.data);
     close(&dense.sigma.data, &sparse.sigma.data);
     close(&dense.s().data, &sparse.s().data);
     close(&dense.whole_t().data, &sparse.whole_t().data);
     // More columns than are processed side by side, and a load.
     let v = Dense {
-        rows: dense.n_gamma(),
+        rows: dense.gamma.n_gamma(),
         cols: 11,
-        data: random(11 * dense.n_gamma(), 3),
+        data: random(11 * dense.gamma.n_gamma(), 3),
     };
     for which in [Operator::S, Operator::T] {
         let n = dense.order(which);
@@ -143,7 +143,7 @@ fn sparse_solves_and_dense_matrices_are_the_same_operators() {
     let loads = [random(k.n(), 7), random(k.n(), 8)];
     let loads: Vec<&[f64]> = loads.iter().map(|f| &f[..]).collect();
     let (a, b) = (dense.condense_many(&loads), sparse.condense_many(&loads));
-    let u = random(dense.n_gamma(), 9);
+    let u = random(dense.gamma.n_gamma(), 9);
     for (a, b) in a.iter().zip(&b) {
         close(&a.1, &b.1);
         let a = dense.recover_many(&[(&a.0, &u)], &[3.0]);
