@@ -138,13 +138,13 @@ mod inside;
 mod testing;
 
 pub use error::{Error, Result};
-pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling};
+pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling, Spectrum};
 pub use linalg::csr::Csr;
 pub use parallel::exchange::{gather_all, max_all, sum_all};
 pub use petsc::Session;
 pub use scene::Scene;
 pub use settings::Settings;
-pub use solution::{Solution, Spectrum};
+pub use solution::Solution;
 pub use solver::FetiFeti;
 pub use status::Status;
 pub use substructures::{

@@ -2,14 +2,14 @@
 
 use std::cell::Ref;
 
-use crate::contact;
+use crate::contact::{self, Step};
 use crate::feti::deflation::Cost;
 use crate::feti::krylov::solve::Judge;
 use crate::feti::operators::dual::Dual;
-use crate::feti::{Communication, Facts, LinearMethod};
+use crate::feti::{Communication, Facts, LinearMethod, LinearSolution, Spectrum};
 use crate::petsc::{cite, Ksp, Session, Stage};
 use crate::settings::Settings;
-use crate::solution::{Solution, Spectrum};
+use crate::solution::Solution;
 use crate::substructures::{SolvedRow, Substructures};
 use crate::Result;
 
@@ -87,7 +87,7 @@ impl FetiFeti {
     pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
         let found = self.method.solve(Some(enough))?;
-        Ok(self.solution(found))
+        Ok(self.solution(found, Vec::new()))
     }
 
     /// Solves as [`FetiFeti::solve`], from a given state of the contact loop and with a call after each of its steps.
@@ -103,14 +103,14 @@ impl FetiFeti {
         let _staged = self.solve_stage.scope()?;
         if self.facts().inequalities == 0 {
             let found = self.method.solve(None)?;
-            return Ok(self.solution(found));
+            return Ok(self.solution(found, Vec::new()));
         }
-        let found = contact::solve(&self.method, &self.settings.contact, start, observe)?;
-        Ok(self.solution(found))
+        let (found, steps) = contact::solve(&self.method, &self.settings.contact, start, observe)?;
+        Ok(self.solution(found, steps))
     }
 
     /// The solution, with the rows in the order in which the problem has them.
-    fn solution(&self, found: Solution) -> Solution {
+    fn solution(&self, found: LinearSolution, steps: Vec<Step>) -> Solution {
         let dual = self.dual();
         let jump = &dual.stiffness.jump;
         let multipliers = jump.in_given_order(&found.lambda);
@@ -120,10 +120,7 @@ impl FetiFeti {
         let rows = self.problem().rows.iter().zip(values);
         let rows = rows
             .map(|(row, ((multiplier, gap), holds))| SolvedRow::new(row, multiplier, gap, holds));
-        Solution {
-            rows: rows.collect(),
-            ..found
-        }
+        Solution::new(found, rows.collect(), steps)
     }
 
     /// Displacements of each local subdomain for the present iterate, for a monitor of [`FetiFeti::ksp`] during a solve

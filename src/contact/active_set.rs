@@ -11,8 +11,8 @@
 
 use std::time::Instant;
 
-use super::settings::ContactSettings;
-use super::state::{changes, Caution, Observer, State};
+use super::settings::{ContactSettings, ContactType};
+use super::state::{changes, Caution, Observer, State, Step};
 use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
@@ -20,16 +20,15 @@ use crate::feti::krylov::residual::{Iterate, Residual};
 use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::rows::Rows;
-use crate::feti::LinearMethod;
+use crate::feti::{LinearMethod, LinearSolution, Spectrum};
 use crate::parallel::exchange::{any, gather_all};
-use crate::solution::{ContactType, Solution, Spectrum, Step};
 use crate::status::Status;
 use crate::Result;
 
 /// The end of the loop.
 pub(super) enum Ended {
     /// A solution, or a tolerance that is out of reach.
-    Found(Solution),
+    Found(LinearSolution, Vec<Step>),
     /// The rule finds no next set from this state, after these steps and seconds: SMALBE takes over.
     HandedOver {
         state: State,
@@ -67,7 +66,8 @@ pub(super) fn solve(
         }
     };
     let seconds = clock.elapsed().as_secs_f64();
-    run.finish(steps, seconds, status).map(Ended::Found)
+    let found = run.finish(&steps, seconds, status)?;
+    Ok(Ended::Found(found, steps))
 }
 
 /// Largest jump on the rows that hold, relative to the residual in V. That residual does not contain the part of the
@@ -254,10 +254,10 @@ impl<'a> ActiveSet<'a> {
     /// The solution at the present state of the loop, after these steps. Collective.
     pub fn finish(
         mut self,
-        steps: Vec<Step>,
+        steps: &[Step],
         solve_seconds: f64,
         status: Status,
-    ) -> Result<Solution> {
+    ) -> Result<LinearSolution> {
         let method = self.method;
         if !self.placed {
             self.at.place(&method.dual())?;
@@ -270,8 +270,7 @@ impl<'a> ActiveSet<'a> {
             estimate,
             broken_off: false,
         };
-        let found = method.recover(self.at, run, solve_seconds)?;
-        Ok(Solution { steps, ..found })
+        method.recover(self.at, run, solve_seconds)
     }
 
     /// Judges the rows by the present λ and displacements.

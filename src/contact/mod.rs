@@ -21,16 +21,14 @@ mod settings;
 mod smalbe;
 mod state;
 
-pub use crate::solution::{ContactType, Step};
-pub use settings::ContactSettings;
-pub use state::{Caution, Observer, State};
+pub use settings::{ContactSettings, ContactType};
+pub use state::{Caution, Observer, State, Step};
 
-use crate::feti::LinearMethod;
-use crate::solution::Solution;
+use crate::feti::{LinearMethod, LinearSolution};
 use crate::Result;
 use active_set::Ended;
 
-/// Solves the problem with its inequalities. Collective.
+/// Solves the problem with its inequalities. Returns the solution and the steps of the loop. Collective.
 ///
 /// # Errors
 /// Contradictory rows, bodies that the load pushes away for ever, PETSc's own errors, and those of `observe`.
@@ -39,7 +37,7 @@ pub(crate) fn solve(
     settings: &ContactSettings,
     start: Option<&State>,
     observe: &mut Observer,
-) -> Result<Solution> {
+) -> Result<(LinearSolution, Vec<Step>)> {
     feasible::check(&method.problem, &method.dual())?;
     let ended = match settings.kind {
         ContactType::ActiveSet => active_set::solve(method, settings, start, observe)?,
@@ -52,13 +50,14 @@ pub(crate) fn solve(
             }
         }
     };
-    let found = match ended {
-        Ended::Found(found) => found,
+    let (found, steps) = match ended {
+        Ended::Found(found, steps) => (found, steps),
         Ended::HandedOver {
             state,
             steps,
             seconds,
         } => smalbe::solve(method, settings, state, steps, seconds, observe)?,
     };
-    method.certify(method.refine(found)?)
+    let refined = method.refine(found)?;
+    Ok((method.certify(refined)?, steps))
 }

@@ -1,8 +1,18 @@
 //! Options of the contact loop (prefix `fetifeti_contact_`).
 
-use crate::petsc::Options;
-use crate::solution::ContactType;
+use crate::petsc::{named, Options};
 use crate::{Error, Result};
+
+/// The method of the outer loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactType {
+    /// Primal-dual active set.
+    ActiveSet,
+    /// SMALBE-M with MPRGP.
+    Smalbe,
+}
+
+named!(ContactType { ActiveSet = "active_set", Smalbe = "smalbe" });
 
 /// Settings of the contact loop.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -17,13 +17,12 @@ use mpi::topology::SimpleCommunicator;
 use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
 use super::mprgp::Setting;
-use super::settings::ContactSettings;
-use super::state::{changes, Caution, Observer, State};
+use super::settings::{ContactSettings, ContactType};
+use super::state::{changes, Caution, Observer, State, Step};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
-use crate::feti::LinearMethod;
+use crate::feti::{LinearMethod, LinearSolution};
 use crate::parallel::exchange::{any, total};
-use crate::solution::{ContactType, Solution, Step};
 use crate::status::Status;
 use crate::Result;
 
@@ -54,13 +53,13 @@ pub(super) fn solve(
     mut steps: Vec<Step>,
     seconds: f64,
     observe: &mut Observer,
-) -> Result<Solution> {
+) -> Result<(LinearSolution, Vec<Step>)> {
     let clock = Instant::now();
     let comm = method.session.comm();
     let rtol = method.ksp.tolerances()?.0;
     let finish = |run: ActiveSet, steps: Vec<Step>, status| {
         let seconds = seconds + clock.elapsed().as_secs_f64();
-        run.finish(steps, seconds, status)
+        Ok((run.finish(&steps, seconds, status)?, steps))
     };
     let mut search = Search::new(method, settings, &state)?;
     state.mu.resize(search.a.balance.n.rows, 0.0);

@@ -4,10 +4,39 @@ use mpi::topology::SimpleCommunicator;
 #[cfg(feature = "cli")]
 use serde::{Deserialize, Serialize};
 
+use super::settings::ContactType;
 use crate::feti::jump::operator::Jump;
+use crate::feti::Spectrum;
 use crate::parallel::exchange::sum_all;
-use crate::solution::{Solution, Step};
 use crate::Result;
+
+/// Record of one step of the outer loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The method of the step.
+    pub method: ContactType,
+    /// Rows of B_gl that held.
+    pub active: usize,
+    /// Number of rows that hold now and did not in the step before.
+    pub entered: usize,
+    /// Number of rows that held in the step before and do not now.
+    pub left: usize,
+    /// Krylov iterations.
+    pub iterations: usize,
+    /// The Krylov method's estimate of the spectrum.
+    pub estimate: Option<Spectrum>,
+    /// Exact spectrum with these rows, if `-fetifeti_spectrum` asks for it.
+    pub exact: Option<Spectrum>,
+    /// Residual at the end, relative to the reference.
+    pub residual: f64,
+    /// The tolerance of the step.
+    pub tolerance: f64,
+    /// Number of inequality rows that are on the wrong side at the end of the step: violated, or with a pulling
+    /// multiplier.
+    pub wrong: usize,
+    /// Seconds.
+    pub seconds: f64,
+}
 
 /// The state of the outer loop, sufficient to continue it. Vectors are this rank's part.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,17 +60,11 @@ pub struct State {
     pub mu: Vec<f64>,
 }
 
-impl Solution {
-    /// The start of the contact loop for other loads: the multipliers and the set of this solution.
-    pub fn warm_start(&self) -> State {
-        State::at(self.lambda.clone(), &self.active)
-    }
-}
-
 impl State {
-    fn at(lambda: Vec<f64>, active: &[bool]) -> State {
+    /// The start of a loop for other loads: the multipliers and the set of a solution.
+    pub fn warm(lambda: &[f64], active: &[bool]) -> State {
         State {
-            lambda,
+            lambda: lambda.to_vec(),
             active: active.to_vec(),
             before: active.to_vec(),
             reference: 0.0,
@@ -54,7 +77,7 @@ impl State {
 
     /// The start of a loop: λ = 0, and all candidate rows hold.
     pub fn cold(jump: &Jump) -> State {
-        State::at(vec![0.0; jump.n_owned], &jump.initial)
+        State::warm(&vec![0.0; jump.n_owned], &jump.initial)
     }
 }
 

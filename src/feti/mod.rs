@@ -15,13 +15,17 @@ pub(crate) mod primal;
 pub(crate) mod projector;
 pub(crate) mod settings;
 mod setup;
+pub(crate) mod spectrum;
 pub(crate) mod subdomain;
 
 pub use crate::cholesky::interior::{LocalSolver, Ordering, Solver};
 pub use facts::Facts;
+pub use krylov::certificate::Kkt;
+pub(crate) use krylov::recovery::LinearSolution;
 pub use krylov::tally::Communication;
 pub(crate) use method::LinearMethod;
 pub use settings::{
     Adaptive, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal, ProjectorKind,
     Scaling,
 };
+pub use spectrum::Spectrum;

@@ -30,7 +30,7 @@ use super::operators::dual::Dual;
 use super::projector::graph::BodyGraph;
 use super::projector::sweep::{self, Column};
 use super::settings::Adaptive;
-use crate::solution::Spectrum;
+use super::spectrum::Spectrum;
 use crate::substructures::Substructures;
 use crate::Result;
 use balance::Balance;

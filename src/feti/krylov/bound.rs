@@ -5,7 +5,7 @@ use super::iterate::Watch;
 use crate::feti::deflation::{self, Cost, Deflation};
 use crate::feti::method::LinearMethod;
 use crate::feti::settings::Adaptive;
-use crate::solution::Spectrum;
+use crate::feti::spectrum::Spectrum;
 use crate::Result;
 
 /// If a bound τ is asked for, shared modes are deflated once an eigenvalue is above `KEPT` τ, down to `SHARED` τ.

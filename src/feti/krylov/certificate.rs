@@ -6,16 +6,29 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::parallel::exchange::{max_all, min_all, sum_all};
 use crate::petsc::Vec as PetscVec;
-use crate::solution::Kkt;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
 /// The certificate may be this many times the tolerance of the iteration, because the iteration measures another norm.
 const CREDIBLE: f64 = 1e4;
 
+/// How well the optimality conditions hold, relative to the sizes of their terms.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Kkt {
+    /// ‖K u − f + Bᵀ λ‖ / (‖f‖ + ‖Bᵀ λ‖) in the norm of diag(K)⁻¹, in which stiff and soft parts have the same weight.
+    /// Residuals of primal dofs and averages are summed over their copies.
+    pub stationarity: f64,
+    /// Largest violation of B u = c (≤ c) over the largest |u|; inequality rows count whether or not they hold.
+    pub feasibility: f64,
+    /// Largest |λ_r (B u − c)_r| over inequality rows, relative to max |λ| · max |u|; zero without inequality rows.
+    pub complementarity: f64,
+    /// Smallest multiplier of an inequality row, relative to max |λ|; zero without inequality rows.
+    pub min_multiplier: f64,
+}
+
 impl Kkt {
     /// Whether displacements and rows are a solution at this relative tolerance. NaN never is.
-    pub(super) fn is_credible(&self, rtol: f64) -> bool {
+    pub fn is_credible(&self, rtol: f64) -> bool {
         self.stationarity <= (CREDIBLE * rtol).clamp(1e-3, 0.5)
             && self.feasibility <= (CREDIBLE * rtol).clamp(1e-6, 0.1)
     }

@@ -5,8 +5,8 @@ use std::rc::Rc;
 use super::shells;
 use super::system::System;
 use crate::feti::operators::dual::Dual;
+use crate::feti::spectrum::Spectrum;
 use crate::petsc::extreme_eigenvalues;
-use crate::solution::Spectrum;
 use crate::Result;
 
 /// Residual tolerance of the eigensolver, relative to the eigenvalue. An eigenvalue of a self-adjoint operator lies

@@ -4,8 +4,8 @@ use super::residual::ROUNDING;
 use super::system::System;
 use super::tally::Start;
 use crate::feti::method::LinearMethod;
+use crate::feti::spectrum::Spectrum;
 use crate::petsc::{Ksp, Vec as PetscVec};
-use crate::solution::Spectrum;
 use crate::status::Status;
 use crate::Result;
 

@@ -6,16 +6,46 @@
 
 use std::time::Instant;
 
-use super::certificate::Certificate;
+use super::certificate::{Certificate, Kkt};
 use super::iterate::Run;
 use super::loads::Loads;
 use super::residual::{Iterate, Residual};
 use crate::cholesky::lanes::LANES;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
+use crate::feti::spectrum::Spectrum;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::solution::Solution;
+use crate::status::Status;
 use crate::Result;
+
+/// The solution of the linear method; vectors are this rank's part.
+#[derive(Debug, Clone)]
+pub struct LinearSolution {
+    /// Displacements of each local subdomain, by local dof; copies inside a body agree.
+    pub u: Vec<Vec<f64>>,
+    /// Multipliers of the rows that this rank owns.
+    pub lambda: Vec<f64>,
+    /// B u − c on these rows, including those that do not hold.
+    pub gaps: Vec<f64>,
+    /// Whether each of these rows holds. Rows that follow from others that hold are included.
+    pub active: Vec<bool>,
+    /// Krylov iterations.
+    pub iterations: usize,
+    /// The reason why the iterations stopped, or the verdict of the certificate on their result.
+    pub status: Status,
+    /// ‖r_n‖₂ for n = 0, 1, …
+    pub residuals: Vec<f64>,
+    /// The Krylov method's own estimate of the spectrum.
+    pub estimate: Option<Spectrum>,
+    /// Optimality.
+    pub kkt: Kkt,
+    /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c).
+    pub energy: f64,
+    /// Seconds of condensing and iterating.
+    pub solve_seconds: f64,
+    /// Seconds of the recovery.
+    pub recover_seconds: f64,
+}
 
 impl LinearMethod {
     /// The solution of `at` after this run. The displacements of `at` must belong to its λ and include the rigid
@@ -25,13 +55,13 @@ impl LinearMethod {
         mut at: Iterate,
         run: Run,
         solve_seconds: f64,
-    ) -> Result<Solution> {
+    ) -> Result<LinearSolution> {
         let clock = Instant::now();
         let dual = self.dual();
         let u = displacements(&dual, &at.loads, &mut at.residual)?;
         let recover_seconds = clock.elapsed().as_secs_f64();
         let certificate = Certificate::new(&self.problem, &dual, &u, &at.lambda)?;
-        Ok(Solution {
+        Ok(LinearSolution {
             u,
             lambda: at.lambda.to_vec()?,
             gaps: certificate.gaps,
@@ -44,8 +74,6 @@ impl LinearMethod {
             energy: certificate.energy,
             solve_seconds,
             recover_seconds,
-            steps: Vec::new(),
-            rows: Vec::new(),
         })
     }
 

@@ -12,16 +12,15 @@
 //! [`TIGHT`], the first iteration stops at `TIGHT` and corrections bring the remaining digits. A single iteration would
 //! stall on the rounding of the operators, or diverge.
 
-use super::certificate::Certificate;
+use super::certificate::{Certificate, Kkt};
 use super::iterate::{iterate, IterationControl};
 use super::loads::Loads;
-use super::recovery::displacements;
+use super::recovery::{displacements, LinearSolution};
 use super::residual::Iterate;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::linalg::csr::Csr;
 use crate::petsc::Vec as PetscVec;
-use crate::solution::{Kkt, Solution};
 use crate::status::Status;
 use crate::substructures::Substructures;
 use crate::Result;
@@ -46,7 +45,7 @@ const STEPS: usize = 4;
 
 impl LinearMethod {
     /// Refines a solution towards the tolerance of the user, as far as it helps. Collective.
-    pub(crate) fn refine(&self, mut solution: Solution) -> Result<Solution> {
+    pub(crate) fn refine(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
         let rtol = self.ksp.tolerances()?.0;
         for _ in 0..STEPS {
             let now = distance(&solution.kkt);
@@ -72,7 +71,7 @@ impl LinearMethod {
     }
 
     /// One step; `None` where it does not help. Collective.
-    fn refined(&self, solution: &Solution, reduction: f64) -> Result<Option<Solution>> {
+    fn refined(&self, solution: &LinearSolution, reduction: f64) -> Result<Option<LinearSolution>> {
         let (problem, dual) = (&self.problem, &*self.dual());
         let lambda = dual.multipliers()?;
         lambda.array_mut()?.copy_from_slice(&solution.lambda);
@@ -96,7 +95,7 @@ impl LinearMethod {
         if !better {
             return Ok(None);
         }
-        Ok(Some(Solution {
+        Ok(Some(LinearSolution {
             u,
             lambda: lambda.to_vec()?,
             gaps: certificate.gaps,
@@ -117,7 +116,7 @@ fn distance(kkt: &Kkt) -> f64 {
 fn remainder(
     problem: &Substructures,
     dual: &Dual,
-    solution: &Solution,
+    solution: &LinearSolution,
     lambda: &PetscVec,
 ) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
     let stiffness = &dual.stiffness;

@@ -13,11 +13,10 @@ use std::time::Instant;
 
 use super::iterate::{iterate, IterationControl, Run};
 use super::loads::Loads;
-use super::recovery::displacements;
+use super::recovery::{displacements, LinearSolution};
 use super::residual::Iterate;
 use super::target::{to_the_end, Target};
 use crate::feti::method::LinearMethod;
-use crate::solution::Solution;
 use crate::status::Status;
 use crate::Result;
 
@@ -40,7 +39,7 @@ impl LinearMethod {
     ///
     /// # Errors
     /// A load that moves a body which nothing holds; PETSc's own errors, and those of `enough`.
-    pub fn solve(&self, enough: Option<&Judge>) -> Result<Solution> {
+    pub fn solve(&self, enough: Option<&Judge>) -> Result<LinearSolution> {
         let clock = Instant::now();
         let mut at = self.start()?; /*                                  λ₀ = Q G (Gᵀ Q G)⁻¹ e            */
         let r = at.evaluate_projected(&self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
@@ -159,7 +158,7 @@ impl LinearMethod {
 
     /// The certificate has the last word. Displacements far from equilibrium, or rows far from holding, are not a
     /// solution, whatever the status of the iteration.
-    pub(crate) fn certify(&self, mut solution: Solution) -> Result<Solution> {
+    pub(crate) fn certify(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
         let rtol = self.ksp.tolerances()?.0;
         if solution.status.converged() && !solution.kkt.is_credible(rtol) {
             solution.status = Status::Certificate;

@@ -156,7 +156,7 @@ pub struct Kkt {
 
 impl Kkt {
     /// The record of these residuals.
-    pub fn new(kkt: &crate::solution::Kkt, inequalities: bool) -> Kkt {
+    pub fn new(kkt: &crate::feti::Kkt, inequalities: bool) -> Kkt {
         Kkt {
             stationarity: kkt.stationarity,
             feasibility: kkt.feasibility,

@@ -1,0 +1,17 @@
+//! The ends of a spectrum.
+
+/// The smallest and the largest eigenvalue of an operator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spectrum {
+    /// Smallest eigenvalue outside the kernel.
+    pub lambda_min: f64,
+    /// Largest eigenvalue.
+    pub lambda_max: f64,
+}
+
+impl Spectrum {
+    /// λ_max / λ_min.
+    pub fn kappa(&self) -> f64 {
+        self.lambda_max / self.lambda_min
+    }
+}
