@@ -84,7 +84,7 @@ pub struct KappaOf {
 
 /// The results on one grid.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct KappaRow {
     /// The family.
     pub family: String,
     /// H_b/H_s.
@@ -101,11 +101,11 @@ pub struct Row {
 
 /// The study.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct KappaReport {
     /// "kappa".
     pub study: String,
     /// The results by family and size.
-    pub rows: Vec<Row>,
+    pub rows: Vec<KappaRow>,
 }
 
 /// Runs the study; `exact` asks for the exact spectra, too (minutes on large grids). Collective.
@@ -118,7 +118,7 @@ pub fn run(
     only: Option<&str>,
     exact: bool,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report> {
+) -> Result<KappaReport> {
     let mut rows = Vec::new();
     for family in super::chosen(FAMILIES.to_vec(), |f| f.name, only)? {
         let n = if quick {
@@ -131,7 +131,7 @@ pub fn run(
             rows.push(grid(session, &family, [2, subdomains, elements], exact)?);
         }
     }
-    Ok(Report {
+    Ok(KappaReport {
         study: "kappa".into(),
         rows,
     })
@@ -146,7 +146,7 @@ pub fn grid(
     family: &Family,
     [bodies, subdomains, elements]: [usize; 3],
     exact: bool,
-) -> Result<Row> {
+) -> Result<KappaRow> {
     let scene = Scene::parse("kappa.toml", &text(family, [bodies, subdomains, elements]))?;
     let mine = contiguous_share(scene.n_subdomains(), session.size(), session.rank());
     let problem = session.agree(scene.substructures(&|s| mine.contains(&s)))?;
@@ -179,7 +179,7 @@ pub fn grid(
             exact,
         })
     };
-    Ok(Row {
+    Ok(KappaRow {
         family: family.name.into(),
         subdomains,
         elements,
@@ -219,7 +219,7 @@ fn text(family: &Family, [bodies, subdomains, elements]: [usize; 3]) -> String {
 }
 
 /// The table that is printed and written as CSV.
-pub fn table(report: &Report) -> Table {
+pub fn table(report: &KappaReport) -> Table {
     let exact = |of: &KappaOf| of.exact.map_or(String::new(), |v| format!("{v:.3}"));
     Table::of(&report.rows)
         .words("problem", |r| &r.family)

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::adaptive::{Report, Run};
+use fetifeti::study::adaptive::{AdaptiveReport, AdaptiveRun};
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -27,7 +27,7 @@ fn bounds_hold() {
     ];
     let run = run_fetifeti(1, &args);
     let text = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{e}: {}", run.all()));
-    let report: Report = keys::read(&text, KEYS);
+    let report: AdaptiveReport = keys::read(&text, KEYS);
     assert_eq!(report.cases.len(), 8);
     for case in &report.cases {
         println!("{}: {:?}", case.case, case.runs);
@@ -65,15 +65,15 @@ fn bounds_hold() {
 
 #[test]
 fn what_is_missed_is_said() {
-    let good = Run {
+    let good = AdaptiveRun {
         tau: 10.0,
         kappa: Some(15.0),
         lambda_min: Some(1.0 - 9e-7),
         attainable: Some(9e-12),
-        ..Run::default()
+        ..AdaptiveRun::default()
     };
     assert!(good.judge(true, Some(1e-12)).is_empty());
-    let said = |change: &dyn Fn(&mut Run)| {
+    let said = |change: &dyn Fn(&mut AdaptiveRun)| {
         let mut run = good.clone();
         change(&mut run);
         run.judge(true, Some(1e-12)).join("; ")

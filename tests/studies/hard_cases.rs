@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::hard_cases::{Record, Report, Verdict};
+use fetifeti::study::hard_cases::{HardCasesReport, Record, Verdict};
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -23,7 +23,7 @@ const KEYS: Keys = &[
     ("cases[].condition.estimate", "lambda_min lambda_max kappa"),
 ];
 
-fn quick(ranks: usize, dir: &Scratch) -> Report {
+fn quick(ranks: usize, dir: &Scratch) -> HardCasesReport {
     let file = dir.path(&format!("hard-{ranks}.json"));
     let args = ["study", "hard-cases", "--quick", "--quiet", "--json", &file];
     let run = run_fetifeti(ranks, &args);

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::hertz::{CaseReport, Report};
+use fetifeti::study::hertz::{CaseReport, HertzReport};
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -20,7 +20,7 @@ const KEYS: Keys = &[
     ("cases[].meshes[].pressure[]", "x p theory"),
 ];
 
-fn quick(ranks: usize, dir: &Scratch) -> Report {
+fn quick(ranks: usize, dir: &Scratch) -> HertzReport {
     let file = dir.path(&format!("hertz-{ranks}.json"));
     let out = dir.path("");
     let args = [

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::kappa::Report;
+use fetifeti::study::kappa::KappaReport;
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -36,7 +36,7 @@ fn condition_numbers_are_those_that_were_measured() {
     let run = run_fetifeti(1, &args);
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = keys::read(&text, KEYS);
+    let report: KappaReport = keys::read(&text, KEYS);
     for row in &report.rows {
         for found in [&row.dirichlet, &row.coarse_corrected] {
             let exact = found.exact.expect("asked for");
@@ -54,7 +54,7 @@ fn condition_numbers_are_those_that_were_measured() {
         .iter()
         .filter(|r| r.family == "scalar-2d")
         .collect();
-    let grows = |f: fn(&fetifeti::study::kappa::Row) -> f64| f(plane[1]) / f(plane[0]);
+    let grows = |f: fn(&fetifeti::study::kappa::KappaRow) -> f64| f(plane[1]) / f(plane[0]);
     assert!(grows(|r| r.coarse_corrected.kappa) < 1.7);
     assert!(grows(|r| r.dirichlet.kappa) > 2.0);
 }

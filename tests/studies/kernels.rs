@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::kernels::{faster, summary, Report, CASES, WORTH_CHANGING};
+use fetifeti::study::kernels::{faster, summary, KernelsReport, CASES, WORTH_CHANGING};
 use mpi::Scratch;
 use program::run_fetifeti;
 
@@ -28,7 +28,7 @@ fn every_combination_is_measured_and_solves() {
     );
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = keys::read(&text, KEYS);
+    let report: KernelsReport = keys::read(&text, KEYS);
     assert_eq!(report.rows.len(), CASES.len() * 8);
     for row in &report.rows {
         for seconds in [row.analyse, row.factor, row.solve, row.schur] {
@@ -52,7 +52,7 @@ fn every_combination_is_measured_and_solves() {
 /// The statement about faster solvers follows from the rows alone.
 #[test]
 fn only_what_is_clearly_faster_is_named() {
-    let row = |solver: &str, default, factor| fetifeti::study::kernels::Row {
+    let row = |solver: &str, default, factor| fetifeti::study::kernels::KernelRow {
         case: "a".into(),
         solver: solver.into(),
         ordering: "nd".into(),
@@ -62,7 +62,7 @@ fn only_what_is_clearly_faster_is_named() {
         schur: 1.0,
         ..Default::default()
     };
-    let report = |other| Report {
+    let report = |other| KernelsReport {
         study: "kernels".into(),
         rows: vec![row("multifrontal", true, 2.0), row("faer", false, other)],
     };

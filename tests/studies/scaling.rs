@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::scaling::{Point, Problem, Report, Series, RANKS};
+use fetifeti::study::scaling::{Point, Problem, ScalingReport, Series, RANKS};
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 
@@ -25,7 +25,7 @@ const KEYS: Keys = &[
     ("predictions[].limits[]", "from phase"),
 ];
 
-fn runs(report: &Report, series: Series, problem: Problem) -> Vec<&Point> {
+fn runs(report: &ScalingReport, series: Series, problem: Problem) -> Vec<&Point> {
     let of = report.points.iter();
     of.filter(|p| p.series == series && p.problem == problem)
         .collect()
@@ -41,7 +41,7 @@ fn counts_and_model() {
     assert_eq!(run.code, 0, "{}", run.all());
     assert_eq!(run.stdout, "");
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = keys::read(&text, KEYS);
+    let report: ScalingReport = keys::read(&text, KEYS);
 
     sends(&report);
     grows(&report);
@@ -60,7 +60,7 @@ fn counts_and_model() {
 }
 
 /// Messages depend on ranks and scenes.
-fn sends(report: &Report) {
+fn sends(report: &ScalingReport) {
     for p in &report.points {
         let c = &p.communication;
         let (messages, bytes) = (c.messages, c.bytes);
@@ -92,7 +92,7 @@ fn sends(report: &Report) {
 }
 
 /// The number of iterations is bounded as bodies are added, and does not depend on ranks.
-fn grows(report: &Report) {
+fn grows(report: &ScalingReport) {
     let growing = runs(report, Series::Bodies, Problem::Tied);
     assert_eq!(growing.iter().map(|p| p.subdomains).max(), Some(256));
     for p in &growing {
@@ -123,7 +123,7 @@ fn positive(x: f64) -> bool {
 }
 
 /// Every phase has a law with its residuals, and every run has the deviation of the model.
-fn fits(report: &Report) {
+fn fits(report: &ScalingReport) {
     assert_eq!(report.model.laws.len(), 11);
     for law in &report.model.laws {
         assert_eq!(law.terms.len(), law.seconds.len());
@@ -157,7 +157,7 @@ fn fits(report: &Report) {
     assert!(report.network.reductions.iter().any(|t| t.ranks == 4));
 }
 
-fn predicts(report: &Report) {
+fn predicts(report: &ScalingReport) {
     assert_eq!(report.predictions.len(), 2);
     let stated = &report.predictions[0].network;
     assert_eq!((stated.alpha, stated.beta), (1.5e-6, 8e-11));

@@ -2,7 +2,7 @@
 
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
-use fetifeti::study::speed_error::Report;
+use fetifeti::study::speed_error::SpeedErrorReport;
 use mpi::Scratch;
 use program::{fetifeti, run_fetifeti};
 
@@ -33,7 +33,7 @@ fn errors_fall_with_the_mesh() {
     ]);
     assert_eq!(run.code, 0, "{}", run.all());
     let text = std::fs::read_to_string(&file).expect("a report");
-    let report: Report = keys::read(&text, KEYS);
+    let report: SpeedErrorReport = keys::read(&text, KEYS);
     assert_eq!(report.cases.len(), 3);
     for case in &report.cases {
         let [coarse, fine] = case.meshes[..] else {

@@ -42,7 +42,7 @@ impl Problem {
 
 /// One case.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+pub struct AdaptiveCase {
     /// Its name, a word.
     pub name: String,
     /// A description.
@@ -55,7 +55,7 @@ pub struct Case {
     pub bodies: usize,
 }
 
-impl Case {
+impl AdaptiveCase {
     /// Writes the scene and its coefficients into `dir`; returns the scene file.
     ///
     /// # Errors
@@ -127,7 +127,7 @@ const CONTACT: [Field; 6] = [
 ];
 
 /// All cases; of the quick meshes a selection.
-pub fn cases(meshes: Meshes) -> Vec<Case> {
+pub fn cases(meshes: Meshes) -> Vec<AdaptiveCase> {
     let mut out = Vec::new();
     for problem in Problem::ALL {
         let tied = TIED.map(|field| (field, false));
@@ -166,7 +166,7 @@ fn name(problem: Problem, field: Field, contact: bool) -> String {
     format!("{problem}-{contact}{}", field.name())
 }
 
-fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size) -> Case {
+fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size) -> AdaptiveCase {
     let dim = problem.dim();
     let mut bodies = [size.bodies, size.bodies, 1];
     if dim == 3 {
@@ -218,7 +218,7 @@ fn case(name: String, problem: Problem, field: Field, contact: bool, size: Size)
             text += &format!("[[contact]]\nbodies = [\"b{i}_0\", \"b{i}_1\"]\n");
         }
     }
-    Case {
+    AdaptiveCase {
         name,
         title,
         text,

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::{Bddc, Case, Effort, Fine, Plain, Record, Run, RTOL, USUAL};
+use super::{AdaptiveCase, AdaptiveRun, Bddc, Effort, Fine, Plain, Record, RTOL, USUAL};
 use crate::assembled::layout::Layout;
 use crate::assembled::reference::{Precision, Reference};
 use crate::assembled::system::Copies;
@@ -42,7 +42,7 @@ struct Solved {
 ///
 /// # Errors
 /// Those of the scene, of the disk and of PETSc. A method that fails is no error.
-pub fn one(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Record> {
+pub fn one(session: &Session, case: &AdaptiveCase, effort: Effort, dir: &Path) -> Result<Record> {
     let file = case.write(dir)?;
     let scene = distribution::load(session, &file)?;
     let problem = distribution::substructures(session, &scene)?;
@@ -176,10 +176,10 @@ fn solve(session: &Session, problem: &Substructures, adaptive: Adaptive) -> Resu
 
 fn refused(way: Adaptive, said: String, record: &mut Record) {
     match way {
-        Adaptive::Below(tau) => record.runs.push(Run {
+        Adaptive::Below(tau) => record.runs.push(AdaptiveRun {
             tau,
             message: Some(said),
-            ..Run::default()
+            ..AdaptiveRun::default()
         }),
         _ => record.plain.message = Some(said),
     }
@@ -206,14 +206,14 @@ fn plain(solved: &Solved, court: &Court, effort: Effort, record: &mut Record) ->
     Ok(())
 }
 
-fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
+fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<AdaptiveRun> {
     let (solver, solution) = (&solved.solver, &solved.solution);
     let searched = solver.deflated().is_some();
     // As with -fetifeti_spectrum: vectors that the iterations have not called for are searched for as well.
     let spectrum = solver.spectrum().ok().flatten();
     let cost = solver.deflated();
     let vectors = cost.as_ref().map_or(&[][..], |c| &c.vectors);
-    let mut run = Run {
+    let mut run = AdaptiveRun {
         tau,
         searched,
         kappa: spectrum.map(|s| s.kappa()),
@@ -224,7 +224,7 @@ fn deflated(tau: f64, solved: &Solved, court: &Court) -> Result<Run> {
         iterations: solution.iterations,
         error: court.error(&solution.u)?,
         message: (!solution.converged()).then(|| solution.status.to_string()),
-        ..Run::default()
+        ..AdaptiveRun::default()
     };
     run.attainable = attainable(solver, court, run.error)?;
     Ok(run)
@@ -252,7 +252,7 @@ fn attainable(solver: &FetiFeti, court: &Court, first: Option<f64>) -> Result<Op
 ///
 /// # Errors
 /// Those of the scene, of the disk and of PETSc.
-pub fn fine(session: &Session, case: &Case, effort: Effort, dir: &Path) -> Result<Fine> {
+pub fn fine(session: &Session, case: &AdaptiveCase, effort: Effort, dir: &Path) -> Result<Fine> {
     let dir = dir.join("fine");
     output::prepare_directory(&dir)?;
     let scene = distribution::load(session, &case.write(&dir)?)?;

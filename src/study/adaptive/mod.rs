@@ -12,7 +12,7 @@ mod fields;
 mod measure;
 mod table;
 
-pub use cases::{cases, Case, Meshes, Problem};
+pub use cases::{cases, AdaptiveCase, Meshes, Problem};
 pub use fields::Field;
 pub use table::{fine, table, text};
 
@@ -44,7 +44,7 @@ pub const WORSE: f64 = 10.0;
 
 /// The study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct AdaptiveReport {
     /// Its name, "adaptive".
     pub study: String,
     /// Relative residual that was asked for.
@@ -79,7 +79,7 @@ pub struct Record {
     /// Error of the direct solution if every entry is wrong by one unit in its last place, up or down.
     pub last_place: Option<f64>,
     /// With deflation, by τ.
-    pub runs: Vec<Run>,
+    pub runs: Vec<AdaptiveRun>,
     /// The same fields on finer elements.
     pub fine: Option<Fine>,
 }
@@ -133,7 +133,7 @@ impl Plain {
 
 /// A run with deflation.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Run {
+pub struct AdaptiveRun {
     /// τ.
     pub tau: f64,
     /// Whether the first iterations of the solve called for a search.
@@ -181,7 +181,7 @@ pub struct Bddc {
     pub message: Option<String>,
 }
 
-impl Run {
+impl AdaptiveRun {
     /// The guarantees of deflation that are violated, given the error of MUMPS.
     pub fn judge(&self, reference: bool, mumps: Option<f64>) -> Vec<String> {
         let mut fails = Vec::new();
@@ -212,7 +212,7 @@ impl Run {
 
 impl Record {
     /// The runs with a failed check.
-    pub fn failing(&self) -> impl Iterator<Item = &Run> {
+    pub fn failing(&self) -> impl Iterator<Item = &AdaptiveRun> {
         self.runs.iter().filter(|r| !r.fails.is_empty())
     }
 }
@@ -239,7 +239,7 @@ pub fn run(
     only: Option<&str>,
     dir: &Path,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report> {
+) -> Result<AdaptiveReport> {
     super::alone(session, "adaptive", "it starts PCBDDC on ranks of its own")?;
     let effort = match quick {
         false => Effort {
@@ -267,7 +267,7 @@ pub fn run(
         }
         records.push(record);
     }
-    Ok(Report {
+    Ok(AdaptiveReport {
         study: "adaptive".into(),
         rtol: RTOL,
         repeats: effort.repeats,

@@ -1,20 +1,20 @@
 //! The tables.
 
-use super::{Bddc, Fine, Record, Report, Run, USUAL};
+use super::{AdaptiveReport, AdaptiveRun, Bddc, Fine, Record, USUAL};
 use crate::report::tables::table::{condition, count, fixed, scientific, Table};
 
 /// All runs, one row for each τ.
-pub fn table(report: &Report) -> Table {
+pub fn table(report: &AdaptiveReport) -> Table {
     // An estimate is a lower bound.
     let plain = |c: &Record| match c.plain.exact {
         Some(_) => condition(c.plain.exact),
         None => format!("≥ {}", condition(c.plain.estimate)),
     };
-    let bddc_seconds = |r: &Run| {
+    let bddc_seconds = |r: &AdaptiveRun| {
         let ran = r.bddc.as_ref().filter(|b| b.iterations.is_some());
         ran.map(|b| b.seconds)
     };
-    let verdict = |r: &Run| match r.fails.is_empty() {
+    let verdict = |r: &AdaptiveRun| match r.fails.is_empty() {
         true => "OK".to_string(),
         false => r.fails.join("; "),
     };
@@ -57,7 +57,7 @@ pub fn table(report: &Report) -> Table {
 }
 
 /// Seconds on finer elements.
-pub fn fine(report: &Report) -> Table {
+pub fn fine(report: &AdaptiveReport) -> Table {
     let cases = report.cases.iter();
     let ratio = |f: &Fine| Some(f.seconds / f.plain_seconds);
     Table::of(cases.filter_map(|c| Some((&c.case, c.fine.as_ref()?))))
@@ -77,7 +77,7 @@ pub fn fine(report: &Report) -> Table {
 }
 
 /// The table for terminals, with the messages of runs that failed.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &AdaptiveReport) -> String {
     let mut out = format!(
         "Adaptive deflation: rtol {:e}, seconds are medians of {} runs; errors in the energy norm \
          against a direct solution; attainable: the error where rounding stops the iteration\n{}\n",

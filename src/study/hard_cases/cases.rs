@@ -2,7 +2,7 @@
 
 /// One case.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+pub struct HardCase {
     /// Its name, a word.
     pub name: &'static str,
     /// The difficulty of the case.
@@ -43,11 +43,11 @@ fn blocks(head: &str, upper: &str, rest: &str) -> String {
 }
 
 /// All cases; with `quick` on smaller meshes.
-pub fn cases(quick: bool) -> Vec<Case> {
+pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut out = Vec::new();
     let mut add = |name, title: &str, text| {
         let title = title.to_string();
-        out.push(Case { name, title, text });
+        out.push(HardCase { name, title, text });
     };
     coefficients(&mut add);
     shapes(quick, &mut add);

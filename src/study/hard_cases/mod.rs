@@ -6,7 +6,7 @@
 
 mod cases;
 
-pub use cases::{cases, Case};
+pub use cases::{cases, HardCase};
 
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +59,7 @@ impl Verdict {
 
 /// The study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct HardCasesReport {
     /// Its name, "hard-cases".
     pub study: String,
     /// Relative residual that was asked for.
@@ -107,7 +107,7 @@ pub struct Record {
     pub seconds: f64,
 }
 
-impl Report {
+impl HardCasesReport {
     /// The cases that are wrong.
     pub fn wrong(&self) -> impl Iterator<Item = &Record> {
         self.cases.iter().filter(|c| c.verdict == Verdict::Wrong)
@@ -123,13 +123,13 @@ pub fn run(
     quick: bool,
     only: Option<&str>,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report> {
+) -> Result<HardCasesReport> {
     let mut records = Vec::new();
     for case in super::chosen(cases(quick), |c| c.name, only)? {
         progress(case.name);
         records.push(one(session, &case, SPECTRUM[usize::from(quick)])?);
     }
-    Ok(Report {
+    Ok(HardCasesReport {
         study: "hard-cases".into(),
         rtol: RTOL,
         limit: LIMIT,
@@ -141,7 +141,7 @@ pub fn run(
 ///
 /// # Errors
 /// As [`run`].
-pub fn one(session: &Session, case: &Case, spectrum: usize) -> Result<Record> {
+pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record> {
     let file = format!("{}.toml", case.name);
     let scene = session.agree(crate::Scene::parse(&file, &case.text))?;
     let mut record = Record {
@@ -228,7 +228,7 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
 }
 
 /// All cases.
-pub fn table(report: &Report) -> Table {
+pub fn table(report: &HardCasesReport) -> Table {
     let outer = |c: &Record| Some(c.outer_iterations).filter(|n| *n > 0);
     let set = |c: &Record| match c.active {
         [Some(ours), Some(direct)] => format!("{ours}/{direct}"),
@@ -259,7 +259,7 @@ pub fn table(report: &Report) -> Table {
 }
 
 /// The table for terminals, with descriptions of the cases and messages of the program.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &HardCasesReport) -> String {
     let mut out = format!(
         "Hard cases: rtol {:e}; errors against a direct solution; set: rows that hold, ours/direct\n{}\n",
         report.rtol,

@@ -11,7 +11,7 @@ mod theory;
 
 pub use measure::{measure, pressures, Measured, Pressure};
 pub use picture::{csv, figure, table, text};
-pub use scenes::Case;
+pub use scenes::HertzCase;
 pub use theory::{Contact, Elastic, Pair};
 
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ use crate::{Error, Result};
 
 /// The study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct HertzReport {
     /// Its name, "hertz".
     pub study: String,
     /// One entry per problem.
@@ -111,10 +111,10 @@ impl Quantity {
 }
 
 /// Elements per radius of every mesh.
-pub fn meshes(case: Case, quick: bool) -> &'static [usize] {
+pub fn meshes(case: HertzCase, quick: bool) -> &'static [usize] {
     match (case, quick) {
-        (Case::Sphere, true) => &[6, 8, 12],
-        (Case::Sphere, false) => &[8, 16, 24, 32],
+        (HertzCase::Sphere, true) => &[6, 8, 12],
+        (HertzCase::Sphere, false) => &[8, 16, 24, 32],
         (_, true) => &[16, 32, 64],
         (_, false) => &[32, 64, 128, 256],
     }
@@ -129,9 +129,9 @@ pub fn run(
     quick: bool,
     only: Option<&str>,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report> {
+) -> Result<HertzReport> {
     let mut cases = Vec::new();
-    for case in super::chosen(Case::ALL.to_vec(), |c| c.name(), only)? {
+    for case in super::chosen(HertzCase::ALL.to_vec(), |c| c.name(), only)? {
         let mut list = Vec::new();
         for &n in meshes(case, quick) {
             progress(&format!("{}, {n} elements per radius", case.name()));
@@ -144,7 +144,7 @@ pub fn run(
             meshes: list,
         });
     }
-    Ok(Report {
+    Ok(HertzReport {
         study: "hertz".into(),
         cases,
     })
@@ -154,7 +154,7 @@ pub fn run(
 ///
 /// # Errors
 /// As [`run`].
-pub fn mesh(session: &Session, case: Case, n: usize) -> Result<Mesh> {
+pub fn mesh(session: &Session, case: HertzCase, n: usize) -> Result<Mesh> {
     let settings = MethodSettings {
         rtol: 1e-8,
         ..MethodSettings::default()

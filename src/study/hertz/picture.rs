@@ -1,13 +1,13 @@
 //! The results of the study: the table, the nodal pressures as CSV, and their picture with the theory.
 
-use super::{CaseReport, Contact, Mesh, Report};
+use super::{CaseReport, Contact, HertzReport, Mesh};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
 use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
 use crate::report::tables::table::Table;
 
 /// All meshes of all problems.
-pub fn table(report: &Report) -> Table {
+pub fn table(report: &HertzReport) -> Table {
     let cases = report.cases.iter();
     let meshes = cases.flat_map(|c| c.meshes.iter().map(move |m| (c, m)));
     Table::of(meshes)
@@ -35,7 +35,7 @@ pub fn table(report: &Report) -> Table {
 }
 
 /// The table for terminals.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &HertzReport) -> String {
     let orders: Vec<String> = report
         .cases
         .iter()

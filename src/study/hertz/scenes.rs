@@ -4,7 +4,7 @@ use super::theory::{Elastic, Pair};
 
 /// One of the three problems of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Case {
+pub enum HertzCase {
     /// Half a cylinder on a rigid plane, plane strain.
     Cylinder,
     /// Two half cylinders of different materials, plane strain.
@@ -20,25 +20,29 @@ const LOWER: [f64; 2] = [1.0, 0.3];
 /// Young's modulus and Poisson's ratio of the upper one of two bodies.
 const UPPER: [f64; 2] = [3.0, 0.2];
 
-impl Case {
+impl HertzCase {
     /// All of them.
-    pub const ALL: [Case; 3] = [Case::Cylinder, Case::TwoCylinders, Case::Sphere];
+    pub const ALL: [HertzCase; 3] = [
+        HertzCase::Cylinder,
+        HertzCase::TwoCylinders,
+        HertzCase::Sphere,
+    ];
 
     /// Name in files and tables.
     pub fn name(self) -> &'static str {
         match self {
-            Case::Cylinder => "cylinder",
-            Case::TwoCylinders => "two_cylinders",
-            Case::Sphere => "sphere",
+            HertzCase::Cylinder => "cylinder",
+            HertzCase::TwoCylinders => "two_cylinders",
+            HertzCase::Sphere => "sphere",
         }
     }
 
     /// A description, for titles.
     pub fn title(self) -> &'static str {
         match self {
-            Case::Cylinder => "Elastic cylinder on a rigid plane",
-            Case::TwoCylinders => "Two elastic cylinders",
-            Case::Sphere => "Elastic sphere on a rigid plane",
+            HertzCase::Cylinder => "Elastic cylinder on a rigid plane",
+            HertzCase::TwoCylinders => "Two elastic cylinders",
+            HertzCase::Sphere => "Elastic sphere on a rigid plane",
         }
     }
 
@@ -50,16 +54,16 @@ impl Case {
             radius: RADIUS,
         };
         match self {
-            Case::Cylinder => Pair::new([body(LOWER), Elastic::PLANE], false),
-            Case::TwoCylinders => Pair::new([body(LOWER), body(UPPER)], false),
-            Case::Sphere => Pair::new([body(LOWER), Elastic::PLANE], true),
+            HertzCase::Cylinder => Pair::new([body(LOWER), Elastic::PLANE], false),
+            HertzCase::TwoCylinders => Pair::new([body(LOWER), body(UPPER)], false),
+            HertzCase::Sphere => Pair::new([body(LOWER), Elastic::PLANE], true),
         }
     }
 
     /// The whole force over that of the modelled part: symmetry leaves a quarter of the ball.
     pub fn share(self) -> f64 {
         match self {
-            Case::Sphere => 4.0,
+            HertzCase::Sphere => 4.0,
             _ => 1.0,
         }
     }
@@ -69,7 +73,7 @@ impl Case {
         let [young, poisson] = LOWER;
         let head = format!("title = \"{}, {n} elements per radius\"\n", self.title());
         match self {
-            Case::Cylinder => format!(
+            HertzCase::Cylinder => format!(
                 "{head}physics = \"elasticity\"\n\
                  [[body]]\nname = \"cylinder\"\n\
                  shape = {{ half_disc = {{ radius = {RADIUS}, centre = [0, {RADIUS}], focus = 0.05 }} }}\n\
@@ -78,7 +82,7 @@ impl Case {
                  [[obstacle]]\nbody = \"cylinder\"\nside = \"bottom\"\nplane = {{ point = [0, 0], normal = [0, 1] }}\n",
                 2 * n
             ),
-            Case::TwoCylinders => {
+            HertzCase::TwoCylinders => {
                 let [young2, poisson2] = UPPER;
                 format!(
                     "{head}physics = \"elasticity\"\n\
@@ -95,7 +99,7 @@ impl Case {
                     2 * n
                 )
             }
-            Case::Sphere => format!(
+            HertzCase::Sphere => format!(
                 "{head}dimension = 3\nphysics = \"elasticity\"\n\
                  [[body]]\nname = \"ball\"\n\
                  shape = {{ quarter_ball = {{ radius = {RADIUS}, \

@@ -22,7 +22,7 @@ use subdomain::Sample;
 
 /// A family of matrices.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Case {
+pub struct KernelCase {
     /// Name in tables.
     pub name: &'static str,
     /// 2 or 3.
@@ -34,26 +34,26 @@ pub struct Case {
 }
 
 /// The cases of the study.
-pub const CASES: [Case; 4] = [
-    Case {
+pub const CASES: [KernelCase; 4] = [
+    KernelCase {
         name: "scalar-2d",
         dim: 2,
         elastic: false,
         sizes: &[16, 64, 128],
     },
-    Case {
+    KernelCase {
         name: "elastic-2d",
         dim: 2,
         elastic: true,
         sizes: &[16, 64],
     },
-    Case {
+    KernelCase {
         name: "scalar-3d",
         dim: 3,
         elastic: false,
         sizes: &[8, 16, 22],
     },
-    Case {
+    KernelCase {
         name: "elastic-3d",
         dim: 3,
         elastic: true,
@@ -66,7 +66,7 @@ pub const WORTH_CHANGING: f64 = 1.3;
 
 /// Seconds and errors of one solver in one order.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct KernelRow {
     /// The case.
     pub case: String,
     /// Elements across the subdomain.
@@ -101,11 +101,11 @@ pub struct Row {
 
 /// The study.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct KernelsReport {
     /// "kernels".
     pub study: String,
     /// The results by case, size, solver and ordering.
-    pub rows: Vec<Row>,
+    pub rows: Vec<KernelRow>,
 }
 
 /// The measurements of one combination in one round.
@@ -127,7 +127,7 @@ pub fn run(
     quick: bool,
     only: Option<&str>,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report> {
+) -> Result<KernelsReport> {
     super::alone(session, "kernels", "it measures one thread")?;
     let mut rows = Vec::new();
     for case in super::chosen(CASES.to_vec(), |c| c.name, only)? {
@@ -137,7 +137,7 @@ pub fn run(
             rows.extend(one(&case, elements, quick)?);
         }
     }
-    Ok(Report {
+    Ok(KernelsReport {
         study: "kernels".into(),
         rows,
     })
@@ -154,14 +154,14 @@ fn combinations() -> Vec<LocalSolver> {
 
 /// Measures one subdomain. There is a least number of rounds; further rounds follow until there are enough or the time
 /// is up.
-fn one(case: &Case, elements: usize, quick: bool) -> Result<Vec<Row>> {
+fn one(case: &KernelCase, elements: usize, quick: bool) -> Result<Vec<KernelRow>> {
     let (fewest, most, time) = match quick {
         true => (3, 3, Duration::ZERO),
         false => (3, 15, Duration::from_secs(8)),
     };
     let sample = Sample::new(case, elements)?;
     let all = combinations();
-    let mut rows: Vec<Row> = all.iter().map(|s| empty(case, &sample, *s)).collect();
+    let mut rows: Vec<KernelRow> = all.iter().map(|s| empty(case, &sample, *s)).collect();
     let mut seconds: Vec<Seconds> = all.iter().map(|_| Seconds::default()).collect();
     let clock = Instant::now();
     for round in 0..most {
@@ -188,9 +188,9 @@ fn one(case: &Case, elements: usize, quick: bool) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn empty(case: &Case, sample: &Sample, solver: LocalSolver) -> Row {
+fn empty(case: &KernelCase, sample: &Sample, solver: LocalSolver) -> KernelRow {
     let default = LocalSolver::default();
-    Row {
+    KernelRow {
         case: case.name.into(),
         elements: sample.elements,
         interior: sample.inner.n(),
@@ -198,7 +198,7 @@ fn empty(case: &Case, sample: &Sample, solver: LocalSolver) -> Row {
         solver: solver.kind.name().into(),
         ordering: solver.ordering.name().into(),
         default: (solver.kind, solver.ordering) == (default.kind, default.ordering.taken()),
-        ..Row::default()
+        ..KernelRow::default()
     }
 }
 
@@ -209,7 +209,7 @@ const MEASURABLE: Duration = Duration::from_millis(1);
 fn measure(
     sample: &Sample,
     solver: LocalSolver,
-    row: &mut Row,
+    row: &mut KernelRow,
     seconds: &mut Seconds,
 ) -> std::result::Result<(), NoFactor> {
     let clock = Instant::now();

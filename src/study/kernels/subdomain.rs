@@ -1,6 +1,6 @@
 //! The matrix of a subdomain that touches no side of the domain, with loads whose solutions are known.
 
-use super::Case;
+use super::KernelCase;
 use crate::linalg::csr::Csr;
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -31,7 +31,7 @@ pub struct Sample {
 
 impl Sample {
     /// The middle one of three subdomains in every direction.
-    pub fn new(case: &Case, elements: usize) -> Result<Sample> {
+    pub fn new(case: &KernelCase, elements: usize) -> Result<Sample> {
         let scene = Scene::parse(case.name, &scene(case, elements))?;
         let sub = scene.subdomain(scene.n_subdomains() / 2)?;
         let positions = sub
@@ -64,7 +64,7 @@ impl Sample {
     }
 }
 
-fn scene(case: &Case, elements: usize) -> String {
+fn scene(case: &KernelCase, elements: usize) -> String {
     let (physics, rest) = match (case.elastic, case.dim) {
         (false, _) => ("scalar", "load = 1.0\n"),
         (true, 2) => ("elasticity", "poisson = 0.3\nload = [1.0, 0.0]\n"),

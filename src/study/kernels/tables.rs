@@ -1,11 +1,11 @@
 //! The output of `study kernels`: the default in milliseconds, the others as ratios.
 
-use super::{Report, Row, WORTH_CHANGING};
+use super::{KernelRow, KernelsReport, WORTH_CHANGING};
 use crate::cholesky::interior::{Ordering, Solver};
 use crate::report::tables::table::Table;
 
 /// A kernel: its name and its seconds.
-type Kernel = (&'static str, fn(&Row) -> f64);
+type Kernel = (&'static str, fn(&KernelRow) -> f64);
 
 const KERNELS: [Kernel; 3] = [
     ("factor", |r| r.factor),
@@ -14,17 +14,17 @@ const KERNELS: [Kernel; 3] = [
 ];
 
 /// Whether two rows are of one case and size.
-fn same(a: &Row, b: &Row) -> bool {
+fn same(a: &KernelRow, b: &KernelRow) -> bool {
     (&a.case, a.elements) == (&b.case, b.elements)
 }
 
 /// A kernel on one case and size: all rows, the default's, the fastest, and the seconds.
 struct Race<'a> {
     kernel: &'static str,
-    rows: &'a [Row],
-    default: &'a Row,
-    fastest: &'a Row,
-    seconds: fn(&Row) -> f64,
+    rows: &'a [KernelRow],
+    default: &'a KernelRow,
+    fastest: &'a KernelRow,
+    seconds: fn(&KernelRow) -> f64,
 }
 
 impl Race<'_> {
@@ -35,7 +35,7 @@ impl Race<'_> {
 }
 
 /// All kernels, by case and size.
-fn races(report: &Report) -> Vec<Race<'_>> {
+fn races(report: &KernelsReport) -> Vec<Race<'_>> {
     let mut out = Vec::new();
     for rows in report.rows.chunk_by(same) {
         let Some(default) = rows.iter().find(|r| r.default) else {
@@ -55,7 +55,10 @@ fn races(report: &Report) -> Vec<Race<'_>> {
     out
 }
 
-fn least<'a>(rows: impl Iterator<Item = &'a Row>, of: fn(&Row) -> f64) -> Option<&'a Row> {
+fn least<'a>(
+    rows: impl Iterator<Item = &'a KernelRow>,
+    of: fn(&KernelRow) -> f64,
+) -> Option<&'a KernelRow> {
     rows.min_by(|a, b| of(a).total_cmp(&of(b)))
 }
 
@@ -64,11 +67,11 @@ fn least<'a>(rows: impl Iterator<Item = &'a Row>, of: fn(&Row) -> f64) -> Option
 pub type Faster = (String, usize, &'static str, String, String, f64);
 
 /// All such combinations; the fastest one for each case and kernel.
-pub fn faster(report: &Report) -> Vec<Faster> {
+pub fn faster(report: &KernelsReport) -> Vec<Faster> {
     let races = races(report).into_iter();
     let worth = races.filter(|r| r.gain() > WORTH_CHANGING);
     let named = |r: Race| {
-        let Row {
+        let KernelRow {
             case,
             elements,
             solver,
@@ -82,7 +85,7 @@ pub fn faster(report: &Report) -> Vec<Faster> {
 
 /// One row for every case and kernel: the default in milliseconds, and every solver in its best ordering as a ratio to
 /// it.
-pub fn summary(report: &Report) -> Table {
+pub fn summary(report: &KernelsReport) -> Table {
     let mut table = Table::of(races(report))
         .words("case", |r| &r.default.case)
         .numbers("n", |r| r.default.elements)
@@ -109,7 +112,7 @@ pub fn summary(report: &Report) -> Table {
 }
 
 /// Every combination.
-pub fn table(report: &Report) -> Table {
+pub fn table(report: &KernelsReport) -> Table {
     Table::of(&report.rows)
         .words("case", |r| &r.case)
         .numbers("n", |r| r.elements)
@@ -143,7 +146,7 @@ fn milliseconds(seconds: f64) -> String {
 }
 
 /// Both tables, and the conclusion from them.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &KernelsReport) -> String {
     let default = (Solver::default().name(), Ordering::default().taken().name());
     let mut out = format!(
         "{}\nmedians; a solver's column: seconds in its best order over those of the default ({}, {})\n\n{}\n",
@@ -162,7 +165,7 @@ pub fn text(report: &Report) -> String {
              {solver} with {ordering}, {kernel} of {case}, n = {n}: {factor:.2}\n"
         );
     }
-    let worst = |of: fn(&Row) -> f64| report.rows.iter().map(of).fold(0.0, f64::max);
+    let worst = |of: fn(&KernelRow) -> f64| report.rows.iter().map(of).fold(0.0, f64::max);
     out += &format!(
         "largest error of a solution {:.0e}, of S {:.0e}\n",
         worst(|r| r.error),

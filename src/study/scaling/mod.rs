@@ -22,7 +22,7 @@ pub use model::{Model, Modelled};
 pub use network::{Measured, Network, Timing};
 pub use picture::{figure, model_figure};
 pub use points::{Point, Problem, Series};
-pub use predict::{Limit, Prediction, Row, RANKS};
+pub use predict::{Limit, PredictedRow, Prediction, RANKS};
 pub use quantities::{IterationSeconds, SetupSeconds, Work};
 pub use tables::{points_csv, prediction_csv, text};
 
@@ -43,7 +43,7 @@ const USUAL: [f64; 2] = [1.5e-6, 8e-11];
 
 /// The study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct ScalingReport {
     /// "scaling".
     pub study: String,
     /// Whether the small scenes were run.
@@ -128,7 +128,7 @@ pub fn run(
     settings: &Settings,
     case: Option<&str>,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report> {
+) -> Result<ScalingReport> {
     super::alone(
         session,
         "scaling",
@@ -176,7 +176,7 @@ pub fn run(
         basis.predict("stated", stated),
         basis.predict("this machine", network.network),
     ];
-    Ok(Report {
+    Ok(ScalingReport {
         study: "scaling".into(),
         quick: settings.quick,
         cores,

@@ -1,6 +1,6 @@
 //! Figures of the study: runs over ranks and bodies, and the model by phase.
 
-use super::{IterationSeconds, Point, Problem, Report, Series as Runs, SetupSeconds};
+use super::{IterationSeconds, Point, Problem, ScalingReport, Series as Runs, SetupSeconds};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
 use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
@@ -13,7 +13,7 @@ fn colour(k: usize) -> Colour {
 }
 
 /// Measured and modelled seconds of set-up and solve over ranks; hollow where there are more ranks than cores.
-fn over_ranks(report: &Report, runs: Runs, title: &str) -> Panel {
+fn over_ranks(report: &ScalingReport, runs: Runs, title: &str) -> Panel {
     let mut series = Vec::new();
     for (k, problem) in [Problem::Tied, Problem::Contact].into_iter().enumerate() {
         let points = report.points.iter();
@@ -58,7 +58,7 @@ fn over_ranks(report: &Report, runs: Runs, title: &str) -> Panel {
 }
 
 /// Iterations over the number of subdomains, a curve for each size of body.
-fn iterations(report: &Report) -> Panel {
+fn iterations(report: &ScalingReport) -> Panel {
     let runs = || report.points.iter().filter(|p| p.series == Runs::Bodies);
     let mut sizes: Vec<usize> = runs().map(|p| p.subdomains / p.bodies).collect();
     sizes.dedup();
@@ -85,7 +85,7 @@ fn iterations(report: &Report) -> Panel {
 }
 
 /// The figure of the runs.
-pub fn figure(report: &Report) -> Figure {
+pub fn figure(report: &ScalingReport) -> Figure {
     Figure::new(
         "Seconds over ranks, iterations over subdomains",
         vec![
@@ -114,7 +114,7 @@ fn phase_colour(name: &str) -> Colour {
 }
 
 /// Milliseconds of an iteration by phase over bodies of four subdomains: markers are measured, lines modelled.
-fn measured_phases(report: &Report) -> Panel {
+fn measured_phases(report: &ScalingReport) -> Panel {
     let of = report.points.iter();
     let of = of.filter(|p| p.series == Runs::Bodies && p.subdomains == 4 * p.bodies);
     let of: Vec<&Point> = of.collect();
@@ -139,7 +139,7 @@ fn measured_phases(report: &Report) -> Panel {
 }
 
 /// Predicted seconds over ranks by phase.
-fn predicted(report: &Report, iteration: bool) -> Panel {
+fn predicted(report: &ScalingReport, iteration: bool) -> Panel {
     let rows = &report.predictions[0].rows;
     let mut series = Vec::new();
     let names: Vec<&str> = match iteration {
@@ -147,7 +147,7 @@ fn predicted(report: &Report, iteration: bool) -> Panel {
         false => SetupSeconds::NAMES.to_vec(),
     };
     for (k, name) in names.iter().enumerate() {
-        let of = |row: &super::Row| match iteration {
+        let of = |row: &super::PredictedRow| match iteration {
             true => 1e3 * row.seconds.iteration.all()[k],
             false => row.seconds.setup.all()[k],
         };
@@ -166,7 +166,7 @@ fn predicted(report: &Report, iteration: bool) -> Panel {
 }
 
 /// The figure of the model: the runs it is fitted to, and the predictions for the stated network.
-pub fn model_figure(report: &Report) -> Figure {
+pub fn model_figure(report: &ScalingReport) -> Figure {
     let network = report.predictions[0].network;
     Figure::new(
         format!(

@@ -17,7 +17,7 @@ const ROOM: f64 = 4e9;
 
 /// The problem with a body on each of `ranks` ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct PredictedRow {
     /// Number of ranks, and of bodies.
     pub ranks: usize,
     /// Kernel vectors of all bodies.
@@ -52,7 +52,7 @@ pub struct Prediction {
     /// Its α and β.
     pub network: Network,
     /// Predictions by number of ranks.
-    pub rows: Vec<Row>,
+    pub rows: Vec<PredictedRow>,
     /// The phases that take longest in set-up and solve together.
     pub limits: Vec<Limit>,
     /// The phases that take longest in an iteration.
@@ -80,7 +80,7 @@ fn kernels(ranks: f64) -> f64 {
 }
 
 impl Basis<'_> {
-    fn row(&self, ranks: f64, network: &Network) -> Row {
+    fn row(&self, ranks: f64, network: &Network) -> PredictedRow {
         let mut work = self.middle.work;
         work.kernels = kernels(ranks).round();
         let sent = &Sent::of(self.middle);
@@ -89,7 +89,7 @@ impl Basis<'_> {
         free.kernels = 0.0;
         let free = self.model.seconds(&free, ranks, sent, network);
         let n = self.iterations as f64;
-        Row {
+        PredictedRow {
             ranks: ranks as usize,
             kernels: work.kernels as usize,
             unknowns: ranks * work.unknowns,
@@ -101,7 +101,7 @@ impl Basis<'_> {
     }
 
     /// The phase that takes longest, of an iteration or of set-up and solve together.
-    fn longest(&self, row: &Row, iteration: bool) -> String {
+    fn longest(&self, row: &PredictedRow, iteration: bool) -> String {
         let setup = SetupSeconds::NAMES.iter().zip(row.seconds.setup.all());
         let setup = setup.filter(|_| !iteration);
         let setup = setup.map(|(name, t)| (format!("set-up, {name}"), t));
@@ -116,7 +116,7 @@ impl Basis<'_> {
 
     /// The prediction for a network.
     pub fn predict(&self, network_name: &str, network: Network) -> Prediction {
-        let rows: Vec<Row> = RANKS
+        let rows: Vec<PredictedRow> = RANKS
             .iter()
             .map(|&ranks| self.row(ranks as f64, &network))
             .collect();
@@ -126,7 +126,7 @@ impl Basis<'_> {
             let ranks = first * (last / first).powf(f64::from(k) / f64::from(steps));
             self.row(ranks.round(), &network)
         });
-        let fine: Vec<Row> = fine.collect();
+        let fine: Vec<PredictedRow> = fine.collect();
         let limits = |iteration: bool| {
             let mut limits: Vec<Limit> = Vec::new();
             for row in &fine {
@@ -140,7 +140,8 @@ impl Basis<'_> {
             }
             limits
         };
-        let from = |over: &dyn Fn(&Row) -> bool| fine.iter().find(|r| over(r)).map(|r| r.ranks);
+        let from =
+            |over: &dyn Fn(&PredictedRow) -> bool| fine.iter().find(|r| over(r)).map(|r| r.ranks);
         Prediction {
             doubles_at: from(&|r| r.total > 2.0 * fine[0].total),
             full_at: from(&|r| r.replicated_bytes > ROOM),

@@ -1,7 +1,8 @@
 //! Tables of the study, and conclusions in words.
 
 use super::{
-    IterationSeconds, Law, Limit, Point, Prediction, Report, Row, SetupSeconds, Timing, Work,
+    IterationSeconds, Law, Limit, Point, PredictedRow, Prediction, ScalingReport, SetupSeconds,
+    Timing, Work,
 };
 use crate::report::tables::table::{fixed, scientific, value, Columns, Table};
 
@@ -37,7 +38,7 @@ fn ranks(ranks: usize, crowded: bool) -> String {
 }
 
 /// The runs with their description, the first columns of two tables.
-fn described(report: &Report) -> Columns<&Point> {
+fn described(report: &ScalingReport) -> Columns<&Point> {
     Table::of(&report.points)
         .words("series", |p| p.series.name())
         .words("problem", |p| p.problem.name())
@@ -47,7 +48,7 @@ fn described(report: &Report) -> Columns<&Point> {
         .numbers("el", |p| p.elements)
 }
 
-fn runs(report: &Report) -> Table {
+fn runs(report: &ScalingReport) -> Table {
     described(report)
         .numbers("rows of B", |p| p.multipliers)
         .numbers("floating", |p| p.floating_bodies)
@@ -78,7 +79,7 @@ fn each<R, const N: usize>(
     table
 }
 
-fn phases(report: &Report) -> Table {
+fn phases(report: &ScalingReport) -> Table {
     let table = described(report);
     let table = each(table, "S", SetupSeconds::NAMES, |p| p.setup.all(), ms);
     let table = table.numbers("model %", |p| percent(p.setup_deviation));
@@ -94,7 +95,7 @@ fn phases(report: &Report) -> Table {
         .table()
 }
 
-fn laws(report: &Report) -> Table {
+fn laws(report: &ScalingReport) -> Table {
     let term = |(term, seconds): (&String, &f64)| match term.as_str() {
         "1" => scientific(Some(*seconds)),
         term => format!("{} {term}", scientific(Some(*seconds))),
@@ -117,7 +118,7 @@ fn laws(report: &Report) -> Table {
         .table()
 }
 
-fn messages(report: &Report) -> Table {
+fn messages(report: &ScalingReport) -> Table {
     let net = &report.network;
     let model = |t: &Timing| net.network.messages(1.0, t.bytes as f64);
     let messages = net.messages.iter().map(|t| ("message", t, false, model(t)));
@@ -145,7 +146,7 @@ fn prediction(p: &Prediction) -> Table {
         |r| r.seconds.setup.all(),
         ms,
     );
-    let iteration = |r: &&Row| r.seconds.iteration.all();
+    let iteration = |r: &&PredictedRow| r.seconds.iteration.all();
     each(table, "I", IterationSeconds::NAMES, iteration, us)
         .numbers("set-up s", |r| short(r.seconds.setup.sum()))
         .numbers("iteration ms", |r| ms(r.seconds.iteration.sum()))
@@ -202,7 +203,7 @@ fn growth(p: &Prediction) -> String {
 }
 
 /// All tables and sentences for terminals.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &ScalingReport) -> String {
     let net = report.network.network;
     let [s, e] = report.body;
     let mut out = format!(
@@ -256,7 +257,7 @@ fn each_exact<R, const N: usize>(
 }
 
 /// All runs for programs.
-pub fn points_csv(report: &Report) -> Table {
+pub fn points_csv(report: &ScalingReport) -> Table {
     let table = Table::of(&report.points)
         .exact("series", |p| p.series.name())
         .exact("problem", |p| p.problem.name())
@@ -295,7 +296,7 @@ pub fn points_csv(report: &Report) -> Table {
 }
 
 /// The predictions for programs.
-pub fn prediction_csv(report: &Report) -> Table {
+pub fn prediction_csv(report: &ScalingReport) -> Table {
     let all = report.predictions.iter();
     let table = Table::of(all.flat_map(|p| p.rows.iter().map(move |row| (p, row))))
         .exact("network", |(p, _)| p.network_name.as_str())

@@ -1,6 +1,6 @@
 //! The discretisation error: the distance of the exact solution of a mesh from that of the continuous problem.
 
-use super::{Case, MeshError};
+use super::{MeshError, SpeedErrorCase};
 use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::study::solved::Solved;
@@ -18,10 +18,10 @@ struct Tight {
 ///
 /// # Errors
 /// Those of the method; [`Error::NotConverged`] where it stops early.
-pub fn errors(session: &Session, case: Case, meshes: &[usize]) -> Result<Vec<MeshError>> {
+pub fn errors(session: &Session, case: SpeedErrorCase, meshes: &[usize]) -> Result<Vec<MeshError>> {
     let finest = meshes[meshes.len() - 1];
     let fine = match case {
-        Case::Contact => Some(Tight::new(session, case, 2 * finest)?),
+        SpeedErrorCase::Contact => Some(Tight::new(session, case, 2 * finest)?),
         _ => None,
     };
     let mut out = Vec::new();
@@ -48,7 +48,7 @@ pub fn errors(session: &Session, case: Case, meshes: &[usize]) -> Result<Vec<Mes
 }
 
 impl Tight {
-    fn new(session: &Session, case: Case, n: usize) -> Result<Tight> {
+    fn new(session: &Session, case: SpeedErrorCase, n: usize) -> Result<Tight> {
         let settings = MethodSettings {
             rtol: 1e-10,
             ..MethodSettings::default()

@@ -16,7 +16,7 @@ mod picture;
 mod scenes;
 
 pub use picture::{figure, table, text};
-pub use scenes::Case;
+pub use scenes::SpeedErrorCase;
 
 use std::process::{Command, Stdio};
 
@@ -51,7 +51,7 @@ pub const VARIANTS: [Variant; 2] = [
 
 /// The study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct SpeedErrorReport {
     /// Its name, "speed-error".
     pub study: String,
     /// Cores that every method may use.
@@ -70,7 +70,7 @@ pub struct CaseReport {
     /// Error of every mesh itself, relative, in the energy norm.
     pub meshes: Vec<MeshError>,
     /// All runs.
-    pub runs: Vec<Run>,
+    pub runs: Vec<SpeedErrorRun>,
 }
 
 /// The discretisation error of a mesh.
@@ -86,7 +86,7 @@ pub struct MeshError {
 
 /// One method on one mesh with one tolerance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Run {
+pub struct SpeedErrorRun {
     /// `fetifeti` or a baseline; a name with "(set given)" solves only the equations of the last active set.
     pub method: String,
     /// Elements across a subdomain.
@@ -132,7 +132,7 @@ pub fn run(
     quick: bool,
     only: Option<&str>,
     progress: &mut dyn FnMut(&str),
-) -> Result<Report> {
+) -> Result<SpeedErrorReport> {
     super::alone(
         session,
         "speed-error",
@@ -140,7 +140,7 @@ pub fn run(
     )?;
     let mut cores = 0;
     let mut cases = Vec::new();
-    for case in super::chosen(Case::ALL.to_vec(), |c| c.name(), only)? {
+    for case in super::chosen(SpeedErrorCase::ALL.to_vec(), |c| c.name(), only)? {
         let meshes = case.meshes(quick);
         progress(&format!("{}: errors of the meshes", case.name()));
         let errors = meshes::errors(session, case, meshes)?;
@@ -172,7 +172,7 @@ pub fn run(
             runs,
         });
     }
-    Ok(Report {
+    Ok(SpeedErrorReport {
         study: "speed-error".into(),
         cores,
         cases,
@@ -186,7 +186,7 @@ fn rows(
     rtol: f64,
     variant: &Variant,
     baselines: bool,
-) -> Vec<Run> {
+) -> Vec<SpeedErrorRun> {
     let mut out = Vec::new();
     for row in &report.rows {
         let run = &row.run;
@@ -204,7 +204,7 @@ fn rows(
             (false, true) => format!("{} (set given)", run.method),
             (false, false) => run.method.clone(),
         };
-        out.push(Run {
+        out.push(SpeedErrorRun {
             method,
             elements: mesh.elements,
             dofs: mesh.dofs,
@@ -224,7 +224,7 @@ fn rows(
 
 /// Runs `fetifeti compare` as a process of its own.
 fn compare(
-    case: Case,
+    case: SpeedErrorCase,
     n: usize,
     rtol: f64,
     variant: &Variant,
@@ -277,14 +277,14 @@ impl CaseReport {
     }
 
     /// For every mesh and tolerance, the run of a method in its fastest layout, if one converged.
-    pub fn fastest(&self, method: &str) -> Vec<&Run> {
-        let mut out: Vec<&Run> = Vec::new();
+    pub fn fastest(&self, method: &str) -> Vec<&SpeedErrorRun> {
+        let mut out: Vec<&SpeedErrorRun> = Vec::new();
         for run in self
             .runs
             .iter()
             .filter(|r| r.method == method && r.converged)
         {
-            let total = |r: &Run| r.setup + r.solve;
+            let total = |r: &SpeedErrorRun| r.setup + r.solve;
             match out
                 .iter_mut()
                 .find(|r| (r.elements, r.rtol.to_bits()) == (run.elements, run.rtol.to_bits()))

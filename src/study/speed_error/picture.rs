@@ -1,13 +1,13 @@
 //! Work-precision plots: error over seconds, a curve per method.
 
-use super::{CaseReport, Report, Run};
+use super::{CaseReport, SpeedErrorReport, SpeedErrorRun};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::ticks::Scale;
 use crate::report::plots::plot::{Axis, Figure, Line, Marker, Panel, Series};
 use crate::report::tables::table::{count, scientific, Table};
 
 /// All runs.
-pub fn table(report: &Report) -> Table {
+pub fn table(report: &SpeedErrorReport) -> Table {
     let cases = report.cases.iter();
     let runs = cases.flat_map(|c| c.runs.iter().map(move |r| (&c.case, r)));
     Table::of(runs)
@@ -28,7 +28,7 @@ pub fn table(report: &Report) -> Table {
 }
 
 /// The table for terminals.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &SpeedErrorReport) -> String {
     format!(
         "Error and seconds on {} cores; n: elements across a subdomain; \
          error: of mesh and solver, relative, in the energy norm\n{}",
@@ -38,7 +38,7 @@ pub fn text(report: &Report) -> String {
 }
 
 /// The runs that no other run of the method beats in both error and seconds, by seconds.
-fn front(runs: &[&Run], seconds: fn(&Run) -> f64) -> Vec<(f64, f64)> {
+fn front(runs: &[&SpeedErrorRun], seconds: fn(&SpeedErrorRun) -> f64) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = runs.iter().map(|r| (seconds(r), r.error)).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut best = f64::INFINITY;
@@ -58,7 +58,7 @@ pub fn figure(case: &CaseReport) -> Figure {
         Marker::Diamond,
         Marker::Triangle,
     ];
-    let panel = |title: &str, seconds: fn(&Run) -> f64| {
+    let panel = |title: &str, seconds: fn(&SpeedErrorRun) -> f64| {
         let mut series = Vec::new();
         for (k, method) in case.methods().iter().enumerate() {
             let runs = case.fastest(method);

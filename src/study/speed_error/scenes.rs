@@ -3,7 +3,7 @@
 
 /// One scene of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Case {
+pub enum SpeedErrorCase {
     /// −Δu = f in the plane, u known.
     Scalar,
     /// An elastic solid, u known.
@@ -12,49 +12,53 @@ pub enum Case {
     Contact,
 }
 
-impl Case {
+impl SpeedErrorCase {
     /// All of them.
-    pub const ALL: [Case; 3] = [Case::Scalar, Case::Solid, Case::Contact];
+    pub const ALL: [SpeedErrorCase; 3] = [
+        SpeedErrorCase::Scalar,
+        SpeedErrorCase::Solid,
+        SpeedErrorCase::Contact,
+    ];
 
     /// Name in files and tables.
     pub fn name(self) -> &'static str {
         match self {
-            Case::Scalar => "scalar2d",
-            Case::Solid => "elasticity3d",
-            Case::Contact => "contact",
+            SpeedErrorCase::Scalar => "scalar2d",
+            SpeedErrorCase::Solid => "elasticity3d",
+            SpeedErrorCase::Contact => "contact",
         }
     }
 
     /// Title.
     pub fn title(self) -> &'static str {
         match self {
-            Case::Scalar => "Scalar problem in the plane, known solution",
-            Case::Solid => "Elastic solid, known solution",
-            Case::Contact => "Elastic block on a curved gap",
+            SpeedErrorCase::Scalar => "Scalar problem in the plane, known solution",
+            SpeedErrorCase::Solid => "Elastic solid, known solution",
+            SpeedErrorCase::Contact => "Elastic block on a curved gap",
         }
     }
 
     /// Elements across a subdomain, mesh by mesh.
     pub fn meshes(self, quick: bool) -> &'static [usize] {
         match (self, quick) {
-            (Case::Scalar, true) => &[4, 8],
-            (Case::Scalar, false) => &[16, 32, 64, 128],
-            (Case::Solid, true) => &[2, 3],
-            (Case::Solid, false) => &[4, 6, 8, 12],
-            (Case::Contact, true) => &[4, 8],
-            (Case::Contact, false) => &[16, 32, 64],
+            (SpeedErrorCase::Scalar, true) => &[4, 8],
+            (SpeedErrorCase::Scalar, false) => &[16, 32, 64, 128],
+            (SpeedErrorCase::Solid, true) => &[2, 3],
+            (SpeedErrorCase::Solid, false) => &[4, 6, 8, 12],
+            (SpeedErrorCase::Contact, true) => &[4, 8],
+            (SpeedErrorCase::Contact, false) => &[16, 32, 64],
         }
     }
 
     /// The scene with `n` elements across a subdomain.
     pub fn scene(self, n: usize) -> String {
         match self {
-            Case::Scalar => format!(
+            SpeedErrorCase::Scalar => format!(
                 "title = \"scalar2d, {n}\"\nexact = \"sin(pi*x)*sin(2*pi*y)\"\n\
                  [grid]\nbodies = [2, 2]\nsubdomains = [2, 2]\nelements_per_subdomain = {n}\n\
                  load = {{ value = \"5*pi^2*sin(pi*x)*sin(2*pi*y)\", quadrature = \"gauss\" }}\ndirichlet = \"all\"\n"
             ),
-            Case::Solid => {
+            SpeedErrorCase::Solid => {
                 // u = a φ with φ = sin πx sin πy sin πz: f = μ 3π² φ a + (λ + μ) π² (φ a_i − Σ_{j≠i} a_j cos_i cos_j
                 // sin_k).
                 let s = ["x", "y", "z"].map(|v| format!("sin(pi*{v})"));
@@ -87,7 +91,7 @@ impl Case {
                         .join(", ")
                 )
             }
-            Case::Contact => {
+            SpeedErrorCase::Contact => {
                 let body = |name: &str, y: usize, keys: &str| {
                     format!(
                         "[[body]]\nname = \"{name}\"\norigin = [0, {y}]\nsize = [1, 1]\nsubdomains = [2, 2]\n\
