@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Runs every test, two programs at a time. Tests that need PETSc inside their process take turns on the thread that owns
-# it, so such a program keeps one core busy; meanwhile the other core has the programs that start processes.
+# Lints, builds the documentation and runs every test, with both cores in use. The programs that start processes run in
+# the background. Beside them run the lints, then the tests with PETSc in their own process, which take turns on the one
+# thread that owns it.
 #
 #   scripts/test.sh
 #
-# Exit code 0: all passed.
+# Exit code 0: nothing was found, and all tests passed.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 3
 
@@ -22,6 +23,9 @@ log=$(mktemp) || exit 3
 trap 'kill $(jobs -p) 2>/dev/null; rm -f "$log"' EXIT
 cargo test --no-fail-fast "${outside[@]}" >"$log" 2>&1 &
 status=0
+cargo clippy --workspace --all-targets -- -D warnings || status=1
+cargo clippy --lib --no-default-features -- -D warnings || status=1
+RUSTDOCFLAGS="-D warnings" cargo doc --no-deps || status=1
 cargo test --workspace --no-fail-fast --lib --bins "${inside[@]}" || status=1
 cargo test --workspace --no-fail-fast --doc || status=1
 wait $! || status=1
