@@ -9,12 +9,13 @@
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 3
 
-# What starts processes: `fetifeti`, mpirun, compilers of C and Fortran.
-starts_processes=" cli comparison embedding ranks studies "
+# In the background: `fetifeti`, mpirun, compilers of C and Fortran. The studies start processes, too, but stand with
+# the others, so that both sides take about as long.
+background=" cli comparison embedding ranks "
 inside=() outside=()
 for path in tests/*.rs tests/*/main.rs; do
     name=${path#tests/} name=${name%.rs} name=${name%/main}
-    if [[ $starts_processes == *" $name "* ]]; then outside+=(--test "$name"); else inside+=(--test "$name"); fi
+    if [[ $background == *" $name "* ]]; then outside+=(--test "$name"); else inside+=(--test "$name"); fi
 done
 
 cargo test --workspace --no-fail-fast --no-run || exit 1
