@@ -60,7 +60,7 @@ impl Solution {
 
     /// The start of the contact loop for other loads: the multipliers and the set of this solution.
     pub fn warm_start(&self) -> State {
-        State::warm(&self.lambda, &self.active)
+        State::warm(self.lambda.clone(), &self.active)
     }
 
     /// The rows between bodies that this rank provides, in its order: body, node, normal, gap, multiplier, pressure,

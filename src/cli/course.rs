@@ -29,7 +29,7 @@ pub(super) struct Course {
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
-    /// The fields of this solution, where a directory of results is asked for.
+    /// The fields of this solution, where load steps are written.
     pub fields: Option<Gathered>,
 }
 
@@ -67,8 +67,7 @@ pub(super) fn follow(
         session.agree(Stepping::new(scene, mine))
     });
     let mut stepping = many.transpose()?;
-    let wanted = destination.out.is_some();
-    let mut fields = wanted.then(|| Gathered::new(session, scene)).transpose()?;
+    let mut fields: Option<Gathered> = None;
     for step in first..n {
         if let Some(stepping) = &mut stepping {
             let loads = session.agree(stepping.loads(step))?;
@@ -104,12 +103,14 @@ pub(super) fn follow(
         if let Some(times) = &times {
             now.load_steps.push(load_step_record(times[step], &now));
         }
-        if let (Some(dir), Some(pvd), Some(fields)) = (&destination.out, &mut pvd, &mut fields) {
+        if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
+            let fields = match &mut fields {
+                Some(fields) => fields,
+                None => fields.insert(Gathered::new(session, scene)?),
+            };
             fields.gather(session, scene, solver, &now.solution, step);
-            if let Some(times) = &times {
-                let write = || write_step(scene, fields, &now, dir, times[step], pvd);
-                on_first_rank(session, write)?;
-            }
+            let write = || write_step(scene, fields, &now, dir, times[step], pvd);
+            on_first_rank(session, write)?;
         }
         let done = course.insert(now);
         records.outer.append(&mut done.outer);

@@ -64,8 +64,8 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
         report.check = Some(checks(&solver)?);
     }
     report.seconds.assemble = assemble;
-    if let (Some(dir), Some(fields)) = (&destination.out, &course.fields) {
-        write_fields(session, &scene, &solver, &course, fields, dir)?;
+    if let Some(dir) = &destination.out {
+        write_fields(session, &scene, &solver, &course, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
     on_first_rank(session, || write_report(&destination, &report))?;
@@ -267,9 +267,17 @@ fn write_fields(
     scene: &Scene,
     solver: &FetiFeti,
     course: &Course,
-    fields: &Gathered,
     dir: &Path,
 ) -> Result<()> {
+    let mut gathered = None;
+    let fields = match &course.fields {
+        Some(fields) => fields,
+        None => {
+            let fields = gathered.insert(Gathered::new(session, scene)?);
+            fields.gather(session, scene, solver, &course.solution, course.step);
+            fields
+        }
+    };
     on_first_rank(session, || {
         fields.write_vtu(scene, &course.rows, dir, "solution")?;
         picture::write(scene, fields, &course.rows, dir)?;

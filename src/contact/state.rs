@@ -62,9 +62,9 @@ pub struct State {
 
 impl State {
     /// The start of a loop for other loads: the multipliers and the set of a solution.
-    pub fn warm(lambda: &[f64], active: &[bool]) -> State {
+    pub fn warm(lambda: Vec<f64>, active: &[bool]) -> State {
         State {
-            lambda: lambda.to_vec(),
+            lambda,
             active: active.to_vec(),
             before: active.to_vec(),
             reference: 0.0,
@@ -77,7 +77,7 @@ impl State {
 
     /// The start of a loop: λ = 0, and all candidate rows hold.
     pub fn cold(jump: &Jump) -> State {
-        State::warm(&vec![0.0; jump.n_owned], &jump.initial)
+        State::warm(vec![0.0; jump.n_owned], &jump.initial)
     }
 }
 
