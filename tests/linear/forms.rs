@@ -2,9 +2,10 @@
 //! load to load.
 
 use crate::support::checks::identities;
+use crate::support::direct::{tight, Direct};
 use crate::support::session::with_session;
 use crate::support::{mpi, program};
-use fetifeti::feti::Operators;
+use fetifeti::feti::{Adaptive, Operators};
 use fetifeti::feti::{MethodSettings, PcType};
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
@@ -101,6 +102,40 @@ fn subdomains_that_are_multiples_of_each_other_share_their_factors() {
         let solution = jumps.solve().expect("solved");
         assert!(solution.converged());
         assert!(solution.kkt.stationarity < 1e-8, "{:?}", solution.kkt);
+    });
+}
+
+#[test]
+fn adaptive_constraints_fit_subdomains_that_share_a_matrix_up_to_a_factor() {
+    with_session(|session| {
+        let threes = "[grid]\nbodies = 2\nsubdomains = 3\nelements_per_subdomain = 4\n\
+                      load = \"1 + x\"\ndirichlet = [\"left\", \"top\"]\n\
+                      rho = { checkerboard = [1, 3], by = \"subdomain\" }\n";
+        let threes = Direct::new(Scene::parse("threes.toml", threes).expect("a scene"));
+        let cases = [
+            ("rho of 1 and 3", threes, 1e-9),
+            ("unequal bodies", Direct::example("unequal_bodies"), 1e-9),
+            ("jumps of 1e4", Direct::example("jump_checkerboard"), 1e-8),
+            ("random", Direct::example("coefficients_random"), 1e-8),
+            ("jumps of 1e6", Direct::example("jump_1e6"), 1e-8),
+        ];
+        for (what, direct, far) in cases {
+            for operators in [Operators::Explicit, Operators::Implicit] {
+                let settings = MethodSettings {
+                    operators,
+                    adaptive: Adaptive::Below(2.0),
+                    ..tight()
+                };
+                let solver = direct.solver(session, &settings);
+                let added: usize = solver.facts().adaptive_constraints.iter().sum();
+                assert!(added > 0, "{what}: no constraint was added");
+                let solution = solver.solve().expect("solved");
+                let distance = direct.distance(&solution.u);
+                println!("{what}, {operators:?}: {distance:.1e}, {added} constraints");
+                assert!(solution.converged(), "{what}: {}", solution.status);
+                assert!(distance < far, "{what}, {operators:?}: {distance:.1e}");
+            }
+        }
     });
 }
 

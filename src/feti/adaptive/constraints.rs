@@ -188,6 +188,16 @@ pub fn constrain(
         first.push((0..j).find(same).unwrap_or(j));
     }
     let kinds: Vec<usize> = (0..first.len()).filter(|&j| first[j] == j).collect();
+    // The operators of a kind belong to the matrix of one subdomain. The others have a multiple of it, and theirs must
+    // not be taken: their factor would count twice.
+    let own = |&j: &usize| {
+        let is = |&i: &usize| locals[i].shares_with(&locals[j]) && locals[i].factor == 1.0;
+        (0..locals.len()).find(is)
+    };
+    let own: Vec<usize> = kinds
+        .iter()
+        .map(|j| own(j).expect("operators belong to a matrix"))
+        .collect();
     let held = |&j: &usize| Mutex::new(Some(locals[j].kind().clone()));
     let held: Vec<_> = kinds.iter().map(held).collect();
     let factors: Vec<f64> = locals.iter().map(|l| l.factor).collect();
@@ -198,7 +208,7 @@ pub fn constrain(
         if added(j).next().is_none() {
             return Ok(old);
         }
-        let sub = &problem.local[j];
+        let sub = &problem.local[own[k]];
         let renewed = old.constrained(&sub.k, added(j), sub.coordinates.as_deref());
         renewed.map(Arc::new).map_err(|e| fails(sub, e))
     });
