@@ -3,6 +3,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod certificate;
 mod deflation;
 mod direct;
 mod forms;

@@ -16,7 +16,7 @@ const KEYS: Keys = &[
     ),
     (
         "cases[].kkt",
-        "stationarity feasibility complementarity min_multiplier",
+        "stationarity feasibility complementarity min_multiplier error",
     ),
     ("cases[].condition", "exact estimate"),
     ("cases[].condition.exact", "lambda_min lambda_max kappa"),

@@ -1,6 +1,7 @@
 //! The certificate measures how well (u, λ) satisfies the optimality conditions of the whole problem. It uses K, f and
 //! B alone.
 
+use super::error::Leftover;
 use crate::feti::jump::operator::JumpColumns;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
@@ -24,6 +25,9 @@ pub struct Kkt {
     pub complementarity: f64,
     /// Smallest multiplier of an inequality row, relative to max |λ|; zero without inequality rows.
     pub min_multiplier: f64,
+    /// Estimate of ‖u − u*‖_K / ‖u‖_K, where u* is the solution with the rows that hold; `None` where the iteration did
+    /// not converge.
+    pub error: Option<f64>,
 }
 
 impl Kkt {
@@ -43,6 +47,8 @@ pub struct Certificate {
     pub energy: f64,
     /// B u − c on the owned rows, including those that do not hold.
     pub gaps: Vec<f64>,
+    /// The residuals that the estimate of the error begins with.
+    pub left: Leftover,
 }
 
 impl Certificate {
@@ -64,7 +70,8 @@ impl Certificate {
             let (sub, columns) = (&problem.local[j], &jump.columns[j]);
             examine((sub, &u[j]), &locals[j], (columns, &ghost), &places[j])
         });
-        let mut sums = [0.0; 4];
+        let mut sums = [0.0; 7];
+        let mut on_gamma = Vec::new();
         let mut primal = vec![0.0; stiffness.space.ghosts.len()];
         let mut primal_d = primal.clone();
         let mut work = stiffness.work();
@@ -79,6 +86,7 @@ impl Certificate {
                 .iter()
                 .for_each(|&at| primal_d[at as usize] = 1.0);
             work.y = part.on_interface;
+            on_gamma.push(part.residual);
         }
         let rows = dual.multipliers()?;
         stiffness.jump_of_all(&work, &rows)?;
@@ -88,7 +96,8 @@ impl Certificate {
         sums[3] += gaps.iter().zip(&*lambda).map(|(b, l)| b * l).sum::<f64>();
         sum_all(comm, &mut sums);
         let primal = stiffness.primal.weighted_square(&primal, &primal_d)?;
-        let stationarity = (sums[0] + primal).sqrt() / positive(sums[1].sqrt() + sums[2].sqrt());
+        let forces = sums[1].sqrt() + sums[2].sqrt();
+        let stationarity = (sums[0] + primal).sqrt() / positive(forces);
 
         let mut largest = [0.0f64; 4]; // |u|, |λ|, violation, |λ (Bu − c)|
         let mut smallest = [0.0f64];
@@ -113,6 +122,13 @@ impl Certificate {
                 feasibility: violation / positive(u_max),
                 complementarity: product / positive(lambda_max * u_max),
                 min_multiplier: smallest[0] / positive(lambda_max),
+                error: None,
+            },
+            left: Leftover {
+                on_gamma,
+                inside: sums[4].sqrt(),
+                size: sums[5].max(0.0).sqrt(),
+                terms: sums[6].sqrt() + forces,
             },
             energy: sums[3],
             gaps,
@@ -122,14 +138,16 @@ impl Certificate {
 
 /// The contribution of one subdomain to the certificate.
 struct Examined {
-    /// Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d and the energy, with d = diag(K).
-    sums: [f64; 4],
+    /// Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d and the energy, with d = diag(K); then Σ r²/d inside, uᵀK u and Σ d u².
+    sums: [f64; 7],
     /// Residuals and d of primal dofs, which are summed over copies: (ghost, r, d).
     primal: Vec<(u32, f64, f64)>,
     /// Ghosts of fixing dofs.
     fixing: Vec<u32>,
     /// u on Γ.
     on_interface: Vec<f64>,
+    /// f − K u − Bᵀ λ on Γ.
+    residual: Vec<f64>,
 }
 
 fn examine(
@@ -138,13 +156,15 @@ fn examine(
     (columns, ghost): (&JumpColumns, &[f64]),
     places: &[u32],
 ) -> Examined {
-    let mut sums = [0.0; 4];
+    let mut sums = [0.0; 7];
     let mut primal = Vec::new();
     let mut r = vec![0.0; sub.k.n()];
     sub.k.mul(u, &mut r);
     let products = u.iter().zip(&r).zip(&sub.f);
     sums[3] = products.map(|((u, ku), f)| u * (0.5 * ku - f)).sum();
+    sums[5] = u.iter().zip(&r).map(|(u, ku)| u * ku).sum();
     let d = sub.k.diagonal();
+    sums[6] = u.iter().zip(&d).map(|(u, d)| d * u * u).sum();
     sums[1] = sub.f.iter().zip(&d).map(|(f, d)| f * f / d).sum();
     r.iter_mut().zip(&sub.f).for_each(|(r, f)| *r -= f);
     let mut pull = vec![0.0; local.gamma().n_gamma()];
@@ -163,6 +183,7 @@ fn examine(
     };
     // A copy takes forces over from other copies: at a vertex a force, on an edge or face a force along a functional.
     let (mut on_gamma, stiff) = (on(&r), on(&d));
+    let residual = on_gamma.iter().map(|r| -r).collect();
     for (i, &at) in (local.gamma().n_delta..local.gamma().n_gamma()).zip(places) {
         primal.push((at, std::mem::take(&mut on_gamma[i]), stiff[i]));
     }
@@ -177,15 +198,18 @@ fn examine(
         }
         local.gamma().basis.to_nodes(&mut on_gamma);
     }
-    for (&i, v) in local.gamma().interface.iter().zip(&on_gamma) {
-        r[i as usize] = *v;
+    let weigh = |r: &[f64], d: &[f64]| -> f64 { r.iter().zip(d).map(|(r, d)| r * r / d).sum() };
+    for &i in &local.gamma().interface {
+        r[i as usize] = 0.0;
     }
-    sums[0] = r.iter().zip(&d).map(|(r, d)| r * r / d).sum();
+    sums[4] = weigh(&r, &d);
+    sums[0] = sums[4] + weigh(&on_gamma, &stiff);
     Examined {
         sums,
         primal,
         fixing: places[local.gamma().n_pi() - local.gamma().fixing.len()..].to_vec(),
         on_interface: on(u),
+        residual,
     }
 }
 

@@ -5,6 +5,7 @@ mod bound;
 pub mod certificate;
 pub(super) mod check;
 mod eigenvalues;
+mod error;
 pub mod iterate;
 pub mod loads;
 pub mod recovery;

@@ -7,6 +7,7 @@
 use std::time::Instant;
 
 use super::certificate::{Certificate, Kkt};
+use super::error::Leftover;
 use super::iterate::Run;
 use super::loads::Loads;
 use super::residual::{Iterate, Residual};
@@ -41,6 +42,8 @@ pub struct LinearSolution {
     pub kkt: Kkt,
     /// ½ uᵀ K u − fᵀ u + λᵀ (B u − c).
     pub energy: f64,
+    /// What is left of the equations.
+    pub left: Leftover,
     /// Seconds of condensing and iterating.
     pub solve_seconds: f64,
     /// Seconds of the recovery.
@@ -72,6 +75,7 @@ impl LinearMethod {
             estimate: run.estimate,
             kkt: certificate.kkt,
             energy: certificate.energy,
+            left: certificate.left,
             solve_seconds,
             recover_seconds,
         })

@@ -20,6 +20,7 @@ use super::residual::Iterate;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::linalg::csr::Csr;
+use crate::parallel::exchange::total;
 use crate::petsc::Vec as PetscVec;
 use crate::status::Status;
 use crate::substructures::Substructures;
@@ -41,7 +42,7 @@ const FLOOR: f64 = 1e-11;
 const FAR: f64 = 1e-3;
 
 /// Largest number of steps. Each step must at least halve the certificate.
-const STEPS: usize = 4;
+pub(super) const STEPS: usize = 4;
 
 impl LinearMethod {
     /// Refines a solution towards the tolerance of the user, as far as it helps. Collective.
@@ -58,7 +59,7 @@ impl LinearMethod {
             // solution yet, that number is not known.
             let most = if far { 1e-2 } else { 0.3 };
             let reduction = (rtol / now).clamp(1e-6, most);
-            match self.refined(&solution, reduction)? {
+            match self.refined(&solution, reduction)?.better {
                 Some(better) => solution = better,
                 None => break,
             }
@@ -70,8 +71,8 @@ impl LinearMethod {
         Ok(solution)
     }
 
-    /// One step; `None` where it does not help. Collective.
-    fn refined(&self, solution: &LinearSolution, reduction: f64) -> Result<Option<LinearSolution>> {
+    /// One step, which reduces the residual of the correction problem by the factor `reduction`. Collective.
+    pub(super) fn refined(&self, solution: &LinearSolution, reduction: f64) -> Result<Step> {
         let (problem, dual) = (&self.problem, &*self.dual());
         let lambda = dual.multipliers()?;
         lambda.array_mut()?.copy_from_slice(&solution.lambda);
@@ -85,6 +86,7 @@ impl LinearMethod {
         let run = iterate(self, &at.residual.r, &at.lambda, &control)?;
         at.place(dual)?;
         let du = displacements(dual, &at.loads, &mut at.residual)?;
+        let size = self.energy_norm(&du);
         let mut u = solution.u.clone();
         for (u, du) in u.iter_mut().flatten().zip(du.iter().flatten()) {
             *u += du;
@@ -92,19 +94,45 @@ impl LinearMethod {
         lambda.axpy(1.0, &at.lambda)?;
         let certificate = Certificate::new(problem, dual, &u, &lambda)?;
         let better = distance(&certificate.kkt) < 0.5 * distance(&solution.kkt);
+        let correction = run.status.converged().then_some(size);
         if !better {
-            return Ok(None);
+            return Ok(Step {
+                better: None,
+                correction,
+            });
         }
-        Ok(Some(LinearSolution {
+        let better = Some(LinearSolution {
             u,
             lambda: lambda.to_vec()?,
             gaps: certificate.gaps,
             kkt: certificate.kkt,
             energy: certificate.energy,
+            left: certificate.left,
             iterations: solution.iterations + run.iterations,
             ..solution.clone()
-        }))
+        });
+        Ok(Step { better, correction })
     }
+
+    /// ‖u‖_K. Collective.
+    fn energy_norm(&self, u: &[Vec<f64>]) -> f64 {
+        let dual = self.dual();
+        let local = &self.problem.local;
+        let energies = dual.stiffness.team.map(local.len(), |j| {
+            let mut force = vec![0.0; u[j].len()];
+            local[j].k.mul(&u[j], &mut force);
+            force.iter().zip(&u[j]).map(|(f, u)| f * u).sum::<f64>()
+        });
+        total(dual.comm(), energies.iter().sum()).max(0.0).sqrt()
+    }
+}
+
+/// The result of one step.
+pub(super) struct Step {
+    /// The corrected solution, if the step has helped.
+    pub better: Option<LinearSolution>,
+    /// ‖du‖_K, if the correction problem was solved.
+    pub correction: Option<f64>,
 }
 
 /// The measure that refinement reduces.
@@ -113,7 +141,7 @@ fn distance(kkt: &Kkt) -> f64 {
 }
 
 /// r of every local subdomain, and the remaining jumps c − B u of the rows. Collective.
-fn remainder(
+pub(super) fn remainder(
     problem: &Substructures,
     dual: &Dual,
     solution: &LinearSolution,

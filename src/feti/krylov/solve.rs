@@ -14,6 +14,7 @@ use std::time::Instant;
 use super::iterate::{iterate, IterationControl, Run};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
+use super::refinement::STEPS;
 use super::residual::Iterate;
 use super::target::{to_the_end, Target};
 use crate::feti::method::LinearMethod;
@@ -28,6 +29,9 @@ const STARTS: usize = 20;
 
 /// Largest number of calls of the judge.
 const ASKED: usize = 8;
+
+/// A refinement of an error that is too large reduces it to this part of the bound, or at least by this factor.
+const REDUCED: f64 = 0.1;
 
 /// Judges displacements that satisfy the tolerance. Returns the factor by which the residual should fall further, or
 /// `None`.
@@ -156,12 +160,41 @@ impl LinearMethod {
         Ok(run)
     }
 
-    /// The certificate has the last word. Displacements far from equilibrium, or rows far from holding, are not a
-    /// solution, whatever the status of the iteration.
+    /// The certificate has the last word. Displacements far from equilibrium or from the solution, or rows far from
+    /// holding, are not a solution, whatever the status of the iteration. An error that is too large in the energy norm
+    /// is refined first. Collective.
     pub(crate) fn certify(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
-        let rtol = self.ksp.tolerances()?.0;
-        if solution.status.converged() && !solution.kkt.is_credible(rtol) {
-            solution.status = Status::Certificate;
+        let (rtol, atol, _, _) = self.ksp.tolerances()?;
+        for step in 0.. {
+            if !solution.status.converged() {
+                break;
+            }
+            // An absolute tolerance is relative to the first residual.
+            let asked = match solution.residuals.first() {
+                Some(&first) if first > 0.0 => rtol.max(atol / first),
+                _ => rtol,
+            };
+            let bound = solution.left.bound(asked);
+            let estimate = self.energy_error(&solution, bound)?;
+            let mut error = estimate.most;
+            if error > bound && step < STEPS {
+                let reduction = (REDUCED * bound / error).clamp(1e-6, REDUCED);
+                let refined = self.refined(&solution, reduction)?;
+                if let Some(better) = refined.better {
+                    solution = better;
+                    continue;
+                }
+                // Where rounding keeps a step from helping, the correction itself is a closer estimate than the upper
+                // bound, which is too large by the condition number.
+                if let Some(correction) = refined.correction {
+                    error = error.min(estimate.least.max(correction));
+                }
+            }
+            solution.kkt.error = Some(solution.left.relative(error));
+            if !(error <= bound && solution.kkt.is_credible(rtol)) {
+                solution.status = Status::Certificate;
+            }
+            break;
         }
         Ok(solution)
     }

@@ -152,6 +152,9 @@ pub struct Kkt {
     pub complementarity: f64,
     /// Smallest multiplier of an inequality; `null` without any.
     pub min_multiplier: Option<f64>,
+    /// Estimate of the error of u in the energy norm, relative to that of u; `null` where the iteration did not
+    /// converge.
+    pub error: Option<f64>,
 }
 
 impl Kkt {
@@ -162,6 +165,7 @@ impl Kkt {
             feasibility: kkt.feasibility,
             complementarity: kkt.complementarity,
             min_multiplier: inequalities.then_some(kkt.min_multiplier),
+            error: kkt.error,
         }
     }
 

@@ -35,6 +35,7 @@ fn report() -> SolveReport {
             feasibility: f64::NAN,
             complementarity: 0.0,
             min_multiplier: None,
+            error: None,
         },
         energy: f64::INFINITY,
         contact: None,

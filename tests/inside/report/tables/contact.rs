@@ -134,6 +134,7 @@ fn certificate_names_the_four_conditions() {
         feasibility: 2e-10,
         complementarity: 3e-13,
         min_multiplier: Some(-4e-12),
+        error: None,
     };
     assert_eq!(
         certificate(&kkt),
