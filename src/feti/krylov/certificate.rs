@@ -1,7 +1,7 @@
 //! The certificate measures how well (u, λ) satisfies the optimality conditions of the whole problem. It uses K, f and
 //! B alone.
 
-use super::error::Leftover;
+use super::leftover::Leftover;
 use crate::feti::jump::operator::JumpColumns;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;

@@ -7,6 +7,7 @@ pub(super) mod check;
 mod eigenvalues;
 mod error;
 pub mod iterate;
+mod leftover;
 pub mod loads;
 pub mod recovery;
 mod recycling;

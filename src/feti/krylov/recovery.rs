@@ -7,8 +7,8 @@
 use std::time::Instant;
 
 use super::certificate::{Certificate, Kkt};
-use super::error::Leftover;
 use super::iterate::Run;
+use super::leftover::Leftover;
 use super::loads::Loads;
 use super::residual::{Iterate, Residual};
 use crate::cholesky::lanes::LANES;
