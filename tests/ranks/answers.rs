@@ -232,3 +232,33 @@ fn spectra_of_table_1_on_1_2_and_4_ranks() {
         }
     }
 }
+
+/// Cholesky factorisation refuses pivots below 100, which the soft body has and the stiff one has not: rank 0 fails and
+/// rank 1 does not. All ranks report it; none waits for the other.
+#[test]
+fn a_factorisation_that_fails_on_one_rank_ends_on_all() {
+    let scratch = Scratch::new("one-rank-fails");
+    let scene = "[grid]\nbodies = [2, 1]\nsubdomains = 2\nelements_per_subdomain = 4\n\
+                 dirichlet = \"all\"\nload = 1\n\
+                 rho = { checkerboard = [1, 1e6], by = \"body\" }\n";
+    let scene = scratch.file("two.toml", scene);
+    let pivots = "-fetifeti_coarse_sub_pc_factor_zeropivot";
+    let out = run_fetifeti(
+        2,
+        &[
+            "solve",
+            &scene,
+            "--quiet",
+            pivots,
+            "100",
+            "-fetifeti_coarse_sub_pc_factor_shift_type",
+            "none",
+        ],
+    );
+    assert_eq!(out.code, 1, "{}", out.all());
+    // An error of one rank alone would begin with "Error on rank 0".
+    let all = "Error: the primal problem of the bodies was not solved";
+    assert!(out.stderr.contains(all), "{}", out.all());
+    let out = run_fetifeti(2, &["solve", &scene, "--quiet", pivots, "1e-8"]);
+    assert_eq!(out.code, 0, "{}", out.all());
+}

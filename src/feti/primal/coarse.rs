@@ -20,6 +20,7 @@ pub struct PrimalProblem {
 }
 
 struct Parts {
+    session: Session,
     solver: Solver,
     rhs: PetscVec,
     solution: PetscVec,
@@ -51,12 +52,14 @@ impl PrimalProblem {
         };
         let solver = match own {
             Some(factors) => Solver::Own(factors),
-            None => Solver::Petsc(petsc(session, space, &matrix, prefix)?),
+            // A factorisation may fail on one rank alone.
+            None => Solver::Petsc(session.agree(petsc(session, space, &matrix, prefix))?),
         };
         let solution = rhs.duplicate()?;
         let halo = Halo::new(session, &rhs, &space.ghosts)?;
         Ok(PrimalProblem {
             parts: Some(Parts {
+                session: session.clone(),
                 solver,
                 rhs,
                 solution,
@@ -86,15 +89,11 @@ impl PrimalProblem {
         p.halo.sum_end(&p.rhs)?;
         match &p.solver {
             Solver::Petsc(ksp) => {
-                clock::timed(Phase::Primal, || ksp.solve(&p.rhs, &p.solution))?;
-                let reason = ksp.converged_reason()?;
-                if reason.code < 0 {
-                    return Err(Error::NotConverged(format!(
-                        "the primal problem of the bodies was not solved ({}): change the \
-                         -fetifeti_coarse_ options, or take more constraints with -fetifeti_primal",
-                        reason.name
-                    )));
-                }
+                let solved = clock::timed(Phase::Primal, || ksp.solve(&p.rhs, &p.solution));
+                // Every rank has blocks of its own, and a reason of its own: that of a block which cannot be factored
+                // does not reach the others, which would wait for ever in the next exchange.
+                p.session
+                    .agree(solved.and_then(|()| solved_to_the_end(ksp)))?;
             }
             Solver::Own(factors) => {
                 let rhs = p.rhs.array()?;
@@ -146,6 +145,20 @@ fn own(
     // All ranks make the same choice.
     let failed = any(session.comm(), factors.is_none());
     factors.filter(|_| !failed)
+}
+
+/// Returns an error if the last solve failed on this rank.
+fn solved_to_the_end(ksp: &Ksp) -> Result<()> {
+    let reason = ksp.converged_reason()?;
+    if reason.code >= 0 {
+        return Ok(());
+    }
+    Err(Error::NotConverged(format!(
+        "the primal problem of the bodies was not solved ({}): leave the -fetifeti_coarse_ options \
+         at their defaults, or take a solver for symmetric matrices that are close to singular, \
+         such as -fetifeti_coarse_ksp_type cg -fetifeti_coarse_pc_type jacobi",
+        reason.name
+    )))
 }
 
 /// The KSP with the prefix `fetifeti_coarse_`.

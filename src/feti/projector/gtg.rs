@@ -64,7 +64,8 @@ impl Gtg {
         // same if this very matrix is inverted. That is why it is factored by LU and Pᵀ uses the transpose.
         ksp.pc()?.set_type("lu")?;
         ksp.set_from_options()?;
-        ksp.setup()?;
+        // The matrices of the ranks are equal, but their machines need not be.
+        session.agree(ksp.setup())?;
         Ok(Gtg {
             ksp,
             scale,
