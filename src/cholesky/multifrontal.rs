@@ -14,7 +14,7 @@
 use std::sync::Arc;
 
 use super::panel;
-use super::symbolic::{Front, Symbolic};
+use super::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::{self, Dense, Scratch};
 
@@ -64,17 +64,27 @@ impl PartialCholesky {
 
     /// The smallest pivot relative to the diagonal entry of `k` that it came from; one where nothing was eliminated.
     pub fn weakest_pivot(&self, k: &Csr) -> f64 {
-        let of = |front: &Front| {
+        self.relative_pivots(k).map(|p| p.1).fold(1.0, f64::min)
+    }
+
+    /// The dofs with a pivot below `bound`, relative to the diagonal entry of `k` that it came from, in the order of
+    /// elimination.
+    pub fn weak_dofs(&self, k: &Csr, bound: f64) -> Vec<u32> {
+        let weak = self.relative_pivots(k).filter(|p| p.1 < bound);
+        weak.map(|p| p.0).collect()
+    }
+
+    /// (dof, pivot relative to the diagonal entry of `k` that it came from), in the order of elimination.
+    fn relative_pivots<'a>(&'a self, k: &'a Csr) -> impl Iterator<Item = (u32, f64)> + 'a {
+        self.symbolic.fronts.iter().flat_map(move |front| {
             let panel = &self.panels[front.panel..];
             let size = front.size();
             let dofs = &self.symbolic.interior[front.start..front.end];
-            let relative = dofs.iter().enumerate().map(|(j, &dof)| {
+            dofs.iter().enumerate().map(move |(j, &dof)| {
                 let d = k.get(dof as usize, dof as usize);
-                panel[panel::diagonal(j, size)].powi(2) / d
-            });
-            relative.fold(1.0, f64::min)
-        };
-        self.symbolic.fronts.iter().map(of).fold(1.0, f64::min)
+                (dof, panel[panel::diagonal(j, size)].powi(2) / d)
+            })
+        })
     }
 
     /// Bytes held by the factor.

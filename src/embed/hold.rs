@@ -8,7 +8,8 @@
 use std::collections::BTreeSet;
 
 use super::classes::Class;
-use super::kernels::{combinations, orthogonal, Columns};
+use super::kernels::{combinations, Columns};
+use super::motions::Motions;
 use super::parts::Part;
 use super::sharing::Sharers;
 use super::torn::Torn;
@@ -44,71 +45,24 @@ const LOOSE: f64 = 1e-6;
 /// With more motions than this, they are not taken for rigid body motions.
 const MANY: usize = 12;
 
-/// The motions without energy of the subdomains, and the number of nodes that exclude them.
-pub struct Motions {
-    /// An orthogonal basis in every part, entries of order one.
-    bases: Vec<Columns>,
-    /// Components of the field.
-    components: usize,
-    /// Number of nodes needed to exclude all motions: more than one where rotations are possible but not known.
-    nodes: usize,
-}
-
 impl Motions {
-    /// Takes the known motions, else the constants of each component.
-    pub fn new(torn: &Torn, parts: &[Part], known: Option<&[Columns]>) -> Motions {
-        let constants = |part: &Part| -> Columns {
-            let one = |c: usize| {
-                let value = |&dof: &u32| f64::from(u8::from(torn.component(dof) == c));
-                part.dofs.iter().map(value).collect()
-            };
-            (0..torn.block_size).map(one).collect()
-        };
-        let bases = match known {
-            Some(columns) => columns.iter().map(orthogonal).collect(),
-            None => parts.iter().map(|p| orthogonal(&constants(p))).collect(),
-        };
-        Motions {
-            bases,
-            components: torn.block_size,
-            nodes: match (known, torn.block_size) {
-                (None, 2) => 2,
-                (None, 3) => 3,
-                _ => 1,
-            },
-        }
-    }
-
-    /// All bonds, the same on every rank. Collective.
-    pub fn bonds(
-        &self,
-        session: &Session,
-        torn: &Torn,
-        parts: &[Part],
-        sharers: &Sharers,
-    ) -> Vec<Bond> {
-        let sizes: Vec<u64> = parts
-            .iter()
-            .zip(&self.bases)
-            .flat_map(|(part, basis)| [basis.len() as u64, n_nodes(torn, &part.dofs) as u64])
-            .collect();
-        let sizes = gather_all(session.comm(), &sizes).concat();
+    /// All bonds, the same on every rank. Nothing holds a subdomain with a mechanism: it becomes a body of its own.
+    /// Collective.
+    pub fn bonds(&self, session: &Session, parts: &[Part], sharers: &Sharers) -> Vec<Bond> {
         let mut mine = Vec::new();
-        for (j, part) in parts.iter().enumerate() {
+        for j in 0..parts.len() {
             let low = sharers.first + j;
             for (high, dofs) in &sharers.neighbours[j] {
-                let high = *high as usize;
-                if high < low {
+                if (*high as usize) < low {
                     continue;
                 }
                 let mut span = Span::default();
-                for &i in dofs {
-                    span.add(self.row(j, i), LOOSE);
+                for row in self.between(j, *high, dofs) {
+                    span.add(row, LOOSE);
                 }
-                let least = |k: usize| sizes[2 * low + k].min(sizes[2 * high + k]) as usize;
-                let global: Vec<u32> = dofs.iter().map(|&i| part.dofs[i as usize]).collect();
-                let holds =
-                    span.rank() >= least(0) && n_nodes(torn, &global) >= self.nodes.min(least(1));
+                let high = *high as usize;
+                let loose = self.loose[low] || self.loose[high];
+                let holds = !loose && span.rank() >= self.needed(low, high);
                 mine.extend([
                     (low as u64) << 32 | high as u64,
                     (dofs.len() as u64) << 1 | u64::from(holds),
@@ -145,58 +99,51 @@ impl Motions {
                 if (*high as usize) < low || !same {
                     continue;
                 }
+                let motions = Shared {
+                    dofs,
+                    rows: self.between(j, *high, dofs),
+                };
                 let mut all = Span::default();
-                for &i in dofs {
-                    all.add(self.row(j, i), LOOSE);
+                for row in &motions.rows {
+                    all.add(row.clone(), LOOSE);
                 }
                 let mut span = Span::default();
                 let mut held: Vec<Vec<f64>> = Vec::new();
-                let mut points: Vec<u32> = Vec::new();
                 let common = classes[j].iter().filter(|c| c.sharers.contains(high));
                 for class in common.clone() {
                     let kind = class.kind(shape.space);
                     if (class.is_vertex() && shape.primal.vertices)
                         || (!class.is_vertex() && shape.primal.takes(kind))
                     {
-                        span.add(self.mean(j, &class.dofs), SEEN);
-                        held.push(self.mean(j, &class.dofs));
-                        points.push(class.dofs[class.dofs.len() / 2]);
+                        span.add(motions.mean(&class.dofs), SEEN);
+                        held.push(motions.mean(&class.dofs));
                     }
                 }
                 let faces = common.filter(|c| c.kind(shape.space) == EntityKind::Face);
                 if span.rank() < all.rank() && shape.primal.edges && !shape.primal.faces {
                     for face in faces {
                         averaged.push(u64::from(low as u32) << 32 | u64::from(*high));
-                        span.add(self.mean(j, &face.dofs), SEEN);
-                        held.push(self.mean(j, &face.dofs));
-                        points.push(face.dofs[face.dofs.len() / 2]);
+                        span.add(motions.mean(&face.dofs), SEEN);
+                        held.push(motions.mean(&face.dofs));
                     }
                 }
                 let extra = &mut nodes[j];
                 while span.rank() < all.rank() {
-                    let seen = |i: &u32| norm(&span.rest(self.row(j, *i)));
+                    let seen = |i: &u32| norm(&span.rest(motions.row(*i).to_vec()));
                     let best = dofs.iter().max_by(|a, b| seen(a).total_cmp(&seen(b)));
                     let Some(best) = best.filter(|i| seen(i) > LOOSE) else {
                         break;
                     };
                     for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, *best)) {
-                        span.add(self.row(j, i), LOOSE);
-                        held.push(self.row(j, i));
+                        span.add(motions.row(i).to_vec(), LOOSE);
+                        held.push(motions.row(i).to_vec());
                         extra.insert(i);
                     }
-                    points.push(*best);
                 }
-                while let Some(best) = self.badly_seen(j, dofs, &held) {
+                while let Some(best) = badly_seen(&motions, self.components, &held) {
                     for &i in dofs.iter().filter(|&&i| same_node(torn, part, i, best)) {
-                        held.push(self.row(j, i));
+                        held.push(motions.row(i).to_vec());
                         extra.insert(i);
-                    }
-                    points.push(best);
-                }
-                if self.nodes > 1 {
-                    for best in spread(torn, part, dofs, &points, self.nodes) {
-                        let node = dofs.iter().filter(|&&i| same_node(torn, part, i, best));
-                        extra.extend(node);
                     }
                 }
             }
@@ -205,66 +152,74 @@ impl Motions {
         let pair = |w: &u64| ((w >> 32) as u32, *w as u32);
         (averaged.iter().map(pair).collect(), nodes)
     }
+}
 
-    /// Finds the motion that the constraints `held` detect worst. If they detect it poorly, returns the dof of `dofs`
-    /// that moves most in it. Applies only if rotations are known.
-    fn badly_seen(&self, j: usize, dofs: &[u32], held: &[Vec<f64>]) -> Option<u32> {
-        let k = self.bases[j].len();
-        if k <= self.components || k > MANY {
-            return None;
-        }
-        let mut gram = vec![0.0; k * k];
+/// The motions of two subdomains at the dofs that they share.
+struct Shared<'a> {
+    /// Local dofs, increasing.
+    dofs: &'a [u32],
+    /// The values of all motions at each of them.
+    rows: Columns,
+}
+
+impl Shared<'_> {
+    /// The values of all motions at local dof `i`.
+    fn row(&self, i: u32) -> &[f64] {
+        let at = self.dofs.binary_search(&i);
+        &self.rows[at.expect("a shared dof")]
+    }
+
+    /// The means of all motions over some of the dofs.
+    fn mean(&self, dofs: &[u32]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.rows.first().map_or(0, Vec::len)];
         for &i in dofs {
-            let row = self.row(j, i);
-            for a in 0..k {
-                for b in 0..k {
-                    gram[a + b * k] += row[a] * row[b];
-                }
+            sum.iter_mut().zip(self.row(i)).for_each(|(s, x)| *s += x);
+        }
+        sum.iter().map(|s| s / dofs.len() as f64).collect()
+    }
+}
+
+/// Finds the motion that the constraints `held` detect worst. If they detect it poorly, returns the dof of `dofs`
+/// that moves most in it. Applies only if rotations are known.
+fn badly_seen(motions: &Shared, components: usize, held: &[Vec<f64>]) -> Option<u32> {
+    let (dofs, k) = (motions.dofs, motions.rows.first().map_or(0, Vec::len));
+    if k <= components || k > MANY {
+        return None;
+    }
+    let mut gram = vec![0.0; k * k];
+    for row in &motions.rows {
+        for a in 0..k {
+            for b in 0..k {
+                gram[a + b * k] += row[a] * row[b];
             }
         }
-        // Motions of unit size on the face, and the value of a constraint for a motion.
-        let motions = combinations(&gram, k);
-        let seen =
-            |row: &Vec<f64>, c: &[f64]| -> f64 { row.iter().zip(c).map(|(r, c)| r * c).sum() };
-        let n = motions.len();
-        let entry = |a: usize, b: usize| {
-            let terms = held
-                .iter()
-                .map(|f| seen(f, &motions[a]) * seen(f, &motions[b]));
-            terms.sum::<f64>()
-        };
-        let eigen = faer::Mat::from_fn(n, n, entry)
-            .self_adjoint_eigen(faer::Side::Lower)
-            .ok()?;
-        let weights = (0..n).map(|a| eigen.U()[(a, 0)]);
-        let mut worst = vec![0.0; k];
-        for (weight, motion) in weights.zip(&motions) {
-            worst
-                .iter_mut()
-                .zip(motion)
-                .for_each(|(w, m)| *w += weight * m);
-        }
-        let moves = |i: &u32| seen(&self.row(j, *i), &worst).abs();
-        let best = *dofs.iter().max_by(|a, b| moves(a).total_cmp(&moves(b)))?;
-        let most = held
-            .iter()
-            .map(|f| seen(f, &worst).abs())
-            .fold(0.0, f64::max);
-        (most < WELL_SEEN * moves(&best)).then_some(best)
     }
-
-    /// The values of all motions at dof `i` of part `j`.
-    fn row(&self, j: usize, i: u32) -> Vec<f64> {
-        self.bases[j].iter().map(|x| x[i as usize]).collect()
+    // Motions of unit size on the face, and the value of a constraint for a motion.
+    let unit = combinations(&gram, k);
+    let seen = |row: &[f64], c: &[f64]| -> f64 { row.iter().zip(c).map(|(r, c)| r * c).sum() };
+    let n = unit.len();
+    let entry = |a: usize, b: usize| {
+        let terms = held.iter().map(|f| seen(f, &unit[a]) * seen(f, &unit[b]));
+        terms.sum::<f64>()
+    };
+    let eigen = faer::Mat::from_fn(n, n, entry)
+        .self_adjoint_eigen(faer::Side::Lower)
+        .ok()?;
+    let weights = (0..n).map(|a| eigen.U()[(a, 0)]);
+    let mut worst = vec![0.0; k];
+    for (weight, motion) in weights.zip(&unit) {
+        worst
+            .iter_mut()
+            .zip(motion)
+            .for_each(|(w, m)| *w += weight * m);
     }
-
-    fn mean(&self, j: usize, dofs: &[u32]) -> Vec<f64> {
-        let one = |x: &Vec<f64>| {
-            let sum: f64 = dofs.iter().map(|&i| x[i as usize]).sum();
-            sum / dofs.len() as f64
-        };
-        self.bases[j].iter().map(one).collect()
-    }
+    let moves = |i: &u32| seen(motions.row(*i), &worst).abs();
+    let best = *dofs.iter().max_by(|a, b| moves(a).total_cmp(&moves(b)))?;
+    let most = held
+        .iter()
+        .map(|f| seen(f, &worst).abs())
+        .fold(0.0, f64::max);
+    (most < WELL_SEEN * moves(&best)).then_some(best)
 }
 
 /// Decisions that precede the choice of constraints.
@@ -315,54 +270,4 @@ fn norm(x: &[f64]) -> f64 {
 
 fn same_node(torn: &Torn, part: &Part, i: u32, j: u32) -> bool {
     torn.node(part.dofs[i as usize]) == torn.node(part.dofs[j as usize])
-}
-
-/// Number of nodes among increasing global dofs.
-fn n_nodes(torn: &Torn, dofs: &[u32]) -> usize {
-    dofs.chunk_by(|a, b| torn.node(*a) == torn.node(*b)).count()
-}
-
-/// Adds dofs of `dofs` to `points` until there are `wanted`. Each is as far as possible from the previous ones, in the
-/// graph of the matrix.
-fn spread(torn: &Torn, part: &Part, dofs: &[u32], points: &[u32], wanted: usize) -> Vec<u32> {
-    let mut there: Vec<u32> = points.to_vec();
-    there.dedup_by(|a, b| same_node(torn, part, *a, *b));
-    let mut out = Vec::new();
-    while there.len() < wanted {
-        let start = match there.is_empty() {
-            true => &dofs[..1],
-            false => &there[..],
-        };
-        let distance = distances(part, start);
-        let fresh = dofs
-            .iter()
-            .filter(|&&i| !there.iter().any(|&p| same_node(torn, part, i, p)));
-        let Some(&best) = fresh.max_by_key(|&&i| (distance[i as usize], u32::MAX - i)) else {
-            break;
-        };
-        there.push(best);
-        out.push(best);
-    }
-    out
-}
-
-fn distances(part: &Part, start: &[u32]) -> Vec<u32> {
-    let mut distance = vec![u32::MAX; part.dofs.len()];
-    let mut front: Vec<u32> = start.to_vec();
-    front.iter().for_each(|&i| distance[i as usize] = 0);
-    let mut step = 0;
-    while !front.is_empty() {
-        step += 1;
-        let mut next = Vec::new();
-        for &i in &front {
-            for &j in part.k.row(i as usize).0 {
-                if distance[j as usize] == u32::MAX {
-                    distance[j as usize] = step;
-                    next.push(j);
-                }
-            }
-        }
-        front = next;
-    }
-    distance
 }

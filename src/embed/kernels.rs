@@ -1,14 +1,10 @@
-//! Motions without energy: the host's vectors restricted to subdomains, checked, and an orthogonal basis for every
-//! body.
+//! The host's motions without energy: restricted to subdomains, and an orthogonal basis for every body.
 
 use super::parts::Part;
-use crate::parallel::exchange::{any, highest, sum_all};
+use crate::parallel::exchange::{highest, sum_all};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;
-
-/// A row annihilates a vector if its terms cancel to less than this fraction.
-const CANCELS: f64 = 1e-9;
 
 /// A vector is linearly dependent if orthogonalisation shortens it to less than this fraction.
 const DEPENDENT: f64 = 1e-8;
@@ -16,11 +12,8 @@ const DEPENDENT: f64 = 1e-8;
 /// Columns of one subdomain, by local dof.
 pub type Columns = Vec<Vec<f64>>;
 
-/// The host's vectors at the dofs of every part; `None` if there are none or if they are not kernels. They are not if
-/// some part without boundary conditions has a matrix that does not map them to zero (rotations across the seam of a
-/// periodic body, a term of order zero). Collective.
+/// The host's vectors at the dofs of every part; `None` if there are none. Collective.
 pub fn modes(
-    session: &Session,
     vectors: Option<&[PetscVec]>,
     halo: &Halo,
     ghosts: &[u32],
@@ -38,22 +31,7 @@ pub fn modes(
             list.push(part.dofs.iter().map(|dof| values[place(dof)]).collect());
         }
     }
-    let wrong = |(part, list): (&Part, &Columns)| !part.touched && !annihilates(part, list);
-    let wrong = any(session.comm(), parts.iter().zip(&columns).any(wrong));
-    Ok((!wrong).then_some(columns))
-}
-
-fn annihilates(part: &Part, columns: &Columns) -> bool {
-    columns.iter().all(|x| {
-        let largest = x.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-        (0..part.k.n()).all(|i| {
-            let (col, val) = part.k.row(i);
-            let terms = col.iter().zip(val);
-            let sum: f64 = terms.map(|(&j, v)| v * x[j as usize]).sum();
-            let size: f64 = val.iter().map(|v| v.abs()).sum();
-            sum.abs() <= CANCELS * size * largest
-        })
-    })
+    Ok(Some(columns))
 }
 
 /// An orthogonal basis of the span of the columns, with entries of order one.

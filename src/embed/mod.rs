@@ -14,6 +14,8 @@ pub(crate) mod classes;
 pub(crate) mod contact;
 pub(crate) mod hold;
 pub(crate) mod kernels;
+pub(crate) mod motions;
+pub(crate) mod nullspace;
 pub(crate) mod partition;
 pub(crate) mod parts;
 pub(crate) mod pieces;

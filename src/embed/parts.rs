@@ -27,8 +27,6 @@ pub struct Part {
     pub dofs: Vec<u32>,
     /// Its entries in columns of known dofs: (row, global dof, value).
     pub known: Vec<(u32, u32, f64)>,
-    /// Whether its piece has known dofs. Its matrix then need not map rigid motions to zero.
-    pub touched: bool,
 }
 
 /// The parts of this rank's pieces.
@@ -41,7 +39,6 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
         symmetric(piece, states)?;
         let label = components(torn, piece, states);
         let n_parts = label.iter().flatten().max().map_or(0, |&l| l as usize + 1);
-        let touched = piece.cut || piece.dofs.iter().any(|dof| !states[dof].is_free());
         // Place of each dof in its part.
         let mut place = vec![0; piece.dofs.len()];
         let mut made: Vec<Part> = (0..n_parts)
@@ -53,7 +50,6 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
                 },
                 dofs: Vec::new(),
                 known: Vec::new(),
-                touched,
             })
             .collect();
         for (i, l) in label.iter().enumerate() {

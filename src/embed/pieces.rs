@@ -13,8 +13,6 @@ pub struct Piece {
     pub dofs: Vec<u32>,
     /// The body that the host named, if any.
     pub body: Option<u64>,
-    /// Whether known dofs may have been removed from it. Its matrix then need not map rigid motions to zero.
-    pub cut: bool,
 }
 
 /// The pieces of a local matrix. `copies` is the block size if the map may list a dof several times, once for each
@@ -46,12 +44,7 @@ fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
         }
     }
     let k = Csr::from_triplets(dofs.len(), &triplets);
-    Some(Piece {
-        k,
-        dofs,
-        body,
-        cut: false,
-    })
+    Some(Piece { k, dofs, body })
 }
 
 /// Splits a local matrix whose map may list a dof several times, once for each subdomain that has it. The pieces are
@@ -111,7 +104,7 @@ fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Pie
         }
         let part = Csr::from_triplets(rows.len(), &triplets);
         let dofs: Vec<i32> = rows.iter().map(|&i| map[i]).collect();
-        out.extend(piece(&part, &dofs, body).map(|p| Piece { cut: loose, ..p }));
+        out.extend(piece(&part, &dofs, body));
     }
     out
 }

@@ -5,8 +5,9 @@ use std::cell::{Ref, RefCell};
 use super::bodies::{self, bodies, by_most_dofs, named_groups};
 use super::classes::{classes, in_space};
 use super::contact::Contact;
-use super::hold::{Motions, Shape};
-use super::kernels::{self, Columns};
+use super::hold::Shape;
+use super::kernels;
+use super::motions::Motions;
 use super::partition::partition;
 use super::parts::parts;
 use super::rows::rows;
@@ -79,9 +80,9 @@ impl Embedded {
         let parts = parts;
         let sharers = Sharers::new(session, &parts);
         let modes = torn.modes.as_deref();
-        let mut modes = kernels::modes(session, modes, &halo, &ghosts, &parts)?;
-        let motions = Motions::new(torn, &parts, modes.as_deref());
-        let bonds = motions.bonds(session, torn, &parts, &sharers);
+        let modes = kernels::modes(modes, &halo, &ghosts, &parts)?;
+        let (motions, mut modes) = Motions::new(session, torn, &parts, &sharers, modes)?;
+        let bonds = motions.bonds(session, &parts, &sharers);
         let named: Vec<u64> = parts.iter().map(|p| p.body.map_or(0, |b| b + 1)).collect();
         let named: Vec<Option<u64>> = gather_all(session.comm(), &named)
             .concat()
@@ -128,7 +129,10 @@ impl Embedded {
         let mut rows = rows(session, n, &parts, &sharers, body_of, &contact);
         let n_ties = rows.len();
         rows.extend(contact.rows());
-        let columns = |j: usize| modes.as_ref().map(|m: &Vec<Columns>| m[j].clone());
+        let columns = |j: usize| {
+            let known = modes.as_ref().filter(|_| !motions.loose[sharers.first + j]);
+            known.map(|m| m[j].clone())
+        };
         let local = parts.iter().enumerate().map(|(j, part)| {
             let known = Known {
                 index: sharers.first + j,

@@ -119,7 +119,7 @@ fn matrices_against_a_direct_solver() {
 }
 
 #[test]
-fn motions_of_stacked_matrices_are_used() {
+fn motions_of_stacked_matrices_are_known_or_found() {
     let scratch = Scratch::new("capi-motions");
     let program = Program::linked("mpicc", &scratch, "tests/plugin/capi_matis.c");
     let primal = |options: &str| {
@@ -129,9 +129,9 @@ fn motions_of_stacked_matrices_are_used() {
         assert!(out.stdout.contains(kernel), "{}", out.all());
         number_after(&out, "primal dofs:")
     };
-    // With known rotations, more nodes of a straight face are constrained than with guessed ones.
+    // Rotations that are found in the matrices ask for as many constraints as given ones.
     let (with, without) = (primal("-fetifeti_view"), primal("-fetifeti_view -near 0"));
-    assert!(with > without, "{with} and {without}");
+    assert_eq!(with, without);
 }
 
 #[test]

@@ -9,5 +9,6 @@ mod capi_languages;
 mod examples;
 mod ksp;
 mod languages;
+mod partitions;
 mod petsc_examples;
 mod wrong_petsc;

@@ -1,0 +1,210 @@
+//! The motions without energy of every subdomain: what the host gave, held against the kernels of the matrices.
+//!
+//! Three cases, the same on all ranks:
+//!
+//! - The host's vectors (without any: the constants of each component) span the kernel of every subdomain matrix. They
+//!   are used.
+//! - Some subdomains have motions beyond them: cells that hang by an edge or a node (a *mechanism*). These subdomains
+//!   are marked, become bodies of their own, and the method finds their kernels from the matrices.
+//! - There are no vectors, and constants do not do; or the vectors are those of another problem (rotations across the
+//!   seam of a periodic body). The kernels of the matrices take their place everywhere.
+
+use std::collections::HashMap;
+
+use super::kernels::{orthogonal, Columns};
+use super::nullspace::{annihilates, kernel, Indefinite};
+use super::parts::Part;
+use super::sharing::Sharers;
+use super::torn::Torn;
+use crate::parallel::exchange::{any, exchange_words, gather_all};
+use crate::petsc::Session;
+use crate::{Error, Result};
+
+/// A row annihilates a vector of the host if its terms cancel to less than this fraction: vectors have errors of their
+/// own, such as those of coordinates in single precision.
+const CANCELS: f64 = 1e-9;
+
+/// A motion of the kernel is one of the known ones if this fraction of it at most is left of it beside them.
+const OUTSIDE: f64 = 1e-6;
+
+/// Values below this at the dofs that two subdomains share count as zero; motions have entries of order one.
+const NOTHING: f64 = 1e-8;
+
+/// The motions without energy of the subdomains.
+pub struct Motions {
+    /// An orthogonal basis in every part, entries of order one.
+    bases: Vec<Columns>,
+    /// Components of the field.
+    pub components: usize,
+    /// For every subdomain of all ranks, whether it has motions beyond the bases.
+    pub loose: Vec<bool>,
+    /// Number of motions of every subdomain of all ranks.
+    pub count: Vec<usize>,
+    /// Where the bases differ between subdomains: for every part, by higher neighbour, the motions of either side at
+    /// the shared dofs. [shared dof][motion], orthogonal.
+    pairs: Option<Vec<HashMap<u32, Columns>>>,
+}
+
+impl Motions {
+    /// Compares the host's vectors `modes`, if there are any, with the kernels of the matrices. Returns the motions,
+    /// and the vectors if they may be used. Collective.
+    ///
+    /// # Errors
+    /// A matrix that is not positive semidefinite.
+    pub fn new(
+        session: &Session,
+        torn: &Torn,
+        parts: &[Part],
+        sharers: &Sharers,
+        modes: Option<Vec<Columns>>,
+    ) -> Result<(Motions, Option<Vec<Columns>>)> {
+        let constants = |part: &Part| -> Columns {
+            let one = |c: usize| {
+                let value = |&dof: &u32| f64::from(u8::from(torn.component(dof) == c));
+                part.dofs.iter().map(value).collect()
+            };
+            (0..torn.block_size).map(one).collect()
+        };
+        let known: Vec<Columns> = match &modes {
+            Some(columns) => columns.iter().map(orthogonal).collect(),
+            None => parts.iter().map(|p| orthogonal(&constants(p))).collect(),
+        };
+        let found = parts.iter().zip(&known).enumerate();
+        let found = found.map(|(j, (part, known))| {
+            kernel(&part.k, known).map_err(|e| indefinite(sharers.first + j, part, e))
+        });
+        let found: Vec<Columns> = session.agree(found.collect::<Result<_>>())?;
+        let beyond: Vec<bool> = found
+            .iter()
+            .zip(&known)
+            .map(|(f, k)| !spans(k, f))
+            .collect();
+        // As many motions as the known ones, but others: the known ones are wrong.
+        let wrong = |j: usize| {
+            let [known, found] = [&known[j], &found[j]];
+            let zero = |x: &Vec<f64>| annihilates(&parts[j].k, x, CANCELS);
+            found.len() >= known.len() && !known.iter().all(zero)
+        };
+        let useless = match &modes {
+            None => beyond.iter().any(|b| *b),
+            Some(_) => (0..parts.len()).any(|j| beyond[j] && wrong(j)),
+        };
+        let own = any(session.comm(), useless);
+        let bases = if own { found } else { known };
+        let counts: Vec<u64> = bases.iter().map(|b| b.len() as u64).collect();
+        let counts = gather_all(session.comm(), &counts).concat();
+        let beyond: Vec<u64> = beyond.iter().map(|&b| u64::from(b && !own)).collect();
+        let beyond = gather_all(session.comm(), &beyond).concat();
+        let pairs = own.then(|| pairs(session, sharers, &bases));
+        let motions = Motions {
+            bases,
+            components: torn.block_size,
+            loose: beyond.iter().map(|&b| b == 1).collect(),
+            count: counts.iter().map(|&n| n as usize).collect(),
+            pairs,
+        };
+        Ok((motions, modes.filter(|_| !own)))
+    }
+
+    /// The motions of part `j` and its neighbour `high` at the dofs `dofs` that they share: a row for each dof.
+    pub fn between(&self, j: usize, high: u32, dofs: &[u32]) -> Columns {
+        match &self.pairs {
+            Some(pairs) => pairs[j][&high].clone(),
+            None => {
+                let row = |&i: &u32| self.bases[j].iter().map(|x| x[i as usize]).collect();
+                dofs.iter().map(row).collect()
+            }
+        }
+    }
+
+    /// How many motions the dofs that subdomains `low` and `high` share must see, so that neither moves without the
+    /// other.
+    pub fn needed(&self, low: usize, high: usize) -> usize {
+        let [a, b] = [self.count[low], self.count[high]];
+        // A basis of known motions may be smaller where a part has few dofs. Kernels of matrices are smaller where
+        // something holds the part; its neighbour has to be held all the same.
+        if self.pairs.is_some() {
+            a.max(b)
+        } else {
+            a.min(b)
+        }
+    }
+}
+
+/// Whether every column of `found` is a combination of the orthogonal columns `known`.
+fn spans(known: &Columns, found: &Columns) -> bool {
+    found.iter().all(|x| {
+        let mut rest = x.clone();
+        for q in known {
+            let square: f64 = q.iter().map(|q| q * q).sum();
+            let part = rest.iter().zip(q).map(|(x, q)| x * q).sum::<f64>() / square;
+            rest.iter_mut().zip(q).for_each(|(x, q)| *x -= part * q);
+        }
+        norm(&rest) <= OUTSIDE * norm(x)
+    })
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// For every part, by higher neighbour, an orthogonal basis of the motions of both at the dofs that they share.
+/// Collective.
+fn pairs(session: &Session, sharers: &Sharers, bases: &[Columns]) -> Vec<HashMap<u32, Columns>> {
+    let firsts = gather_all(session.comm(), &[sharers.first as u64]).concat();
+    let rank_of = |s: u32| firsts.partition_point(|&f| f <= u64::from(s)) - 1;
+    // Both sides list the shared dofs by increasing global number. The higher one sends its motions, column by column.
+    let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+    for (j, basis) in bases.iter().enumerate() {
+        let me = (sharers.first + j) as u32;
+        for (low, dofs) in sharers.neighbours[j].iter().filter(|n| n.0 < me) {
+            let words = &mut outgoing[rank_of(*low)];
+            let columns = basis.len() as u64;
+            words.extend([u64::from(*low), u64::from(me), columns, dofs.len() as u64]);
+            for x in basis {
+                words.extend(dofs.iter().map(|&i| x[i as usize].to_bits()));
+            }
+        }
+    }
+    let mut theirs: HashMap<(u32, u32), Columns> = HashMap::new();
+    for words in exchange_words(session.comm(), outgoing) {
+        let mut rest = &words[..];
+        while let [low, high, columns, n, tail @ ..] = rest {
+            let (data, tail) = tail.split_at((columns * n) as usize);
+            let column = |c: &[u64]| c.iter().map(|&w| f64::from_bits(w)).collect();
+            let columns = data.chunks_exact((*n).max(1) as usize).map(column);
+            theirs.insert((*low as u32, *high as u32), columns.collect());
+            rest = tail;
+        }
+    }
+    let of_part = |(j, basis): (usize, &Columns)| {
+        let me = (sharers.first + j) as u32;
+        let above = sharers.neighbours[j].iter().filter(|n| n.0 > me);
+        above
+            .map(|(high, dofs)| {
+                let mut both = theirs.remove(&(me, *high)).unwrap_or_default();
+                let mine = |x: &Vec<f64>| dofs.iter().map(|&i| x[i as usize]).collect();
+                both.extend(basis.iter().map(mine));
+                both.retain(|x| norm(x) > NOTHING * (x.len() as f64).sqrt());
+                let both = orthogonal(&both);
+                let row = |p: usize| both.iter().map(|x| x[p]).collect();
+                (*high, (0..dofs.len()).map(row).collect())
+            })
+            .collect()
+    };
+    bases.iter().enumerate().map(of_part).collect()
+}
+
+/// The error for a subdomain matrix with a negative eigenvalue.
+fn indefinite(subdomain: usize, part: &Part, e: Indefinite) -> Error {
+    let energy = e
+        .energy
+        .map_or(String::new(), |e| format!(" ({e:.2e} of its terms)"));
+    Error::Unfit(format!(
+        "the operator is indefinite: the matrix of subdomain {subdomain} has a motion of negative energy{energy} \
+         that moves global dof {} most, expected a stiffness matrix (a Helmholtz shift or a wrong sign makes it \
+         indefinite); take the shift out, or a KSP and PC for indefinite operators, such as -ksp_type gmres with \
+         a direct or overlapping Schwarz preconditioner",
+        part.dofs[e.dof as usize]
+    ))
+}

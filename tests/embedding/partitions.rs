@@ -1,0 +1,116 @@
+//! Partitions of unstructured meshes: subdomains that hang together by an edge or a node, with and without a near-null
+//! space, against a direct solution (tests/plugin/partitions.c).
+
+use crate::support::{mpi, plugin};
+use mpi::{Output, Scratch};
+use plugin::Program;
+
+fn program(scratch: &Scratch) -> Program {
+    Program::linked("mpicc", scratch, "tests/plugin/partitions.c")
+}
+
+/// Every case was solved, with an error below that of `-near`.
+fn good(out: &Output, what: &str) {
+    assert_eq!(out.code, 0, "{what}: {}", out.all());
+    let last = out.stdout.trim_end().lines().last();
+    assert_eq!(last.map(str::trim), Some("ok"), "{what}: {}", out.all());
+}
+
+/// The number after a word in a line.
+fn after<T: std::str::FromStr>(line: &str, word: &str) -> Option<T> {
+    let rest = line.split(&format!("{word} ")).nth(1)?;
+    rest.split_whitespace().next()?.parse().ok()
+}
+
+/// The iterations of each case.
+fn iterations(out: &Output) -> Vec<usize> {
+    let lines = out.stdout.lines();
+    lines.filter_map(|line| after(line, " its")).collect()
+}
+
+#[test]
+fn a_cell_that_hangs_by_an_edge_or_a_node() {
+    let scratch = Scratch::new("embed-hinge");
+    let program = program(&scratch);
+    for (ranks, options, most) in [
+        (2, "-n 2", 10),
+        // One tetrahedron of the second half belongs to the first, where it hangs by an edge.
+        (2, "-hinge 0", 15),
+        (2, "-hinge 0 -fetifeti_bodies 2", 15),
+        (2, "-hinge 2 -fetifeti_bodies 2", 15),
+        (2, "-hinge 5 -fetifeti_bodies 2 -kept 0", 15),
+        (2, "-hinge 5 -fetifeti_bodies 2 -motions 0", 15),
+        (2, "-hinge 5 -motions -1", 15),
+        (4, "-n 4 -hinge 0", 25),
+        (4, "-n 4 -hinge 0 -fetifeti_bodies 4", 30),
+        // A triangle that hangs by a node.
+        (2, "-dim 2 -n 8 -hinge 0 -fetifeti_bodies 2", 15),
+        (4, "-dim 2 -n 8 -hinge 0 -fetifeti_bodies 1", 20),
+    ] {
+        let out = program.run(ranks, &format!("-slices {options} -ksp_rtol 1e-10"));
+        good(&out, options);
+        assert!(iterations(&out)[0] <= most, "{options}: {}", out.all());
+    }
+}
+
+/// Nothing tells that these unknowns are displacements: neither a block size nor a near-null space.
+#[test]
+fn a_clamped_plate_without_block_size() {
+    let scratch = Scratch::new("embed-plate");
+    let program = program(&scratch);
+    for ranks in [1, 2, 4] {
+        let options = "-slices -dim 2 -n 8 -motions -1 -ksp_rtol 1e-10";
+        good(&program.run(ranks, options), &format!("{ranks} ranks"));
+    }
+}
+
+/// A sample of the thousand below. Whether a case is solved does not depend on the number of ranks.
+#[test]
+fn random_partitions() {
+    let scratch = Scratch::new("embed-partitions");
+    let program = program(&scratch);
+    for (ranks, first, count) in [(1, 0, 200), (3, 200, 40), (2, 0, 40)] {
+        let options = format!("-first {first} -count {count} -fetifeti_ksp_rtol 1e-11");
+        let out = program.run(ranks, &options);
+        good(&out, &options);
+        assert_eq!(iterations(&out).len(), count, "{}", out.all());
+    }
+}
+
+/// `cargo test --test embedding a_thousand -- --ignored --nocapture`, some 40 seconds: docs/embedding.md has the table.
+#[test]
+#[ignore = "random_partitions has a sample"]
+fn a_thousand_partitions() {
+    let scratch = Scratch::new("embed-thousand");
+    let out = program(&scratch).run(1, "-count 1000 -fetifeti_ksp_rtol 1e-11");
+    println!(
+        "| mesh | problem | partition | cases | solved | iterations: median, 99 %, most | error |"
+    );
+    for (dim, mesh) in [(2, "plane"), (3, "space")] {
+        for how in ["", "sides", "nodes", "ragged"] {
+            let components = if how.is_empty() { 1 } else { dim };
+            let wanted = [
+                format!(" dim {dim} components {components} "),
+                format!(" by {how}"),
+            ];
+            let of = |line: &&str| wanted.iter().all(|w| line.contains(w));
+            let lines: Vec<&str> = out.stdout.lines().filter(of).collect();
+            let solved = lines.iter().filter(|l| l.contains("CONVERGED")).count();
+            let mut its: Vec<i32> = lines.iter().filter_map(|l| after(l, " its")).collect();
+            its.sort_unstable();
+            let part = |percent: usize| its[(its.len() * percent / 100).min(its.len() - 1)];
+            let errors = lines.iter().filter_map(|l| after(l, " error"));
+            println!(
+                "| {mesh} | {} | {} | {} | {solved} | {}, {}, {} | {:.1e} |",
+                if components == 1 { "scalar" } else { "elastic" },
+                if how.is_empty() { "all" } else { how },
+                lines.len(),
+                part(50),
+                part(99),
+                part(100),
+                errors.fold(0.0, f64::max)
+            );
+        }
+    }
+    good(&out, "a thousand");
+}
