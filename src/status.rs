@@ -15,6 +15,8 @@ pub enum Status {
     Refinement,
     /// The iteration converged, but the displacements are far from equilibrium, or rows are far from holding.
     Certificate,
+    /// The residual of the host's equations stopped to fall above its tolerance: rounding.
+    Stagnation,
     /// The contact loop reached its largest number of steps.
     ContactSteps,
 }
@@ -25,18 +27,39 @@ impl Status {
         match self {
             Status::Krylov(reason) => reason.converged(),
             Status::NothingToDo => true,
-            Status::Refinement | Status::Certificate | Status::ContactSteps => false,
+            Status::Refinement
+            | Status::Certificate
+            | Status::Stagnation
+            | Status::ContactSteps => false,
         }
     }
 
     /// The number of PETSc's `KSPConvergedReason` with the same meaning, or the nearest one: operators that have lost
-    /// their digits count as a preconditioner that failed, too many contact steps as too many iterations.
+    /// their digits count as a preconditioner that failed, a residual that rounding holds up as a breakdown, too many
+    /// contact steps as too many iterations.
     pub fn number(&self) -> i32 {
         match self {
             Status::Krylov(reason) => reason.code,
             Status::NothingToDo => ConvergedReason::RTOL,
             Status::Refinement | Status::Certificate => ConvergedReason::PC_FAILED,
+            Status::Stagnation => ConvergedReason::BREAKDOWN,
             Status::ContactSteps => ConvergedReason::ITS,
+        }
+    }
+
+    /// What the user can do about it, in a sentence without a full stop; `None` where the name says it all.
+    pub fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Status::Refinement => Some(
+                "the iteration converged, but the operators carry too much rounding for the tolerance asked for: \
+                 ask for less (-ksp_rtol), or look for elements or coefficients of very different size",
+            ),
+            Status::Certificate => Some(
+                "the iteration converged, but the result is far from equilibrium or from continuity, so that it is no \
+                 solution: look for elements or coefficients of very different size, and try \
+                 -fetifeti_primal vertices,edges,faces or other bodies (-fetifeti_bodies)",
+            ),
+            _ => None,
         }
     }
 
@@ -47,6 +70,7 @@ impl Status {
             Status::NothingToDo => "CONVERGED_NOTHING_TO_DO",
             Status::Refinement => "DIVERGED_REFINEMENT",
             Status::Certificate => "DIVERGED_CERTIFICATE",
+            Status::Stagnation => "DIVERGED_STAGNATION",
             Status::ContactSteps => "DIVERGED_CONTACT_ITS",
         }
     }

@@ -62,6 +62,17 @@ static PetscErrorCode KSPReset_FETIFETI(KSP ksp)
   PetscFunctionReturn(0);
 }
 
+/* The reason is a word; the sentence that explains it goes to stderr, where users see it without an option. */
+static PetscErrorCode Explain(KSP ksp, KSPConvergedReason reason)
+{
+  int code;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)ksp), PETSC_STDERR, "FETI-FETI: KSP_%s: %s\n",
+                         KSPConvergedReasons[reason], fetifeti_plugin_message(&code)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
 {
   KSP_FETIFETI    *ff = (KSP_FETIFETI *)ksp->data;
@@ -91,9 +102,7 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
   ff->id    = id;
   ff->stale = PETSC_FALSE;
   if (status == FF_UNFIT && !ksp->errorifnotconverged) {
-    int code;
-
-    PetscCall(PetscInfo(ksp, "Set-up failed: %s\n", fetifeti_plugin_message(&code)));
+    PetscCall(Explain(ksp, KSP_DIVERGED_PC_FAILED));
     ff->failed = KSP_DIVERGED_PC_FAILED;
   } else if (status) PetscCall(Raise(ksp, status));
   /* Reading a local matrix counts as a change of the operator. */
@@ -152,6 +161,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   ff->running     = PETSC_TRUE;
   result.largest  = 0;
   result.smallest = 0;
+  result.explained = 0;
   PetscCall(Wishes(ksp, &wishes));
   PetscCall(VecNorm(B, NORM_2, &size));
   PetscCall(VecCopy(B, R));
@@ -185,6 +195,7 @@ static PetscErrorCode KSPSolve_FETIFETI(KSP ksp)
   }
   ksp->its    = result.iterations;
   ksp->reason = (KSPConvergedReason)result.reason;
+  if (result.explained) PetscCall(Explain(ksp, ksp->reason));
   PetscFunctionReturn(0);
 }
 

@@ -46,6 +46,7 @@ typedef struct {
   int    iterations;
   int    reason; /* KSPConvergedReason */
   double largest, smallest; /* eigenvalues, or 0 */
+  int    explained; /* the last sentence explains the reason */
 } FetiFetiResult;
 
 int  fetifeti_plugin_setup(MPI_Comm comm, Mat a, const char *prefix, const FetiFetiWishes *wishes, void **solver);

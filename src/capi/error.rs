@@ -66,6 +66,12 @@ pub fn classified(
     status
 }
 
+/// Keeps a sentence that explains the result of a solve; it is no error.
+pub fn remark(text: &str) {
+    let text = text.replace('\0', " ");
+    LAST.set((CString::new(text).unwrap_or_default(), 0));
+}
+
 /// Passes the error of a status of [`status`] to the host's error handler, and returns the PETSc error code. `comm` is
 /// given if all its ranks are in the same call, otherwise it is `None`.
 pub fn raise(status: c_int, name: &CStr, comm: Option<raw::MPI_Comm>) -> c_int {

@@ -13,10 +13,11 @@ use std::collections::BTreeMap;
 /// Default number of subdomains per body of a partition.
 const USUAL: usize = 8;
 
-/// The number of bodies for `n` subdomains where the host wants `wanted`; 0: one for every eight subdomains.
-pub fn number(wanted: usize, n: usize) -> usize {
+/// The number of bodies for `n` subdomains where the host wants `wanted`; 0: one for every eight of the `given` local
+/// matrices. A matrix that falls into many fragments does not make more bodies.
+pub fn number(wanted: usize, given: usize, n: usize) -> usize {
     match wanted {
-        0 => n.div_ceil(USUAL),
+        0 => given.div_ceil(USUAL).clamp(1, n.max(1)),
         wanted => wanted.min(n),
     }
 }

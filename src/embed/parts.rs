@@ -111,20 +111,42 @@ fn components(torn: &Torn, piece: &Piece, states: &HashMap<u32, State>) -> Vec<O
     label
 }
 
-/// Returns an error if the matrix of the unknowns is not symmetric or its diagonal is not positive.
+/// Returns an error if the matrix of the unknowns has entries that are no numbers, a diagonal that is not positive, or
+/// is not symmetric. The first fault explains the others: a zero diagonal leaves nothing to compare entries with.
 fn symmetric(piece: &Piece, states: &HashMap<u32, State>) -> Result<()> {
     let free = |i: usize| states[&piece.dofs[i]].is_free();
-    for i in (0..piece.dofs.len()).filter(|&i| free(i)) {
+    let unknowns = || (0..piece.dofs.len()).filter(|&i| free(i));
+    for i in unknowns() {
         let (col, val) = piece.k.row(i);
-        let d = piece.k.get(i, i);
-        let usable = d > 0.0 && d.is_finite();
-        if !col.is_empty() && !usable {
+        if let Some((&j, v)) = col.iter().zip(val).find(|(_, v)| !v.is_finite()) {
             return Err(Error::Unfit(format!(
-                "the local matrix of a subdomain has {d} on the diagonal at global dof {}, \
-                 expected a positive number (a stiffness matrix)",
-                piece.dofs[i]
+                "the local matrix of a subdomain has {v} at global dofs ({}, {}), expected finite numbers: \
+                 look where the host's assembly divides by zero",
+                piece.dofs[i], piece.dofs[j as usize]
             )));
         }
+    }
+    for i in unknowns() {
+        let (dof, d) = (piece.dofs[i], piece.k.get(i, i));
+        if piece.k.row(i).0.is_empty() || d > 0.0 {
+            continue;
+        }
+        let why = if d == 0.0 {
+            "a row with entries beside a zero diagonal is that of a saddle point (the pressure of Stokes, a Lagrange \
+             multiplier), which this method does not solve; give the block of the displacements to it and the rest to \
+             a PCFIELDSPLIT of type schur"
+        } else {
+            "a stiffness matrix has a positive one; change the signs of operator and right-hand side if all are \
+             negative, and take the shift out if it is a Helmholtz operator"
+        };
+        return Err(Error::Unfit(format!(
+            "the local matrix of a subdomain has {d} on the diagonal at global dof {dof}, \
+             expected a positive number: {why}"
+        )));
+    }
+    for i in unknowns() {
+        let (col, val) = piece.k.row(i);
+        let d = piece.k.get(i, i);
         for (&j, &v) in col.iter().zip(val) {
             let j = j as usize;
             let other = piece.k.get(j, i);

@@ -15,6 +15,13 @@ pub struct Piece {
     pub body: Option<u64>,
 }
 
+impl Piece {
+    /// Whether some row has more than its diagonal.
+    pub fn is_coupled(&self) -> bool {
+        (0..self.k.n()).any(|i| self.k.row(i).0.iter().any(|&j| j as usize != i))
+    }
+}
+
 /// The pieces of a local matrix. `copies` is the block size if the map may list a dof several times, once for each
 /// subdomain that has it.
 pub fn torn_from(k: &Csr, map: &[i32], copies: Option<usize>, body: Option<u64>) -> Vec<Piece> {

@@ -13,6 +13,8 @@ use crate::{Error, Result};
 struct Share {
     /// Place of each local dof among the ghosts.
     ghost: Vec<u32>,
+    /// The global dofs.
+    dofs: Vec<u32>,
     /// Weight of each local dof when loads are split and solutions averaged; the weights of all copies sum to one.
     weight: Vec<f64>,
     /// (local dof, ghost, value) of the entries in columns of known dofs.
@@ -56,6 +58,7 @@ impl Shares {
         let place = |dof: &u32| ghosts.binary_search(dof).expect("all dofs are ghosts") as u32;
         let share = |part: &Part| Share {
             ghost: part.dofs.iter().map(place).collect(),
+            dofs: part.dofs.clone(),
             weight: (0..part.k.n())
                 .map(|i| part.k.get(i, i) / states[&part.dofs[i]].diagonal())
                 .collect(),
@@ -102,6 +105,22 @@ impl Shares {
             fixed: found.into_iter().map(fixed).collect(),
         };
         session.agree(Ok(shares))
+    }
+
+    /// Returns an error if a load, by ghost, is no number.
+    pub fn finite(&self, load: &[f64]) -> Result<()> {
+        let dofs = self.shares.iter().flat_map(|s| s.ghost.iter().zip(&s.dofs));
+        let fixed = self.fixed.iter().map(|f| (&f.ghost, &f.dof));
+        let wrong = dofs
+            .chain(fixed)
+            .find(|(&g, _)| !load[g as usize].is_finite());
+        wrong.map_or(Ok(()), |(&g, dof)| {
+            Err(Error::input(format!(
+                "the right-hand side is {} at global dof {dof}, expected finite numbers: \
+                 look where the host's assembly of the load divides by zero",
+                load[g as usize]
+            )))
+        })
     }
 
     /// Values of the known dofs, from a load and the values that the host gives, both by ghost.

@@ -19,7 +19,7 @@ use super::torn::Torn;
 use crate::contact::State as ContactState;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
-use crate::parallel::exchange::gather_all;
+use crate::parallel::exchange::{gather_all, total};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::status::Status;
@@ -60,7 +60,7 @@ pub struct Embedded {
 
 impl Embedded {
     /// Finds substructures and sets the solver up. Where the host names no bodies, the subdomains are grouped into
-    /// `wanted` of them; 0: one for every eight subdomains. Collective.
+    /// `wanted` of them; 0: one for every eight local matrices. Collective.
     ///
     /// # Errors
     /// An operator that is not admissible (unsymmetric, indefinite, with empty rows among others), and PETSc's own.
@@ -90,6 +90,8 @@ impl Embedded {
             .map(|&b| b.checked_sub(1))
             .collect();
         let n = sharers.n_subdomains;
+        let given = torn.pieces.iter().filter(|p| p.is_coupled()).count();
+        let given = total(session.comm(), given as f64) as usize;
         let group = match named_groups(&named)? {
             Some(group) => group,
             None => partition(
@@ -97,7 +99,7 @@ impl Embedded {
                 &settings.prefix,
                 n,
                 &bonds,
-                bodies::number(wanted, n),
+                bodies::number(wanted, given, n),
             )?,
         };
         let body_of = bodies(&group, &bonds);
@@ -229,6 +231,7 @@ impl Embedded {
     fn load(&self, b: &PetscVec, held: Option<&PetscVec>) -> Result<()> {
         let mut load = vec![0.0; self.n_ghosts];
         self.halo.fetch(b, &mut load)?;
+        self.session.agree(self.shares.finite(&load))?;
         let mut given = vec![0.0; self.n_ghosts];
         if let Some(held) = held {
             self.halo.fetch(held, &mut given)?;

@@ -34,6 +34,8 @@ impl ConvergedReason {
     pub const RTOL: i32 = sys::KSP_CONVERGED_RTOL;
     /// The maximum number of iterations was reached.
     pub const ITS: i32 = sys::KSP_DIVERGED_ITS;
+    /// The method cannot go on.
+    pub const BREAKDOWN: i32 = sys::KSP_DIVERGED_BREAKDOWN;
     /// The preconditioner cannot be used.
     pub const PC_FAILED: i32 = sys::KSP_DIVERGED_PC_FAILED;
 

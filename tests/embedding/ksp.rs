@@ -120,3 +120,52 @@ fn what_it_refuses_and_what_diverges() {
         assert!(out.all().contains(part), "{options}: {}", out.all());
     }
 }
+
+/// What was wrong with the matrix, what was expected and what helps stands beside the reason, without any option.
+#[test]
+fn a_reason_comes_with_its_sentence() {
+    let scratch = Scratch::new("embed-sentences");
+    let program = Program::own("mpicc", &scratch, "host.c");
+    let saddle = "KSP_DIVERGED_PC_FAILED: the local matrix of a subdomain has 0 on the diagonal at global dof 60";
+    for (options, sentence, remedy) in [
+        (
+            "-shift 0.1",
+            "FETI-FETI: KSP_DIVERGED_PC_FAILED: the operator is indefinite",
+            "take the shift out",
+        ),
+        ("-hole 60", saddle, "a saddle point"),
+        (
+            "-no_number matrix",
+            "FETI-FETI: KSP_DIVERGED_PC_FAILED: the local matrix of a subdomain has NaN at global dofs",
+            "divides by zero",
+        ),
+    ] {
+        let out = program.with_plugin(2, &format!("-ksp_type fetifeti {options}"));
+        assert!(out.stderr.contains(sentence), "{options}: {}", out.all());
+        assert!(out.stderr.contains(remedy), "{options}: {}", out.all());
+        // The host's own test of the reason ends the program.
+        assert!(out.stderr.contains("one solve: DIVERGED_PC_FAILED"), "{options}: {}", out.all());
+    }
+    let out = program.with_plugin(2, "-ksp_type fetifeti -no_number load");
+    let sentence = "the right-hand side is NaN at global dof 158, expected finite numbers";
+    assert_ne!(out.code, 0);
+    assert!(out.stderr.contains(sentence), "{}", out.all());
+    assert!(!out.stderr.contains("KSPSetTolerances"), "{}", out.all());
+}
+
+/// A tolerance that rounding does not let the residual reach is not called converged.
+#[test]
+fn stagnation_is_said() {
+    let scratch = Scratch::new("embed-stagnation");
+    let program = Program::own("mpicc", &scratch, "host.c");
+    let out = program.with_plugin(4, "-ksp_type fetifeti -n 24 -ksp_rtol 1e-17");
+    let sentence = "FETI-FETI: KSP_DIVERGED_BREAKDOWN: the residual b - A x no longer falls at";
+    assert!(out.stderr.contains(sentence), "{}", out.all());
+    assert!(
+        out.stderr.contains("one solve: DIVERGED_BREAKDOWN"),
+        "{}",
+        out.all()
+    );
+    let out = program.with_plugin(4, "-ksp_type fetifeti -n 24 -ksp_rtol 1e-12");
+    assert_eq!(out.code, 0, "{}", out.all());
+}

@@ -14,6 +14,7 @@ fn numbers_have_the_sign_of_what_happened() {
         (Status::NothingToDo, 2),
         (Status::Refinement, -11),
         (Status::Certificate, -11),
+        (Status::Stagnation, -5),
         (Status::ContactSteps, -3),
     ];
     for (status, number) in all {

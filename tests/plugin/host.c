@@ -13,6 +13,9 @@ typedef struct {
   PetscBool fixed;  /* held at the left side, else a null space */
   PetscReal skew;   /* added to one entry above the diagonal */
   PetscReal factor; /* of all entries */
+  PetscReal shift;  /* subtracted from the diagonal of every element */
+  PetscInt  hole;   /* this unknown has a zero on the diagonal; -1: none */
+  char      nan[16]; /* what has an entry that is no number: load or matrix */
 } Wanted;
 
 /* The stiffness of a square element. */
@@ -47,6 +50,11 @@ static PetscErrorCode Fill(MPI_Comm comm, const Wanted *wanted, Mat A)
       for (k = 0; k < 4; k++)
         for (l = 0; l < 4; l++) values[4 * k + l] = wanted->factor * Ke[k][l];
       if (i == n / 2 && j == first) values[1] += wanted->skew;
+      for (k = 0; k < 4; k++) {
+        values[5 * k] -= wanted->shift;
+        if (first * (n + 1) + dofs[k] == wanted->hole) values[5 * k] = 0;
+      }
+      if (i == 1 && j == n - 1 && !strcmp(wanted->nan, "matrix")) values[6] = values[9] = NAN;
       PetscCall(MatSetValuesLocal(A, 4, dofs, 4, dofs, values, ADD_VALUES));
     }
   }
@@ -166,6 +174,20 @@ static PetscErrorCode Solver(MPI_Comm comm, Mat A, const char *prefix, KSP *ksp)
   PetscFunctionReturn(0);
 }
 
+/* The load of the only solve, with an entry that is no number if that is wanted. */
+static PetscErrorCode Spoil(const Wanted *wanted, Vec b)
+{
+  PetscInt first, last, i = (wanted->n + 1) * wanted->n + 2;
+
+  PetscFunctionBeginUser;
+  if (strcmp(wanted->nan, "load")) PetscFunctionReturn(0);
+  PetscCall(VecGetOwnershipRange(b, &first, &last));
+  if (i >= first && i < last) PetscCall(VecSetValue(b, i, NAN, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(b));
+  PetscCall(VecAssemblyEnd(b));
+  PetscFunctionReturn(0);
+}
+
 /* One system from beginning to end. */
 static PetscErrorCode Once(MPI_Comm comm, const Wanted *wanted, const char *prefix, PetscBool check)
 {
@@ -176,6 +198,7 @@ static PetscErrorCode Once(MPI_Comm comm, const Wanted *wanted, const char *pref
   PetscFunctionBeginUser;
   PetscCall(Build(comm, wanted, &A));
   PetscCall(Load(A, 1, &b));
+  PetscCall(Spoil(wanted, b));
   PetscCall(VecDuplicate(b, &x));
   PetscCall(Solver(comm, A, prefix, &ksp));
   PetscCall(KSPSolve(ksp, b, x));
@@ -344,7 +367,7 @@ static PetscErrorCode Unfit(MPI_Comm comm, Wanted wanted)
 
 int main(int argc, char **argv)
 {
-  Wanted      wanted = {12, 0, PETSC_TRUE, 0, 1};
+  Wanted      wanted = {12, 0, PETSC_TRUE, 0, 1, 0, -1, ""};
   char        what[64] = "once";
   PetscInt    cycles   = 10, i;
   PetscBool   same;
@@ -360,6 +383,9 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-idle", &wanted.idle, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-cycles", &cycles, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-skew", &wanted.skew, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-shift", &wanted.shift, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-hole", &wanted.hole, NULL));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-no_number", wanted.nan, sizeof(wanted.nan), NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-fixed", &wanted.fixed, NULL));
   comm = PETSC_COMM_WORLD;
   PetscCall(PetscStrcmp(what, "once", &same));
