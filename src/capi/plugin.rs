@@ -210,7 +210,7 @@ fn forward(solver: &Embedded, wishes: &Wishes) -> Result<()> {
     let f64_of = |name, outer| Ok::<f64, Error>(options.get_f64(name)?.unwrap_or(outer));
     let max_it = match options.get_usize("ksp_max_it")? {
         Some(_) => now.3,
-        None => wishes.max_it.max(0) as usize,
+        None => wishes.max_it.max(0),
     };
     ksp.set_tolerances(
         Some(f64_of("ksp_rtol", wishes.rtol)?),

@@ -228,7 +228,13 @@ fn krylov(session: &Session, system: &Rc<System>, settings: &MethodSettings) -> 
     pc.set_shell("fetifeti", shells::preconditioner_shell(system))?;
     pc.set_options_prefix(&format!("{}ksp_", settings.prefix))?;
     ksp.set_from_options()?;
-    let rtol = ksp.tolerances()?.0;
+    let (rtol, _, _, max_it) = ksp.tolerances()?;
+    if max_it < 0 {
+        return Err(Error::input(format!(
+            "option -{}ksp_max_it is {max_it}, expected a number of iterations, at least 0",
+            settings.prefix
+        )));
+    }
     if !(0.0..1.0).contains(&rtol) {
         return Err(Error::input(format!(
             "option -{}ksp_rtol is {rtol}, expected a number from 0 to below 1",

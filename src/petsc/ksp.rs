@@ -39,6 +39,14 @@ impl ConvergedReason {
     /// The preconditioner cannot be used.
     pub const PC_FAILED: i32 = sys::KSP_DIVERGED_PC_FAILED;
 
+    /// The reason of a run that reached its largest number of iterations.
+    pub fn its() -> ConvergedReason {
+        ConvergedReason {
+            code: ConvergedReason::ITS,
+            name: "DIVERGED_ITS".into(),
+        }
+    }
+
     /// Whether the solver converged.
     pub fn converged(&self) -> bool {
         self.code > 0
@@ -95,7 +103,7 @@ impl Ksp {
         rtol: Option<f64>,
         atol: Option<f64>,
         dtol: Option<f64>,
-        max_it: Option<usize>,
+        max_it: Option<i32>,
     ) -> Result<()> {
         let or = |value: Option<f64>| value.unwrap_or(sys::PETSC_DEFAULT as f64);
         petsc!(KSPSetTolerances(
@@ -103,12 +111,12 @@ impl Ksp {
             or(rtol),
             or(atol),
             or(dtol),
-            max_it.map_or(sys::PETSC_DEFAULT, |n| n.min(i32::MAX as usize) as i32)
+            max_it.unwrap_or(sys::PETSC_DEFAULT)
         ))
     }
 
     /// The current (rtol, atol, dtol, max_it), options included.
-    pub fn tolerances(&self) -> Result<(f64, f64, f64, usize)> {
+    pub fn tolerances(&self) -> Result<(f64, f64, f64, i32)> {
         let (mut rtol, mut atol, mut dtol, mut max_it) = (0.0, 0.0, 0.0, 0);
         petsc!(KSPGetTolerances(
             self.raw(),
@@ -117,7 +125,7 @@ impl Ksp {
             &mut dtol,
             &mut max_it
         ))?;
-        Ok((rtol, atol, dtol, max_it as usize))
+        Ok((rtol, atol, dtol, max_it))
     }
 
     /// Sets the norm of the convergence test.

@@ -173,7 +173,8 @@ pub fn extreme_eigenvalues(
         eps.solve()?;
         if eps.converged()? == 0 {
             return Err(Error::NotConverged(format!(
-                "The {} eigenvalue did not converge to {tol:.0e} in {} restarts ({}).",
+                "The {} eigenvalue did not converge to {tol:.0e} in {} restarts ({}); \
+                 -{prefix}eps_max_it allows more of them",
                 if which == Which::SmallestReal {
                     "smallest"
                 } else {

@@ -185,6 +185,32 @@ fn a_run_that_stops_early_says_so() {
 }
 
 #[test]
+fn no_iterations_may_be_asked_for_and_no_negative_number_of_them() {
+    with_session(|session| {
+        for name in ["poisson_2x2", "one_body"] {
+            for method in ["cg", "gmres"] {
+                let direct = Direct::example(name);
+                let options = [("ksp_max_it", "0"), ("ksp_type", method)];
+                let solution = with_options(session, &options, || direct.run(session, &tight()).0);
+                let end = (solution.iterations, solution.status.name());
+                assert_eq!(end, (0, "DIVERGED_ITS"), "{name}, {method}");
+                assert_eq!(solution.residuals.len(), 1);
+            }
+        }
+        let direct = Direct::example("poisson_2x2");
+        for number in ["-1", "-5"] {
+            let error = with_options(session, &[("ksp_max_it", number)], || {
+                let problem = direct.scene.substructures(&|_| true).expect("subdomains");
+                let made = fetifeti::FetiFeti::new(session, problem, tight());
+                made.map(|_| ()).expect_err("bad input").to_string()
+            });
+            let expected = format!("option -fetifeti_ksp_max_it is {number}, expected");
+            assert!(error.contains(&expected), "{error}");
+        }
+    });
+}
+
+#[test]
 fn errors_fall_with_the_second_power_of_h() {
     with_session(|session| {
         // u is prescribed and nonzero on all sides, and the coefficient varies inside bodies: −div((1 + x) grad u) for

@@ -5,7 +5,7 @@ use super::system::System;
 use super::tally::Start;
 use crate::feti::method::LinearMethod;
 use crate::feti::spectrum::Spectrum;
-use crate::petsc::{Ksp, Vec as PetscVec};
+use crate::petsc::{ConvergedReason, Ksp, Vec as PetscVec};
 use crate::status::Status;
 use crate::Result;
 
@@ -139,10 +139,20 @@ pub fn iterate(
             return Ok(Run::nothing_to_do(start));
         }
     }
-    let x = system.dual().multipliers()?;
     let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
+    if max_it == 0 {
+        // PETSc's CG runs one iteration all the same, and writes beyond the arrays that it has for none.
+        return Ok(Run {
+            iterations: 0,
+            status: Status::Krylov(ConvergedReason::its()),
+            residuals: vec![start],
+            estimate: None,
+            broken_off: false,
+        });
+    }
+    let x = system.dual().multipliers()?;
     let rtol_of = |rtol| ksp.set_tolerances(Some(rtol), Some(atol), Some(dtol), Some(max_it));
-    ksp.record_residuals(max_it.min(100_000) + 1)?;
+    ksp.record_residuals(max_it.clamp(0, 100_000) as usize + 1)?;
     rtol_of(control.tolerance / start)?;
     let counted = Start::now();
     let solved = {
