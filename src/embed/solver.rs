@@ -17,6 +17,7 @@ use super::states::states;
 use super::subdomains::{subdomain, Known};
 use super::torn::Torn;
 use crate::contact::State as ContactState;
+use crate::feti::krylov::solve::Look;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
 use crate::parallel::exchange::{gather_all, total};
@@ -167,20 +168,21 @@ impl Embedded {
         })
     }
 
-    /// Solves for the right-hand side b. Whenever x satisfies the tolerance of the dual problem, `enough` is called: it
-    /// returns the factor by which the residual should fall further, or `None`. Collective.
+    /// Solves for the right-hand side b. Whenever x satisfies the tolerance of the dual problem, and before an
+    /// iteration that may have nothing to do, `enough` is called: it returns the factor by which the residual should
+    /// fall further, or `None`. Collective.
     ///
     /// # Errors A load that is not balanced, or that acts on an empty row; PETSc's own errors and those of `enough`.
     pub fn solve(
         &self,
         b: &PetscVec,
         x: &PetscVec,
-        enough: &dyn Fn(&PetscVec) -> Result<Option<f64>>,
+        enough: &dyn Fn(&PetscVec, Look) -> Result<Option<f64>>,
     ) -> Result<Outcome> {
         self.load(b, None)?;
-        let solution = self.solver().solve_until(&|u| {
+        let solution = self.solver().solve_until(&|u, look| {
             self.put_together(u, x)?;
-            enough(x)
+            enough(x, look)
         })?;
         self.put_together(&solution.u, x)?;
         Ok(outcome(&solution))

@@ -169,3 +169,25 @@ fn stagnation_is_said() {
     let out = program.with_plugin(4, "-ksp_type fetifeti -n 24 -ksp_rtol 1e-12");
     assert_eq!(out.code, 0, "{}", out.all());
 }
+
+/// The load of the solution one: λ₀ is the solution, and what is left of the jumps is rounding, though more than 1e-14
+/// of the displacements. Nothing is iterated on it.
+#[test]
+fn a_first_residual_of_rounding_is_no_task() {
+    let scratch = Scratch::new("embed-at-once");
+    let program = Program::own("mpicc", &scratch, "host.c");
+    let constant = "-ksp_type fetifeti -constant -ksp_rtol 1e-8 -ksp_converged_reason";
+    for options in [
+        "-n 64 -fetifeti_bodies 4",
+        "-n 120 -fetifeti_bodies 4",
+        "-n 64",
+    ] {
+        let out = program.with_plugin(4, &format!("{constant} {options}"));
+        assert_eq!(out.code, 0, "{options}: {}", out.all());
+        let first = "converged due to CONVERGED_RTOL iterations 0";
+        assert!(out.stdout.contains(first), "{options}: {}", out.all());
+    }
+    // Without a look at the host's residual the jumps are iterated on, as is said.
+    let out = program.with_plugin(4, &format!("{constant} -n 12 -fetifeti_true_residual 0"));
+    assert_eq!(out.code, 0, "{}", out.all());
+}

@@ -15,6 +15,7 @@ typedef struct {
   PetscReal factor; /* of all entries */
   PetscReal shift;  /* subtracted from the diagonal of every element */
   PetscInt  hole;   /* this unknown has a zero on the diagonal; -1: none */
+  PetscBool constant; /* the load is that of the solution one */
   char      nan[16]; /* what has an entry that is no number: load or matrix */
 } Wanted;
 
@@ -92,7 +93,7 @@ static PetscErrorCode Build(MPI_Comm comm, const Wanted *wanted, Mat *A)
   PetscCall(MatISSetPreallocation(*A, 9, NULL, 9, NULL));
   PetscCall(ISLocalToGlobalMappingDestroy(&map));
   PetscCall(Fill(comm, wanted, *A));
-  if (!wanted->fixed) {
+  if (!wanted->fixed && wanted->shift == 0) {
     MatNullSpace nullsp;
 
     PetscCall(MatNullSpaceCreate(comm, PETSC_TRUE, 0, NULL, &nullsp));
@@ -198,6 +199,14 @@ static PetscErrorCode Once(MPI_Comm comm, const Wanted *wanted, const char *pref
   PetscFunctionBeginUser;
   PetscCall(Build(comm, wanted, &A));
   PetscCall(Load(A, 1, &b));
+  if (wanted->constant) {
+    Vec one;
+
+    PetscCall(VecDuplicate(b, &one));
+    PetscCall(VecSet(one, 1));
+    PetscCall(MatMult(A, one, b));
+    PetscCall(VecDestroy(&one));
+  }
   PetscCall(Spoil(wanted, b));
   PetscCall(VecDuplicate(b, &x));
   PetscCall(Solver(comm, A, prefix, &ksp));
@@ -367,7 +376,7 @@ static PetscErrorCode Unfit(MPI_Comm comm, Wanted wanted)
 
 int main(int argc, char **argv)
 {
-  Wanted      wanted = {12, 0, PETSC_TRUE, 0, 1, 0, -1, ""};
+  Wanted      wanted = {12, 0, PETSC_TRUE, 0, 1, 0, -1, PETSC_FALSE, ""};
   char        what[64] = "once";
   PetscInt    cycles   = 10, i;
   PetscBool   same;
@@ -384,6 +393,7 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-cycles", &cycles, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-skew", &wanted.skew, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-shift", &wanted.shift, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-constant", &wanted.constant, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-hole", &wanted.hole, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-no_number", wanted.nan, sizeof(wanted.nan), NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-fixed", &wanted.fixed, NULL));

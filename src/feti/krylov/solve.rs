@@ -33,9 +33,22 @@ const ASKED: usize = 8;
 /// A refinement of an error that is too large reduces it to this part of the bound, or at least by this factor.
 const REDUCED: f64 = 0.1;
 
-/// Judges displacements that satisfy the tolerance. Returns the factor by which the residual should fall further, or
-/// `None`.
-pub type Judge<'a> = dyn Fn(&[Vec<f64>]) -> Result<Option<f64>> + 'a;
+/// A first residual below this fraction of the displacements that it was formed from may be rounding: what is left of
+/// the loads after large parts of S̃⁺ have cancelled. The judge looks before the iteration tries to reduce it.
+const SUSPICIOUS: f64 = 1e-9;
+
+/// When the judge looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// Before the first iteration, because there may be nothing left to iterate on.
+    Before,
+    /// After an iteration to the tolerance.
+    After,
+}
+
+/// Judges displacements. Returns the factor by which the residual should fall further, or `None`. Before the first
+/// iteration the factor is not used: anything but `None` lets the iteration begin.
+pub type Judge<'a> = dyn Fn(&[Vec<f64>], Look) -> Result<Option<f64>> + 'a;
 
 impl LinearMethod {
     /// Solves the equations on the rows that hold until the tolerance is reached and `enough`, if given, is satisfied.
@@ -47,10 +60,15 @@ impl LinearMethod {
         let clock = Instant::now();
         let mut at = self.start()?; /*                                  λ₀ = Q G (Gᵀ Q G)⁻¹ e            */
         let r = at.evaluate_projected(&self.dual())?; /*       r ← Pᵀ (B S̃⁺(g − Bᵀ λ₀) − c)     */
-        let target = Target::new(self, r)?;
-        let control = IterationControl::to(target.at_first(), at.residual.size).observed();
-        let run = self.reach(&mut at, control)?; /*                     Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x */
-        let run = self.meet(&mut at, run, control, &target, enough)?; /* y ← S̃⁺(g − Bᵀ λ) + R α          */
+        let run = match self.at_once(&mut at, r, enough)? {
+            Some(run) => run,
+            None => {
+                let target = Target::new(self, r)?;
+                let control = IterationControl::to(target.at_first(), at.residual.size).observed();
+                let run = self.reach(&mut at, control)?; /*     Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x         */
+                self.meet(&mut at, run, control, &target, enough)? /* y ← S̃⁺(g − Bᵀ λ) + R α             */
+            }
+        };
         let seconds = clock.elapsed().as_secs_f64();
         let found = self.recover(at, run, seconds)?; /*                 u_I ← K_II⁻¹ (f_I − K_IΓ u_Γ)    */
         let status = found.status.clone();
@@ -61,6 +79,27 @@ impl LinearMethod {
             refined.status = status;
         }
         self.certify(refined)
+    }
+
+    /// Whether λ₀ is the solution already, as the judge sees it: a run without iterations, with the displacements of
+    /// λ₀, rigid motions included. Otherwise `None`, and the residual is as it was. `r` is ‖Pᵀ r‖. Collective.
+    fn at_once(&self, at: &mut Iterate, r: f64, enough: Option<&Judge>) -> Result<Option<Run>> {
+        let Some(enough) = enough.filter(|_| r <= SUSPICIOUS * at.residual.size) else {
+            return Ok(None);
+        };
+        at.place(&self.dual())?;
+        let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
+        if enough(&u, Look::Before)?.is_none() {
+            return Ok(Some(Run {
+                iterations: 0,
+                status: Status::NothingToDo,
+                residuals: vec![r],
+                estimate: None,
+                broken_off: false,
+            }));
+        }
+        at.evaluate_projected(&self.dual())?;
+        Ok(None)
     }
 
     /// Iterates from λ to `control.tolerance`; the residual holds Pᵀ r on entry. Looks at the spectrum, deflates large
@@ -135,7 +174,9 @@ impl LinearMethod {
                     break;
                 };
                 let u = displacements(&self.dual(), &at.loads, &mut at.residual)?;
-                let Some(factor) = enough(&u)? else { break };
+                let Some(factor) = enough(&u, Look::After)? else {
+                    break;
+                };
                 asked += 1;
                 // The last iteration may have ended far below its tolerance.
                 tolerance = factor * tolerance.min(at.evaluate_projected(&self.dual())?);
