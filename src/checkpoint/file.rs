@@ -51,9 +51,34 @@ pub fn read(path: &Path) -> Result<Checkpoint> {
 
 /// The FNV-1a hash. It always changes when a single byte does.
 pub(super) fn hash(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &byte| {
+    hash_from(START, bytes)
+}
+
+/// The hash of no bytes.
+const START: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// The hash of what `start` is the hash of, followed by these bytes.
+fn hash_from(start: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(start, |h, &byte| {
         (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
+}
+
+/// [`hash`] of the content of a file, which may be large.
+///
+/// # Errors
+/// [`Error::Input`] with the path, if the file cannot be read.
+pub(super) fn hash_of(path: &Path) -> Result<u64> {
+    let name = path.display();
+    let refused = |e| Error::input(format!("{name}: the file cannot be read: {e}"));
+    let mut file = File::open(path).map_err(refused)?;
+    let (mut out, mut part) = (START, vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut part).map_err(refused)? {
+            0 => return Ok(out),
+            n => out = hash_from(out, &part[..n]),
+        }
+    }
 }
 
 fn to_bytes(checkpoint: &Checkpoint) -> Vec<u8> {

@@ -17,7 +17,7 @@ use crate::contact::State;
 use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::output;
-use crate::scene::Scene;
+use crate::scene::{Field, Scene};
 use crate::{Error, FetiFeti, Result};
 use rows::{GlobalState, Layout};
 
@@ -152,7 +152,7 @@ impl Checkpoints {
         let text = std::fs::read_to_string(path).map_err(|e| {
             Error::input(format!("{}: the scene cannot be read: {e}", path.display()))
         })?;
-        self.scene = fingerprint(&text);
+        self.scene = identity(&text, scene)?;
         if let Some(file) = &self.file {
             if output::is_stdout(file) {
                 return Err(Error::input(
@@ -265,7 +265,28 @@ impl Attached {
     }
 }
 
-/// A hash of what is solved: comments, layout, title and PETSc options do not change it.
+/// A hash of what is solved: the scene, and the content of each file with coefficients that it reads.
+fn identity(text: &str, scene: &Scene) -> Result<u64> {
+    let specs = scene.bodies.iter().map(|body| &body.spec);
+    let fields = specs.flat_map(|spec| [&spec.rho, &spec.poisson]);
+    let files = fields.filter_map(|field| match field {
+        Field::Cells(cells) => cells.file(),
+        _ => None,
+    });
+    let mut out = fingerprint(text);
+    // Bodies of a grid read the same file.
+    let mut known: Vec<&Path> = Vec::new();
+    for path in files {
+        if !known.contains(&path) {
+            known.push(path);
+            let content = file::hash_of(path)?;
+            out = file::hash(&[out.to_le_bytes(), content.to_le_bytes()].concat());
+        }
+    }
+    Ok(out)
+}
+
+/// A hash of the scene as text: comments, layout, title and PETSc options do not change it.
 fn fingerprint(text: &str) -> u64 {
     match text.parse::<toml::Table>() {
         Ok(mut table) => {

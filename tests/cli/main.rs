@@ -4,6 +4,7 @@
 mod support;
 
 mod checkpoint;
+mod checkpoint_files;
 mod contact;
 mod elastic;
 mod input;

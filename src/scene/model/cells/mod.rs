@@ -12,7 +12,7 @@ mod picture;
 
 use crate::error::{Error, Result};
 use crate::mesh::{Block, BoxMesh};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use numbers::Array;
@@ -32,6 +32,8 @@ pub struct Cells {
 struct Data {
     /// The name in messages: the file, or another description.
     name: String,
+    /// The file that the values are from, if they are from one.
+    file: Option<PathBuf>,
     /// Cells in x, y and z.
     counts: [usize; 3],
     /// Least and greatest value; NaN where one of them is.
@@ -54,7 +56,15 @@ impl Cells {
     /// # Errors
     /// [`Error::Input`] when the number of values is another one.
     pub fn new(name: impl Into<String>, counts: [usize; 3], values: Vec<f64>) -> Result<Cells> {
-        let name = name.into();
+        Cells::listed(name.into(), None, counts, values)
+    }
+
+    fn listed(
+        name: String,
+        file: Option<&Path>,
+        counts: [usize; 3],
+        values: Vec<f64>,
+    ) -> Result<Cells> {
         if product(counts) != Some(values.len()) || values.is_empty() {
             let shape = shape(counts);
             let found = values.len();
@@ -63,7 +73,7 @@ impl Cells {
             )));
         }
         let range = range(values.iter().copied());
-        Ok(Cells::of(name, counts, range, Values::Listed(values)))
+        Ok(Cells::of(name, file, counts, range, Values::Listed(values)))
     }
 
     /// The numbers in the file `path`, in the order of [`Cells::new`]. With `format: None`, files `*.txt` and `*.csv`
@@ -75,11 +85,12 @@ impl Cells {
         let name = path.display().to_string();
         let format = format.or_else(|| numbers::format_of(path));
         if format == Some(NumberFormat::Text) {
-            return Cells::new(name, counts, numbers::text(path)?);
+            return Cells::listed(name, Some(path), counts, numbers::text(path)?);
         }
         let array = Array::open(path, counts, format)?;
         let range = array.range()?;
-        Ok(Cells::of(name, counts, range, Values::Stored(array)))
+        let values = Values::Stored(array);
+        Ok(Cells::of(name, Some(path), counts, range, values))
     }
 
     /// The grey values of a PNG picture, its top row at the top of the body: `values[0]` where it is black, `values[1]`
@@ -92,13 +103,21 @@ impl Cells {
         let (picture, counts) = Picture::read(path, values, tone)?;
         let range = range(picture.values());
         let name = path.display().to_string();
-        Ok(Cells::of(name, counts, range, Values::Painted(picture)))
+        let values = Values::Painted(picture);
+        Ok(Cells::of(name, Some(path), counts, range, values))
     }
 
-    fn of(name: String, counts: [usize; 3], range: [f64; 2], values: Values) -> Cells {
+    fn of(
+        name: String,
+        file: Option<&Path>,
+        counts: [usize; 3],
+        range: [f64; 2],
+        values: Values,
+    ) -> Cells {
         Cells {
             data: Arc::new(Data {
                 name,
+                file: file.map(Path::to_path_buf),
                 counts,
                 range,
                 values,
@@ -115,6 +134,11 @@ impl Cells {
     /// The name in messages: the file, or another description.
     pub fn name(&self) -> &str {
         &self.data.name
+    }
+
+    /// The file that the values are from, if they are from one.
+    pub fn file(&self) -> Option<&Path> {
+        self.data.file.as_deref()
     }
 
     /// Cells in x, y and z; 1 in z in the plane.
