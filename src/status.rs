@@ -34,6 +34,12 @@ impl Status {
         }
     }
 
+    /// Whether the Krylov method met a direction that rounding has made indefinite, or broke down: its operators have
+    /// no more digits.
+    pub(crate) fn broke_down(&self) -> bool {
+        matches!(self, Status::Krylov(reason) if reason.broke_down())
+    }
+
     /// The number of PETSc's `KSPConvergedReason` with the same meaning, or the nearest one: operators that have lost
     /// their digits count as a preconditioner that failed, a residual that rounding holds up as a breakdown, too many
     /// contact steps as too many iterations.

@@ -7,12 +7,13 @@
 //! On A_k the gap B u − c vanishes and off it λ vanishes, so that ρ plays no part. The loop starts from all candidates,
 //! because a smaller set is singular if only contact holds a body. While the set changes, the inner problem is solved
 //! loosely, starting from the last λ. A set that stays is solved to the end; it is the solution if it stays then, too.
-//! A set that comes back is treated with growing [`Caution`].
+//! Nothing makes the sets converge. Where the number of wrong rows does not fall for some steps, the loop hands over to
+//! the augmented Lagrangian.
 
 use std::time::Instant;
 
 use super::settings::{ContactSettings, ContactType};
-use super::state::{changes, Caution, Observer, State, Step};
+use super::state::{changes, Observer, State, Step};
 use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
@@ -21,7 +22,7 @@ use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::rows::Rows;
 use crate::feti::{LinearMethod, LinearSolution, Spectrum};
-use crate::parallel::exchange::{any, gather_all};
+use crate::parallel::exchange::any;
 use crate::status::Status;
 use crate::Result;
 
@@ -29,7 +30,7 @@ use crate::Result;
 pub(super) enum Ended {
     /// A solution, or a tolerance that is out of reach.
     Found(LinearSolution, Vec<Step>),
-    /// The rule finds no next set from this state, after these steps and seconds: SMALBE takes over.
+    /// The rule finds no next set from this state, after these steps and seconds, or its sets wander.
     HandedOver {
         state: State,
         steps: Vec<Step>,
@@ -51,7 +52,7 @@ pub(super) fn solve(
         if run.state.steps >= settings.max_it {
             break Status::ContactSteps;
         }
-        if run.state.caution == Caution::Fallback {
+        if run.state.safeguarded {
             return Ok(Ended::HandedOver {
                 state: run.state,
                 steps,
@@ -69,6 +70,17 @@ pub(super) fn solve(
     let found = run.finish(&steps, seconds, status)?;
     Ok(Ended::Found(found, steps))
 }
+
+/// Steps without progress after which the loop hands over.
+const PATIENCE: usize = 4;
+
+/// Loose inner problems may have misled the sets if there was no progress for this many steps and more than [`MANY`]
+/// rows are wrong.
+const MISLED: usize = 2;
+const MANY: usize = 8;
+
+/// Factor by which inner problems are then solved more exactly.
+const EXACT: f64 = 1e-2;
 
 /// Largest jump on the rows that hold, relative to the residual in V. That residual does not contain the part of the
 /// jump that rigid motions close.
@@ -93,6 +105,8 @@ pub(super) struct ActiveSet<'a> {
     fresh: bool,
     /// The largest displacement in the last step.
     length: f64,
+    /// Whether inner problems are solved more exactly than the settings say.
+    pub exact: bool,
     /// Whether the next step is solved to the end.
     pub tight: bool,
     /// A multiplier pulls only if it is below minus this, relative to the largest one.
@@ -120,8 +134,11 @@ impl<'a> ActiveSet<'a> {
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(problem, &dual);
         let g = dual.natural.all_rows(&dual.stiffness);
-        motion::check(problem, &dual, &g, &loads.kernel)?;
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
+        // Who gives a reference has asked for these loads before.
+        if state.reference == 0.0 {
+            motion::check(problem, &dual, &g, &loads.kernel)?;
+        }
         let n_rows = jump.n_global;
         let at = Iterate::new(&dual, loads)?;
         drop(dual);
@@ -130,6 +147,7 @@ impl<'a> ActiveSet<'a> {
             settings,
             fresh: false,
             tight: false,
+            exact: false,
             pull: judge::ROUNDING,
             length: 0.0,
             state,
@@ -173,6 +191,16 @@ impl<'a> ActiveSet<'a> {
         self.at.evaluate_projected(&dual)
     }
 
+    /// Reduction of the residual while the set changes.
+    fn reduction(&self) -> f64 {
+        let progress = &self.state.progress;
+        let misled = progress.stalled(MISLED) && progress.wrong() > MANY;
+        match self.exact || misled {
+            true => EXACT * self.settings.inner_rtol,
+            false => self.settings.inner_rtol,
+        }
+    }
+
     /// The tolerance of the residual, from the displacements of the last step.
     fn target(&self) -> Result<f64> {
         let ksp = &self.method.ksp;
@@ -199,14 +227,10 @@ impl<'a> ActiveSet<'a> {
 
         let first = self.at.residual.r.norm2()?;
         let target = self.target()?;
-        let reduction = match self.state.caution {
-            Caution::Loose => self.settings.inner_rtol,
-            _ => 0.0,
-        };
         let tolerance = if self.tight {
             target
         } else {
-            target.max(reduction * first)
+            target.max(self.reduction() * first)
         };
         let control = IterationControl::to(tolerance, self.at.residual.size);
         let inner = method.reach(&mut self.at, control)?;
@@ -289,12 +313,9 @@ impl<'a> ActiveSet<'a> {
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
         let y = self.at.residual.largest();
-        let mut judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, y, self.pull);
+        let judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, y, self.pull);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);
-        if self.state.caution == Caution::Single {
-            judged.keep_worst(comm, jump);
-        }
         let load = &self.at.loads.kernel;
         let score = |r: usize| judged.score(lambda[r], gaps[r]);
         let mut active = judged.active.clone();
@@ -327,25 +348,18 @@ impl<'a> ActiveSet<'a> {
             }
             // The rule has no next set here. Rows that pull are kept because nothing else holds a body, or rows cannot
             // all be satisfied, or no motion closes their jumps.
-            state.caution = Caution::Fallback;
+            state.safeguarded = true;
             return Ok(Verdict::GoOn);
         }
-        let print = fingerprint(self.method, &state.active);
-        if state.visited.contains(&print) {
-            state.caution = match state.caution {
-                Caution::Loose => Caution::Exact,
-                Caution::Exact => Caution::Single,
-                _ => Caution::Fallback,
-            };
-            state.visited.clear();
-        }
-        state.visited.push(print);
+        // A set that stays after a loose step says nothing yet: the exact step has the word.
+        state.progress.note(next.wrong);
+        state.safeguarded = state.progress.stalled(PATIENCE);
         Ok(Verdict::GoOn)
     }
 }
 
 /// B y − c on the owned rows, including those that do not hold. Collective.
-fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
+pub(super) fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
     let gaps = dual.multipliers()?;
     dual.stiffness.jump_of_all(&residual.work, &gaps)?;
     let mut gaps = gaps.to_vec()?;
@@ -365,24 +379,4 @@ struct Next {
     jump_left: f64,
     /// Number of rows, over all ranks, that were put back so that no body comes loose.
     restored: usize,
-}
-
-/// A number that identifies a set, the same on every rank and for every number of ranks. Collective.
-fn fingerprint(method: &LinearMethod, active: &[bool]) -> u64 {
-    let mix = |x: u64| {
-        let x = x.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^ (x >> 31)
-    };
-    let mut mine = 0u64;
-    let jump = &method.dual().stiffness.jump;
-    for (block, rows) in jump.numbered_blocks(&method.problem) {
-        let on = rows.enumerate().filter(|(_, r)| active[*r]);
-        for (k, _) in on {
-            mine = mine.wrapping_add(mix(mix(block + 1).wrapping_add(k as u64)));
-        }
-    }
-    let all = gather_all(method.session.comm(), &[mine]);
-    all.iter().fold(0, |sum, w| sum.wrapping_add(w[0]))
 }

@@ -52,7 +52,13 @@ impl<'a> Augmented<'a> {
         let comm = method.session.comm();
         let dual = method.dual();
         let (stiffness, natural) = (&dual.stiffness, &dual.natural);
-        let diagonal = natural.superlumped(&method.problem, stiffness)?;
+        let mut diagonal = natural.superlumped(&method.problem, stiffness)?;
+        // Where several bodies meet, B_D shares a jump among rows that depend on each other. Alone, each of them is as
+        // stiff as its nodes.
+        let nodes = stiffness.compliance_of_rows(&method.problem)?;
+        for (d, c) in diagonal.iter_mut().zip(&nodes).filter(|(_, c)| **c > 0.0) {
+            *d = 1.0 / c;
+        }
         let scale: Vec<f64> = (0..diagonal.len())
             .map(|i| match stiffness.jump.is_candidate(i) {
                 true => diagonal[i].sqrt(),

@@ -1,10 +1,9 @@
 //! The rule of the active-set loop, row by row: which rows are on the wrong side.
 
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
 
 use crate::feti::jump::operator::Jump;
-use crate::parallel::exchange::{gather_all, highest, max_all, total};
+use crate::parallel::exchange::{max_all, total};
 
 /// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
 /// depends on three others inherits the sum of their jumps.
@@ -118,20 +117,5 @@ impl JudgedRows {
     pub fn score(&self, lambda: f64, gap: f64) -> f64 {
         let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
         scale(lambda, self.lambda_max) + scale(gap, self.y_max)
-    }
-
-    /// Keeps only the worst of all changes, the first one if several are equal. Collective.
-    pub fn keep_worst(&mut self, comm: &SimpleCommunicator, jump: &Jump) {
-        let (old, new) = (&jump.active, &mut self.active);
-        let largest = highest(comm, self.wrong.iter().fold(0.0, |a, w| w.max(a)));
-        let worst = |&r: &usize| old[r] != new[r] && self.wrong[r] == largest;
-        let mine = (0..new.len()).find(worst);
-        let holders = gather_all(comm, &[u64::from(mine.is_some())]);
-        let here = holders.iter().position(|w| w[0] == 1) == Some(comm.rank() as usize);
-        for r in 0..new.len() {
-            if !(here && Some(r) == mine) {
-                new[r] = old[r];
-            }
-        }
     }
 }

@@ -5,24 +5,27 @@
 //! ```
 //!
 //! The loop calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are factored
-//! once. There are two methods: a primal-dual active set (`active_set`) and SMALBE with MPRGP (`smalbe`). The first
-//! hands over to the second if its sets cycle. A check before the loop finds out whether a solution exists
+//! once. There are three methods: a primal-dual active set (`active_set`); damped Newton steps on the augmented
+//! Lagrangian (`lagrangian`), to which the first hands over if its sets wander; and SMALBE with MPRGP (`smalbe`). A check before the loop finds out whether a solution exists
 //! (`feasible`).
 
 mod active_set;
 mod augmented;
 mod balance;
 mod cone;
+mod damping;
 mod feasible;
 mod judge;
+mod lagrangian;
 mod motion;
 mod mprgp;
+mod newton;
 mod settings;
 mod smalbe;
 mod state;
 
 pub use settings::{ContactSettings, ContactType};
-pub use state::{Caution, Observer, State, Step};
+pub use state::{Observer, Progress, State, Step};
 
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::Result;
@@ -39,24 +42,24 @@ pub(crate) fn solve(
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
     feasible::check(&method.problem, &method.dual())?;
-    let ended = match settings.kind {
-        ContactType::ActiveSet => active_set::solve(method, settings, start, observe)?,
-        ContactType::Smalbe => {
-            let cold = || State::cold(&method.dual().stiffness.jump);
-            Ended::HandedOver {
-                state: start.cloned().unwrap_or_else(cold),
-                steps: Vec::new(),
-                seconds: 0.0,
-            }
-        }
+    let begin = || {
+        start
+            .cloned()
+            .unwrap_or_else(|| State::cold(&method.dual().stiffness.jump))
     };
-    let (found, steps) = match ended {
-        Ended::Found(found, steps) => (found, steps),
-        Ended::HandedOver {
-            state,
-            steps,
-            seconds,
-        } => smalbe::solve(method, settings, state, steps, seconds, observe)?,
+    let (found, steps) = match settings.kind {
+        ContactType::ActiveSet => match active_set::solve(method, settings, start, observe)? {
+            Ended::Found(found, steps) => (found, steps),
+            Ended::HandedOver {
+                state,
+                steps,
+                seconds,
+            } => lagrangian::solve(method, settings, state, steps, seconds, observe)?,
+        },
+        ContactType::AugmentedLagrangian => {
+            lagrangian::solve(method, settings, begin(), Vec::new(), 0.0, observe)?
+        }
+        ContactType::Smalbe => smalbe::solve(method, settings, begin(), observe)?,
     };
     let refined = method.refine(found)?;
     Ok((method.certify(refined)?, steps))

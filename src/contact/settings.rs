@@ -6,13 +6,19 @@ use crate::{Error, Result};
 /// The method of the outer loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContactType {
-    /// Primal-dual active set.
+    /// Primal-dual active set; damped Newton steps on the augmented Lagrangian where its sets wander.
     ActiveSet,
+    /// Damped Newton steps on the augmented Lagrangian from the start.
+    AugmentedLagrangian,
     /// SMALBE-M with MPRGP.
     Smalbe,
 }
 
-named!(ContactType { ActiveSet = "active_set", Smalbe = "smalbe" });
+named!(ContactType {
+    ActiveSet = "active_set",
+    AugmentedLagrangian = "augmented_lagrangian",
+    Smalbe = "smalbe",
+});
 
 /// Settings of the contact loop.
 #[derive(Debug, Clone, Copy, PartialEq)]

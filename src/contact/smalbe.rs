@@ -18,7 +18,7 @@ use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
 use super::mprgp::Setting;
 use super::settings::{ContactSettings, ContactType};
-use super::state::{changes, Caution, Observer, State, Step};
+use super::state::{changes, Observer, Progress, State, Step};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::{LinearMethod, LinearSolution};
@@ -45,20 +45,19 @@ const PULL: f64 = 10.0;
 /// Number of active-set steps after a set of SMALBE, before SMALBE goes on.
 const CLOSING_STEPS: usize = 5;
 
-/// Solves by SMALBE from `state`, after `steps` that took `seconds`. Collective.
+/// Solves by SMALBE from `state`. Collective.
 pub(super) fn solve(
     method: &LinearMethod,
     settings: &ContactSettings,
     mut state: State,
-    mut steps: Vec<Step>,
-    seconds: f64,
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
     let clock = Instant::now();
+    let mut steps: Vec<Step> = Vec::new();
     let comm = method.session.comm();
     let rtol = method.ksp.tolerances()?.0;
     let finish = |run: ActiveSet, steps: Vec<Step>, status| {
-        let seconds = seconds + clock.elapsed().as_secs_f64();
+        let seconds = clock.elapsed().as_secs_f64();
         Ok((run.finish(&steps, seconds, status)?, steps))
     };
     let mut search = Search::new(method, settings, &state)?;
@@ -84,8 +83,8 @@ pub(super) fn solve(
             continue;
         }
         let trial = State {
-            caution: Caution::Loose,
-            visited: Vec::new(),
+            safeguarded: false,
+            progress: Progress::default(),
             ..state.clone()
         };
         let mut run = ActiveSet::new(method, settings, Some(&trial))?;

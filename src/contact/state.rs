@@ -52,10 +52,10 @@ pub struct State {
     pub reference: f64,
     /// Steps so far.
     pub steps: usize,
-    /// Fingerprints of the sets of earlier steps.
-    pub visited: Vec<u64>,
-    /// The caution with which the loop continues.
-    pub caution: Caution,
+    /// The progress of the active-set method.
+    pub progress: Progress,
+    /// Whether the active-set method has given up, and the augmented Lagrangian goes on.
+    pub safeguarded: bool,
     /// SMALBE's multipliers of the balance of forces, length r, the same on every rank; empty if SMALBE has not run.
     pub mu: Vec<f64>,
 }
@@ -69,8 +69,8 @@ impl State {
             before: active.to_vec(),
             reference: 0.0,
             steps: 0,
-            visited: Vec::new(),
-            caution: Caution::Loose,
+            progress: Progress::default(),
+            safeguarded: false,
             mu: Vec::new(),
         }
     }
@@ -96,19 +96,42 @@ pub(super) fn changes(comm: &SimpleCommunicator, before: &[bool], now: &[bool]) 
     counts.map(|n| n as usize)
 }
 
-/// The caution of the active-set loop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+/// The progress of the active-set method, measured by the number of rows on the wrong side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(Serialize, Deserialize))]
-pub enum Caution {
-    /// Loose inner tolerances while the set changes.
-    Loose,
-    /// A set has come back: inner problems are solved to the end.
-    Exact,
-    /// A set has come back again: one row changes at a time.
-    Single,
-    /// A set has come back once more: SMALBE takes over.
-    Fallback,
+pub struct Progress {
+    /// The smallest number of wrong rows so far; `None` before the first step.
+    fewest: Option<usize>,
+    /// Steps since then.
+    idle: usize,
+    /// The number after the last step.
+    wrong: usize,
+}
+
+impl Progress {
+    /// Notes the number of wrong rows after a step.
+    pub(super) fn note(&mut self, wrong: usize) {
+        self.wrong = wrong;
+        match self.fewest {
+            Some(fewest) if wrong >= fewest => self.idle += 1,
+            _ => (self.fewest, self.idle) = (Some(wrong), 0),
+        }
+    }
+
+    /// The number of wrong rows after the last step.
+    pub(super) fn wrong(&self) -> usize {
+        self.wrong
+    }
+
+    /// Whether the number of wrong rows has not fallen for `patience` steps.
+    pub(super) fn stalled(&self, patience: usize) -> bool {
+        self.idle >= patience
+    }
 }
 
 /// Called after each outer step.
 pub type Observer<'a> = dyn FnMut(&Step, &State) -> Result<()> + 'a;
+
+#[cfg(test)]
+#[path = "../../tests/inside/contact/state.rs"]
+mod tests;

@@ -36,6 +36,17 @@ impl Dense {
         }
     }
 
+    /// The matrix with entries `of(i, j)`.
+    pub fn from_fn(rows: usize, cols: usize, of: impl Fn(usize, usize) -> f64) -> Dense {
+        let mut out = Dense::zeros(rows, cols);
+        for j in 0..cols {
+            for (i, entry) in out.col_mut(j).iter_mut().enumerate() {
+                *entry = of(i, j);
+            }
+        }
+        out
+    }
+
     /// Column `j`.
     pub fn col(&self, j: usize) -> &[f64] {
         &self.data[j * self.rows..(j + 1) * self.rows]

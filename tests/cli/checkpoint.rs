@@ -190,7 +190,7 @@ fn a_solved_run_is_confirmed_on_any_ranks() {
         assert_eq!((&a.local, &a.blocks), (&b.local, &b.blocks));
         let (a, b) = (&a.all, &b.all);
         assert_eq!((&a.active, &a.before), (&b.active, &b.before));
-        assert_eq!((&a.visited, a.caution), (&b.visited, b.caution));
+        assert_eq!((a.progress, a.safeguarded), (b.progress, b.safeguarded));
         let largest = a.lambda.iter().fold(0.0f64, |m, l| m.max(l.abs()));
         for (x, y) in a.lambda.iter().zip(&b.lambda) {
             assert!((x - y).abs() < 1e-6 * largest, "{x} {y}");

@@ -183,7 +183,7 @@ fn load_steps_are_a_time_series() {
 #[test]
 fn both_methods_give_the_same_energy() {
     let scratch = Scratch::new("methods");
-    let energies = ["active_set", "smalbe"].map(|method| {
+    let energies = ["active_set", "augmented_lagrangian", "smalbe"].map(|method| {
         let json = scratch.path(method);
         let options = ["--json", &json, "--quiet", "-fetifeti_contact_type", method];
         let out = fetifeti(&[&["solve", MODEL], &options[..]].concat());
@@ -230,7 +230,11 @@ fn a_loop_that_stops_early_writes_what_it_has() {
 #[test]
 fn options_that_make_no_sense_are_refused() {
     for (option, value, expected) in [
-        ("-fetifeti_contact_type", "foo", "one of active_set, smalbe"),
+        (
+            "-fetifeti_contact_type",
+            "foo",
+            "one of active_set, augmented_lagrangian, smalbe",
+        ),
         (
             "-fetifeti_contact_inner_rtol",
             "2",

@@ -24,7 +24,11 @@ fn agree(session: &Session, name: &str) -> Result<(), String> {
     let scene = Scene::load(path).map_err(|e| e.to_string())?;
     let problem = Assembled::of_scene(&scene);
     let reference: Reference = problem.solve();
-    for kind in [ContactType::ActiveSet, ContactType::Smalbe] {
+    for kind in [
+        ContactType::ActiveSet,
+        ContactType::AugmentedLagrangian,
+        ContactType::Smalbe,
+    ] {
         let what = (&scene, &problem, &reference);
         let agreement = contact_judge::judge(session, what, false, kind)
             .map_err(|why| format!("{name}, {}: {why}", kind.name()))?;

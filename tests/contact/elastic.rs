@@ -8,7 +8,11 @@ use fetifeti::contact::ContactType;
 use fetifeti::petsc::Session;
 use fetifeti::Error;
 
-const KINDS: [ContactType; 2] = [ContactType::ActiveSet, ContactType::Smalbe];
+const KINDS: [ContactType; 3] = [
+    ContactType::ActiveSet,
+    ContactType::AugmentedLagrangian,
+    ContactType::Smalbe,
+];
 
 /// Solves the scenes of `seeds` with both methods. Where there is a solution, both agree with the reference; the other
 /// scenes are refused.

@@ -5,6 +5,7 @@ mod support;
 
 mod bodies;
 mod elastic;
+mod jumps;
 mod oracle;
 mod qp_reference;
 mod random;

@@ -43,7 +43,7 @@ fn on_ranks(ranks: usize) {
         let n = row["elements_per_side"].as_u64().expect("a count");
         for s in grids(n) {
             let scene = scratch.file("model.toml", &model(n, s));
-            for method in ["active_set", "smalbe"] {
+            for method in ["active_set", "augmented_lagrangian", "smalbe"] {
                 let what = format!("{n} elements, {s}x{s} subdomains, {ranks} ranks, {method}");
                 let args = [
                     "solve",
@@ -127,7 +127,9 @@ fn sets_and_displacements() {
             for (s, method, rtol) in [
                 (2, ContactType::ActiveSet, 1e-6),
                 (2, ContactType::Smalbe, 1e-6),
+                (2, ContactType::AugmentedLagrangian, 1e-6),
                 (4, ContactType::ActiveSet, 1e-11),
+                (4, ContactType::AugmentedLagrangian, 1e-11),
                 (4, ContactType::Smalbe, 1e-11),
             ] {
                 let what = format!(

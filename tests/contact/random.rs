@@ -8,7 +8,11 @@ use fetifeti::petsc::Session;
 use fetifeti::Error;
 use random_scene::{Case, Collection, Fate};
 
-const KINDS: [ContactType; 2] = [ContactType::ActiveSet, ContactType::Smalbe];
+const KINDS: [ContactType; 3] = [
+    ContactType::ActiveSet,
+    ContactType::AugmentedLagrangian,
+    ContactType::Smalbe,
+];
 
 fn judge(
     session: &Session,
@@ -73,6 +77,11 @@ fn on_one_rank(kind: ContactType) {
 #[test]
 fn five_hundred_random_scenes_by_active_sets() {
     mpi::alone(|| on_one_rank(ContactType::ActiveSet));
+}
+
+#[test]
+fn five_hundred_random_scenes_by_the_augmented_lagrangian() {
+    mpi::alone(|| on_one_rank(ContactType::AugmentedLagrangian));
 }
 
 #[test]

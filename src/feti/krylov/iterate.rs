@@ -84,8 +84,7 @@ impl Run {
     pub fn broke_down(&self, part: f64) -> bool {
         let ends = (self.residuals.first(), self.residuals.last());
         let moved = matches!(ends, (Some(first), Some(last)) if *last < part * first);
-        let broken = matches!(&self.status, Status::Krylov(reason) if reason.broke_down());
-        broken && moved
+        self.status.broke_down() && moved
     }
 
     /// This run, which was broken off, followed by a run with another preconditioner. The spectrum is that of the

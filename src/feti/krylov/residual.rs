@@ -1,7 +1,7 @@
 //! λ with its displacements and the remaining jumps.
 //!
 //! ```text
-//!     y = S̃⁺(g − Bᵀ λ),      r = B y − c
+//!     y = S̃⁺(g − Bᵀ λ),      r = B y − C λ − c            C: compliance of the rows, zero as a rule
 //! ```
 
 use super::loads::Loads;
@@ -19,7 +19,7 @@ pub const ROUNDING: f64 = 1e-14;
 pub struct Residual {
     /// y = S̃⁺(g − Bᵀ λ) on every local subdomain.
     pub work: Vec<Work>,
-    /// B y − c on the rows that hold, zero on the others.
+    /// B y − C λ − c on the rows that hold, zero on the others.
     pub r: PetscVec,
     /// ‖y‖₂ over all ranks.
     pub size: f64,
@@ -48,7 +48,8 @@ impl Residual {
             }
         });
         stiffness.s_plus(&mut self.work)?; /*                 y ← S̃⁺ v          */
-        stiffness.jump_of(&self.work, &self.r)?; /*           r ← B y − c       */
+        stiffness.jump_of(&self.work, &self.r)?; /*           r ← B y − C λ − c */
+        stiffness.add_compliance(-1.0, lambda, &self.r)?;
         {
             let jump = &stiffness.jump;
             let c = loads.jumps.as_ref().unwrap_or(&jump.held);

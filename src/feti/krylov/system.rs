@@ -82,6 +82,13 @@ impl System {
         self.dual.borrow_mut().set_face(free);
     }
 
+    /// Replaces the compliance of the rows; see [`Dual::set_compliance`]. Kept directions belong to the old operator
+    /// and are forgotten. Collective.
+    pub(crate) fn set_compliance(&self, compliance: Option<Vec<f64>>) {
+        self.recycled.borrow_mut().forget();
+        self.dual.borrow_mut().set_compliance(compliance);
+    }
+
     /// Replaces the right-hand sides of the rows.
     pub(crate) fn set_gaps(&self, gaps: &[f64]) {
         self.dual.borrow_mut().stiffness.jump.set_gaps(gaps);

@@ -62,6 +62,7 @@ impl Dual {
         let changed = total(session.comm(), changed as f64);
         let renewed = changed > 0.0 || self.stale;
         if renewed {
+            self.stiffness.renew_springs();
             let (stiffness, preconditioner) = (&self.stiffness, &self.preconditioner);
             self.natural.renew(problem, stiffness, preconditioner)?;
             self.stale = false;
@@ -74,6 +75,13 @@ impl Dual {
     pub(crate) fn set_face(&mut self, free: &[bool]) {
         let Stiffness { session, jump, .. } = &mut self.stiffness;
         jump.set_active(session.comm(), free);
+        self.stale = true;
+    }
+
+    /// Replaces the compliance C of the rows in F; `None` makes all rows rigid. What is derived from F is renewed with
+    /// the next set of rows. Collective.
+    pub(crate) fn set_compliance(&mut self, compliance: Option<Vec<f64>>) {
+        self.stiffness.set_compliance(compliance);
         self.stale = true;
     }
 
@@ -93,10 +101,18 @@ impl Dual {
         self.stiffness.f_mult(x, y)
     }
 
-    /// y ← M⁻¹ x.
+    /// y ← M⁻¹ x; with springs in the rows y ← (Π M⁻¹ Πᵀ + X) x.
     pub fn m(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
         let _timed = self.events[1].scope()?;
-        self.preconditioner.apply(&self.stiffness, x, y)
+        let Some(springs) = self.stiffness.springs() else {
+            return self.preconditioner.apply(&self.stiffness, x, y);
+        };
+        let reduced = self.multipliers()?;
+        reduced.copy_from(x)?;
+        springs.reduce(&mut reduced.array_mut()?);
+        self.preconditioner.apply(&self.stiffness, &reduced, y)?;
+        springs.complete(&x.array()?, &mut y.array_mut()?);
+        Ok(())
     }
 
     /// ys ← M⁻¹ xs, several columns at once. Collective.

@@ -3,5 +3,6 @@
 pub mod dual;
 pub mod preconditioner;
 pub mod products;
+pub mod springs;
 pub mod stiffness;
 pub mod work;

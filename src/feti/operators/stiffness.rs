@@ -1,8 +1,10 @@
 //! S̃⁺ and F: the FETI-DP solve inside every body (docs/theory.md, section 2).
 //!
 //! ```text
-//!     S̃⁺ v = Σ_j T_j v_j + Ψ S_Π⁺ Ψᵀ v            F = Z B S̃⁺ Bᵀ Z
+//!     S̃⁺ v = Σ_j T_j v_j + Ψ S_Π⁺ Ψᵀ v            F = Z (B S̃⁺ Bᵀ + C) Z
 //! ```
+//!
+//! C is the compliance of the rows, a diagonal matrix. It is zero unless a caller puts springs into the rows.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -11,6 +13,7 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 
 use super::products::Products;
+use super::springs::Springs;
 use super::work::Work;
 use crate::feti::jump::operator::Jump;
 use crate::feti::primal::coarse::PrimalProblem;
@@ -23,6 +26,7 @@ use crate::linalg::dense::Dense;
 use crate::parallel::halo::Halo;
 use crate::parallel::team::Team;
 use crate::petsc::{Session, Vec as PetscVec};
+use crate::substructures::Substructures;
 use crate::Result;
 
 /// S̃⁺, which depends on the matrices alone, and the jump operator.
@@ -45,6 +49,8 @@ pub struct Stiffness {
     products: Products,
     /// Corrections of S_Π⁺, where coefficients jump inside bodies.
     refinement: Option<Refinement>,
+    /// C; `None` stands for zero.
+    springs: Option<Springs>,
     buffers: RefCell<Buffers>,
 }
 
@@ -80,6 +86,7 @@ impl Stiffness {
             dual_halo,
             team,
             refinement: None,
+            springs: None,
             buffers: RefCell::new(buffers),
         }
     }
@@ -92,6 +99,31 @@ impl Stiffness {
     /// Makes `refinement` correct S_Π⁺ from now on.
     pub fn refine(&mut self, refinement: Refinement) {
         self.refinement = Some(refinement);
+    }
+
+    /// Replaces C; `None` makes all rows rigid.
+    pub(super) fn set_compliance(&mut self, compliance: Option<Vec<f64>>) {
+        self.springs = compliance.map(|c| Springs::new(&self.jump, c));
+    }
+
+    /// Adapts what depends on the rows that hold in C. Call it after they have changed.
+    pub(super) fn renew_springs(&mut self) {
+        if let Some(springs) = &mut self.springs {
+            springs.renew(&self.jump);
+        }
+    }
+
+    /// C, unless it is zero.
+    pub(super) fn springs(&self) -> Option<&Springs> {
+        self.springs.as_ref()
+    }
+
+    /// out ← out + α Z C λ.
+    pub fn add_compliance(&self, alpha: f64, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
+        if let Some(springs) = &self.springs {
+            springs.add(&self.jump, alpha, &lambda.array()?, &mut out.array_mut()?);
+        }
+        Ok(())
     }
 
     /// Receives the contributions to Ψᵀ v that are under way and applies S_Π⁺. `c` (at this rank's ghosts) has this
@@ -164,7 +196,7 @@ impl Stiffness {
         Ok(())
     }
 
-    /// out ← F λ = B S̃⁺ Bᵀ λ. Collective.
+    /// out ← F λ = B S̃⁺ Bᵀ λ + C λ. Collective.
     pub fn f_mult(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
         let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
         self.dual_halo.fetch(lambda, ghost)?;
@@ -173,7 +205,8 @@ impl Stiffness {
             columns[j].b_transpose(ghost, &mut w.v); /*   v ← Bᵀ λ       */
         });
         self.s_plus(work)?; /*                            y ← S̃⁺ v       */
-        self.jump_of(work, out) /*                        out ← B y      */
+        self.jump_of(work, out)?; /*                      out ← B y      */
+        self.add_compliance(1.0, lambda, out) /*          out ← out + C λ */
     }
 
     /// outs ← F λs for the bodies of each colour. λ and F λ of one colour belong to the bodies of that colour alone;
@@ -248,6 +281,7 @@ impl Stiffness {
                 locals[j].gamma().add_psi(&w.p, &mut w.y); /*         y ← y + Ψ c    */
             });
             self.jump_of(work, out)?; /*                      out ← B y      */
+            self.add_compliance(1.0, &lambdas[c], out)?; /*   out ← out + C λ */
         }
         Ok(())
     }
@@ -262,6 +296,23 @@ impl Stiffness {
         });
         self.s_plus(work)?; /*                            y ← S̃⁺ v       */
         self.jump_of_all(work, out) /*                    out ← B y      */
+    }
+
+    /// diag(B diag(K)⁻¹ Bᵀ) on the owned rows of B_gl, whether or not they hold, and zero on the others: by how much a
+    /// row opens under a unit force if the nodes give way alone. Collective.
+    pub fn compliance_of_rows(&self, problem: &Substructures) -> Result<Vec<f64>> {
+        let mut ghost = vec![0.0; self.jump.ghosts.len()];
+        for (j, columns) in self.jump.columns.iter().enumerate() {
+            let (k, interface) = (&problem.local[j].k, &self.locals[j].gamma().interface);
+            for &(place, full) in &columns.contact {
+                let place = place as usize;
+                let dof = interface[columns.at[place] as usize] as usize;
+                ghost[columns.row[place] as usize] += full * full / k.get(dof, dof);
+            }
+        }
+        let out = PetscVec::mpi(&self.session, self.jump.n_owned)?;
+        self.dual_halo.sum(&ghost, &out)?;
+        out.to_vec()
     }
 
     /// The orthogonal projection onto B W̃: out ← B N B_Dᵀ λ on the rows of B_loc, out ← B B_Dᵀ λ on those of B_gl. It

@@ -12,8 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// The course of the contact loop, and the contact forces.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactReport {
-    /// The methods that made the steps, in order: `active_set`; `active_set, then smalbe` where the first one gave up;
-    /// or `smalbe, then active_set`, whose steps solve for the set of SMALBE to the last digits.
+    /// The methods that made the steps, in order: `active_set`; `active_set, then augmented_lagrangian, …` where the
+    /// first one gave up; or `smalbe, then active_set`, whose steps solve for the set of SMALBE to the last digits.
     pub method: String,
     /// Number of inequalities: pairs of nodes, or nodes at an obstacle, that may touch.
     pub candidates: usize,
@@ -41,7 +41,7 @@ pub struct OuterStep {
     pub load_step: usize,
     /// Number of the step, from 1 in every load step.
     pub step: usize,
-    /// `active_set` or `smalbe`.
+    /// `active_set`, `augmented_lagrangian` or `smalbe`.
     pub method: String,
     /// Active inequalities in this step.
     pub active: usize,

@@ -2,7 +2,7 @@
 
 use super::super::rows::GlobalState;
 use super::*;
-use crate::contact::{Caution, State};
+use crate::contact::{Progress, State};
 
 fn example() -> Checkpoint {
     Checkpoint {
@@ -19,8 +19,8 @@ fn example() -> Checkpoint {
                 before: vec![true, true, false],
                 reference: 0.1,
                 steps: 12,
-                visited: vec![u64::MAX, 5],
-                caution: Caution::Single,
+                progress: Progress::default(),
+                safeguarded: true,
                 mu: vec![-2.5],
             },
         },

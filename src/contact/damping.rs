@@ -1,0 +1,114 @@
+//! The length of a Newton step on the augmented Lagrangian, by exact minimisation along the step.
+//!
+//! ```text
+//!     φ(u) = ½ uᵀK u − fᵀu + ½ Σ_j C_j (s_j)₊²,           s_j = μ_j + (B u − c)_j / C_j
+//! ```
+//!
+//! Displacements of the loop satisfy K u = f − Bᵀλ with some multipliers λ, between two of them both are interpolated,
+//! and along the segment
+//!
+//! ```text
+//!     φ'(t) = Σ_j (B du)_j ((s_j(t))₊ − λ_j(t))
+//! ```
+//!
+//! needs gaps and multipliers of the rows only. φ is convex, φ' piecewise linear.
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::parallel::exchange::sum_all;
+
+/// Largest number of evaluations of φ'. Newton's method on φ' ends after a handful; bisection takes over where it does
+/// not.
+const EVALUATIONS: usize = 60;
+
+/// Displacements as the rows see them, one entry for each owned row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// B u − c.
+    pub gap: Vec<f64>,
+    /// λ with K u = f − Bᵀλ.
+    pub force: Vec<f64>,
+}
+
+impl Point {
+    /// The point at `t` on the way to `end`.
+    pub fn towards(&self, end: &Point, t: f64) -> Point {
+        let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect()
+        };
+        Point {
+            gap: between(&self.gap, &end.gap),
+            force: between(&self.force, &end.force),
+        }
+    }
+}
+
+/// The penalty terms of φ, one entry for each owned row.
+pub struct Penalty<'a> {
+    /// Whether the row is an inequality; other rows do not count.
+    pub counts: &'a [bool],
+    /// μ.
+    pub multiplier: &'a [f64],
+    /// C.
+    pub compliance: &'a [f64],
+}
+
+impl Penalty<'_> {
+    /// s at a point; zero for rows that do not count.
+    pub fn pull(&self, at: &Point) -> Vec<f64> {
+        let of = |i: usize| match self.counts[i] {
+            true => self.multiplier[i] + at.gap[i] / self.compliance[i],
+            false => 0.0,
+        };
+        (0..at.gap.len()).map(of).collect()
+    }
+
+    /// φ'(t) and φ''(t) on the way from one point to another. Collective.
+    fn slope(&self, comm: &SimpleCommunicator, from: &Point, to: &Point, t: f64) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for i in (0..from.gap.len()).filter(|&i| self.counts[i]) {
+            let (gap, force) = (to.gap[i] - from.gap[i], to.force[i] - from.force[i]);
+            let s = self.multiplier[i] + (from.gap[i] + t * gap) / self.compliance[i];
+            sums[0] += gap * (s.max(0.0) - (from.force[i] + t * force));
+            sums[1] += gap * (f64::from(u8::from(s > 0.0)) * gap / self.compliance[i] - force);
+        }
+        sum_all(comm, &mut sums);
+        sums
+    }
+
+    /// The t in (0, 1] that minimises φ on the way from one point to another; `None` if φ does not fall. Collective.
+    pub fn length(&self, comm: &SimpleCommunicator, from: &Point, to: &Point) -> Option<f64> {
+        // NaN is no descent either.
+        if self.slope(comm, from, to, 0.0)[0] < 0.0 {
+            // Go on below.
+        } else {
+            return None;
+        }
+        let (mut low, mut high, mut t) = (0.0, 1.0, 1.0);
+        for _ in 0..EVALUATIONS {
+            let [slope, curvature] = self.slope(comm, from, to, t);
+            if slope <= 0.0 {
+                if t == 1.0 {
+                    return Some(1.0);
+                }
+                low = t;
+            } else {
+                high = t;
+            }
+            let newton = t - slope / curvature;
+            let next = match low < newton && newton < high {
+                true => newton,
+                false => 0.5 * (low + high),
+            };
+            if (next - t).abs() <= 1e-12 * next {
+                break;
+            }
+            t = next;
+        }
+        Some(if t > 0.0 { t } else { high })
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/contact/damping.rs"]
+mod tests;

@@ -1,0 +1,113 @@
+//! The augmented Lagrangian of the inequalities, minimised by damped Newton steps: the method that always ends
+//! (docs/theory.md, section 9).
+//!
+//! ```text
+//!     φ(u) = ½ uᵀK u − fᵀu + ½ Σ_j C_j (s_j)₊²,      s_j = μ_j + (B u − c)_j / C_j,      μ ← (s)₊
+//! ```
+//!
+//! Contact rows are springs of compliance C with a force μ in them. On the set A = { s > 0 } a Newton step solves the
+//! equations B u − C λ = c − C μ: the dual problem of the active-set method with F + C in place of F. In contrast to
+//! that method, φ tells how far to go along the step. Each minimisation ends after finitely many steps, and μ converges
+//! for every C. Small C make few minimisations of many steps; they therefore begin soft and become stiffer.
+//!
+//! After each minimisation steps of the active-set method try its set. They bring the answer to the tolerance of the
+//! user, mostly long before μ has converged.
+
+use std::time::Instant;
+
+use super::active_set::{ActiveSet, Verdict};
+use super::newton::{Came, Search};
+use super::settings::ContactSettings;
+use super::state::{Observer, Progress, State, Step};
+use crate::feti::{LinearMethod, LinearSolution};
+use crate::status::Status;
+use crate::Result;
+
+/// Number of minimisations that end where the set hardly changes any more. Later ones go to the end: then convergence
+/// is proved.
+const EARLY: usize = 4;
+
+/// In a trial, a multiplier counts as pulling only if it is below minus this many tolerances, relative to the largest
+/// one.
+const PULL: f64 = 10.0;
+
+/// Steps without progress after which a trial ends.
+const PATIENCE: usize = 2;
+
+/// Solves from `state`, after `steps` that took `seconds`. Collective.
+pub(super) fn solve(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    mut state: State,
+    mut steps: Vec<Step>,
+    seconds: f64,
+    observe: &mut Observer,
+) -> Result<(LinearSolution, Vec<Step>)> {
+    let clock = Instant::now();
+    let rtol = method.ksp.tolerances()?.0;
+    state.safeguarded = true;
+    let mut search = Search::new(method, &mut state)?;
+    let elapsed = || seconds + clock.elapsed().as_secs_f64();
+    for round in 0.. {
+        let mut inner = 0;
+        let minimal = loop {
+            if state.steps >= settings.max_it {
+                search.rigid();
+                let run = ActiveSet::new(method, settings, Some(&state))?;
+                return Ok((run.finish(&steps, elapsed(), Status::ContactSteps)?, steps));
+            }
+            let (step, status, came) = search.step(&mut state)?;
+            observe(&step, &state)?;
+            steps.push(step);
+            inner += 1;
+            // A step that is as exact as rounding permits is a step.
+            if !status.converged() && !status.broke_down() {
+                return Ok((search.finish(&steps, elapsed(), status)?, steps));
+            }
+            if came == Came::Down {
+                break true;
+            }
+            if came == Came::Nowhere {
+                break false;
+            }
+            if round < EARLY && inner > 1 && came == Came::Near {
+                break false;
+            }
+        };
+        if minimal && search.is_solution()? {
+            let status = Status::NothingToDo;
+            return Ok((search.finish(&steps, elapsed(), status)?, steps));
+        }
+        search.rigid();
+        let trial = State {
+            safeguarded: false,
+            progress: Progress::default(),
+            ..state.clone()
+        };
+        let mut run = ActiveSet::new(method, settings, Some(&trial))?;
+        run.pull = PULL * rtol;
+        run.exact = true;
+        while state.steps < settings.max_it {
+            let (step, status, verdict) = run.step()?;
+            state.steps += 1;
+            let kept = State {
+                lambda: run.state.lambda.clone(),
+                before: run.state.before.clone(),
+                ..state.clone()
+            };
+            observe(&step, &kept)?;
+            steps.push(step);
+            if status.broke_down() {
+                break;
+            }
+            if verdict == Verdict::Solved || !status.converged() {
+                return Ok((run.finish(&steps, elapsed(), status)?, steps));
+            }
+            if run.state.safeguarded || run.state.progress.stalled(PATIENCE) {
+                break;
+            }
+        }
+        search.stiffen(&mut state);
+    }
+    unreachable!("the loop returns")
+}

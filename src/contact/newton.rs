@@ -1,0 +1,329 @@
+//! Newton steps on the augmented Lagrangian φ, each as long as φ falls.
+//!
+//! ```text
+//!     A = { s > 0 }        K u⁺ + Bᵀ λ⁺ = f,   B u⁺ − C λ⁺ = c − C μ on A        u ← u + t (u⁺ − u)
+//! ```
+//!
+//! u is never formed: the rows see it as gaps B u − c and as multipliers λ with K u = f − Bᵀλ, and both are
+//! interpolated along a step ([`Point`]).
+
+use std::time::Instant;
+
+use super::active_set;
+use super::damping::{Penalty, Point};
+use super::motion;
+use super::settings::ContactType;
+use super::state::{changes, State, Step};
+use crate::feti::krylov::iterate::{IterationControl, Run};
+use crate::feti::krylov::loads::Loads;
+use crate::feti::krylov::residual::Iterate;
+use crate::feti::krylov::target::target;
+use crate::feti::projector::rows::Rows;
+use crate::feti::{LinearMethod, LinearSolution};
+use crate::parallel::exchange::{highest, total};
+use crate::status::Status;
+use crate::Result;
+
+/// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes. Much
+/// softer springs take more minimisations (7 × 7 bodies with jumps of 10⁶: 3 from 30, 8 and more from 1), much stiffer
+/// ones more steps in each (10 from 30, 15 from 100).
+const STIFFNESS: f64 = 30.0;
+
+/// Factor by which the springs become stiffer from one minimisation to the next, …
+const STIFFER: f64 = 10.0;
+
+/// … and the largest stiffness. Beyond it C is lost in the rounding of F.
+const STIFFEST: f64 = 1e9;
+
+/// The set hardly changes if this many rows change, or this part of all.
+const FEW: f64 = 8.0;
+const FEW_OF_ALL: f64 = 0.02;
+
+/// Reduction of the residual in a Newton step of the first minimisation. Springs turn jumps into forces, which are less
+/// exact than the jumps by the stiffness: with stiffer springs the residual falls further.
+const REDUCTION: f64 = 1e-3;
+
+/// Reduction of the residual if the step does not lead downwards: first times this, …
+const MORE: f64 = 1e-3;
+/// … and at most this often.
+const ATTEMPTS: usize = 3;
+
+/// Where a Newton step came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Came {
+    /// To the minimum of φ.
+    Down,
+    /// Close to it: few rows change.
+    Near,
+    /// Some way.
+    Somewhere,
+    /// φ does not fall along a step that is as exact as it can be made.
+    Nowhere,
+}
+
+/// The data of the search.
+pub struct Search<'a> {
+    method: &'a LinearMethod,
+    /// B R with all candidate rows.
+    g: Rows,
+    at: Iterate,
+    /// Whether each owned row is an inequality.
+    counts: Vec<bool>,
+    /// The compliance of the nodes on the owned rows.
+    nodes: Vec<f64>,
+    stiffness: f64,
+    /// C and μ.
+    compliance: Vec<f64>,
+    multiplier: Vec<f64>,
+    /// Where the loop is; `None` before the first step of a minimisation.
+    point: Option<Point>,
+    /// The largest displacement in the last step.
+    length: f64,
+    n_rows: usize,
+    few: f64,
+    last: Option<Run>,
+}
+
+impl<'a> Search<'a> {
+    /// The search on the set of `state`, with μ = 0. Collective.
+    pub fn new(method: &'a LinearMethod, state: &mut State) -> Result<Search<'a>> {
+        let comm = method.session.comm();
+        let dual = method.dual();
+        let (stiffness, natural) = (&dual.stiffness, &dual.natural);
+        let nodes = stiffness.compliance_of_rows(&method.problem)?;
+        let counts = stiffness.jump.inequality.clone();
+        let mine = counts.iter().filter(|c| **c).count();
+        let loads = Loads::new(&method.problem, &dual);
+        let mut at = Iterate::new(&dual, loads)?;
+        let g = natural.all_rows(stiffness);
+        if state.reference == 0.0 {
+            motion::check(&method.problem, &dual, &g, &at.loads.kernel)?;
+            natural.check_held(&method.problem, stiffness, &at.loads.kernel)?;
+            at.balance(&dual)?;
+            state.reference = at.evaluate_projected(&dual)?;
+        }
+        at.lambda.array_mut()?.copy_from_slice(&state.lambda);
+        let mut search = Search {
+            g,
+            at,
+            stiffness: STIFFNESS / STIFFER,
+            compliance: Vec::new(),
+            multiplier: vec![0.0; counts.len()],
+            counts,
+            nodes,
+            point: None,
+            length: 0.0,
+            n_rows: stiffness.jump.n_global,
+            few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)),
+            last: None,
+            method,
+        };
+        drop(dual);
+        search.stiffen(state);
+        Ok(search)
+    }
+
+    fn penalty(&self) -> Penalty<'_> {
+        Penalty {
+            counts: &self.counts,
+            multiplier: &self.multiplier,
+            compliance: &self.compliance,
+        }
+    }
+
+    /// Makes the rows rigid again, for the active-set method.
+    pub fn rigid(&self) {
+        self.method.system.set_compliance(None);
+    }
+
+    /// μ ← (s)₊, and stiffer springs. The next minimisation begins with a full step on the set where this one ended.
+    pub fn stiffen(&mut self, state: &mut State) {
+        if let Some(point) = self.point.take() {
+            let s = self.penalty().pull(&point);
+            self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
+            state.active = self.set(&s);
+        }
+        self.stiffness = (STIFFER * self.stiffness).min(STIFFEST);
+        let of = |(counts, node): (&bool, &f64)| match counts {
+            true => node / self.stiffness,
+            false => 0.0,
+        };
+        self.compliance = self.counts.iter().zip(&self.nodes).map(of).collect();
+        let compliance = Some(self.compliance.clone());
+        self.method.system.set_compliance(compliance);
+    }
+
+    /// The rows that hold: inequalities with s > 0, and the equations.
+    fn set(&self, s: &[f64]) -> Vec<bool> {
+        let dual = self.method.dual();
+        let jump = &dual.stiffness.jump;
+        let on = |i: usize| match self.counts[i] {
+            true => s[i] > 0.0,
+            false => jump.initial[i],
+        };
+        (0..s.len()).map(on).collect()
+    }
+
+    /// Puts rows into the set so that the load drives no body away. Collective.
+    fn hold(&self, active: &mut [bool]) {
+        let comm = self.method.session.comm();
+        let dual = self.method.dual();
+        let jump = &dual.stiffness.jump;
+        let score = |i: usize| match &self.point {
+            Some(point) => point.gap[i],
+            None => -self.compliance[i],
+        };
+        motion::restore(comm, &self.g, jump, active, &score, &self.at.loads.kernel);
+    }
+
+    /// One Newton step on the set of `state`. Collective.
+    pub fn step(&mut self, state: &mut State) -> Result<(Step, Status, Came)> {
+        let clock = Instant::now();
+        let (method, comm) = (self.method, self.method.session.comm());
+        let mut active = state.active.clone();
+        self.hold(&mut active);
+        method.set_active(&active)?;
+        let dual = method.dual();
+        let jump = &dual.stiffness.jump;
+        let rows = jump.rows_between_bodies();
+        let terms = jump.gap.iter().zip(&self.compliance).zip(&self.multiplier);
+        self.at.loads.jumps = Some(terms.map(|((c, d), mu)| c - d * mu).collect());
+        let mut lambda = self.at.lambda.array_mut()?;
+        for (l, on) in lambda.iter_mut().zip(&active) {
+            *l = if *on { *l } else { 0.0 };
+        }
+        drop(lambda);
+        self.at.balance(&dual)?;
+        let first = self.at.evaluate_projected(&dual)?;
+        drop(dual);
+
+        let mut run: Option<Run> = None;
+        let mut reduction = REDUCTION * STIFFNESS / self.stiffness;
+        let mut length = None;
+        let mut tolerance = first;
+        let mut end = None;
+        for _ in 0..ATTEMPTS {
+            let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
+            tolerance = (reduction * first).max(MORE * least);
+            let control = IterationControl::to(tolerance, self.at.residual.size);
+            let more = method.reach(&mut self.at, control)?;
+            run = Some(match run.take() {
+                Some(before) => before.followed_by(more),
+                None => more,
+            });
+            let here = self.look()?;
+            length = match &self.point {
+                Some(point) => self.penalty().length(comm, point, &here),
+                None => Some(1.0),
+            };
+            end = Some(here);
+            if length.is_some() {
+                break;
+            }
+            reduction *= MORE;
+            self.at.evaluate_projected(&method.dual())?;
+        }
+        let (run, end) = (run.expect("there is an attempt"), end.expect("it ended"));
+        let t = length.unwrap_or(0.0);
+        let point = match &self.point {
+            Some(point) => point.towards(&end, t),
+            None => end,
+        };
+        let s = self.penalty().pull(&point);
+        self.point = Some(point);
+        let next = self.set(&s);
+        let (was, now) = (&active, &next);
+        let [_, entering, leaving] = changes(comm, &was[rows.clone()], &now[rows.clone()]);
+        let [n_active, entered, left] = changes(comm, &state.before[rows.clone()], &active[rows]);
+        let wrong = entering + leaving;
+        state.steps += 1;
+        state.lambda = self.at.lambda.to_vec()?;
+        state.before = active;
+        state.active = next;
+        let relative = |r: f64| match state.reference {
+            reference if reference > 0.0 => r / reference,
+            _ => r,
+        };
+        let step = Step {
+            method: ContactType::AugmentedLagrangian,
+            active: n_active,
+            entered,
+            left,
+            iterations: run.iterations,
+            estimate: run.estimate,
+            exact: match method.settings.spectrum {
+                true => method.spectrum()?,
+                false => None,
+            },
+            residual: relative(*run.residuals.last().unwrap_or(&first)),
+            tolerance: relative(tolerance),
+            wrong,
+            seconds: clock.elapsed().as_secs_f64(),
+        };
+        let came = match t {
+            0.0 => Came::Nowhere,
+            1.0 if wrong == 0 => Came::Down,
+            t if t > 0.99 && wrong as f64 <= self.few => Came::Near,
+            _ => Came::Somewhere,
+        };
+        let status = run.status.clone();
+        self.last = Some(run);
+        Ok((step, status, came))
+    }
+
+    /// The displacements of the present λ as the rows see them. Collective.
+    fn look(&mut self) -> Result<Point> {
+        let dual = self.method.dual();
+        let residual = &mut self.at.residual;
+        residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;
+        residual.add_rigid_motion(&dual)?;
+        let mut gap = active_set::all_gaps(&dual, residual)?;
+        let (unheld, jump) = (dual.natural.unheld(), &dual.stiffness.jump);
+        if let Some(alpha) = motion::settle(dual.comm(), &self.g, jump, &gap, unheld) {
+            residual.shift(&dual, &alpha);
+            gap = active_set::all_gaps(&dual, residual)?;
+        }
+        self.length = residual.length(&dual);
+        Ok(Point {
+            gap,
+            force: self.at.lambda.to_vec()?,
+        })
+    }
+
+    /// Whether the springs give way by no more than the tolerance of the user. Collective.
+    pub fn is_solution(&self) -> Result<bool> {
+        let comm = self.method.session.comm();
+        let rtol = self.method.ksp.tolerances()?.0;
+        let dual = self.method.dual();
+        let jump = &dual.stiffness.jump;
+        let open = self.point.iter().flat_map(|p| p.gap.iter().enumerate());
+        let open = open.filter(|(i, _)| self.counts[*i]);
+        let open = open.fold(0.0f64, |a, (i, gap)| match jump.active[i] {
+            true => a.max(gap.abs()),
+            false => a.max(*gap),
+        });
+        Ok(highest(comm, open) <= rtol * self.length)
+    }
+
+    /// The solution at the last Newton step. Collective.
+    pub fn finish(
+        mut self,
+        steps: &[Step],
+        seconds: f64,
+        status: Status,
+    ) -> Result<LinearSolution> {
+        self.look()?;
+        self.rigid();
+        let last = self.last;
+        let run = Run {
+            iterations: steps.iter().map(|s| s.iterations).sum(),
+            status,
+            residuals: last.as_ref().map_or(Vec::new(), |r| r.residuals.clone()),
+            estimate: last.and_then(|r| r.estimate),
+            broken_off: false,
+        };
+        let mut at = self.at;
+        at.loads.jumps = None;
+        self.method.recover(at, run, seconds)
+    }
+}

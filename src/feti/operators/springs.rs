@@ -1,0 +1,155 @@
+//! Springs in the rows: the compliance C in F + C, and what it changes in the preconditioner.
+//!
+//! Rows of a block that depend on each other have multipliers N without forces: Bᵀ N = 0, so F N = 0 and M⁻¹ N = 0.
+//! On them F + C is C alone. With
+//!
+//! ```text
+//!     X = N (Nᵀ C N)⁻¹ Nᵀ          Π = I − X C
+//! ```
+//!
+//! every λ is Π λ + X C λ, and the two parts are orthogonal in F + C. The first is the cheapest of all multipliers with
+//! the same forces, so that C is small beside F there and M⁻¹ fits; on the second X is the inverse:
+//!
+//! ```text
+//!     (F + C)⁻¹ ≈ Π M⁻¹ Πᵀ + X
+//! ```
+
+use crate::feti::jump::operator::Jump;
+use crate::feti::jump::scaling;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+
+/// C, and X for the rows that hold.
+pub struct Springs {
+    /// The diagonal of C on the owned rows; zero where a row is rigid.
+    compliance: Vec<f64>,
+    /// X of each block of dependent rows, with the rows.
+    dependent: Vec<(Vec<usize>, Dense)>,
+}
+
+impl Springs {
+    /// The springs of the rows that hold in `jump`.
+    ///
+    /// # Panics
+    /// If there is not one entry for each owned row.
+    pub fn new(jump: &Jump, compliance: Vec<f64>) -> Springs {
+        assert_eq!(compliance.len(), jump.n_owned);
+        let mut springs = Springs {
+            compliance,
+            dependent: Vec::new(),
+        };
+        springs.renew(jump);
+        springs
+    }
+
+    /// Computes X again for the rows that hold now.
+    pub fn renew(&mut self, jump: &Jump) {
+        self.dependent.clear();
+        for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
+            let rows: Vec<usize> = block.rows.clone().filter(|&r| jump.active[r]).collect();
+            if rows.len() < 2 {
+                continue;
+            }
+            let b = faer::Mat::from_fn(rows.len(), block.dofs.len(), |i, j| {
+                block.b.get(rows[i] - block.rows.start, j)
+            });
+            let range = scaling::range(&b);
+            if range.ncols() == rows.len() {
+                continue;
+            }
+            let range = Dense::from_fn(rows.len(), range.ncols(), |i, j| range[(i, j)]);
+            let c: Vec<f64> = rows.iter().map(|&r| self.compliance[r]).collect();
+            self.dependent
+                .push((rows, inverse(&complement(&range), &c)));
+        }
+    }
+
+    /// out ← out + α C λ, on the rows that hold.
+    pub fn add(&self, jump: &Jump, alpha: f64, lambda: &[f64], out: &mut [f64]) {
+        for i in (0..out.len()).filter(|&i| jump.active[i]) {
+            out[i] += alpha * self.compliance[i] * lambda[i];
+        }
+    }
+
+    /// r ← Πᵀ r.
+    pub fn reduce(&self, r: &mut [f64]) {
+        for (rows, x) in &self.dependent {
+            let image = product(x, rows, |i| r[i]);
+            for (&i, v) in rows.iter().zip(&image) {
+                r[i] -= self.compliance[i] * v;
+            }
+        }
+    }
+
+    /// z ← Π z + X r.
+    pub fn complete(&self, r: &[f64], z: &mut [f64]) {
+        for (rows, x) in &self.dependent {
+            let image = product(x, rows, |i| r[i] - self.compliance[i] * z[i]);
+            for (&i, v) in rows.iter().zip(&image) {
+                z[i] += v;
+            }
+        }
+    }
+}
+
+/// X v with v given by row.
+fn product(x: &Dense, rows: &[usize], v: impl Fn(usize) -> f64) -> Vec<f64> {
+    let v: Vec<f64> = rows.iter().map(|&i| v(i)).collect();
+    let mut out = vec![0.0; rows.len()];
+    x.add_mul(&v, &mut out);
+    out
+}
+
+/// N: orthonormal columns that complete those of `range`.
+fn complement(range: &Dense) -> Dense {
+    let n = range.rows;
+    let mut known: Vec<Vec<f64>> = (0..range.cols).map(|j| range.col(j).to_vec()).collect();
+    while known.len() < n {
+        // Of the parts of the unit vectors outside the span one has a square of at least 1/n.
+        let rest = |k: usize| 1.0 - known.iter().map(|q| q[k] * q[k]).sum::<f64>();
+        let k = (0..n).max_by(|&a, &b| rest(a).total_cmp(&rest(b)));
+        let mut new = vec![0.0; n];
+        new[k.expect("there are rows")] = 1.0;
+        for _ in 0..2 {
+            for q in &known {
+                let along: f64 = q.iter().zip(&new).map(|(q, v)| q * v).sum();
+                new.iter_mut().zip(q).for_each(|(v, q)| *v -= along * q);
+            }
+        }
+        let size = new.iter().map(|v| v * v).sum::<f64>().sqrt();
+        new.iter_mut().for_each(|v| *v /= size);
+        known.push(new);
+    }
+    let columns = &known[range.cols..];
+    Dense::from_fn(n, columns.len(), |i, j| columns[j][i])
+}
+
+/// A multiplier without forces has no compliance if it is below this, relative to the largest one of its rows: rigid
+/// rows that depend on each other, after rounding.
+const RIGID: f64 = 1e-20;
+
+/// N (Nᵀ C N)⁺ Nᵀ.
+fn inverse(n: &Dense, c: &[f64]) -> Dense {
+    let p = n.cols;
+    let weighted = |i: usize, j: usize| -> f64 {
+        let terms = n.col(i).iter().zip(n.col(j)).zip(c);
+        terms.map(|((a, b), c)| a * b * c).sum()
+    };
+    let least = RIGID * c.iter().fold(0.0f64, |a, c| a.max(*c));
+    let soft = |i: usize| weighted(i, i) > least;
+    let factor = Semidefinite::new(&Dense::from_fn(p, p, |i, j| match soft(i) && soft(j) {
+        true => weighted(i, j),
+        false => 0.0,
+    }));
+    let mut x = Dense::zeros(n.rows, n.rows);
+    for r in 0..n.rows {
+        let mut column: Vec<f64> = (0..p).map(|j| n.get(r, j)).collect();
+        factor.solve(&mut column);
+        n.add_mul(&column, x.col_mut(r));
+    }
+    x
+}
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/operators/springs.rs"]
+mod tests;

@@ -1,0 +1,143 @@
+//! Grids of bodies in contact whose coefficients jump from body to body: the sets of the active-set method wander
+//! there.
+
+use crate::support::assembled::{Assembled, Reference};
+use crate::support::contact_judge;
+use crate::support::mpi;
+use crate::support::rng::Rng;
+use crate::support::session::with_session;
+use fetifeti::contact::ContactType;
+use fetifeti::petsc::Session;
+use fetifeti::scene::Scene;
+use fetifeti::{FetiFeti, MethodSettings, Settings};
+
+/// More steps than any scene here needs with some room; far fewer than the limit of the loop.
+const STEPS: usize = 60;
+
+/// `n` × `n` bodies with gaps between most of them, ρ = 1 and `jump` in a checkerboard.
+fn scene(seed: u64, n: usize, jump: f64) -> Scene {
+    let mut rng = Rng::new(seed);
+    let load = format!(
+        "{}*({:.3} + cos({:.3}*x + {:.3})*sin({:.3}*y + {:.3}*bi))",
+        [1, 2, 5, 10][rng.below(4)],
+        rng.uniform(-0.5, 0.8),
+        rng.uniform(0.5, 3.0),
+        rng.uniform(0.0, 6.0),
+        rng.uniform(0.5, 3.0),
+        rng.uniform(0.0, 6.0),
+    );
+    let mut text = format!(
+        "title = \"jumps\"\n[grid]\nbodies = [{n}, {n}]\nsize = [{n}, {n}]\nsubdomains = 2\nelements = 4\n\
+         rho = {{ checkerboard = [1, {jump:e}], by = \"body\" }}\nload = \"{load}\"\n\
+         dirichlet = {{ bottom = 0, right = 0 }}\n[interface]\ndefault = \"contact\"\n"
+    );
+    for i in 0..n {
+        for j in 0..n {
+            for (k, l) in [(i + 1, j), (i, j + 1)] {
+                if k < n && l < n && !rng.one_in(5) {
+                    let gap = rng.uniform(0.08, 0.3);
+                    text += &format!(
+                        "[[contact]]\nbodies = [\"b{i}_{j}\", \"b{k}_{l}\"]\ngap = {gap:.4}\n"
+                    );
+                }
+            }
+        }
+    }
+    Scene::parse("jumps.toml", &text).expect("a good scene")
+}
+
+/// The energy and the number of steps; rtol 1e-8.
+fn solve(session: &Session, scene: &Scene, kind: ContactType) -> (f64, usize) {
+    let mine = fetifeti::share(session, scene.n_subdomains());
+    let problem = scene
+        .substructures(&|s| mine.contains(&s))
+        .expect("a good scene");
+    let mut settings = Settings::from(MethodSettings {
+        rtol: 1e-8,
+        ..MethodSettings::default()
+    });
+    settings.contact.kind = kind;
+    let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+    let solution = solver.solve().expect("the scene has a solution");
+    assert!(solution.converged(), "{}", solution.status);
+    assert!(
+        solution.kkt.error.is_some_and(|e| e < 1e-5),
+        "{:?}",
+        solution.kkt
+    );
+    (solution.energy, solution.steps.len())
+}
+
+#[test]
+fn sets_that_wander_are_caught() {
+    with_session(|session| {
+        let mut wandered = 0;
+        for (n, jump) in [(4, 1e2), (4, 1e4), (4, 1e6), (7, 1e2), (7, 1e4), (7, 1e6)] {
+            for seed in 0..4 {
+                let scene = scene(seed, n, jump);
+                let what = format!("{n} x {n} bodies, jump {jump:e}, seed {seed}");
+                let (energy, steps) = solve(session, &scene, ContactType::ActiveSet);
+                assert!(steps <= STEPS, "{what}: {steps} steps");
+                let (other, damped) = solve(session, &scene, ContactType::AugmentedLagrangian);
+                assert!(damped <= STEPS, "{what}: {damped} damped steps");
+                // The energy has an error of second order; that of stiff bodies is relative to larger terms.
+                let off = (energy - other).abs() / energy.abs().max(1.0);
+                assert!(off < 1e-7, "{what}: {energy} and {other}");
+                wandered += usize::from(steps > 20);
+            }
+        }
+        // Without a safeguard some of these take hundreds of steps, or do not end.
+        assert!(wandered > 0);
+    });
+}
+
+#[test]
+fn displacements_agree_with_the_reference() {
+    with_session(|session| {
+        for seed in 0..4 {
+            let scene = scene(seed, 4, 1e4);
+            let problem = Assembled::of_scene(&scene);
+            let reference: Reference = problem.solve();
+            for kind in [ContactType::ActiveSet, ContactType::AugmentedLagrangian] {
+                let what = (&scene, &problem, &reference);
+                let agreement = contact_judge::judge(session, what, false, kind);
+                agreement.unwrap_or_else(|why| panic!("seed {seed}, {kind:?}: {why}"));
+            }
+        }
+    });
+}
+
+#[test]
+fn any_number_of_ranks_finds_the_same() {
+    let started = mpi::as_rank(|session, _| {
+        for seed in 0..3 {
+            let scene = scene(seed, 5, 1e4);
+            let (energy, _) = solve(session, &scene, ContactType::ActiveSet);
+            if session.rank() == 0 {
+                println!("energy {seed} {energy:.7e}");
+            }
+        }
+        Ok(())
+    });
+    let energies = [1, 2, 4].map(|ranks| {
+        let out = started.run(ranks, "scenes");
+        assert_eq!(out.code, 0, "{ranks} ranks: {}", out.all());
+        let found = out.stdout.lines().filter(|l| l.contains("energy "));
+        let found: Vec<f64> = found
+            .map(|l| {
+                l.rsplit(' ')
+                    .next()
+                    .expect("a word")
+                    .parse()
+                    .expect("a number")
+            })
+            .collect();
+        assert_eq!(found.len(), 3, "{}", out.all());
+        found
+    });
+    for other in &energies[1..] {
+        for (a, b) in energies[0].iter().zip(other) {
+            assert!((a - b).abs() < 1e-6 * a.abs(), "{a} and {b}");
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Unit tests of `src/contact/state.rs`.
+
+use super::Progress;
+
+#[test]
+fn progress_is_a_new_smallest_number() {
+    let mut progress = Progress::default();
+    assert!(!progress.stalled(1));
+    for (wrong, stalled) in [
+        (9, false),
+        (9, true),
+        (8, false),
+        (12, true),
+        (9, true),
+        (7, false),
+    ] {
+        progress.note(wrong);
+        assert_eq!(progress.stalled(1), stalled, "{wrong}");
+        assert_eq!(progress.wrong(), wrong);
+    }
+}
