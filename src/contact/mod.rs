@@ -6,8 +6,8 @@
 //!
 //! The loop calls the solver of equations and changes only Z^k, the set of rows that hold: subdomains are factored
 //! once. There are three methods: a primal-dual active set (`active_set`); damped Newton steps on the augmented
-//! Lagrangian (`lagrangian`), to which the first hands over if its sets wander; and SMALBE with MPRGP (`smalbe`). A check before the loop finds out whether a solution exists
-//! (`feasible`).
+//! Lagrangian (`lagrangian`), to which the first hands over if its sets wander; and SMALBE with MPRGP (`smalbe`). A
+//! check before the loop finds out whether a solution exists (`feasible`).
 
 mod active_set;
 mod augmented;
