@@ -117,6 +117,8 @@ pub(super) struct ActiveSet<'a> {
     placed: bool,
     /// Number of rows over all ranks, m.
     n_rows: usize,
+    /// No tolerance is below this: rounding of the problem's scale.
+    least: f64,
     /// B u − c on the owned rows after the last step, and whether each of them held in it.
     pub gaps: Vec<f64>,
     pub held: Vec<bool>,
@@ -154,6 +156,7 @@ impl<'a> ActiveSet<'a> {
             at,
             g,
             n_rows,
+            least: method.least_residual(),
             placed: false,
             gaps: Vec::new(),
             held: Vec::new(),
@@ -204,7 +207,8 @@ impl<'a> ActiveSet<'a> {
     /// The tolerance of the residual, from the displacements of the last step.
     fn target(&self) -> Result<f64> {
         let ksp = &self.method.ksp;
-        target(ksp, self.state.reference, self.length, self.n_rows)
+        let target = target(ksp, self.state.reference, self.length, self.n_rows)?;
+        Ok(target.max(self.least))
     }
 
     /// One outer step: solves the equations on the set, then determines the next set.

@@ -81,6 +81,8 @@ pub struct Search<'a> {
     length: f64,
     n_rows: usize,
     few: f64,
+    /// No tolerance is below this: rounding of the problem's scale.
+    least: f64,
     last: Option<Run>,
 }
 
@@ -116,6 +118,7 @@ impl<'a> Search<'a> {
             n_rows: stiffness.jump.n_global,
             few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)),
             last: None,
+            least: method.least_residual(),
             method,
         };
         drop(dual);
@@ -204,7 +207,7 @@ impl<'a> Search<'a> {
         let mut end = None;
         for _ in 0..ATTEMPTS {
             let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
-            tolerance = (reduction * first).max(MORE * least);
+            tolerance = (reduction * first).max(MORE * least).max(self.least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
             let more = method.reach(&mut self.at, control)?;
             run = Some(match run.take() {

@@ -1,6 +1,6 @@
 //! The linear method, set up for one problem. Only Z^k, the set of rows that hold, may change.
 
-use std::cell::Ref;
+use std::cell::{Cell, Ref};
 use std::rc::Rc;
 
 use super::facts::Facts;
@@ -23,6 +23,8 @@ pub struct LinearMethod {
     pub(crate) system: Rc<System>,
     pub(crate) ksp: Ksp,
     pub(crate) facts: Facts,
+    /// The largest displacement of the solutions so far: the scale of the problem where a later load vanishes.
+    pub(crate) length: Cell<f64>,
     /// The largest ratio of coefficients inside a body.
     pub(crate) varies: f64,
 }

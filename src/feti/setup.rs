@@ -1,5 +1,6 @@
 //! The set-up of the linear method: from substructures to operators and a Krylov method.
 
+use std::cell::Cell;
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -120,6 +121,7 @@ impl LinearMethod {
                 setup_seconds: clock.elapsed().as_secs_f64(),
                 ..facts
             },
+            length: Cell::new(0.0),
             varies,
         })
     }

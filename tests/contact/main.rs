@@ -11,3 +11,4 @@ mod qp_reference;
 mod random;
 mod random_reference;
 mod reference;
+mod zero;

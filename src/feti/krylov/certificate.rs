@@ -13,6 +13,10 @@ use crate::Result;
 /// The certificate may be this many times the tolerance of the iteration, because the iteration measures another norm.
 const CREDIBLE: f64 = 1e4;
 
+/// Displacements and forces below this part of the problem's scale are measured against that scale: a solution u = 0 has
+/// none of its own.
+const SMALL: f64 = 1e-8;
+
 /// How well the optimality conditions hold, relative to the sizes of their terms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kkt {
@@ -52,12 +56,14 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Computes the certificate from the displacements of each local subdomain and the multipliers. Collective.
+    /// Computes the certificate from the displacements of each local subdomain and the multipliers. `known` is a
+    /// displacement of the problem's scale; right-hand sides of the rows are others. Collective.
     pub fn new(
         problem: &Substructures,
         dual: &Dual,
         u: &[Vec<f64>],
         lambda: &PetscVec,
+        known: f64,
     ) -> Result<Certificate> {
         let comm = dual.comm();
         let stiffness = &dual.stiffness;
@@ -70,7 +76,7 @@ impl Certificate {
             let (sub, columns) = (&problem.local[j], &jump.columns[j]);
             examine((sub, &u[j]), &locals[j], (columns, &ghost), &places[j])
         });
-        let mut sums = [0.0; 7];
+        let mut sums = [0.0; 8];
         let mut on_gamma = Vec::new();
         let mut primal = vec![0.0; stiffness.space.ghosts.len()];
         let mut primal_d = primal.clone();
@@ -97,13 +103,16 @@ impl Certificate {
         sum_all(comm, &mut sums);
         let primal = stiffness.primal.weighted_square(&primal, &primal_d)?;
         let forces = sums[1].sqrt() + sums[2].sqrt();
-        let stationarity = (sums[0] + primal).sqrt() / positive(forces);
+        let residual = (sums[0] + primal).sqrt();
 
-        let mut largest = [0.0f64; 4]; // |u|, |λ|, violation, |λ (Bu − c)|
+        let mut largest = [0.0, 0.0, 0.0, 0.0, known]; // |u|, |λ|, violation, |λ (Bu − c)|, scale
         let mut smallest = [0.0f64];
         largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
         for r in 0..jump.n_owned {
             largest[1] = largest[1].max(lambda[r].abs());
+            if jump.is_candidate(r) {
+                largest[4] = largest[4].max(jump.gap[r].abs());
+            }
             if jump.inequality[r] {
                 largest[2] = largest[2].max(gaps[r]);
                 largest[3] = largest[3].max((lambda[r] * gaps[r]).abs());
@@ -115,19 +124,20 @@ impl Certificate {
         drop(lambda);
         max_all(comm, &mut largest);
         min_all(comm, &mut smallest);
-        let [u_max, lambda_max, violation, product] = largest;
+        let [u_max, lambda_max, violation, product, length] = largest;
+        let (u_least, least) = (SMALL * length, SMALL * length * sums[7].sqrt());
         Ok(Certificate {
             kkt: Kkt {
-                stationarity,
-                feasibility: violation / positive(u_max),
-                complementarity: product / positive(lambda_max * u_max),
+                stationarity: residual / positive(forces.max(least)),
+                feasibility: violation / positive(u_max.max(u_least)),
+                complementarity: product / positive(lambda_max * u_max.max(u_least)),
                 min_multiplier: smallest[0] / positive(lambda_max),
                 error: None,
             },
             left: Leftover {
                 on_gamma,
                 inside: sums[4].sqrt(),
-                size: sums[5].max(0.0).sqrt(),
+                size: sums[5].max(0.0).sqrt().max(least),
                 terms: sums[6].sqrt() + forces,
             },
             energy: sums[3],
@@ -138,8 +148,8 @@ impl Certificate {
 
 /// The contribution of one subdomain to the certificate.
 struct Examined {
-    /// Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d and the energy, with d = diag(K); then Σ r²/d inside, uᵀK u and Σ d u².
-    sums: [f64; 7],
+    /// Σ r²/d, Σ f²/d, Σ (Bᵀλ)²/d and the energy, with d = diag(K); then Σ r²/d inside, uᵀK u, Σ d u² and Σ d.
+    sums: [f64; 8],
     /// Residuals and d of primal dofs, which are summed over copies: (ghost, r, d).
     primal: Vec<(u32, f64, f64)>,
     /// Ghosts of fixing dofs.
@@ -156,7 +166,7 @@ fn examine(
     (columns, ghost): (&JumpColumns, &[f64]),
     places: &[u32],
 ) -> Examined {
-    let mut sums = [0.0; 7];
+    let mut sums = [0.0; 8];
     let mut primal = Vec::new();
     let mut r = vec![0.0; sub.k.n()];
     sub.k.mul(u, &mut r);
@@ -165,6 +175,7 @@ fn examine(
     sums[5] = u.iter().zip(&r).map(|(u, ku)| u * ku).sum();
     let d = sub.k.diagonal();
     sums[6] = u.iter().zip(&d).map(|(u, d)| d * u * u).sum();
+    sums[7] = d.iter().sum();
     sums[1] = sub.f.iter().zip(&d).map(|(f, d)| f * f / d).sum();
     r.iter_mut().zip(&sub.f).for_each(|(r, f)| *r -= f);
     let mut pull = vec![0.0; local.gamma().n_gamma()];

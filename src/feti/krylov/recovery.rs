@@ -63,7 +63,8 @@ impl LinearMethod {
         let dual = self.dual();
         let u = displacements(&dual, &at.loads, &mut at.residual)?;
         let recover_seconds = clock.elapsed().as_secs_f64();
-        let certificate = Certificate::new(&self.problem, &dual, &u, &at.lambda)?;
+        let certificate =
+            Certificate::new(&self.problem, &dual, &u, &at.lambda, self.length.get())?;
         Ok(LinearSolution {
             u,
             lambda: at.lambda.to_vec()?,

@@ -92,7 +92,7 @@ impl LinearMethod {
             *u += du;
         }
         lambda.axpy(1.0, &at.lambda)?;
-        let certificate = Certificate::new(problem, dual, &u, &lambda)?;
+        let certificate = Certificate::new(problem, dual, &u, &lambda, self.length.get())?;
         let better = distance(&certificate.kkt) < 0.5 * distance(&solution.kkt);
         let correction = run.status.converged().then_some(size);
         if !better {

@@ -15,9 +15,10 @@ use super::iterate::{iterate, IterationControl, Run};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
 use super::refinement::STEPS;
-use super::residual::Iterate;
+use super::residual::{Iterate, ROUNDING};
 use super::target::{to_the_end, Target};
 use crate::feti::method::LinearMethod;
+use crate::parallel::exchange::highest;
 use crate::status::Status;
 use crate::Result;
 
@@ -237,7 +238,22 @@ impl LinearMethod {
             }
             break;
         }
+        if solution.status.converged() {
+            let u = solution.u.iter().flatten();
+            let mine = u.fold(self.length.get(), |a, u| a.max(u.abs()));
+            self.length.set(highest(self.session.comm(), mine));
+        }
         Ok(solution)
+    }
+
+    /// The smallest residual that matters beside the scale of the problem: that of displacements in earlier loads, and
+    /// of right-hand sides of the rows. Collective.
+    pub(crate) fn least_residual(&self) -> f64 {
+        let dual = self.dual();
+        let jump = &dual.stiffness.jump;
+        let rows = (0..jump.n_owned).filter(|&r| jump.is_candidate(r));
+        let mine = rows.fold(self.length.get(), |a, r| a.max(jump.gap[r].abs()));
+        ROUNDING * highest(dual.comm(), mine) * (jump.n_global as f64).sqrt()
     }
 
     /// λ₀ = Q G (Gᵀ Q G)⁻¹ e for the loads of the problem. Collective.
