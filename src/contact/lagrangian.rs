@@ -34,6 +34,9 @@ const PULL: f64 = 10.0;
 /// Steps without progress after which a trial ends.
 const PATIENCE: usize = 2;
 
+/// With no more wrong rows than this a trial has twice the patience.
+const CLOSE: usize = 2;
+
 /// Solves from `state`, after `steps` that took `seconds`. Collective.
 pub(super) fn solve(
     method: &LinearMethod,
@@ -103,7 +106,11 @@ pub(super) fn solve(
             if verdict == Verdict::Solved || !status.converged() {
                 return Ok((run.finish(&steps, elapsed(), status)?, steps));
             }
-            if run.state.safeguarded || run.state.progress.stalled(PATIENCE) {
+            let patience = match run.state.progress.wrong() > CLOSE {
+                true => PATIENCE,
+                false => 2 * PATIENCE,
+            };
+            if run.state.safeguarded || run.state.progress.stalled(patience) {
                 break;
             }
         }
