@@ -13,8 +13,8 @@ use crate::Result;
 /// The certificate may be this many times the tolerance of the iteration, because the iteration measures another norm.
 const CREDIBLE: f64 = 1e4;
 
-/// Displacements and forces below this part of the problem's scale are measured against that scale: a solution u = 0 has
-/// none of its own.
+/// Displacements and forces below this part of the problem's scale are measured against that scale: a solution u = 0
+/// has none of its own.
 const SMALL: f64 = 1e-8;
 
 /// How well the optimality conditions hold, relative to the sizes of their terms.
