@@ -6,6 +6,7 @@ use super::contact;
 use super::fields::Gathered;
 use super::first_rank::on_first_rank;
 use crate::checkpoint::{Checkpoints, Resumed};
+use crate::parallel::exchange::total;
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::contact::{LoadStep, OuterStep};
@@ -21,6 +22,8 @@ pub(super) struct Course {
     pub solution: Solution,
     /// The load step of this solution.
     pub step: usize,
+    /// Its potential energy, with that of given values.
+    pub energy: f64,
     pub outer: Vec<OuterStep>,
     pub load_steps: Vec<LoadStep>,
     /// Krylov iterations per outer step, or per load step without inequalities.
@@ -82,11 +85,15 @@ pub(super) fn follow(
             checkpoints.save(session, step, || records.followed_by(&outer), state)
         })?;
         progress.finish();
+        let mine = solver.problem().local.iter().map(|s| s.index);
+        let given = session.agree(scene.given_energy(mine, step))?;
+        let given = total(session.comm(), given);
         let rows = contact::rows(session, &solution);
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
         let mut now = Course {
             step,
+            energy: solution.energy + given,
             iterations: if outer.is_empty() {
                 vec![solution.iterations]
             } else {
@@ -162,7 +169,7 @@ fn load_step_record(t: f64, course: &Course) -> LoadStep {
         outer_iterations: course.iterations.len(),
         iterations: course.iterations.iter().sum(),
         active: inequalities().filter(|r| r.holds()).count(),
-        energy: course.solution.energy,
+        energy: course.energy,
         contact_force: inequalities().map(|r| r.multiplier).sum(),
     }
 }

@@ -184,7 +184,7 @@ fn report(
         },
         adaptive: adaptive(solver)?,
         kkt: json::Kkt::new(&solution.kkt, facts.inequalities > 0),
-        energy: solution.energy,
+        energy: course.energy,
         contact,
         error: scene.exact.is_some().then_some(json::ErrorNorms {
             l2,

@@ -4,6 +4,7 @@
 mod assemble;
 pub mod cell;
 mod cells;
+mod energy;
 mod form;
 mod loads;
 mod norms;
@@ -11,6 +12,7 @@ pub(crate) mod q1;
 mod subdomain;
 
 pub(crate) use assemble::{assemble, free_load, given_columns};
+pub(crate) use energy::given_energy;
 pub use form::{Form, Physics};
 pub use loads::Quadrature;
 pub(crate) use loads::{add_side_load, load_vector};

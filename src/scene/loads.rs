@@ -127,6 +127,30 @@ impl Scene {
         Ok((force, moment))
     }
 
+    /// The energy of given values alone, ½ u_Dᵀ K_DD u_D − f_Dᵀ u_D, of the subdomains with these indices at load step
+    /// `step`. The energy of a solution leaves it out, because given values are eliminated.
+    ///
+    /// # Errors
+    /// As [`Stepping::loads`].
+    pub fn given_energy(
+        &self,
+        subdomains: impl IntoIterator<Item = usize>,
+        step: usize,
+    ) -> Result<f64> {
+        let factors = Factors::of(&self.steps, step)?;
+        let mut energy = 0.0;
+        for index in subdomains {
+            let (body, _) = self.place(index);
+            if body.prescribed.iter().all(|(_, u)| *u == 0.0) {
+                continue;
+            }
+            let mesh = self.mesh_with(index, factors)?;
+            let load = self.nodal_load(&mesh, factors)?;
+            energy += fem::given_energy(&mesh, &load);
+        }
+        Ok(energy)
+    }
+
     /// The factor of given values at load step `step` ([`SubdomainMesh::prescribed`] has that of the last step).
     ///
     /// # Panics

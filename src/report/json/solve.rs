@@ -49,8 +49,8 @@ pub struct SolveReport {
     pub adaptive: Option<Adaptive>,
     /// Residuals of the Karush-Kuhn-Tucker conditions.
     pub kkt: Kkt,
-    /// The value of the Lagrangian ½ uᵀKu − fᵀu + λᵀ(Bu − c) on the free dofs: at the solution the potential energy,
-    /// without the contribution of prescribed displacements alone.
+    /// The value of the Lagrangian ½ uᵀKu − fᵀu + λᵀ(Bu − c), given values included: at the solution the potential
+    /// energy.
     #[serde(with = "number")]
     pub energy: f64,
     /// The contact loop and the contact forces; absent where no sides may touch.
