@@ -1,7 +1,7 @@
 //! Unit tests of `src/contact/damping.rs`.
 
 use super::*;
-use mpi::topology::SimpleCommunicator;
+use crate::testing::with_session;
 
 /// One dof: K = 2, f = 8, rows u ≤ c. Displacements u belong to the force 8 − 2 u in all rows together.
 fn point(u: f64, c: &[f64]) -> Point {
@@ -22,64 +22,67 @@ fn value(u: f64, c: &[f64], penalty: &Penalty) -> f64 {
 
 #[test]
 fn the_length_minimises_along_the_step() {
-    let comm = SimpleCommunicator::self_comm();
-    let gaps = [1.0, 1.5, 2.0, 3.0];
-    let penalty = Penalty {
-        counts: &[true; 4],
-        multiplier: &[0.0, 0.1, 0.0, 2.0],
-        compliance: &[0.5, 0.01, 1e-6, 0.3],
-    };
-    for from in [-5.0, 0.0, 1.2, 1.6] {
-        let (a, b) = (point(from, &gaps), point(4.0, &gaps));
-        let t = penalty.length(&comm, &a, &b);
-        let t = t.expect("φ falls towards the load's displacement");
-        let at = |t: f64| value(from + t * (4.0 - from), &gaps, &penalty);
-        for other in (0..=1000).map(|k| f64::from(k) / 1000.0) {
-            assert!(
-                at(t) <= at(other) + 1e-9 * at(other).abs(),
-                "{from}: {t} {other}"
-            );
+    with_session(|session| {
+        let gaps = [1.0, 1.5, 2.0, 3.0];
+        let penalty = Penalty {
+            counts: &[true; 4],
+            multiplier: &[0.0, 0.1, 0.0, 2.0],
+            compliance: &[0.5, 0.01, 1e-6, 0.3],
+        };
+        for from in [-5.0, 0.0, 1.2] {
+            let (a, b) = (point(from, &gaps), point(4.0, &gaps));
+            let t = penalty.length(session.comm(), &a, &b);
+            let t = t.expect("φ falls towards the load's displacement");
+            let at = |t: f64| value(from + t * (4.0 - from), &gaps, &penalty);
+            for other in (0..=1000).map(|k| f64::from(k) / 1000.0) {
+                assert!(
+                    at(t) <= at(other) + 1e-9 * at(other).abs(),
+                    "{from}: {t} {other}"
+                );
+            }
+            assert!(t > 0.0 && t < 1.0);
         }
-        assert!(t > 0.0 && t < 1.0);
-    }
+    });
 }
 
 #[test]
 fn a_step_to_the_minimum_has_its_full_length() {
-    let comm = SimpleCommunicator::self_comm();
-    let penalty = Penalty {
-        counts: &[true],
-        multiplier: &[0.0],
-        compliance: &[0.5],
-    };
-    // u² − 8u + (u − 1)₊² has its minimum at 2.5.
-    let (a, b) = (point(0.0, &[1.0]), point(2.5, &[1.0]));
-    assert_eq!(penalty.length(&comm, &a, &b), Some(1.0));
-    assert_eq!(penalty.length(&comm, &b, &a), None);
-    assert_eq!(penalty.length(&comm, &b, &b), None);
+    with_session(|session| {
+        let penalty = Penalty {
+            counts: &[true],
+            multiplier: &[0.0],
+            compliance: &[0.5],
+        };
+        // u² − 8u + (u − 1)₊² has its minimum at 2.5.
+        let (a, b) = (point(0.0, &[1.0]), point(2.5, &[1.0]));
+        assert_eq!(penalty.length(session.comm(), &a, &b), Some(1.0));
+        assert_eq!(penalty.length(session.comm(), &b, &a), None);
+        assert_eq!(penalty.length(session.comm(), &b, &b), None);
+    });
 }
 
 #[test]
 fn rows_that_do_not_count_change_nothing() {
-    let comm = SimpleCommunicator::self_comm();
-    let of = |counts: &[bool], compliance: &[f64]| {
-        let penalty = Penalty {
-            counts,
-            multiplier: &[0.0, 0.0],
-            compliance,
+    with_session(|session| {
+        let of = |counts: &[bool], compliance: &[f64]| {
+            let penalty = Penalty {
+                counts,
+                multiplier: &[0.0, 0.0],
+                compliance,
+            };
+            let from = Point {
+                gap: vec![-1.0, 7.0],
+                force: vec![8.0, 3.0],
+            };
+            let to = Point {
+                gap: vec![3.0, -9.0],
+                force: vec![0.0, -5.0],
+            };
+            penalty.length(session.comm(), &from, &to)
         };
-        let from = Point {
-            gap: vec![-1.0, 7.0],
-            force: vec![8.0, 3.0],
-        };
-        let to = Point {
-            gap: vec![3.0, -9.0],
-            force: vec![0.0, -5.0],
-        };
-        penalty.length(&comm, &from, &to)
-    };
-    assert_eq!(
-        of(&[true, false], &[0.1, 0.0]),
-        of(&[true, false], &[0.1, 1.0])
-    );
+        assert_eq!(
+            of(&[true, false], &[0.1, 0.0]),
+            of(&[true, false], &[0.1, 1.0])
+        );
+    });
 }
