@@ -53,7 +53,7 @@ pub(super) fn solve(
     let elapsed = || seconds + clock.elapsed().as_secs_f64();
     for round in 0.. {
         let mut inner = 0;
-        let minimal = loop {
+        let (minimal, status) = loop {
             if state.steps >= settings.max_it {
                 search.rigid();
                 let run = ActiveSet::new(method, settings, Some(&state))?;
@@ -68,17 +68,14 @@ pub(super) fn solve(
                 return Ok((search.finish(&steps, elapsed(), status)?, steps));
             }
             if came == Came::Down {
-                break true;
+                break (true, status);
             }
-            if came == Came::Nowhere {
-                break false;
-            }
-            if round < EARLY && inner > 1 && came == Came::Near {
-                break false;
+            let near = round < EARLY && inner > 1 && came == Came::Near;
+            if came == Came::Nowhere || near {
+                break (false, status);
             }
         };
         if minimal && search.is_solution()? {
-            let status = Status::NothingToDo;
             return Ok((search.finish(&steps, elapsed(), status)?, steps));
         }
         search.rigid();

@@ -317,6 +317,9 @@ impl<'a> Search<'a> {
     ) -> Result<LinearSolution> {
         self.look()?;
         self.rigid();
+        // P_2 belonged to F + C: what follows is done with F.
+        let active = self.method.dual().stiffness.jump.active.clone();
+        self.method.set_active(&active)?;
         let last = self.last;
         let run = Run {
             iterations: steps.iter().map(|s| s.iterations).sum(),

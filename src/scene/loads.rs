@@ -140,8 +140,14 @@ impl Scene {
         let factors = Factors::of(&self.steps, step)?;
         let mut energy = 0.0;
         for index in subdomains {
-            let (body, _) = self.place(index);
-            if body.prescribed.iter().all(|(_, u)| *u == 0.0) {
+            let (body, block) = self.place(index);
+            // Only subdomains beside given values need a mesh.
+            let given = |side: usize| {
+                let fields = &body.spec.dirichlet[side];
+                fields.iter().any(Option::is_some) && reaches(body, &block, side)
+            };
+            let beside = (0..2 * body.mesh().dim()).any(given);
+            if !beside || body.prescribed.iter().all(|(_, u)| *u == 0.0) {
                 continue;
             }
             let mesh = self.mesh_with(index, factors)?;

@@ -28,18 +28,16 @@ pub struct Springs {
 }
 
 impl Springs {
-    /// The springs of the rows that hold in `jump`.
+    /// Springs of this compliance; [`renew`](Self::renew) completes them for the rows that hold.
     ///
     /// # Panics
     /// If there is not one entry for each owned row.
     pub fn new(jump: &Jump, compliance: Vec<f64>) -> Springs {
         assert_eq!(compliance.len(), jump.n_owned);
-        let mut springs = Springs {
+        Springs {
             compliance,
             dependent: Vec::new(),
-        };
-        springs.renew(jump);
-        springs
+        }
     }
 
     /// Computes X again for the rows that hold now.
