@@ -239,6 +239,8 @@ pub enum StudyName {
     Scaling,
     /// Error against seconds, ours and the baselines of compare, over meshes and tolerances
     SpeedError,
+    /// Steps and iterations of the contact loop on random walls of bodies; exit code 1 where one is not solved
+    Walls,
 }
 
 /// Arguments of `study`.

@@ -11,7 +11,7 @@ use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::tables::table::Table;
-use crate::study::{adaptive, hard_cases, hertz, kappa, kernels, scaling, speed_error};
+use crate::study::{adaptive, hard_cases, hertz, kappa, kernels, scaling, speed_error, walls};
 use crate::{Error, Result};
 
 /// Runs a study and writes the results that the arguments ask for.
@@ -33,6 +33,7 @@ pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
         StudyName::Scaling => task.scaling(petsc),
         StudyName::Kernels => task.kernels(),
         StudyName::SpeedError => task.speed_error(),
+        StudyName::Walls => task.walls(),
     }
 }
 
@@ -166,6 +167,22 @@ impl Task<'_> {
             }
             Ok(files)
         })
+    }
+
+    fn walls(&self) -> Result<()> {
+        let mut progress = self.progress();
+        let report = walls::run(self.session, self.quick, self.case(), &mut progress)?;
+        self.finish(&report, &walls::text(&report), |dir| {
+            let mut files = tables(dir, &[("walls", walls::table(&report))])?;
+            files.extend(walls::save(&report, dir)?);
+            Ok(files)
+        })?;
+        match report.rows.iter().map(|r| r.unsolved().count()).sum() {
+            0usize => Ok(()),
+            n => Err(Error::NotConverged(format!(
+                "walls: number of scenes that were not solved: {n}"
+            ))),
+        }
     }
 
     fn case(&self) -> Option<&str> {

@@ -76,8 +76,14 @@ impl Penalty<'_> {
         sums
     }
 
-    /// The t in (0, 1] that minimises φ on the way from one point to another; `None` if φ does not fall. Collective.
-    pub fn length(&self, comm: &SimpleCommunicator, from: &Point, to: &Point) -> Option<f64> {
+    /// The t in (0, 1] that minimises φ on the way from one point to another, with `beyond` in (0, ∞); `None` if φ does
+    /// not fall. Collective.
+    pub fn length(
+        &self,
+        comm: &SimpleCommunicator,
+        [from, to]: [&Point; 2],
+        beyond: bool,
+    ) -> Option<f64> {
         // NaN is no descent either.
         if self.slope(comm, from, to, 0.0)[0] < 0.0 {
             // Go on below.
@@ -88,10 +94,15 @@ impl Penalty<'_> {
         for _ in 0..EVALUATIONS {
             let [slope, curvature] = self.slope(comm, from, to, t);
             if slope <= 0.0 {
-                if t == 1.0 {
+                if t == 1.0 && !beyond {
                     return Some(1.0);
                 }
                 low = t;
+                if t == high {
+                    high *= 2.0;
+                    t = high;
+                    continue;
+                }
             } else {
                 high = t;
             }

@@ -167,8 +167,8 @@ impl<'a> Search<'a> {
         (0..s.len()).map(on).collect()
     }
 
-    /// Puts rows into the set so that the load drives no body away. Collective.
-    fn hold(&self, active: &mut [bool]) {
+    /// Puts rows into the set so that the load drives no body away; returns their number. Collective.
+    fn hold(&self, active: &mut [bool]) -> usize {
         let comm = self.method.session.comm();
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;
@@ -176,7 +176,24 @@ impl<'a> Search<'a> {
             Some(point) => point.gap[i],
             None => -self.compliance[i],
         };
-        motion::restore(comm, &self.g, jump, active, &score, &self.at.loads.kernel);
+        motion::restore(comm, &self.g, jump, active, &score, &self.at.loads.kernel)
+    }
+
+    /// The right-hand side of the rows: c − C μ. Rows that hold without a force of their own, s ≤ 0, are springs from
+    /// the present gap with `centred`.
+    fn jumps(&self, active: &[bool], centred: bool) -> Vec<f64> {
+        let dual = self.method.dual();
+        let c = &dual.stiffness.jump.gap;
+        let apart = |i: usize| {
+            let point = self.point.as_ref().filter(|_| centred && self.counts[i]);
+            let s = |p: &Point| self.multiplier[i] + p.gap[i] / self.compliance[i];
+            point.filter(|p| active[i] && s(p) <= 0.0).map(|p| p.gap[i])
+        };
+        let of = |i: usize| match apart(i) {
+            Some(gap) => c[i] + gap,
+            None => c[i] - self.compliance[i] * self.multiplier[i],
+        };
+        (0..c.len()).map(of).collect()
     }
 
     /// One Newton step on the set of `state`. Collective.
@@ -184,13 +201,12 @@ impl<'a> Search<'a> {
         let clock = Instant::now();
         let (method, comm) = (self.method, self.method.session.comm());
         let mut active = state.active.clone();
-        self.hold(&mut active);
+        let restored = self.hold(&mut active);
         method.set_active(&active)?;
+        self.at.loads.jumps = Some(self.jumps(&active, false));
         let dual = method.dual();
         let jump = &dual.stiffness.jump;
         let rows = jump.rows_between_bodies();
-        let terms = jump.gap.iter().zip(&self.compliance).zip(&self.multiplier);
-        self.at.loads.jumps = Some(terms.map(|((c, d), mu)| c - d * mu).collect());
         let mut lambda = self.at.lambda.array_mut()?;
         for (l, on) in lambda.iter_mut().zip(&active) {
             *l = if *on { *l } else { 0.0 };
@@ -204,8 +220,8 @@ impl<'a> Search<'a> {
         let mut reduction = REDUCTION * STIFFNESS / self.stiffness;
         let mut length = None;
         let mut tolerance = first;
-        let mut end = None;
-        for _ in 0..ATTEMPTS {
+        let (mut end, mut centred) = (None, false);
+        for _ in 0..ATTEMPTS + usize::from(restored > 0) {
             let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
             tolerance = (reduction * first).max(MORE * least).max(self.least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
@@ -216,14 +232,21 @@ impl<'a> Search<'a> {
             });
             let here = self.look()?;
             length = match &self.point {
-                Some(point) => self.penalty().length(comm, point, &here),
+                Some(point) => self.penalty().length(comm, [point, &here], centred),
                 None => Some(1.0),
             };
             end = Some(here);
             if length.is_some() {
                 break;
             }
-            reduction *= MORE;
+            // Rows that were put back may pull uphill. Springs from the present gaps cannot.
+            if restored > 0 && !centred {
+                centred = true;
+                self.at.loads.jumps = Some(self.jumps(&active, true));
+                self.at.balance(&method.dual())?;
+            } else {
+                reduction *= MORE;
+            }
             self.at.evaluate_projected(&method.dual())?;
         }
         let (run, end) = (run.expect("there is an attempt"), end.expect("it ended"));

@@ -28,6 +28,11 @@ impl Pc {
         ))
     }
 
+    /// A factorisation fails at pivots of this size and below.
+    pub fn set_zero_pivot(&self, size: f64) -> Result<()> {
+        petsc!(PCFactorSetZeroPivot(self.raw(), size))
+    }
+
     /// The prefix of this preconditioner's options, without a dash.
     pub fn set_options_prefix(&self, prefix: &str) -> Result<()> {
         petsc!(PCSetOptionsPrefix(self.raw(), c_string(prefix).as_ptr()))

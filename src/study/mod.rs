@@ -11,6 +11,7 @@ pub mod kernels;
 pub mod scaling;
 mod solved;
 pub mod speed_error;
+pub mod walls;
 
 use crate::petsc::Session;
 use crate::{Error, Result};

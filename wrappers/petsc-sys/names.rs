@@ -192,6 +192,7 @@ const FUNCTIONS: &[&str] = &[
     "PCSetFromOptions",
     "PCShellSetName",
     "PCFactorSetMatSolverType",
+    "PCFactorSetZeroPivot",
     "PCBDDCSetDirichletBoundariesLocal",
     "PCBDDCSetNeumannBoundariesLocal",
     "PCBDDCSetPrimalVerticesLocalIS",

@@ -63,6 +63,8 @@ impl Gtg {
         // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the
         // same if this very matrix is inverted. That is why it is factored by LU and Pᵀ uses the transpose.
         ksp.pc()?.set_type("lu")?;
+        // G alone has decided what is held. With Q = M⁻¹ pivots are as small as the square of a jump.
+        ksp.pc()?.set_zero_pivot(f64::MIN_POSITIVE)?;
         ksp.set_from_options()?;
         // The matrices of the ranks are equal, but their machines need not be.
         session.agree(ksp.setup())?;

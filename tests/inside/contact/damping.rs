@@ -31,7 +31,7 @@ fn the_length_minimises_along_the_step() {
         };
         for from in [-5.0, 0.0, 1.2] {
             let (a, b) = (point(from, &gaps), point(4.0, &gaps));
-            let t = penalty.length(session.comm(), &a, &b);
+            let t = penalty.length(session.comm(), [&a, &b], false);
             let t = t.expect("φ falls towards the load's displacement");
             let at = |t: f64| value(from + t * (4.0 - from), &gaps, &penalty);
             for other in (0..=1000).map(|k| f64::from(k) / 1000.0) {
@@ -55,9 +55,28 @@ fn a_step_to_the_minimum_has_its_full_length() {
         };
         // u² − 8u + (u − 1)₊² has its minimum at 2.5.
         let (a, b) = (point(0.0, &[1.0]), point(2.5, &[1.0]));
-        assert_eq!(penalty.length(session.comm(), &a, &b), Some(1.0));
-        assert_eq!(penalty.length(session.comm(), &b, &a), None);
-        assert_eq!(penalty.length(session.comm(), &b, &b), None);
+        assert_eq!(penalty.length(session.comm(), [&a, &b], false), Some(1.0));
+        assert_eq!(penalty.length(session.comm(), [&b, &a], false), None);
+        assert_eq!(penalty.length(session.comm(), [&b, &b], false), None);
+    });
+}
+
+#[test]
+fn a_step_may_go_beyond_its_end() {
+    with_session(|session| {
+        let penalty = Penalty {
+            counts: &[true],
+            multiplier: &[0.0],
+            compliance: &[0.5],
+        };
+        let start = point(0.0, &[1.0]);
+        for end in [1e-6, 0.1, 1.0, 2.0, 2.5, 3.0] {
+            let end = [&start, &point(end, &[1.0])];
+            let t = penalty.length(session.comm(), end, true);
+            let t = t.expect("φ falls");
+            let u = t * (end[1].gap[0] + 1.0);
+            assert!((u - 2.5).abs() < 1e-9, "{t} {u}");
+        }
     });
 }
 
@@ -78,7 +97,7 @@ fn rows_that_do_not_count_change_nothing() {
                 gap: vec![3.0, -9.0],
                 force: vec![0.0, -5.0],
             };
-            penalty.length(session.comm(), &from, &to)
+            penalty.length(session.comm(), [&from, &to], false)
         };
         assert_eq!(
             of(&[true, false], &[0.1, 0.0]),
