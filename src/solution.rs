@@ -69,7 +69,7 @@ impl Solution {
         &self.rows
     }
 
-    /// Whether everything reached its tolerance.
+    /// Whether everything reached its tolerance, or rounding where the tolerance is below it.
     pub fn converged(&self) -> bool {
         self.status.converged()
     }

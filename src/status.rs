@@ -11,6 +11,8 @@ pub enum Status {
     Krylov(ConvergedReason),
     /// The residual was within the tolerance before the first iteration.
     NothingToDo,
+    /// The tolerance asked for is below rounding: the solution is as good as rounding permits.
+    Rounding,
     /// The iteration converged, but refinement did not reach the requested accuracy.
     Refinement,
     /// The iteration converged, but the displacements are far from equilibrium, or rows are far from holding.
@@ -22,11 +24,11 @@ pub enum Status {
 }
 
 impl Status {
-    /// Whether everything reached its tolerance.
+    /// Whether everything reached its tolerance, or rounding where the tolerance is below it.
     pub fn converged(&self) -> bool {
         match self {
             Status::Krylov(reason) => reason.converged(),
-            Status::NothingToDo => true,
+            Status::NothingToDo | Status::Rounding => true,
             Status::Refinement
             | Status::Certificate
             | Status::Stagnation
@@ -40,13 +42,14 @@ impl Status {
         matches!(self, Status::Krylov(reason) if reason.broke_down())
     }
 
-    /// The number of PETSc's `KSPConvergedReason` with the same meaning, or the nearest one: operators that have lost
-    /// their digits count as a preconditioner that failed, a residual that rounding holds up as a breakdown, too many
-    /// contact steps as too many iterations.
+    /// The number of PETSc's `KSPConvergedReason` with the same meaning, or the nearest one: rounding counts as an
+    /// absolute tolerance, operators that have lost their digits as a preconditioner that failed, a residual that
+    /// rounding holds up as a breakdown, too many contact steps as too many iterations.
     pub fn number(&self) -> i32 {
         match self {
             Status::Krylov(reason) => reason.code,
             Status::NothingToDo => ConvergedReason::RTOL,
+            Status::Rounding => ConvergedReason::ATOL,
             Status::Refinement | Status::Certificate => ConvergedReason::PC_FAILED,
             Status::Stagnation => ConvergedReason::BREAKDOWN,
             Status::ContactSteps => ConvergedReason::ITS,
@@ -74,6 +77,7 @@ impl Status {
         match self {
             Status::Krylov(reason) => &reason.name,
             Status::NothingToDo => "CONVERGED_NOTHING_TO_DO",
+            Status::Rounding => "CONVERGED_ROUNDING",
             Status::Refinement => "DIVERGED_REFINEMENT",
             Status::Certificate => "DIVERGED_CERTIFICATE",
             Status::Stagnation => "DIVERGED_STAGNATION",

@@ -616,7 +616,7 @@ PETSC_EXTERN PetscErrorCode FetiFetiGetContactSteps(FetiFeti ff, PetscInt *steps
 .  ff - the solver
 
    Output Parameter:
-.  reason - positive where everything reached its tolerance, negative otherwise
+.  reason - positive where everything reached its tolerance, or rounding where that is larger; negative otherwise
 
    Level: beginner
 

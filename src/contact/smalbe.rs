@@ -16,6 +16,7 @@ use mpi::topology::SimpleCommunicator;
 
 use super::active_set::{ActiveSet, Verdict};
 use super::augmented::Augmented;
+use super::judge;
 use super::mprgp::Setting;
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, Observer, Progress, State, Step};
@@ -89,7 +90,7 @@ pub(super) fn solve(
         };
         let mut run = ActiveSet::new(method, settings, Some(&trial))?;
         state.reference = run.state.reference;
-        run.pull = PULL * rtol;
+        run.pull = (PULL * rtol).max(judge::ROUNDING);
         for _ in 0..CLOSING_STEPS {
             run.tight = true;
             let (step, status, verdict) = run.step()?;

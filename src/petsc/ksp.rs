@@ -32,6 +32,8 @@ pub struct ConvergedReason {
 impl ConvergedReason {
     /// The relative tolerance was reached.
     pub const RTOL: i32 = sys::KSP_CONVERGED_RTOL;
+    /// The absolute tolerance was reached.
+    pub const ATOL: i32 = sys::KSP_CONVERGED_ATOL;
     /// The maximum number of iterations was reached.
     pub const ITS: i32 = sys::KSP_DIVERGED_ITS;
     /// The method cannot go on.

@@ -450,3 +450,42 @@ fn the_energy_of_a_stretched_elastic_body() {
     let energy = energy_of(&scratch, 1, body);
     assert!((energy - 0.5 * 10.0 * 0.01 * 2.0).abs() < 1e-10, "{energy}");
 }
+
+#[test]
+fn a_tolerance_below_rounding_is_not_reported_as_reached() {
+    let methods = ["active_set", "augmented_lagrangian", "smalbe"];
+    let contact = ["obstacle", "contact_grid_100", "model_contact"]
+        .iter()
+        .flat_map(|scene| methods.map(|method| (*scene, method)));
+    let equations = [("model_tied", "active_set"), ("jump_1e6", "active_set")];
+    for (scene, method) in contact.chain(equations) {
+        let file = format!("examples/scenes/{scene}.toml");
+        let run = |rtol: &str| {
+            let more = ["-fetifeti_contact_type", method, "-fetifeti_ksp_rtol", rtol];
+            let (out, report) = solve(&file, &more);
+            assert_eq!(out.code, 0, "{scene} {method} {rtol}: {}", out.all());
+            report
+        };
+        let usual = run("1e-10");
+        let what = format!("{scene} {method}");
+        assert_eq!(usual["converged_reason"], "CONVERGED_RTOL", "{what}");
+        for rtol in ["1e-30", "0"] {
+            let last = run(rtol);
+            assert_eq!(last["converged_reason"], "CONVERGED_ROUNDING", "{what}");
+            for key in ["stationarity", "feasibility"] {
+                assert!(number(&last["kkt"][key]) < 1e-13, "{what}: {last}");
+            }
+            let energy = number(&last["energy"]) / number(&usual["energy"]);
+            assert!((energy - 1.0).abs() < 1e-9, "{what}: {energy}");
+        }
+    }
+}
+
+#[test]
+fn the_summary_says_what_was_reached_above_a_tolerance_below_rounding() {
+    let out = fetifeti(&["solve", EXAMPLE, "-fetifeti_ksp_rtol", "1e-30"]);
+    assert_eq!(out.code, 0, "{}", out.all());
+    let mut lines = out.stdout.lines().filter(|l| l.starts_with("rounding"));
+    let line = lines.next().expect("a line about rounding");
+    assert!(line.contains("the tolerance 1.0e-30 is below it"), "{line}");
+}

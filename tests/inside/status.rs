@@ -12,6 +12,7 @@ fn numbers_have_the_sign_of_what_happened() {
         (krylov(3, "CONVERGED_ATOL"), 3),
         (krylov(-4, "DIVERGED_DTOL"), -4),
         (Status::NothingToDo, 2),
+        (Status::Rounding, 3),
         (Status::Refinement, -11),
         (Status::Certificate, -11),
         (Status::Stagnation, -5),

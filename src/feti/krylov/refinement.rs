@@ -10,13 +10,14 @@
 //!
 //! r is summed in twice the working precision. The set of rows that hold does not change. If the tolerance is below
 //! [`TIGHT`], the first iteration stops at `TIGHT` and corrections bring the remaining digits. A single iteration would
-//! stall on the rounding of the operators, or diverge.
+//! stall on the rounding of the operators, or diverge. Where corrections stop to help above the tolerance, the status
+//! is [`Status::Rounding`].
 
 use super::certificate::{Certificate, Kkt};
 use super::iterate::{iterate, IterationControl};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
-use super::residual::Iterate;
+use super::residual::{Iterate, ROUNDING};
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
 use crate::linalg::csr::Csr;
@@ -47,7 +48,7 @@ pub(super) const STEPS: usize = 4;
 impl LinearMethod {
     /// Refines a solution towards the tolerance of the user, as far as it helps. Collective.
     pub(crate) fn refine(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
-        let rtol = self.ksp.tolerances()?.0;
+        let rtol = self.relative_tolerance(&solution)?;
         for _ in 0..STEPS {
             let now = distance(&solution.kkt);
             let asked = rtol < TIGHT && now > WORTH * rtol;
@@ -64,11 +65,24 @@ impl LinearMethod {
                 None => break,
             }
         }
-        let missed = distance(&solution.kkt) > (MISSED * rtol).max(FLOOR);
-        if solution.status.converged() && rtol < TIGHT && missed {
-            solution.status = Status::Refinement;
+        let left = distance(&solution.kkt);
+        if solution.status.converged() && rtol < TIGHT {
+            if left > (MISSED * rtol).max(FLOOR) {
+                solution.status = Status::Refinement;
+            } else if !is_reached(rtol, left) {
+                solution.status = Status::Rounding;
+            }
         }
         Ok(solution)
+    }
+
+    /// The tolerance relative to the first residual: an absolute tolerance may be the larger one.
+    pub(super) fn relative_tolerance(&self, solution: &LinearSolution) -> Result<f64> {
+        let (rtol, atol, _, _) = self.ksp.tolerances()?;
+        Ok(match solution.residuals.first() {
+            Some(&first) if first > 0.0 => rtol.max(atol / first),
+            _ => rtol,
+        })
     }
 
     /// One step, which reduces the residual of the correction problem by the factor `reduction`. Collective.
@@ -133,6 +147,15 @@ pub(super) struct Step {
     pub better: Option<LinearSolution>,
     /// ‖du‖_K, if the correction problem was solved.
     pub correction: Option<f64>,
+}
+
+/// Whether a certificate of `left` has reached this tolerance. Residuals of the iteration do not fall below
+/// [`ROUNDING`]; with a smaller tolerance the certificate alone decides.
+fn is_reached(rtol: f64, left: f64) -> bool {
+    match rtol < ROUNDING {
+        true => left <= rtol,
+        false => left <= WORTH * rtol,
+    }
 }
 
 /// The measure that refinement reduces.

@@ -206,16 +206,11 @@ impl LinearMethod {
     /// holding, are not a solution, whatever the status of the iteration. An error that is too large in the energy norm
     /// is refined first. Collective.
     pub(crate) fn certify(&self, mut solution: LinearSolution) -> Result<LinearSolution> {
-        let (rtol, atol, _, _) = self.ksp.tolerances()?;
         for step in 0.. {
             if !solution.status.converged() {
                 break;
             }
-            // An absolute tolerance is relative to the first residual.
-            let asked = match solution.residuals.first() {
-                Some(&first) if first > 0.0 => rtol.max(atol / first),
-                _ => rtol,
-            };
+            let asked = self.relative_tolerance(&solution)?;
             let bound = solution.left.bound(asked);
             let estimate = self.energy_error(&solution, bound)?;
             let mut error = estimate.most;
@@ -233,7 +228,7 @@ impl LinearMethod {
                 }
             }
             solution.kkt.error = Some(solution.left.relative(error));
-            if !(error <= bound && solution.kkt.is_credible(rtol)) {
+            if !(error <= bound && solution.kkt.is_credible(asked)) {
                 solution.status = Status::Certificate;
             }
             break;

@@ -32,8 +32,6 @@ pub fn to_the_end(tolerance: f64, target: f64) -> bool {
 pub struct Target {
     rtol: f64,
     atol: f64,
-    /// Factor by which the tolerance is larger than the user's.
-    ease: f64,
     /// ‖Pᵀ r‖ at λ₀.
     reference: f64,
     rows: usize,
@@ -44,12 +42,8 @@ impl Target {
     pub fn new(method: &LinearMethod, reference: f64) -> Result<Target> {
         let (rtol, atol, _, _) = method.ksp.tolerances()?;
         Ok(Target {
-            rtol,
+            rtol: rtol.max(TIGHT),
             atol,
-            ease: match rtol {
-                rtol if rtol > 0.0 => (TIGHT / rtol).max(1.0),
-                _ => 1.0,
-            },
             reference,
             rows: method.dual().stiffness.jump.n_global,
         })
@@ -57,13 +51,13 @@ impl Target {
 
     /// The tolerance while displacements are not known.
     pub fn at_first(&self) -> f64 {
-        self.ease * absolute(self.rtol, self.atol, self.reference, 0.0, self.rows)
+        absolute(self.rtol, self.atol, self.reference, 0.0, self.rows)
     }
 
     /// The tolerance for displacements with largest entry `length`. `size` is the norm of the terms that they were
     /// formed from; rounding is relative to it.
     pub fn of_displacements(&self, length: f64, size: f64) -> f64 {
         let target = absolute(self.rtol, self.atol, self.reference, length, self.rows);
-        (self.ease * target).max(ROUNDING * size)
+        target.max(ROUNDING * size)
     }
 }

@@ -1,9 +1,10 @@
 //! The tables that the commands print, and their CSV forms.
 
 use super::contact as contact_summary;
-use super::table::{count, fixed, Table};
+use super::table::{count, fixed, scientific, Table};
 use crate::feti::Communication;
 use crate::report::json::{PcResult, SolveReport, Spectrum, Table1Row, Table1Side};
+use crate::Status;
 
 /// The result of `solve` as lines "name  value".
 pub fn solve(r: &SolveReport) -> String {
@@ -72,6 +73,9 @@ pub fn solve(r: &SolveReport) -> String {
         "iterations",
         format!("{inner}, {} at rtol {:.0e}", r.converged_reason, r.rtol),
     ));
+    if r.converged_reason == Status::Rounding.name() {
+        lines.push(("rounding", rounding(r)));
+    }
     if let Some(adaptive) = &r.adaptive {
         if adaptive.constraints.iter().any(|n| *n > 0) {
             lines.push(("adaptive primal", adaptive.constraints_text()));
@@ -150,6 +154,15 @@ pub(crate) fn ranks(n: usize) -> String {
     } else {
         format!("{n} ranks")
     }
+}
+
+/// One line on a tolerance below rounding.
+fn rounding(r: &SolveReport) -> String {
+    format!(
+        "the tolerance {} is below it; stationarity and feasibility reached {}",
+        scientific(Some(r.rtol)),
+        scientific(Some(r.kkt.stationarity.max(r.kkt.feasibility)))
+    )
 }
 
 /// One line on the messages of an iteration.

@@ -69,6 +69,7 @@ fn solve_says_what_was_solved_and_leaves_out_what_is_not_known() {
         Some("64 in bodies, 60 between bodies (60 active)")
     );
     assert_eq!(line("iterations"), Some("9, CONVERGED_RTOL at rtol 1e-6"));
+    assert_eq!(line("rounding"), None);
     assert_eq!(
         line("estimate of the run"),
         Some("κ = 3.2500   (λ_min 1.000000, λ_max 3.2500)")
