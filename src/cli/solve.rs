@@ -14,7 +14,7 @@ use super::{maps, physics, picture};
 use crate::checkpoint::Checkpoints;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
-use crate::feti::{MethodSettings, PcType};
+use crate::feti::MethodSettings;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
 use crate::report::destination::Destination;
@@ -61,7 +61,7 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
     };
     let mut report = report(session, &scene, &solver, &course, exact)?;
     if solver.settings().method.check {
-        report.check = Some(checks(&solver)?);
+        report.check = Some(checks(&solver, exact)?);
     }
     report.seconds.assemble = assemble;
     if let Some(dir) = &destination.out {
@@ -112,15 +112,18 @@ fn files(report: &SolveReport) -> Vec<&'static str> {
 }
 
 /// The checks of the identities, and of λ_min ≥ 1 by the exact spectrum.
-fn checks(solver: &FetiFeti) -> Result<BTreeMap<String, f64>> {
+fn checks(solver: &FetiFeti, exact: Option<Spectrum>) -> Result<BTreeMap<String, f64>> {
     let identities = solver.check()?;
     let mut out: BTreeMap<String, f64> = identities
         .into_iter()
         .map(|(name, defect)| (name.to_string(), defect))
         .collect();
-    let kind = solver.dual().preconditioner.kind;
-    if matches!(kind, PcType::Dirichlet | PcType::CoarseCorrected) {
-        if let Some(s) = solver.spectrum()? {
+    if solver.dual().preconditioner.kind.has_floor() {
+        let spectrum = match exact {
+            Some(known) => Some(known),
+            None => solver.spectrum()?,
+        };
+        if let Some(s) = spectrum {
             out.insert("lambda_min >= 1".into(), (1.0 - s.lambda_min).max(0.0));
         }
     }

@@ -7,6 +7,9 @@ pub struct Spectrum {
     pub lambda_min: f64,
     /// Largest eigenvalue.
     pub lambda_max: f64,
+    /// Where an exact eigenvalue has settled before its residual reached the tolerance: that residual, relative to the
+    /// eigenvalue. An eigenvalue lies within it; as a rule the error is about its square. `None` otherwise.
+    pub settled: Option<f64>,
 }
 
 impl Spectrum {

@@ -33,6 +33,29 @@ pub enum Which {
     SmallestReal,
 }
 
+/// The conditions under which the search for an eigenvalue ends before its residual is small.
+#[derive(Debug, Clone, Copy)]
+pub struct Settled {
+    /// No eigenvalue is below this; the search for the smallest one ends within the tolerance of it. NaN: not known.
+    pub floor: f64,
+    /// Restarts before the value may count as settled.
+    pub first: usize,
+    /// Number of restarts over which it then hardly changes, at most 64.
+    pub patience: usize,
+    /// The largest residual beside this, relative to the eigenvalue.
+    pub loose: f64,
+}
+
+/// An eigenvalue at an end of a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// The eigenvalue.
+    pub value: f64,
+    /// Where the search ended because the value had settled: its residual, relative to it. Of a self-adjoint operator
+    /// an eigenvalue lies within the residual. `None` where the tolerance was reached.
+    pub settled: Option<f64>,
+}
+
 /// An eigenvalue solver. Clones are handles to the same solver.
 pub type Eps = Handle<sys::_p_EPS>;
 
@@ -128,6 +151,28 @@ impl Eps {
     /// # Errors The error of a shell operator if one failed; otherwise SLEPc's.
     pub fn solve(&self) -> Result<()> {
         petsc!(EPSSolve(self.raw()))
+    }
+
+    /// Solves for one eigenvalue, and ends also where it has settled. `None` where neither happens. Collective.
+    ///
+    /// # Errors
+    /// As [`Eps::solve`].
+    pub fn solve_settled(&self, when: Settled) -> Result<Option<End>> {
+        let (mut value, mut residual) = (f64::NAN, f64::NAN);
+        let found = got(|found| {
+            petsc!(ff_eps_solve_settled(
+                self.raw(),
+                when.floor,
+                when.first as i32,
+                when.patience as i32,
+                when.loose,
+                &mut value,
+                &mut residual,
+                found
+            ))
+        })?;
+        let settled = (found == 2).then_some(residual);
+        Ok((found != 0).then_some(End { value, settled }))
     }
 
     /// Number of converged eigenvalues.

@@ -31,7 +31,7 @@ mod spectrum;
 mod vec;
 
 pub use citations::cite;
-pub use eps::{Eps, ProblemType, Which};
+pub use eps::{End, Eps, ProblemType, Settled, Which};
 pub use handle::Handle;
 pub use heap::let_threads_allocate;
 pub use is::Is;

@@ -11,7 +11,7 @@
 //!
 //! σ is a Rayleigh quotient of C A: it lies between the extreme eigenvalues, and does not extend the spectrum.
 
-use super::{Comm, Eps, Mat, ProblemType, Session, ShellMat, Vec, Which};
+use super::{Comm, End, Eps, Mat, ProblemType, Session, Settled, ShellMat, Vec, Which};
 use crate::{Error, Result};
 
 /// The projection E with two work vectors, or the identity.
@@ -88,6 +88,15 @@ impl ShellMat for InnerProduct {
     }
 }
 
+/// Products with the operator before an eigenvalue may count as settled, …
+const PRODUCTS: usize = 2_400;
+
+/// … number of restarts over which it then hardly changes, …
+const PATIENCE: usize = 4;
+
+/// … and the largest residual beside this, relative to the eigenvalue.
+const LOOSE: f64 = 1e-3;
+
 /// Number of vectors between restarts; SLEPc tests convergence at restarts only. The largest eigenvalue is well
 /// separated and converges after some tens of vectors; the smallest ones are clustered at the lower end.
 fn subspace(which: Which) -> usize {
@@ -105,6 +114,12 @@ fn subspace(which: Which) -> usize {
 /// to the eigenvalue; the error of the eigenvalue is of the order of its square where the eigenvalue is well separated,
 /// and never larger than `tol`. Options with `prefix` go to SLEPc's solver. Collective.
 ///
+/// At the end of a cluster the residual, about the square root of the error, falls for thousands of products after the
+/// value has all its digits. Two more conditions end the search there. With `floor`, which no eigenvalue is below, the
+/// smallest one is known where a Rayleigh quotient is above `floor` by no more than `tol`. Otherwise a value ends the
+/// search that has settled: its changes let expect an error below `tol`, and the residual is handed over
+/// ([`End::settled`]).
+///
 /// # Errors
 /// [`Error::NotConverged`] when an end of the spectrum did not converge; [`Error::Input`] when A annihilates `start`.
 pub fn extreme_eigenvalues(
@@ -113,9 +128,9 @@ pub fn extreme_eigenvalues(
     c: &Mat,
     e: Option<&Mat>,
     start: &Vec,
-    tol: f64,
+    (tol, floor): (f64, Option<f64>),
     prefix: &str,
-) -> Result<(f64, f64)> {
+) -> Result<[End; 2]> {
     let split = || Split { e: e.cloned() };
     let n = start.global_len();
     let first = start.duplicate()?;
@@ -154,7 +169,7 @@ pub fn extreme_eigenvalues(
         w: work()?,
     }))?;
 
-    let end = |which: Which| -> Result<f64> {
+    let end = |which: Which| -> Result<End> {
         let eps = Eps::new(session, Comm::World)?;
         // SLEPc takes (OP, B) as a pencil and wants B⁻¹ of it. OP has that factor already, so the solve with B is the
         // identity.
@@ -170,9 +185,20 @@ pub fn extreme_eigenvalues(
         ksp.set_type("preonly")?;
         ksp.pc()?.set_type("none")?;
         eps.set_from_options()?;
-        eps.solve()?;
-        if eps.converged()? == 0 {
-            return Err(Error::NotConverged(format!(
+        let floor = match which {
+            Which::SmallestReal => floor.unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        };
+        let when = Settled {
+            floor,
+            // A restart keeps half of the vectors.
+            first: 2 * PRODUCTS / subspace(which),
+            patience: PATIENCE,
+            loose: LOOSE,
+        };
+        match eps.solve_settled(when)? {
+            Some(end) => Ok(end),
+            None => Err(Error::NotConverged(format!(
                 "The {} eigenvalue did not converge to {tol:.0e} in {} restarts ({}); \
                  -{prefix}eps_max_it allows more of them",
                 if which == Which::SmallestReal {
@@ -182,9 +208,8 @@ pub fn extreme_eigenvalues(
                 },
                 eps.iterations()?,
                 eps.converged_reason()?.name
-            )));
+            ))),
         }
-        eps.eigenvalue(0)
     };
-    Ok((end(Which::SmallestReal)?, end(Which::LargestReal)?))
+    Ok([end(Which::SmallestReal)?, end(Which::LargestReal)?])
 }

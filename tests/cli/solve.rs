@@ -489,3 +489,20 @@ fn the_summary_says_what_was_reached_above_a_tolerance_below_rounding() {
     let line = lines.next().expect("a line about rounding");
     assert!(line.contains("the tolerance 1.0e-30 is below it"), "{line}");
 }
+
+/// With inclusions the lower end of the spectrum is a cluster at 1 whose members Krylov methods cannot separate: the
+/// residual of the smallest eigenvalue falls for more than a hundred restarts after its value is known.
+#[test]
+fn the_spectrum_of_inclusions_takes_few_restarts() {
+    let scene = "examples/scenes/coefficients_inclusions.toml";
+    let more = ["-fetifeti_spectrum", "-fetifeti_eps_max_it", "30"];
+    let (out, report) = solve(scene, &more);
+    assert_eq!(out.code, 0, "{}", out.all());
+    let exact = &report["condition"]["exact"];
+    // The bound of theory proves the value; otherwise the record would say that it has settled.
+    assert!(exact.get("settled").is_none(), "{exact}");
+    let least = number(&exact["lambda_min"]);
+    assert!((least - 1.0).abs() < 5e-7, "{exact}");
+    // κ of the search to a residual of 4e-7.
+    assert!((number(&exact["kappa"]) - 9.7545).abs() < 1e-4, "{exact}");
+}

@@ -86,7 +86,8 @@ fn values(session: &Session) -> Result<()> {
         .map(|i| (i, i, 1.0))
         .collect();
     let c = Mat::from_triplets(session, Comm::World, local, local, &identity)?;
-    let (lo, hi) = extreme_eigenvalues(session, &a, &c, None, &x, 1e-10, "")?;
+    let ends = extreme_eigenvalues(session, &a, &c, None, &x, (1e-10, None), "")?;
+    let [lo, hi] = ends.map(|end| end.value);
     assert!((hi / large - 1.0).abs() < 1e-8 && (lo / small - 1.0).abs() < 1e-8);
 
     // Every rank fetches the whole vector backwards and adds it back.

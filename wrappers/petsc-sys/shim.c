@@ -181,6 +181,76 @@ int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double 
   return (int)code;
 }
 
+/* ---- eigenvalues ---- */
+
+#define FF_PATIENCE 64
+
+typedef struct {
+  double floor, loose;
+  int    first, patience, restarts, found;
+  double before[FF_PATIENCE]; /* the values of the last restarts; the oldest one is replaced next */
+  double value, residual;
+} ff_settling;
+
+static int HasSettled(const ff_settling *s, double tol, double size)
+{
+  double change = PetscAbsReal(s->value - s->before[s->restarts % s->patience]);
+
+  return s->restarts >= s->first && s->restarts >= s->patience && s->residual <= s->loose &&
+         change * s->restarts <= tol * size * s->patience;
+}
+
+static PetscErrorCode ff_settled(EPS eps, PetscScalar eigr, PetscScalar eigi, PetscReal res, PetscReal *errest,
+                                 void *data)
+{
+  ff_settling *s    = (ff_settling *)data;
+  double       size = PetscMax(PetscAbsReal(eigr), PETSC_MIN_REAL), above;
+  PetscReal    tol;
+
+  (void)eigi;
+  *errest = res / size;
+  if (s->found) return 0; /* SLEPc asks for the next eigenvalue, too. */
+  PetscCall(EPSGetTolerances(eps, &tol, NULL));
+  s->value    = eigr;
+  s->residual = *errest;
+  above       = s->value - s->floor;
+  if (*errest < tol || (above >= -1e-10 * size && above <= tol * size)) s->found = 1;
+  else if (HasSettled(s, tol, size)) s->found = 2;
+  if (s->found) *errest = 0.0;
+  s->before[s->restarts % s->patience] = s->value;
+  s->restarts++;
+  return 0;
+}
+
+int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double loose, double *value, double *residual,
+                         int *found)
+{
+  ff_settling    s = {floor, loose, first, patience, 0, 0, {0.0}, 0.0, 0.0};
+  EPSConv        kind;
+  PetscInt       n;
+  PetscErrorCode code;
+
+  *found = 0;
+  if (patience < 1 || patience > FF_PATIENCE) return PETSC_ERR_ARG_OUTOFRANGE;
+  PetscCall(EPSGetConvergenceTest(eps, &kind));
+  if (kind == EPS_CONV_REL) PetscCall(EPSSetConvergenceTestFunction(eps, ff_settled, &s, NULL));
+  code = EPSSolve(eps);
+  if (kind == EPS_CONV_REL) PetscCall(EPSSetConvergenceTest(eps, kind));
+  PetscCall(code);
+  if (kind == EPS_CONV_REL) {
+    *found    = s.found;
+    *value    = s.value;
+    *residual = s.residual;
+    return 0;
+  }
+  PetscCall(EPSGetConverged(eps, &n));
+  if (n < 1) return 0;
+  PetscCall(EPSGetEigenvalue(eps, 0, value, NULL));
+  PetscCall(EPSGetErrorEstimate(eps, 0, residual));
+  *found = 1;
+  return 0;
+}
+
 /* ---- graphs and MATIS ---- */
 
 int ff_partition(const char *prefix, int n, const int *row, const int *col, const int *weight, int parts, int chosen,

@@ -35,6 +35,16 @@ int ff_st_shell_set_apply(ST st, int (*f)(ST, Vec, Vec));
    then. */
 int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, int *tripped);
 
+/* EPSSolve() for one eigenvalue with the relative tolerance tol of the solver. It also ends
+   1. where the value, which the smallest eigenvalue does not exceed, is above `floor` by tol at most (NaN: no floor),
+   2. from restart `first` on, where the value has settled: with a relative residual of at most `loose` and a change d
+      over `patience` restarts so small that d restarts / patience is below tol. The error is no more than that where
+      the value approaches its limit like 1/restarts or faster, as it does at the end of a cluster.
+   `value` and the relative `residual` are those at the end; `found` is 0, 1, or 2 for a value that has settled. Another
+   convergence test than the usual one, chosen by an option, is left alone. */
+int ff_eps_solve_settled(EPS eps, double floor, int first, int patience, double loose, double *value, double *residual,
+                         int *found);
+
 /* Collects PETSc's error frames instead of printing them. */
 typedef void (*ff_trace)(int line, const char *function, const char *file, int code, int initial, const char *message);
 int ff_push_error_handler(ff_trace trace);

@@ -11,7 +11,8 @@ use crate::Result;
 
 /// Residual tolerance of the eigensolver, relative to the eigenvalue. An eigenvalue of a self-adjoint operator lies
 /// within the residual, so κ is good to 1e-6; in fact the error is about the residual's square. A much smaller
-/// tolerance would require to separate the members of the cluster at 1, which is of no use.
+/// tolerance would require to separate the members of the cluster at 1, which is of no use. Where λ_min ≥ 1 by theory,
+/// a Rayleigh quotient of 1 plus this tolerance is as good.
 const TOLERANCE: f64 = 4e-7;
 
 /// The extreme eigenvalues of P M⁻¹ Pᵀ F by SLEPc; `None` without multipliers. Collective.
@@ -29,12 +30,20 @@ pub fn exact(system: &Rc<System>, prefix: &str) -> Result<Option<Spectrum>> {
     let c = shells::preconditioner(system)?;
     let e = shells::range(system)?;
     let start = start_vector(&system.dual())?;
+    let floor = {
+        let dual = system.dual();
+        let proved = dual.preconditioner.kind.has_floor() && !dual.stiffness.has_springs();
+        proved.then_some(1.0)
+    };
+    let accuracy = (TOLERANCE, floor);
     let session = &system.session;
-    let (lambda_min, lambda_max) =
-        extreme_eigenvalues(session, &a, &c, Some(&e), &start, TOLERANCE, prefix)?;
+    let [least, largest] =
+        extreme_eigenvalues(session, &a, &c, Some(&e), &start, accuracy, prefix)?;
+    let settled = [least.settled, largest.settled].into_iter().flatten();
     Ok(Some(Spectrum {
-        lambda_min,
-        lambda_max,
+        lambda_min: least.value,
+        lambda_max: largest.value,
+        settled: settled.reduce(f64::max),
     }))
 }
 

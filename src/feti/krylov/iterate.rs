@@ -190,5 +190,6 @@ fn estimate(ksp: &Ksp, iterations: usize) -> Result<Option<Spectrum>> {
     Ok((lambda_min > 0.0).then_some(Spectrum {
         lambda_min,
         lambda_max,
+        settled: None,
     }))
 }

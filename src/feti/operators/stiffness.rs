@@ -101,6 +101,11 @@ impl Stiffness {
         self.refinement = Some(refinement);
     }
 
+    /// Whether there are springs in the rows.
+    pub fn has_springs(&self) -> bool {
+        self.springs.is_some()
+    }
+
     /// Replaces C; `None` makes all rows rigid.
     pub(super) fn set_compliance(&mut self, compliance: Option<Vec<f64>>) {
         self.springs = compliance.map(|c| Springs::new(&self.jump, c));

@@ -24,6 +24,9 @@ pub struct Spectrum {
     /// Their ratio.
     #[serde(with = "number")]
     pub kappa: f64,
+    /// The relative residual of an exact eigenvalue that has settled above the tolerance of the eigensolver.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settled: Option<f64>,
 }
 
 impl Spectrum {
@@ -33,12 +36,16 @@ impl Spectrum {
             lambda_min,
             lambda_max,
             kappa: lambda_max / lambda_min,
+            settled: None,
         }
     }
 }
 
 impl From<crate::Spectrum> for Spectrum {
     fn from(s: crate::Spectrum) -> Spectrum {
-        Spectrum::new(s.lambda_min, s.lambda_max)
+        Spectrum {
+            settled: s.settled,
+            ..Spectrum::new(s.lambda_min, s.lambda_max)
+        }
     }
 }

@@ -12,8 +12,11 @@ pub fn solve(r: &SolveReport) -> String {
         s.map_or_else(
             || "–".to_string(),
             |s| {
+                let known = s.settled.map_or_else(String::new, |r| {
+                    format!(", settled with a residual of {}", scientific(Some(r)))
+                });
                 format!(
-                    "κ = {:.4}   (λ_min {:.6}, λ_max {:.4})",
+                    "κ = {:.4}   (λ_min {:.6}, λ_max {:.4}{known})",
                     s.kappa, s.lambda_min, s.lambda_max
                 )
             },
