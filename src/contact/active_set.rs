@@ -17,7 +17,7 @@ use super::state::{changes, Observer, State, Step};
 use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
-use crate::feti::krylov::residual::{Iterate, Residual};
+use crate::feti::krylov::residual::{Iterate, Residual, ROUNDING};
 use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::rows::Rows;
@@ -204,11 +204,12 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    /// The tolerance of the residual, from the displacements of the last step.
+    /// The tolerance of the residual, from the displacements of the last step. It is not below rounding.
     fn target(&self) -> Result<f64> {
         let ksp = &self.method.ksp;
         let target = target(ksp, self.state.reference, self.length, self.n_rows)?;
-        Ok(target.max(self.least))
+        let rounding = ROUNDING * self.at.residual.size;
+        Ok(target.max(self.least).max(rounding))
     }
 
     /// One outer step: solves the equations on the set, then determines the next set.

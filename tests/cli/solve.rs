@@ -472,6 +472,9 @@ fn a_tolerance_below_rounding_is_not_reported_as_reached() {
         for rtol in ["1e-30", "0"] {
             let last = run(rtol);
             assert_eq!(last["converged_reason"], "CONVERGED_ROUNDING", "{what}");
+            let more = number(&last["iterations"]["total"]);
+            let few = number(&usual["iterations"]["total"]);
+            assert!(more < 3.0 * few, "{what}: {more} after {few}");
             for key in ["stationarity", "feasibility"] {
                 assert!(number(&last["kkt"][key]) < 1e-13, "{what}: {last}");
             }
