@@ -104,7 +104,7 @@ pub(super) struct ActiveSet<'a> {
     /// Whether the residual of `at` belongs to its λ and the set that holds.
     fresh: bool,
     /// The largest displacement in the last step.
-    length: f64,
+    pub length: f64,
     /// Whether inner problems are solved more exactly than the settings say.
     pub exact: bool,
     /// Whether the next step is solved to the end.

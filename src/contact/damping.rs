@@ -1,4 +1,4 @@
-//! The length of a Newton step on the augmented Lagrangian, by exact minimisation along the step.
+//! The length of a Newton step on the augmented Lagrangian, from φ along the step.
 //!
 //! ```text
 //!     φ(u) = ½ uᵀK u − fᵀu + ½ Σ_j C_j (s_j)₊²,           s_j = μ_j + (B u − c)_j / C_j
@@ -20,6 +20,9 @@ use crate::parallel::exchange::sum_all;
 /// Largest number of evaluations of φ'. Newton's method on φ' ends after a handful; bisection takes over where it does
 /// not.
 const EVALUATIONS: usize = 60;
+
+/// A step is long enough if φ falls by this part of what the best length brings.
+const ENOUGH: f64 = 0.1;
 
 /// Displacements as the rows see them, one entry for each owned row.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,9 +79,44 @@ impl Penalty<'_> {
         sums
     }
 
-    /// The t in (0, 1] that minimises φ on the way from one point to another, with `beyond` in (0, ∞); `None` if φ does
-    /// not fall. Collective.
+    /// φ at t on the way from one point to another, minus φ at its beginning. Collective.
+    pub fn change(&self, comm: &SimpleCommunicator, [from, to]: [&Point; 2], t: f64) -> f64 {
+        let mut sum = [0.0];
+        for i in (0..from.gap.len()).filter(|&i| self.counts[i]) {
+            let (gap, force) = (to.gap[i] - from.gap[i], to.force[i] - from.force[i]);
+            let (mu, c) = (self.multiplier[i], self.compliance[i]);
+            let [was, is] = [0.0, t].map(|t| (mu + (from.gap[i] + t * gap) / c).max(0.0));
+            sum[0] += 0.5 * c * (is - was) * (is + was);
+            sum[0] -= t * gap * (from.force[i] + 0.5 * t * force);
+        }
+        sum_all(comm, &mut sum);
+        sum[0]
+    }
+
+    /// How far to go from one point to another; `None` if φ does not fall. With `beyond` this is the t in (0, ∞) that
+    /// minimises φ. Else it is the first of 1, ½, ¼, … at which φ falls by [`ENOUGH`] of what the minimum in (0, 1] has:
+    /// the minimum lies at a kink, where rows neither hold nor leave, and Newton steps from kink to kink are short.
+    /// Collective.
     pub fn length(
+        &self,
+        comm: &SimpleCommunicator,
+        ends: [&Point; 2],
+        beyond: bool,
+    ) -> Option<f64> {
+        let least = self.minimum(comm, ends, beyond)?;
+        if beyond {
+            return Some(least);
+        }
+        let fall = self.change(comm, ends, least);
+        let mut t = 1.0;
+        while t > least && self.change(comm, ends, t) > ENOUGH * fall {
+            t *= 0.5;
+        }
+        Some(f64::max(t, least))
+    }
+
+    /// The t in (0, 1], or in (0, ∞), that minimises φ. Collective.
+    fn minimum(
         &self,
         comm: &SimpleCommunicator,
         [from, to]: [&Point; 2],

@@ -16,6 +16,7 @@
 use std::time::Instant;
 
 use super::active_set::{ActiveSet, Verdict};
+use super::judge;
 use super::newton::{Came, Search};
 use super::settings::ContactSettings;
 use super::state::{Observer, Progress, State, Step};
@@ -31,8 +32,8 @@ const EARLY: usize = 4;
 /// one.
 const PULL: f64 = 10.0;
 
-/// Steps without progress after which a trial ends.
-const PATIENCE: usize = 2;
+/// Steps without progress after which a trial ends. It also ends if more than a few rows are wrong ([`Search::few`]).
+const PATIENCE: usize = 1;
 
 /// With no more wrong rows than this a trial has twice the patience.
 const CLOSE: usize = 2;
@@ -78,6 +79,7 @@ pub(super) fn solve(
         if minimal && search.is_solution()? {
             return Ok((search.finish(&steps, elapsed(), status)?, steps));
         }
+        search.update(&mut state);
         search.rigid();
         let trial = State {
             safeguarded: false,
@@ -85,8 +87,11 @@ pub(super) fn solve(
             ..state.clone()
         };
         let mut run = ActiveSet::new(method, settings, Some(&trial))?;
-        run.pull = PULL * rtol;
+        run.pull = (PULL * rtol).max(judge::ROUNDING);
         run.exact = true;
+        // A set that is the minimum's is solved to the end at once.
+        run.tight = minimal;
+        run.length = search.length;
         while state.steps < settings.max_it {
             let (step, status, verdict) = run.step()?;
             state.steps += 1;
@@ -107,11 +112,12 @@ pub(super) fn solve(
                 true => PATIENCE,
                 false => 2 * PATIENCE,
             };
-            if run.state.safeguarded || run.state.progress.stalled(patience) {
+            let lost = run.state.progress.wrong() > search.few;
+            if lost || run.state.safeguarded || run.state.progress.stalled(patience) {
                 break;
             }
         }
-        search.stiffen(&mut state);
+        search.stiffen();
     }
     unreachable!("the loop returns")
 }

@@ -14,6 +14,7 @@ mod augmented;
 mod balance;
 mod cone;
 mod damping;
+mod dependent;
 mod feasible;
 mod judge;
 mod lagrangian;

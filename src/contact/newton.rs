@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use super::active_set;
 use super::damping::{Penalty, Point};
+use super::dependent;
 use super::motion;
 use super::settings::ContactType;
 use super::state::{changes, State, Step};
@@ -25,12 +26,11 @@ use crate::status::Status;
 use crate::Result;
 
 /// Stiffness 1/C of the springs in the first minimisation, relative to 1/diag(B diag(K)⁻¹ Bᵀ), that of the nodes. Much
-/// softer springs take more minimisations (7 × 7 bodies with jumps of 10⁶: 3 from 30, 8 and more from 1), much stiffer
-/// ones more steps in each (10 from 30, 15 from 100).
+/// softer springs take more minimisations, much stiffer ones more steps in each.
 const STIFFNESS: f64 = 30.0;
 
 /// Factor by which the springs become stiffer from one minimisation to the next, …
-const STIFFER: f64 = 10.0;
+const STIFFER: f64 = 3.0;
 
 /// … and the largest stiffness. Beyond it C is lost in the rounding of F.
 const STIFFEST: f64 = 1e9;
@@ -78,9 +78,10 @@ pub struct Search<'a> {
     /// Where the loop is; `None` before the first step of a minimisation.
     point: Option<Point>,
     /// The largest displacement in the last step.
-    length: f64,
+    pub length: f64,
     n_rows: usize,
-    few: f64,
+    /// Number of rows that are few.
+    pub few: usize,
     /// No tolerance is below this: rounding of the problem's scale.
     least: f64,
     last: Option<Run>,
@@ -116,13 +117,13 @@ impl<'a> Search<'a> {
             point: None,
             length: 0.0,
             n_rows: stiffness.jump.n_global,
-            few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)),
+            few: FEW.max(FEW_OF_ALL * total(comm, mine as f64)) as usize,
             last: None,
             least: method.least_residual(),
             method,
         };
         drop(dual);
-        search.stiffen(state);
+        search.stiffen();
         Ok(search)
     }
 
@@ -139,13 +140,19 @@ impl<'a> Search<'a> {
         self.method.system.set_compliance(None);
     }
 
-    /// μ ← (s)₊, and stiffer springs. The next minimisation begins with a full step on the set where this one ended.
-    pub fn stiffen(&mut self, state: &mut State) {
-        if let Some(point) = self.point.take() {
-            let s = self.penalty().pull(&point);
-            self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
-            state.active = self.set(&s);
-        }
+    /// μ ← (s)₊, and the set of the rows with μ > 0. Ends a minimisation.
+    pub fn update(&mut self, state: &mut State) {
+        let Some(point) = self.point.take() else {
+            return;
+        };
+        let s = self.penalty().pull(&point);
+        self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
+        dependent::settle(&self.method.dual().stiffness.jump, &mut self.multiplier);
+        state.active = self.set(&self.multiplier);
+    }
+
+    /// Makes the springs stiffer. The next minimisation begins with a full step on the set of `state`.
+    pub fn stiffen(&mut self) {
         self.stiffness = (STIFFER * self.stiffness).min(STIFFEST);
         let of = |(counts, node): (&bool, &f64)| match counts {
             true => node / self.stiffness,
@@ -289,7 +296,7 @@ impl<'a> Search<'a> {
         let came = match t {
             0.0 => Came::Nowhere,
             1.0 if wrong == 0 => Came::Down,
-            t if t > 0.99 && wrong as f64 <= self.few => Came::Near,
+            t if t > 0.99 && wrong <= self.few => Came::Near,
             _ => Came::Somewhere,
         };
         let status = run.status.clone();

@@ -10,3 +10,4 @@ mod kappa;
 mod kernels;
 mod scaling;
 mod speed_error;
+mod walls;

@@ -99,7 +99,7 @@ fn product(x: &Dense, rows: &[usize], v: impl Fn(usize) -> f64) -> Vec<f64> {
 }
 
 /// N: orthonormal columns that complete those of `range`.
-fn complement(range: &Dense) -> Dense {
+pub fn complement(range: &Dense) -> Dense {
     let n = range.rows;
     let mut known: Vec<Vec<f64>> = (0..range.cols).map(|j| range.col(j).to_vec()).collect();
     while known.len() < n {

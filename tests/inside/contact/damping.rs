@@ -21,7 +21,7 @@ fn value(u: f64, c: &[f64], penalty: &Penalty) -> f64 {
 }
 
 #[test]
-fn the_length_minimises_along_the_step() {
+fn the_minimum_along_the_step() {
     with_session(|session| {
         let gaps = [1.0, 1.5, 2.0, 3.0];
         let penalty = Penalty {
@@ -31,7 +31,7 @@ fn the_length_minimises_along_the_step() {
         };
         for from in [-5.0, 0.0, 1.2] {
             let (a, b) = (point(from, &gaps), point(4.0, &gaps));
-            let t = penalty.length(session.comm(), [&a, &b], false);
+            let t = penalty.minimum(session.comm(), [&a, &b], false);
             let t = t.expect("φ falls towards the load's displacement");
             let at = |t: f64| value(from + t * (4.0 - from), &gaps, &penalty);
             for other in (0..=1000).map(|k| f64::from(k) / 1000.0) {
@@ -39,8 +39,16 @@ fn the_length_minimises_along_the_step() {
                     at(t) <= at(other) + 1e-9 * at(other).abs(),
                     "{from}: {t} {other}"
                 );
+                let change = penalty.change(session.comm(), [&a, &b], other);
+                let known = at(other) - at(0.0);
+                assert!((change - known).abs() <= 1e-12 * known.abs().max(1.0));
             }
             assert!(t > 0.0 && t < 1.0);
+            // The length that is taken is no shorter, and brings a tenth of that.
+            let taken = penalty.length(session.comm(), [&a, &b], false);
+            let taken = taken.expect("φ falls");
+            assert!(t <= taken && taken <= 1.0);
+            assert!(at(0.0) - at(taken) >= 0.1 * (at(0.0) - at(t)));
         }
     });
 }

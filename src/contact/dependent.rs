@@ -1,0 +1,84 @@
+//! Rows of one node that depend on each other: at a cross point with different gaps not all of them can hold.
+//!
+//! ```text
+//!     λ ← λ − t N Nᵀ c,      Bᵀ N = 0,      λ ≥ 0 on inequalities
+//! ```
+//!
+//! Multipliers N are no forces: displacements do not tell them. The dual energy does, by −cᵀλ. An update of the
+//! multipliers moves them along N by what the springs give way, so that it takes many updates until the row that must
+//! leave has left. Here they go all the way at once, node by node.
+
+use crate::feti::jump::operator::Jump;
+use crate::feti::jump::scaling;
+use crate::feti::operators::springs::complement;
+use crate::linalg::dense::Dense;
+
+/// cᵀN counts as zero below this, relative to its terms: rounding of given gaps.
+const LEVEL: f64 = 1e-12;
+
+/// Moves the multipliers of all blocks of dependent rows downhill in cᵀλ, until rows with multipliers do not contradict
+/// each other. Forces Bᵀλ stay.
+pub fn settle(jump: &Jump, lambda: &mut [f64]) {
+    for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
+        let rows = block.rows.clone();
+        let (inequality, c) = (&jump.inequality[rows.clone()], &jump.gap[rows.clone()]);
+        settle_rows(&block.b, inequality, c, &mut lambda[rows]);
+    }
+}
+
+/// The same for the rows `b` of one node.
+fn settle_rows(b: &Dense, inequality: &[bool], c: &[f64], lambda: &mut [f64]) {
+    // A row leaves in each pass.
+    for _ in 0..lambda.len() {
+        let on = |&r: &usize| !inequality[r] || lambda[r] > 0.0;
+        let rows: Vec<usize> = (0..lambda.len()).filter(on).collect();
+        if rows.len() < 2 {
+            return;
+        }
+        let part = faer::Mat::from_fn(rows.len(), b.cols, |i, j| b.get(rows[i], j));
+        let range = scaling::range(&part);
+        let range = Dense::from_fn(rows.len(), range.ncols(), |i, j| range[(i, j)]);
+        let n = complement(&range);
+        // The steepest descent of cᵀλ: −N Nᵀ c.
+        let mut along = vec![0.0; rows.len()];
+        let mut level: f64 = 0.0;
+        for k in 0..n.cols {
+            let column = n.col(k);
+            let slope: f64 = rows.iter().zip(column).map(|(&r, v)| c[r] * v).sum();
+            let terms: f64 = rows
+                .iter()
+                .zip(column)
+                .map(|(&r, v)| (c[r] * v).abs())
+                .sum();
+            if slope.abs() > LEVEL * terms {
+                level = level.max(slope.abs());
+                along
+                    .iter_mut()
+                    .zip(column)
+                    .for_each(|(a, v)| *a -= slope * v);
+            }
+        }
+        if level == 0.0 {
+            return;
+        }
+        let falls = |i: &usize| inequality[rows[*i]] && along[*i] < -1e-10 * level;
+        let ratio = |i: usize| lambda[rows[i]] / -along[i];
+        let first = (0..rows.len())
+            .filter(falls)
+            .min_by(|&i, &j| ratio(i).total_cmp(&ratio(j)));
+        // Without an end the gaps contradict each other: the certificate has the word.
+        let Some(first) = first else { return };
+        let step = ratio(first);
+        for (i, &r) in rows.iter().enumerate() {
+            lambda[r] += step * along[i];
+            if inequality[r] {
+                lambda[r] = lambda[r].max(0.0);
+            }
+        }
+        lambda[rows[first]] = 0.0;
+    }
+}
+
+#[cfg(test)]
+#[path = "../../tests/inside/contact/dependent.rs"]
+mod tests;
