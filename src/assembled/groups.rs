@@ -9,10 +9,14 @@
 use super::potentials::Potentials;
 use super::rows::Inequalities;
 use crate::linalg::dense::Dense;
+use crate::linalg::nnls::nnls;
 use crate::linalg::semidefinite::Semidefinite;
 
 /// Gaps that differ by less than this, relative to the largest, are equal.
 const SAME: f64 = 1e-12;
+
+/// Forces on a group balance if less than this is left, relative to their norm.
+const BALANCED: f64 = 1e-10;
 
 /// The groups of one active set.
 #[derive(Debug, Clone)]
@@ -98,9 +102,18 @@ impl Groups {
     }
 }
 
+/// Which multipliers of rows that depend on each other are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signs {
+    /// The shortest.
+    Any,
+    /// Those that do not pull, where there are such.
+    Pushing,
+}
+
 /// The multipliers of smallest norm of the active rows that satisfy Bᵀ λ = r, or come nearest to it; zero on the other
 /// rows. `r` is given at the unknowns in rows.
-pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64]) -> Vec<f64> {
+pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64], signs: Signs) -> Vec<f64> {
     let ground = rows.ground();
     // Ground transmits no force: groups that are tied to it stay separate.
     let mut sets = Potentials::new(ground);
@@ -144,10 +157,23 @@ pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64]) -> Vec<f64> 
             let mean = w.iter().sum::<f64>() / n as f64;
             w.iter_mut().for_each(|w| *w -= mean);
         }
+        let forces = w.clone();
         Semidefinite::new(&laplacian).solve(&mut w);
         let at = |e: usize| place(e).map_or(0.0, |k| w[k]);
         for &k in members {
             lambda[k] = at(rows.rows[k].plus) - at(rows.rows[k].minus);
+        }
+        if signs == Signs::Pushing && members.iter().any(|&k| lambda[k] < 0.0) {
+            let to = |k: usize, j: usize| {
+                let of = |end: usize| f64::from(place(end) == Some(k));
+                of(rows.rows[members[j]].plus) - of(rows.rows[members[j]].minus)
+            };
+            let transpose = Dense::from_fn(n, members.len(), to);
+            let (x, rest) = nnls(&transpose, &forces, &vec![false; members.len()]);
+            let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if norm(&rest) <= BALANCED * norm(&forces) {
+                members.iter().zip(x).for_each(|(&k, x)| lambda[k] = x);
+            }
         }
     }
     lambda

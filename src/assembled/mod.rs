@@ -6,8 +6,10 @@
 //!      └──> Inequalities (w_p − w_m ≤ g) ──> Groups (active rows as equations) ──────────────────────┘
 //! ```
 
+mod damped;
 pub mod frame;
 pub mod groups;
+mod judged;
 pub mod layout;
 pub mod motions;
 pub mod near;

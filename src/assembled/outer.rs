@@ -8,21 +8,25 @@
 //! The loop starts from all candidates. While the set changes, problems are solved loosely, and u is the start of the
 //! next solve; once the set stays, its problem is solved to the final tolerance. If a set comes back, the loop becomes
 //! careful: exact solves first, then one row at a time.
+//!
+//! These sets need not settle. If a set comes back again, if there are too many, or if the last row that holds a body
+//! pulls, the sets come from a method that converges (see [`Search`](super::damped::Search)). Each of its sets is
+//! tried: its equations are solved, and the sets that follow by the rule above, for as long as there are fewer and fewer
+//! wrong rows. The loop ends with the first set that satisfies all conditions. So the method guarantees the end, and the
+//! trials give the accuracy.
 
 use std::collections::HashSet;
 use std::time::Instant;
 
-use super::groups::{multipliers, Groups};
+use super::damped::Search;
+use super::groups::{multipliers, Groups, Signs};
+use super::judged::Judged;
 use super::reduced::Reduced;
 use super::refine::{over, Refiner};
 use super::rows::Inequalities;
 use crate::parallel::meter::timed;
 use crate::petsc::{Ksp, Session, Vec as PetscVec};
 use crate::Result;
-
-/// A multiplier above minus this, relative to the largest one, counts as not pulling; a gap below this, relative to the
-/// largest u, counts as closed.
-const ROUNDING: f64 = 1e-14;
 
 /// Some rows are kept active only so that no body comes loose. Such a row may pull by this part of the largest
 /// multiplier: then no force drives the body away.
@@ -31,7 +35,7 @@ const IDLE: f64 = 1e-8;
 /// The certificate of a refined solution must be below this.
 const CERTIFIED: f64 = 1e-9;
 
-/// Maximal number of steps.
+/// Number of steps after which the sets come from the method that converges.
 const STEPS: usize = 200;
 
 /// Tolerances.
@@ -66,7 +70,7 @@ pub struct ActiveSetEnd {
     pub lambda: Vec<f64>,
     /// B u − c.
     pub gaps: Vec<f64>,
-    /// Number of active sets that were solved for.
+    /// Number of systems of equations that were solved, one for each set or Newton step.
     pub steps: usize,
     /// Inner iterations of all steps.
     pub iterations: usize,
@@ -144,6 +148,9 @@ pub fn solve(
     // The active set for which the preconditioner was built.
     let mut built: Vec<bool> = Vec::new();
     let mut groups: Option<Groups> = None;
+    let mut search: Option<Search> = None;
+    // Why `search` was begun, and the least number of wrong rows in the present trial.
+    let (mut why_search, mut fewest) = ("DIVERGED_CONTACT_ITS", 0);
     let mut ksp = solvers()?;
     loop {
         let now = match groups.take() {
@@ -210,7 +217,11 @@ pub fn solve(
             Solve::Refined(refiner) => refiner.forces(&u)?,
             _ => reduced.forces(&u)?,
         };
-        let lambda = multipliers(rows, &active, &forces);
+        let signs = match search {
+            Some(_) => Signs::Pushing,
+            None => Signs::Any,
+        };
+        let lambda = multipliers(rows, &active, &forces, signs);
         let judged = Judged::new(rows, &active, lambda, rows.gaps(&at), u.norm_inf()?);
         let certificate = judged.certificate(correction);
         let relative = over(residual, reference);
@@ -223,23 +234,27 @@ pub fn solve(
         let to_the_end = stop <= target;
         let refined = matches!(solve, Solve::Refined(_));
         // Sets that come back differ only in rows that rounding decides.
-        let settled = stays || (refined && caution != Caution::Loose && certificate.holds());
+        let right = match refined {
+            true => caution != Caution::Loose && certificate.holds(),
+            false => search.is_some() && certificate.holds(),
+        };
+        let settled = stays || right;
         let met = match refined {
             true => certificate.holds(),
             false => relative <= tolerances.rtol,
         };
+        let idle = |r: &usize| judged.lambda[*r] >= -IDLE * judged.largest[0];
+        let held = restored.iter().all(idle);
+        let wrong = judged.count();
+        let worse = !held || wrong >= fewest;
         let end = if failed {
             Some((false, reason))
         } else if given.is_some() {
             Some((!refined || met, reason))
-        } else if settled && to_the_end {
-            let idle = |r: &usize| judged.lambda[*r] >= -IDLE * judged.largest[0];
-            match restored.iter().all(idle) {
-                true => Some((met, reason)),
-                false => Some((false, "DIVERGED_CONTACT_LOOSE".to_string())),
-            }
-        } else if steps >= STEPS {
-            Some((false, "DIVERGED_CONTACT_ITS".to_string()))
+        } else if settled && to_the_end && held {
+            Some((met, reason))
+        } else if worse && search.as_ref().is_some_and(Search::is_exhausted) {
+            Some((false, why_search.to_string()))
         } else {
             None
         };
@@ -259,20 +274,46 @@ pub fn solve(
                 reason,
             });
         }
-        tight = stays;
-        if stays {
+        let loose = settled && to_the_end && !held;
+        tight = stays && !loose;
+        if tight {
             groups = Some(now);
             continue;
         }
-        if !visited.insert(next.clone()) {
-            caution = match caution {
-                Caution::Loose => Caution::Exact,
-                _ => Caution::Single,
-            };
-            visited.clear();
+        let back = !visited.insert(next.clone());
+        if search.is_none() {
+            if loose || steps >= STEPS || (back && caution == Caution::Single) {
+                search = Some(Search::new(session, rows, reduced)?);
+                why_search = match loose {
+                    true => "DIVERGED_CONTACT_LOOSE",
+                    false => "DIVERGED_CONTACT_ITS",
+                };
+                caution = Caution::Exact;
+            } else if back {
+                caution = match caution {
+                    Caution::Loose => Caution::Exact,
+                    _ => Caution::Single,
+                };
+                visited.clear();
+            }
         }
-        priority = judged.priority(&active, &next);
-        active = next;
+        match &mut search {
+            Some(search) if worse => {
+                let round = search.round(solvers)?;
+                steps += round.steps;
+                iterations += round.iterations;
+                setup += round.setup;
+                u.copy_from(&search.u)?;
+                (active, priority) = (round.active, round.priority);
+                built.clear();
+                fewest = usize::MAX;
+            }
+            _ => {
+                priority = judged.priority(&active, &next);
+                active = next;
+                fewest = wrong;
+            }
+        }
     }
 }
 
@@ -281,81 +322,4 @@ fn residual_of(reduced: &Reduced, b: &PetscVec, v: &PetscVec, r: &PetscVec) -> R
     reduced.a.mult(v, r)?;
     r.aypx(-1.0, b)?;
     r.norm2()
-}
-
-/// The rows with multipliers or gaps of the wrong sign, and the set that follows.
-struct Judged {
-    lambda: Vec<f64>,
-    gaps: Vec<f64>,
-    next: Vec<bool>,
-    /// How wrong each row is; 0 where it is right.
-    wrong: Vec<f64>,
-    /// λ + ρ (B u − c), with ρ such that both terms are of the same size.
-    score: Vec<f64>,
-    /// Largest |λ| and largest |u|.
-    largest: [f64; 2],
-}
-
-impl Judged {
-    fn new(
-        rows: &Inequalities,
-        active: &[bool],
-        lambda: Vec<f64>,
-        gaps: Vec<f64>,
-        u_max: f64,
-    ) -> Judged {
-        let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
-        let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
-        let mut out = Judged {
-            next: active.to_vec(),
-            wrong: vec![0.0; rows.len()],
-            score: vec![0.0; rows.len()],
-            largest: [lambda_max, u_max],
-            lambda,
-            gaps,
-        };
-        for (r, &on) in active.iter().enumerate() {
-            let (l, gap) = (scale(out.lambda[r], lambda_max), scale(out.gaps[r], u_max));
-            out.score[r] = l + gap;
-            if on && l < -ROUNDING {
-                (out.next[r], out.wrong[r]) = (false, -l);
-            } else if !on && gap > ROUNDING {
-                (out.next[r], out.wrong[r]) = (true, gap);
-            }
-        }
-        out
-    }
-
-    /// The certificate, given the last correction of u.
-    fn certificate(&self, correction: f64) -> Certificate {
-        let most = |list: &[f64], sign: f64| list.iter().fold(0.0f64, |a, v| a.max(sign * v));
-        Certificate {
-            correction,
-            feasibility: over(most(&self.gaps, 1.0), self.largest[1]),
-            pull: over(most(&self.lambda, -1.0), self.largest[0]),
-        }
-    }
-
-    /// Undoes all changes of the set but that of the worst row.
-    fn keep_worst(&self, active: &[bool], next: &mut [bool]) {
-        let by_size = |a: &usize, b: &usize| {
-            let by_size = self.wrong[*a].total_cmp(&self.wrong[*b]);
-            by_size.then(b.cmp(a))
-        };
-        let worst = (0..next.len()).max_by(by_size);
-        for r in (0..next.len()).filter(|r| Some(*r) != worst) {
-            next[r] = active[r];
-        }
-    }
-
-    /// The order in which rows are made to hold: violated rows first, then by multiplier.
-    fn priority(&self, active: &[bool], next: &[bool]) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..next.len()).collect();
-        let entered = |r: usize| next[r] && !active[r];
-        order.sort_by(|&a, &b| {
-            let new = entered(b).cmp(&entered(a));
-            new.then(self.score[b].total_cmp(&self.score[a]))
-        });
-        order
-    }
 }

@@ -161,6 +161,32 @@ impl Reduced {
         })
     }
 
+    /// Adds entries (k, l, value) to the matrix, where k and l are indices of unknowns that rows may join. Collective.
+    ///
+    /// # Errors
+    /// PETSc's.
+    pub fn add(&self, entries: &[(usize, usize, f64)]) -> Result<()> {
+        let mut mine = vec![false; self.unknowns.len()];
+        self.trace.mine().iter().for_each(|&(k, _)| mine[k] = true);
+        for &(k, l, value) in entries.iter().filter(|(k, ..)| mine[*k]) {
+            let [row, col] = [k, l].map(|k| self.unknowns[k]);
+            self.a.add_values(&[row], &[col], &[value])?;
+        }
+        self.a.assemble()
+    }
+
+    /// The diagonal of K at the unknowns in rows. Collective.
+    pub fn diagonal(&self) -> Vec<f64> {
+        let mut out = vec![0.0; self.unknowns.len()];
+        for (k, row) in &self.touched {
+            if let (Some(k), Ok(i)) = (k, row.cols.binary_search(&row.row)) {
+                out[*k] = row.vals[i];
+            }
+        }
+        sum_all(self.comm(), &mut out);
+        out
+    }
+
     /// Whether the preconditioner is given rigid motions, which change with the set.
     pub fn has_near_kernel(&self) -> bool {
         !self.kernel.is_empty()

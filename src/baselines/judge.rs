@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::assembled::groups::multipliers;
+use crate::assembled::groups::{multipliers, Signs};
 use crate::assembled::layout::Layout;
 use crate::assembled::problem::Problem;
 use crate::assembled::reference::{Precision, Reference};
@@ -129,7 +129,7 @@ impl Court<'_> {
         let gaps = rows.gaps(&trace.get(comm, u)?);
         let r = u.duplicate()?;
         system.residual(u, &r)?;
-        let lambda = multipliers(rows, &active, &trace.get(comm, &r)?);
+        let lambda = multipliers(rows, &active, &trace.get(comm, &r)?, Signs::Any);
         // The folds start at zero: only violated rows and pulling multipliers count.
         let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
         let least = lambda.iter().fold(0.0f64, |a, l| a.min(*l));

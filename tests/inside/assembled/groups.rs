@@ -64,7 +64,7 @@ fn multipliers_are_the_shortest_that_carry_the_forces() {
         ],
     );
     let force = [3.0, -1.0, 0.0, -2.0, -4.0];
-    let lambda = multipliers(&rows, &[true; 5], &force);
+    let lambda = multipliers(&rows, &[true; 5], &force, Signs::Any);
     let mut carried = [0.0; 6];
     for (row, l) in rows.rows.iter().zip(&lambda) {
         carried[row.plus] += l;
@@ -81,7 +81,26 @@ fn multipliers_are_the_shortest_that_carry_the_forces() {
         &rows,
         &[true, false, false, false, false],
         &[1.0, -0.5, 0.0, 0.0, 0.0],
+        Signs::Any,
     );
     assert_eq!(open[1..], [0.0; 4]);
     assert!((open[0] - 0.75).abs() < 1e-15);
+}
+
+#[test]
+fn multipliers_around_a_ring_push_where_they_can() {
+    // The forces of λ = (0, 4, 0, 0) on the ring 0-1-3-2.
+    let rows = rows(4, &[(0, 1, 0.0), (0, 2, 0.0), (1, 3, 0.0), (2, 3, 0.0)]);
+    let force = [4.0, 0.0, -4.0, 0.0];
+    let shortest = multipliers(&rows, &[true; 4], &force, Signs::Any);
+    assert!((shortest[0] - 1.0).abs() < 1e-14, "{shortest:?}");
+    assert!((shortest[3] + 1.0).abs() < 1e-14, "{shortest:?}");
+    let pushing = multipliers(&rows, &[true; 4], &force, Signs::Pushing);
+    for (l, exact) in pushing.iter().zip([0.0, 4.0, 0.0, 0.0]) {
+        assert!((l - exact).abs() < 1e-12, "{pushing:?}");
+    }
+    // No λ ≥ 0 has these forces: the shortest are given.
+    let pulled = force.map(|f| -f);
+    let any = multipliers(&rows, &[true; 4], &pulled, Signs::Any);
+    assert_eq!(multipliers(&rows, &[true; 4], &pulled, Signs::Pushing), any);
 }

@@ -1,0 +1,95 @@
+//! What a solution on one active set says about the rows: which are wrong, and which set follows.
+
+use super::outer::Certificate;
+use super::refine::over;
+use super::rows::Inequalities;
+
+/// A multiplier above minus this, relative to the largest one, counts as not pulling; a gap below this, relative to the
+/// largest u, counts as closed.
+const ROUNDING: f64 = 1e-14;
+
+/// The rows with multipliers or gaps of the wrong sign, and the set that follows.
+pub(super) struct Judged {
+    /// The multipliers.
+    pub lambda: Vec<f64>,
+    /// B u − c.
+    pub gaps: Vec<f64>,
+    /// The set that follows.
+    pub next: Vec<bool>,
+    /// How wrong each row is; 0 where it is right.
+    pub wrong: Vec<f64>,
+    /// λ + ρ (B u − c), with ρ such that both terms are of the same size.
+    pub score: Vec<f64>,
+    /// Largest |λ| and largest |u|.
+    pub largest: [f64; 2],
+}
+
+impl Judged {
+    /// Judges the solution on `active`; `u_max` is the largest displacement.
+    pub fn new(
+        rows: &Inequalities,
+        active: &[bool],
+        lambda: Vec<f64>,
+        gaps: Vec<f64>,
+        u_max: f64,
+    ) -> Judged {
+        let lambda_max = lambda.iter().fold(0.0f64, |a, l| a.max(l.abs()));
+        let scale = |x: f64, largest: f64| if largest > 0.0 { x / largest } else { 0.0 };
+        let mut out = Judged {
+            next: active.to_vec(),
+            wrong: vec![0.0; rows.len()],
+            score: vec![0.0; rows.len()],
+            largest: [lambda_max, u_max],
+            lambda,
+            gaps,
+        };
+        for (r, &on) in active.iter().enumerate() {
+            let (l, gap) = (scale(out.lambda[r], lambda_max), scale(out.gaps[r], u_max));
+            out.score[r] = l + gap;
+            if on && l < -ROUNDING {
+                (out.next[r], out.wrong[r]) = (false, -l);
+            } else if !on && gap > ROUNDING {
+                (out.next[r], out.wrong[r]) = (true, gap);
+            }
+        }
+        out
+    }
+
+    /// The certificate, given the last correction of u.
+    pub fn certificate(&self, correction: f64) -> Certificate {
+        let most = |list: &[f64], sign: f64| list.iter().fold(0.0f64, |a, v| a.max(sign * v));
+        Certificate {
+            correction,
+            feasibility: over(most(&self.gaps, 1.0), self.largest[1]),
+            pull: over(most(&self.lambda, -1.0), self.largest[0]),
+        }
+    }
+
+    /// Number of wrong rows.
+    pub fn count(&self) -> usize {
+        self.wrong.iter().filter(|wrong| **wrong > 0.0).count()
+    }
+
+    /// Undoes all changes of the set but that of the worst row.
+    pub fn keep_worst(&self, active: &[bool], next: &mut [bool]) {
+        let by_size = |a: &usize, b: &usize| {
+            let by_size = self.wrong[*a].total_cmp(&self.wrong[*b]);
+            by_size.then(b.cmp(a))
+        };
+        let worst = (0..next.len()).max_by(by_size);
+        for r in (0..next.len()).filter(|r| Some(*r) != worst) {
+            next[r] = active[r];
+        }
+    }
+
+    /// The order in which rows are made to hold: violated rows first, then by multiplier.
+    pub fn priority(&self, active: &[bool], next: &[bool]) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..next.len()).collect();
+        let entered = |r: usize| next[r] && !active[r];
+        order.sort_by(|&a, &b| {
+            let new = entered(b).cmp(&entered(a));
+            new.then(self.score[b].total_cmp(&self.score[a]))
+        });
+        order
+    }
+}
