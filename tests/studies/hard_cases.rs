@@ -67,7 +67,71 @@ fn nothing_is_wrong() {
     }
     // Most cases are solved: a solver that always gives up would be useless.
     let solved = report.cases.iter().filter(|c| c.verdict == Verdict::Solved);
-    assert!(solved.count() >= 25);
+    assert!(solved.count() >= 29);
+    for name in ["wall", "wall-jumps-1e4", "wall-jumps-1e6", "wall-elastic"] {
+        let case = find(name);
+        assert_eq!(case.verdict, Verdict::Solved, "{name}");
+        // The problem is one of contact: some rows hold, others do not.
+        assert!(case.active[1].is_some_and(|n| n > 50), "{name}");
+        assert!(case.active[1] < Some(case.multipliers), "{name}");
+        assert!(case.outer_iterations > 5, "{name}");
+    }
+}
+
+/// Sets wander in most of these walls: the direct solution comes from its safeguard, and agrees.
+#[test]
+fn walls_have_direct_solutions() {
+    use crate::support::rng::Rng;
+    use crate::support::session::with_session;
+    use fetifeti::study::hard_cases::{one, HardCase};
+    with_session(|session| {
+        for seed in 0..4 {
+            for jump in ["1", "1e2", "1e4", "1e6"] {
+                let what = format!("jump {jump}, seed {seed}");
+                let case = HardCase {
+                    name: "wall",
+                    title: what.clone(),
+                    text: wall(&mut Rng::new(seed), jump),
+                };
+                let record = one(session, &case, 0).expect("it runs");
+                println!("{what}: {record:?}");
+                assert_eq!(record.verdict, Verdict::Solved, "{what}");
+                assert!(record.reference.is_some_and(|r| r < 1e-9), "{what}");
+                // Energies differ by half of its square.
+                assert!(record.error_energy.is_some_and(|e| e < 1e-4), "{what}");
+                assert_eq!(record.active[0], record.active[1], "{what}");
+            }
+        }
+    });
+}
+
+/// 4 x 4 bodies, ρ = 1 and `jump` by body, a random load, and random gaps at most interfaces.
+fn wall(rng: &mut crate::support::rng::Rng, jump: &str) -> String {
+    let load = format!(
+        "{}*({:.3} + cos({:.3}*x + {:.3})*sin({:.3}*y + {:.3}*bi))",
+        [1, 2, 5, 10][rng.below(4)],
+        rng.uniform(-0.5, 0.8),
+        rng.uniform(0.5, 3.0),
+        rng.uniform(0.0, 6.0),
+        rng.uniform(0.5, 3.0),
+        rng.uniform(0.0, 6.0),
+    );
+    let mut text = format!(
+        "[grid]\nbodies = [4, 4]\nsize = [4, 4]\nsubdomains = 2\nelements = 4\n\
+         rho = {{ checkerboard = [1, {jump}], by = \"body\" }}\nload = \"{load}\"\n\
+         dirichlet = {{ bottom = 0, right = 0 }}\n[interface]\ndefault = \"contact\"\n"
+    );
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+        for (k, l) in [(i + 1, j), (i, j + 1)] {
+            if k < 4 && l < 4 && !rng.one_in(5) {
+                let gap = rng.uniform(0.08, 0.3);
+                text += &format!(
+                    "[[contact]]\nbodies = [\"b{i}_{j}\", \"b{k}_{l}\"]\ngap = {gap:.4}\n"
+                );
+            }
+        }
+    }
+    text
 }
 
 #[test]

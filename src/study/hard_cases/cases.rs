@@ -52,6 +52,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     coefficients(&mut add);
     shapes(quick, &mut add);
     contacts(&mut add);
+    walls(&mut add);
     out
 }
 
@@ -248,4 +249,49 @@ fn contacts(add: &mut dyn FnMut(&'static str, &str, String)) {
         "a floating block that the load pulls away: no solution",
         blocks(ELASTIC, &slides("", "\"1 + x\""), CONTACT),
     );
+}
+
+/// Walls of bodies in contact whose coefficients jump from body to body: the sets of an active-set method wander there.
+fn walls(add: &mut dyn FnMut(&'static str, &str, String)) {
+    let scalar = "dirichlet = { bottom = 0, right = 0 }\n\
+                  load = \"5*(0.3 + cos(1.3*x + 1)*sin(2.2*y + 1.7*bi))\"\n";
+    for (name, title, jump) in [
+        ("wall", "4 x 4 bodies in contact, two thirds with gaps", "1"),
+        ("wall-jumps-1e4", "the same, ρ = 1 and 1e4 by body", "1e4"),
+        ("wall-jumps-1e6", "the same, ρ = 1 and 1e6 by body", "1e6"),
+    ] {
+        let rho = format!("rho = {{ checkerboard = [1, {jump}], by = \"body\" }}\n{scalar}");
+        add(name, title, wall(SCALAR, &rho, 1.0));
+    }
+    let framed = "young = { checkerboard = [1, 1e6], by = \"body\" }\n\
+                  dirichlet = [\"left\", \"right\", \"bottom\", \"top\"]\n\
+                  load = [\"sin(2.2*y + 1.7*bi)\", \"cos(1.3*x + bj)\"]\n";
+    add(
+        "wall-elastic",
+        "4 x 4 blocks in a frame, E = 1 and 1e6 by body, gaps of 0.01 to 0.03",
+        wall(ELASTIC, framed, 0.1),
+    );
+}
+
+/// A wall of 4 x 4 bodies: the keys of the scene and of the grid. Gaps are `scale` times 0.09 to 0.3.
+fn wall(head: &str, keys: &str, scale: f64) -> String {
+    const BODIES: usize = 4;
+    let rest = format!("size = [4, 4]\n{keys}[interface]\ndefault = \"contact\"\n");
+    let mut out = grid(head, &[BODIES, BODIES], [2, 4], &rest);
+    for i in 0..BODIES {
+        for j in 0..BODIES {
+            for (above, to) in [[i + 1, j], [i, j + 1]].into_iter().enumerate() {
+                // Any rule would do that gives unequal gaps to most interfaces, and none to some.
+                let n = (7 * i + 11 * j + 5 * above + i * j * above) % 23;
+                if to.iter().all(|k| *k < BODIES) && n % 5 != 0 {
+                    let gap = scale * (0.08 + 0.01 * n as f64);
+                    let [k, l] = to;
+                    out += &format!(
+                        "[[contact]]\nbodies = [\"b{i}_{j}\", \"b{k}_{l}\"]\ngap = {gap:.4}\n"
+                    );
+                }
+            }
+        }
+    }
+    out
 }

@@ -203,7 +203,8 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
             record.error_energy = Some(energy);
             record.error_max = Some(largest);
             record.reference = Some(direct.found.certificate.largest());
-            let active = direct.found.active.iter().filter(|a| **a).count();
+            let groups = direct.problem.groups(&mut direct.found.active.clone());
+            let active = groups.holds.iter().filter(|holds| **holds).count();
             record.active[1] = inequalities.then_some(active);
         }
         Err(e @ Error::NotConverged(_)) if session.rank() == 0 => {
