@@ -4,23 +4,27 @@
 //! ```text
 //!     ψ(u) = ½ uᵀK u − fᵀu + ½ Σ_j (s_j)₊² / κ_j + ½ (u − z)ᵀ D (u − z),      s_j = μ_j + κ_j (B u − c)_j
 //!     H d = −∇ψ(u),   H = K + B_Aᵀ κ_A B_A + D,   A = { s > 0 },              u ← u + t d
-//!     after a minimisation   μ ← (s)₊,   z ← u,   κ ← 10 κ
+//!     after a minimisation   μ ← (s)₊,   z ← u,   κ ← 3 κ
 //! ```
 //!
-//! Springs κ stand for the rows. D is small and diagonal, on the unknowns in rows; it holds what K and the springs leave
-//! free. [`Search::round`] minimises ψ once and returns A. The loop tries A as it tries its own sets.
+//! Springs κ stand for the rows. D is small and diagonal, on the unknowns in rows; it holds what K and the springs
+//! leave free. Around cycles of rows, μ moves to the cheapest multipliers with the same forces (see
+//! [`settle`](super::cycles::settle)). [`Search::round`] minimises ψ once and returns { μ > 0 }. The loop tries this
+//! set as it tries its own.
 //!
 //! *A minimisation ends.* A motion without energy moves an unknown in some row, or a support of the layout holds it.
-//! K + D is therefore positive definite, and ψ is strictly convex. ψ is continuously differentiable and consists of
-//! finitely many quadratic pieces, each with one of finitely many H. d leads downwards, and t minimises ψ along d. Every
-//! step makes ψ smaller, and u converges to the only minimiser. Every piece that touches the minimiser has its own
+//! So K + D is positive definite, and ψ is strictly convex. ψ is continuously differentiable and consists of finitely
+//! many quadratic pieces, each with one of finitely many H. d leads downwards, and ψ falls by a given part of what the
+//! best t in (0, 1] brings: u converges to the only minimiser. Every piece that touches the minimiser has its own
 //! minimum there: a step from nearby arrives.
 //!
 //! *The rounds end.* With κ bounded, μ converges to multipliers of a solution and u to a solution, if there is one. κ
 //! and D limit the speed only. A row with λ > 0 has s > 0 from some round on, and a row with B u < c has s < 0. What A
 //! has beyond the rows with λ > 0 are then rows with B u = c. The solution satisfies the equations of A, and the trial
-//! finds it. Where rows depend on each other, the trial looks for multipliers that do not pull.
+//! finds it. Where rows depend on each other, the trial looks for multipliers that do not pull. Moves around cycles
+//! only help: forces stay, and the dual energy falls.
 
+use super::cycles::settle;
 use super::groups::Groups;
 use super::outer::Solvers;
 use super::reduced::Reduced;
@@ -32,19 +36,19 @@ use crate::Result;
 /// κ in the first round, relative to the stiffness of the nodes of a row, …
 const STIFFNESS: f64 = 30.0;
 
-/// … its factor from one round to the next, and the largest. Around a cross point multipliers may move without forces,
-/// by κ times what the gaps there do not fit. Where gaps are tiny beside displacements only stiff springs move them far.
-const STIFFER: f64 = 10.0;
-const STIFFEST: f64 = 3e9;
+/// … its factor from one round to the next, and the largest: H loses digits to stiffer springs.
+const STIFFER: f64 = 3.0;
+const STIFFEST: f64 = 1e7;
 
-/// D relative to the diagonal of K.
-const PROXIMAL: f64 = 1e-8;
+/// D relative to the diagonal of K. Rounds hardly move a stiff body that soft ones hold, where D is as stiff as those:
+/// with jumps of 10⁶ and 1e-8 each round leaves 0.4 of the error.
+const PROXIMAL: f64 = 1e-10;
 
 /// Reduction of the residual by an iterative solver. Any reduction gives a direction in which ψ falls.
 const REDUCTION: f64 = 1e-8;
 
-/// A step of this length is a whole one, up to this.
-const WHOLE: f64 = 1e-6;
+/// A step is long enough if ψ falls by this part of what the best length brings.
+const ENOUGH: f64 = 0.1;
 
 /// Maximal number of steps in a round. In exact arithmetic none is needed, in practice a round takes 2 to 20.
 const STEPS: usize = 100;
@@ -76,9 +80,9 @@ pub(super) struct Search<'a> {
 /// The result of a minimisation.
 #[derive(Default)]
 pub(super) struct Round {
-    /// The set to be tried: the rows with s > 0, and rows that hold what these leave free.
+    /// The set to be tried: the rows with μ > 0, and rows that hold what these leave free.
     pub active: Vec<bool>,
-    /// The order in which rows are made to hold: by s, then by B u − c.
+    /// The order in which rows are made to hold: by μ, then by B u − c.
     pub priority: Vec<usize>,
     /// Number of Newton steps.
     pub steps: usize,
@@ -138,15 +142,12 @@ impl<'a> Search<'a> {
         Ok((at, s))
     }
 
-    /// Minimises ψ, after the first time with the multipliers of the last time and stiffer springs. Collective.
+    /// Minimises ψ, after the first time with stiffer springs, and updates μ and z. Collective.
     ///
     /// # Errors
     /// PETSc's.
     pub fn round(&mut self, solvers: &mut Solvers) -> Result<Round> {
         if self.rounds > 0 {
-            let (at, s) = self.look()?;
-            self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
-            self.center = at;
             self.stiffness = (STIFFER * self.stiffness).min(STIFFEST);
         }
         self.rounds += 1;
@@ -157,15 +158,18 @@ impl<'a> Search<'a> {
             let t = self.step(solvers, &s, &mut out)?;
             out.steps += 1;
             (at, s) = self.look()?;
-            let arrived = |t: f64| (t - 1.0).abs() < WHOLE && set(&s) == was;
+            let arrived = |t: f64| t == 1.0 && set(&s) == was;
             if t.is_none_or(arrived) {
                 break;
             }
         }
         let gaps = self.rows.gaps(&at);
-        let score = |(s, gap): (&f64, f64)| if *s > 0.0 { *s } else { gap };
-        let score: Vec<f64> = s.iter().zip(gaps).map(score).collect();
-        out.active = set(&s);
+        self.multiplier = s.iter().map(|s| s.max(0.0)).collect();
+        settle(self.rows, &mut self.multiplier);
+        self.center = at;
+        let score = |(mu, gap): (&f64, f64)| if *mu > 0.0 { *mu } else { gap };
+        let score: Vec<f64> = self.multiplier.iter().zip(gaps).map(score).collect();
+        out.active = set(&self.multiplier);
         self.rows.restore(&mut out.active, &score);
         out.priority = (0..score.len()).collect();
         out.priority.sort_by(|a, b| score[*b].total_cmp(&score[*a]));
@@ -306,8 +310,38 @@ impl Line {
         sums
     }
 
-    /// The t that minimises ψ; `None` if ψ does not fall.
+    /// ψ at t minus ψ at the start.
+    ///
+    /// ```text
+    ///     ψ(t) − ψ(0) = −fall t + ½ bend t² + ½ Σ_j ((s_j(t))₊² − [j ∈ A] s_j(t)²) / κ_j
+    /// ```
+    fn change(&self, t: f64) -> f64 {
+        let mut sum = t * (0.5 * t * self.bend - self.fall);
+        for (r, spring) in self.springs.iter().enumerate() {
+            let s = self.pull_at(r, t);
+            match [self.pull[r] > 0.0, s > 0.0] {
+                [false, true] => sum += 0.5 * s * s / spring,
+                [true, false] => sum -= 0.5 * s * s / spring,
+                _ => (),
+            }
+        }
+        sum
+    }
+
+    /// The first of t = 1, ½, ¼, … at which ψ falls by [`ENOUGH`] of what the best t in (0, 1] brings; `None` if ψ does
+    /// not fall. The best t lies at a kink, where a row begins or ends to hold, and steps from kink to kink are short.
     fn length(&self) -> Option<f64> {
+        let best = self.minimum()?.min(1.0);
+        let fall = self.change(best);
+        let mut t = 1.0;
+        while t > best && self.change(t) > ENOUGH * fall {
+            t *= 0.5;
+        }
+        Some(best.max(t))
+    }
+
+    /// The t that minimises ψ; `None` if ψ does not fall.
+    fn minimum(&self) -> Option<f64> {
         // ψ' is linear between the t at which some s is zero.
         let zero = |r: usize| -self.pull[r] / (self.springs[r] * self.opening[r]);
         let mut ends: Vec<f64> = (0..self.pull.len()).map(zero).collect();

@@ -111,15 +111,13 @@ pub enum Signs {
     Pushing,
 }
 
-/// The multipliers of smallest norm of the active rows that satisfy Bᵀ λ = r, or come nearest to it; zero on the other
-/// rows. `r` is given at the unknowns in rows.
-pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64], signs: Signs) -> Vec<f64> {
-    let ground = rows.ground();
+/// The active rows, those that unknowns connect together.
+pub(super) fn components(rows: &Inequalities, active: &[bool]) -> Vec<Vec<usize>> {
     // Ground transmits no force: groups that are tied to it stay separate.
-    let mut sets = Potentials::new(ground);
+    let mut sets = Potentials::new(rows.ground());
     let on = || (0..rows.len()).filter(|&k| active[k]);
     for row in on().map(|k| rows.rows[k]) {
-        if row.plus.max(row.minus) < ground {
+        if row.plus.max(row.minus) < rows.ground() {
             sets.join(row.plus, row.minus, 0.0);
         }
     }
@@ -128,8 +126,15 @@ pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64], signs: Signs
         let end = rows.rows[k].plus.min(rows.rows[k].minus);
         of_set.entry(sets.find(end).0).or_default().push(k);
     }
+    of_set.into_values().collect()
+}
+
+/// The multipliers of smallest norm of the active rows that satisfy Bᵀ λ = r, or come nearest to it; zero on the other
+/// rows. `r` is given at the unknowns in rows.
+pub fn multipliers(rows: &Inequalities, active: &[bool], r: &[f64], signs: Signs) -> Vec<f64> {
+    let ground = rows.ground();
     let mut lambda = vec![0.0; rows.len()];
-    for members in of_set.values() {
+    for members in &components(rows, active) {
         let ends = members
             .iter()
             .flat_map(|&k| [rows.rows[k].plus, rows.rows[k].minus]);

@@ -6,6 +6,7 @@
 //!      └──> Inequalities (w_p − w_m ≤ g) ──> Groups (active rows as equations) ──────────────────────┘
 //! ```
 
+mod cycles;
 mod damped;
 pub mod frame;
 pub mod groups;

@@ -219,7 +219,7 @@ impl<'a> Reference<'a> {
 }
 
 /// MUMPS, without options of the user.
-fn mumps(session: &Session) -> Result<Ksp> {
+pub(super) fn mumps(session: &Session) -> Result<Ksp> {
     let ksp = Ksp::new(session, Comm::World)?;
     ksp.set_type("preonly")?;
     let pc = ksp.pc()?;
