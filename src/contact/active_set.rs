@@ -109,8 +109,8 @@ pub(super) struct ActiveSet<'a> {
     pub exact: bool,
     /// Whether the next step is solved to the end.
     pub tight: bool,
-    /// A multiplier pulls only if it is below minus this, relative to the largest one.
-    pub pull: f64,
+    /// A row that does not hold is violated only if its gap is above this, relative to the largest displacement.
+    pub open: f64,
     /// B R with all candidate rows.
     g: Rows,
     /// Whether `at` has the displacements that belong to its λ, rigid motions included.
@@ -150,7 +150,7 @@ impl<'a> ActiveSet<'a> {
             fresh: false,
             tight: false,
             exact: false,
-            pull: judge::ROUNDING,
+            open: judge::ROUNDING,
             length: 0.0,
             state,
             at,
@@ -209,7 +209,7 @@ impl<'a> ActiveSet<'a> {
         let ksp = &self.method.ksp;
         let target = target(ksp, self.state.reference, self.length, self.n_rows)?;
         let rounding = ROUNDING * self.at.residual.size;
-        Ok(target.max(self.least).max(rounding))
+        Ok((self.state.accuracy * target).max(self.least).max(rounding))
     }
 
     /// One outer step: solves the equations on the set, then determines the next set.
@@ -232,10 +232,13 @@ impl<'a> ActiveSet<'a> {
 
         let first = self.at.residual.r.norm2()?;
         let target = self.target()?;
-        let tolerance = if self.tight {
-            target
-        } else {
-            target.max(self.reduction() * first)
+        let reduced = self.reduction() * first;
+        let tolerance = match (self.tight, self.exact) {
+            (true, false) => target,
+            // Multipliers of springs are those of the rows only up to the compliance. Between stiff bodies the
+            // difference is a large force and a small residual.
+            (true, true) => target.min(reduced).max(self.least),
+            (false, _) => target.max(reduced),
         };
         let control = IterationControl::to(tolerance, self.at.residual.size);
         let inner = method.reach(&mut self.at, control)?;
@@ -318,7 +321,7 @@ impl<'a> ActiveSet<'a> {
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
         let y = self.at.residual.largest();
-        let judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, y, self.pull);
+        let judged = judge::JudgedRows::new(comm, jump, gaps, &lambda, y, self.open);
         self.length = judged.y_max;
         let wrong = judged.wrong(comm);
         let load = &self.at.loads.kernel;

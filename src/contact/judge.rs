@@ -29,15 +29,16 @@ pub struct JudgedRows {
 }
 
 impl JudgedRows {
-    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank. A
-    /// multiplier pulls only if it is below minus `pull`, relative to the largest one. Collective.
+    /// Judges the owned rows by their gaps B u − c and multipliers. `y` is the largest displacement on this rank. A gap
+    /// counts as violated only if it is above `open`, relative to the largest displacement. There is no such tolerance
+    /// for multipliers: a row that pulls little may hold up a body that gives way much. Collective.
     pub fn new(
         comm: &SimpleCommunicator,
         jump: &Jump,
         gaps: &[f64],
         lambda: &[f64],
         y: f64,
-        pull: f64,
+        open: f64,
     ) -> JudgedRows {
         let contact = jump.rows_between_bodies();
         // [largest remaining jump on rows that hold, largest |λ|, largest |y|, whether rows contradict each other]
@@ -58,8 +59,8 @@ impl JudgedRows {
             lambda_max,
             y_max,
         };
-        let open = (NOISE * jump_left).max(ROUNDING * y_max);
-        let pull = pull * lambda_max;
+        let open = (NOISE * jump_left).max(open * y_max);
+        let pull = ROUNDING * lambda_max;
         for r in contact.filter(|&r| jump.inequality[r]) {
             if jump.active[r] && lambda[r] < -pull {
                 rows.active[r] = false;

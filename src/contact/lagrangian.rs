@@ -26,16 +26,17 @@ use crate::Result;
 
 /// Number of minimisations that end where the set hardly changes any more. Later ones go to the end: then convergence
 /// is proved.
-const EARLY: usize = 4;
+const EARLY: usize = 8;
 
-/// In a trial, a multiplier counts as pulling only if it is below minus this many tolerances, relative to the largest
-/// one.
-const PULL: f64 = 10.0;
+/// In a trial, a gap is violated only if it is above this many tolerances, relative to the largest displacement. Rows
+/// without force come and go by rounding.
+const OPEN: f64 = 0.1;
 
 /// Steps without progress after which a trial ends. It also ends if more than a few rows are wrong ([`Search::few`]).
 const PATIENCE: usize = 1;
 
-/// With no more wrong rows than this a trial has twice the patience.
+/// A minimisation that ends early with more wrong rows than this is not followed by a trial. A trial with no more has
+/// twice the patience.
 const CLOSE: usize = 2;
 
 /// Solves from `state`, after `steps` that took `seconds`. Collective.
@@ -48,7 +49,7 @@ pub(super) fn solve(
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
     let clock = Instant::now();
-    let rtol = method.ksp.tolerances()?.0;
+    let rtol = state.accuracy * method.ksp.tolerances()?.0;
     state.safeguarded = true;
     let mut search = Search::new(method, &mut state)?;
     let elapsed = || seconds + clock.elapsed().as_secs_f64();
@@ -76,10 +77,15 @@ pub(super) fn solve(
                 break (false, status);
             }
         };
-        if minimal && search.is_solution()? {
+        if minimal && search.is_solution(rtol)? {
             return Ok((search.finish(&steps, elapsed(), status)?, steps));
         }
         search.update(&mut state);
+        let wrong = steps.last().map_or(0, |s| s.wrong);
+        if !minimal && wrong > CLOSE {
+            search.stiffen();
+            continue;
+        }
         search.rigid();
         let trial = State {
             safeguarded: false,
@@ -87,7 +93,7 @@ pub(super) fn solve(
             ..state.clone()
         };
         let mut run = ActiveSet::new(method, settings, Some(&trial))?;
-        run.pull = (PULL * rtol).max(judge::ROUNDING);
+        run.open = (OPEN * rtol).max(judge::ROUNDING);
         run.exact = true;
         // A set that is the minimum's is solved to the end at once.
         run.tight = minimal;

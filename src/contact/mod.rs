@@ -21,6 +21,7 @@ mod lagrangian;
 mod motion;
 mod mprgp;
 mod newton;
+mod rejudge;
 mod settings;
 mod smalbe;
 mod state;
@@ -29,6 +30,7 @@ pub use settings::{ContactSettings, ContactType};
 pub use state::{Observer, Progress, State, Step};
 
 use crate::feti::{LinearMethod, LinearSolution};
+use crate::status::Status;
 use crate::Result;
 use active_set::Ended;
 
@@ -43,25 +45,65 @@ pub(crate) fn solve(
     observe: &mut Observer,
 ) -> Result<(LinearSolution, Vec<Step>)> {
     feasible::check(&method.problem, &method.dual())?;
-    let begin = || {
-        start
-            .cloned()
-            .unwrap_or_else(|| State::cold(&method.dual().stiffness.jump))
-    };
-    let (found, steps) = match settings.kind {
-        ContactType::ActiveSet => match active_set::solve(method, settings, start, observe)? {
-            Ended::Found(found, steps) => (found, steps),
-            Ended::HandedOver {
-                state,
-                steps,
-                seconds,
-            } => lagrangian::solve(method, settings, state, steps, seconds, observe)?,
-        },
-        ContactType::AugmentedLagrangian => {
-            lagrangian::solve(method, settings, begin(), Vec::new(), 0.0, observe)?
+    let before = start.map_or(0, |s| s.steps);
+    let begin = start.cloned();
+    let (mut found, mut steps) = outer(method, settings, settings.kind, begin, observe)?;
+    let mut accuracy = 1.0;
+    for _ in 0..rejudge::ROUNDS {
+        let certified = method.certify(method.refine(found)?)?;
+        if !certified.status.converged() {
+            return Ok((certified, steps));
         }
-        ContactType::Smalbe => smalbe::solve(method, settings, begin(), observe)?,
-    };
-    let refined = method.refine(found)?;
-    Ok((method.certify(refined)?, steps))
+        let Some(mut state) = rejudge::again(method, &certified)? else {
+            return Ok((certified, steps));
+        };
+        accuracy *= rejudge::FURTHER;
+        state.accuracy = accuracy;
+        state.steps = before + steps.len();
+        let kind = ContactType::ActiveSet;
+        let (next, more) = outer(method, settings, kind, Some(state), observe)?;
+        let (iterations, seconds) = (certified.iterations, certified.solve_seconds);
+        steps.extend(more);
+        found = LinearSolution {
+            iterations: iterations + next.iterations,
+            solve_seconds: seconds + next.solve_seconds,
+            ..next
+        };
+    }
+    let mut last = method.certify(method.refine(found)?)?;
+    if last.status.converged() && rejudge::again(method, &last)?.is_some() {
+        last.status = Status::Certificate;
+    }
+    Ok((last, steps))
+}
+
+/// One run of the loop, without the certificate. Collective.
+fn outer(
+    method: &LinearMethod,
+    settings: &ContactSettings,
+    kind: ContactType,
+    start: Option<State>,
+    observe: &mut Observer,
+) -> Result<(LinearSolution, Vec<Step>)> {
+    let cold = || State::cold(&method.dual().stiffness.jump);
+    match kind {
+        ContactType::ActiveSet => {
+            match active_set::solve(method, settings, start.as_ref(), observe)? {
+                Ended::Found(found, steps) => Ok((found, steps)),
+                Ended::HandedOver {
+                    state,
+                    steps,
+                    seconds,
+                } => lagrangian::solve(method, settings, state, steps, seconds, observe),
+            }
+        }
+        ContactType::AugmentedLagrangian => {
+            let state = start.unwrap_or_else(cold);
+            lagrangian::solve(method, settings, state, Vec::new(), 0.0, observe)
+        }
+        ContactType::Smalbe => {
+            let state = start.unwrap_or_else(cold);
+            smalbe::solve(method, settings, state, observe)
+        }
+    }
 }

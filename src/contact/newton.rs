@@ -230,6 +230,7 @@ impl<'a> Search<'a> {
         let (mut end, mut centred) = (None, false);
         for _ in 0..ATTEMPTS + usize::from(restored > 0) {
             let least = target(&method.ksp, state.reference, self.length, self.n_rows)?;
+            let least = state.accuracy * least;
             tolerance = (reduction * first).max(MORE * least).max(self.least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
             let more = method.reach(&mut self.at, control)?;
@@ -323,10 +324,9 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether the springs give way by no more than the tolerance of the user. Collective.
-    pub fn is_solution(&self) -> Result<bool> {
+    /// Whether the springs give way by no more than the tolerance. Collective.
+    pub fn is_solution(&self, rtol: f64) -> Result<bool> {
         let comm = self.method.session.comm();
-        let rtol = self.method.ksp.tolerances()?.0;
         let dual = self.method.dual();
         let jump = &dual.stiffness.jump;
         let open = self.point.iter().flat_map(|p| p.gap.iter().enumerate());

@@ -40,9 +40,9 @@ const PATIENCE: usize = 3;
 /// Number of times that the search goes on from the end of such a trial. Later it keeps its own iterates, for which
 /// convergence is proved.
 const JUMPS: usize = 4;
-/// In a trial, a multiplier counts as pulling only if it is below minus this many tolerances, relative to the largest
-/// one. SMALBE leaves rows without force on either side of zero.
-const PULL: f64 = 10.0;
+/// In a trial, a gap is violated only if it is above this many tolerances, relative to the largest displacement. Rows
+/// without force come and go by rounding.
+const OPEN: f64 = 0.1;
 /// Number of active-set steps after a set of SMALBE, before SMALBE goes on.
 const CLOSING_STEPS: usize = 5;
 
@@ -90,7 +90,7 @@ pub(super) fn solve(
         };
         let mut run = ActiveSet::new(method, settings, Some(&trial))?;
         state.reference = run.state.reference;
-        run.pull = (PULL * rtol).max(judge::ROUNDING);
+        run.open = (OPEN * rtol).max(judge::ROUNDING);
         for _ in 0..CLOSING_STEPS {
             run.tight = true;
             let (step, status, verdict) = run.step()?;

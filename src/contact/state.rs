@@ -56,6 +56,8 @@ pub struct State {
     pub progress: Progress,
     /// Whether the active-set method has given up, and the augmented Lagrangian goes on.
     pub safeguarded: bool,
+    /// Factor on the tolerance of the user. Below 1 if multipliers turned out to need more digits.
+    pub accuracy: f64,
     /// SMALBE's multipliers of the balance of forces, length r, the same on every rank; empty if SMALBE has not run.
     pub mu: Vec<f64>,
 }
@@ -71,6 +73,7 @@ impl State {
             steps: 0,
             progress: Progress::default(),
             safeguarded: false,
+            accuracy: 1.0,
             mu: Vec::new(),
         }
     }

@@ -9,7 +9,8 @@ use crate::support::session::with_session;
 use fetifeti::contact::ContactType;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
-use fetifeti::{FetiFeti, MethodSettings, Settings};
+use fetifeti::study::walls::{self, FAMILIES};
+use fetifeti::{FetiFeti, MethodSettings, Settings, Solution};
 
 /// More steps than any scene here needs with some room; far fewer than the limit of the loop.
 const STEPS: usize = 60;
@@ -48,24 +49,51 @@ fn scene(seed: u64, n: usize, jump: f64) -> Scene {
 
 /// The energy and the number of steps; rtol 1e-8.
 fn solve(session: &Session, scene: &Scene, kind: ContactType) -> (f64, usize) {
-    let mine = fetifeti::share(session, scene.n_subdomains());
-    let problem = scene
-        .substructures(&|s| mine.contains(&s))
-        .expect("a good scene");
-    let mut settings = Settings::from(MethodSettings {
-        rtol: 1e-8,
-        ..MethodSettings::default()
-    });
-    settings.contact.kind = kind;
-    let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
-    let solution = solver.solve().expect("the scene has a solution");
-    assert!(solution.converged(), "{}", solution.status);
+    let solution = solution(session, scene, kind, 1e-8);
     assert!(
         solution.kkt.error.is_some_and(|e| e < 1e-5),
         "{:?}",
         solution.kkt
     );
     (solution.energy, solution.steps.len())
+}
+
+fn solution(session: &Session, scene: &Scene, kind: ContactType, rtol: f64) -> Solution {
+    let mine = fetifeti::share(session, scene.n_subdomains());
+    let problem = scene
+        .substructures(&|s| mine.contains(&s))
+        .expect("a good scene");
+    let mut settings = Settings::from(MethodSettings {
+        rtol,
+        ..MethodSettings::default()
+    });
+    settings.contact.kind = kind;
+    let solver = FetiFeti::new(session, problem, settings).expect("the set-up works");
+    let solution = solver.solve().expect("the scene has a solution");
+    assert!(solution.converged(), "{}", solution.status);
+    solution
+}
+
+/// In these walls displacements converge long before the multipliers between stiff bodies do. The set was judged by
+/// multipliers of the wrong sign: an energy too high by 1e-5, a pull of 6e-4 of the largest multiplier.
+#[test]
+fn no_row_pulls_in_the_end() {
+    with_session(|session| {
+        let family = FAMILIES.iter().find(|f| f.name == "scalar-3x3x3");
+        let family = family.expect("the family exists");
+        for seed in [7, 10, 13, 20, 25] {
+            let text = walls::scene(family, 1e6, seed);
+            let scene = Scene::parse("wall.toml", &text).expect("a good scene");
+            let exact = solution(session, &scene, ContactType::ActiveSet, 1e-10);
+            for kind in [ContactType::ActiveSet, ContactType::AugmentedLagrangian] {
+                let rough = solution(session, &scene, kind, 1e-6);
+                let off = (rough.energy - exact.energy).abs() / exact.energy.abs();
+                assert!(off < 1e-6, "{kind:?}, {seed}: {off:e}");
+                let pull = rough.kkt.min_multiplier;
+                assert!(pull > -1e-5, "{kind:?}, {seed}: {pull:e}");
+            }
+        }
+    });
 }
 
 #[test]

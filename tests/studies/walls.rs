@@ -12,7 +12,7 @@ const KEYS: Keys = &[
     ("rows[]", "family jump walls seconds"),
     (
         "rows[].walls[]",
-        "seed steps damped iterations reason converged",
+        "seed steps damped iterations energy reason converged",
     ),
 ];
 

@@ -31,6 +31,8 @@ pub struct Wall {
     pub damped: usize,
     /// Krylov iterations in total.
     pub iterations: usize,
+    /// The energy; `None` without a solution.
+    pub energy: Option<f64>,
     /// Why the loop ended.
     pub reason: String,
     /// Whether this is a solution.
@@ -125,6 +127,7 @@ fn walls(session: &Session, family: &Family, jump: f64, count: usize) -> Result<
                     steps: steps.len(),
                     damped: steps.iter().filter(damped).count(),
                     iterations: solved.solution.iterations,
+                    energy: Some(solved.solution.energy),
                     reason: status.to_string(),
                     converged: solved.solution.converged(),
                 }
@@ -134,6 +137,7 @@ fn walls(session: &Session, family: &Family, jump: f64, count: usize) -> Result<
                 steps: 0,
                 damped: 0,
                 iterations: 0,
+                energy: None,
                 reason,
                 converged: false,
             },

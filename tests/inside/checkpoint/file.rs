@@ -21,6 +21,7 @@ fn example() -> Checkpoint {
                 steps: 12,
                 progress: Progress::default(),
                 safeguarded: true,
+                accuracy: 0.01,
                 mu: vec![-2.5],
             },
         },

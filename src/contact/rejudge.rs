@@ -1,0 +1,79 @@
+//! The rows once more, by the multipliers of the certified solution.
+//!
+//! The loop ends by the residual, in displacements. Forces between stiff bodies follow from small differences of these
+//! and may still have the wrong sign when displacements have converged. The certificate then refines the solution with
+//! the rows that hold, and multipliers get their digits: some may turn out to pull.
+
+use super::state::State;
+use crate::feti::jump::blocks::Block;
+use crate::feti::jump::operator::Jump;
+use crate::feti::{LinearMethod, LinearSolution};
+use crate::linalg::dense::Dense;
+use crate::linalg::nnls::nnls;
+use crate::parallel::exchange::{any, max_all};
+use crate::Result;
+
+/// A row is on the wrong side if it pulls, or is violated, by more than this many tolerances, relative to the largest
+/// multiplier or displacement. The energy changes by the square of the pull.
+const WRONG: f64 = 10.0;
+
+/// Factor by which the tolerance becomes smaller for the steps that follow.
+pub const FURTHER: f64 = 1e-2;
+
+/// How often the loop goes on. Rows that pull after that are no solution.
+pub const ROUNDS: usize = 3;
+
+/// The state from which the loop must go on; `None` if all rows are on the right side. Collective.
+///
+/// # Errors
+/// PETSc's.
+pub fn again(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<State>> {
+    let rtol = method.ksp.tolerances()?.0;
+    let dual = method.dual();
+    let jump = &dual.stiffness.jump;
+    let size = |list: &mut dyn Iterator<Item = &f64>| list.fold(0.0f64, |a, v| a.max(v.abs()));
+    let mut largest = [
+        size(&mut solution.lambda.iter()),
+        size(&mut solution.u.iter().flatten()),
+    ];
+    max_all(dual.comm(), &mut largest);
+    let [pull, open] = largest.map(|l| WRONG * rtol * l);
+    let mut active = jump.active.clone();
+    for block in &jump.blocks {
+        leave(block, jump, &solution.lambda, pull, &mut active);
+    }
+    for r in jump.rows_between_bodies() {
+        if jump.inequality[r] && !solution.active[r] && solution.gaps[r] > open {
+            active[r] = true;
+        }
+    }
+    if !any(dual.comm(), active != jump.active) {
+        return Ok(None);
+    }
+    let on = |(l, on): (&f64, &bool)| if *on { *l } else { 0.0 };
+    let lambda = solution.lambda.iter().zip(&active).map(on).collect();
+    Ok(Some(State::warm(lambda, &active)))
+}
+
+/// Takes rows of `block` that pull by more than `pull` out of the set. Rows that depend on each other may carry their
+/// forces with multipliers of both signs: then others that are not negative do as well.
+fn leave(block: &Block, jump: &Jump, lambda: &[f64], pull: f64, active: &mut [bool]) {
+    let held: Vec<usize> = block.rows.clone().filter(|&r| active[r]).collect();
+    let pulls = |r: &usize| jump.inequality[*r] && lambda[*r] < -pull;
+    if !held.iter().any(pulls) {
+        return;
+    }
+    let entry = |j: usize, i: usize| block.b.get(held[i] - block.rows.start, j);
+    let b = Dense::from_fn(block.dofs.len(), held.len(), entry);
+    let mut forces = vec![0.0; block.dofs.len()];
+    let own: Vec<f64> = held.iter().map(|&r| lambda[r]).collect();
+    b.add_mul(&own, &mut forces);
+    let free: Vec<bool> = held.iter().map(|&r| !jump.inequality[r]).collect();
+    let (_, rest) = nnls(&b, &forces, &free);
+    if rest.iter().all(|v| v.abs() <= pull) {
+        return;
+    }
+    for &r in held.iter().filter(|r| pulls(r)) {
+        active[r] = false;
+    }
+}
