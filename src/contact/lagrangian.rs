@@ -37,7 +37,7 @@ const PATIENCE: usize = 1;
 
 /// A minimisation that ends early with more wrong rows than this is not followed by a trial. A trial with no more has
 /// twice the patience.
-const CLOSE: usize = 2;
+const CLOSE: usize = 4;
 
 /// Solves from `state`, after `steps` that took `seconds`. Collective.
 pub(super) fn solve(
