@@ -216,18 +216,18 @@ impl<'a> Search<'a> {
         Ok(t)
     }
 
+    /// A: the rows with s > 0.
+    fn pulled<'b>(&'b self, s: &'b [f64]) -> impl Iterator<Item = (usize, &'b Row)> {
+        let rows = self.rows.rows.iter().enumerate();
+        rows.filter(|(r, _)| s[*r] > 0.0)
+    }
+
     /// H − K as entries at the unknowns in rows.
     fn entries(&self, springs: &[f64], s: &[f64]) -> Vec<(usize, usize, f64)> {
         let diagonal = self.proximal.iter().enumerate();
         let mut out: Vec<(usize, usize, f64)> = diagonal.map(|(k, d)| (k, k, *d)).collect();
         let ground = self.rows.ground();
-        for (r, row) in self
-            .rows
-            .rows
-            .iter()
-            .enumerate()
-            .filter(|(r, _)| s[*r] > 0.0)
-        {
+        for (r, row) in self.pulled(s) {
             for (k, its) in [(row.plus, 1.0), (row.minus, -1.0)] {
                 for (l, other) in [(row.plus, 1.0), (row.minus, -1.0)] {
                     if k.max(l) < ground {
@@ -244,13 +244,7 @@ impl<'a> Search<'a> {
         for (k, f) in f.iter_mut().enumerate() {
             *f += self.proximal[k] * self.center[k];
         }
-        for (r, row) in self
-            .rows
-            .rows
-            .iter()
-            .enumerate()
-            .filter(|(r, _)| s[*r] > 0.0)
-        {
+        for (r, row) in self.pulled(s) {
             let force = springs[r] * row.gap - self.multiplier[r];
             for (end, sign) in [(row.plus, 1.0), (row.minus, -1.0)] {
                 if let Some(f) = f.get_mut(end) {

@@ -204,12 +204,16 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    /// The tolerance of the residual, from the displacements of the last step. It is not below rounding.
+    /// The tolerance of the residual, from the displacements of the last step.
     fn target(&self) -> Result<f64> {
         let ksp = &self.method.ksp;
         let target = target(ksp, self.state.reference, self.length, self.n_rows)?;
-        let rounding = ROUNDING * self.at.residual.size;
-        Ok((self.state.accuracy * target).max(self.least).max(rounding))
+        Ok((self.state.accuracy * target).max(self.rounding()))
+    }
+
+    /// No residual falls below this.
+    fn rounding(&self) -> f64 {
+        self.least.max(ROUNDING * self.at.residual.size)
     }
 
     /// One outer step: solves the equations on the set, then determines the next set.
@@ -237,7 +241,7 @@ impl<'a> ActiveSet<'a> {
             (true, false) => target,
             // Multipliers of springs are those of the rows only up to the compliance. Between stiff bodies the
             // difference is a large force and a small residual.
-            (true, true) => target.min(reduced).max(self.least),
+            (true, true) => target.min(reduced).max(self.rounding()),
             (false, _) => target.max(reduced),
         };
         let control = IterationControl::to(tolerance, self.at.residual.size);

@@ -9,8 +9,7 @@
 //! leave has left. Here they go all the way at once, node by node.
 
 use crate::feti::jump::operator::Jump;
-use crate::feti::jump::scaling;
-use crate::feti::operators::springs::complement;
+use crate::feti::operators::springs::forceless;
 use crate::linalg::dense::Dense;
 
 /// cᵀN counts as zero below this, relative to its terms: rounding of given gaps.
@@ -35,10 +34,7 @@ fn settle_rows(b: &Dense, inequality: &[bool], c: &[f64], lambda: &mut [f64]) {
         if rows.len() < 2 {
             return;
         }
-        let part = faer::Mat::from_fn(rows.len(), b.cols, |i, j| b.get(rows[i], j));
-        let range = scaling::range(&part);
-        let range = Dense::from_fn(rows.len(), range.ncols(), |i, j| range[(i, j)]);
-        let n = complement(&range);
+        let n = forceless(b, &rows);
         // The steepest descent of cᵀλ: −N Nᵀ c.
         let mut along = vec![0.0; rows.len()];
         let mut level: f64 = 0.0;

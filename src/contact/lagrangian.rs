@@ -10,8 +10,8 @@
 //! that method, φ tells how far to go along the step. Each minimisation ends after finitely many steps, and μ converges
 //! for every C. Small C make few minimisations of many steps; they therefore begin soft and become stiffer.
 //!
-//! After each minimisation steps of the active-set method try its set. They bring the answer to the tolerance of the
-//! user, mostly long before μ has converged.
+//! After a minimisation that has come to its end, or nearly, steps of the active-set method try its set. They bring the
+//! answer to the tolerance of the user, mostly long before μ has converged.
 
 use std::time::Instant;
 
@@ -55,7 +55,7 @@ pub(super) fn solve(
     let elapsed = || seconds + clock.elapsed().as_secs_f64();
     for round in 0.. {
         let mut inner = 0;
-        let (minimal, status) = loop {
+        let (came, status) = loop {
             if state.steps >= settings.max_it {
                 search.rigid();
                 let run = ActiveSet::new(method, settings, Some(&state))?;
@@ -69,20 +69,22 @@ pub(super) fn solve(
             if !status.converged() && !status.broke_down() {
                 return Ok((search.finish(&steps, elapsed(), status)?, steps));
             }
-            if came == Came::Down {
-                break (true, status);
-            }
             let near = round < EARLY && inner > 1 && came == Came::Near;
-            if came == Came::Nowhere || near {
-                break (false, status);
+            if near || matches!(came, Came::Down | Came::Nowhere) {
+                break (came, status);
             }
         };
+        let minimal = came == Came::Down;
         if minimal && search.is_solution(rtol)? {
+            let status = match status.converged() {
+                true => status,
+                false => Status::Rounding,
+            };
             return Ok((search.finish(&steps, elapsed(), status)?, steps));
         }
         search.update(&mut state);
         let wrong = steps.last().map_or(0, |s| s.wrong);
-        if !minimal && wrong > CLOSE {
+        if came == Came::Near && wrong > CLOSE {
             search.stiffen();
             continue;
         }

@@ -17,6 +17,9 @@ use crate::Result;
 /// multiplier or displacement. The energy changes by the square of the pull.
 const WRONG: f64 = 10.0;
 
+/// Rounding of certified multipliers and gaps: less than this says nothing, whatever the tolerance.
+const ROUNDING: f64 = 1e-12;
+
 /// Factor by which the tolerance becomes smaller for the steps that follow.
 pub const FURTHER: f64 = 1e-2;
 
@@ -37,7 +40,7 @@ pub fn again(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<
         size(&mut solution.u.iter().flatten()),
     ];
     max_all(dual.comm(), &mut largest);
-    let [pull, open] = largest.map(|l| WRONG * rtol * l);
+    let [pull, open] = largest.map(|l| (WRONG * rtol).max(ROUNDING) * l);
     let mut active = jump.active.clone();
     for block in &jump.blocks {
         leave(block, jump, &solution.lambda, pull, &mut active);

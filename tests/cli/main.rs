@@ -7,6 +7,7 @@ mod checkpoint;
 mod checkpoint_files;
 mod contact;
 mod elastic;
+mod energy;
 mod input;
 mod solve;
 mod table;

@@ -6,6 +6,7 @@ use crate::support::contact_judge;
 use crate::support::mpi;
 use crate::support::rng::Rng;
 use crate::support::session::with_session;
+use crate::support::wall::wall;
 use fetifeti::contact::ContactType;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
@@ -17,33 +18,7 @@ const STEPS: usize = 60;
 
 /// `n` × `n` bodies with gaps between most of them, ρ = 1 and `jump` in a checkerboard.
 fn scene(seed: u64, n: usize, jump: f64) -> Scene {
-    let mut rng = Rng::new(seed);
-    let load = format!(
-        "{}*({:.3} + cos({:.3}*x + {:.3})*sin({:.3}*y + {:.3}*bi))",
-        [1, 2, 5, 10][rng.below(4)],
-        rng.uniform(-0.5, 0.8),
-        rng.uniform(0.5, 3.0),
-        rng.uniform(0.0, 6.0),
-        rng.uniform(0.5, 3.0),
-        rng.uniform(0.0, 6.0),
-    );
-    let mut text = format!(
-        "title = \"jumps\"\n[grid]\nbodies = [{n}, {n}]\nsize = [{n}, {n}]\nsubdomains = 2\nelements = 4\n\
-         rho = {{ checkerboard = [1, {jump:e}], by = \"body\" }}\nload = \"{load}\"\n\
-         dirichlet = {{ bottom = 0, right = 0 }}\n[interface]\ndefault = \"contact\"\n"
-    );
-    for i in 0..n {
-        for j in 0..n {
-            for (k, l) in [(i + 1, j), (i, j + 1)] {
-                if k < n && l < n && !rng.one_in(5) {
-                    let gap = rng.uniform(0.08, 0.3);
-                    text += &format!(
-                        "[[contact]]\nbodies = [\"b{i}_{j}\", \"b{k}_{l}\"]\ngap = {gap:.4}\n"
-                    );
-                }
-            }
-        }
-    }
+    let text = wall(&mut Rng::new(seed), n, jump);
     Scene::parse("jumps.toml", &text).expect("a good scene")
 }
 

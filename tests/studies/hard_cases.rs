@@ -83,15 +83,16 @@ fn nothing_is_wrong() {
 fn walls_have_direct_solutions() {
     use crate::support::rng::Rng;
     use crate::support::session::with_session;
+    use crate::support::wall::wall;
     use fetifeti::study::hard_cases::{one, HardCase};
     with_session(|session| {
         for seed in 0..4 {
-            for jump in ["1", "1e2", "1e4", "1e6"] {
-                let what = format!("jump {jump}, seed {seed}");
+            for jump in [1.0, 1e2, 1e4, 1e6] {
+                let what = format!("jump {jump:e}, seed {seed}");
                 let case = HardCase {
                     name: "wall",
                     title: what.clone(),
-                    text: wall(&mut Rng::new(seed), jump),
+                    text: wall(&mut Rng::new(seed), 4, jump),
                 };
                 let record = one(session, &case, 0).expect("it runs");
                 println!("{what}: {record:?}");
@@ -103,35 +104,6 @@ fn walls_have_direct_solutions() {
             }
         }
     });
-}
-
-/// 4 x 4 bodies, ρ = 1 and `jump` by body, a random load, and random gaps at most interfaces.
-fn wall(rng: &mut crate::support::rng::Rng, jump: &str) -> String {
-    let load = format!(
-        "{}*({:.3} + cos({:.3}*x + {:.3})*sin({:.3}*y + {:.3}*bi))",
-        [1, 2, 5, 10][rng.below(4)],
-        rng.uniform(-0.5, 0.8),
-        rng.uniform(0.5, 3.0),
-        rng.uniform(0.0, 6.0),
-        rng.uniform(0.5, 3.0),
-        rng.uniform(0.0, 6.0),
-    );
-    let mut text = format!(
-        "[grid]\nbodies = [4, 4]\nsize = [4, 4]\nsubdomains = 2\nelements = 4\n\
-         rho = {{ checkerboard = [1, {jump}], by = \"body\" }}\nload = \"{load}\"\n\
-         dirichlet = {{ bottom = 0, right = 0 }}\n[interface]\ndefault = \"contact\"\n"
-    );
-    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
-        for (k, l) in [(i + 1, j), (i, j + 1)] {
-            if k < 4 && l < 4 && !rng.one_in(5) {
-                let gap = rng.uniform(0.08, 0.3);
-                text += &format!(
-                    "[[contact]]\nbodies = [\"b{i}_{j}\", \"b{k}_{l}\"]\ngap = {gap:.4}\n"
-                );
-            }
-        }
-    }
-    text
 }
 
 #[test]

@@ -19,3 +19,4 @@ pub mod rng;
 pub mod scene_message;
 pub mod session;
 pub mod solid;
+pub mod wall;

@@ -48,17 +48,12 @@ impl Springs {
             if rows.len() < 2 {
                 continue;
             }
-            let b = faer::Mat::from_fn(rows.len(), block.dofs.len(), |i, j| {
-                block.b.get(rows[i] - block.rows.start, j)
-            });
-            let range = scaling::range(&b);
-            if range.ncols() == rows.len() {
-                continue;
+            let own: Vec<usize> = rows.iter().map(|r| r - block.rows.start).collect();
+            let n = forceless(&block.b, &own);
+            if n.cols > 0 {
+                let c: Vec<f64> = rows.iter().map(|&r| self.compliance[r]).collect();
+                self.dependent.push((rows, inverse(&n, &c)));
             }
-            let range = Dense::from_fn(rows.len(), range.ncols(), |i, j| range[(i, j)]);
-            let c: Vec<f64> = rows.iter().map(|&r| self.compliance[r]).collect();
-            self.dependent
-                .push((rows, inverse(&complement(&range), &c)));
         }
     }
 
@@ -98,8 +93,17 @@ fn product(x: &Dense, rows: &[usize], v: impl Fn(usize) -> f64) -> Vec<f64> {
     out
 }
 
-/// N: orthonormal columns that complete those of `range`.
-pub fn complement(range: &Dense) -> Dense {
+/// N: an orthonormal basis of the multipliers without forces, BᵀN = 0, on these rows of a block `b`.
+pub fn forceless(b: &Dense, rows: &[usize]) -> Dense {
+    let part = faer::Mat::from_fn(rows.len(), b.cols, |i, j| b.get(rows[i], j));
+    let range = scaling::range(&part);
+    complement(&Dense::from_fn(rows.len(), range.ncols(), |i, j| {
+        range[(i, j)]
+    }))
+}
+
+/// Orthonormal columns that complete those of `range`.
+fn complement(range: &Dense) -> Dense {
     let n = range.rows;
     let mut known: Vec<Vec<f64>> = (0..range.cols).map(|j| range.col(j).to_vec()).collect();
     while known.len() < n {
