@@ -1,8 +1,14 @@
-//! Meshes: boxes of rectangles, their partition into subdomains, the classification of their nodes.
+//! Meshes: boxes of rectangles, their partition into subdomains, the classification of their nodes; cells of any kind.
 
 mod boxes;
+mod cells;
+mod file;
+mod kind;
 
 pub use boxes::{places, Block, BoxMesh};
+pub use cells::Cells;
+pub use file::{Group, Members, MeshFile};
+pub use kind::{CellKind, CellSide};
 
 use std::ops::Range;
 

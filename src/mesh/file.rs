@@ -1,0 +1,45 @@
+//! A mesh as a file has it: cells of every dimension, and named groups of cells, nodes or sides of cells.
+
+use super::cells::Cells;
+
+/// What a reader of mesh files returns, whatever the format.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MeshFile {
+    /// The name of the file, for messages.
+    pub name: String,
+    /// The points; z is 0 in plane meshes.
+    pub points: Vec<[f64; 3]>,
+    /// The number of each point in the file.
+    pub node_ids: Vec<u64>,
+    /// All cells, of every dimension; nodes are places in `points`.
+    pub cells: Cells,
+    /// The number of each cell in the file.
+    pub cell_ids: Vec<u64>,
+    /// The named groups, in the order of the file.
+    pub groups: Vec<Group>,
+}
+
+/// A named group of a mesh file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group {
+    /// Its name; where the file numbers a group and does not name it, the number.
+    pub name: String,
+    /// What it consists of.
+    pub members: Members,
+}
+
+/// The members of a [`Group`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Members {
+    /// Cells of one dimension, as places in [`MeshFile::cells`]: a physical group, an ELSET.
+    Cells {
+        /// The dimension of the cells, 0 to 3.
+        dim: usize,
+        /// The cells, in increasing order.
+        cells: Vec<u32>,
+    },
+    /// Points, as places in [`MeshFile::points`], in increasing order: an NSET.
+    Nodes(Vec<u32>),
+    /// Sides of cells: the cell, and the side of its kind ([`CellKind::sides`](super::CellKind::sides)): a SURFACE.
+    Sides(Vec<(u32, u8)>),
+}
