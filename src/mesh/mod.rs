@@ -3,6 +3,7 @@
 mod boxes;
 mod cells;
 mod file;
+pub mod gmsh;
 mod kind;
 
 pub use boxes::{places, Block, BoxMesh};
