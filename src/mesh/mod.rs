@@ -2,6 +2,7 @@
 
 mod boxes;
 mod cells;
+pub mod deck;
 mod file;
 pub mod gmsh;
 mod kind;
