@@ -212,8 +212,9 @@ fn header(scan: &mut Scan) -> Result<Format> {
         b"4.1" => four(false, size, size),
         _ => {
             let found = quoted(version);
+            let known = "2.0, 2.1, 2.2, 4.0 or 4.1";
             let message =
-                format!("found the format {found} where 2.0, 2.1, 2.2, 4.0 or 4.1 was expected");
+                format!("found the format {found} where {known} was expected; Gmsh converts it");
             return Err(scan.fail(at, message));
         }
     };

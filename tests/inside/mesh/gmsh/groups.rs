@@ -29,6 +29,23 @@ fn names_of_groups_may_meet() {
     assert_eq!(mesh.groups[0].name, "rim");
 }
 
+/// A group that an entity is in twice, with any sign, or under two numbers of one name has its cells once.
+#[test]
+fn no_cell_is_in_a_group_twice() {
+    let cells = Members::Cells {
+        dim: 2,
+        cells: vec![1, 2],
+    };
+    let mesh = replaced(FOUR, "2 5 6 1 1", "4 5 -5 0 5 1 1").expect("a mesh");
+    assert_eq!(mesh.groups.len(), 2);
+    assert_eq!(mesh.groups[1].members, cells);
+    let names = "$PhysicalNames\n2\n2 6 \"plate\"\n2 5 \"plate\"\n$EndPhysicalNames\n$Entities\n0";
+    let mesh = replaced(FOUR, "$Entities\n0", names).expect("a mesh");
+    assert_eq!(mesh.groups.len(), 2);
+    assert_eq!(mesh.groups[0].name, "plate");
+    assert_eq!(mesh.groups[0].members, cells);
+}
+
 /// Format 2 writes an element once for each of its groups.
 #[test]
 fn an_element_in_two_groups_is_one_cell() {

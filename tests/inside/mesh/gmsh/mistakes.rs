@@ -214,6 +214,10 @@ const WRONG_FOUR: &str = r##"
     line 20: found "$EndNodes" where
 3⏎4⏎0 => 3⏎3⏎0
     line 15: node 3 is here a second time, after line 14
+3⏎4⏎0 => 3000000⏎3000000⏎0
+    line 15: node 3000000 is here a second time, after line 14
+3⏎4⏎0 => 3000000⏎4000000⏎0
+    line 26: element 2 has the node 3, which is not in $Nodes
 2 3 1 3⏎1 => 2 4 1 3⏎1
     line 22: the section says that it has 4 elements, and its blocks have 3
 2 7 2 2 => 2 7 1 2
@@ -233,6 +237,13 @@ $Entities⏎0 => $Elements⏎0
 #[test]
 fn mistakes_in_format_4() {
     try_all(FOUR, WRONG_FOUR);
+    let (before, entities) = FOUR.split_once("$Entities").expect("entities");
+    let (entities, after) = entities.split_once("$Nodes").expect("nodes");
+    let late = format!("{before}$Nodes{after}$Entities{entities}");
+    assert_eq!(
+        read("a.msh", late.as_bytes()).unwrap_err().to_string(),
+        "a.msh, line 24: $Entities was expected before $Elements"
+    );
     let whole = |text: &str| read("a.msh", text.as_bytes()).unwrap_err().to_string();
     assert_eq!(
         whole(""),
