@@ -9,7 +9,7 @@ pub struct SurfaceName {
     pub name: String,
     /// Whether it consists of nodes rather than of sides of cells.
     pub nodes: bool,
-    /// The group in [`MeshFile::groups`].
+    /// The group in [`MeshFile::groups`](crate::mesh::MeshFile::groups).
     pub group: u32,
 }
 
@@ -61,7 +61,7 @@ pub struct ContactPair {
     pub slave: SurfaceName,
     /// The independent surface, of sides.
     pub master: SurfaceName,
-    /// Its interaction, as a place in [`Deck::interactions`].
+    /// Its interaction, as a place in [`Deck::interactions`](super::Deck::interactions).
     pub interaction: u32,
     /// How it is discretised in CalculiX.
     pub kind: ContactKind,

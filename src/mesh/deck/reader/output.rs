@@ -11,7 +11,11 @@ use crate::mesh::deck::step::{FieldRequest, NodePrint, Printed, Totals};
 impl<'a> Reader<'a> {
     pub(super) fn node_print(&mut self, card: &'a Card) -> Result<()> {
         let mut params = Params::new(card, self.files);
-        let nset = params.required("NSET")?;
+        let Some(nset) = params.name("NSET")? else {
+            let reason = "without NSET=, CalculiX prints nothing";
+            self.deck.ignored.push(Self::note(card, card.place, reason));
+            return Ok(());
+        };
         let never = params.whole("FREQUENCY")? == Some(0);
         let totals = match params.value("TOTALS") {
             None | Some("NO") => Totals::No,

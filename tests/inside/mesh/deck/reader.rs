@@ -576,7 +576,7 @@ fn steps() {
 #[test]
 fn what_is_printed() {
     let deck = good("", "*NODE PRINT,NSET=N,TOTALS=YES,FREQUENCY=100\nRF,NT,\nU\n*NODE PRINT,NSET=N,FREQUENCY=0\nU\n\
-                         *NODE FILE\nU,RF\n*EL FILE\nS\n*EL PRINT,ELSET=E\nS\n");
+                         *NODE PRINT\nU\n*NODE FILE\nU,RF\n*EL FILE\nS\n*EL PRINT,ELSET=E\nS\n");
     let step = &deck.steps[0];
     assert_eq!(step.prints.len(), 1);
     assert_eq!(
@@ -593,7 +593,7 @@ fn what_is_printed() {
     );
     assert_eq!(step.fields[0].fields, ["U", "RF"]);
     let ignored: Vec<&str> = deck.ignored.iter().map(|n| n.keyword.as_str()).collect();
-    assert_eq!(ignored, ["*EL PRINT", "*NODE PRINT"]);
+    assert_eq!(ignored, ["*EL PRINT", "*NODE PRINT", "*NODE PRINT"]);
     assert_eq!(
         bad("", "*NODE PRINT,NSET=X\nU\n"),
         "*NODE PRINT: there is no node set X"
