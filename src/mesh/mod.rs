@@ -6,6 +6,7 @@ pub mod deck;
 mod file;
 pub mod gmsh;
 mod kind;
+pub mod partition;
 
 pub use boxes::{places, Block, BoxMesh};
 pub use cells::Cells;

@@ -1,0 +1,20 @@
+//! How many subdomains.
+
+/// Unknowns of a subdomain in the plane and in space. Fewer make the coarse problem and the number of interface unknowns
+/// grow; more make the factorisations and the dense Schur complements dear, whose work grows as the square of the
+/// unknowns in space.
+const UNKNOWNS: [usize; 2] = [2500, 1000];
+
+/// The number of subdomains for a body of so many unknowns, at least one.
+///
+/// # Panics
+/// When `dim` is not 2 or 3.
+pub fn subdomains_for(unknowns: usize, dim: usize) -> usize {
+    let each = match dim {
+        2 => UNKNOWNS[0],
+        3 => UNKNOWNS[1],
+        _ => panic!("a dimension of {dim}, expected 2 or 3"),
+    };
+    // Rounded to the nearest.
+    ((unknowns + each / 2) / each).max(1)
+}
