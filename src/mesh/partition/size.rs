@@ -1,8 +1,7 @@
 //! How many subdomains.
 
-/// Unknowns of a subdomain in the plane and in space. Fewer make the coarse problem and the number of interface unknowns
-/// grow; more make the factorisations and the dense Schur complements dear, whose work grows as the square of the
-/// unknowns in space.
+/// Unknowns of a subdomain in the plane and in space. With fewer, the coarse problem and the interface grow. With more,
+/// factorisations and dense Schur complements become dear: in space their work grows as the square of the unknowns.
 const UNKNOWNS: [usize; 2] = [2500, 1000];
 
 /// The number of subdomains for a body of so many unknowns, at least one.
