@@ -4,6 +4,7 @@
 mod assemble;
 pub mod cell;
 mod cells;
+pub mod element;
 mod energy;
 mod form;
 mod loads;

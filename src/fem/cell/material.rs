@@ -52,7 +52,7 @@ pub enum Material {
 
 /// σ = 2μ ε + (point ∇·u + mean ⟨∇·u⟩) I, where ⟨ ⟩ is the mean over the cell.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Moduli {
+pub(crate) struct Moduli {
     pub shear: f64,
     pub point: f64,
     pub mean: f64,
@@ -125,7 +125,7 @@ impl Material {
     ///
     /// # Panics
     /// When [`Material::check`] would refuse a cure.
-    pub(super) fn moduli(&self, dim: usize, element: Element) -> Moduli {
+    pub(crate) fn moduli(&self, dim: usize, element: Element) -> Moduli {
         let (lambda, mu) = self.lame(dim);
         let (cure, plane) = match *self {
             Material::Scalar { .. } => (Cure::None, Plane::Strain),

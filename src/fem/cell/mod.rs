@@ -42,6 +42,7 @@ mod testing;
 pub(crate) use errors::error_squares;
 pub(crate) use loads::body_load;
 pub use map::jacobian_is_positive;
+pub(crate) use material::Moduli;
 pub use material::{Cure, Material, Plane};
 pub use reference::Element;
 pub use rigid::{rigid_count, rigid_motions};

@@ -1,0 +1,185 @@
+//! Nodal forces of single distorted cells beside those of CalculiX, which scripts/calculix_elements.py wrote.
+
+use super::testing::{matrix, INTEGRATIONS, STEEL};
+use super::Integration;
+use crate::fem::cell::{Cure, Material, Plane};
+use crate::mesh::CellKind;
+
+struct Case {
+    name: String,
+    affine: bool,
+    thickness: f64,
+    points: Vec<[f64; 3]>,
+    forces: Vec<f64>,
+}
+
+fn cases() -> Vec<Case> {
+    let text = include_str!("../../../data/calculix_elements.txt");
+    let numbers = |line: &str| -> Vec<f64> {
+        let words = line.split_whitespace();
+        words.map(|word| word.parse().expect("a number")).collect()
+    };
+    let mut lines = text.lines().skip(1);
+    let mut cases = Vec::new();
+    while let Some(head) = lines.next() {
+        let [name, shape, thickness] = head.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("name, shape and thickness: {head}");
+        };
+        let (kind, ..) = ours(name);
+        let mut point = || {
+            let [x, y, z] = numbers(lines.next().expect("a node"))[..] else {
+                panic!("three coordinates");
+            };
+            [x, y, z]
+        };
+        cases.push(Case {
+            name: name.into(),
+            affine: shape == "affine",
+            thickness: thickness.parse().expect("a number"),
+            points: (0..kind.nodes()).map(|_| point()).collect(),
+            forces: numbers(lines.next().expect("forces")),
+        });
+    }
+    cases
+}
+
+/// Kind and integration of an element of CalculiX, and its plane.
+fn ours(name: &str) -> (CellKind, Integration, Plane) {
+    let (family, number) = name.split_at(3);
+    let (number, reduced) = match number.strip_suffix('R') {
+        Some(number) => (number, true),
+        None => (number, false),
+    };
+    let (kind, reduced) = match (family, number) {
+        ("C3D", "4") => (CellKind::Tet4, false),
+        ("C3D", "10") => (CellKind::Tet10, false),
+        ("C3D", "6") => (CellKind::Wedge6, true),
+        ("C3D", "15") => (CellKind::Wedge15, true),
+        ("C3D", "8" | "8I") => (CellKind::Hex8, reduced),
+        ("C3D", "20") => (CellKind::Hex20, reduced),
+        (_, "3") => (CellKind::Triangle3, false),
+        (_, "6") => (CellKind::Triangle6, false),
+        (_, "4") => (CellKind::Quad4, reduced),
+        (_, "8") => (CellKind::Quad8, reduced),
+        _ => panic!("{name}"),
+    };
+    let integration = match (name.ends_with('I'), reduced) {
+        (true, _) => Integration::Incompatible,
+        (_, true) => Integration::Reduced,
+        _ => Integration::Full,
+    };
+    let plane = match family {
+        "CPS" => Plane::Stress,
+        _ => Plane::Strain,
+    };
+    (kind, integration, plane)
+}
+
+fn displacement(i: usize) -> f64 {
+    ((i * i * 3 + i * 7 + 5) % 11) as f64 - 5.0
+}
+
+/// K u of our cell, and twice its energy.
+fn forces(case: &Case, integration: Integration) -> (Vec<f64>, f64) {
+    let (kind, _, plane) = ours(&case.name);
+    let material = Material::Elastic {
+        young: 1000.0,
+        poisson: 0.3,
+        plane,
+        cure: Cure::None,
+    };
+    let k = matrix(kind, &case.points, &material, integration);
+    let row = |i: usize| {
+        (0..k.ncols())
+            .map(|j| k[(i, j)] * displacement(j))
+            .sum::<f64>()
+    };
+    let forces: Vec<f64> = (0..k.nrows()).map(|i| case.thickness * row(i)).collect();
+    let energy = energy(&forces);
+    (forces, energy)
+}
+
+fn energy(forces: &[f64]) -> f64 {
+    forces
+        .iter()
+        .enumerate()
+        .map(|(i, f)| f * displacement(i))
+        .sum()
+}
+
+/// The largest difference, relative to the largest force.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let largest = b.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn solid_and_plane_strain_cells_are_those_of_calculix() {
+    let mut names = Vec::new();
+    for case in cases() {
+        if !case.name.starts_with("C3D") && !case.name.starts_with("CPE") {
+            continue;
+        }
+        let (_, integration, _) = ours(&case.name);
+        let (forces, _) = forces(&case, integration);
+        let distance = distance(&forces, &case.forces);
+        match (&case.name[..], case.affine) {
+            // CalculiX 2.20 fails the patch test here.
+            ("C3D8I" | "C3D8R", false) => {
+                assert!(distance > 1e-4 && distance < 1e-2, "{distance:e}")
+            }
+            // Ours is the limit of thick layers.
+            ("CPE4R", false) => assert!(distance > 1e-3 && distance < 1e-1, "{distance:e}"),
+            // CalculiX writes Gauss points with 15 digits, the file has 11.
+            (name, _) => assert!(distance < 1e-10, "{name}: {distance:e}"),
+        }
+        names.push(case.name);
+    }
+    assert_eq!(names.len(), 18);
+}
+
+#[test]
+fn another_integration_is_not_that_of_calculix() {
+    for case in cases() {
+        let (kind, right, _) = ours(&case.name);
+        if case.name.starts_with("CAX") {
+            continue;
+        }
+        for integration in INTEGRATIONS {
+            let exists = super::check(kind, kind.dim(), &STEEL, integration).is_ok();
+            if integration != right && exists {
+                let (forces, _) = forces(&case, integration);
+                assert!(
+                    distance(&forces, &case.forces) > 1e-3,
+                    "{} {integration:?}",
+                    case.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn plane_stress_of_calculix_is_stiffer_unless_a_single_cell_is_thin() {
+    let mut seen = 0;
+    for case in cases().iter().filter(|case| case.name.starts_with("CPS")) {
+        let (_, integration, _) = ours(&case.name);
+        let (forces, ours) = forces(case, integration);
+        let (distance, theirs) = (distance(&forces, &case.forces), energy(&case.forces));
+        match (&case.name[..], case.thickness == 1.0) {
+            // One strain: the faces move apart evenly.
+            ("CPS3", _) => assert!(distance < 1e-10, "{distance:e}"),
+            // Its hourglass stiffness grows with 1/thickness².
+            ("CPS4R", true) => assert!(distance > 1e-3, "{distance:e}"),
+            ("CPS4R", false) => assert!(theirs > 1000.0 * ours),
+            (name, true) => assert!(distance > 1e-3 && theirs > ours, "{name} {distance:e}"),
+            // More points than nodes: σ_zz = 0 in the mean.
+            ("CPS8", false) => assert!(distance < 1e-3 && theirs > ours, "{distance:e}"),
+            (name, false) => assert!(distance < 1e-6 && theirs > ours, "{name} {distance:e}"),
+        }
+        seen += 1;
+    }
+    assert_eq!(seen, 12);
+}
