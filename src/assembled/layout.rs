@@ -106,9 +106,9 @@ impl<'a> Layout<'a> {
                 };
                 let free: Vec<usize> = (0..c).filter(|&k| !is_given(k)).collect();
                 let first = number(free[0]);
-                let (owner, place, _) = self.numbering.place(first);
+                let (owner, of_owner, _) = self.numbering.place(first);
                 // The copies of a tied node share one place.
-                if (owner, place) != (b, body.mesh().place(node)) {
+                if (owner, of_owner) != (b, node) {
                     continue;
                 }
                 for k in (0..c).filter(|&k| is_given(k)) {
@@ -195,9 +195,9 @@ impl<'a> Layout<'a> {
         let mut candidates: Vec<(u64, Functional)> = Vec::new();
         for (b, body) in self.scene.bodies.iter().enumerate() {
             let mesh = body.mesh();
-            for place in mesh.boundary() {
+            for node in mesh.boundary() {
                 for k in 0..self.components {
-                    let inside = mesh.node(place) * self.components + k;
+                    let inside = node * self.components + k;
                     if body.prescribed_at(inside).is_some() {
                         continue;
                     }
@@ -205,7 +205,7 @@ impl<'a> Layout<'a> {
                     if in_rows.contains(&(at / c)) {
                         continue;
                     }
-                    candidates.push((at, self.motions.form(b, body.spec.position(place), k)));
+                    candidates.push((at, self.motions.form(b, body.spec.position(node), k)));
                 }
             }
         }
@@ -343,18 +343,18 @@ impl<'a> Layout<'a> {
 
     /// Position of a node.
     pub fn position(&self, block: u64) -> [f64; 3] {
-        let (body, place) = self.node(block);
-        self.scene.bodies[body].spec.position(place)
+        let (body, node) = self.node(block);
+        self.scene.bodies[body].spec.position(node)
     }
 
-    /// Body and grid place of a node.
-    fn node(&self, block: u64) -> (usize, [usize; 3]) {
+    /// The body of a node, and its number there.
+    fn node(&self, block: u64) -> (usize, usize) {
         let first = block * self.components as u64;
         let at = (first..).find(|i| self.filled.binary_search(i).is_err());
         let at = at.expect("a node has a free component");
         let before = self.filled.partition_point(|&v| v < at) as u64;
-        let (body, place, _) = self.numbering.place(at - before);
-        (body, place)
+        let (body, node, _) = self.numbering.place(at - before);
+        (body, node)
     }
 
     /// The six rigid motions of the whole scene as values of w at place `index`, void or not. `centre`, `scale`: as in
@@ -396,8 +396,8 @@ impl<'a> Layout<'a> {
                 if self.filled.binary_search(&(i as u64)).is_ok() {
                     continue;
                 }
-                let (body, place) = self.node((i / c) as u64);
-                let x = self.scene.bodies[body].spec.position(place);
+                let (body, node) = self.node((i / c) as u64);
+                let x = self.scene.bodies[body].spec.position(node);
                 let form = self.motions.form(body, x, i % c);
                 u[i - range.start] -= form.iter().map(|&(k, v)| v * alpha[k]).sum::<f64>();
             }

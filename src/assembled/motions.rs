@@ -168,8 +168,8 @@ impl Motions {
     /// The form of degree of freedom C k + c of a body.
     fn at(&self, scene: &Scene, body: usize, inside: usize) -> Functional {
         let spec = &scene.bodies[body].spec;
-        let place = spec.mesh.place(inside / self.components);
-        self.form(body, spec.position(place), inside % self.components)
+        let at = spec.position(inside / self.components);
+        self.form(body, at, inside % self.components)
     }
 
     /// The equations of ties, springs and prescribed values.
@@ -179,9 +179,9 @@ impl Motions {
             for &(dof, _) in &body.prescribed {
                 out.insert(&self.at(scene, b, dof), 0.0);
             }
-            for place in scene.sprung(body) {
+            for node in scene.sprung(body) {
                 for c in 0..self.components {
-                    out.insert(&self.form(b, body.spec.position(place), c), 0.0);
+                    out.insert(&self.form(b, body.spec.position(node), c), 0.0);
                 }
             }
         }

@@ -41,7 +41,7 @@ pub(super) fn bodies(
                 _ => row.normal(),
             };
             let force = n.map(|n| sign * row.multiplier * n);
-            let at = body.spec.position(body.mesh().place(node));
+            let at = body.spec.position(node);
             let moment = cross(minus(at, body.ball().0), force);
             let [_, contact, moments, sizes] = &mut sums[b];
             add(contact, force);

@@ -23,7 +23,9 @@ pub fn rows(session: &Session, solution: &Solution) -> Vec<SolvedRow> {
 }
 
 pub(super) fn by_source(rows: &[SolvedRow]) -> impl Iterator<Item = &[SolvedRow]> {
-    rows.chunk_by(|a, b| a.label.source == b.label.source)
+    // All equations are one group.
+    let equation = |row: &SolvedRow| matches!(row.label.source, RowSource::Equation(_));
+    rows.chunk_by(move |a, b| a.label.source == b.label.source || equation(a) && equation(b))
 }
 
 /// For rows from one source: the body of their first member, and its side on which they lie. `None` where bodies meet
@@ -38,6 +40,7 @@ pub(super) fn name(scene: &Scene, source: RowSource) -> String {
     let k = match source {
         RowSource::Obstacle(k) => return scene.obstacles[k].name.clone(),
         RowSource::Interface(k) => k,
+        RowSource::Equation(_) => return "equations".into(),
     };
     let interface = &scene.interfaces[k];
     let [a, b] = interface.order.map(|o| interface.bodies[o]);
@@ -124,6 +127,7 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
     let profile = |rows: &[SolvedRow]| {
         let along = match rows[0].label.source {
             RowSource::Obstacle(k) => usize::from(scene.obstacles[k].side < 2),
+            RowSource::Equation(_) => 0,
             RowSource::Interface(k) => match scene.interfaces[k].shape {
                 Shape::Face => usize::from(scene.interfaces[k].sides[0] < 2),
                 Shape::Corner => 0,

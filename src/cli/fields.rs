@@ -5,11 +5,12 @@ use std::iter::repeat_n;
 use std::path::Path;
 
 use crate::fem::cell::{centre_stress, CellStress};
-use crate::fem::SubdomainMesh;
+use crate::fem::{element, Elements, SubdomainMesh};
+use crate::mesh::{CellKind, Cells};
 use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::paraview::contact_fields::ContactFields;
-use crate::report::paraview::vtu::{Shape, Vtu};
+use crate::report::paraview::vtu::Vtu;
 use crate::scene::{Scene, SteppedMesh};
 use crate::substructures::{BodyNode, SolvedRow};
 use crate::{FetiFeti, Result, Solution};
@@ -20,8 +21,7 @@ use crate::{FetiFeti, Result, Solution};
 pub struct Gathered {
     meshes: Vec<SteppedMesh>,
     pub(super) points: Vec<[f64; 3]>,
-    /// Corners of each cell as VTK numbers them, one cell after the other.
-    pub(super) cells: Vec<u32>,
+    pub(super) cells: Cells,
     pub(super) body: Vec<u32>,
     pub(super) subdomain: Vec<u32>,
     /// C components per point.
@@ -59,8 +59,10 @@ impl Gathered {
             all.owner.extend(repeat_n(body, mesh.points.len()));
             all.body.extend(repeat_n(body, cells));
             all.subdomain.extend(repeat_n(index as u32, cells));
-            let shifted = mesh.cells().into_iter().map(|p| (first + p) as u32);
-            all.cells.extend(shifted);
+            for (kind, nodes) in mesh.cells().iter() {
+                let shifted: Vec<u32> = nodes.iter().map(|p| first as u32 + p).collect();
+                all.cells.push(kind, &shifted);
+            }
             all.rho.extend(&mesh.rho);
             all.poisson.extend(&mesh.poisson);
             all.meshes.push(stepped);
@@ -177,7 +179,6 @@ impl Gathered {
         dir: &Path,
         name: &str,
     ) -> Result<()> {
-        let shape = [Shape::Quad, Shape::Hexahedron][scene.dim() - 2];
         let body: Vec<i32> = self.body.iter().map(|&b| b as i32).collect();
         let subdomain: Vec<i32> = self.subdomain.iter().map(|&s| s as i32).collect();
         let contact = self.contact_fields(scene, rows)?;
@@ -186,7 +187,7 @@ impl Gathered {
         let von_mises = by_cell(CellStress::von_mises);
         let pressure = by_cell(CellStress::pressure);
         let stress: Vec<f64> = self.stress.iter().flat_map(symmetric).collect();
-        let mut grid = Vtu::new(&self.points, shape, &self.cells).point_data("u", c, &u[..]);
+        let mut grid = Vtu::new(&self.points, &self.cells).point_data("u", c, &u[..]);
         if let Some(contact) = &contact {
             grid = contact.on(grid);
         }
@@ -206,22 +207,62 @@ impl Gathered {
 }
 
 /// Stress at the centres of the cells of a subdomain.
-fn stresses<'a>(
-    mesh: &'a SubdomainMesh,
-    nodal: &'a [f64],
-) -> impl Iterator<Item = CellStress> + use<'a> {
-    let (n, c) = (mesh.corners(), mesh.components());
-    mesh.element_places().enumerate().map(move |(e, place)| {
-        let nodes = mesh.element_nodes(place);
-        let points = mesh.element_points(place);
-        let u: Vec<f64> = nodes[..n]
-            .iter()
-            .flat_map(|&k| &nodal[c * k..c * (k + 1)])
+fn stresses(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<CellStress> {
+    let c = mesh.components();
+    let values = |nodes: &mut dyn Iterator<Item = usize>| -> Vec<f64> {
+        nodes
+            .flat_map(|k| &nodal[c * k..c * (k + 1)])
             .copied()
-            .collect();
-        let element = mesh.form.element;
-        centre_stress(mesh.dim, &points[..n], element, &mesh.material(e), &u)
-    })
+            .collect()
+    };
+    match &mesh.elements {
+        Elements::Grid(grid) => {
+            let n = grid.corners();
+            let stress = |(e, place)| {
+                let nodes = grid.element_nodes(place);
+                let points = mesh.element_points(grid, place);
+                let u = values(&mut nodes[..n].iter().copied());
+                let element = mesh.form.element;
+                centre_stress(mesh.dim, &points[..n], element, &mesh.material(e), &u)
+            };
+            grid.element_places().enumerate().map(stress).collect()
+        }
+        Elements::Cells(cells) => {
+            let stress = |(e, (kind, nodes)): (usize, (_, &[u32]))| {
+                let points: Vec<_> = nodes.iter().map(|&k| mesh.points[k as usize]).collect();
+                let u = values(&mut nodes.iter().map(|&k| k as usize));
+                mean_stress(mesh, e, kind, &points, &u)
+            };
+            cells.iter().enumerate().map(stress).collect()
+        }
+    }
+}
+
+/// The mean over its nodes of the stress of a cell.
+fn mean_stress(
+    mesh: &SubdomainMesh,
+    e: usize,
+    kind: CellKind,
+    points: &[[f64; 3]],
+    u: &[f64],
+) -> CellStress {
+    let mut at = vec![element::NodeStress::default(); points.len()];
+    let (material, rule) = (mesh.material(e), mesh.integration(e));
+    element::stress_at_nodes(kind, mesh.dim, points, &material, rule, u, &mut at);
+    let mean = |of: fn(&element::NodeStress) -> &[f64; 6]| {
+        let mut sum = [0.0; 6];
+        for node in &at {
+            sum.iter_mut()
+                .zip(of(node))
+                .for_each(|(s, v)| *s += v / at.len() as f64);
+        }
+        let [xx, yy, zz, xy, yz, xz] = sum;
+        [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+    };
+    CellStress {
+        strain: mean(|n| &n.strain),
+        stress: mean(|n| &n.stress),
+    }
 }
 
 /// The components of stress in ParaView's order: xx, yy, zz, xy, yz, xz.

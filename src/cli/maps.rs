@@ -47,11 +47,13 @@ fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
         let of: HashMap<usize, u32> = numbered
             .filter_map(|(k, r)| Some((r.node()?, k as u32)))
             .collect();
-        for cell in spec.side_cells(side) {
-            let corner = |a: usize| of.get(&spec.mesh.node(cell[a])).copied();
-            // The corners in the order around the face, not line by line.
-            if let [Some(a), Some(b), Some(c), Some(d)] = [0, 1, 3, 2].map(corner) {
-                cells.push([a, b, c, d]);
+        for face in spec.faces(side) {
+            let corners = face.outline().into_iter();
+            let corners: Option<Vec<u32>> = corners.map(|node| of.get(&node).copied()).collect();
+            match corners.as_deref() {
+                Some(&[a, b, c, d]) => cells.push([a, b, c, d]),
+                Some(&[a, b, c]) => cells.push([a, b, c, c]),
+                _ => {}
             }
         }
     }

@@ -16,6 +16,7 @@ mod plan;
 mod solve;
 mod study;
 mod table1;
+mod values;
 
 use args::Command;
 use first_rank::{on_first_rank, say};

@@ -8,6 +8,7 @@ use super::contact::{by_source, side};
 use super::fields::Gathered;
 use crate::fem::cell::CellStress;
 use crate::linalg::vec3::{minus, norm};
+use crate::mesh::{CellKind, Cells};
 use crate::report::drawing::ticks::number;
 use crate::report::pictures::field::{self, ContactMark, Field, Mesh};
 use crate::report::pictures::mesh::bounds;
@@ -57,11 +58,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         false => scene.title.clone(),
     };
     if scene.dim() == 3 {
-        let hexahedra: Vec<[u32; 8]> = all
-            .cells
-            .chunks_exact(8)
-            .map(|c| std::array::from_fn(|k| c[k]))
-            .collect();
+        let hexahedra: Vec<[u32; 8]> = corners(&all.cells);
         let solid = Solid {
             points: &all.points,
             shown: &moved.points,
@@ -75,11 +72,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
     let flat =
         |points: &[[f64; 3]]| -> Vec<[f64; 2]> { points.iter().map(|p| [p[0], p[1]]).collect() };
     let points = flat(&all.points);
-    let quads: Vec<[u32; 4]> = all
-        .cells
-        .chunks_exact(4)
-        .map(|q| [q[0], q[1], q[2], q[3]])
-        .collect();
+    let quads: Vec<[u32; 4]> = corners(&all.cells);
     let shown = flat(&moved.points);
     let mesh = Mesh {
         points: &points,
@@ -98,6 +91,15 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
     };
     let marks = line_marks(rows, &at);
     field::write(&mesh, &fields, &marks, elastic, &title, &path)
+}
+
+/// The corners of all cells; a cell of fewer corners repeats its last one.
+fn corners<const N: usize>(cells: &Cells) -> Vec<[u32; N]> {
+    let of = |(kind, nodes): (CellKind, &[u32])| {
+        let last = kind.corners() - 1;
+        std::array::from_fn(|a| nodes[a.min(last)])
+    };
+    cells.iter().map(of).collect()
 }
 
 /// Whether two cells of one body have different values.
@@ -196,13 +198,15 @@ fn face_marks(scene: &Scene, rows: &[SolvedRow]) -> Vec<FaceMark> {
                 .filter_map(|r| Some((r.label.members[member]?.node, r.holds())))
                 .collect();
             let spec = &scene.bodies[body].spec;
-            for cell in spec.side_cells(side) {
-                let state = |p: &[usize; 3]| active.get(&spec.mesh.node(*p));
-                if cell.iter().all(|p| state(p).is_some()) {
+            for face in spec.faces(side) {
+                let state = |node: &usize| active.get(node);
+                if face.nodes.iter().all(|node| state(node).is_some()) {
+                    let corners = face.outline();
+                    let last = corners.len() - 1;
                     out.push(FaceMark {
                         body: body as u32,
-                        corners: std::array::from_fn(|a| spec.position(cell[a])),
-                        closed: cell.iter().all(|p| state(p) == Some(&true)),
+                        corners: std::array::from_fn(|a| spec.position(corners[a.min(last)])),
+                        closed: face.nodes.iter().all(|node| state(node) == Some(&true)),
                     });
                 }
             }

@@ -10,41 +10,132 @@ use super::contact;
 use super::course::{follow, Course};
 use super::fields::Gathered;
 use super::first_rank::on_first_rank;
+use super::values::Values;
 use super::{maps, physics, picture};
 use crate::checkpoint::Checkpoints;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::feti::MethodSettings;
+use crate::mesh::deck::{self, Deck};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
 use crate::report::destination::Destination;
 use crate::report::json::adaptive::{Adaptive, Deflation};
 use crate::report::json::contact::ContactReport;
+use crate::report::json::probes::NodePrint;
 use crate::report::json::{self, Operators, SolveReport};
+use crate::report::output;
 use crate::report::pictures::contact_map;
 use crate::report::plots::{load_steps, profile};
 use crate::report::tables::summary;
-use crate::scene::{distribution, Scene};
+use crate::scene::{distribution, DeckScenes, PrintedNode, Scene};
 use crate::{Error, FetiFeti, Result, Spectrum, Status};
 
 /// Number of directions that a load step passes on to the next one.
 const DIRECTIONS: usize = 30;
 
-/// Solves a scene and writes the results that the arguments ask for.
+/// Solves a scene, or the steps of a deck, and writes the results that the arguments ask for.
 pub fn run(session: &Session, args: Solve) -> Result<()> {
     let clock = Instant::now();
     let destination = Destination::from(args.results.clone());
+    if DeckScenes::is_deck(&args.scene) {
+        return run_deck(session, &args, &destination);
+    }
     let scene = distribution::load(session, &args.scene)?;
     on_first_rank(session, || destination.prepare())?;
+    solve(session, &args, &destination, &scene, clock, Vec::new())?;
+    Ok(())
+}
+
+/// Solves the steps of a deck one after the other; each is a linear problem of its own. With several steps the results
+/// of each are in a directory of their own, and the report is that of the last.
+fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Result<()> {
+    let deck = session.agree(DeckScenes::load(&args.scene))?;
+    on_first_rank(session, || destination.prepare())?;
+    let stem = args
+        .scene
+        .file_stem()
+        .map(|s| s.to_string_lossy().into_owned());
+    let stem = stem.unwrap_or_default();
+    on_first_rank(session, || destination.print(&notes(deck.deck())))?;
+    let (mut printed, mut tables) = (Vec::new(), Vec::new());
+    let n = deck.n_steps();
+    for step in 0..n {
+        let clock = Instant::now();
+        let title = match n {
+            1 => stem.clone(),
+            _ => format!("{stem}, step {}", step + 1),
+        };
+        let scene = session.agree(deck.scene(&title, step))?;
+        let mut of_step = destination.clone();
+        if n > 1 {
+            of_step.out = destination
+                .out
+                .as_ref()
+                .map(|dir| dir.join(format!("step{}", step + 1)));
+            of_step.json = destination.json.clone().filter(|_| step + 1 == n);
+            on_first_rank(session, || of_step.prepare())?;
+        }
+        printed = solve(session, args, &of_step, &scene, clock, printed)?;
+        tables.extend(
+            printed[printed.len().saturating_sub(scene.prints.len())..]
+                .iter()
+                .map(dat_table),
+        );
+    }
+    if let (Some(dir), false) = (&destination.out, tables.is_empty()) {
+        let text = deck::write_dat(&tables);
+        on_first_rank(session, || {
+            output::write_text(&dir.join(format!("{stem}.dat")), &text)
+        })?;
+    }
+    Ok(())
+}
+
+/// What of a deck is ignored, or solved as something else: a line for each.
+fn notes(deck: &Deck) -> String {
+    let line = |what: &str, note: &deck::Note| {
+        let place = deck.files.at(note.place);
+        format!("{place}: {} {what}: {}\n", note.keyword, note.reason)
+    };
+    let ignored = deck.ignored.iter().map(|note| line("is ignored", note));
+    let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
+    ignored.chain(replaced).collect()
+}
+
+/// A table of displacements for a `.dat` file.
+fn dat_table(print: &NodePrint) -> deck::Table {
+    let row = |&(id, x, y, z): &(u64, f64, f64, f64)| deck::TableRow {
+        id,
+        vector: [x, y, z],
+        local: false,
+    };
+    deck::Table {
+        quantity: deck::Quantity::Displacement,
+        set: print.set.clone(),
+        time: print.time,
+        rows: print.nodes.iter().map(row).collect(),
+    }
+}
+
+/// Solves a scene and writes its results. `printed` are the tables of earlier steps; returned with those of this one.
+fn solve(
+    session: &Session,
+    args: &Solve,
+    destination: &Destination,
+    scene: &Scene,
+    clock: Instant,
+    mut printed: Vec<NodePrint>,
+) -> Result<Vec<NodePrint>> {
     let checkpoints = Checkpoints::new(
         session,
         &args.scene,
-        &scene,
+        scene,
         args.checkpoint.as_deref(),
         args.resume.as_deref(),
     )?;
     let start = Instant::now();
-    let substructures = distribution::substructures(session, &scene)?;
+    let substructures = distribution::substructures(session, scene)?;
     let assemble = start.elapsed().as_secs_f64();
 
     let settings = MethodSettings {
@@ -52,25 +143,37 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
         ..MethodSettings::default()
     };
     let mut solver = FetiFeti::new(session, substructures, settings)?;
-    let course = follow(session, &scene, &mut solver, &destination, checkpoints)?;
+    let course = follow(session, scene, &mut solver, destination, checkpoints)?;
     let solution = &course.solution;
     let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
         (false, _) => None,
         (true, Some(step)) if step.exact.is_some() => step.exact,
         (true, _) => solver.spectrum()?,
     };
-    let mut report = report(session, &scene, &solver, &course, exact)?;
+    let mut report = report(session, scene, &solver, &course, exact)?;
     if solver.settings().method.check {
         report.check = Some(checks(&solver, exact)?);
     }
     report.seconds.assemble = assemble;
+    if !scene.probes.is_empty() || !scene.prints.is_empty() {
+        let values = Values::gather(session, scene, &solver, solution, course.step)?;
+        let found = match session.rank() {
+            0 => values.probes(scene),
+            _ => Ok(Vec::new()),
+        };
+        report.probes = session.agree(found)?;
+        if session.rank() == 0 {
+            printed.extend(scene.prints.iter().map(|print| node_print(&values, print)));
+        }
+        report.node_print.clone_from(&printed);
+    }
     if let Some(dir) = &destination.out {
-        write_fields(session, &scene, &solver, &course, dir)?;
+        write_fields(session, scene, &solver, &course, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
-    on_first_rank(session, || write_report(&destination, &report))?;
+    on_first_rank(session, || write_report(destination, &report))?;
     if solution.converged() {
-        Ok(())
+        Ok(printed)
     } else {
         let scene = args.scene.display();
         let what = match (solver.facts().inequalities, solution.steps.len()) {
@@ -78,6 +181,19 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
             (_, n) => format!("the contact problem of {scene} ({n} contact steps)"),
         };
         Err(not_converged(&what, &solution.status, solution.iterations))
+    }
+}
+
+/// A table of displacements that a deck asks for; nodes that no element has do not move.
+fn node_print(values: &Values, print: &crate::scene::NodePrint) -> NodePrint {
+    let row = |node: &PrintedNode| {
+        let [x, y, z] = node.node.map_or([0.0; 3], |at| values.at(at.body, at.node));
+        (node.id, x, y, z)
+    };
+    NodePrint {
+        set: print.set.clone(),
+        time: print.time,
+        nodes: print.nodes.iter().map(row).collect(),
     }
 }
 
@@ -194,6 +310,8 @@ fn report(
             h1,
             energy_norm,
         }),
+        probes: Vec::new(),
+        node_print: Vec::new(),
         communication: solver.communication(),
         seconds: json::Seconds {
             assemble: 0.0,

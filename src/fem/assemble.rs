@@ -1,7 +1,8 @@
 //! Stiffness of one subdomain, and the loads that follow from given values.
 
 use super::cells::Cells;
-use super::SubdomainMesh;
+use super::sparse;
+use super::{Elements, Grid, SubdomainMesh};
 use crate::linalg::csr::Csr;
 use crate::mesh::places;
 
@@ -16,20 +17,28 @@ type Stencil<const C: usize> = [[[f64; C]; C]; 27];
 /// `load` has an entry per degree of freedom. The rows of a node are the sum over the elements around it: they come out
 /// in order and sorted, and no search is needed.
 pub fn assemble(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
+    let grid = match &mesh.elements {
+        Elements::Grid(grid) => grid,
+        Elements::Cells(cells) => return sparse::assemble(mesh, cells, load),
+    };
     match mesh.components() {
-        1 => rows::<1>(mesh, load),
-        2 => rows::<2>(mesh, load),
-        _ => rows::<3>(mesh, load),
+        1 => rows::<1>(mesh, grid, load),
+        2 => rows::<2>(mesh, grid, load),
+        _ => rows::<3>(mesh, grid, load),
     }
 }
 
 /// The columns of K at nonzero given values: a row for each free degree of freedom, columns by degree of freedom of the
 /// mesh. They do not change when given values are scaled.
 pub fn given_columns(mesh: &SubdomainMesh) -> Csr {
+    let grid = match &mesh.elements {
+        Elements::Grid(grid) => grid,
+        Elements::Cells(cells) => return sparse::given_columns(mesh, cells),
+    };
     match mesh.components() {
-        1 => columns::<1>(mesh),
-        2 => columns::<2>(mesh),
-        _ => columns::<3>(mesh),
+        1 => columns::<1>(mesh, grid),
+        2 => columns::<2>(mesh, grid),
+        _ => columns::<3>(mesh, grid),
     }
 }
 
@@ -44,8 +53,8 @@ pub fn free_load(mesh: &SubdomainMesh, columns: &Csr, load: &[f64]) -> Vec<f64> 
     rows.collect()
 }
 
-fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
-    let cells = Cells::new(mesh);
+fn rows<const C: usize>(mesh: &SubdomainMesh, grid: &Grid, load: &[f64]) -> (Csr, Vec<f64>) {
+    let cells = Cells::new(mesh, grid);
     let n = mesh.n_free();
     let width = C * 3_usize.pow(mesh.dim as u32);
     let mut k = Csr {
@@ -55,12 +64,12 @@ fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
     };
     k.row_ptr.push(0);
     let mut f = Vec::with_capacity(n);
-    for (node, place) in places(mesh.nodes()).enumerate() {
+    for (node, place) in places(grid.nodes()).enumerate() {
         let dofs = &mesh.dof[C * node..C * (node + 1)];
         if dofs.iter().all(|&d| d == SubdomainMesh::PRESCRIBED) {
             continue;
         }
-        let stencil = stencil::<C>(mesh, &cells, place);
+        let stencil = stencil::<C>(grid, &cells, place);
         for (c, _) in dofs
             .iter()
             .enumerate()
@@ -68,7 +77,7 @@ fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
         {
             let mut load_here = load[C * node + c];
             let spring = mesh.spring.get(node).copied().unwrap_or(0.0);
-            for (block, other) in neighbours(mesh, &stencil, place) {
+            for (block, other) in neighbours(grid, &stencil, place) {
                 for (j, &value) in block[c].iter().enumerate() {
                     let at = C * other + j;
                     let own = other == node && j == c;
@@ -88,7 +97,7 @@ fn rows<const C: usize>(mesh: &SubdomainMesh, load: &[f64]) -> (Csr, Vec<f64>) {
     (k, f)
 }
 
-fn columns<const C: usize>(mesh: &SubdomainMesh) -> Csr {
+fn columns<const C: usize>(mesh: &SubdomainMesh, grid: &Grid) -> Csr {
     let mut cells = None;
     let given = |k: usize| mesh.dof[k] == SubdomainMesh::PRESCRIBED;
     let mut out = Csr {
@@ -97,17 +106,17 @@ fn columns<const C: usize>(mesh: &SubdomainMesh) -> Csr {
         val: Vec::new(),
     };
     let empty = [[[0.0; C]; C]; 27];
-    for (node, place) in places(mesh.nodes()).enumerate() {
+    for (node, place) in places(grid.nodes()).enumerate() {
         // The stencil is needed only at neighbours of given values.
-        let beside = neighbours(mesh, &empty, place).any(|(_, other)| {
+        let beside = neighbours(grid, &empty, place).any(|(_, other)| {
             (0..C).any(|j| given(C * other + j) && mesh.prescribed[C * other + j] != 0.0)
         });
         let stencil = beside.then(|| {
-            let cells = cells.get_or_insert_with(|| Cells::new(mesh));
-            stencil::<C>(mesh, cells, place)
+            let cells = cells.get_or_insert_with(|| Cells::new(mesh, grid));
+            stencil::<C>(grid, cells, place)
         });
         for c in (0..C).filter(|c| !given(C * node + c)) {
-            for (block, other) in stencil.iter().flat_map(|s| neighbours(mesh, s, place)) {
+            for (block, other) in stencil.iter().flat_map(|s| neighbours(grid, s, place)) {
                 for (j, &value) in block[c].iter().enumerate() {
                     if given(C * other + j) {
                         out.col.push((C * other + j) as u32);
@@ -123,11 +132,11 @@ fn columns<const C: usize>(mesh: &SubdomainMesh) -> Csr {
 
 /// The nodes around a node (itself included) in increasing order, each with its block of the stencil.
 fn neighbours<'s, const C: usize>(
-    mesh: &SubdomainMesh,
+    grid: &Grid,
     stencil: &'s Stencil<C>,
     [i, j, k]: [usize; 3],
 ) -> impl Iterator<Item = (&'s [[f64; C]; C], usize)> {
-    let ([nx, ny, nz], dim) = (mesh.nodes(), mesh.dim);
+    let ([nx, ny, nz], dim) = (grid.nodes(), grid.dim());
     let layers = if dim == 3 { 0..27 } else { 9..18 };
     layers.filter_map(move |o| {
         let (p, q, r) = (i + o % 3, j + o / 3 % 3, k + o / 9);
@@ -140,15 +149,11 @@ fn neighbours<'s, const C: usize>(
 
 /// The rows of K at a node.
 #[inline]
-fn stencil<const C: usize>(
-    mesh: &SubdomainMesh,
-    cells: &Cells<'_>,
-    place: [usize; 3],
-) -> Stencil<C> {
+fn stencil<const C: usize>(grid: &Grid, cells: &Cells<'_>, place: [usize; 3]) -> Stencil<C> {
     let mut out = [[[0.0; C]; C]; 27];
-    let corners = mesh.corners();
+    let corners = grid.corners();
     let n = corners * C;
-    let counts = mesh.elements.map(|n| n.max(1));
+    let counts = grid.counts();
     for a in 0..corners {
         // The node is corner a of the cell at place − offset(a).
         let offset = [a & 1, a >> 1 & 1, a >> 2];

@@ -2,7 +2,7 @@
 
 use super::cell::{self, Element};
 use super::q1;
-use super::SubdomainMesh;
+use super::{Grid, SubdomainMesh};
 use std::collections::HashMap;
 
 /// The element matrices of a subdomain.
@@ -21,11 +21,11 @@ enum Kind {
 
 impl<'m> Cells<'m> {
     /// Computes the matrices.
-    pub fn new(mesh: &'m SubdomainMesh) -> Cells<'m> {
-        let n = mesh.corners() * mesh.components();
-        let kind = match mesh.step {
+    pub fn new(mesh: &'m SubdomainMesh, grid: &Grid) -> Cells<'m> {
+        let n = grid.corners() * mesh.components();
+        let kind = match grid.step {
             Some(step) => boxes(mesh, step, n),
-            None => each(mesh, n),
+            None => each(mesh, grid, n),
         };
         Cells { mesh, kind }
     }
@@ -45,7 +45,7 @@ impl<'m> Cells<'m> {
 
 fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> Kind {
     let corner = |a: usize| [0, 1, 2].map(|d| step[d] * (a >> d & 1) as f64);
-    let points: Vec<[f64; 3]> = (0..mesh.corners()).map(corner).collect();
+    let points: Vec<[f64; 3]> = (0..1 << mesh.dim).map(corner).collect();
     let matrix = |poisson: f64| {
         if mesh.dim == 2 && n == 4 && mesh.form.element == Element::Q1 {
             return q1::stiffness(step[0], step[1]).concat();
@@ -74,17 +74,17 @@ fn boxes(mesh: &SubdomainMesh, step: [f64; 3], n: usize) -> Kind {
     Kind::Boxes { unit, of }
 }
 
-fn each(mesh: &SubdomainMesh, n: usize) -> Kind {
+fn each(mesh: &SubdomainMesh, grid: &Grid, n: usize) -> Kind {
     let mut all = vec![0.0; n * n * mesh.n_elements()];
     for (e, (out, place)) in all
         .chunks_exact_mut(n * n)
-        .zip(mesh.element_places())
+        .zip(grid.element_places())
         .enumerate()
     {
-        let points = mesh.element_points(place);
+        let points = mesh.element_points(grid, place);
         let material = mesh.material(e);
         let element = mesh.form.element;
-        cell::stiffness(mesh.dim, &points[..mesh.corners()], element, &material, out);
+        cell::stiffness(mesh.dim, &points[..grid.corners()], element, &material, out);
     }
     Kind::Each { n, all }
 }

@@ -10,13 +10,14 @@ mod form;
 mod loads;
 mod norms;
 pub(crate) mod q1;
+mod sparse;
 mod subdomain;
 
 pub(crate) use assemble::{assemble, free_load, given_columns};
 pub(crate) use energy::given_energy;
 pub use form::{Form, Physics};
 pub use loads::Quadrature;
-pub(crate) use loads::{add_side_load, load_vector};
+pub(crate) use loads::{add_side_load, load_vector, SidePart};
 pub(crate) use norms::error_squares;
 pub use norms::ErrorNorms;
-pub use subdomain::SubdomainMesh;
+pub use subdomain::{Elements, Grid, SubdomainMesh};

@@ -1,13 +1,76 @@
 //! The mesh of one subdomain, for assembly, error norms and output.
 
 use super::cell::Material;
+use super::element::Integration;
 use super::Form;
-use crate::mesh::places;
+use crate::mesh::{places, CellKind, Cells};
+use std::borrow::Cow;
 
-/// A grid of nodes with the state of every degree of freedom: free, or prescribed by a Dirichlet condition.
+/// The elements of a subdomain.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Elements {
+    /// A grid of quadrilaterals or hexahedra.
+    Grid(Grid),
+    /// Cells of any kind.
+    Cells(Cells),
+}
+
+/// A grid of elements; nodes and elements are numbered layer by layer and row by row, x running fastest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Elements in x, y and z (0 in the plane).
+    pub elements: [usize; 3],
+    /// Edge lengths of an element where all of them are the same box; `None` in curved bodies.
+    pub step: Option<[f64; 3]>,
+}
+
+impl Grid {
+    /// The dimension, 2 or 3.
+    pub fn dim(&self) -> usize {
+        match self.elements[2] {
+            0 => 2,
+            _ => 3,
+        }
+    }
+
+    /// Nodes in x, y and z.
+    pub fn nodes(&self) -> [usize; 3] {
+        self.elements.map(|n| n + 1)
+    }
+
+    /// Elements in x, y and z, 1 in z in the plane.
+    pub fn counts(&self) -> [usize; 3] {
+        self.elements.map(|n| n.max(1))
+    }
+
+    /// Number of elements.
+    pub fn n_elements(&self) -> usize {
+        self.counts().iter().product()
+    }
+
+    /// Number of corners of an element, 4 or 8.
+    pub fn corners(&self) -> usize {
+        1 << self.dim()
+    }
+
+    /// The places of the elements, in order.
+    pub fn element_places(&self) -> impl Iterator<Item = [usize; 3]> {
+        places(self.counts())
+    }
+
+    /// The nodes of the element at a place in lexicographic order: corner a lies at (a, a/2, a/4) mod 2. In the plane
+    /// the last four repeat the first.
+    pub fn element_nodes(&self, [i, j, k]: [usize; 3]) -> [usize; 8] {
+        let [nx, ny, _] = self.nodes();
+        let first = (k * ny + j) * nx + i;
+        let up = if self.dim() == 3 { nx * ny } else { 0 };
+        std::array::from_fn(|a| first + (a & 1) + (a >> 1 & 1) * nx + (a >> 2) * up)
+    }
+}
+
+/// Nodes and elements with the state of every degree of freedom: free, or prescribed by a Dirichlet condition.
 ///
-/// Nodes and elements are numbered layer by layer and row by row, x running fastest. Degree of freedom c of node k has
-/// the index C k + c, with C components of the field.
+/// Degree of freedom c of node k has the index C k + c, with C components of the field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SubdomainMesh {
     /// Global index of the subdomain.
@@ -18,10 +81,8 @@ pub struct SubdomainMesh {
     pub dim: usize,
     /// The equation and its finite elements.
     pub form: Form,
-    /// Elements in x, y and z (0 in the plane).
-    pub elements: [usize; 3],
-    /// Edge lengths of an element where all of them are the same box; `None` in curved bodies.
-    pub step: Option<[f64; 3]>,
+    /// The elements; nodes are places in `points`.
+    pub elements: Elements,
     /// Position of every node.
     pub points: Vec<[f64; 3]>,
     /// Local dof of every degree of freedom; [`SubdomainMesh::PRESCRIBED`] where the value is given. Length C × nodes.
@@ -32,6 +93,8 @@ pub struct SubdomainMesh {
     pub rho: Vec<f64>,
     /// Poisson's ratio of every element; empty for a scalar problem.
     pub poisson: Vec<f64>,
+    /// How the stiffness of every cell is integrated; empty: in full.
+    pub integration: Vec<Integration>,
     /// ∫ k N_a over sides that stand on springs, by node; empty where there is none.
     pub spring: Vec<f64>,
 }
@@ -45,14 +108,20 @@ impl SubdomainMesh {
         self.form.components(self.dim)
     }
 
-    /// Nodes in x, y and z.
-    pub fn nodes(&self) -> [usize; 3] {
-        self.elements.map(|n| n + 1)
+    /// The grid of elements, if they form one.
+    pub fn grid(&self) -> Option<&Grid> {
+        match &self.elements {
+            Elements::Grid(grid) => Some(grid),
+            Elements::Cells(_) => None,
+        }
     }
 
     /// Number of elements.
     pub fn n_elements(&self) -> usize {
-        self.elements.iter().map(|&n| n.max(1)).product()
+        match &self.elements {
+            Elements::Grid(grid) => grid.n_elements(),
+            Elements::Cells(cells) => cells.len(),
+        }
     }
 
     /// Local dof of degree of freedom `k`, `None` where its value is prescribed.
@@ -91,28 +160,9 @@ impl SubdomainMesh {
             .collect()
     }
 
-    /// Number of corners of an element, 4 or 8.
-    pub fn corners(&self) -> usize {
-        1 << self.dim
-    }
-
-    /// The places of the elements, in order.
-    pub fn element_places(&self) -> impl Iterator<Item = [usize; 3]> {
-        places(self.elements.map(|n| n.max(1)))
-    }
-
-    /// The nodes of the element at a place in lexicographic order: corner a lies at (a, a/2, a/4) mod 2. In the plane
-    /// the last four repeat the first.
-    pub fn element_nodes(&self, [i, j, k]: [usize; 3]) -> [usize; 8] {
-        let [nx, ny, _] = self.nodes();
-        let first = (k * ny + j) * nx + i;
-        let up = if self.dim == 3 { nx * ny } else { 0 };
-        std::array::from_fn(|a| first + (a & 1) + (a >> 1 & 1) * nx + (a >> 2) * up)
-    }
-
-    /// The corners of the element at a place, as [`SubdomainMesh::element_nodes`] numbers them.
-    pub fn element_points(&self, place: [usize; 3]) -> [[f64; 3]; 8] {
-        self.element_nodes(place).map(|n| self.points[n])
+    /// The positions of the corners of the element at a place of a grid, as [`Grid::element_nodes`] numbers them.
+    pub fn element_points(&self, grid: &Grid, place: [usize; 3]) -> [[f64; 3]; 8] {
+        grid.element_nodes(place).map(|n| self.points[n])
     }
 
     /// The material of element `e`.
@@ -121,16 +171,30 @@ impl SubdomainMesh {
             .material(self.rho[e], self.poisson.get(e).copied().unwrap_or(0.0))
     }
 
-    /// The corners of every element as VTK numbers a quadrilateral (counter-clockwise) or a hexahedron, one after the
-    /// other.
-    pub fn cells(&self) -> Vec<usize> {
+    /// How the stiffness of element `e` is integrated.
+    pub fn integration(&self, e: usize) -> Integration {
+        self.integration
+            .get(e)
+            .copied()
+            .unwrap_or(Integration::Full)
+    }
+
+    /// The elements as cells with their nodes.
+    pub fn cells(&self) -> Cow<'_, Cells> {
+        // Corners in the order of a quadrilateral (counter-clockwise) or a hexahedron.
         const ORDER: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-        let n = self.corners();
-        self.element_places()
-            .flat_map(|place| {
-                let nodes = self.element_nodes(place);
-                ORDER.into_iter().take(n).map(move |a| nodes[a])
-            })
-            .collect()
+        match &self.elements {
+            Elements::Cells(cells) => Cow::Borrowed(cells),
+            Elements::Grid(grid) => {
+                let kind = [CellKind::Quad4, CellKind::Hex8][grid.dim() - 2];
+                let mut cells = Cells::default();
+                for place in grid.element_places() {
+                    let nodes = grid.element_nodes(place);
+                    let corners = ORDER.map(|a| nodes[a] as u32);
+                    cells.push(kind, &corners[..grid.corners()]);
+                }
+                Cow::Owned(cells)
+            }
+        }
     }
 }

@@ -1,17 +1,29 @@
 //! Meshes: boxes of rectangles, their partition into subdomains, the classification of their nodes; cells of any kind.
 
+mod body;
 mod boxes;
+mod cell_mesh;
 mod cells;
 pub mod deck;
+mod extract;
 mod file;
 pub mod gmsh;
 mod kind;
+mod lists;
 pub mod partition;
+mod parts;
+mod second_order;
 
+pub use body::{Mesh, SIDES};
 pub use boxes::{places, Block, BoxMesh};
+pub use cell_mesh::{CellMesh, SideGroup, SKIN};
 pub use cells::Cells;
+pub use extract::{connected, extract};
 pub use file::{Group, Members, MeshFile};
 pub use kind::{CellKind, CellSide};
+pub use lists::Lists;
+pub use parts::{Parts, SharedNodes};
+pub use second_order::second_order;
 
 use std::ops::Range;
 

@@ -2,7 +2,7 @@
 
 use super::model::spec::BodySpec;
 use crate::linalg::vec3::ball;
-use crate::mesh::BoxMesh;
+use crate::mesh::Mesh;
 
 /// A body of a checked scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Body {
 
 impl Body {
     /// Its mesh.
-    pub fn mesh(&self) -> &BoxMesh {
+    pub fn mesh(&self) -> &Mesh {
         &self.spec.mesh
     }
 
@@ -44,12 +44,12 @@ impl Body {
 
 /// Least and greatest coordinates of the nodes of a body.
 pub(super) fn bounds_of(body: &BodySpec) -> [[f64; 3]; 2] {
-    if body.map.is_none() {
-        return [body.mesh.origin, body.mesh.end()];
+    if let (Some(grid), None) = (body.mesh.grid(), &body.map) {
+        return [grid.origin, grid.end()];
     }
     let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for place in body.mesh.boundary() {
-        let point = body.position(place);
+    for node in body.mesh.boundary() {
+        let point = body.position(node);
         for d in 0..3 {
             out[0][d] = out[0][d].min(point[d]);
             out[1][d] = out[1][d].max(point[d]);

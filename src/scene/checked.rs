@@ -1,13 +1,15 @@
 //! A checked scene, with every default filled in.
 
 use super::body::{bounds_of, Body};
+use super::deck::{DeckScenes, NodePrint};
 use super::geometry::interface::Interface;
 use super::model::expr::Expr;
-use super::model::spec::{lee, Faces, GridSpec, SceneSpec};
+use super::model::spec::{lee, Faces, GridSpec, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
+use super::rows::equations::Equation;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
-use super::{read, rows, validate};
+use super::{cut, read, rows, validate};
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use std::path::Path;
@@ -52,6 +54,12 @@ pub struct Scene {
     pub interfaces: Vec<Interface>,
     /// Points at which nodes of several bodies coincide or meet an obstacle, by increasing [`Point::block`].
     pub points: Vec<Point>,
+    /// Equations between displacements beside those of ties.
+    pub equations: Vec<Equation>,
+    /// Points of interest.
+    pub probes: Vec<ProbeSpec>,
+    /// Tables of displacements that a deck asks for.
+    pub prints: Vec<NodePrint>,
     /// Rigid obstacles, by body, side and bound.
     pub obstacles: Vec<Obstacle>,
     /// Load steps; `None`: everything is applied at once.
@@ -65,13 +73,17 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Reads and checks the scene in the file `path`.
+    /// Reads and checks the scene in the file `path`; of a deck (`.inp`) the last step.
     ///
     /// # Errors
     /// [`Error::Input`] with file, line and what was expected.
     pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
         let path = path.as_ref();
         let file = path.display().to_string();
+        if DeckScenes::is_deck(path) {
+            let deck = DeckScenes::load(path)?;
+            return deck.scene(&read::stem(&file), deck.n_steps() - 1);
+        }
         let text = std::fs::read_to_string(path)
             .map_err(|e| Error::Input(format!("{file}: the scene cannot be read: {e}")))?;
         Scene::parse(&file, &text)
@@ -91,10 +103,11 @@ impl Scene {
     /// [`Error::Input`] for overlapping bodies, non-matching nodes on tied faces, values out of range, ….
     pub fn new(mut spec: SceneSpec) -> Result<Scene> {
         validate::check(&spec)?;
-        let steps = Steps::new(&spec)?;
+        let mut steps = Steps::new(&spec)?;
         let mut bodies = Vec::with_capacity(spec.bodies.len());
         let (mut first_dof, mut first_subdomain) = (0, 0);
-        for body in std::mem::take(&mut spec.bodies) {
+        for mut body in std::mem::take(&mut spec.bodies) {
+            cut::prepare(&mut body, &spec.form)?;
             let components = spec.form.components(body.mesh.dim());
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
@@ -108,10 +121,15 @@ impl Scene {
             first_dof += (nodes * components) as u64;
             first_subdomain += subdomains;
         }
+        rows::surfaces::expand(&bodies, &mut spec)?;
+        if let Some(steps) = &mut steps {
+            steps.renumber(&spec);
+        }
         let interfaces = rows::entries::find(&bodies, &spec, &steps)?;
         let obstacles = rows::obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
         let mut points = rows::points::collect(&mut bodies, &interfaces)?;
         rows::bounds::Checks::new(&bodies, &obstacles, &spec, &steps).apply(&mut points)?;
+        let equations = rows::equations::collect(&bodies, &mut points, &spec.equations)?;
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             title: spec.title,
@@ -119,6 +137,9 @@ impl Scene {
             bodies,
             interfaces,
             points,
+            equations,
+            probes: spec.probes,
+            prints: Vec::new(),
             obstacles,
             steps,
             exact: spec.exact,

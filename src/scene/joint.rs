@@ -47,7 +47,7 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`](crate::Error::Input) for a load that is not finite.
     pub fn assemble(&self, mesh: &SubdomainMesh) -> Result<Subdomain> {
-        let (body, block) = self.place(mesh.index);
+        let (body, inside) = self.place(mesh.index);
         let load = self.nodal_load(mesh, Factors::last(&self.steps))?;
         let (k, f) = fem::assemble(mesh, &load);
         let whole = body.mesh();
@@ -57,23 +57,22 @@ impl Scene {
         let mut rho = Vec::with_capacity(n);
         let mut coordinates = Vec::with_capacity(n);
         let mut primal = Vec::new();
-        for (node, place) in block.places().enumerate() {
+        let stiffest = stiffest(mesh);
+        for (node, of_body) in whole.subdomain_nodes(inside).into_iter().enumerate() {
             let own = &mesh.dof[c * node..c * (node + 1)];
             if own.iter().all(|&d| d == SubdomainMesh::PRESCRIBED) {
                 continue;
             }
-            let stiffest = stiffest(mesh, [0, 1, 2].map(|d| place[d] - block.first[d]));
-            let first = body.first_dof + (whole.node(place) * c) as u64;
+            let first = body.first_dof + (of_body * c) as u64;
             for (component, &dof) in own.iter().enumerate() {
                 if dof == SubdomainMesh::PRESCRIBED {
                     continue;
                 }
                 dofs.push(first + component as u64);
-                // All blocks of a body are equal, hence vertices of the body's partition are corners of its blocks.
-                if whole.is_vertex(place) {
+                if whole.is_vertex(of_body) {
                     primal.push(dof);
                 }
-                rho.push(stiffest);
+                rho.push(stiffest[node]);
                 coordinates.push(mesh.points[node]);
             }
         }
@@ -84,7 +83,7 @@ impl Scene {
         Ok(Subdomain {
             index: mesh.index,
             body: mesh.body,
-            entities: entities(mesh, &dofs),
+            entities: entities(body, inside, mesh, &dofs),
             k,
             f,
             dofs,
@@ -99,9 +98,9 @@ impl Scene {
     /// `None` if the scene has no exact solution.
     pub fn error_squares(&self, mesh: &SubdomainMesh, nodal: &[f64]) -> Option<[f64; 3]> {
         let exact = self.exact.as_ref()?;
-        let (body, block) = self.place(mesh.index);
+        let (body, inside) = self.place(mesh.index);
         Some(fem::error_squares(mesh, nodal, |point| {
-            let at = at(body, &block, point).variables;
+            let at = at(body, inside, point).variables;
             let mut out = ([0.0; 3], [[0.0; 3]; 3]);
             for (i, e) in exact.iter().enumerate() {
                 let value = e.eval_gradient(&at);

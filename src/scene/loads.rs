@@ -2,7 +2,7 @@
 
 use super::checked::Scene;
 use super::coefficient::evaluate;
-use super::meshes::reaches;
+use super::meshes::side_part;
 use super::model::field::Field;
 use super::model::spec::Force;
 use super::model::steps::Factors;
@@ -91,6 +91,18 @@ impl<'a> Stepping<'a> {
     }
 }
 
+/// The values of loads by cell, where all are.
+fn by_cell(fields: &[Field]) -> Option<[Option<&[f64]>; 3]> {
+    let mut out = [None; 3];
+    for (o, field) in out.iter_mut().zip(fields) {
+        match field {
+            Field::ByCell(values) => *o = Some(&values[..]),
+            _ => return None,
+        }
+    }
+    Some(out)
+}
+
 impl Scene {
     /// The load f of subdomain `index` at load step `step`; for many subdomains or steps use [`Stepping`].
     ///
@@ -140,13 +152,10 @@ impl Scene {
         let factors = Factors::of(&self.steps, step)?;
         let mut energy = 0.0;
         for index in subdomains {
-            let (body, block) = self.place(index);
+            let (body, inside) = self.place(index);
             // Only subdomains beside given values need a mesh.
-            let given = |side: usize| {
-                let fields = &body.spec.dirichlet[side];
-                fields.iter().any(Option::is_some) && reaches(body, &block, side)
-            };
-            let beside = (0..2 * body.mesh().dim()).any(given);
+            let given = |side: usize| body.spec.holds(side) && body.mesh().reaches(inside, side);
+            let beside = (0..body.mesh().n_sides()).any(given);
             if !beside || body.prescribed.iter().all(|(_, u)| *u == 0.0) {
                 continue;
             }
@@ -177,14 +186,14 @@ impl Scene {
         mesh: &SubdomainMesh,
         factors: Factors<'_>,
     ) -> Result<Vec<f64>> {
-        let (body, block) = self.place(mesh.index);
+        let (body, inside) = self.place(mesh.index);
         let load = &body.spec.load;
         let scale = factors.load(body.spec.ramp.as_ref());
         let mut bad = None;
         let mut value = |fields: &[Field], point: [f64; 3]| {
             let mut out = [0.0; 3];
             for (o, field) in out.iter_mut().zip(fields) {
-                *o = evaluate(body, &block, field, point) * scale;
+                *o = evaluate(body, inside, field, point) * scale;
                 if !o.is_finite() {
                     bad.get_or_insert((*o, point));
                 }
@@ -199,11 +208,25 @@ impl Scene {
             } else {
                 fem::load_vector(mesh, load.quadrature, |_, _| constant)
             }
+        } else if let (Some(by_cell), Some(cells)) = (by_cell(fields), body.mesh().cells()) {
+            let of = cells.parts.cells(inside);
+            fem::load_vector(mesh, load.quadrature, |e, _| {
+                by_cell.map(|v| v.map_or(0.0, |v| scale * v[of[e] as usize]))
+            })
         } else {
             fem::load_vector(mesh, load.quadrature, |_, point| value(fields, point))
         };
+        for &(dof, force) in &body.spec.forces {
+            let (node, component) = (dof / body.components, dof % body.components);
+            // Subdomains share nodes; the owner of a node bears its force.
+            if body.mesh().owner(node) == inside {
+                let nodes = body.mesh().subdomain_nodes(inside);
+                let place = nodes.binary_search(&node).expect("a node of its owner");
+                out[place * body.components + component] += scale * force;
+            }
+        }
         for load in &body.spec.surface {
-            if !reaches(body, &block, load.side) {
+            if !body.mesh().reaches(inside, load.side) {
                 continue;
             }
             let force = |point: [f64; 3], normal: [f64; 3]| match &load.force {
@@ -213,7 +236,7 @@ impl Scene {
                     normal.map(|n| 0.0 - p * n)
                 }
             };
-            fem::add_side_load(mesh, load.side, force, &mut out);
+            fem::add_side_load(mesh, &side_part(body, inside, load.side), force, &mut out);
         }
         if let Some((value, point)) = bad {
             LOAD.at(&body.spec, value, point)?;

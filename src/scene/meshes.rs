@@ -7,8 +7,9 @@ use super::model::field::Field;
 use super::model::steps::Factors;
 use super::validate::{Quantity, RATIO, SPRING};
 use crate::error::Result;
-use crate::fem::{self, SubdomainMesh};
-use crate::mesh::Block;
+use crate::fem::element::Integration;
+use crate::fem::{self, Elements, Grid, SidePart, SubdomainMesh};
+use crate::mesh::{Cells, Mesh};
 
 impl Scene {
     /// The mesh of subdomain `index`: nodes, which of them are free, values given at the last load step, ρ by element.
@@ -21,34 +22,30 @@ impl Scene {
 
     pub(super) fn mesh_with(&self, index: usize, factors: Factors<'_>) -> Result<SubdomainMesh> {
         let scale = factors.dirichlet();
-        let (body, block) = self.place(index);
+        let (body, inside) = self.place(index);
         let whole = body.mesh();
         let c = body.components;
-        let n = block.nodes().iter().product::<usize>();
+        let nodes = whole.subdomain_nodes(inside);
+        let n = nodes.len();
         let mut mesh = SubdomainMesh {
             index,
             body: self.body_of(index).0,
             dim: whole.dim(),
             form: self.form,
-            elements: block.elements,
-            step: body.spec.map.is_none().then(|| whole.step()),
+            elements: elements(body, inside, &nodes),
             points: Vec::with_capacity(n),
             dof: Vec::with_capacity(c * n),
             prescribed: vec![0.0; c * n],
             rho: Vec::new(),
             poisson: Vec::new(),
+            integration: integration(body, inside),
             spring: Vec::new(),
         };
         let mut next = 0;
-        for place in block.places() {
-            let on_boundary = whole.sides(place).next().is_some();
-            let first = whole.node(place) * c;
+        for node in nodes {
+            let first = node * c;
             for component in 0..c {
-                let given = match on_boundary {
-                    true => body.prescribed_at(first + component),
-                    false => None,
-                };
-                match given {
+                match body.prescribed_at(first + component) {
                     Some(value) => {
                         mesh.prescribed[mesh.dof.len()] = value * scale;
                         mesh.dof.push(SubdomainMesh::PRESCRIBED);
@@ -59,19 +56,19 @@ impl Scene {
                     }
                 }
             }
-            mesh.points.push(body.spec.position(place));
+            mesh.points.push(body.spec.position(node));
         }
-        mesh.rho = by_element(body, &block, &mesh, &body.spec.rho, |value, point| {
+        mesh.rho = by_element(body, inside, &mesh, &body.spec.rho, |value, point| {
             Quantity::coefficient(&self.form).at(&body.spec, value, point)
         })?;
         if self.form.is_elastic() {
-            mesh.poisson = by_element(body, &block, &mesh, &body.spec.poisson, |value, point| {
+            mesh.poisson = by_element(body, inside, &mesh, &body.spec.poisson, |value, point| {
                 RATIO.at(&body.spec, value, point)
             })?;
         }
         for (side, stiffness) in &body.spec.springs {
-            if reaches(body, &block, *side) {
-                add_spring(body, &block, &mut mesh, *side, stiffness)?;
+            if whole.reaches(inside, *side) {
+                add_spring(body, inside, &mut mesh, *side, stiffness)?;
             }
         }
         Ok(mesh)
@@ -79,35 +76,77 @@ impl Scene {
 
     /// The nodes of a body that springs support.
     #[cfg(feature = "cli")]
-    pub(crate) fn sprung(&self, body: &Body) -> Vec<[usize; 3]> {
+    pub(crate) fn sprung(&self, body: &Body) -> Vec<usize> {
         let mesh = body.mesh();
-        let held = |stiffness: &Field, place: &[usize; 3]| {
-            let block = mesh.block(mesh.owner(*place));
-            evaluate(body, &block, stiffness, body.spec.position(*place)) > 0.0
+        let held = |stiffness: &Field, node: &usize| {
+            let inside = mesh.owner(*node);
+            evaluate(body, inside, stiffness, body.spec.position(*node)) > 0.0
         };
-        let sides = body.spec.springs.iter();
-        let nodes = sides.flat_map(|(side, k)| mesh.side_nodes(*side).filter(move |p| held(k, p)));
-        nodes.collect()
+        let mut out = Vec::new();
+        for (side, k) in &body.spec.springs {
+            out.extend(mesh.side_nodes(*side).into_iter().filter(|n| held(k, n)));
+        }
+        out
     }
 
-    /// The body of subdomain `index`, and its elements.
-    pub(super) fn place(&self, index: usize) -> (&Body, Block) {
+    /// The body of subdomain `index`, and the subdomain's number in it.
+    pub(super) fn place(&self, index: usize) -> (&Body, usize) {
         let (body, inside) = self.body_of(index);
-        let body = &self.bodies[body];
-        (body, body.mesh().block(inside))
+        (&self.bodies[body], inside)
     }
 }
 
-/// Whether a subdomain has elements at a side of its body.
-pub(super) fn reaches(body: &Body, block: &Block, side: usize) -> bool {
-    let d = side / 2;
-    block.place[d] == [0, body.mesh().subdomains[d] - 1][side % 2]
+/// The elements of subdomain `inside` of a body; `nodes` are its nodes in the body, increasing.
+fn elements(body: &Body, inside: usize, nodes: &[usize]) -> Elements {
+    match body.mesh() {
+        Mesh::Grid(grid) => Elements::Grid(Grid {
+            elements: grid.block_elements(),
+            step: body.spec.map.is_none().then(|| grid.step()),
+        }),
+        Mesh::Cells(mesh) => {
+            let mut cells = Cells::default();
+            let mut local = Vec::new();
+            for &c in mesh.parts.cells(inside) {
+                let place = |k: &u32| nodes.partition_point(|&n| n < *k as usize) as u32;
+                local.clear();
+                local.extend(mesh.cells.nodes(c as usize).iter().map(place));
+                cells.push(mesh.cells.kind(c as usize), &local);
+            }
+            Elements::Cells(cells)
+        }
+    }
+}
+
+/// How the cells of a subdomain are integrated; empty: in full.
+fn integration(body: &Body, inside: usize) -> Vec<Integration> {
+    match (body.mesh(), &body.spec.integration[..]) {
+        (Mesh::Cells(mesh), rules @ [_, ..]) => {
+            let cells = mesh.parts.cells(inside).iter();
+            cells.map(|&c| rules[c as usize]).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The part of a side that belongs to subdomain `inside`.
+pub(super) fn side_part(body: &Body, inside: usize, side: usize) -> SidePart {
+    match body.mesh() {
+        Mesh::Grid(_) => SidePart::OfGrid(side),
+        Mesh::Cells(mesh) => {
+            let cells = mesh.parts.cells(inside);
+            let local = |&(cell, face): &(u32, u8)| {
+                let place = cells.binary_search(&cell).ok()?;
+                Some((place as u32, face))
+            };
+            SidePart::Faces(mesh.sides[side].faces.iter().filter_map(local).collect())
+        }
+    }
 }
 
 /// Adds ∫ k N_a over a side to the springs of a mesh.
 fn add_spring(
     body: &Body,
-    block: &Block,
+    inside: usize,
     mesh: &mut SubdomainMesh,
     side: usize,
     stiffness: &Field,
@@ -116,13 +155,13 @@ fn add_spring(
     let mut sums = vec![0.0; mesh.dof.len()];
     let mut bad = None;
     let value = |point: [f64; 3], _normal: [f64; 3]| {
-        let k = evaluate(body, block, stiffness, point);
+        let k = evaluate(body, inside, stiffness, point);
         if !(SPRING.good)(k) {
             bad.get_or_insert((k, point));
         }
         [k, 0.0, 0.0]
     };
-    fem::add_side_load(mesh, side, value, &mut sums);
+    fem::add_side_load(mesh, &side_part(body, inside, side), value, &mut sums);
     if let Some((k, point)) = bad {
         SPRING.at(&body.spec, k, point)?;
     }

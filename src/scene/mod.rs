@@ -14,6 +14,8 @@
 mod body;
 mod checked;
 mod coefficient;
+mod cut;
+pub(crate) mod deck;
 #[cfg(feature = "cli")]
 pub(crate) mod distribution;
 pub(crate) mod geometry;
@@ -29,6 +31,7 @@ mod validate;
 
 pub use body::Body;
 pub use checked::Scene;
+pub use deck::{DeckScenes, NodePrint, PrintedNode};
 pub use geometry::interface::{Interface, Link, Shape, SharedNode};
 pub use loads::{SteppedMesh, Stepping};
 pub use model::cells::{Cells, NumberFormat, Tone};
@@ -40,11 +43,13 @@ pub use model::profile::{Limit, Limits, Profile};
 pub use model::ramp::{Ramp, StepsSpec};
 pub use model::rigid::Rigid;
 pub use model::spec::{
-    free_all_round, held_all_round, lee, BodySpec, ByDefault, ContactSpec, Extent, Faces, Force,
-    GridSpec, Load, ObstacleSpec, Pair, SceneSpec, Sides, SurfaceLoad, TieSpec, SIDES,
+    free_all_round, held_all_round, lee, AutoContact, BodySpec, ByDefault, ContactSpec, Cut,
+    EquationSpec, Extent, Faces, Force, GridSpec, Load, ObstacleSpec, Pair, ProbeSpec, SceneSpec,
+    Sides, SurfaceLoad, TieSpec, SIDES,
 };
 pub use model::steps::Steps;
 pub use numbering::Numbering;
 pub use plan::{BodyPlan, InterfacePlan, Plan};
+pub use rows::equations::Equation;
 pub use rows::obstacles::Obstacle;
 pub use rows::points::{Inequality, Point, PointRow};

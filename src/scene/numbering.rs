@@ -7,7 +7,7 @@
 //! subdomain: a contiguous range of subdomains has a contiguous range of unknowns.
 
 use super::checked::Scene;
-use crate::mesh::BoxMesh;
+use crate::mesh::Mesh;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use std::ops::Range;
 #[derive(Debug, Clone)]
 pub struct Numbering {
     /// Mesh, first body dof, first subdomain of every body.
-    bodies: Vec<(BoxMesh, u64, usize)>,
+    bodies: Vec<(Mesh, u64, usize)>,
     /// First unknown of every subdomain, and the total.
     starts: Vec<u64>,
     /// Number C of components.
@@ -31,17 +31,17 @@ pub struct Numbering {
 impl Numbering {
     /// The numbering of `scene`.
     pub fn new(scene: &Scene) -> Numbering {
-        let bodies: Vec<(BoxMesh, u64, usize)> = scene
+        let bodies: Vec<(Mesh, u64, usize)> = scene
             .bodies
             .iter()
-            .map(|b| (*b.mesh(), b.first_dof, b.first_subdomain))
+            .map(|b| (b.mesh().clone(), b.first_dof, b.first_subdomain))
             .collect();
         let components = scene.components();
         let mut shared = HashMap::new();
         let mut holes = Vec::new();
         let mut hole = |body: usize, dof: usize| {
             let (mesh, _, first) = &bodies[body];
-            let (owner, rank) = owned_rank(mesh, mesh.place(dof / components));
+            let (owner, rank) = mesh.owned_rank(dof / components);
             holes.push((first + owner, rank * components + dof % components));
         };
         for (b, body) in scene.bodies.iter().enumerate() {
@@ -72,8 +72,7 @@ impl Numbering {
         let mut starts = vec![0; n + 1];
         for (mesh, _, first) in &bodies {
             for s in 0..mesh.n_subdomains() {
-                let nodes: usize = owned_box(mesh, s).1.iter().product();
-                starts[first + s + 1] = (nodes * components) as u64;
+                starts[first + s + 1] = (mesh.n_owned(s) * components) as u64;
             }
         }
         for s in 0..n {
@@ -113,7 +112,7 @@ impl Numbering {
         let body = self.bodies.partition_point(|b| b.1 <= dof) - 1;
         let (mesh, first_dof, first_subdomain) = &self.bodies[body];
         let inside = (dof - first_dof) as usize;
-        let (owner, rank) = owned_rank(mesh, mesh.place(inside / self.components));
+        let (owner, rank) = mesh.owned_rank(inside / self.components);
         let rank = rank * self.components + inside % self.components;
         let s = first_subdomain + owner;
         let holes = &self.holes[self.hole_starts[s]..self.hole_starts[s + 1]];
@@ -123,12 +122,12 @@ impl Numbering {
 
     /// Position of unknown `global` < N.
     pub fn coordinates(&self, scene: &Scene, global: u64) -> [f64; 3] {
-        let (body, place, _) = self.place(global);
-        scene.bodies[body].spec.position(place)
+        let (body, node, _) = self.place(global);
+        scene.bodies[body].spec.position(node)
     }
 
-    /// Body, place of the node in it, and component of unknown `global` < N.
-    pub fn place(&self, global: u64) -> (usize, [usize; 3], usize) {
+    /// Body, node and component of unknown `global` < N.
+    pub fn place(&self, global: u64) -> (usize, usize, usize) {
         let s = self.starts.partition_point(|&start| start <= global) - 1;
         let holes = &self.holes[self.hole_starts[s]..self.hole_starts[s + 1]];
         // Finds the rank r, no hole itself, with r − (holes below r) = number.
@@ -140,30 +139,7 @@ impl Numbering {
         }
         let body = self.bodies.partition_point(|b| b.2 <= s) - 1;
         let (mesh, _, first) = &self.bodies[body];
-        let (low, [width, height, _]) = owned_box(mesh, s - first);
-        let (node, component) = (rank / self.components, rank % self.components);
-        let at = [node % width, node / width % height, node / (width * height)];
-        (body, [0, 1, 2].map(|d| low[d] + at[d]), component)
+        let node = mesh.owned_node(s - first, rank / self.components);
+        (body, node, rank % self.components)
     }
-}
-
-/// The box of nodes that subdomain `s` owns: its first node and the numbers of nodes along each direction. Nodes at its
-/// lower ends belong to the neighbours of lower number.
-fn owned_box(mesh: &BoxMesh, s: usize) -> ([usize; 3], [usize; 3]) {
-    let block = mesh.block(s);
-    let (mut first, mut count) = ([0; 3], [0; 3]);
-    for d in 0..3 {
-        let inner = usize::from(block.place[d] > 0);
-        first[d] = block.first[d] + inner;
-        count[d] = block.elements[d] + 1 - inner;
-    }
-    (first, count)
-}
-
-/// The owning subdomain of a node, and the node's rank among the nodes of this owner.
-fn owned_rank(mesh: &BoxMesh, place: [usize; 3]) -> (usize, usize) {
-    let owner = mesh.owner(place);
-    let (first, [width, height, _]) = owned_box(mesh, owner);
-    let at = [0, 1, 2].map(|d| place[d] - first[d]);
-    (owner, (at[2] * height + at[1]) * width + at[0])
 }

@@ -6,7 +6,7 @@ use super::geometry::interface::{Link, Shape};
 use super::numbering::Numbering;
 use super::rows::points::PointRow;
 use crate::error::Result;
-use crate::mesh::{places, BoxMesh};
+use crate::mesh::Mesh;
 use std::collections::HashSet;
 
 /// The sizes of one body.
@@ -18,9 +18,9 @@ pub struct BodyPlan {
     pub origin: [f64; 3],
     /// Edge lengths of its box.
     pub size: [f64; 3],
-    /// Elements in x, y and z (0 in the plane).
+    /// Elements in x, y and z (0 in the plane); of a mesh of cells all in x.
     pub elements: [usize; 3],
-    /// Subdomains in x, y and z.
+    /// Subdomains in x, y and z; of a mesh of cells all in x.
     pub subdomains: [usize; 3],
     /// Free degrees of freedom.
     pub dofs: usize,
@@ -140,19 +140,27 @@ impl Scene {
         let body = &self.bodies[b];
         let mesh = body.mesh();
         let mut counts = Counts::default();
-        for place in mesh_lines(mesh) {
-            counts.add(body, place);
+        for node in mesh.shared_nodes() {
+            counts.add(body, node);
         }
+        let (origin, size, elements) = match mesh {
+            Mesh::Grid(grid) => (grid.origin, grid.size, grid.elements),
+            Mesh::Cells(mesh) => {
+                let [low, high] = body.bounds;
+                let size = [0, 1, 2].map(|d| high[d] - low[d]);
+                (low, size, [mesh.cells.len(), 0, 0])
+            }
+        };
         BodyPlan {
             name: body.spec.name.clone(),
-            origin: mesh.origin,
-            size: mesh.size,
-            elements: mesh.elements,
-            subdomains: mesh.subdomains,
+            origin,
+            size,
+            elements,
+            subdomains: mesh.subdomain_counts(),
             dofs: mesh.n_nodes() * body.components - body.prescribed.len(),
             prescribed: body.prescribed.len(),
             primal: counts.primal,
-            edges: counts.edges.len(),
+            edges: counts.edges.len() + entities_of_cells(body),
             local_multipliers: counts.multipliers,
         }
     }
@@ -167,22 +175,22 @@ struct Counts {
 }
 
 impl Counts {
-    fn add(&mut self, body: &Body, place: [usize; 3]) {
+    fn add(&mut self, body: &Body, node: usize) {
         let mesh = body.mesh();
-        let copies = mesh.multiplicity(place);
-        if copies < 2 {
-            return;
-        }
-        let each = mesh.block_elements();
-        let vertex = mesh.is_vertex(place);
-        let inner: Vec<usize> = (0..mesh.dim())
-            .filter(|&d| place[d] % each[d] != 0)
-            .collect();
+        let copies = mesh.multiplicity(node);
+        let vertex = mesh.is_vertex(node);
+        // The directions along which the node lies inside an edge or face of its subdomains.
+        let grid = mesh
+            .grid()
+            .map(|grid| (grid.block_elements(), grid.place(node)));
+        let inner: Vec<usize> = match grid {
+            Some((each, place)) => (0..mesh.dim())
+                .filter(|&d| place[d] % each[d] != 0)
+                .collect(),
+            None => Vec::new(),
+        };
         for c in 0..body.components {
-            if body
-                .prescribed_at(mesh.node(place) * body.components + c)
-                .is_some()
-            {
+            if body.prescribed_at(node * body.components + c).is_some() {
                 continue;
             }
             if vertex {
@@ -190,7 +198,7 @@ impl Counts {
                 continue;
             }
             self.multipliers += copies * (copies - 1) / 2;
-            if let (3, &[along]) = (mesh.dim(), &inner[..]) {
+            if let (3, &[along], Some((each, place))) = (mesh.dim(), &inner[..], grid) {
                 let mut edge = place;
                 edge[along] = place[along] / each[along] * each[along];
                 // The direction is part of the key: edges along different directions may start at one vertex.
@@ -201,8 +209,22 @@ impl Counts {
     }
 }
 
-/// The nodes of a body on lines (planes) between subdomains.
-fn mesh_lines(mesh: &BoxMesh) -> impl Iterator<Item = [usize; 3]> + '_ {
-    let each = mesh.block_elements();
-    places(mesh.nodes()).filter(move |p| (0..mesh.dim()).any(|d| p[d] % each[d] == 0))
+/// Shared edges with free degrees of freedom of a mesh of cells, by component.
+fn entities_of_cells(body: &Body) -> usize {
+    let Some(mesh) = body.mesh().cells() else {
+        return 0;
+    };
+    let c = body.components;
+    let free = |nodes: &[u32], component: usize| {
+        let given = |&k: &u32| body.prescribed_at(k as usize * c + component).is_some();
+        !nodes.iter().all(given)
+    };
+    let edges = mesh
+        .parts
+        .all_entities()
+        .iter()
+        .filter(|(dim, _)| *dim == 1);
+    edges
+        .map(|(_, nodes)| (0..c).filter(|&k| free(nodes, k)).count())
+        .sum()
 }

@@ -2,11 +2,11 @@
 
 use super::body::Body;
 use super::model::field::{At, Field};
-use super::model::spec::{BodySpec, Force, SceneSpec, SIDES};
+use super::model::spec::{BodySpec, Force, SceneSpec};
 use crate::error::{Error, Result};
 use crate::fem::cell::jacobian_is_positive;
 use crate::fem::Form;
-use crate::mesh::{places, BoxMesh};
+use crate::mesh::{places, BoxMesh, Mesh};
 use std::collections::HashMap;
 
 /// Largest number of bodies; the scene stores a record for each.
@@ -61,13 +61,16 @@ impl BodySpec {
 }
 
 fn check_mesh(body: &BodySpec) -> Result<()> {
+    let Mesh::Grid(mesh) = body.mesh else {
+        return Ok(());
+    };
     let BoxMesh {
         origin,
         size,
         elements,
         subdomains,
-    } = body.mesh;
-    for d in 0..body.mesh.dim() {
+    } = mesh;
+    for d in 0..mesh.dim() {
         let axis = ["x", "y", "z"][d];
         if !origin[d].is_finite() {
             return body.error(format!(
@@ -105,13 +108,10 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
             ));
         }
     }
-    let block = body.mesh.block_elements();
+    let block = mesh.block_elements();
     let nodes = block.iter().fold(3_usize, |n, b| n.saturating_mul(b + 1));
     if nodes >= u32::MAX as usize {
-        let counts: Vec<String> = block[..body.mesh.dim()]
-            .iter()
-            .map(|n| n.to_string())
-            .collect();
+        let counts: Vec<String> = block[..mesh.dim()].iter().map(|n| n.to_string()).collect();
         return body.error(format!(
             "a subdomain of {} elements is too large (more subdomains were expected)",
             counts.join(" × ")
@@ -164,14 +164,13 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
 
 /// Whether a bent body has positive elements everywhere.
 fn check_shape(body: &BodySpec, form: &Form) -> Result<()> {
-    if body.map.is_none() {
+    let (Mesh::Grid(mesh), Some(_)) = (&body.mesh, &body.map) else {
         return Ok(());
-    }
-    let mesh = &body.mesh;
+    };
     let corners = 1 << mesh.dim();
     for place in places(mesh.elements.map(|n| n.max(1))) {
         let points: Vec<[f64; 3]> = (0..corners)
-            .map(|a| body.position([0, 1, 2].map(|d| place[d] + (a >> d & 1))))
+            .map(|a| body.position(mesh.node([0, 1, 2].map(|d| place[d] + (a >> d & 1)))))
             .collect();
         if let Some(p) = points.iter().find(|p| p.iter().any(|v| !v.is_finite())) {
             return body.error(format!(
@@ -273,37 +272,41 @@ impl Quantity {
 /// A value that is not finite, or two sides that disagree where they meet.
 pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(usize, f64)>> {
     let mesh = &body.mesh;
-    let mut out: Vec<(usize, f64)> = Vec::new();
-    if body.dirichlet.iter().flatten().all(Option::is_none) {
-        return Ok(out);
+    // Nodes with the sides on which they are held, by increasing node and side.
+    let mut held: Vec<(usize, usize)> = Vec::new();
+    for side in (0..mesh.n_sides()).filter(|&side| body.holds(side)) {
+        held.extend(mesh.side_nodes(side).into_iter().map(|node| (node, side)));
     }
-    for place in mesh.boundary() {
+    held.sort_unstable();
+    let mut out: Vec<(usize, f64)> = Vec::new();
+    for same in held.chunk_by(|a, b| a.0 == b.0) {
+        let node = same[0].0;
         let at = At {
-            variables: body.variables(place),
-            subdomains: mesh.subdomains,
+            variables: body.variables(node),
+            subdomains: mesh.subdomain_counts(),
         };
         for component in 0..components {
             let mut found: Option<(usize, f64)> = None;
-            for side in mesh.sides(place) {
-                let Some(field) = &body.dirichlet[side][component] else {
+            for &(_, side) in same {
+                let Some(field) = body.given_on(side, component) else {
                     continue;
                 };
                 let value = field.eval(&at);
                 if !value.is_finite() {
                     return body.error(format!(
-                            "Dirichlet value {value} at {} on side {} where a finite number was expected",
-                            body.spot(place),
-                            SIDES[side]
-                        ));
+                        "Dirichlet value {value} at {} on side {} where a finite number was expected",
+                        body.spot(node),
+                        mesh.side_name(side)
+                    ));
                 }
                 match found {
                     Some((other, given)) if !agree(given, value) => {
                         return body.error(format!(
                             "sides {} and {} prescribe {given} and {value} \
                              at their common corner {} (equal values were expected)",
-                            SIDES[other],
-                            SIDES[side],
-                            body.spot(place)
+                            mesh.side_name(other),
+                            mesh.side_name(side),
+                            body.spot(node)
                         ));
                     }
                     Some(_) => {}
@@ -311,10 +314,24 @@ pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(
                 }
             }
             if let Some((_, value)) = found {
-                out.push((mesh.node(place) * components + component, value));
+                out.push((node * components + component, value));
             }
         }
     }
+    let points = body.given.len();
+    out.extend(&body.given);
+    out.sort_by_key(|&(dof, _)| dof);
+    for same in out.chunk_by(|a, b| a.0 == b.0).filter(|_| points > 0) {
+        if let Some(&(dof, other)) = same.iter().find(|g| !agree(g.1, same[0].1)) {
+            let (node, given) = (dof / components, same[0].1);
+            return body.error(format!(
+                "node {} at {} is given the values {given} and {other} (equal values were expected)",
+                mesh.node_id(node),
+                body.spot(node)
+            ));
+        }
+    }
+    out.dedup_by_key(|g| g.0);
     Ok(out)
 }
 

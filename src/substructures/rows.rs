@@ -49,6 +49,8 @@ pub enum RowSource {
     Interface(usize),
     /// A body beside a rigid obstacle; in a scene the index into [`Scene::obstacles`](crate::scene::Scene::obstacles).
     Obstacle(usize),
+    /// An equation between unknowns; in a scene the index into [`Scene::equations`](crate::scene::Scene::equations).
+    Equation(usize),
 }
 
 /// The origin of a row.
@@ -184,6 +186,7 @@ impl Record for SolvedRow {
         let (source, number) = match label.source {
             RowSource::Interface(k) => (0, k),
             RowSource::Obstacle(k) => (1, k),
+            RowSource::Equation(k) => (2, k),
         };
         let flags = u64::from(self.is_inequality()) | u64::from(self.holds()) << 1;
         out.extend([source, number as u64, flags, self.block]);
@@ -214,6 +217,7 @@ impl Record for SolvedRow {
             label: RowLabel {
                 source: match w[0] {
                     0 => RowSource::Interface(w[1] as usize),
+                    2 => RowSource::Equation(w[1] as usize),
                     _ => RowSource::Obstacle(w[1] as usize),
                 },
                 members: [member(4), member(6)],

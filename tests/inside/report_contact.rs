@@ -1,11 +1,12 @@
 //! The files about contact, written as for a run with 2 and with 180 interfaces and read back: pictures, profiles, and
 //! a time series as ParaView reads it. They stay in target/tmp/report_contact for inspection.
 
+use fetifeti::mesh::{CellKind, Cells};
 use fetifeti::report::interfaces::InterfaceNodes;
 use fetifeti::report::json::contact::LoadStep;
 use fetifeti::report::paraview::contact_fields::ContactFields;
 use fetifeti::report::paraview::pvd::Pvd;
-use fetifeti::report::paraview::vtu::{Shape, Vtu};
+use fetifeti::report::paraview::vtu::Vtu;
 use fetifeti::report::pictures::field;
 use fetifeti::report::pictures::field::{ContactMark, Field, Mesh};
 use fetifeti::report::plots::load_steps;
@@ -376,7 +377,11 @@ fn a_time_series_reads_back() {
         }
         let u: Vec<f64> = bodies.u().iter().map(|u| t * u).collect();
         let file = dir.join(format!("steps/solution_{step:04}.vtu"));
-        let grid = Vtu::new(&points, Shape::Quad, bodies.quads.as_flattened());
+        let mut cells = Cells::default();
+        for quad in &bodies.quads {
+            cells.push(CellKind::Quad4, quad);
+        }
+        let grid = Vtu::new(&points, &cells);
         contact
             .on(grid.point_data("u", 1, &u[..]))
             .write(&file)

@@ -136,8 +136,9 @@ fn weights_are_those_of_the_stiffest_element() {
                 scene.subdomain(s).unwrap(),
             );
             let mut largest = vec![0.0_f64; mesh.points.len()];
-            for (e, place) in mesh.element_places().enumerate() {
-                for node in mesh.element_nodes(place) {
+            let grid = mesh.grid().unwrap();
+            for (e, place) in grid.element_places().enumerate() {
+                for node in grid.element_nodes(place) {
                     largest[node] = largest[node].max(mesh.rho[e]);
                 }
             }

@@ -32,8 +32,8 @@ fn contacts() {
     let with = |lines: &str| pair(&format!("[[contact]]\nbodies = [\"a\", \"b\"]\n{lines}\n"));
     check(
         &with("gapp = 1"),
-        "s.toml:13: unknown key `gapp` in [[contact]] (known keys are bodies, \
-         sides, where, range, points, nodes, gap, ramp)",
+        "s.toml:13: unknown key `gapp` in [[contact]] (known keys are surfaces, bodies, \
+         sides, adjust, distance, where, range, points, nodes, gap, ramp)",
     );
     check(
         &pair("[[contact]]\ngap = 1\n"),
@@ -340,6 +340,8 @@ fn scenes_that_a_program_builds_are_checked_too() {
         pair: Pair::Named("b0_0".into(), "b1_0".into()),
         extent: Extent::All,
         gap: Profile::Table(Vec::new()),
+        distance: None,
+        adjust: 0.0,
         ramp: None,
         written: String::new(),
     });

@@ -149,8 +149,7 @@ fn rows_at(point: [f64; 2], entries: &str) -> usize {
     let scene = Scene::parse("t.toml", &text).unwrap();
     let at = |p: &&fetifeti::scene::Point| {
         let first = p.members[0];
-        let mesh = scene.bodies[first.body].mesh();
-        let [x, y, _] = mesh.position(mesh.place(first.node));
+        let [x, y, _] = scene.bodies[first.body].mesh().position(first.node);
         [x, y] == point
     };
     let points: Vec<_> = scene.points.iter().filter(at).collect();

@@ -1,6 +1,7 @@
 //! Bodies that do not fit together, ties without nodes, invalid scenes built by programs; one sentence for each.
 
 use crate::support::scene_message;
+use fetifeti::mesh::BoxMesh;
 use fetifeti::scene::{BodySpec, Field, GridSpec, Scene, SceneSpec};
 use scene_message::{body, check, message, pair};
 
@@ -153,26 +154,34 @@ fn scenes_built_by_programs_are_checked_too() {
         refuse(SceneSpec::tied("", grid.expand())),
         "body `b0_0`: 3 subdomains in x do not divide 8 elements (a multiple was expected)"
     );
-    let mesh = GridSpec::unit_square([1, 1], [1, 1], [2, 2]).expand()[0].mesh;
+    let mesh = GridSpec::unit_square([1, 1], [1, 1], [2, 2]).expand()[0]
+        .mesh
+        .clone();
+    let mesh = *mesh.grid().unwrap();
+    let with_mesh = |change: &dyn Fn(&mut BoxMesh)| {
+        let mut mesh = mesh;
+        change(&mut mesh);
+        refuse(SceneSpec::tied("", vec![BodySpec::new("b", mesh)]))
+    };
     let with = |change: &dyn Fn(&mut BodySpec)| {
         let mut body = BodySpec::new("b", mesh);
         change(&mut body);
         refuse(SceneSpec::tied("", vec![body]))
     };
     assert_eq!(
-        with(&|b| b.mesh.elements = [0, 2, 0]),
+        with_mesh(&|mesh| mesh.elements = [0, 2, 0]),
         "body `b`: zero elements in x where at least one was expected"
     );
     assert_eq!(
-        with(&|b| b.mesh.subdomains = [1, 0, 1]),
+        with_mesh(&|mesh| mesh.subdomains = [1, 0, 1]),
         "body `b`: zero subdomains in y where at least one was expected"
     );
     assert_eq!(
-        with(&|b| b.mesh.size = [1.0, f64::NAN, 0.0]),
+        with_mesh(&|mesh| mesh.size = [1.0, f64::NAN, 0.0]),
         "body `b`: size NaN in y where a positive number was expected"
     );
     assert_eq!(
-        with(&|b| b.mesh.origin = [f64::INFINITY, 0.0, 0.0]),
+        with_mesh(&|mesh| mesh.origin = [f64::INFINITY, 0.0, 0.0]),
         "body `b`: origin inf in x where a finite number was expected"
     );
     assert_eq!(

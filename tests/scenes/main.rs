@@ -13,6 +13,7 @@ mod counts;
 mod examples;
 mod input;
 mod input_bodies;
+mod meshes;
 mod solution;
 mod springs;
 mod steps;

@@ -90,11 +90,9 @@ fn the_last_step_is_that_of_the_subdomains_to_the_bit() {
             assert_eq!(bits(&scene.loads(index, last).unwrap()), bits(&s.f));
             let mesh = scene.subdomain_mesh(index).unwrap();
             let body = &scene.bodies[s.body];
-            let block = body.mesh().block(index - body.first_subdomain);
+            let nodes = body.mesh().subdomain_nodes(index - body.first_subdomain);
             for (k, &dof) in mesh.dof.iter().enumerate() {
-                let width = mesh.elements[0] + 1;
-                let place = [block.first[0] + k % width, block.first[1] + k / width, 0];
-                let given = body.prescribed_at(body.mesh().node(place));
+                let given = body.prescribed_at(nodes[k]);
                 assert_eq!(given.is_some(), dof == u32::MAX);
                 let scaled = given.unwrap_or(0.0) * scene.prescribed_factor(last);
                 assert_eq!(mesh.prescribed[k], scaled);

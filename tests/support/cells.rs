@@ -8,7 +8,7 @@ use png::{BitDepth, ColorType};
 
 /// The coefficients of all elements of a scene of one grid, x running fastest over the whole grid.
 pub fn elements(scene: &Scene, bodies: [usize; 3], pick: impl Fn(usize) -> Vec<f64>) -> Vec<f64> {
-    let mesh = scene.bodies[0].mesh();
+    let mesh = scene.bodies[0].mesh().grid().unwrap();
     let each = mesh.elements.map(|n| n.max(1));
     let all = [0, 1, 2].map(|d| bodies[d] * each[d]);
     let mut out = vec![f64::NAN; all.iter().product()];

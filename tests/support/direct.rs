@@ -93,14 +93,15 @@ impl Direct {
     pub fn energy(&self, nodal: &[Vec<f64>]) -> f64 {
         let mut sum = 0.0;
         for (mesh, u) in self.meshes.iter().zip(nodal) {
-            let points = mesh.element_points([0; 3]);
+            let grid = mesh.grid().unwrap();
+            let points = mesh.element_points(grid, [0; 3]);
             let mut k = [0.0; 16];
             let unit = Material::Scalar { rho: 1.0 };
             cell::stiffness(2, &points[..4], Element::Q1, &unit, &mut k);
-            let [nx, ny, _] = mesh.elements;
+            let [nx, ny, _] = grid.elements;
             for (e, rho) in mesh.rho.iter().enumerate() {
                 assert!(e < nx * ny);
-                let nodes = mesh.element_nodes([e % nx, e / nx, 0]);
+                let nodes = grid.element_nodes([e % nx, e / nx, 0]);
                 for (a, row) in k.chunks_exact(4).enumerate() {
                     for (b, entry) in row.iter().enumerate() {
                         // Rows of the element matrix sum to zero: energies of differences suffer no cancellation from a

@@ -146,6 +146,8 @@ pub fn spec(seed: u64) -> SceneSpec {
             pair: Pair::All,
             extent: Extent::All,
             gap: Profile::constant(number(rng, 0.0, 0.1)),
+            distance: None,
+            adjust: 0.0,
             ramp: None,
             written: String::new(),
         });
@@ -287,7 +289,9 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
         let [a, b] = names.clone();
         spec.ties.push(TieSpec {
             pair: Pair::Named(a, b),
+            sides: None,
             extent,
+            adjust: 0.0,
             written: String::new(),
         });
     };
@@ -303,6 +307,8 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             },
             extent,
             gap: gap(rng, tame),
+            distance: None,
+            adjust: 0.0,
             ramp: None,
             written: String::new(),
         });

@@ -1,10 +1,12 @@
-//! Finite elements of every [`CellKind`]: segments as sides, triangles, quadrilaterals, tetrahedra, pyramids, wedges
-//! and hexahedra, of first and second order, scalar and elastic, from the points of their nodes alone.
+//! Finite elements of every [kind of cell](crate::mesh::CellKind): segments as sides, triangles, quadrilaterals,
+//! tetrahedra, pyramids, wedges and hexahedra, of first and second order, scalar and elastic, from the points of their
+//! nodes alone.
 //!
 //! [`cell`](super::cell) has the cells of boxes, with nodes in lexicographic order; here nodes are in the order of
-//! [`CellKind`]. Points have three coordinates, z being ignored in 2D. Degrees of freedom are numbered node by node:
-//! component i of node a is C·a + i, where C is [`Material::components`](super::cell::Material::components). Cells are
-//! isoparametric: curved where their middle nodes are not in the middle.
+//! [`CellKind`](crate::mesh::CellKind). Points have three coordinates, z being ignored in 2D. Degrees of freedom are
+//! numbered node by node: component i of node a is C·a + i, where C is
+//! [`Material::components`](super::cell::Material::components). Cells are isoparametric: curved where their middle
+//! nodes are not in the middle.
 //!
 //! Points of the rules of quadrature, by purpose:
 //!
@@ -30,6 +32,7 @@ mod hourglass;
 mod incompatible;
 mod integration;
 mod loads;
+mod locate;
 mod map;
 mod quadrature;
 mod shape;
@@ -49,6 +52,7 @@ mod testing;
 pub use errors::error_squares;
 pub use integration::{check, Integration};
 pub use loads::{body_load, middle, volume};
+pub use locate::locate;
 pub use sides::{side_load, side_weights, SideWeights};
 pub use stiffness::stiffness;
 pub use stress::{principal_stresses, stress_at_nodes, von_mises, NodeStress};

@@ -7,6 +7,7 @@ mod bench;
 mod compare;
 pub mod contact;
 mod number;
+pub mod probes;
 mod solve;
 mod spectrum;
 mod table1;

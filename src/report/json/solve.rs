@@ -3,6 +3,7 @@
 use super::adaptive::Adaptive;
 use super::contact::ContactReport;
 use super::number;
+use super::probes::{NodePrint, ProbeValue};
 use super::spectrum::Condition;
 use crate::feti::Communication;
 use serde::{Deserialize, Serialize};
@@ -59,6 +60,12 @@ pub struct SolveReport {
     /// Error against the exact solution, where the scene has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorNorms>,
+    /// The values at the scene's probes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<ProbeValue>,
+    /// The displacements that a deck prints, step by step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub node_print: Vec<NodePrint>,
     /// The messages of a Krylov iteration; `null` where there was none.
     #[serde(default)]
     pub communication: Option<Communication>,

@@ -1,39 +1,13 @@
 //! ParaView's unstructured grids (`.vtu`): XML with arrays in base64, each as little-endian numbers after a UInt64
 //! length.
 
+use crate::mesh::Cells;
 use crate::report::output;
 use crate::{Error, Result};
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use std::io::{self, Write};
 use std::path::Path;
-
-/// Shape of all cells of a grid; corners in VTK's order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
-    /// Four points, counterclockwise.
-    Quad,
-    /// Eight points: bottom counterclockwise, then top.
-    Hexahedron,
-}
-
-impl Shape {
-    /// Corners per cell.
-    pub fn corners(self) -> usize {
-        match self {
-            Shape::Quad => 4,
-            Shape::Hexahedron => 8,
-        }
-    }
-
-    /// VTK's number for the shape.
-    fn vtk(self) -> u8 {
-        match self {
-            Shape::Quad => 9,
-            Shape::Hexahedron => 12,
-        }
-    }
-}
 
 /// Numbers of a data array.
 #[derive(Debug, Clone, Copy)]
@@ -74,18 +48,16 @@ struct Array<'a> {
 /// A grid with its data, ready to be written.
 pub struct Vtu<'a> {
     points: &'a [[f64; 3]],
-    shape: Shape,
-    cells: &'a [u32],
+    cells: &'a Cells,
     point_data: Vec<Array<'a>>,
     cell_data: Vec<Array<'a>>,
 }
 
 impl<'a> Vtu<'a> {
-    /// A grid of n points and of cells of one shape; `cells` lists the corners of one cell after the other.
-    pub fn new(points: &'a [[f64; 3]], shape: Shape, cells: &'a [u32]) -> Self {
+    /// A grid of points and cells.
+    pub fn new(points: &'a [[f64; 3]], cells: &'a Cells) -> Self {
         Vtu {
             points,
-            shape,
             cells,
             point_data: Vec::new(),
             cell_data: Vec::new(),
@@ -134,19 +106,13 @@ impl<'a> Vtu<'a> {
     }
 
     fn n_cells(&self) -> usize {
-        self.cells.len() / self.shape.corners()
+        self.cells.len()
     }
 
     fn check(&self) -> Result<()> {
-        if self.cells.len() % self.shape.corners() != 0 {
-            return Err(Error::input(format!(
-                "the grid lists {} corners, expected a multiple of {}",
-                self.cells.len(),
-                self.shape.corners()
-            )));
-        }
         if let Some(bad) = self
             .cells
+            .all_nodes()
             .iter()
             .find(|&&c| c as usize >= self.points.len())
         {
@@ -208,15 +174,36 @@ impl<'a> Vtu<'a> {
         let coordinates = self.points.as_flattened().iter().copied();
         array(out, ("Points", 3), "Float64", coordinates, f64::to_le_bytes)?;
         writeln!(out, "</Points>\n<Cells>")?;
-        let corner = |c| i64::from(c).to_le_bytes();
-        let cells = self.cells.iter().copied();
-        array(out, ("connectivity", 1), "Int64", cells, corner)?;
-        let end = |k: usize| (((k + 1) * self.shape.corners()) as i64).to_le_bytes();
-        array(out, ("offsets", 1), "Int64", 0..n_cells, end)?;
-        let shape = |_| [self.shape.vtk()];
-        array(out, ("types", 1), "UInt8", 0..n_cells, shape)?;
+        let nodes = connectivity(self.cells);
+        array(
+            out,
+            ("connectivity", 1),
+            "Int64",
+            nodes.into_iter(),
+            i64::to_le_bytes,
+        )?;
+        let mut end = 0;
+        let ends = self.cells.kinds().iter().map(|kind| {
+            end += kind.nodes() as i64;
+            end
+        });
+        array(out, ("offsets", 1), "Int64", ends, i64::to_le_bytes)?;
+        let kinds = self.cells.kinds().iter().map(|kind| kind.vtk());
+        array(out, ("types", 1), "UInt8", kinds, u8::to_le_bytes)?;
         writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
     }
+}
+
+/// The nodes of all cells in VTK's order.
+fn connectivity(cells: &Cells) -> Vec<i64> {
+    let mut out = Vec::with_capacity(cells.all_nodes().len());
+    for (kind, nodes) in cells.iter() {
+        match kind.vtk_order() {
+            None => out.extend(nodes.iter().map(|&k| i64::from(k))),
+            Some(order) => out.extend(order.iter().map(|&a| i64::from(nodes[usize::from(a)]))),
+        }
+    }
+    out
 }
 
 /// One DataArray element of numbers of N bytes each.

@@ -3,6 +3,7 @@
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::normals::{of_side, parameters};
 use crate::linalg::vec3::{dot, minus, norm};
+use crate::mesh::{BoxMesh, Mesh};
 use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
 use crate::scene::model::spec::BodySpec;
@@ -19,24 +20,16 @@ pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
     if apart {
         return Vec::new();
     }
-    let n_sides = 2 * a.mesh().dim();
     let near = TOLERANCE * shortest(&a.spec).min(shortest(&b.spec));
     let mut found = Vec::new();
     let mut seen = HashSet::new();
-    for sb in 0..n_sides {
+    for sb in b.mesh().outer_sides() {
         let grid = Grid::new(&b.spec, sb, near);
-        for sa in 0..n_sides {
-            let node = |place| {
-                let other = grid.find(a.spec.position(place), near)?;
-                Some(SharedNode {
-                    nodes: [a.mesh().node(place), other],
-                    t: parameters(&a.spec, sa, place),
-                    link: Link::Free,
-                })
-            };
-            let shared: Vec<SharedNode> = a.mesh().side_nodes(sa).filter_map(node).collect();
-            let varies = |k: usize| shared.iter().any(|s| s.t[k] != shared[0].t[k]);
-            let shape = match (0..a.mesh().dim() - 1).all(varies) {
+        for sa in a.mesh().outer_sides() {
+            let pair = |node| Some([node, grid.find(a.spec.position(node), near)?]);
+            let nodes = a.mesh().side_nodes(sa).into_iter().filter_map(pair);
+            let shared = share(&a.spec, sa, nodes.collect());
+            let shape = match is_face([a, b], [sa, sb], &shared) {
                 true => Shape::Face,
                 false => Shape::Corner,
             };
@@ -58,15 +51,45 @@ pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
         .collect()
 }
 
-/// Sides of two bodies that face each other, node opposite node; `None` where their nodes cannot be paired.
-pub(crate) fn opposite(bodies: &[Body], pair: [usize; 2], sides: [usize; 2]) -> Option<Interface> {
-    let [a, b] = pair.map(|k| &bodies[k]);
-    let lists = [(a, sides[0]), (b, sides[1])].map(|(body, side)| {
-        let nodes: Vec<[usize; 3]> = body.mesh().side_nodes(side).collect();
-        nodes
+/// Pairs of nodes on side `side` of the first body, with their parameters there.
+pub(crate) fn share(first: &BodySpec, side: usize, pairs: Vec<[usize; 2]>) -> Vec<SharedNode> {
+    let nodes: Vec<usize> = pairs.iter().map(|p| p[0]).collect();
+    let t = parameters(first, side, &nodes);
+    let shared = pairs.into_iter().zip(t).map(|(nodes, t)| SharedNode {
+        nodes,
+        t,
+        link: Link::Free,
     });
-    let counts = [(a, sides[0]), (b, sides[1])].map(|(body, side)| {
-        let n = body.mesh().nodes();
+    shared.collect()
+}
+
+/// Whether the nodes form a face: on boxes if every parameter varies, on meshes of cells if a face of a cell has all
+/// its nodes among them.
+fn is_face(bodies: [&Body; 2], sides: [usize; 2], shared: &[SharedNode]) -> bool {
+    for k in [0, 1] {
+        if bodies[k].mesh().cells().is_some() {
+            let nodes: HashSet<usize> = shared.iter().map(|s| s.nodes[k]).collect();
+            let faces = bodies[k].spec.faces(sides[k]);
+            return faces
+                .iter()
+                .any(|f| f.nodes.iter().all(|n| nodes.contains(n)));
+        }
+    }
+    let varies = |k: usize| shared.iter().any(|s| s.t[k] != shared[0].t[k]);
+    (0..bodies[0].mesh().dim() - 1).all(varies)
+}
+
+/// Sides of two boxes that face each other, node opposite node; `None` where their nodes cannot be paired.
+pub(crate) fn opposite(
+    bodies: &[Body],
+    meshes: [&BoxMesh; 2],
+    pair: [usize; 2],
+    sides: [usize; 2],
+) -> Option<Interface> {
+    let [a, b] = pair.map(|k| &bodies[k]);
+    let lists = [(a, sides[0]), (b, sides[1])].map(|(body, side)| body.mesh().side_nodes(side));
+    let counts = [(meshes[0], sides[0]), (meshes[1], sides[1])].map(|(mesh, side)| {
+        let n = mesh.nodes();
         let mut along = (0..3).filter(|&d| d != side / 2);
         [along.next(), along.next()].map(|d| d.map_or(1, |d| n[d]))
     });
@@ -90,21 +113,13 @@ pub(crate) fn opposite(bodies: &[Body], pair: [usize; 2], sides: [usize; 2]) -> 
         (0..m * n).map(square).sum()
     };
     let flip = (0..4).min_by(|&x, &y| total(x).total_cmp(&total(y)))?;
-    let shared = (0..m * n)
-        .map(|i| SharedNode {
-            nodes: [
-                a.mesh().node(lists[0][i]),
-                b.mesh().node(lists[1][partner(i, flip)]),
-            ],
-            t: parameters(&a.spec, sides[0], lists[0][i]),
-            link: Link::Free,
-        })
-        .collect();
+    let pairs = (0..m * n).map(|i| [lists[0][i], lists[1][partner(i, flip)]]);
+    let shared = share(&a.spec, sides[0], pairs.collect());
     Some(interface(bodies, pair, sides, Shape::Face, shared))
 }
 
 /// The interface of given nodes, with the mean of both bodies' normals and the distance along it.
-fn interface(
+pub(crate) fn interface(
     bodies: &[Body],
     pair: [usize; 2],
     sides: [usize; 2],
@@ -112,8 +127,8 @@ fn interface(
     shared: Vec<SharedNode>,
 ) -> Interface {
     let [first, second] = [0, 1].map(|k| {
-        let nodes = shared.iter().map(|s| s.nodes[k]);
-        of_side(&bodies[pair[k]].spec, sides[k], nodes)
+        let nodes: Vec<usize> = shared.iter().map(|s| s.nodes[k]).collect();
+        of_side(&bodies[pair[k]].spec, sides[k], &nodes)
     });
     let normals: Vec<[f64; 3]> = first
         .iter()
@@ -133,10 +148,7 @@ fn interface(
         .iter()
         .zip(&normals)
         .map(|(s, n)| {
-            let [x, y] = [0, 1].map(|k| {
-                let spec = &bodies[pair[k]].spec;
-                spec.position(spec.mesh.place(s.nodes[k]))
-            });
+            let [x, y] = [0, 1].map(|k| bodies[pair[k]].spec.position(s.nodes[k]));
             let distance = dot(minus(y, x), *n);
             let size = x.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             if distance.abs() <= 1e-14 * size {
@@ -154,7 +166,7 @@ fn interface(
         unmatched: Vec::new(),
         order: [0, 1],
         normals,
-        apart: false,
+        entry: None,
         distances,
         limits: Limits::default(),
     }
@@ -162,15 +174,28 @@ fn interface(
 
 /// Length of the shortest edge between nodes of a side.
 fn shortest(body: &BodySpec) -> f64 {
-    let mesh = &body.mesh;
+    let length = |a: usize, b: usize| norm(minus(body.position(a), body.position(b)));
     let mut out = f64::INFINITY;
-    for place in mesh.boundary() {
-        let x = body.position(place);
-        for d in (0..mesh.dim()).filter(|&d| place[d] > 0) {
-            let mut before = place;
-            before[d] -= 1;
-            let y = body.position(before);
-            out = out.min(norm(minus(x, y)));
+    match &body.mesh {
+        Mesh::Grid(grid) => {
+            for place in grid.boundary() {
+                for d in (0..grid.dim()).filter(|&d| place[d] > 0) {
+                    let mut before = place;
+                    before[d] -= 1;
+                    out = out.min(length(grid.node(place), grid.node(before)));
+                }
+            }
+        }
+        Mesh::Cells(mesh) => {
+            for face in body.faces(mesh.skin()) {
+                let corners = face.outline();
+                for (k, &a) in corners.iter().enumerate() {
+                    out = out.min(match corners[(k + 1) % corners.len()] {
+                        b if a == b => f64::INFINITY,
+                        b => length(a, b),
+                    });
+                }
+            }
         }
     }
     out
@@ -190,10 +215,10 @@ impl<'a> Grid<'a> {
             cells: HashMap::new(),
             width: 4.0 * near,
         };
-        for place in body.mesh.side_nodes(side) {
-            let cell = grid.cell(body.position(place));
+        for node in body.mesh.side_nodes(side) {
+            let cell = grid.cell(body.position(node));
             let list: &mut Vec<usize> = grid.cells.entry(cell).or_default();
-            list.push(body.mesh.node(place));
+            list.push(node);
         }
         grid
     }
@@ -204,7 +229,7 @@ impl<'a> Grid<'a> {
 
     fn find(&self, x: [f64; 3], near: f64) -> Option<usize> {
         let close = |&node: &usize| {
-            let y = self.body.position(self.body.mesh.place(node));
+            let y = self.body.position(node);
             (0..3).all(|d| (x[d] - y[d]).abs() <= near)
         };
         let corner =

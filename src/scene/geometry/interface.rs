@@ -67,8 +67,9 @@ pub struct Interface {
     pub order: [usize; 2],
     /// The unit normal at each shared node, out of the first of `bodies`.
     pub normals: Vec<[f64; 3]>,
-    /// Whether a contact names the sides explicitly; the bodies then need not touch.
-    pub apart: bool,
+    /// The entry that names the sides, by number (ties before contacts): the bodies then need not touch, and no other
+    /// entry applies. `None`: bodies that touch.
+    pub entry: Option<usize>,
     /// The distance of the two nodes along the normal; zero where they coincide.
     pub distances: Vec<f64>,
     /// The gaps at the nodes in contact.

@@ -1,8 +1,12 @@
 //! Where bodies touch: interfaces, sides, normals, and the nodes on them.
 
+pub mod curves;
 pub mod facing;
 pub mod interface;
+pub mod matching;
+pub mod nearest;
 pub mod normals;
 pub mod sides;
+pub mod surface;
 pub mod topology;
 pub mod touching;

@@ -1,33 +1,63 @@
 //! Sides of bodies: the unit normals at their nodes, and the parameters along them.
 
+use std::collections::HashSet;
+
+use super::curves;
+use super::sides::Face;
 use crate::fem::cell::Element;
 use crate::linalg::vec3::norm;
+use crate::mesh::{BoxMesh, Mesh};
 use crate::scene::model::spec::BodySpec;
 
-/// The unit normals at nodes of a side, out of the body. A flat side has its exact normal; on other sides the normals
-/// of the elements around the node are averaged, weighted by area.
-pub(crate) fn of_side(
-    body: &BodySpec,
-    side: usize,
-    nodes: impl Iterator<Item = usize>,
-) -> Vec<[f64; 3]> {
-    if body.map.is_none() {
+/// The unit normals at nodes of a side, out of the body. A flat side of a box has its exact normal; on other sides the
+/// normals of the elements around the node are averaged, weighted by area. On meshes of cells only the faces count that
+/// have all their nodes among these.
+pub(crate) fn of_side(body: &BodySpec, side: usize, nodes: &[usize]) -> Vec<[f64; 3]> {
+    if body.mesh.grid().is_some() && body.map.is_none() {
         let mut normal = [0.0; 3];
         normal[side / 2] = if side % 2 == 0 { -1.0 } else { 1.0 };
-        return nodes.map(|_| normal).collect();
+        return nodes.iter().map(|_| normal).collect();
     }
+    let of_box = body.mesh.grid().is_some();
+    let meant: HashSet<usize> = match of_box {
+        true => HashSet::new(),
+        false => nodes.iter().copied().collect(),
+    };
+    let counts = |face: &Face| of_box || face.nodes.iter().all(|n| meant.contains(n));
     // Q1 is used for P1 too, as the triangles of P1 elements would turn the normals towards their diagonals.
-    let sums = body.side_normals(side, Element::Q1);
+    let mut sums = body.side_normals(side, Element::Q1, counts);
+    if nodes.iter().any(|n| !sums.contains_key(n)) {
+        // Nodes that form no whole face: the faces around them.
+        let more = body.side_normals(side, Element::Q1, |face| {
+            face.nodes.iter().any(|n| meant.contains(n))
+        });
+        for (node, sum) in more {
+            sums.entry(node).or_insert(sum);
+        }
+    }
     let unit = |sum: [f64; 3]| {
         let length = norm(sum);
-        sum.map(|v| v / length)
+        match length > 0.0 {
+            true => sum.map(|v| v / length),
+            false => sum,
+        }
     };
-    nodes.map(|node| unit(sums[&node])).collect()
+    nodes
+        .iter()
+        .map(|n| sums.get(n).map_or([0.0; 3], |&sum| unit(sum)))
+        .collect()
 }
 
-/// Parameters of a node along its side.
-pub(crate) fn parameters(body: &BodySpec, side: usize, place: [usize; 3]) -> [f64; 2] {
-    let elements = body.mesh.elements;
+/// Parameters of nodes along a side, 0 ≤ t ≤ 1: one in the plane (the other is 0), two on the sides of solids.
+pub(crate) fn parameters(body: &BodySpec, side: usize, nodes: &[usize]) -> Vec<[f64; 2]> {
+    match &body.mesh {
+        Mesh::Grid(grid) => nodes.iter().map(|&node| on_box(grid, side, node)).collect(),
+        Mesh::Cells(mesh) => curves::parameters(mesh, side, nodes),
+    }
+}
+
+fn on_box(grid: &BoxMesh, side: usize, node: usize) -> [f64; 2] {
+    let (elements, place) = (grid.elements, grid.place(node));
     let mut along = (0..3).filter(|&d| d != side / 2 && elements[d] > 0);
     [along.next(), along.next()].map(|d| d.map_or(0.0, |d| place[d] as f64 / elements[d] as f64))
 }

@@ -2,42 +2,103 @@
 
 use std::collections::HashMap;
 
-use crate::fem::cell::{side_weights, Element, Side, SideWeights};
-use crate::mesh::places;
+use crate::fem::cell::{side_weights, Element, Side};
+use crate::fem::element;
+use crate::mesh::{places, BoxMesh, CellKind, Mesh};
 use crate::scene::model::spec::BodySpec;
 
+/// The face of an element on a side of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Face {
+    /// Its nodes. On boxes they are in lexicographic order ([`Side::corners`]), else in the order of the kind, such
+    /// that the normal points out of the body.
+    pub nodes: Vec<usize>,
+    /// Its kind, a segment in the plane; `None` on boxes.
+    pub kind: Option<CellKind>,
+}
+
+impl Face {
+    /// The corners in their order around the face, or along the segment.
+    pub fn outline(&self) -> Vec<usize> {
+        match (self.kind, &self.nodes[..]) {
+            (None, &[a, b, c, d]) => vec![a, b, d, c],
+            (None, nodes) => nodes.to_vec(),
+            (Some(kind), nodes) => nodes[..kind.corners()].to_vec(),
+        }
+    }
+}
+
+/// The nodal area of a face, ∫ N_a, and its area-weighted normal out of the body, ∫ N_a n.
+pub type Weight = (f64, [f64; 3]);
+
 impl BodySpec {
-    /// The faces of elements on a side: the nodes of each, in the order of [`Side::corners`].
-    pub fn side_cells(&self, side: usize) -> impl Iterator<Item = Vec<[usize; 3]>> + use<'_> {
-        let mesh = &self.mesh;
-        let (dim, at) = (mesh.dim(), Side::of_index(side));
-        let mut counts = mesh.elements.map(|n| n.max(1));
-        counts[at.axis] = 1;
-        let level = at.level(mesh.elements);
-        places(counts).map(move |mut cell| {
-            cell[at.axis] = level;
-            let corner = |a: usize| [0, 1, 2].map(|d| cell[d] + (a >> d & 1));
-            at.corners(dim).map(corner).collect()
-        })
+    /// The faces of elements on a side.
+    pub fn faces(&self, side: usize) -> Vec<Face> {
+        match &self.mesh {
+            Mesh::Grid(grid) => of_grid(grid, side).collect(),
+            Mesh::Cells(mesh) => {
+                let face = |&(cell, face): &(u32, u8)| {
+                    let (cell, face) = (cell as usize, usize::from(face));
+                    let nodes = mesh.cells.side_nodes(cell, face);
+                    Face {
+                        nodes: nodes.map(|k| k as usize).collect(),
+                        kind: Some(mesh.cells.kind(cell).sides()[face].kind),
+                    }
+                };
+                mesh.sides[side].faces.iter().map(face).collect()
+            }
+        }
     }
 
-    /// Nodal areas and area-weighted normals, out of the body, of one of the [`BodySpec::side_cells`] of a side.
-    pub fn side_weights(&self, side: usize, cell: &[[usize; 3]], element: Element) -> SideWeights {
+    /// Nodal areas and area-weighted normals of one of the faces of a side, by node of the face.
+    pub fn face_weights(&self, side: usize, face: &Face, element: Element) -> Vec<Weight> {
         let dim = self.mesh.dim();
-        let points: Vec<[f64; 3]> = cell.iter().map(|&p| self.position(p)).collect();
-        side_weights(dim, &points, Side::of_index(side).outward(dim), element)
+        let points: Vec<[f64; 3]> = face.nodes.iter().map(|&k| self.position(k)).collect();
+        match face.kind {
+            Some(kind) => {
+                let weights = element::side_weights(kind, dim, &points);
+                let each = weights.area.into_iter().zip(weights.normal);
+                each.take(points.len()).collect()
+            }
+            None => {
+                let outward = Side::of_index(side).outward(dim);
+                let weights = side_weights(dim, &points, outward, element);
+                let each = weights.area.into_iter().zip(weights.normal);
+                each.take(points.len()).collect()
+            }
+        }
     }
 
-    /// ∫ N_a n with the unit normal n out of the body, over a side, by node.
-    pub fn side_normals(&self, side: usize, element: Element) -> HashMap<usize, [f64; 3]> {
+    /// ∫ N_a n with the unit normal n out of the body, by node, over the faces of a side that `among` accepts.
+    pub fn side_normals(
+        &self,
+        side: usize,
+        element: Element,
+        among: impl Fn(&Face) -> bool,
+    ) -> HashMap<usize, [f64; 3]> {
         let mut sums: HashMap<usize, [f64; 3]> = HashMap::new();
-        for cell in self.side_cells(side) {
-            let weights = self.side_weights(side, &cell, element);
-            for (&place, normal) in cell.iter().zip(weights.normal) {
-                let sum = sums.entry(self.mesh.node(place)).or_default();
+        for face in self.faces(side).iter().filter(|f| among(f)) {
+            let weights = self.face_weights(side, face, element);
+            for (&node, (_, normal)) in face.nodes.iter().zip(weights) {
+                let sum = sums.entry(node).or_default();
                 sum.iter_mut().zip(normal).for_each(|(s, n)| *s += n);
             }
         }
         sums
     }
+}
+
+fn of_grid(grid: &BoxMesh, side: usize) -> impl Iterator<Item = Face> + use<'_> {
+    let (dim, at) = (grid.dim(), Side::of_index(side));
+    let mut counts = grid.elements.map(|n| n.max(1));
+    counts[at.axis] = 1;
+    let level = at.level(grid.elements);
+    places(counts).map(move |mut cell| {
+        cell[at.axis] = level;
+        let corner = |a: usize| grid.node([0, 1, 2].map(|d| cell[d] + (a >> d & 1)));
+        Face {
+            nodes: at.corners(dim).map(corner).collect(),
+            kind: None,
+        }
+    })
 }

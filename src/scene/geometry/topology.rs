@@ -1,26 +1,65 @@
 //! Edges and faces of a subdomain, and the rigid motions of its body.
 
 use crate::fem::cell;
-use crate::fem::SubdomainMesh;
-use crate::mesh::places;
+use crate::fem::{Grid, SubdomainMesh};
+use crate::mesh::{places, CellMesh, Mesh};
 use crate::scene::body::Body;
 use crate::substructures::{Entity, EntityKind};
 use std::collections::BTreeMap;
 
 /// The open edges and faces of a subdomain of a solid, by component, with their free dofs in increasing order. The list
-/// is empty in the plane, where vertices suffice. `dofs` has the body dof of each local dof; the first body dof of an
-/// entity is its key.
-pub(crate) fn entities(mesh: &SubdomainMesh, dofs: &[u64]) -> Vec<Entity> {
+/// is empty in the plane, where vertices suffice. `inside` is the number of the subdomain in its body, `dofs` has the
+/// body dof of each local dof; the first body dof of an entity is its key.
+pub(crate) fn entities(
+    body: &Body,
+    inside: usize,
+    mesh: &SubdomainMesh,
+    dofs: &[u64],
+) -> Vec<Entity> {
     if mesh.dim < 3 {
         return Vec::new();
     }
+    match (body.mesh(), mesh.grid()) {
+        (Mesh::Cells(cells), _) => of_cells(cells, inside, mesh, dofs),
+        (_, Some(grid)) => of_grid(mesh, grid, dofs),
+        _ => Vec::new(),
+    }
+}
+
+/// The shared edges and faces of the partition, without vertices.
+fn of_cells(cells: &CellMesh, inside: usize, mesh: &SubdomainMesh, dofs: &[u64]) -> Vec<Entity> {
+    let c = mesh.components();
+    let nodes = cells.parts.nodes(inside);
+    let mut out = Vec::new();
+    for component in 0..c {
+        for (_, dim, list) in cells.parts.entities(inside) {
+            let local = |k: &u32| {
+                let node = nodes.binary_search(k).expect("a node of the subdomain");
+                mesh.local_dof(c * node + component)
+            };
+            let list: Vec<u32> = list.iter().filter_map(local).collect();
+            let Some(first) = list.first() else { continue };
+            out.push(Entity {
+                kind: match dim {
+                    1 => EntityKind::Edge,
+                    _ => EntityKind::Face,
+                },
+                key: dofs[*first as usize],
+                dofs: list,
+            });
+        }
+    }
+    out
+}
+
+fn of_grid(mesh: &SubdomainMesh, grid: &Grid, dofs: &[u64]) -> Vec<Entity> {
     let c = mesh.components();
     // Key: component, and for each direction whether the entity lies at the lower end, the upper end, or runs along it.
     let mut found: BTreeMap<(usize, [u8; 3]), Vec<u32>> = BTreeMap::new();
-    for (node, place) in places(mesh.nodes()).enumerate() {
+    for (node, place) in places(grid.nodes()).enumerate() {
         let code = [0, 1, 2].map(|d| match place[d] {
             0 => 0,
-            p if p == mesh.elements[d] => 1,
+            p if p == grid.elements[d] => 1,
             _ => 2,
         });
         let along = code.iter().filter(|&&k| k == 2).count();

@@ -4,7 +4,7 @@ use super::facing::coinciding;
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::normals;
 use crate::error::{Error, Result};
-use crate::mesh::BoxMesh;
+use crate::mesh::{BoxMesh, Mesh};
 use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
 
@@ -15,17 +15,21 @@ pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
     order.sort_by(|&a, &b| left(a).total_cmp(&left(b)).then(a.cmp(&b)));
     let mut out = Vec::new();
     for (k, &a) in order.iter().enumerate() {
-        let mesh = bodies[a].mesh();
-        let reach = bodies[a].bounds[1][0] + TOLERANCE * mesh.step()[0];
+        let [low, high] = bodies[a].bounds;
+        let reach = match bodies[a].mesh() {
+            Mesh::Grid(grid) => high[0] + TOLERANCE * grid.step()[0],
+            Mesh::Cells(_) => high[0] + TOLERANCE * (high[0] - low[0]),
+        };
         for &b in &order[k + 1..] {
             if left(b) > reach {
                 break;
             }
             let (a, b) = (a.min(b), a.max(b));
-            if bodies[a].spec.map == bodies[b].spec.map {
-                out.extend(common(bodies, a, b)?);
-            } else {
-                out.extend(coinciding(bodies, [a, b]));
+            match [a, b].map(|k| bodies[k].mesh().grid()) {
+                [Some(x), Some(y)] if bodies[a].spec.map == bodies[b].spec.map => {
+                    out.extend(common(bodies, [x, y], [a, b])?);
+                }
+                _ => out.extend(coinciding(bodies, [a, b])),
             }
         }
     }
@@ -42,8 +46,7 @@ struct Lines {
 }
 
 /// The interface of boxes `a` and `b`, unbent or bent by the same map.
-fn common(bodies: &[Body], a: usize, b: usize) -> Result<Option<Interface>> {
-    let meshes = [bodies[a].mesh(), bodies[b].mesh()];
+fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<Option<Interface>> {
     let dim = meshes[0].dim();
     let (mut low, mut high, mut stretches) = ([0.0; 3], [0.0; 3], [false; 3]);
     for d in 0..dim {
@@ -108,7 +111,10 @@ fn common(bodies: &[Body], a: usize, b: usize) -> Result<Option<Interface>> {
         }
     }
     let normals = match face {
-        true => normals::of_side(&bodies[a].spec, sides[0], shared.iter().map(|s| s.nodes[0])),
+        true => {
+            let nodes: Vec<usize> = shared.iter().map(|s| s.nodes[0]).collect();
+            normals::of_side(&bodies[a].spec, sides[0], &nodes)
+        }
         false => vec![[0.0; 3]; shared.len()],
     };
     Ok(Some(Interface {
@@ -118,7 +124,7 @@ fn common(bodies: &[Body], a: usize, b: usize) -> Result<Option<Interface>> {
         unmatched: unmatched(meshes, &lines, t),
         order: [0, 1],
         normals,
-        apart: false,
+        entry: None,
         distances: vec![0.0; shared.len()],
         shared,
         limits: Limits::default(),

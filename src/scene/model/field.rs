@@ -1,5 +1,7 @@
 //! Data over bodies: coefficients, loads and boundary values.
 
+use std::sync::Arc;
+
 use super::cells::Cells;
 use super::expr::{Expr, Variables};
 
@@ -52,8 +54,10 @@ pub enum Field {
         /// The value outside all of them.
         otherwise: Expr,
     },
-    /// Values by element, from a file. Only coefficients have them.
+    /// Values by element, from a file. Only coefficients of boxes have them.
     Cells(Cells),
+    /// Values by cell of a mesh of cells. Only coefficients and loads have them.
+    ByCell(Arc<Vec<f64>>),
 }
 
 /// Where a field is evaluated.
@@ -71,7 +75,7 @@ impl Field {
         Field::Expression(Expr::constant(value))
     }
 
-    /// The value at `at`; NaN for [`Field::Cells`], which have values by element, not by point.
+    /// The value at `at`; NaN for [`Field::Cells`] and [`Field::ByCell`], which have values by element, not by point.
     pub fn eval(&self, at: &At) -> f64 {
         let v = &at.variables;
         match self {
@@ -105,7 +109,7 @@ impl Field {
                 .find(|r| r.contains(v.point))
                 .map_or(otherwise, |r| &r.value)
                 .eval(v),
-            Field::Cells(_) => f64::NAN,
+            Field::Cells(_) | Field::ByCell(_) => f64::NAN,
         }
     }
 
@@ -122,7 +126,7 @@ impl Field {
         match self {
             Field::Expression(e) => e.as_constant().is_some(),
             Field::Checkerboard { .. } | Field::Table { .. } => true,
-            Field::Regions { .. } | Field::Cells(_) => false,
+            Field::Regions { .. } | Field::Cells(_) | Field::ByCell(_) => false,
         }
     }
 
@@ -139,6 +143,7 @@ impl Field {
                 .filter_map(Expr::as_constant)
                 .collect(),
             Field::Cells(cells) => cells.range().to_vec(),
+            Field::ByCell(values) => values.to_vec(),
         }
     }
 

@@ -7,9 +7,11 @@ use super::map::Map;
 use super::profile::Profile;
 use super::ramp::{Ramp, StepsSpec};
 use super::rigid::Rigid;
+use crate::fem::element::Integration;
 use crate::fem::Form;
 use crate::fem::Quadrature;
-use crate::mesh::{places, BoxMesh};
+pub use crate::mesh::SIDES;
+use crate::mesh::{places, BoxMesh, Mesh};
 
 /// The load of a body: a source, or a force per volume.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +40,7 @@ impl Load {
 /// A load on a side of a body: a flux, or a force per area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceLoad {
-    /// Index into [`SIDES`].
+    /// The side of the mesh.
     pub side: usize,
     /// The force.
     pub force: Force,
@@ -53,21 +55,34 @@ pub enum Force {
     Pressure(Field),
 }
 
-/// Given values on the sides left, right, bottom, top, back, front, by component; `None`: the component is free there.
-/// A scalar problem uses the first component only.
-pub type Sides = [[Option<Field>; 3]; 6];
-
-/// Names of the sides, in the order of [`Sides`]; the last two only in three dimensions.
-pub const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
+/// Given values by side of the mesh ([`Mesh::side_name`]) and component; `None`: the component is free there. Sides
+/// beyond the end of the list are free. A scalar problem uses the first component only.
+pub type Sides = Vec<[Option<Field>; 3]>;
 
 /// No side is held.
 pub fn free_all_round() -> Sides {
-    [const { [const { None }; 3] }; 6]
+    Vec::new()
 }
 
-/// u = 0 on all sides, in all components.
+/// u = 0 on all sides of a box, in all components.
 pub fn held_all_round() -> Sides {
-    [(); 6].map(|()| [(); 3].map(|()| Some(Field::constant(0.0))))
+    vec![held(); SIDES.len()]
+}
+
+/// u = 0 on a side, in all components.
+pub fn held() -> [Option<Field>; 3] {
+    [(); 3].map(|()| Some(Field::constant(0.0)))
+}
+
+/// The subdomains of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cut {
+    /// Those that the mesh has.
+    AsItIs,
+    /// As many as the cost model finds best, made by the partitioner.
+    Auto,
+    /// This many, made by the partitioner.
+    Into(usize),
 }
 
 /// One body.
@@ -75,8 +90,12 @@ pub fn held_all_round() -> Sides {
 pub struct BodySpec {
     /// Its name, unique in the scene.
     pub name: String,
-    /// Box, elements and subdomains.
-    pub mesh: BoxMesh,
+    /// Elements and subdomains.
+    pub mesh: Mesh,
+    /// The order of the elements of a box, 1 or 2; meshes of cells have their own.
+    pub order: usize,
+    /// The subdomains of a mesh of cells.
+    pub cut: Cut,
     /// How the box is bent into shape; `None`: not at all.
     pub map: Option<Map>,
     /// Coefficient ρ, in elasticity Young's modulus, > 0; taken at element midpoints.
@@ -87,11 +106,16 @@ pub struct BodySpec {
     pub load: Load,
     /// Loads on its sides.
     pub surface: Vec<SurfaceLoad>,
-    /// Elastic foundations: k on a side (an index into [`SIDES`]) adds ∫ k u·v to the bilinear form, a force −k u per
-    /// area.
+    /// Elastic foundations: k on a side of the mesh adds ∫ k u·v to the bilinear form, a force −k u per area.
     pub springs: Vec<(usize, Field)>,
     /// Factor of the loads over the load steps; `None`: the factor of all loads of the scene.
     pub ramp: Option<Ramp>,
+    /// How the stiffness of every cell of a mesh is integrated; empty: in full.
+    pub integration: Vec<Integration>,
+    /// Forces at nodes, by degree of freedom C k + c of the body.
+    pub forces: Vec<(usize, f64)>,
+    /// Given values besides those of sides, by degree of freedom C k + c of the body.
+    pub given: Vec<(usize, f64)>,
     /// Dirichlet conditions.
     pub dirichlet: Sides,
     /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
@@ -102,10 +126,12 @@ pub struct BodySpec {
 
 impl BodySpec {
     /// A body with ρ = 1 (ν = 0.3), no load and no Dirichlet side.
-    pub fn new(name: impl Into<String>, mesh: BoxMesh) -> BodySpec {
+    pub fn new(name: impl Into<String>, mesh: impl Into<Mesh>) -> BodySpec {
         BodySpec {
             name: name.into(),
-            mesh,
+            mesh: mesh.into(),
+            order: 1,
+            cut: Cut::AsItIs,
             map: None,
             rho: Field::constant(1.0),
             poisson: Field::constant(POISSON),
@@ -113,30 +139,44 @@ impl BodySpec {
             surface: Vec::new(),
             springs: Vec::new(),
             ramp: None,
+            integration: Vec::new(),
+            forces: Vec::new(),
+            given: Vec::new(),
             dirichlet: free_all_round(),
             place: [0; 3],
             written: String::new(),
         }
     }
 
-    /// Position of the node at a place.
-    pub fn position(&self, place: [usize; 3]) -> [f64; 3] {
-        let point = self.mesh.position(place);
+    /// Position of a node.
+    pub fn position(&self, node: usize) -> [f64; 3] {
+        let point = self.mesh.position(node);
         self.map.as_ref().map_or(point, |map| map.apply(point))
     }
 
-    /// The variables of expressions at the node at a place.
-    pub(crate) fn variables(&self, place: [usize; 3]) -> Variables {
+    /// The given value of a component on a side, if there is one.
+    pub(crate) fn given_on(&self, side: usize, component: usize) -> Option<&Field> {
+        self.dirichlet.get(side)?[component].as_ref()
+    }
+
+    /// Whether a component is given on a side.
+    pub(crate) fn holds(&self, side: usize) -> bool {
+        let fields = self.dirichlet.get(side);
+        fields.is_some_and(|fields| fields.iter().any(Option::is_some))
+    }
+
+    /// The variables of expressions at a node.
+    pub(crate) fn variables(&self, node: usize) -> Variables {
         Variables {
-            point: self.position(place),
+            point: self.position(node),
             body: self.place,
             subdomain: [0; 3],
         }
     }
 
     /// The position of a node in the notation of messages: "(x, y)" or "(x, y, z)".
-    pub(crate) fn spot(&self, place: [usize; 3]) -> String {
-        self.spot_at(self.position(place))
+    pub(crate) fn spot(&self, node: usize) -> String {
+        self.spot_at(self.position(node))
     }
 
     /// A point in the notation of messages.
@@ -191,7 +231,11 @@ impl GridSpec {
     /// Its bodies, layer by layer and row by row.
     pub fn expand(&self) -> Vec<BodySpec> {
         let GridSpec { bodies, whole } = self;
-        let BoxMesh { origin, size, .. } = whole.mesh;
+        let grid = whole
+            .mesh
+            .grid()
+            .expect("a grid of bodies is cut from a box");
+        let BoxMesh { origin, size, .. } = *grid;
         let body = |place: [usize; 3]| {
             let outer = |s: usize| place[s / 2] == [0, bodies[s / 2] - 1][s % 2];
             let mut body = whole.clone();
@@ -201,17 +245,21 @@ impl GridSpec {
                 _ => format!("{}{i}_{j}_{k}", whole.name),
             };
             body.place = place;
+            let mut mesh = *grid;
             for d in 0..3 {
-                body.mesh.origin[d] = origin[d] + size[d] * (place[d] as f64 / bodies[d] as f64);
+                mesh.origin[d] = origin[d] + size[d] * (place[d] as f64 / bodies[d] as f64);
                 // The same to the last bit for every body: equal subdomains then have equal matrices.
-                body.mesh.size[d] = size[d] / bodies[d] as f64;
+                mesh.size[d] = size[d] / bodies[d] as f64;
             }
+            body.mesh = mesh.into();
             body.rho = whole.rho.over(*bodies);
             body.poisson = whole.poisson.over(*bodies);
             body.surface.retain(|load| outer(load.side));
             body.springs.retain(|(side, _)| outer(*side));
-            for s in (0..6).filter(|&s| !outer(s)) {
-                body.dirichlet[s] = [const { None }; 3];
+            for (s, given) in body.dirichlet.iter_mut().enumerate() {
+                if !outer(s) {
+                    *given = [const { None }; 3];
+                }
             }
             body
         };
@@ -226,6 +274,8 @@ pub enum Pair {
     All,
     /// Two bodies by name.
     Named(String, String),
+    /// Two boundary groups by name: all bodies that have them, and whose nodes there match.
+    Surfaces(String, String),
 }
 
 /// The nodes of a common face (or of a side) to which an entry applies. The parameters run from 0 to 1 along the common
@@ -249,8 +299,12 @@ pub enum Extent {
 pub struct TieSpec {
     /// The bodies.
     pub pair: Pair,
+    /// The sides that are tied, in the order of the names; `None`: wherever the bodies touch.
+    pub sides: Option<[usize; 2]>,
     /// The part of their common face.
     pub extent: Extent,
+    /// Initial gaps and overclosures up to this length count as touching; ties close them all.
+    pub adjust: f64,
     /// Where it was written, or empty.
     pub written: String,
 }
@@ -268,6 +322,10 @@ pub struct ContactSpec {
     pub extent: Extent,
     /// The gap g, of either sign; it adds to the distance of the sides.
     pub gap: Profile,
+    /// The largest distance of the sides of meshes at which they may touch; `None`: any.
+    pub distance: Option<f64>,
+    /// Initial gaps and overclosures up to this length count as touching.
+    pub adjust: f64,
     /// Factor of the gap over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, or empty.
@@ -279,7 +337,7 @@ pub struct ContactSpec {
 pub struct ObstacleSpec {
     /// Name of the body; `None`: all bodies.
     pub body: Option<String>,
-    /// Indices into [`SIDES`].
+    /// The sides of the mesh.
     pub sides: Vec<usize>,
     /// The part of each side; t runs from 0 to 1 along it in the direction of increasing x or y.
     pub extent: Extent,
@@ -293,6 +351,41 @@ pub struct ObstacleSpec {
     pub gap: Profile,
     /// Factor of the bounds over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// Contacts between all sides that are near each other and have opposite normals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AutoContact {
+    /// The largest gap; `None`: a fraction of the edges there.
+    pub distance: Option<f64>,
+    /// Initial gaps and overclosures up to this length count as touching.
+    pub adjust: f64,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// An equation Σ factor · u = value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EquationSpec {
+    /// Number of the body, degree of freedom C k + c in it, factor.
+    pub terms: Vec<(usize, usize, f64)>,
+    /// The right-hand side.
+    pub value: f64,
+    /// Where it was written, or empty.
+    pub written: String,
+}
+
+/// A point at which displacement and stress are reported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeSpec {
+    /// Its name.
+    pub name: String,
+    /// The body; `None`: the first that contains the point.
+    pub body: Option<String>,
+    /// The point.
+    pub point: [f64; 3],
     /// Where it was written, or empty.
     pub written: String,
 }
@@ -325,6 +418,12 @@ pub struct SceneSpec {
     /// Unilateral contacts. An entry that names a pair overrides the contacts of all pairs; a contact that names a pair
     /// overrides the ties of all pairs.
     pub contacts: Vec<ContactSpec>,
+    /// Equations between displacements.
+    pub equations: Vec<EquationSpec>,
+    /// Contacts that are found, where they are wanted.
+    pub auto: Option<AutoContact>,
+    /// Points of interest.
+    pub probes: Vec<ProbeSpec>,
     /// Rigid obstacles.
     pub obstacles: Vec<ObstacleSpec>,
     /// Load steps; `None`: everything is applied at once.
@@ -345,6 +444,9 @@ impl SceneSpec {
             default: ByDefault::Tied,
             ties: Vec::new(),
             contacts: Vec::new(),
+            equations: Vec::new(),
+            auto: None,
+            probes: Vec::new(),
             obstacles: Vec::new(),
             steps: None,
             exact: None,
@@ -394,7 +496,9 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
         if bodies > 1 {
             spec.ties.push(TieSpec {
                 pair: Pair::All,
+                sides: None,
                 extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0], [0.0, 1.0]]),
+                adjust: 0.0,
                 written: String::new(),
             });
         }

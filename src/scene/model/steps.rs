@@ -18,6 +18,13 @@ pub struct Steps {
 }
 
 impl Steps {
+    /// Takes the ramps of the entries of `spec` again, after entries for surfaces have become entries for bodies.
+    pub(crate) fn renumber(&mut self, spec: &SceneSpec) {
+        let contacts = spec.contacts.iter().map(|c| c.ramp.clone());
+        let obstacles = spec.obstacles.iter().map(|o| o.ramp.clone());
+        self.entries = contacts.chain(obstacles).collect();
+    }
+
     /// The steps of `spec`. Every factor is evaluated at every time.
     pub(crate) fn new(spec: &SceneSpec) -> Result<Option<Steps>> {
         let bodies = spec.bodies.iter().map(|b| (&b.ramp, &b.written));

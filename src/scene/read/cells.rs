@@ -28,6 +28,9 @@ impl Reader {
 
     fn cells(&self, mut section: Section, item: &Item, shape: &Shape) -> Result<Cells> {
         let file = section.need("file", "the name of a file")?;
+        if shape.of_cells {
+            return file.error("a `file` of values by element, which only boxes take");
+        }
         // A path is relative to the scene's own directory.
         let directory = Path::new(item.file).parent();
         let path = PathBuf::from(file.text("the name of a file")?);

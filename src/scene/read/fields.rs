@@ -14,6 +14,8 @@ pub(super) struct Shape {
     pub mesh: BoxMesh,
     /// Bodies of the grid, `None` outside a grid.
     pub bodies: Option<[usize; 3]>,
+    /// Whether the body is a mesh of cells: it has no table of subdomains.
+    pub of_cells: bool,
 }
 
 impl Reader {
@@ -97,6 +99,9 @@ impl Reader {
             (By::Body, Some(bodies)) => ("bodies", bodies),
             (By::Body, None) => {
                 return item.error("`per_body` outside a [grid], where one number serves")
+            }
+            (By::Subdomain, _) if shape.of_cells => {
+                return item.error("values by subdomain on a mesh, whose subdomains have no rows")
             }
             (By::Subdomain, _) => ("subdomains", shape.mesh.subdomains),
         };

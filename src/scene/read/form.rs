@@ -45,6 +45,7 @@ impl Reader {
                 return item.error(message);
             }
         }
-        Ok(Reader { dim, form })
+        let order = scene.read("order", super::order)?.unwrap_or(1);
+        Ok(Reader { order, dim, form })
     }
 }

@@ -4,6 +4,8 @@ mod cells;
 mod document;
 mod fields;
 mod form;
+mod mesh;
+mod probes;
 mod shape;
 mod sides;
 mod steps;
@@ -29,15 +31,24 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
         (_, Some(item)) | (Some(item), None) => item.text("a title")?,
         (None, None) => stem(file),
     };
+    let source = scene.read("mesh", |item| mesh::Source::read(&reader, item))?;
     let grids = scene.each("grid", |item| Ok(reader.grid(item)?.expand()))?;
     let mut bodies = grids.concat();
     for item in scene.tables("body")? {
-        bodies.push(reader.body(item, bodies.len())?);
+        match &source {
+            Some(source) if mesh::Source::has(item) => {
+                bodies.extend(reader.mesh_bodies(item, source)?)
+            }
+            _ => bodies.push(reader.body(item, bodies.len())?),
+        }
     }
     let default = scene.read("interface", |item| reader.interface(item))?;
     let ties = scene.each("tie", |item| reader.tie(item, &bodies))?;
-    let contacts = scene.each("contact", |item| reader.contact(item, &bodies))?;
-    let obstacles = scene.each("obstacle", |item| reader.obstacle(item, &bodies))?;
+    let (auto, contacts) = reader.contacts(&mut scene, &bodies)?;
+    let obstacles = scene
+        .each("obstacle", |item| reader.obstacle(item, &bodies))?
+        .concat();
+    let probes = scene.each("probe", |item| reader.probe(item, &bodies))?;
     let steps = scene.read("steps", |item| reader.steps(item))?;
     let exact = scene.read("exact", |item| reader.components(item))?;
     let options = scene.read("options", options)?;
@@ -54,6 +65,9 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
         default: default.unwrap_or_default(),
         ties,
         contacts,
+        equations: Vec::new(),
+        auto,
+        probes,
         obstacles,
         steps,
         exact,
@@ -61,7 +75,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
     })
 }
 
-fn stem(file: &str) -> String {
+pub(super) fn stem(file: &str) -> String {
     std::path::Path::new(file)
         .file_stem()
         .map_or_else(|| file.to_string(), |s| s.to_string_lossy().into_owned())
@@ -83,7 +97,17 @@ fn options(item: &Item) -> Result<Vec<(String, String)>> {
     section.entries.iter().map(option).collect()
 }
 
+/// The order of elements, 1 or 2.
+fn order(item: &Item) -> Result<usize> {
+    match item.value {
+        Value::Integer(k @ (1 | 2)) => Ok(k as usize),
+        _ => item.expected("1 or 2"),
+    }
+}
+
 struct Reader {
+    /// The order of the elements of boxes that say nothing else.
+    order: usize,
     /// The dimension of the scene.
     dim: usize,
     /// The equation and its finite elements.
@@ -143,7 +167,11 @@ impl Reader {
             subdomains,
         };
         let map = bent.map(|item| self.map(item, &mesh)).transpose()?;
-        let shape = Shape { mesh, bodies };
+        let shape = Shape {
+            mesh,
+            bodies,
+            of_cells: false,
+        };
         let mut body = BodySpec::new(name, mesh);
         let elastic = self.form.is_elastic();
         if let Some(item) = section.take(if elastic { "young" } else { "rho" }) {
@@ -162,6 +190,7 @@ impl Reader {
         if let Some(item) = section.take("dirichlet") {
             body.dirichlet = self.sides(item)?;
         }
+        body.order = section.read("order", order)?.unwrap_or(self.order);
         body.ramp = self.ramp(section)?;
         (body.map, body.written) = (map, item.written());
         Ok(body)

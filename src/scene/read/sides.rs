@@ -4,25 +4,30 @@ use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
 use crate::scene::model::field::Field;
-use crate::scene::model::spec::{free_all_round, held_all_round, Force, Sides, SurfaceLoad};
+use crate::scene::model::spec::{free_all_round, held, held_all_round, Force, Sides, SurfaceLoad};
 
 impl Reader {
     /// Dirichlet conditions: "all", "none", a list of sides held at zero, or a table of values.
     pub(super) fn sides(&self, item: &Item) -> Result<Sides> {
         let mut sides = free_all_round();
+        let mut hold = |side: usize, given: [Option<Field>; 3]| {
+            let n = sides.len().max(side + 1);
+            sides.resize(n, [const { None }; 3]);
+            sides[side] = given;
+        };
         let names = self.sides_list().replace(" or ", ", ");
         match &item.value {
-            _ if item.is("all") => sides = held_all_round(),
+            _ if item.is("all") => return Ok(held_all_round()),
             _ if item.is("none") => {}
             Value::List(items) => {
                 for item in items {
                     item.text(&format!("a side ({names})"))?;
-                    sides[self.side(item)?] = held_all_round()[0].clone();
+                    hold(self.side(item)?, held());
                 }
             }
             Value::Table(_) => {
                 for (side, given) in self.by_side(item, "`dirichlet`", |i| self.given(i))? {
-                    sides[side] = given;
+                    hold(side, given);
                 }
             }
             _ => {
@@ -35,7 +40,7 @@ impl Reader {
     }
 
     /// The given values of one side: one for all components, a list of them, or a table with some of the keys x, y, z.
-    fn given(&self, item: &Item) -> Result<[Option<Field>; 3]> {
+    pub(super) fn given(&self, item: &Item) -> Result<[Option<Field>; 3]> {
         let c = self.form.components(self.dim);
         let mut out = [const { None }; 3];
         match &item.value {

@@ -5,7 +5,7 @@ use super::Reader;
 use crate::error::Result;
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{
-    BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec,
+    AutoContact, BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec,
 };
 
 impl Reader {
@@ -23,28 +23,26 @@ impl Reader {
 
     pub(super) fn tie(&self, item: &Item, bodies: &[BodySpec]) -> Result<TieSpec> {
         let mut section = item.section("[[tie]]")?;
-        let pair = self.bodies(&mut section, bodies)?;
+        let pair = self.pair_of(&mut section, bodies)?;
+        let sides = section.read("sides", |item| self.pair_of_sides(item, &pair, bodies))?;
+        let adjust = section.read("adjust", |item| self.positive(item))?;
         let extent = self.extent(&mut section, item, "[[tie]]")?;
         section.finish()?;
         Ok(TieSpec {
             pair,
+            sides,
             extent,
+            adjust: adjust.unwrap_or(0.0),
             written: item.written(),
         })
     }
 
     pub(super) fn contact(&self, item: &Item, bodies: &[BodySpec]) -> Result<ContactSpec> {
         let mut section = item.section("[[contact]]")?;
-        let pair = self.bodies(&mut section, bodies)?;
-        let sides = section.read("sides", |item| {
-            match (item.list("a pair of sides")?, &pair) {
-                (_, Pair::All) => {
-                    item.error("`sides` for all pairs, where two named bodies were expected")
-                }
-                ([a, b], _) => Ok([self.side(a)?, self.side(b)?]),
-                _ => item.expected("a pair of sides"),
-            }
-        })?;
+        let pair = self.pair_of(&mut section, bodies)?;
+        let sides = section.read("sides", |item| self.pair_of_sides(item, &pair, bodies))?;
+        let adjust = section.read("adjust", |item| self.positive(item))?;
+        let distance = section.read("distance", |item| self.positive(item))?;
         let extent = self.extent(&mut section, item, "[[contact]]")?;
         let gap = section.read("gap", |item| self.profile(item))?;
         let ramp = self.ramp(&mut section)?;
@@ -54,12 +52,104 @@ impl Reader {
             sides,
             extent,
             gap: gap.unwrap_or_else(|| Profile::constant(0.0)),
+            distance,
+            adjust: adjust.unwrap_or(0.0),
             ramp,
             written: item.written(),
         })
     }
 
-    pub(super) fn obstacle(&self, item: &Item, bodies: &[BodySpec]) -> Result<ObstacleSpec> {
+    /// [contact] with `auto`, or the list [[contact]].
+    pub(super) fn contacts(
+        &self,
+        scene: &mut Section,
+        bodies: &[BodySpec],
+    ) -> Result<(Option<AutoContact>, Vec<ContactSpec>)> {
+        match scene.tables("contact")? {
+            [one] if one.section("[contact]")?.entry("auto").is_some() => {
+                Ok((self.auto(one)?, Vec::new()))
+            }
+            list => {
+                let list: Result<_> = list.iter().map(|item| self.contact(item, bodies)).collect();
+                Ok((None, list?))
+            }
+        }
+    }
+
+    fn auto(&self, item: &Item) -> Result<Option<AutoContact>> {
+        let mut section = item.section("[contact]")?;
+        let auto = section.read("auto", |item| match item.value {
+            Value::Truth(v) => Ok(v),
+            _ => item.expected("true or false"),
+        })?;
+        let distance = section.read("distance", |item| self.positive(item))?;
+        let adjust = section.read("adjust", |item| self.positive(item))?;
+        section.finish()?;
+        Ok((auto == Some(true)).then(|| AutoContact {
+            distance,
+            adjust: adjust.unwrap_or(0.0),
+            written: item.written(),
+        }))
+    }
+
+    /// `bodies`, or `surfaces` of meshes.
+    fn pair_of(&self, section: &mut Section, bodies: &[BodySpec]) -> Result<Pair> {
+        let Some(item) = section.take("surfaces") else {
+            return self.bodies(section, bodies);
+        };
+        if let Some(both) = section.take("bodies") {
+            return both.error("both `surfaces` and `bodies` are given where one was expected");
+        }
+        let name = |item: &Item| {
+            let name = item.text("the name of a boundary group")?;
+            let has = |b: &&BodySpec| {
+                b.mesh
+                    .cells()
+                    .is_some_and(|_| b.mesh.side_of_name(&name).is_some())
+            };
+            match bodies.iter().any(|b| has(&b)) {
+                true => Ok(name),
+                false => item.error(format!(
+                    "the boundary group `{name}`, which no body of the mesh has"
+                )),
+            }
+        };
+        match item.list("a pair of boundary groups")? {
+            [a, b] => Ok(Pair::Surfaces(name(a)?, name(b)?)),
+            _ => item.expected("a pair of boundary groups"),
+        }
+    }
+
+    /// The sides of two named bodies.
+    fn pair_of_sides(&self, item: &Item, pair: &Pair, bodies: &[BodySpec]) -> Result<[usize; 2]> {
+        let Pair::Named(first, second) = pair else {
+            return item.error("`sides` for all pairs, where two named bodies were expected");
+        };
+        let side = |item: &Item, name: &String| {
+            let body = bodies.iter().find(|b| b.name == *name);
+            match body.filter(|b| b.mesh.cells().is_some()) {
+                None => self.side(item),
+                Some(body) => {
+                    let side = item.text("the name of a boundary group")?;
+                    body.mesh.side_of_name(&side).map_or_else(
+                        || {
+                            item.error(format!(
+                                "the boundary group `{side}`, which body `{name}` does not have"
+                            ))
+                        },
+                        Ok,
+                    )
+                }
+            }
+        };
+        match item.list("a pair of sides")? {
+            [a, b] => Ok([side(a, first)?, side(b, second)?]),
+            _ => item.expected("a pair of sides"),
+        }
+    }
+
+    /// An obstacle; one for each of all bodies where some of them are meshes, whose sides have numbers of their own.
+    pub(super) fn obstacle(&self, item: &Item, bodies: &[BodySpec]) -> Result<Vec<ObstacleSpec>> {
         let mut section = item.section("[[obstacle]]")?;
         let wanted = "\"all\" or the name of a body";
         let named = section.need("body", wanted)?;
@@ -67,8 +157,16 @@ impl Reader {
             true => None,
             false => Some(body_name(named, bodies, wanted)?),
         };
-        let sides =
-            self.obstacle_sides(section.need("side", "a side, a list of them or \"all\"")?)?;
+        let meant: Vec<&BodySpec> = match &body {
+            Some(name) => bodies.iter().filter(|b| b.name == *name).collect(),
+            None => bodies.iter().collect(),
+        };
+        let of_cells = meant.iter().any(|b| b.mesh.cells().is_some());
+        let written = section.need("side", "a side, a list of them or \"all\"")?;
+        let sides = match of_cells {
+            false => vec![(body.clone(), self.obstacle_sides(written)?)],
+            true => self.obstacle_groups(written, &meant)?,
+        };
         let extent = self.extent(&mut section, item, "[[obstacle]]")?;
         let mut bound = |key| section.read(key, |item| self.profile(item));
         let elastic = self.form.is_elastic();
@@ -85,17 +183,54 @@ impl Reader {
                 false => "[[obstacle]] without a bound (`below`, `above` or both were expected)",
             });
         }
-        Ok(ObstacleSpec {
+        let gap = gap.unwrap_or_else(|| Profile::constant(0.0));
+        let one = |(body, sides)| ObstacleSpec {
             body,
             sides,
-            extent,
-            below,
-            above,
+            extent: extent.clone(),
+            below: below.clone(),
+            above: above.clone(),
             rigid,
-            gap: gap.unwrap_or_else(|| Profile::constant(0.0)),
-            ramp,
+            gap: gap.clone(),
+            ramp: ramp.clone(),
             written: item.written(),
-        })
+        };
+        Ok(sides.into_iter().map(one).collect())
+    }
+
+    /// The sides of each body that has some of the named groups.
+    fn obstacle_groups(
+        &self,
+        item: &Item,
+        bodies: &[&BodySpec],
+    ) -> Result<Vec<(Option<String>, Vec<usize>)>> {
+        let names: Vec<String> = match &item.value {
+            Value::List(items) => {
+                let name = |item: &Item| item.text("the name of a side or boundary group");
+                items.iter().map(name).collect::<Result<_>>()?
+            }
+            _ => vec![item.text("a side or boundary group, a list of them or \"all\"")?],
+        };
+        let mut out = Vec::new();
+        for body in bodies {
+            let sides: Vec<usize> = match names.iter().any(|n| n == "all") {
+                true => body.mesh.outer_sides().collect(),
+                false => names
+                    .iter()
+                    .filter_map(|n| body.mesh.side_of_name(n))
+                    .collect(),
+            };
+            if !sides.is_empty() {
+                out.push((Some(body.name.clone()), sides));
+            }
+        }
+        match out.is_empty() {
+            true => item.error(format!(
+                "the side `{}`, which no such body has",
+                names.join("`, `")
+            )),
+            false => Ok(out),
+        }
     }
 
     fn obstacle_sides(&self, item: &Item) -> Result<Vec<usize>> {
@@ -186,7 +321,7 @@ impl Reader {
 }
 
 /// A body by name or number.
-fn body_name(item: &Item, bodies: &[BodySpec], wanted: &str) -> Result<String> {
+pub(super) fn body_name(item: &Item, bodies: &[BodySpec], wanted: &str) -> Result<String> {
     match &item.value {
         Value::Text(name) => Ok(name.clone()),
         Value::Integer(k) => match bodies.get(usize::try_from(*k).unwrap_or(usize::MAX)) {

@@ -16,6 +16,7 @@ impl Scene {
     pub fn side_of(&self, source: RowSource, body: usize) -> Option<usize> {
         match source {
             RowSource::Obstacle(k) => Some(self.obstacles[k].side),
+            RowSource::Equation(_) => None,
             RowSource::Interface(k) => {
                 let interface = &self.interfaces[k];
                 let which = interface.bodies.iter().position(|&b| b == body)?;
@@ -46,6 +47,7 @@ impl<'a> Areas<'a> {
         let may_touch = match source {
             RowSource::Interface(k) => self.scene.interfaces[k].has_contact(),
             RowSource::Obstacle(_) => true,
+            RowSource::Equation(_) => false,
         };
         if !(may_touch && self.scene.has_pressure()) {
             return 0.0;
@@ -71,17 +73,18 @@ fn areas(scene: &Scene, source: RowSource, body: usize) -> HashMap<usize, f64> {
             areas.extend(interface.shared.iter().map(|s| (s.nodes[which], 0.0)));
         }
         RowSource::Obstacle(_) => {
-            let nodes = spec.mesh.side_nodes(side);
-            areas.extend(nodes.map(|p| (spec.mesh.node(p), 0.0)));
+            let nodes = spec.mesh.side_nodes(side).into_iter();
+            areas.extend(nodes.map(|node| (node, 0.0)));
         }
+        RowSource::Equation(_) => {}
     }
-    for cell in spec.side_cells(side) {
-        if !cell.iter().all(|&p| areas.contains_key(&spec.mesh.node(p))) {
+    for face in spec.faces(side) {
+        if !face.nodes.iter().all(|node| areas.contains_key(node)) {
             continue;
         }
-        let weights = spec.side_weights(side, &cell, scene.form.element);
-        for (&p, area) in cell.iter().zip(weights.area) {
-            *areas.entry(spec.mesh.node(p)).or_default() += area;
+        let weights = spec.face_weights(side, &face, scene.form.element);
+        for (&node, (area, _)) in face.nodes.iter().zip(weights) {
+            *areas.entry(node).or_default() += area;
         }
     }
     areas

@@ -192,7 +192,7 @@ impl<'a> Checks<'a> {
     fn obstacle(&self, row: &PointRow) -> Option<&'a Obstacle> {
         match row.source {
             RowSource::Obstacle(o) => Some(&self.obstacles[o]),
-            RowSource::Interface(_) => None,
+            RowSource::Interface(_) | RowSource::Equation(_) => None,
         }
     }
 

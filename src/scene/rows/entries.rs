@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::facing::opposite;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
+use crate::scene::geometry::matching::{matching, Mismatch};
 use crate::scene::geometry::touching::touching;
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{ByDefault, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
@@ -19,7 +20,7 @@ pub(crate) fn find(
     steps: &Option<Steps>,
 ) -> Result<Vec<Interface>> {
     let mut interfaces = touching(bodies)?;
-    facing(bodies, &spec.contacts, &mut interfaces)?;
+    facing(bodies, spec, &mut interfaces)?;
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
     let zero = Profile::constant(0.0);
@@ -31,6 +32,7 @@ pub(crate) fn find(
             gap: &zero,
             number: None,
         }),
+        own: None,
     };
     let default = (spec.default != ByDefault::Free).then_some(default);
     let mut weak = Vec::new();
@@ -45,14 +47,14 @@ pub(crate) fn find(
     Ok(interfaces)
 }
 
-/// Interfaces of facing sides that a contact names; they replace the interface of the touching pair.
-fn facing(
-    bodies: &[Body],
-    contacts: &[ContactSpec],
-    interfaces: &mut Vec<Interface>,
-) -> Result<()> {
-    for spec in contacts {
-        let (Some(sides), Pair::Named(first, second)) = (spec.sides, &spec.pair) else {
+/// Interfaces of facing sides that an entry names; they replace the interface of the touching pair.
+fn facing(bodies: &[Body], spec: &SceneSpec, interfaces: &mut Vec<Interface>) -> Result<()> {
+    let ties = spec.ties.iter();
+    let ties = ties.map(|t| (t.sides, &t.pair, t.adjust, None, &t.written));
+    let contacts = spec.contacts.iter();
+    let contacts = contacts.map(|c| (c.sides, &c.pair, c.adjust, c.distance, &c.written));
+    for (number, (sides, pair, adjust, distance, written)) in ties.chain(contacts).enumerate() {
+        let (Some(sides), Pair::Named(first, second)) = (sides, pair) else {
             continue;
         };
         let find = |name: &String| bodies.iter().position(|b| b.spec.name == *name);
@@ -64,18 +66,31 @@ fn facing(
             true => ([a, b], sides),
             false => ([b, a], [sides[1], sides[0]]),
         };
-        let Some(interface) = opposite(bodies, pair, sides) else {
-            return Err(Error::Input(format!(
-                "{}the sides of bodies `{first}` and `{second}` have different numbers \
-                 of nodes (equal numbers were expected, so that each node has one opposite)",
-                spec.written
-            )));
+        let mut interface = match pair.map(|k| bodies[k].mesh().grid()) {
+            [Some(x), Some(y)] => match opposite(bodies, [x, y], pair, sides) {
+                Some(interface) => interface,
+                None => {
+                    return Err(Error::Input(format!(
+                        "{written}the sides of bodies `{first}` and `{second}` have different numbers \
+                         of nodes (equal numbers were expected, so that each node has one opposite)"
+                    )))
+                }
+            },
+            _ => {
+                let reach = distance.unwrap_or(f64::INFINITY);
+                matching(bodies, pair, sides, reach).map_err(|why| match why {
+                    Mismatch::Apart(why) | Mismatch::Lonely(why) => Error::Input(format!("{written}{why}")),
+                })?
+            }
         };
-        interfaces.retain(|i| i.bodies != pair || i.apart);
-        interfaces.push(Interface {
-            apart: true,
-            ..interface
-        });
+        for distance in interface.distances.iter_mut() {
+            if distance.abs() <= adjust {
+                *distance = 0.0;
+            }
+        }
+        interface.entry = Some(number);
+        interfaces.retain(|i| i.bodies != pair || i.entry.is_some());
+        interfaces.push(interface);
     }
     interfaces.sort_by_key(|i| i.bodies);
     Ok(())
@@ -127,14 +142,17 @@ impl<'a> Entries<'a> {
             named: HashMap::new(),
         };
         let contacts = contacts.iter().enumerate();
-        let contacts = contacts.map(|(number, spec)| Entry::contact(number, spec));
-        for entry in ties.iter().map(Entry::tie).chain(contacts) {
+        let contacts = contacts.map(|(number, spec)| Entry::contact(ties.len(), number, spec));
+        let ties = ties.iter().enumerate().map(|(k, spec)| Entry::tie(k, spec));
+        for entry in ties.chain(contacts) {
             let (first, second) = match entry.pair {
                 Pair::All => {
                     entries.all.push((entry, false));
                     continue;
                 }
                 Pair::Named(first, second) => (first, second),
+                // Surfaces have been replaced by bodies and sides before.
+                Pair::Surfaces(..) => continue,
             };
             let find = |name: &String| {
                 index.get(name.as_str()).copied().ok_or_else(|| {
@@ -176,8 +194,9 @@ impl<'a> Entries<'a> {
         default: Option<&Entry<'a>>,
         last: Factors<'_>,
     ) -> Result<()> {
-        let named = self.named.get(&interface.bodies);
-        let named: &[(Entry<'_>, [usize; 2])] = named.map_or(&[], Vec::as_slice);
+        let named = self.named.get(&interface.bodies).into_iter().flatten();
+        let named = named.filter(|(e, _)| e.own.is_none() || e.own == interface.entry);
+        let named: Vec<(Entry<'_>, [usize; 2])> = named.copied().collect();
         let contact_named = named.iter().any(|(e, _)| e.contact.is_some());
         let mut links = Links::new(bodies, interface);
         let speaks = |e: &Entry<'_>| match e.contact {
@@ -192,7 +211,7 @@ impl<'a> Entries<'a> {
                     *used |= !speaks(entry) || links.add(*entry, None)? > 0;
                 }
             }
-            for (entry, order) in named {
+            for (entry, order) in &named {
                 if entry.contact.is_some() == contact {
                     let selected = links.add(*entry, Some(*order))?;
                     if selected == 0 && *entry.extent != Extent::None {

@@ -12,6 +12,8 @@ pub(crate) struct Entry<'a> {
     pub written: &'a str,
     /// The data of a contact; `None`: a tie.
     pub contact: Option<Contact<'a>>,
+    /// Its number, ties before contacts, if it names the sides: it applies to the interface of these sides only.
+    pub own: Option<usize>,
 }
 
 /// The data of a contact beyond its nodes.
@@ -23,16 +25,18 @@ pub(crate) struct Contact<'a> {
 }
 
 impl<'a> Entry<'a> {
-    pub fn tie(spec: &'a TieSpec) -> Entry<'a> {
+    pub fn tie(number: usize, spec: &'a TieSpec) -> Entry<'a> {
         Entry {
             pair: &spec.pair,
             extent: &spec.extent,
             written: &spec.written,
             contact: None,
+            own: spec.sides.map(|_| number),
         }
     }
 
-    pub fn contact(number: usize, spec: &'a ContactSpec) -> Entry<'a> {
+    /// Contact `number`, after `ties` ties.
+    pub fn contact(ties: usize, number: usize, spec: &'a ContactSpec) -> Entry<'a> {
         Entry {
             pair: &spec.pair,
             extent: &spec.extent,
@@ -41,6 +45,7 @@ impl<'a> Entry<'a> {
                 gap: &spec.gap,
                 number: Some(number),
             }),
+            own: spec.sides.map(|_| ties + number),
         }
     }
 

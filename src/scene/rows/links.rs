@@ -123,12 +123,12 @@ impl<'i, 'b, 'e> Links<'i, 'b, 'e> {
         } = &*self.interface;
         let node = shared[k];
         let body = &self.bodies[bodies[order[0]]];
-        let place = body.mesh().place(node.nodes[order[0]]);
-        let value = contact.gap.eval(node.t[0], &body.spec.variables(place));
+        let at = node.nodes[order[0]];
+        let value = contact.gap.eval(node.t[0], &body.spec.variables(at));
         if value.is_finite() {
             return Ok(value);
         }
-        let ([a, b], at) = (self.names(), body.spec.spot(place));
+        let ([a, b], at) = (self.names(), body.spec.spot(at));
         Err(Error::Input(format!(
             "{}the gap of bodies `{a}` and `{b}` is {value} at {at} where a finite number was expected",
             entry.written

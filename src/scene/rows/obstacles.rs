@@ -7,7 +7,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::normals::parameters;
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::rigid::Rigid;
-use crate::scene::model::spec::{Extent, ObstacleSpec, SIDES};
+use crate::scene::model::spec::{Extent, ObstacleSpec};
 use std::collections::BTreeMap;
 
 /// One bound on one side of a body.
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 pub struct Obstacle {
     /// The body.
     pub body: usize,
-    /// The side, an index into [`SIDES`].
+    /// The side of its mesh.
     pub side: usize,
     /// u ≤ above; otherwise u ≥ below.
     pub upper: bool,
@@ -27,12 +27,14 @@ pub struct Obstacle {
     pub rigid: Option<Rigid>,
     /// The distance of each of these nodes from the rigid body, and the unit vector away from it.
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
+    /// The parameters of each of these nodes along the side.
+    parameters: BTreeMap<usize, [f64; 2]>,
 }
 
 impl Obstacle {
-    /// Parameters of a node of the body along the side, 0 ≤ t ≤ 1.
-    pub fn t(&self, body: &Body, node: usize) -> [f64; 2] {
-        parameters(&body.spec, self.side, body.mesh().place(node))
+    /// Parameters of one of the nodes along the side, 0 ≤ t ≤ 1.
+    pub fn t(&self, node: usize) -> [f64; 2] {
+        self.parameters.get(&node).copied().unwrap_or_default()
     }
 
     /// The distance of a node from the rigid body, and the direction towards it. An obstacle that bounds u itself has
@@ -84,8 +86,8 @@ pub(crate) fn find(
                 let Some(bound) = bound else { continue };
                 let of_side = found.entry((b, side, number, upper)).or_default();
                 for &(node, t) in &selected {
-                    let place = spec.mesh.place(node);
-                    let (at, spot, name) = (spec.variables(place), || spec.spot(place), &spec.name);
+                    let (at, spot, name) = (spec.variables(node), || spec.spot(node), &spec.name);
+                    of_side.parameters.insert(node, t);
                     if let Some(rigid) = &entry.rigid {
                         let Some(nearest) = rigid.distance(at.point) else {
                             return fail(format!(
@@ -124,10 +126,15 @@ pub(crate) fn find(
             body,
             side,
             upper,
-            name: format!("{}.{} {what}", bodies[body].spec.name, SIDES[side]),
+            name: format!(
+                "{}.{} {what}",
+                bodies[body].spec.name,
+                bodies[body].mesh().side_name(side)
+            ),
             limits: Limits::new(of_side.limits),
             rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
             nearest: of_side.nearest,
+            parameters: of_side.parameters,
         }
     };
     Ok(found.into_iter().map(named).collect())
@@ -138,18 +145,15 @@ pub(crate) fn find(
 struct Found {
     limits: Vec<Limit>,
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
+    parameters: BTreeMap<usize, [f64; 2]>,
 }
 
 /// The nodes that `entry` selects on a side, with their t.
 fn select(body: &Body, side: usize, entry: &ObstacleSpec) -> Result<Vec<(usize, [f64; 2])>> {
     let mesh = body.mesh();
-    let places: Vec<[usize; 3]> = mesh.side_nodes(side).collect();
-    let nodes: Vec<usize> = places.iter().map(|&p| mesh.node(p)).collect();
-    let t: Vec<[f64; 2]> = places
-        .iter()
-        .map(|&p| parameters(&body.spec, side, p))
-        .collect();
-    let (name, side) = (&body.spec.name, SIDES[side]);
+    let nodes = mesh.side_nodes(side);
+    let t = parameters(&body.spec, side, &nodes);
+    let (name, side) = (&body.spec.name, mesh.side_name(side));
     let picked = pick(&entry.extent, &t).map_err(|missing| {
         Error::Input(format!(
             "{}the obstacle of body `{name}` names the node with {missing}, but its side {side} has {} nodes and none \

@@ -159,8 +159,7 @@ impl BodyNode {
 
     /// Its position.
     pub(crate) fn position(&self, bodies: &[Body]) -> [f64; 3] {
-        let spec = &bodies[self.body].spec;
-        spec.position(spec.mesh.place(self.node))
+        bodies[self.body].spec.position(self.node)
     }
 
     /// Its body dof.
@@ -171,18 +170,16 @@ impl BodyNode {
 
     /// The position as messages name it.
     pub(crate) fn spot(&self, bodies: &[Body]) -> String {
-        let spec = &bodies[self.body].spec;
-        spec.spot(spec.mesh.place(self.node))
+        bodies[self.body].spec.spot(self.node)
     }
 
     /// The point of these members, the lowest body first.
     pub(crate) fn point(members: Vec<BodyNode>, bodies: &[Body]) -> Point {
         let first = members[0];
         let body = &bodies[first.body];
-        let place = body.mesh().place(first.node);
         Point {
             block: first.dof(bodies, 0),
-            subdomain: body.first_subdomain + body.mesh().owner(place),
+            subdomain: body.first_subdomain + body.mesh().owner(first.node),
             tied_to: (0..members.len()).collect(),
             rows: Vec::new(),
             members,

@@ -138,7 +138,7 @@ fn unmatched(
 ) -> Error {
     let has = &bodies[interface.bodies[side]];
     let other = &bodies[interface.bodies[1 - side]];
-    let at = has.spec.spot(has.mesh().place(node));
+    let at = has.spec.spot(node);
     let t = Parameters(t);
     // Messages name the body that was written later.
     let later = &bodies[interface.bodies[1]].spec.written;

@@ -1,6 +1,7 @@
 //! The rows of B_gl for ties, contacts and obstacles, with their labels.
 
 use super::areas::Areas;
+use super::equations::Equation;
 use super::points::{Point, PointRow};
 use crate::error::Result;
 use crate::scene::checked::Scene;
@@ -31,7 +32,26 @@ impl Scene {
                 label: self.label(point, row, &mut areas),
             }
         };
-        self.each_row(owns).map(row).collect()
+        let equation = |(k, e): (usize, &Equation)| InterfaceRow {
+            terms: e.terms.clone(),
+            gap: e.value - last.dirichlet() * e.given,
+            kind: RowKind::Equality,
+            holds: true,
+            block: e.block,
+            label: RowLabel::new(RowSource::Equation(k), [None; 2]),
+        };
+        let mut out: Vec<InterfaceRow> = self.each_row(owns).map(row).collect();
+        out.extend(self.own_equations(owns).map(equation));
+        out
+    }
+
+    /// The equations beside ties, with their numbers.
+    fn own_equations<'s>(
+        &'s self,
+        owns: &'s dyn Fn(usize) -> bool,
+    ) -> impl Iterator<Item = (usize, &'s Equation)> {
+        let all = self.equations.iter().enumerate();
+        all.filter(move |(_, e)| owns(e.subdomain))
     }
 
     /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (without `[steps]` the only step is 0).
@@ -41,7 +61,10 @@ impl Scene {
     pub fn gaps(&self, owns: &dyn Fn(usize) -> bool, step: usize) -> Result<Vec<f64>> {
         let factors = Factors::of(&self.steps, step)?;
         let rows = self.each_row(owns);
-        Ok(rows.map(|(_, row)| row.right_hand_side(&factors)).collect())
+        let mut out: Vec<f64> = rows.map(|(_, row)| row.right_hand_side(&factors)).collect();
+        let equations = self.own_equations(owns);
+        out.extend(equations.map(|(_, e)| e.value - factors.dirichlet() * e.given));
+        Ok(out)
     }
 
     /// Whether there is an inequality; the solver then runs an outer loop.
@@ -68,7 +91,8 @@ impl Scene {
             point: first.position(&self.bodies),
             t: match row.source {
                 RowSource::Interface(k) => self.interfaces[k].shared[row.node].t,
-                RowSource::Obstacle(k) => self.obstacles[k].t(&self.bodies[first.body], row.node),
+                RowSource::Obstacle(k) => self.obstacles[k].t(row.node),
+                RowSource::Equation(_) => [0.0; 2],
             },
             normal: row.direction,
             area: areas.at(row.source, first),

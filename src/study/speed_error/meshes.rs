@@ -2,7 +2,9 @@
 
 use super::{MeshError, SpeedErrorCase};
 use crate::feti::MethodSettings;
+use crate::mesh::BoxMesh;
 use crate::petsc::Session;
+use crate::scene::Body;
 use crate::study::solved::Solved;
 use crate::substructures::Subdomain;
 use crate::{Error, Result};
@@ -90,7 +92,7 @@ impl Tight {
         let local = self.solved.solver.problem().local.iter();
         for (sub, u) in local.zip(&self.solved.solution.u) {
             let body = &scene.bodies[sub.body];
-            let (mesh, from) = (body.mesh(), coarse.solved.scene.bodies[sub.body].mesh());
+            let (mesh, from) = (grid(body), grid(&coarse.solved.scene.bodies[sub.body]));
             let ratio = mesh.elements[0] / from.elements[0];
             let difference = sub.dofs.iter().zip(u).map(|(&dof, u)| {
                 let inside = (dof - body.first_dof) as usize;
@@ -121,13 +123,19 @@ impl Tight {
             let (body, inside) = scene.body_of(sub.index);
             let mesh = scene.bodies[body].mesh();
             let nodal = scene.subdomain_mesh(sub.index)?.nodal(u);
-            for (place, values) in mesh.block(inside).places().zip(nodal.chunks_exact(c)) {
-                let first = c * mesh.node(place);
+            let nodes = mesh.subdomain_nodes(inside);
+            for (node, values) in nodes.into_iter().zip(nodal.chunks_exact(c)) {
+                let first = c * node;
                 out[body][first..first + c].copy_from_slice(values);
             }
         }
         Ok(out)
     }
+}
+
+/// The bodies of this study are boxes.
+fn grid(body: &Body) -> &BoxMesh {
+    body.mesh().grid().expect("a box")
 }
 
 /// uᵀKu of a subdomain.

@@ -26,8 +26,10 @@ fn mesh(fixed: &[(usize, f64)]) -> SubdomainMesh {
         body: 0,
         dim: 2,
         form: Form::default(),
-        elements,
-        step: Some(step),
+        elements: Elements::Grid(Grid {
+            elements,
+            step: Some(step),
+        }),
         points: (0..n)
             .map(|k| [(k % 4) as f64 * step[0], (k / 4) as f64 * step[1], 0.0])
             .collect(),
@@ -35,6 +37,7 @@ fn mesh(fixed: &[(usize, f64)]) -> SubdomainMesh {
         prescribed,
         rho: (0..6).map(|e| 1.0 + e as f64).collect(),
         poisson: Vec::new(),
+        integration: Vec::new(),
         spring: Vec::new(),
     }
 }
@@ -46,7 +49,7 @@ fn the_matrix_is_the_sum_of_element_matrices() {
     let mut dense = [[0.0; 12]; 12];
     let element = q1::stiffness(0.5, 0.25);
     for e in 0..6 {
-        let nodes = m.element_nodes([e % 3, e / 3, 0]);
+        let nodes = m.grid().unwrap().element_nodes([e % 3, e / 3, 0]);
         for a in 0..4 {
             for b in 0..4 {
                 dense[nodes[a]][nodes[b]] += m.rho[e] * element[a][b];

@@ -11,8 +11,10 @@ fn norms_of_a_known_difference() {
         body: 0,
         dim: 2,
         form: Form::default(),
-        elements: [2, 1, 0],
-        step: Some([1.0, 1.0, 0.0]),
+        elements: Elements::Grid(Grid {
+            elements: [2, 1, 0],
+            step: Some([1.0, 1.0, 0.0]),
+        }),
         points: (0..6)
             .map(|k| [(k % 3) as f64, (k / 3) as f64, 0.0])
             .collect(),
@@ -20,6 +22,7 @@ fn norms_of_a_known_difference() {
         prescribed: vec![0.0; 6],
         rho: vec![3.0; 2],
         poisson: Vec::new(),
+        integration: Vec::new(),
         spring: Vec::new(),
     };
     let exact = |[x, y, _]: [f64; 3]| ([x * y, 0.0, 0.0], [[y, x, 0.0], [0.0; 3], [0.0; 3]]);

@@ -40,6 +40,8 @@ fn report() -> SolveReport {
         energy: f64::INFINITY,
         contact: None,
         error: None,
+        probes: Vec::new(),
+        node_print: Vec::new(),
         communication: None,
         seconds: Seconds::default(),
         memory_mb: 12.5,

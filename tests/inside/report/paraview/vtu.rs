@@ -1,6 +1,7 @@
 //! Unit tests of `src/report/paraview/vtu.rs`.
 
 use super::*;
+use crate::mesh::CellKind;
 use base64::Engine;
 
 /// The bytes of a named array after their length.
@@ -33,6 +34,14 @@ const POINTS: [[f64; 3]; 6] = [
 ];
 const QUADS: [u32; 8] = [0, 1, 4, 3, 1, 2, 5, 4];
 
+fn cells() -> Cells {
+    let mut cells = Cells::default();
+    for quad in QUADS.chunks_exact(4) {
+        cells.push(CellKind::Quad4, quad);
+    }
+    cells
+}
+
 fn text(vtu: &Vtu) -> String {
     let mut out = Vec::new();
     vtu.fill(&mut out).unwrap();
@@ -44,7 +53,8 @@ fn arrays_read_back() {
     let u = [0.0, 0.1, -2.5, 1e-300, f64::MAX, 6.0];
     let body = [0, -1];
     let velocity: Vec<f64> = (0..6).map(f64::from).collect();
-    let vtu = Vtu::new(&POINTS, Shape::Quad, &QUADS)
+    let cells = cells();
+    let vtu = Vtu::new(&POINTS, &cells)
         .point_data("u", 1, &u[..])
         .cell_data("v", 3, &velocity[..])
         .cell_data("body", 1, &body[..]);
@@ -68,18 +78,35 @@ fn arrays_read_back() {
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let short = [1.0; 5];
+    let (short, cells) = ([1.0; 5], cells());
     let path = Path::new("/dev/null");
     let cases = [
         (
-            Vtu::new(&POINTS, Shape::Quad, &QUADS).point_data("u", 1, &short[..]),
+            Vtu::new(&POINTS, &cells).point_data("u", 1, &short[..]),
             "'u' has 5 numbers",
         ),
-        (Vtu::new(&POINTS, Shape::Quad, &QUADS[..7]), "multiple of 4"),
-        (Vtu::new(&POINTS[..5], Shape::Quad, &QUADS), "point 5"),
+        (Vtu::new(&POINTS[..5], &cells), "point 5"),
     ];
     for (vtu, part) in cases {
         let message = vtu.write(path).unwrap_err().to_string();
         assert!(message.contains(part), "{message}");
     }
+}
+
+/// VTK numbers the triangles of a linear wedge the other way round.
+#[test]
+fn kinds_are_mixed() {
+    let points = [[0.0; 3]; 9];
+    let mut cells = Cells::default();
+    cells.push(CellKind::Wedge6, &[0, 1, 2, 3, 4, 5]);
+    cells.push(CellKind::Tet4, &[5, 6, 7, 8]);
+    let vtu = Vtu::new(&points, &cells);
+    vtu.check().unwrap();
+    let file = text(&vtu);
+    let integers: Vec<i64> = bytes_of(&file, "connectivity")
+        .chunks(8)
+        .map(|b| i64::from_le_bytes(b.try_into().unwrap()))
+        .collect();
+    assert_eq!(integers, [0, 2, 1, 3, 5, 4, 5, 6, 7, 8]);
+    assert_eq!(bytes_of(&file, "types"), [13, 10]);
 }

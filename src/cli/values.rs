@@ -1,0 +1,149 @@
+//! The solution by bodies and nodes on rank 0, and probes.
+
+use crate::fem::element;
+use crate::parallel::exchange::exchange_words;
+use crate::petsc::Session;
+use crate::report::json::probes::ProbeValue;
+use crate::scene::Scene;
+use crate::{Error, FetiFeti, Result, Solution};
+
+/// Values at all nodes of every body, C components each, on rank 0; nothing on the other ranks.
+pub(super) struct Values {
+    by_body: Vec<Vec<f64>>,
+    components: usize,
+}
+
+impl Values {
+    /// The displacements of a solution at load step `step`. Collective.
+    pub fn gather(
+        session: &Session,
+        scene: &Scene,
+        solver: &FetiFeti,
+        solution: &Solution,
+        step: usize,
+    ) -> Result<Values> {
+        let scale = scene.prescribed_factor(step) / scene.prescribed_factor(scene.n_steps() - 1);
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
+            let mut mesh = scene.subdomain_mesh(sub.index)?;
+            if scale != 1.0 && scale.is_finite() {
+                mesh.prescribed.iter_mut().for_each(|v| *v *= scale);
+            }
+            let nodal = mesh.nodal(u);
+            outgoing[0].extend([sub.index as u64, nodal.len() as u64]);
+            outgoing[0].extend(nodal.iter().map(|v| v.to_bits()));
+        }
+        let received = exchange_words(session.comm(), outgoing).concat();
+        let c = scene.components();
+        let mut by_body = Vec::new();
+        if session.rank() == 0 {
+            by_body = scene
+                .bodies
+                .iter()
+                .map(|b| vec![0.0; c * b.mesh().n_nodes()])
+                .collect();
+        }
+        let mut rest = &received[..];
+        while let [index, n, tail @ ..] = rest {
+            let (values, tail) = tail.split_at(*n as usize);
+            let (body, inside) = scene.body_of(*index as usize);
+            let nodes = scene.bodies[body].mesh().subdomain_nodes(inside);
+            for (node, u) in nodes.into_iter().zip(values.chunks_exact(c)) {
+                for (k, &word) in u.iter().enumerate() {
+                    by_body[body][c * node + k] = f64::from_bits(word);
+                }
+            }
+            rest = tail;
+        }
+        Ok(Values {
+            by_body,
+            components: c,
+        })
+    }
+
+    /// The value at a node, with zeros for the components that the scene does not have.
+    pub fn at(&self, body: usize, node: usize) -> [f64; 3] {
+        let c = self.components;
+        let mut out = [0.0; 3];
+        out[..c].copy_from_slice(&self.by_body[body][c * node..c * (node + 1)]);
+        out
+    }
+
+    /// u, and in elasticity the stress, at the probes of a scene. On rank 0.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a probe that lies in no body.
+    pub fn probes(&self, scene: &Scene) -> Result<Vec<ProbeValue>> {
+        scene
+            .probes
+            .iter()
+            .map(|probe| self.probe(scene, probe))
+            .collect()
+    }
+
+    fn probe(&self, scene: &Scene, probe: &crate::scene::ProbeSpec) -> Result<ProbeValue> {
+        let c = self.components;
+        for (b, body) in scene.bodies.iter().enumerate() {
+            if probe
+                .body
+                .as_ref()
+                .is_some_and(|name| *name != body.spec.name)
+            {
+                continue;
+            }
+            let [low, high] = body.bounds;
+            let slack = (0..3)
+                .map(|d| 1e-6 * (high[d] - low[d]))
+                .fold(0.0, f64::max);
+            let x = probe.point;
+            if (0..scene.dim()).any(|d| x[d] < low[d] - slack || x[d] > high[d] + slack) {
+                continue;
+            }
+            for inside in 0..body.mesh().n_subdomains() {
+                let mesh = scene.subdomain_mesh(body.first_subdomain + inside)?;
+                let nodes = body.mesh().subdomain_nodes(inside);
+                for (e, (kind, cell)) in mesh.cells().iter().enumerate() {
+                    let points: Vec<[f64; 3]> =
+                        cell.iter().map(|&k| mesh.points[k as usize]).collect();
+                    let Some(weights) = element::locate(kind, &points, x) else {
+                        continue;
+                    };
+                    let values: Vec<[f64; 3]> = cell
+                        .iter()
+                        .map(|&k| self.at(b, nodes[k as usize]))
+                        .collect();
+                    let u =
+                        (0..c).map(|d| weights.iter().zip(&values).map(|(w, v)| w * v[d]).sum());
+                    let stress = scene.form.is_elastic().then(|| {
+                        let nodal: Vec<f64> = values.iter().flat_map(|v| v[..c].to_vec()).collect();
+                        let mut at = vec![element::NodeStress::default(); points.len()];
+                        let (material, rule) = (mesh.material(e), mesh.integration(e));
+                        element::stress_at_nodes(
+                            kind, mesh.dim, &points, &material, rule, &nodal, &mut at,
+                        );
+                        let sum =
+                            |k: usize| weights.iter().zip(&at).map(|(w, s)| w * s.stress[k]).sum();
+                        (0..6).map(sum).collect::<Vec<f64>>()
+                    });
+                    return Ok(ProbeValue {
+                        name: probe.name.clone(),
+                        body: body.spec.name.clone(),
+                        point: x[..scene.dim()].to_vec(),
+                        u: u.collect(),
+                        stress: stress.unwrap_or_default(),
+                    });
+                }
+            }
+        }
+        let place = match &probe.body {
+            Some(name) => format!("not in body `{name}`"),
+            None => "in no body".into(),
+        };
+        Err(Error::Input(format!(
+            "{}the probe `{}` at {:?} is {place}",
+            probe.written,
+            probe.name,
+            &probe.point[..scene.dim()]
+        )))
+    }
+}

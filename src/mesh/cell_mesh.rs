@@ -1,0 +1,97 @@
+//! The mesh of a body as a list of cells, with its boundary groups and its partition.
+
+use super::cells::Cells;
+use super::parts::{Parts, SharedNodes};
+
+/// A part of the boundary of a mesh of cells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SideGroup {
+    /// Its name.
+    pub name: String,
+    /// Its nodes, increasing.
+    pub nodes: Vec<u32>,
+    /// Its sides of cells: the cell, and the side of its kind.
+    pub faces: Vec<(u32, u8)>,
+}
+
+/// The name of the whole boundary among the boundary groups.
+pub const SKIN: &str = "all";
+
+/// The mesh of a body: cells of one dimension, 2 or 3.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellMesh {
+    /// The dimension, 2 or 3.
+    pub dim: usize,
+    /// Position of every node; z is 0 in the plane.
+    pub points: Vec<[f64; 3]>,
+    /// The number of every node in its file.
+    pub node_ids: Vec<u64>,
+    /// The cells.
+    pub cells: Cells,
+    /// The number of every cell in its file.
+    pub cell_ids: Vec<u64>,
+    /// The place of every cell in the list of its file; empty where there is no file.
+    pub in_file: Vec<u32>,
+    /// The named boundary groups, then the whole boundary, [`SKIN`].
+    pub sides: Vec<SideGroup>,
+    /// The partition into subdomains.
+    pub parts: Parts,
+}
+
+impl CellMesh {
+    /// A mesh in one subdomain. `groups` are the boundary groups; the whole boundary is added.
+    pub fn new(
+        dim: usize,
+        points: Vec<[f64; 3]>,
+        cells: Cells,
+        mut groups: Vec<SideGroup>,
+        skin: Vec<(u32, u8)>,
+    ) -> CellMesh {
+        let mut on_skin: Vec<u32> = skin
+            .iter()
+            .flat_map(|&(c, side)| cells.side_nodes(c as usize, side.into()))
+            .collect();
+        on_skin.sort_unstable();
+        on_skin.dedup();
+        groups.push(SideGroup {
+            name: SKIN.into(),
+            nodes: on_skin,
+            faces: skin,
+        });
+        let of_cell = vec![0; cells.len()];
+        let parts = Parts::new(&cells, points.len(), of_cell, 1, SharedNodes::default());
+        CellMesh {
+            dim,
+            node_ids: (1..=points.len() as u64).collect(),
+            cell_ids: (1..=cells.len() as u64).collect(),
+            in_file: Vec::new(),
+            points,
+            cells,
+            sides: groups,
+            parts,
+        }
+    }
+
+    /// The same mesh in other subdomains.
+    #[must_use]
+    pub fn partitioned(mut self, of_cell: Vec<u32>, n: usize, shared: SharedNodes) -> CellMesh {
+        self.set_parts(of_cell, n, shared);
+        self
+    }
+
+    /// Cuts the mesh into `n` subdomains, given the subdomain of every cell and the roles of shared nodes.
+    pub fn set_parts(&mut self, of_cell: Vec<u32>, n: usize, shared: SharedNodes) {
+        self.parts = Parts::new(&self.cells, self.points.len(), of_cell, n, shared);
+    }
+
+    /// The positions of the nodes of a cell.
+    pub fn cell_points(&self, cell: usize) -> Vec<[f64; 3]> {
+        let nodes = self.cells.nodes(cell).iter();
+        nodes.map(|&k| self.points[k as usize]).collect()
+    }
+
+    /// Number of the side group of the whole boundary.
+    pub fn skin(&self) -> usize {
+        self.sides.len() - 1
+    }
+}

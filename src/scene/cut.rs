@@ -1,0 +1,81 @@
+//! Meshes of bodies before anything is counted: elements of second order on boxes, and subdomains of meshes of cells.
+
+use super::model::spec::{BodySpec, Cut};
+use crate::error::{Error, Result};
+use crate::fem::cell::{Element, Material};
+use crate::fem::element::{self, Integration};
+use crate::fem::Form;
+use crate::mesh::partition::{subdomains_for, Adjacency, Entity, Interface, Partition, Sharing};
+use crate::mesh::{second_order, CellMesh, Mesh, SharedNodes};
+use std::sync::Arc;
+
+/// Gives a body its final mesh.
+///
+/// # Errors
+/// [`Error::Input`] for cells that are inverted or degenerate, or that the form has no element for.
+pub(super) fn prepare(body: &mut BodySpec, form: &Form) -> Result<()> {
+    if let (Mesh::Grid(grid), 2) = (&body.mesh, body.order) {
+        let simplices = form.element == Element::P1;
+        let place = |point| body.map.as_ref().map_or(point, |map| map.apply(point));
+        let mesh = second_order(grid, simplices, place);
+        body.mesh = mesh.into();
+        // The nodes have been mapped.
+        body.map = None;
+        body.cut = Cut::AsItIs;
+    }
+    let Mesh::Cells(mesh) = &mut body.mesh else {
+        return Ok(());
+    };
+    if let Err(message) = check(mesh, form, &body.integration) {
+        let (written, name) = (&body.written, &body.name);
+        return Err(Error::Input(format!("{written}body `{name}`: {message}")));
+    }
+    let components = form.components(mesh.dim);
+    let n = match body.cut {
+        Cut::AsItIs => return Ok(()),
+        Cut::Auto => subdomains_for(mesh.points.len() * components, mesh.dim),
+        Cut::Into(n) => n,
+    };
+    cut(Arc::make_mut(mesh), n);
+    Ok(())
+}
+
+/// Cuts a mesh into `n` subdomains of about equal work.
+fn cut(mesh: &mut CellMesh, n: usize) {
+    let adjacency = Adjacency::new(&mesh.cells);
+    let work: Vec<f64> = mesh
+        .cells
+        .kinds()
+        .iter()
+        .map(|k| k.nodes() as f64)
+        .collect();
+    let partition = Partition::new(&mesh.cells, &adjacency, &work, n);
+    let (cells, points) = (&mesh.cells, &mesh.points);
+    let sharing = Sharing::new(cells, &partition.part, partition.n, points.len());
+    let interface = Interface::new(cells, &adjacency, points, &partition.part, &sharing, true);
+    let nodes = |list: Vec<Entity>| list.into_iter().map(|e| e.nodes).collect();
+    let shared = SharedNodes {
+        vertices: interface.vertices,
+        edges: nodes(interface.edges),
+        faces: nodes(interface.faces),
+    };
+    mesh.set_parts(partition.part, partition.n, shared);
+}
+
+/// Checks every cell: its shape, and whether the form has an element of its kind.
+fn check(mesh: &CellMesh, form: &Form, rules: &[Integration]) -> std::result::Result<(), String> {
+    let material: Material = form.material(1.0, 0.3);
+    let mut known = None;
+    for c in 0..mesh.cells.len() {
+        let (kind, id) = (mesh.cells.kind(c), mesh.cell_ids[c]);
+        let rule = rules.get(c).copied().unwrap_or(Integration::Full);
+        if known != Some((kind, rule)) {
+            element::check(kind, mesh.dim, &material, rule)
+                .map_err(|message| format!("cell {id} is a {}: {message}", kind.name()))?;
+            known = Some((kind, rule));
+        }
+        element::check_jacobian(kind, mesh.dim, &mesh.cell_points(c))
+            .map_err(|bad| format!("cell {id}, a {}, {bad}", kind.name()))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,323 @@
+//! The bodies of a deck with material, supports and loads.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::numbers::Numbers;
+use crate::error::Result;
+use crate::fem::element::Integration;
+use crate::fem::Quadrature;
+use crate::mesh::deck::{self, BodyLoadKind, Deck, Place};
+use crate::mesh::{extract, CellMesh, SideGroup};
+use crate::scene::model::expr::Expr;
+use crate::scene::model::field::Field;
+use crate::scene::model::spec::{BodySpec, Cut, EquationSpec, Force, Load, SurfaceLoad};
+
+/// An axis of a node's system is along a coordinate if the others are below this.
+const ALONG: f64 = 1e-12;
+
+/// The bodies at the end of a step, and the supports along oblique axes as equations.
+pub(super) fn of(
+    deck: &Deck,
+    numbers: &Numbers,
+    step: usize,
+) -> Result<(Vec<BodySpec>, Vec<EquationSpec>)> {
+    let mut out = Vec::with_capacity(numbers.parts.len());
+    for (b, part) in numbers.parts.iter().enumerate() {
+        let mesh = extract(&deck.mesh, deck.dim(), part, 1.0)?;
+        out.push(body(deck, b, part, mesh, step)?);
+    }
+    name(deck, numbers, &mut out);
+    let equations = supports(deck, numbers, step, &mut out)?;
+    forces(deck, numbers, step, &mut out)?;
+    Ok((out, equations))
+}
+
+/// Names bodies by the element set of their section, or by numbers where that is not unique.
+fn name(deck: &Deck, numbers: &Numbers, bodies: &mut [BodySpec]) {
+    let section = |part: &[u32]| {
+        let first = deck.cell_section[part[0] as usize];
+        let one = part.iter().all(|&c| deck.cell_section[c as usize] == first);
+        one.then(|| deck.sections[first as usize].elset.clone())
+    };
+    let names: Vec<Option<String>> = numbers.parts.iter().map(|part| section(part)).collect();
+    for (b, body) in bodies.iter_mut().enumerate() {
+        let unique = |name: &&String| names.iter().flatten().filter(|n| n == name).count() == 1;
+        body.name = match names[b].as_ref().filter(unique) {
+            Some(name) => name.clone(),
+            None => format!("part {}", b + 1),
+        };
+    }
+}
+
+fn body(deck: &Deck, b: usize, part: &[u32], mut mesh: CellMesh, step: usize) -> Result<BodySpec> {
+    let of_cell = |c: u32| {
+        let section = &deck.sections[deck.cell_section[c as usize] as usize];
+        (section, &deck.materials[section.material as usize])
+    };
+    let (mut young, mut poisson, mut thickness) = (Vec::new(), Vec::new(), Vec::new());
+    for &c in part {
+        let (section, material) = of_cell(c);
+        let (e, nu) = material.elastic.unwrap_or((f64::NAN, f64::NAN));
+        let t = if deck.dim() == 2 {
+            section.thickness
+        } else {
+            1.0
+        };
+        young.push(e * t);
+        poisson.push(nu);
+        thickness.push(t);
+    }
+    let rules = part
+        .iter()
+        .map(|&c| match deck.elements[c as usize].integration() {
+            deck::Integration::Full => Integration::Full,
+            deck::Integration::Reduced => Integration::Reduced,
+            deck::Integration::Incompatible => Integration::Incompatible,
+        });
+    let integration: Vec<Integration> = rules.collect();
+    let surface = pressures(deck, part, &mut mesh, &thickness, step);
+    let load = volume_load(deck, part, &of_cell, &thickness, step)?;
+    let mut body = BodySpec::new(format!("part {}", b + 1), mesh);
+    body.rho = by_cell(young);
+    body.poisson = by_cell(poisson);
+    body.integration = integration;
+    body.surface = surface;
+    body.load = load;
+    body.cut = Cut::Auto;
+    Ok(body)
+}
+
+/// Values by cell; a constant where all are equal.
+fn by_cell(values: Vec<f64>) -> Field {
+    match values.iter().all(|v| *v == values[0]) {
+        true => Field::constant(values[0]),
+        false => Field::ByCell(Arc::new(values)),
+    }
+}
+
+/// The pressures of a step on one body, as loads on boundary groups of their own, one for each value.
+fn pressures(
+    deck: &Deck,
+    part: &[u32],
+    mesh: &mut CellMesh,
+    thickness: &[f64],
+    step: usize,
+) -> Vec<SurfaceLoad> {
+    let mut by_value: BTreeMap<u64, Vec<(u32, u8)>> = BTreeMap::new();
+    for pressure in &deck.steps[step].pressures {
+        if let Ok(c) = part.binary_search(&pressure.cell) {
+            let value = pressure.value * thickness[c];
+            by_value
+                .entry(value.to_bits())
+                .or_default()
+                .push((c as u32, pressure.side));
+        }
+    }
+    let mut loads = Vec::new();
+    for (k, (value, mut faces)) in by_value.into_iter().enumerate() {
+        faces.sort_unstable();
+        let on = |&(c, side): &(u32, u8)| mesh.cells.side_nodes(c as usize, side.into());
+        let mut nodes: Vec<u32> = faces.iter().flat_map(on).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let group = SideGroup {
+            name: format!("pressure {}", k + 1),
+            nodes,
+            faces,
+        };
+        // The whole boundary stays the last.
+        let side = mesh.skin();
+        mesh.sides.insert(side, group);
+        loads.push(SurfaceLoad {
+            side,
+            force: Force::Pressure(Field::constant(f64::from_bits(value))),
+        });
+    }
+    loads
+}
+
+/// Gravity and centrifugal forces.
+fn volume_load<'d>(
+    deck: &'d Deck,
+    part: &[u32],
+    of_cell: &dyn Fn(u32) -> (&'d deck::Section, &'d deck::Material),
+    thickness: &[f64],
+    step: usize,
+) -> Result<Load> {
+    let dim = deck.dim();
+    let mut constant = vec![vec![0.0; part.len()]; dim];
+    let mut turning: Option<(Vec<String>, Place)> = None;
+    for load in &deck.steps[step].body_loads {
+        let own: Vec<usize> = load
+            .cells
+            .iter()
+            .filter_map(|c| part.binary_search(c).ok())
+            .collect();
+        let mass = |inside: usize| {
+            let (_, material) = of_cell(part[inside]);
+            let density = material.density.ok_or_else(|| {
+                deck.files.error(
+                    load.place,
+                    format!(
+                        "a force by mass on material {} without *DENSITY",
+                        material.name
+                    ),
+                )
+            })?;
+            Ok(density * thickness[inside])
+        };
+        match load.kind {
+            BodyLoadKind::Gravity(acceleration) => {
+                for inside in own {
+                    let mass = mass(inside)?;
+                    for (values, a) in constant.iter_mut().zip(acceleration) {
+                        values[inside] += mass * a;
+                    }
+                }
+            }
+            BodyLoadKind::Centrifugal {
+                omega2,
+                point,
+                direction,
+            } => {
+                let masses: Result<Vec<f64>> = own.iter().map(|&k| mass(k)).collect();
+                let masses = masses?;
+                let Some(&first) = masses.first() else {
+                    continue;
+                };
+                let whole = own.len() == part.len() && masses.iter().all(|m| *m == first);
+                if !whole || turning.is_some() {
+                    return Err(deck.files.error(
+                        load.place,
+                        "a centrifugal force on a part of a body, or a second one (one on whole bodies of \
+                         one density was expected)",
+                    ));
+                }
+                turning = Some((centrifugal(first * omega2, point, direction), load.place));
+            }
+        }
+    }
+    let still = constant.iter().flatten().all(|v| *v == 0.0);
+    let fields = match turning {
+        Some((_, place)) if !still => {
+            return Err(deck.files.error(
+                place,
+                "a centrifugal force together with gravity (one of them was expected)",
+            ))
+        }
+        Some((formulas, place)) => {
+            let parse = |text: &String| {
+                let expr = Expr::parse(text).map_err(|e| deck.files.error(place, e))?;
+                Ok(Field::Expression(expr))
+            };
+            formulas[..dim]
+                .iter()
+                .map(parse)
+                .collect::<Result<Vec<Field>>>()?
+        }
+        None if still => return Ok(Load::constant(0.0)),
+        None => constant
+            .into_iter()
+            .map(|v| Field::ByCell(Arc::new(v)))
+            .collect(),
+    };
+    Ok(Load {
+        fields,
+        quadrature: Quadrature::Gauss,
+    })
+}
+
+/// strength · (r − (r·d) d) with r = x − point, as formulas.
+fn centrifugal(strength: f64, point: [f64; 3], d: [f64; 3]) -> Vec<String> {
+    let axes = ["x", "y", "z"];
+    let along: Vec<String> = (0..3)
+        .map(|k| format!("({:e})*({} - ({:e}))", d[k], axes[k], point[k]))
+        .collect();
+    let along = along.join(" + ");
+    let formula = |k: usize| {
+        format!(
+            "({strength:e})*({} - ({:e}) - ({:e})*({along}))",
+            axes[k], point[k], d[k]
+        )
+    };
+    (0..3).map(formula).collect()
+}
+
+/// Given displacements: values of degrees of freedom, or equations along oblique axes.
+fn supports(
+    deck: &Deck,
+    numbers: &Numbers,
+    step: usize,
+    bodies: &mut [BodySpec],
+) -> Result<Vec<EquationSpec>> {
+    let dim = deck.dim();
+    let mut equations = Vec::new();
+    for support in &deck.steps[step].supports {
+        let Some(at) = numbers.node(support.node) else {
+            continue;
+        };
+        let axis = axis(deck, support.node, support.dof.into());
+        let first = at.node * dim;
+        match along(axis) {
+            // Nothing moves across the plane.
+            Some((d, _)) if d >= dim => {}
+            Some((d, sign)) => bodies[at.body]
+                .given
+                .push((first + d, sign * support.value)),
+            None => equations.push(EquationSpec {
+                terms: (0..dim).map(|d| (at.body, first + d, axis[d])).collect(),
+                value: support.value,
+                written: format!("{}: ", deck.files.at(support.place)),
+            }),
+        }
+    }
+    Ok(equations)
+}
+
+/// Axis `dof` of a node's system.
+pub(super) fn axis(deck: &Deck, node: u32, dof: usize) -> [f64; 3] {
+    match deck.frame(node) {
+        Some(frame) => frame[dof],
+        None => {
+            let mut unit = [0.0; 3];
+            unit[dof] = 1.0;
+            unit
+        }
+    }
+}
+
+/// The coordinate along which an axis lies, and its sign; `None`: oblique.
+fn along(axis: [f64; 3]) -> Option<(usize, f64)> {
+    let d = (0..3).max_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs()))?;
+    let rest = (0..3).filter(|&k| k != d).all(|k| axis[k].abs() < ALONG);
+    rest.then(|| (d, axis[d].signum()))
+}
+
+/// Forces at nodes.
+fn forces(deck: &Deck, numbers: &Numbers, step: usize, bodies: &mut [BodySpec]) -> Result<()> {
+    let dim = deck.dim();
+    for force in &deck.steps[step].forces {
+        let Some(at) = numbers.node(force.node) else {
+            return Err(deck.files.error(
+                force.place,
+                format!(
+                    "a force at node {}, which no element has",
+                    deck.mesh.node_ids[force.node as usize]
+                ),
+            ));
+        };
+        let axis = axis(deck, force.node, force.dof.into());
+        for (d, part) in axis
+            .iter()
+            .enumerate()
+            .take(dim)
+            .filter(|(_, part)| **part != 0.0)
+        {
+            bodies[at.body]
+                .forces
+                .push((at.node * dim + d, force.value * part));
+        }
+    }
+    Ok(())
+}

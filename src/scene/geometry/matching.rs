@@ -1,0 +1,77 @@
+//! Sides of meshes of cells that face each other: each node with the node opposite.
+
+use std::collections::HashSet;
+
+use super::facing::{interface, share};
+use super::interface::{Interface, Shape};
+use super::surface::Surface;
+use crate::scene::body::Body;
+
+/// Two nodes are opposite each other if they differ, across the normal, by no more than this fraction of the shortest
+/// edge around the first of them.
+pub(crate) const MATCH: f64 = 0.01;
+
+/// Why two sides have no interface: the end of a sentence.
+pub(crate) enum Mismatch {
+    /// They do not face each other.
+    Apart(String),
+    /// A node of one of them lies opposite the inside of a face of the other.
+    Lonely(String),
+}
+
+/// The interface of two sides, of which one at least belongs to a mesh of cells, where they are at most `reach` apart.
+/// Nodes beyond the edge of the other side have no partner.
+pub(crate) fn matching(
+    bodies: &[Body],
+    pair: [usize; 2],
+    sides: [usize; 2],
+    reach: f64,
+) -> Result<Interface, Mismatch> {
+    let specs = pair.map(|k| &bodies[k].spec);
+    let [a, b] = [0, 1].map(|k| Surface::new(specs[k], sides[k]));
+    // Far apart the nearest nodes say nothing about the faces opposite.
+    let near = |surface: &Surface, i: usize| reach.min(4.0 * surface.edges[i]);
+    let mut pairs = Vec::new();
+    let mut lonely = None;
+    for (i, &node) in a.nodes.iter().enumerate() {
+        let (point, normals) = (a.points[i], &a.normals[i]);
+        match b.opposite(point, normals, MATCH * a.edges[i], reach) {
+            Some(other) => pairs.push([node, b.nodes[other]]),
+            None if b.covers(point, normals, near(&a, i), 2.0 * MATCH) => {
+                lonely.get_or_insert((0, node));
+            }
+            None => {}
+        }
+    }
+    let mut taken = HashSet::new();
+    if let Some(&[_, node]) = pairs.iter().find(|p| !taken.insert(p[1])) {
+        lonely.get_or_insert((1, node));
+    }
+    for (j, &node) in b.nodes.iter().enumerate() {
+        let normals = &b.normals[j];
+        if !taken.contains(&node) && a.covers(b.points[j], normals, near(&b, j), 2.0 * MATCH) {
+            lonely.get_or_insert((1, node));
+        }
+    }
+    match lonely {
+        Some((k, node)) => Err(Mismatch::Lonely(format!(
+            "node {} of `{}` at {} lies opposite no node of `{}`, or opposite one that has another partner (matching \
+             nodes were expected on sides that are tied or in contact: equal to {MATCH} of an edge)",
+            specs[k].mesh.node_id(node),
+            specs[k].name,
+            specs[k].spot(node),
+            specs[1 - k].name
+        ))),
+        None if pairs.is_empty() => Err(Mismatch::Apart(format!(
+            "no node of side `{}` of `{}` lies opposite a node of side `{}` of `{}`",
+            specs[0].mesh.side_name(sides[0]),
+            specs[0].name,
+            specs[1].mesh.side_name(sides[1]),
+            specs[1].name
+        ))),
+        None => {
+            let shared = share(specs[0], sides[0], pairs);
+            Ok(interface(bodies, pair, sides, Shape::Face, shared))
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Equations between displacements, beside those of ties: rows of B_gl with any number of terms.
+
+use std::collections::HashMap;
+
+use super::points::Point;
+use crate::error::{Error, Result};
+use crate::linalg::union_find::UnionFind;
+use crate::scene::body::Body;
+use crate::scene::model::spec::EquationSpec;
+use crate::scene::validate::agree;
+
+/// An equation Σ coefficient · u(body dof) = value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equation {
+    /// (body dof, coefficient) of the free degrees of freedom.
+    pub terms: Vec<(u64, f64)>,
+    /// The right-hand side without the given values.
+    pub value: f64,
+    /// Σ coefficient · u of the given values, without the factors of load steps.
+    pub given: f64,
+    /// Its block: rows with a degree of freedom in common have the same.
+    pub block: u64,
+    /// The subdomain of lowest index that has a degree of freedom of the block.
+    pub subdomain: usize,
+}
+
+/// The equations of a scene. Points that share a degree of freedom with an equation get its block and subdomain.
+///
+/// # Errors
+/// [`Error::Input`] where all terms of an equation are given and contradict it.
+pub(crate) fn collect(
+    bodies: &[Body],
+    points: &mut [Point],
+    specs: &[EquationSpec],
+) -> Result<Vec<Equation>> {
+    let mut out = Vec::with_capacity(specs.len());
+    if specs.is_empty() {
+        return Ok(out);
+    }
+    for spec in specs {
+        let mut terms: Vec<(u64, f64)> = Vec::new();
+        let mut given = 0.0;
+        let mut first: Option<(u64, usize)> = None;
+        for &(b, dof, factor) in &spec.terms {
+            let body = &bodies[b];
+            if let Some(value) = body.prescribed_at(dof) {
+                given += factor * value;
+                continue;
+            }
+            let of_body = body.first_dof + dof as u64;
+            match terms.iter_mut().find(|t| t.0 == of_body) {
+                Some(term) => term.1 += factor,
+                None => terms.push((of_body, factor)),
+            }
+            let owner = body.first_subdomain + body.mesh().owner(dof / body.components);
+            first = Some(match first {
+                None => (of_body, owner),
+                Some((low, s)) => (low.min(of_body), s.min(owner)),
+            });
+        }
+        let Some((block, subdomain)) = first else {
+            if !agree(given, spec.value) {
+                return Err(Error::Input(format!(
+                    "{}the given values make {given} of an equation that asks for {}",
+                    spec.written, spec.value
+                )));
+            }
+            continue;
+        };
+        out.push(Equation {
+            terms,
+            value: spec.value,
+            given,
+            block,
+            subdomain,
+        });
+    }
+    join(bodies, points, &mut out);
+    Ok(out)
+}
+
+/// Gives rows with common degrees of freedom one block and one subdomain, the lowest of each.
+fn join(bodies: &[Body], points: &mut [Point], equations: &mut [Equation]) {
+    let mut sets = UnionFind::new(points.len() + equations.len());
+    let mut of_dof: HashMap<u64, usize> = HashMap::new();
+    for (p, point) in points.iter().enumerate() {
+        for member in &point.members {
+            for c in 0..bodies[member.body].components {
+                of_dof.insert(member.dof(bodies, c), p);
+            }
+        }
+    }
+    for (e, equation) in equations.iter().enumerate() {
+        for (dof, _) in &equation.terms {
+            let known = *of_dof.entry(*dof).or_insert(points.len() + e);
+            sets.join(known, points.len() + e);
+        }
+    }
+    let n = points.len();
+    let mut lowest: HashMap<usize, (u64, usize)> = HashMap::new();
+    let each = points.iter().map(|p| (p.block, p.subdomain));
+    let all = each.chain(equations.iter().map(|e| (e.block, e.subdomain)));
+    for (k, (block, subdomain)) in all.enumerate() {
+        let low = lowest.entry(sets.find(k)).or_insert((block, subdomain));
+        *low = (low.0.min(block), low.1.min(subdomain));
+    }
+    for (p, point) in points.iter_mut().enumerate() {
+        (point.block, point.subdomain) = lowest[&sets.find(p)];
+    }
+    for (e, equation) in equations.iter_mut().enumerate() {
+        (equation.block, equation.subdomain) = lowest[&sets.find(n + e)];
+    }
+    points.sort_by_key(|p| p.block);
+}
