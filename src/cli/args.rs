@@ -127,6 +127,9 @@ pub struct Solve {
     pub scene: PathBuf,
     #[command(flatten)]
     pub results: Results,
+    /// Every rank writes its part of the solution; solution.pvtu names them, in place of solution.vtu
+    #[arg(long)]
+    pub pieces: bool,
     /// File for the state of the contact loop, written after every step
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub checkpoint: Option<PathBuf>,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::contact;
-use super::fields::Gathered;
+use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use crate::checkpoint::{Checkpoints, Resumed};
 use crate::parallel::exchange::total;
@@ -43,6 +43,7 @@ pub(super) fn follow(
     scene: &Scene,
     solver: &mut FetiFeti,
     destination: &Destination,
+    place: Place,
     checkpoints: Checkpoints,
 ) -> Result<Course> {
     let n = scene.n_steps();
@@ -61,7 +62,7 @@ pub(super) fn follow(
         mut state,
     } = checkpoints.resume(session)?;
     if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
-        session.agree(list_before(session, dir, &times[..first], pvd))?;
+        session.agree(list_before(session, dir, &times[..first], place, pvd))?;
     }
     let mut seconds = [0.0; 2];
     // With a single load step the substructures have its loads already.
@@ -113,11 +114,13 @@ pub(super) fn follow(
         if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
             let fields = match &mut fields {
                 Some(fields) => fields,
-                None => fields.insert(Gathered::new(session, scene)?),
+                None => fields.insert(Gathered::new(session, scene, solver, place)?),
             };
             fields.gather(session, scene, solver, &now.solution, step);
-            let write = || write_step(scene, fields, &now, dir, times[step], pvd);
-            on_first_rank(session, write)?;
+            let name = step_name(step);
+            fields.write_vtu(session, scene, &now.solution, &now.rows, dir, &name)?;
+            let file = dir.join(place.file(&name));
+            on_first_rank(session, || pvd.add(times[step], &file))?;
         }
         let done = course.insert(now);
         records.outer.append(&mut done.outer);
@@ -143,12 +146,18 @@ pub(super) fn follow(
 }
 
 /// Lists the files of an interrupted run at the front of the time series.
-fn list_before(session: &Session, dir: &Path, times: &[f64], pvd: &mut Pvd) -> Result<()> {
+fn list_before(
+    session: &Session,
+    dir: &Path,
+    times: &[f64],
+    place: Place,
+    pvd: &mut Pvd,
+) -> Result<()> {
     if session.rank() > 0 {
         return Ok(());
     }
     for (step, &t) in times.iter().enumerate() {
-        let file = dir.join(format!("{}.vtu", step_name(step)));
+        let file = dir.join(place.file(&step_name(step)));
         if file.is_file() {
             pvd.add(t, &file)?;
         }
@@ -172,18 +181,4 @@ fn load_step_record(t: f64, course: &Course) -> LoadStep {
         energy: course.energy,
         contact_force: inequalities().map(|r| r.multiplier).sum(),
     }
-}
-
-/// Adds one load step to the time series.
-fn write_step(
-    scene: &Scene,
-    fields: &Gathered,
-    course: &Course,
-    dir: &Path,
-    t: f64,
-    pvd: &mut Pvd,
-) -> Result<()> {
-    let name = step_name(course.step);
-    fields.write_vtu(scene, &course.rows, dir, &name)?;
-    pvd.add(t, &dir.join(format!("{name}.vtu")))
 }

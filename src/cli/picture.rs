@@ -6,7 +6,6 @@ use std::path::Path;
 
 use super::contact::{by_source, side};
 use super::fields::Gathered;
-use crate::fem::cell::CellStress;
 use crate::linalg::vec3::{minus, norm};
 use crate::mesh::{CellKind, Cells};
 use crate::report::drawing::ticks::number;
@@ -36,7 +35,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
             u => u.iter().map(|v| v * v).sum::<f64>().sqrt(),
         })
         .collect();
-    let von_mises: Vec<f64> = all.stress.iter().map(CellStress::von_mises).collect();
+    let von_mises: Vec<f64> = all.von_mises();
     let coefficient = ["coefficient ρ", "Young's modulus E"][usize::from(elastic)];
     let coefficient = Field::coefficient(coefficient, &all.rho);
     let first = match elastic {
@@ -45,7 +44,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
     };
     let mut fields = vec![first];
     if elastic {
-        fields.push(Field::cell("von Mises stress", &von_mises));
+        fields.push(Field::nodal("von Mises stress", &von_mises));
     } else if scene.dim() == 3 {
         // The second picture shows the bodies moved apart.
         fields.push(first);
@@ -81,7 +80,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         body: &all.body,
         subdomain: &all.subdomain,
     };
-    let copies = all.copies(scene, rows);
+    let copies = all.copies(rows);
     let at = |row: &SolvedRow| {
         let copy = row.label.members[0].and_then(|m| copies.get(&m));
         let point = copy

@@ -8,7 +8,7 @@ use super::args::Solve;
 use super::balance;
 use super::contact;
 use super::course::{follow, Course};
-use super::fields::Gathered;
+use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use super::values::Values;
 use super::{maps, physics, picture};
@@ -143,7 +143,18 @@ fn solve(
         ..MethodSettings::default()
     };
     let mut solver = FetiFeti::new(session, substructures, settings)?;
-    let course = follow(session, scene, &mut solver, destination, checkpoints)?;
+    let place = match args.pieces {
+        true => Place::EachRank,
+        false => Place::FirstRank,
+    };
+    let course = follow(
+        session,
+        scene,
+        &mut solver,
+        destination,
+        place,
+        checkpoints,
+    )?;
     let solution = &course.solution;
     let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
         (false, _) => None,
@@ -168,10 +179,10 @@ fn solve(
         report.node_print.clone_from(&printed);
     }
     if let Some(dir) = &destination.out {
-        write_fields(session, scene, &solver, &course, dir)?;
+        write_fields(session, scene, &solver, &course, place, dir)?;
     }
     report.seconds.total = clock.elapsed().as_secs_f64();
-    on_first_rank(session, || write_report(destination, &report))?;
+    on_first_rank(session, || write_report(destination, &report, place))?;
     if solution.converged() {
         Ok(printed)
     } else {
@@ -204,10 +215,13 @@ pub(super) fn not_converged(what: &str, status: &Status, iterations: usize) -> E
     ))
 }
 
-fn write_report(destination: &Destination, report: &SolveReport) -> Result<()> {
+fn write_report(destination: &Destination, report: &SolveReport, place: Place) -> Result<()> {
     destination.print(&summary::solve(report))?;
     destination.write_json("report.json", report)?;
-    destination.written(&files(report))
+    let solution = place.file("solution");
+    let mut files = files(report);
+    files[0] = &solution;
+    destination.written(&files)
 }
 
 /// The files in a directory of results.
@@ -388,19 +402,28 @@ fn write_fields(
     scene: &Scene,
     solver: &FetiFeti,
     course: &Course,
+    place: Place,
     dir: &Path,
 ) -> Result<()> {
-    let mut gathered = None;
+    let gathered = |place: Place| {
+        let mut fields = Gathered::new(session, scene, solver, place)?;
+        fields.gather(session, scene, solver, &course.solution, course.step);
+        Ok::<_, Error>(fields)
+    };
+    let mut known = None;
     let fields = match &course.fields {
         Some(fields) => fields,
-        None => {
-            let fields = gathered.insert(Gathered::new(session, scene)?);
-            fields.gather(session, scene, solver, &course.solution, course.step);
-            fields
-        }
+        None => known.insert(gathered(place)?),
+    };
+    let rows = &course.rows;
+    fields.write_vtu(session, scene, &course.solution, rows, dir, "solution")?;
+    // The picture shows the whole scene.
+    let mut whole = None;
+    let fields = match place {
+        Place::FirstRank => fields,
+        Place::EachRank => whole.insert(gathered(Place::FirstRank)?),
     };
     on_first_rank(session, || {
-        fields.write_vtu(scene, &course.rows, dir, "solution")?;
         picture::write(scene, fields, &course.rows, dir)?;
         if solver.facts().inequalities > 0 {
             match scene.dim() {

@@ -10,6 +10,7 @@ mod form;
 mod loads;
 mod norms;
 pub(crate) mod q1;
+pub mod recovery;
 mod sparse;
 mod subdomain;
 

@@ -44,6 +44,11 @@ impl SteppedMesh {
         })
     }
 
+    /// The mesh, with given values as they were last.
+    pub fn mesh(&self) -> &SubdomainMesh {
+        &self.mesh
+    }
+
     /// The mesh where the factor of given values is `scale` ([`Scene::prescribed_factor`]).
     pub fn at(&mut self, scale: f64) -> &SubdomainMesh {
         for (now, given) in self.mesh.prescribed.iter_mut().zip(&self.given) {

@@ -23,6 +23,8 @@ pub struct ContactFields {
     area: Vec<f64>,
     /// `multiplier` over `area`.
     pressure: Vec<f64>,
+    /// Whether there are pressures, also where no candidate is.
+    has_pressure: bool,
 }
 
 impl ContactFields {
@@ -35,7 +37,21 @@ impl ContactFields {
             candidate: vec![0; points],
             area: Vec::new(),
             pressure: Vec::new(),
+            has_pressure: false,
         }
+    }
+
+    /// The same with pressures, also where no candidate is added: the pieces of a grid have the same arrays.
+    #[must_use]
+    pub fn with_areas(mut self) -> Self {
+        self.begin_areas();
+        self
+    }
+
+    fn begin_areas(&mut self) {
+        self.has_pressure = true;
+        self.area.resize(self.multiplier.len(), 0.0);
+        self.pressure.resize(self.multiplier.len(), 0.0);
     }
 
     /// Adds one candidate at one point. A point where several interfaces meet has several candidates.
@@ -75,8 +91,7 @@ impl ContactFields {
                  expected a number that is not negative"
             )));
         }
-        self.area.resize(n, 0.0);
-        self.pressure.resize(n, 0.0);
+        self.begin_areas();
         self.area[point] += area;
         Ok(())
     }
@@ -93,10 +108,9 @@ impl ContactFields {
     /// The grid with the arrays attached as point data.
     #[must_use]
     pub fn on<'a>(&'a self, grid: Vtu<'a>) -> Vtu<'a> {
-        let grid = if self.pressure.is_empty() {
-            grid
-        } else {
-            grid.point_data("contact_pressure", 1, &self.pressure[..])
+        let grid = match self.has_pressure {
+            true => grid.point_data("contact_pressure", 1, &self.pressure[..]),
+            false => grid,
         };
         grid.point_data("multiplier", 1, &self.multiplier[..])
             .point_data("gap", 1, &self.gap[..])

@@ -1,13 +1,24 @@
-//! ParaView's unstructured grids (`.vtu`): XML with arrays in base64, each as little-endian numbers after a UInt64
-//! length.
+//! ParaView's unstructured grids (`.vtu`): XML with arrays in base64, compressed by zlib.
+//!
+//! An array is cut into blocks of [`BLOCK`] bytes of little-endian numbers, each compressed on its own. Before them
+//! stand, as UInt64: the number of blocks, their size, the size of the last one if it is smaller (else 0), and the
+//! compressed size of each. Header and blocks are two streams of base64.
+//!
+//! A grid may be one of several pieces; a `.pvtu` file names them.
 
 use crate::mesh::Cells;
 use crate::report::output;
 use crate::{Error, Result};
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
+use flate2::{write::ZlibEncoder, Compression};
+use rayon::iter::ParallelIterator;
+use rayon::slice::ParallelSlice;
 use std::io::{self, Write};
 use std::path::Path;
+
+/// Bytes of a block before compression.
+const BLOCK: usize = 1 << 18;
 
 /// Numbers of a data array.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +34,21 @@ impl Values<'_> {
         match self {
             Values::Float(v) => v.len(),
             Values::Int(v) => v.len(),
+        }
+    }
+
+    /// The name of the type in the file.
+    fn kind(&self) -> &'static str {
+        match self {
+            Values::Float(_) => "Float64",
+            Values::Int(_) => "Int32",
+        }
+    }
+
+    fn bytes(&self) -> Vec<u8> {
+        match self {
+            Values::Float(v) => v.iter().flat_map(|x| x.to_le_bytes()).collect(),
+            Values::Int(v) => v.iter().flat_map(|x| x.to_le_bytes()).collect(),
         }
     }
 }
@@ -43,6 +69,12 @@ struct Array<'a> {
     name: String,
     components: usize,
     values: Values<'a>,
+}
+
+impl Array<'_> {
+    fn attributes(&self) -> String {
+        attributes(&self.name, self.components, self.values.kind())
+    }
 }
 
 /// A grid with its data, ready to be written.
@@ -141,57 +173,99 @@ impl<'a> Vtu<'a> {
 
     fn fill(&self, out: &mut dyn Write) -> io::Result<()> {
         let n_cells = self.n_cells();
-        writeln!(out, "<?xml version=\"1.0\"?>")?;
-        writeln!(
-            out,
-            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
-        )?;
+        head(out, "UnstructuredGrid")?;
         writeln!(out, "<UnstructuredGrid>")?;
         writeln!(
             out,
             "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{n_cells}\">",
             self.points.len()
         )?;
-        for (tag, arrays) in [
-            ("PointData", &self.point_data),
-            ("CellData", &self.cell_data),
-        ] {
+        for (tag, arrays) in self.data() {
             writeln!(out, "<{tag}>")?;
             for a in arrays {
-                let head = (&a.name[..], a.components);
-                match a.values {
-                    Values::Float(v) => {
-                        array(out, head, "Float64", v.iter().copied(), f64::to_le_bytes)
-                    }
-                    Values::Int(v) => {
-                        array(out, head, "Int32", v.iter().copied(), i32::to_le_bytes)
-                    }
-                }?;
+                array(out, &a.attributes(), a.values.bytes())?;
             }
             writeln!(out, "</{tag}>")?;
         }
         writeln!(out, "<Points>")?;
-        let coordinates = self.points.as_flattened().iter().copied();
-        array(out, ("Points", 3), "Float64", coordinates, f64::to_le_bytes)?;
-        writeln!(out, "</Points>\n<Cells>")?;
-        let nodes = connectivity(self.cells);
         array(
             out,
-            ("connectivity", 1),
-            "Int64",
-            nodes.into_iter(),
-            i64::to_le_bytes,
+            POINTS,
+            Values::Float(self.points.as_flattened()).bytes(),
         )?;
+        writeln!(out, "</Points>\n<Cells>")?;
+        let nodes = connectivity(self.cells);
+        let int = |name: &str| attributes(name, 1, "Int64");
+        array(out, &int("connectivity"), wide(nodes.into_iter()))?;
         let mut end = 0;
         let ends = self.cells.kinds().iter().map(|kind| {
             end += kind.nodes() as i64;
             end
         });
-        array(out, ("offsets", 1), "Int64", ends, i64::to_le_bytes)?;
+        array(out, &int("offsets"), wide(ends))?;
         let kinds = self.cells.kinds().iter().map(|kind| kind.vtk());
-        array(out, ("types", 1), "UInt8", kinds, u8::to_le_bytes)?;
+        array(out, &attributes("types", 1, "UInt8"), kinds.collect())?;
         writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
     }
+
+    fn data(&self) -> [(&'static str, &[Array<'a>]); 2] {
+        [
+            ("PointData", &self.point_data),
+            ("CellData", &self.cell_data),
+        ]
+    }
+
+    /// Writes the file that names the pieces of a grid; this grid is one of them, and all have its arrays.
+    ///
+    /// # Errors
+    /// [`Error::Environment`] with the path.
+    pub fn write_index(&self, path: &Path, pieces: &[String]) -> Result<()> {
+        output::write_file(path, |out| self.fill_index(out, pieces))
+    }
+
+    fn fill_index(&self, out: &mut dyn Write, pieces: &[String]) -> io::Result<()> {
+        head(out, "PUnstructuredGrid")?;
+        writeln!(out, "<PUnstructuredGrid GhostLevel=\"0\">")?;
+        for (tag, arrays) in self.data() {
+            writeln!(out, "<P{tag}>")?;
+            for a in arrays {
+                writeln!(out, "<PDataArray {}/>", a.attributes())?;
+            }
+            writeln!(out, "</P{tag}>")?;
+        }
+        writeln!(out, "<PPoints>\n<PDataArray {POINTS}/>\n</PPoints>")?;
+        for piece in pieces {
+            writeln!(out, "<Piece Source=\"{}\"/>", escaped(piece))?;
+        }
+        writeln!(out, "</PUnstructuredGrid>\n</VTKFile>")
+    }
+}
+
+/// The attributes of the array of positions.
+const POINTS: &str = "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"";
+
+fn head(out: &mut dyn Write, kind: &str) -> io::Result<()> {
+    writeln!(out, "<?xml version=\"1.0\"?>")?;
+    writeln!(
+        out,
+        "<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
+         compressor=\"vtkZLibDataCompressor\">"
+    )
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('"', "&quot;")
+}
+
+fn attributes(name: &str, components: usize, kind: &str) -> String {
+    let name = escaped(name);
+    let components = match components {
+        1 => String::new(),
+        n => format!(" NumberOfComponents=\"{n}\""),
+    };
+    format!("type=\"{kind}\" Name=\"{name}\"{components}")
 }
 
 /// The nodes of all cells in VTK's order.
@@ -206,35 +280,32 @@ fn connectivity(cells: &Cells) -> Vec<i64> {
     out
 }
 
-/// One DataArray element of numbers of N bytes each.
-fn array<T, const N: usize>(
-    out: &mut dyn Write,
-    (name, components): (&str, usize),
-    kind: &str,
-    numbers: impl ExactSizeIterator<Item = T>,
-    bytes: impl Fn(T) -> [u8; N],
-) -> io::Result<()> {
-    let name = name
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('"', "&quot;");
-    let components = if components == 1 {
-        String::new()
-    } else {
-        format!(" NumberOfComponents=\"{components}\"")
+fn wide(numbers: impl Iterator<Item = i64>) -> Vec<u8> {
+    numbers.flat_map(i64::to_le_bytes).collect()
+}
+
+/// One DataArray element.
+fn array(out: &mut dyn Write, attributes: &str, bytes: Vec<u8>) -> io::Result<()> {
+    let compressed = |block: &[u8]| {
+        // Numbers of simulations shrink hardly further at higher levels.
+        let mut stream = ZlibEncoder::new(Vec::new(), Compression::fast());
+        stream.write_all(block)?;
+        stream.finish()
     };
-    writeln!(
-        out,
-        "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"binary\">"
-    )?;
-    // The encoder is a stream: arrays of any length need no second copy.
-    let mut base64 = EncoderWriter::new(&mut *out, &STANDARD);
-    base64.write_all(&((numbers.len() * N) as u64).to_le_bytes())?;
-    for number in numbers {
-        base64.write_all(&bytes(number))?;
+    let blocks = bytes.par_chunks(BLOCK).map(compressed);
+    let blocks = blocks.collect::<io::Result<Vec<Vec<u8>>>>()?;
+    let mut header = vec![blocks.len() as u64, BLOCK as u64];
+    header.push((bytes.len() % BLOCK) as u64);
+    header.extend(blocks.iter().map(|b| b.len() as u64));
+    writeln!(out, "<DataArray {attributes} format=\"binary\">")?;
+    let header: Vec<u8> = header.into_iter().flat_map(u64::to_le_bytes).collect();
+    for part in [&[header][..], &blocks] {
+        let mut base64 = EncoderWriter::new(&mut *out, &STANDARD);
+        for block in part {
+            base64.write_all(block)?;
+        }
+        base64.finish()?;
     }
-    base64.finish()?;
-    drop(base64);
     writeln!(out, "\n</DataArray>")
 }
 
