@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use super::contact::{nodes, side, with_inequalities};
+use crate::mesh::CellKind;
 use crate::report::pictures::contact_map::ContactMap;
+use crate::report::pictures::pieces::pieces;
 use crate::scene::Scene;
 use crate::substructures::SolvedRow;
 
@@ -48,12 +50,14 @@ fn map(scene: &Scene, rows: &[SolvedRow]) -> ContactMap {
             .filter_map(|(k, r)| Some((r.node()?, k as u32)))
             .collect();
         for face in spec.faces(side) {
-            let corners = face.outline().into_iter();
-            let corners: Option<Vec<u32>> = corners.map(|node| of.get(&node).copied()).collect();
-            match corners.as_deref() {
-                Some(&[a, b, c, d]) => cells.push([a, b, c, d]),
-                Some(&[a, b, c]) => cells.push([a, b, c, c]),
-                _ => {}
+            let nodes: Vec<usize> = match face.kind {
+                Some(_) => face.nodes.clone(),
+                None => face.outline(),
+            };
+            let nodes = nodes.iter().map(|node| of.get(node).copied());
+            if let Some(nodes) = nodes.collect::<Option<Vec<u32>>>() {
+                let pieces = pieces(face.kind.unwrap_or(CellKind::Quad4)).iter();
+                cells.extend(pieces.map(|piece| piece.map(|a| nodes[usize::from(a)])));
             }
         }
     }

@@ -6,16 +6,21 @@ use std::path::Path;
 
 use super::contact::{by_source, side};
 use super::fields::Gathered;
-use crate::linalg::vec3::{minus, norm};
-use crate::mesh::{CellKind, Cells};
+use crate::linalg::vec3::{dot, minus, norm};
+use crate::mesh::Mesh as BodyMesh;
 use crate::report::drawing::ticks::number;
 use crate::report::pictures::field::{self, ContactMark, Field, Mesh};
 use crate::report::pictures::mesh::bounds;
+use crate::report::pictures::obstacles::Obstacle;
+use crate::report::pictures::pieces::pieces;
 use crate::report::pictures::solid::{self, FaceMark, Solid};
+use crate::report::pictures::values::Values;
 use crate::scene::Scene;
-use crate::substructures::SolvedRow;
+use crate::substructures::{RowSource, SolvedRow};
 use crate::Result;
 
+/// Magnified, bodies may overlap by at most this part of the scene's size: by the width of a line.
+const OVERLAP: f64 = 0.001;
 /// Displacements are magnified such that the largest is at most this part of the scene's size.
 const LARGEST: f64 = 0.1;
 /// Displacements are not magnified where the largest is between these parts of the scene's size.
@@ -27,7 +32,7 @@ const VISIBLE_CONTACT: f64 = 0.01;
 pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Path) -> Result<()> {
     let path = dir.join("solution.png");
     let elastic = scene.form.is_elastic();
-    let moved = Moved::new(scene, all, rows.iter().any(|r| r.is_inequality()));
+    let moved = Moved::new(scene, all, rows);
     let size = all.u.chunks_exact(scene.components());
     let u: Vec<f64> = size
         .map(|u| match u {
@@ -56,30 +61,36 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         true => format!("{} (displacements {} ×)", scene.title, number(moved.factor)),
         false => scene.title.clone(),
     };
+    let obstacles = obstacles(scene, all, rows);
     if scene.dim() == 3 {
-        let hexahedra: Vec<[u32; 8]> = corners(&all.cells);
         let solid = Solid {
             points: &all.points,
             shown: &moved.points,
-            corners: &hexahedra,
+            cells: &all.cells,
             body: &all.body,
             subdomain: &all.subdomain,
         };
         let marks = face_marks(scene, rows);
-        return solid::write_solution(&solid, &fields, &marks, &title, &path);
+        return solid::write_solution(&solid, &fields, &marks, &obstacles, &title, &path);
     }
     let flat =
         |points: &[[f64; 3]]| -> Vec<[f64; 2]> { points.iter().map(|p| [p[0], p[1]]).collect() };
     let points = flat(&all.points);
-    let quads: Vec<[u32; 4]> = corners(&all.cells);
     let shown = flat(&moved.points);
+    let plane = Plane::new(all);
     let mesh = Mesh {
         points: &points,
         shown: &shown,
-        corners: &quads,
-        body: &all.body,
-        subdomain: &all.subdomain,
+        corners: &plane.corners,
+        body: &plane.of(&all.body),
+        subdomain: &plane.of(&all.subdomain),
     };
+    let by_piece = plane.of(&all.rho);
+    for field in &mut fields {
+        if matches!(field.values, Values::Cell(_)) {
+            field.values = Values::Cell(&by_piece);
+        }
+    }
     let copies = all.copies(rows);
     let at = |row: &SolvedRow| {
         let copy = row.label.members[0].and_then(|m| copies.get(&m));
@@ -88,17 +99,57 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
             .map_or(row.label.point, |c| moved.points[c[0]]);
         [point[0], point[1]]
     };
-    let marks = line_marks(rows, &at);
-    field::write(&mesh, &fields, &marks, elastic, &title, &path)
+    let marks = line_marks(scene, rows, &at);
+    field::write(&obstacles, &mesh, &fields, &marks, elastic, &title, &path)
 }
 
-/// The corners of all cells; a cell of fewer corners repeats its last one.
-fn corners<const N: usize>(cells: &Cells) -> Vec<[u32; N]> {
-    let of = |(kind, nodes): (CellKind, &[u32])| {
-        let last = kind.corners() - 1;
-        std::array::from_fn(|a| nodes[a.min(last)])
-    };
-    cells.iter().map(of).collect()
+/// The rigid bodies of the scene, each once, with the gap of the row that is nearest to contact: rows say
+/// n·u ≤ distance + gap.
+fn obstacles(scene: &Scene, all: &Gathered, rows: &[SolvedRow]) -> Vec<Obstacle> {
+    let copies = all.copies(rows);
+    let mut out: Vec<Obstacle> = Vec::new();
+    for rows in by_source(rows) {
+        let RowSource::Obstacle(k) = rows[0].label.source else {
+            continue;
+        };
+        let nearest = rows.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
+        let (Some(rigid), Some(row)) = (scene.obstacles[k].rigid, nearest) else {
+            continue;
+        };
+        let point = row.label.members[0].and_then(|m| copies.get(&m)?.first());
+        let u = point.map_or([0.0; 3], |&p| all.displacement(scene, p));
+        let distance = rigid.distance(row.label.point).map_or(0.0, |d| d.0);
+        let gap = row.gap + dot(u, row.normal()) - distance;
+        if !out.iter().any(|o| o.rigid == rigid) {
+            out.push(Obstacle { rigid, gap });
+        }
+    }
+    out
+}
+
+/// The cells of plane bodies, cut into pieces.
+struct Plane {
+    corners: Vec<[u32; 4]>,
+    /// The cell of each piece.
+    cell: Vec<usize>,
+}
+
+impl Plane {
+    fn new(all: &Gathered) -> Plane {
+        let (mut corners, mut cell) = (Vec::new(), Vec::new());
+        for (c, (kind, nodes)) in all.cells.iter().enumerate() {
+            for piece in pieces(kind) {
+                corners.push(piece.map(|a| nodes[usize::from(a)]));
+                cell.push(c);
+            }
+        }
+        Plane { corners, cell }
+    }
+
+    /// Values of cells, piece by piece.
+    fn of<T: Copy>(&self, by_cell: &[T]) -> Vec<T> {
+        self.cell.iter().map(|&c| by_cell[c]).collect()
+    }
 }
 
 /// Whether two cells of one body have different values.
@@ -116,7 +167,7 @@ struct Moved {
 }
 
 impl Moved {
-    fn new(scene: &Scene, all: &Gathered, contact: bool) -> Moved {
+    fn new(scene: &Scene, all: &Gathered, rows: &[SolvedRow]) -> Moved {
         if !scene.form.is_elastic() {
             return Moved {
                 points: all.points.clone(),
@@ -130,8 +181,10 @@ impl Moved {
             .fold(0.0, f64::max);
         let [low, high] = bounds(all.points.iter().copied());
         let size = norm(minus(high, low));
+        let contact = rows.iter().any(|r| r.is_inequality());
         let from = if contact { VISIBLE_CONTACT } else { VISIBLE[0] };
-        let factor = factor(largest, size, from);
+        let most = apart(scene, all, rows, OVERLAP * size);
+        let factor = factor(largest, size, from, most);
         let moved = |(p, u): (&[f64; 3], [f64; 3])| [0, 1, 2].map(|d| p[d] + factor * u[d]);
         Moved {
             points: all.points.iter().zip(each()).map(moved).collect(),
@@ -140,13 +193,32 @@ impl Moved {
     }
 }
 
+/// The largest factor with which no gap is smaller than −`overlap`, at least 1: a gap c − B u becomes c − factor · B u.
+fn apart(scene: &Scene, all: &Gathered, rows: &[SolvedRow], overlap: f64) -> f64 {
+    let copies = all.copies(rows);
+    let contact = rows.iter().filter(|r| r.is_inequality());
+    let limit = contact.map(|row| {
+        let along = |k: usize| {
+            let point = row.label.members[k].and_then(|m| copies.get(&m)?.first());
+            point.map_or(0.0, |&p| dot(all.displacement(scene, p), row.normal()))
+        };
+        let closing = along(0) - along(1);
+        let initial = row.gap + closing;
+        match closing > 0.0 {
+            true => (initial.max(0.0) + overlap) / closing,
+            false => f64::INFINITY,
+        }
+    });
+    limit.fold(f64::INFINITY, f64::min).max(1.0)
+}
+
 /// The factor: 1 where the largest displacement, relative to the scene's size, is visible, that is, at least `from`;
-/// else 1, 2 or 5 times a power of ten.
-fn factor(largest: f64, size: f64, from: f64) -> f64 {
+/// else 1, 2 or 5 times a power of ten, at most `most`.
+fn factor(largest: f64, size: f64, from: f64, most: f64) -> f64 {
     if largest == 0.0 || (from..=VISIBLE[1]).contains(&(largest / size)) {
         return 1.0;
     }
-    let wanted = LARGEST * size / largest;
+    let wanted = (LARGEST * size / largest).min(most);
     let power = 10_f64.powi(wanted.log10().floor() as i32);
     let fits = [5.0, 2.0, 1.0].map(|m| m * power);
     let fits = fits.into_iter().find(|f| *f <= wanted).unwrap_or(power);
@@ -159,10 +231,14 @@ fn factor(largest: f64, size: f64, from: f64) -> f64 {
 }
 
 /// The segments between neighbouring nodes that may touch, and whether they do.
-fn line_marks(rows: &[SolvedRow], at: &dyn Fn(&SolvedRow) -> [f64; 2]) -> Vec<ContactMark> {
+fn line_marks(
+    scene: &Scene,
+    rows: &[SolvedRow],
+    at: &dyn Fn(&SolvedRow) -> [f64; 2],
+) -> Vec<ContactMark> {
     let mut out = Vec::new();
-    for rows in by_source(rows) {
-        let rows: Vec<&SolvedRow> = rows.iter().filter(|r| r.is_inequality()).collect();
+    for all in by_source(rows) {
+        let rows: Vec<&SolvedRow> = all.iter().filter(|r| r.is_inequality()).collect();
         if let [only] = rows[..] {
             out.push(ContactMark {
                 from: at(only),
@@ -170,11 +246,33 @@ fn line_marks(rows: &[SolvedRow], at: &dyn Fn(&SolvedRow) -> [f64; 2]) -> Vec<Co
                 closed: only.holds(),
             });
         }
-        out.extend(rows.windows(2).map(|pair| ContactMark {
-            from: at(pair[0]),
-            to: at(pair[1]),
-            closed: pair[0].holds() && pair[1].holds(),
-        }));
+        let mut mark = |a: &SolvedRow, b: &SolvedRow| {
+            out.push(ContactMark {
+                from: at(a),
+                to: at(b),
+                closed: a.holds() && b.holds(),
+            });
+        };
+        let side = side(scene, all).map(|(body, side)| (&scene.bodies[body].spec, side));
+        match side.filter(|(spec, _)| matches!(spec.mesh, BodyMesh::Cells(_))) {
+            // Along the side of a box nodes follow each other; elsewhere its cells say which are neighbours.
+            None => rows.windows(2).for_each(|pair| mark(pair[0], pair[1])),
+            Some((spec, side)) => {
+                let of_node = rows.iter().filter_map(|r| Some((r.node()?, *r)));
+                let of_node: HashMap<usize, &SolvedRow> = of_node.collect();
+                for face in spec.faces(side) {
+                    let rows = face.nodes.iter().map(|node| of_node.get(node).copied());
+                    match rows.collect::<Option<Vec<_>>>().as_deref() {
+                        Some(&[a, b]) => mark(a, b),
+                        Some(&[a, b, middle]) => {
+                            mark(a, middle);
+                            mark(middle, b);
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
     }
     out
 }

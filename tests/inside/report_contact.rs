@@ -185,6 +185,7 @@ fn two_interfaces() {
     });
     let path = dir.join("solution.png");
     field::write(
+        &[],
         &bodies.mesh(),
         &[
             Field::nodal("solution u", &u),
@@ -199,6 +200,7 @@ fn two_interfaces() {
     let with = png(&path);
     let plain = dir.join("plain.png");
     field::write(
+        &[],
         &bodies.mesh(),
         &[
             Field::nodal("solution u", &u),
@@ -235,6 +237,7 @@ fn one_hundred_and_eighty_interfaces() {
     let marks = bodies.marks(&profiles);
     let path = dir.join("solution.png");
     field::write(
+        &[],
         &bodies.mesh(),
         &[
             Field::nodal("solution u", &u),

@@ -3,6 +3,7 @@
 use super::marks::{self, ContactMark};
 use super::mesh::{bounds, Mesh};
 use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
+use super::pieces;
 use super::values::Field;
 use crate::report::drawing::canvas::{self, Anchor, Canvas, Point, TextStyle};
 use crate::report::drawing::raster::Raster;
@@ -30,7 +31,7 @@ pub struct ContactMap {
     pub labels: [String; 2],
     /// Position of the node in the map.
     pub at: Vec<[f64; 2]>,
-    /// Faces of elements: four nodes each, in the order around the face.
+    /// Faces of elements: four nodes each, in the order around the face; a triangle repeats its last one.
     pub cells: Vec<[u32; 4]>,
 }
 
@@ -57,8 +58,7 @@ impl ContactMap {
         let boundary = |cells: &mut dyn Iterator<Item = &[u32; 4]>, closed: bool| {
             let mut edges: HashMap<(u32, u32), usize> = HashMap::new();
             for cell in cells {
-                for k in 0..4 {
-                    let (a, b) = (cell[k], cell[(k + 1) % 4]);
+                for (a, b) in pieces::edges(*cell) {
                     *edges.entry((a.min(b), a.max(b))).or_default() += 1;
                 }
             }

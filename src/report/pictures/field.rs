@@ -1,10 +1,11 @@
-//! Pictures of fields on meshes of quadrilaterals: u and ρ side by side with colour bars, bodies outlined.
+//! Pictures of fields on plane meshes: u and ρ side by side with colour bars, bodies outlined.
 //!
 //! Cells are painted pixel by pixel, so that a million of them cost a fraction of a second. Points may be listed once
 //! per body or once per subdomain: lines between bodies and subdomains are found from the coordinates.
 
 use super::marks;
 use super::mesh::bounds;
+use super::obstacles::BEYOND;
 use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
 use crate::report::drawing::canvas::{Canvas, Colour, TextStyle};
 use crate::report::drawing::raster::Raster;
@@ -13,6 +14,7 @@ use std::path::Path;
 
 pub use super::marks::ContactMark;
 pub use super::mesh::Mesh;
+pub use super::obstacles::Obstacle;
 pub use super::values::Field;
 
 /// Writes fields of one mesh as PNG: side by side, or one below the other where the mesh is wide. `contact` lists the
@@ -22,6 +24,7 @@ pub use super::values::Field;
 /// # Errors
 /// [`crate::Error::Input`] when an array does not fit the mesh; [`crate::Error::Environment`] with the path.
 pub fn write(
+    obstacles: &[Obstacle],
     mesh: &Mesh,
     fields: &[Field],
     contact: &[ContactMark],
@@ -32,7 +35,7 @@ pub fn write(
     mesh.check()?;
     let (points, cells) = (mesh.points.len(), mesh.corners.len());
     fields.iter().try_for_each(|f| f.check(points, cells))?;
-    draw(mesh, fields, contact, displaced, title).write_png(path)
+    draw(obstacles, mesh, fields, contact, displaced, title).write_png(path)
 }
 
 const LEFT: f64 = 52.0;
@@ -41,6 +44,7 @@ const BAR_GAP: f64 = 12.0;
 const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
 fn draw(
+    obstacles: &[Obstacle],
     mesh: &Mesh,
     fields: &[Field],
     contact: &[ContactMark],
@@ -54,7 +58,12 @@ fn draw(
         false => Vec::new(),
     };
     let ends = before.iter().flatten();
-    let [low, high] = bounds(mesh.shown.iter().chain(ends).copied());
+    let [mut low, mut high] = bounds(mesh.shown.iter().chain(ends).copied());
+    if !obstacles.is_empty() {
+        let margin = BEYOND * (high[0] - low[0]).max(high[1] - low[1]);
+        low = low.map(|x| x - margin);
+        high = high.map(|x| x + margin);
+    }
     let size = [
         (high[0] - low[0]).max(1e-300),
         (high[1] - low[1]).max(1e-300),
@@ -91,6 +100,9 @@ fn draw(
         let middle = (view.origin.0 + 0.5 * w.max(60.0), at.1 + 1.2 * TEXT);
         raster.text(middle, field.title, &TextStyle::title(TEXT));
         let range = field.range();
+        for obstacle in obstacles {
+            obstacle.paint(&mut raster, &view, [low, high]);
+        }
         for line in &before {
             view.line(&mut raster, line, 0.7, BEFORE);
         }

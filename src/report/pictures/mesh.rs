@@ -1,37 +1,97 @@
 //! Meshes for pictures: cells with the body and the subdomain of each.
 
+use crate::mesh::Cells;
 use crate::{Error, Result};
 
-/// Cells of N corners in D dimensions.
+/// Quadrilaterals and triangles in the plane.
 #[derive(Debug, Clone, Copy)]
-pub struct Cells<'a, const D: usize, const N: usize> {
+pub struct Mesh<'a> {
     /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per
     /// subdomain.
-    pub points: &'a [[f64; D]],
+    pub points: &'a [[f64; 2]],
     /// Positions of the points in the picture: as `points`, or displaced.
-    pub shown: &'a [[f64; D]],
-    /// Corners of every cell: of a quadrilateral in the order around it, of a hexahedron in VTK's order, x, y, z
-    /// right-handed.
-    pub corners: &'a [[u32; N]],
+    pub shown: &'a [[f64; 2]],
+    /// Corners of every cell in the order around it; a triangle repeats its last one.
+    pub corners: &'a [[u32; 4]],
     /// Body of every cell.
     pub body: &'a [u32],
     /// Subdomain of every cell; numbers continue from body to body.
     pub subdomain: &'a [u32],
 }
 
-/// Quadrilaterals.
-pub type Mesh<'a> = Cells<'a, 2, 4>;
-/// Hexahedra.
-pub type Solid<'a> = Cells<'a, 3, 8>;
+/// Solid cells of any kind.
+#[derive(Debug, Clone, Copy)]
+pub struct Solid<'a> {
+    /// Positions in the undeformed bodies. A position may be listed several times: once per body, or once per
+    /// subdomain.
+    pub points: &'a [[f64; 3]],
+    /// Positions of the points in the picture: as `points`, or displaced.
+    pub shown: &'a [[f64; 3]],
+    /// The cells.
+    pub cells: &'a Cells,
+    /// Body of every cell.
+    pub body: &'a [u32],
+    /// Subdomain of every cell; numbers continue from body to body.
+    pub subdomain: &'a [u32],
+}
 
-impl<const D: usize, const N: usize> Cells<'_, D, N> {
+/// The arrays of a mesh, without its positions.
+struct Lists<'a> {
+    points: usize,
+    shown: usize,
+    cells: usize,
+    nodes: &'a [u32],
+    body: &'a [u32],
+    subdomain: &'a [u32],
+}
+
+impl Mesh<'_> {
     /// Checks that the sizes of the arrays agree.
     pub(super) fn check(&self) -> Result<()> {
-        let (cells, points) = (self.corners.len(), self.points.len());
+        let lists = Lists {
+            points: self.points.len(),
+            shown: self.shown.len(),
+            cells: self.corners.len(),
+            nodes: self.corners.as_flattened(),
+            body: self.body,
+            subdomain: self.subdomain,
+        };
+        lists.check()
+    }
+
+    /// Rounds the positions of points to a millionth of the mesh: then all copies of a point are equal.
+    pub(super) fn rounding(&self) -> impl Fn([f64; 2]) -> [i64; 2] + use<> {
+        rounding(bounds(self.points.iter().copied()))
+    }
+}
+
+impl Solid<'_> {
+    /// Checks that the sizes of the arrays agree.
+    pub(super) fn check(&self) -> Result<()> {
+        let lists = Lists {
+            points: self.points.len(),
+            shown: self.shown.len(),
+            cells: self.cells.len(),
+            nodes: self.cells.all_nodes(),
+            body: self.body,
+            subdomain: self.subdomain,
+        };
+        lists.check()
+    }
+
+    /// Rounds the positions of points to a millionth of the mesh: then all copies of a point are equal.
+    pub(super) fn rounding(&self) -> impl Fn([f64; 3]) -> [i64; 3] + use<> {
+        rounding(bounds(self.points.iter().copied()))
+    }
+}
+
+impl Lists<'_> {
+    fn check(&self) -> Result<()> {
+        let (cells, points) = (self.cells, self.points);
         for (found, expected, what) in [
             (self.body.len(), cells, "bodies of cells"),
             (self.subdomain.len(), cells, "subdomains of cells"),
-            (self.shown.len(), points, "displaced points"),
+            (self.shown, points, "displaced points"),
         ] {
             if found != expected {
                 return Err(Error::input(format!(
@@ -39,18 +99,12 @@ impl<const D: usize, const N: usize> Cells<'_, D, N> {
                 )));
             }
         }
-        let mut corners = self.corners.iter().flatten();
-        match corners.find(|&&p| p as usize >= points) {
+        match self.nodes.iter().find(|&&p| p as usize >= points) {
             Some(bad) => Err(Error::input(format!(
                 "a cell names point {bad}, but the picture's mesh has {points} points"
             ))),
             None => Ok(()),
         }
-    }
-
-    /// Rounds the positions of points to a millionth of the mesh: then all copies of a point are equal.
-    pub(super) fn rounding(&self) -> impl Fn([f64; D]) -> [i64; D] + use<D, N> {
-        rounding(bounds(self.points.iter().copied()))
     }
 }
 

@@ -1,11 +1,13 @@
-//! Pictures of fields on meshes: quadrilaterals from above, solids from a corner, faces of contact.
+//! Pictures of fields on meshes: plane bodies from above, solids from a corner, faces of contact.
 
 pub mod contact_map;
 pub mod field;
 mod marks;
 pub mod mesh;
+pub mod obstacles;
 mod outline;
 mod paint;
+pub(crate) mod pieces;
 pub mod solid;
 mod space;
 mod stage;

@@ -1,6 +1,7 @@
-//! The lines between the bodies and subdomains of a mesh of quadrilaterals.
+//! The lines between the bodies and subdomains of a plane mesh.
 
 use super::mesh::{bounds, rounding, Mesh};
+use super::pieces;
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
 
@@ -27,8 +28,7 @@ impl Mesh<'_> {
         // Edges by point numbers: most edges occur twice in one subdomain, and so lie inside it.
         let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.corners.len());
         for (cell, quad) in self.corners.iter().enumerate() {
-            for k in 0..4 {
-                let (a, b) = (quad[k], quad[(k + 1) % 4]);
+            for (a, b) in pieces::edges(*quad) {
                 edges.push((
                     (u64::from(a.min(b)) << 32) | u64::from(a.max(b)),
                     cell as u32,

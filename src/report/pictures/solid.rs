@@ -18,6 +18,7 @@ use crate::Result;
 use std::path::Path;
 
 pub use super::mesh::Solid;
+pub use super::obstacles::Obstacle;
 pub use super::surface::FaceMark;
 
 const SMALL_TEXT: f64 = 11.5;
@@ -31,7 +32,7 @@ const APART: [f64; 2] = [0.75, 0.5];
 /// Another viewpoint is taken only if it shows the marked area by this factor better.
 const BETTER: f64 = 1.6;
 
-/// Writes fields as PNG, side by side. The first picture shows the bodies in their places. The others show the bodies
+/// Writes fields as PNG, side by side. The first picture shows the bodies in their places, beside the obstacles. The others show the bodies
 /// moved apart, or another side of a single body, from the viewpoint that shows most of the faces in `marks`.
 ///
 /// # Errors
@@ -40,15 +41,22 @@ pub fn write_solution(
     solid: &Solid,
     fields: &[Field],
     marks: &[FaceMark],
+    obstacles: &[Obstacle],
     title: &str,
     path: &Path,
 ) -> Result<()> {
-    draw(solid, fields, marks, title)?.write_png(path)
+    draw(solid, fields, marks, obstacles, title)?.write_png(path)
 }
 
-fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Result<Raster> {
+fn draw(
+    solid: &Solid,
+    fields: &[Field],
+    marks: &[FaceMark],
+    obstacles: &[Obstacle],
+    title: &str,
+) -> Result<Raster> {
     solid.check()?;
-    let (points, cells) = (solid.points.len(), solid.corners.len());
+    let (points, cells) = (solid.points.len(), solid.cells.len());
     fields.iter().try_for_each(|f| f.check(points, cells))?;
     let surface = solid.surface(marks);
     let shifts = shifts(solid);
@@ -56,7 +64,7 @@ fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Res
     let none = vec![[0.0; 3]; shifts.len()];
     let second = second_camera(solid, &surface, several);
     let stage = |k: usize| match k {
-        0 => Stage::new(solid, &surface, Camera::new(false, false), &none),
+        0 => Stage::new(solid, &surface, Camera::new(false, false), &none).beside(obstacles),
         _ => Stage::new(solid, &surface, second, &shifts),
     };
     let scenes: Vec<Stage> = (0..fields.len()).map(stage).collect();
@@ -117,9 +125,9 @@ fn draw(solid: &Solid, fields: &[Field], marks: &[FaceMark], title: &str) -> Res
 fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
     let n = solid.body.iter().max().map_or(0, |&b| b as usize + 1);
     let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; n];
-    for (cell, &body) in solid.corners.iter().zip(solid.body) {
+    for ((_, cell), &body) in solid.cells.iter().zip(solid.body) {
         let [low, high] = &mut boxes[body as usize];
-        for p in cell.map(|p| solid.points[p as usize]) {
+        for p in cell.iter().map(|&p| solid.points[p as usize]) {
             for d in 0..3 {
                 low[d] = low[d].min(p[d]);
                 high[d] = high[d].max(p[d]);

@@ -1,5 +1,6 @@
 //! Drawing in space: a parallel projection and a buffer of pixels with depths.
 
+use super::obstacles::mixed;
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::raster::{self, Raster};
 
@@ -100,6 +101,28 @@ impl Buffer {
                 if a[2] + t * (b[2] - a[2]) + slack > self.depth[at] {
                     self.colour[at] = colour;
                 }
+            }
+        }
+    }
+
+    /// An empty buffer of the same size.
+    pub fn empty(&self) -> Buffer {
+        Buffer {
+            width: self.width,
+            height: self.height,
+            depth: vec![f64::NEG_INFINITY; self.depth.len()],
+            colour: vec![Colour::WHITE; self.colour.len()],
+        }
+    }
+
+    /// Lays another picture of the same size over this one: what is nearer there covers by a share, and where nothing is
+    /// here, whole.
+    pub fn lay(&mut self, over: &Buffer, share: f64) {
+        for (k, &depth) in over.depth.iter().enumerate() {
+            if depth > self.depth[k] {
+                let nothing = self.depth[k] == f64::NEG_INFINITY;
+                let share = if nothing { 1.0 } else { share };
+                self.colour[k] = mixed(self.colour[k], over.colour[k], share);
             }
         }
     }

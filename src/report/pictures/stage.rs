@@ -2,10 +2,11 @@
 //! subdomains.
 
 use super::mesh::{bounds, Solid};
+use super::obstacles::{Obstacle, GREY};
 use super::space::{Buffer, Camera};
 use super::surface::{diagonals, unit_cross, Surface};
 use super::values::Field;
-use crate::linalg::vec3::dot;
+use crate::linalg::vec3::{dot, minus};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::raster::Raster;
 
@@ -13,6 +14,8 @@ use crate::report::drawing::raster::Raster;
 const PANEL: (f64, f64) = (470.0, 440.0);
 /// Colour of faces in contact.
 pub(super) const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
+/// How much an obstacle in front of a body covers it.
+const VEIL: f64 = 0.3;
 /// The part of white in the colour of faces that may touch and do not.
 const PALE: f64 = 0.45;
 
@@ -22,6 +25,8 @@ pub(super) struct Stage<'a> {
     surface: &'a Surface,
     pub camera: Camera,
     shifts: &'a [[f64; 3]],
+    /// The surfaces of obstacles.
+    beside: Vec<[[f64; 3]; 3]>,
     low: [f64; 2],
     high: [f64; 2],
     /// Logical pixels per unit of length.
@@ -40,16 +45,35 @@ impl<'a> Stage<'a> {
             surface,
             camera,
             shifts,
+            beside: Vec::new(),
             low: [0.0; 2],
             high: [1.0; 2],
             scale: 1.0,
         };
-        let corners = surface.faces.iter().flat_map(|f| f.corners.map(|p| (f, p)));
-        let places = corners.map(|(f, p)| stage.projected(p, solid.body[f.cell as usize]));
-        [stage.low, stage.high] = bounds(places.map(|[x, y, _]| [x, y]));
-        let size = [0, 1].map(|d| (stage.high[d] - stage.low[d]).max(1e-300));
-        stage.scale = (PANEL.0 / size[0]).min(PANEL.1 / size[1]);
+        stage.fit();
         stage
+    }
+
+    /// The same with obstacles.
+    pub fn beside(mut self, obstacles: &[Obstacle]) -> Self {
+        let bodies = bounds(self.solid.shown.iter().copied());
+        let all = obstacles.iter().flat_map(|o| o.triangles(bodies));
+        self.beside = all.collect();
+        self.fit();
+        self
+    }
+
+    /// Finds the part of the picture plane that is shown.
+    fn fit(&mut self) {
+        let (surface, solid) = (self.surface, self.solid);
+        let corners = surface.faces.iter().flat_map(|f| f.corners.map(|p| (f, p)));
+        let places = corners.map(|(f, p)| self.projected(p, solid.body[f.cell as usize]));
+        let beside = self.beside.as_flattened().iter();
+        let places = places.chain(beside.map(|&p| self.camera.project(p)));
+        let [low, high] = bounds(places.map(|[x, y, _]| [x, y]));
+        let size = [0, 1].map(|d| (high[d] - low[d]).max(1e-300));
+        self.scale = (PANEL.0 / size[0]).min(PANEL.1 / size[1]);
+        [self.low, self.high] = [low, high];
     }
 
     fn projected(&self, p: u32, body: u32) -> [f64; 3] {
@@ -67,14 +91,14 @@ impl<'a> Stage<'a> {
         let (w, h) = self.size();
         let (mut buffer, fine) = Buffer::new(w, h, raster);
         let unit = fine * self.scale;
-        let place = |p: u32, body: u32| {
-            let [x, y, near] = self.projected(p, body);
+        let on_paper = |[x, y, near]: [f64; 3]| {
             [
                 fine * 3.0 + unit * (x - self.low[0]),
                 fine * 3.0 + unit * (self.high[1] - y),
                 unit * near,
             ]
         };
+        let place = |p: u32, body: u32| on_paper(self.projected(p, body));
         let colour = field.colour(range);
         for face in &self.surface.faces {
             let body = self.solid.body[face.cell as usize];
@@ -89,14 +113,10 @@ impl<'a> Stage<'a> {
             let corners = face.corners.map(|p| place(p, body));
             let (_, centre) = diagonals(corners);
             let mean = values.iter().sum::<f64>() / 4.0;
-            let shade = |v: f64| {
-                let ink = match face.mark {
-                    Some(true) => CLOSED,
-                    Some(false) => pale(colour(v)),
-                    None => colour(v),
-                };
-                let dim = |c: u8| (f64::from(c) * light).round() as u8;
-                Colour(dim(ink.0), dim(ink.1), dim(ink.2))
+            let shade = |v: f64| match face.mark {
+                Some(true) => dimmed(CLOSED, light),
+                Some(false) => dimmed(pale(colour(v)), light),
+                None => dimmed(colour(v), light),
             };
             for k in 0..4 {
                 let l = (k + 1) % 4;
@@ -119,8 +139,23 @@ impl<'a> Stage<'a> {
                 buffer.line(ends, fine * 0.55, 1.5 * fine, Colour::WHITE);
             }
         }
+        let mut veil = buffer.empty();
+        for triangle in &self.beside {
+            let [a, b, c] = *triangle;
+            let normal = unit_cross(minus(b, a), minus(c, a));
+            let towards = dot(normal, self.camera.towards).signum();
+            let light = light(normal.map(|x| towards * x), &self.camera);
+            let corners = triangle.map(|p| on_paper(self.camera.project(p)));
+            veil.triangle(corners, [0.0; 3], &|_| dimmed(GREY, light));
+        }
+        buffer.lay(&veil, VEIL);
         buffer.copy(raster, at);
     }
+}
+
+fn dimmed(Colour(r, g, b): Colour, light: f64) -> Colour {
+    let dim = |c: u8| (f64::from(c) * light).round() as u8;
+    Colour(dim(r), dim(g), dim(b))
 }
 
 /// The colour of a face that may touch and does not.

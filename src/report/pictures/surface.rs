@@ -1,6 +1,7 @@
-//! The surface of bodies of hexahedra for pictures: outer faces, edges of bodies, lines between subdomains.
+//! The surface of solid bodies for pictures: outer faces, edges of bodies, lines between subdomains.
 
 use super::mesh::Solid;
+use super::pieces::{edges, pieces};
 use crate::linalg::vec3::{cross, dot, minus, norm};
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
@@ -10,15 +11,15 @@ use std::collections::HashMap;
 pub struct FaceMark {
     /// Body of the element.
     pub body: u32,
-    /// The corners in the undeformed body, in any order.
+    /// The corners in the undeformed body, in any order; a triangle repeats its last one.
     pub corners: [[f64; 3]; 4],
     /// Whether the face touches.
     pub closed: bool,
 }
 
-/// An outer face.
+/// An outer face, or a part of one.
 pub(super) struct Face {
-    /// Corners, counter-clockwise seen from outside.
+    /// Corners, counter-clockwise seen from outside; a triangle repeats its last one.
     pub corners: [u32; 4],
     pub cell: u32,
     /// Whether the face touches; `None` if it cannot touch.
@@ -39,45 +40,35 @@ pub(super) struct Surface {
     pub edges: Vec<Edge>,
 }
 
-/// The faces of a hexahedron, counter-clockwise from outside.
-const FACES: [[usize; 4]; 6] = [
-    [0, 3, 2, 1],
-    [4, 5, 6, 7],
-    [0, 1, 5, 4],
-    [1, 2, 6, 5],
-    [2, 3, 7, 6],
-    [3, 0, 4, 7],
-];
-
 /// The edge between two faces is an edge of the body if the cosine of the angle between their normals is below this.
 const CREASE: f64 = 0.8;
 
 /// A position rounded to a millionth of the mesh: equal for all copies of a point.
 type Key = [i64; 3];
 
+/// Places of corners of sides of cells, in increasing order; those of a triangle end with `u32::MAX`.
+type Corners = [u32; 4];
+
+/// A side of a cell: the cell, and the number of the side.
+type Place = (u32, u8);
+
 impl Solid<'_> {
-    /// The outer surface: the faces that belong to only one cell of a body.
+    /// The outer surface: the sides that belong to only one cell of a body.
     pub(super) fn surface(&self, marks: &[FaceMark]) -> Surface {
         let key = self.rounding();
-        // Four times the centre of a face.
-        let middle = |corners: [[f64; 3]; 4]| {
-            let mut sum = [0; 3];
-            for corner in corners.map(&key) {
-                (0..3).for_each(|d| sum[d] += corner[d]);
-            }
-            sum
-        };
         let position = |p: u32| self.points[p as usize];
         let marked: HashMap<(u32, Key), bool> = marks
             .iter()
-            .map(|m| ((m.body, middle(m.corners)), m.closed))
+            .map(|m| ((m.body, middle(&key, &m.corners)), m.closed))
             .collect();
 
-        let mut by_place: HashMap<(u32, Key), (usize, usize)> = HashMap::new(); // a face, how many there are
-        let alone = self.faces_of_one_subdomain();
-        for (f, face) in alone.iter().enumerate() {
-            let at = middle(face.corners.map(position));
-            let entry = by_place.entry((self.body[face.cell as usize], at));
+        let mut by_place: HashMap<(u32, Key), (usize, usize)> = HashMap::new(); // a side, how many there are
+        let alone = self.sides_of_one_cell();
+        for (f, &(cell, side)) in alone.iter().enumerate() {
+            let corners = self.corners(cell, side);
+            let corners = corners.into_iter().filter(|&k| k != u32::MAX).map(position);
+            let at = middle(&key, &corners.collect::<Vec<_>>());
+            let entry = by_place.entry((self.body[cell as usize], at));
             entry.or_insert((f, 0)).1 += 1;
         }
         let mut keep: Vec<(usize, Option<bool>)> = by_place
@@ -88,35 +79,45 @@ impl Solid<'_> {
         keep.sort_unstable();
         let mut faces = Vec::with_capacity(keep.len());
         for (f, mark) in keep {
-            let Face { corners, cell, .. } = alone[f];
-            faces.push(Face {
-                corners,
+            let (cell, side) = alone[f];
+            let (c, side) = (cell as usize, usize::from(side));
+            let nodes: Vec<u32> = self.cells.side_nodes(c, side).collect();
+            let kind = self.cells.kind(c).sides()[side].kind;
+            faces.extend(pieces(kind).iter().map(|piece| Face {
+                corners: piece.map(|a| nodes[usize::from(a)]),
                 cell,
                 mark,
-            });
+            }));
         }
         let edges = self.edges(&faces, &|p| key(position(p)));
         Surface { faces, edges }
     }
 
-    /// Faces that occur once in a subdomain, by point numbers; most faces occur twice and lie inside it.
-    fn faces_of_one_subdomain(&self) -> Vec<Face> {
-        let mut all: Vec<([u32; 4], u32, u8)> = Vec::with_capacity(6 * self.corners.len());
-        for (cell, hexahedron) in self.corners.iter().enumerate() {
-            for (f, face) in FACES.iter().enumerate() {
-                let mut corners = face.map(|a| hexahedron[a]);
-                corners.sort_unstable();
-                all.push((corners, cell as u32, f as u8));
-            }
+    fn corners(&self, cell: u32, side: u8) -> Corners {
+        let (cell, side) = (cell as usize, usize::from(side));
+        let n = self.cells.kind(cell).sides()[side].kind.corners();
+        let mut out = [u32::MAX; 4];
+        for (place, k) in out
+            .iter_mut()
+            .zip(self.cells.side_nodes(cell, side).take(n))
+        {
+            *place = k;
+        }
+        out.sort_unstable();
+        out
+    }
+
+    /// Sides whose points only one cell has; most sides have two cells and lie inside a body.
+    fn sides_of_one_cell(&self) -> Vec<Place> {
+        let mut all: Vec<(Corners, Place)> = Vec::with_capacity(6 * self.cells.len());
+        for (cell, kind) in self.cells.kinds().iter().enumerate() {
+            let sides = 0..kind.sides().len() as u8;
+            let place = |side| (cell as u32, side);
+            all.extend(sides.map(|side| (self.corners(cell as u32, side), place(side))));
         }
         all.par_sort_unstable();
-        let single = all.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() == 1);
-        let face = |g: &[([u32; 4], u32, u8)]| Face {
-            corners: FACES[g[0].2 as usize].map(|a| self.corners[g[0].1 as usize][a]),
-            cell: g[0].1,
-            mark: None,
-        };
-        single.map(face).collect()
+        let groups = all.chunk_by(|a, b| a.0 == b.0);
+        groups.filter(|g| g.len() == 1).map(|g| g[0].1).collect()
     }
 
     fn edges(&self, faces: &[Face], key: &dyn Fn(u32) -> Key) -> Vec<Edge> {
@@ -124,8 +125,7 @@ impl Solid<'_> {
         type Beside = ([u32; 2], [usize; 2], usize);
         let mut found: HashMap<(u32, Key, Key), Beside> = HashMap::new();
         for (f, face) in faces.iter().enumerate() {
-            for k in 0..4 {
-                let (a, b) = (face.corners[k], face.corners[(k + 1) % 4]);
+            for (a, b) in edges(face.corners) {
                 let body = self.body[face.cell as usize];
                 let place = (body, key(a).min(key(b)), key(a).max(key(b)));
                 let entry = found.entry(place).or_insert(([a, b], [f, f], 0));
@@ -153,7 +153,21 @@ impl Solid<'_> {
     }
 }
 
-/// The diagonals of a quadrilateral, and its middle.
+/// Twelve times the centre of a side, from its corners; a triangle may repeat its last one.
+fn middle(key: &dyn Fn([f64; 3]) -> Key, corners: &[[f64; 3]]) -> Key {
+    let n = match corners {
+        [_, _, a, b] if a != b => 4,
+        _ => 3.min(corners.len()),
+    };
+    let mut sum = [0; 3];
+    for corner in &corners[..n] {
+        let at = key(*corner);
+        (0..3).for_each(|d| sum[d] += at[d] * (12 / n as i64));
+    }
+    sum
+}
+
+/// The diagonals of a quadrilateral, and its middle; of a triangle two edges, and a point inside.
 pub(super) fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]) {
     let middle = [0, 1, 2].map(|i| 0.25 * (a[i] + b[i] + c[i] + d[i]));
     ([minus(c, a), minus(d, b)], middle)

@@ -2,7 +2,7 @@
 
 #[test]
 fn displacements_become_visible_and_stay_inside() {
-    let factor = |largest, size| super::factor(largest, size, super::VISIBLE[0]);
+    let factor = |largest, size| super::factor(largest, size, super::VISIBLE[0], f64::INFINITY);
     assert_eq!(factor(0.0, 1.0), 1.0);
     assert_eq!(factor(0.05, 1.0), 1.0);
     assert_eq!(factor(1e-3, 1.0), 100.0);
@@ -14,5 +14,8 @@ fn displacements_become_visible_and_stay_inside() {
         assert!((0.03..0.3).contains(&part), "{largest} {part}");
     }
     assert!(factor(1e-320, 1.0).is_finite());
-    assert_eq!(super::factor(0.02, 1.0, super::VISIBLE_CONTACT), 1.0);
+    let beside_contact = |largest, most| super::factor(largest, 1.0, super::VISIBLE_CONTACT, most);
+    assert_eq!(beside_contact(0.02, 7.0), 1.0);
+    assert_eq!(beside_contact(1e-3, 7.0), 5.0);
+    assert_eq!(beside_contact(1e-3, 1.0), 1.0);
 }

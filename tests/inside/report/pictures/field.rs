@@ -9,7 +9,7 @@ fn colours_stand_for_values() {
     // u = x on the unit square: the left end is dark violet, the right end yellow, the middle teal.
     let mesh = grid(2, 2, 4, false);
     let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
-    let picture = draw(&mesh.view(), &[Field::nodal("u", &u)], &[], false, "");
+    let picture = draw(&[], &mesh.view(), &[Field::nodal("u", &u)], &[], false, "");
     let (_, origin) = (0, (LEFT, 6.0 + 2.4 * TEXT + 400.0));
     let at = |x: f64, y: f64| {
         let p = ((origin.0 + 400.0 * x) * 2.0, (origin.1 - 400.0 * y) * 2.0);
@@ -45,8 +45,8 @@ fn the_contact_zone_is_marked_on_u() {
             closed: k < 8,
         })
         .collect();
-    let plain = draw(&mesh.view(), &field, &[], false, "");
-    let marked = draw(&mesh.view(), &field, &marks, false, "");
+    let plain = draw(&[], &mesh.view(), &field, &[], false, "");
+    let marked = draw(&[], &mesh.view(), &field, &marks, false, "");
     let (w, h) = plain.size();
     assert_eq!(marked.size().0, w);
     assert!(marked.size().1 > h, "room for the legend");
@@ -83,6 +83,7 @@ fn arrays_of_the_wrong_length_are_refused() {
         vec![1.0; mesh.quads.len() + 1],
     );
     let message = write(
+        &[],
         &mesh.view(),
         &both(&u, &rho),
         &[],
@@ -105,6 +106,7 @@ fn a_million_cells_are_painted() {
     let rho = vec![1.0; mesh.quads.len()];
     let dir = crate::report::output::tests::Scratch::new("field");
     write(
+        &[],
         &mesh.view(),
         &both(&u, &rho),
         &[],
@@ -113,4 +115,36 @@ fn a_million_cells_are_painted() {
         &dir.0.join("u.png"),
     )
     .unwrap();
+}
+
+/// A rigid plane under a body: grey in the margin below, white in the others.
+#[test]
+fn obstacles_stand_beside_bodies() {
+    let mesh = grid(1, 1, 2, false);
+    let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
+    let ground = Obstacle {
+        rigid: crate::scene::Rigid::Plane {
+            point: [0.0; 3],
+            normal: [0.0, 1.0, 0.0],
+        },
+        gap: 0.0,
+    };
+    let picture = draw(
+        &[ground],
+        &mesh.view(),
+        &[Field::nodal("u", &u)],
+        &[],
+        true,
+        "",
+    );
+    let size = 1.0 + 2.0 * BEYOND;
+    let (unit, bottom) = (400.0 / size, 6.0 + 2.4 * TEXT + 400.0);
+    let at = |x: f64, y: f64| {
+        let p = (LEFT + unit * (x + BEYOND), bottom - unit * (y + BEYOND));
+        picture.get((2.0 * p.0) as usize, (2.0 * p.1) as usize)
+    };
+    assert_eq!(at(0.5, -0.04), crate::report::pictures::obstacles::GREY);
+    assert_eq!(at(0.5, 1.04), Colour::WHITE);
+    assert_eq!(at(-0.04, 0.5), Colour::WHITE);
+    assert_ne!(at(0.3, 0.3), Colour::WHITE);
 }

@@ -36,9 +36,9 @@ fn a_contact_zone_between_bodies_is_seen_where_they_are_moved_apart() {
         })
         .collect();
     let red = |c: Colour| c.0 > 150 && c.1 < 40 && c.2 < 90;
-    let plain = draw(&blocks.view(), &[field; 2], &[], "two").unwrap();
+    let plain = draw(&blocks.view(), &[field; 2], &[], &[], "two").unwrap();
     assert_eq!(count(&plain, red), [0, 0]);
-    let marked = draw(&blocks.view(), &[field; 2], &marks, "two").unwrap();
+    let marked = draw(&blocks.view(), &[field; 2], &marks, &[], "two").unwrap();
     let [left, right] = count(&marked, red);
     // The sample in the legend may lie in the left half.
     assert!(left < 1200 && right > 8000, "{left} {right}");
@@ -68,6 +68,33 @@ fn fields_of_the_wrong_length_are_refused() {
         values: Values::Cell(&[1.0; 5]),
         scale: Scale::Linear,
     };
-    let error = draw(&blocks.view(), &[field; 2], &[], "").err().unwrap();
+    let error = draw(&blocks.view(), &[field; 2], &[], &[], "")
+        .err()
+        .unwrap();
     assert!(error.to_string().contains("'u' has 5 numbers"), "{error}");
+}
+
+/// A ball above a block is grey in the first picture only, and lets the block be seen.
+#[test]
+fn obstacles_are_shown_where_bodies_are_in_their_places() {
+    let blocks = Blocks::new(1, 2);
+    let u = vec![0.0; blocks.points.len()];
+    let ball = Obstacle {
+        rigid: crate::scene::Rigid::Round {
+            centre: [0.5, 1.4, 0.5],
+            axis: None,
+            radius: 0.4,
+            cavity: false,
+        },
+        gap: 0.0,
+    };
+    let fields = [Field::nodal("u", &u); 2];
+    let grey = |c: Colour| c.0 == c.1 && c.1 == c.2 && (0x80..0xd8).contains(&c.0);
+    let grey = |obstacles: &[Obstacle]| {
+        let picture = draw(&blocks.view(), &fields, &[], obstacles, "").unwrap();
+        count(&picture, grey)
+    };
+    let ([before, other], [left, right]) = (grey(&[]), grey(&[ball]));
+    assert!(left > before + 20_000, "{before} {left}");
+    assert!(right < other + 1000, "{other} {right}");
 }

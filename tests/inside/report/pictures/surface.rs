@@ -1,12 +1,13 @@
 //! Unit tests of `src/report/pictures/surface.rs`.
 
 use super::*;
+use crate::mesh::{CellKind, Cells};
 
 /// Owned arrays of a solid.
 #[derive(Default)]
 pub(crate) struct Blocks {
     pub points: Vec<[f64; 3]>,
-    pub hexahedra: Vec<[u32; 8]>,
+    pub cells: Cells,
     pub body: Vec<u32>,
     pub subdomain: Vec<u32>,
 }
@@ -35,8 +36,8 @@ impl Blocks {
                 let a = first + at[0] + row * at[1] + layer * at[2];
                 let ring = [a, a + 1, a + 1 + row, a + row];
                 let [p, q, r, s] = ring.map(|k| k + layer);
-                out.hexahedra
-                    .push([ring[0], ring[1], ring[2], ring[3], p, q, r, s]);
+                let nodes = [ring[0], ring[1], ring[2], ring[3], p, q, r, s];
+                out.cells.push(CellKind::Hex8, &nodes);
                 out.body.push(body);
                 out.subdomain.push(2 * body + half);
             }
@@ -48,7 +49,7 @@ impl Blocks {
         Solid {
             points: &self.points,
             shown: &self.points,
-            corners: &self.hexahedra,
+            cells: &self.cells,
             body: &self.body,
             subdomain: &self.subdomain,
         }
@@ -116,4 +117,86 @@ fn misfits_are_refused() {
     };
     assert!(far.check().unwrap_err().to_string().contains("names point"));
     view.check().unwrap();
+}
+
+/// The volume that some faces enclose, by the divergence theorem.
+fn volume(solid: &Solid, surface: &Surface) -> f64 {
+    let triangle = |[a, b, c]: [[f64; 3]; 3]| dot(a, cross(b, c)) / 6.0;
+    let face = |f: &Face| {
+        let [a, b, c, d] = f.corners.map(|p| solid.points[p as usize]);
+        triangle([a, b, c]) + triangle([a, c, d])
+    };
+    surface.faces.iter().map(face).sum()
+}
+
+/// Two tetrahedra of second order with a common side, and a pyramid on a wedge: inner sides are not shown, whatever the
+/// kinds of their cells, and normals point outwards.
+#[test]
+fn the_surface_of_cells_of_other_kinds() {
+    let corner = [
+        [0., 0., 0.],
+        [1., 0., 0.],
+        [0., 1., 0.],
+        [0., 0., 1.],
+        [1., 1., 1.],
+    ];
+    let mut points: Vec<[f64; 3]> = corner.to_vec();
+    let mut cells = Cells::default();
+    for tet in [[0, 1, 2, 3], [1, 4, 2, 3]] {
+        let mut nodes: Vec<u32> = tet.to_vec();
+        for &[a, b] in CellKind::Tet10.edges() {
+            let [a, b] = [a, b].map(|k| corner[tet[usize::from(k)] as usize]);
+            let middle = [0, 1, 2].map(|d| 0.5 * (a[d] + b[d]));
+            let known = points.iter().position(|p| *p == middle);
+            nodes.push(known.unwrap_or(points.len()) as u32);
+            if known.is_none() {
+                points.push(middle);
+            }
+        }
+        cells.push(CellKind::Tet10, &nodes);
+    }
+    let solid = Solid {
+        points: &points,
+        shown: &points,
+        cells: &cells,
+        body: &[0, 0],
+        subdomain: &[0, 1],
+    };
+    let mark = FaceMark {
+        body: 0,
+        corners: [corner[0], corner[2], corner[1], corner[1]],
+        closed: false,
+    };
+    let surface = solid.surface(&[mark]);
+    assert_eq!(surface.faces.len(), 6 * 4);
+    assert!((volume(&solid, &surface) - 0.5).abs() < 1e-14);
+    let marked = surface.faces.iter().filter(|f| f.mark == Some(false));
+    assert_eq!(marked.count(), 4);
+    // Two chords for each edge: nine around the two cells, all of them creases, as no two of the outer sides are flat.
+    assert_eq!(surface.edges.len(), 2 * 9);
+
+    let points = [
+        [0., 0., 0.],
+        [1., 0., 0.],
+        [0., 1., 0.],
+        [0., 0., 1.],
+        [1., 0., 1.],
+        [0., 1., 1.],
+        [1., 1., 0.5],
+    ];
+    let mut cells = Cells::default();
+    cells.push(CellKind::Wedge6, &[0, 1, 2, 3, 4, 5]);
+    cells.push(CellKind::Pyramid5, &[1, 2, 5, 4, 6]);
+    let solid = Solid {
+        points: &points,
+        shown: &points,
+        cells: &cells,
+        body: &[0, 0],
+        subdomain: &[0, 0],
+    };
+    let surface = solid.surface(&[]);
+    assert_eq!(surface.faces.len(), 4 + 4);
+    // The wedge has half the unit cube; the pyramid's base is √2 × 1, its height √2/2.
+    let expected = 0.5 + 1.0 / 3.0;
+    assert!((volume(&solid, &surface) - expected).abs() < 1e-14);
 }
