@@ -66,11 +66,10 @@ impl InterfaceNodes {
     }
 }
 
-/// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), and with areas
-/// pressure and area; in the plane without s and z.
+/// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure and area; in
+/// the plane without s and z. Pressure and area are empty where forces are not reported as pressures.
 pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, solid: bool) -> Table {
     let interfaces: Vec<_> = interfaces.map(|i| (i, i.pressure())).collect();
-    let areas = solid || interfaces.iter().any(|(i, _)| i.has_pressure());
     let nodes = interfaces.iter();
     let nodes = nodes.flat_map(|(i, pressure)| (0..i.t.len()).map(move |k| (*i, pressure, k)));
     Table::of(nodes)
@@ -83,10 +82,8 @@ pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, soli
         .exact("gap", |(i, _, k)| i.gap[*k])
         .exact("multiplier", |(i, _, k)| i.multiplier[*k])
         .exact("active", |(i, _, k)| u8::from(i.active[*k]))
-        .when(areas, |t| {
-            t.exact("pressure", |(_, pressure, k)| pressure.get(*k).copied())
-                .exact("area", |(i, _, k)| i.area.get(*k).copied())
-        })
+        .exact("pressure", |(_, pressure, k)| pressure.get(*k).copied())
+        .exact("area", |(i, _, k)| i.area.get(*k).copied())
         .table()
 }
 

@@ -114,9 +114,14 @@ fn files_hold_everything() {
     let csv = std::fs::read_to_string(&paths[2]).unwrap();
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(lines.len(), 1 + 5 + 3);
-    assert_eq!(lines[3], "a|b,0.5,1,0.5,0,0.0625,1");
-    assert_eq!(lines[6], "\"a, \"\"b\"\"\",0,1,0,,0,0");
-    assert!(lines[8].ends_with(",0.30000000000000004,0"), "{}", lines[8]);
+    assert_eq!(lines[0], "name,t,x,y,gap,multiplier,active,pressure,area");
+    assert_eq!(lines[3], "a|b,0.5,1,0.5,0,0.0625,1,,");
+    assert_eq!(lines[6], "\"a, \"\"b\"\"\",0,1,0,,0,0,,");
+    assert!(
+        lines[8].ends_with(",0.30000000000000004,0,,"),
+        "{}",
+        lines[8]
+    );
 }
 
 #[test]
