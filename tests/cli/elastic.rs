@@ -1,6 +1,7 @@
 //! `fetifeti solve` and `plan` on elastic and three-dimensional scenes: report, files, pressures, balances.
 
 use crate::support::checks::number;
+use crate::support::vtu::Vtu;
 use crate::support::{mpi, program};
 use std::fs;
 
@@ -117,6 +118,23 @@ fn pipes_press_on_each_other_as_lame_says() {
         assert!(!array(&vtu, name).contains("Components"), "{name}");
     }
     assert!(!vtu.contains("Name=\"rho\""));
+    // A point per node of each body, whatever its subdomains; averaged stress follows Lamé's solution inside the pipe,
+    // where the cells around a node stand on either side of it.
+    let vtu = Vtu(vtu);
+    let (points, stress) = (vtu.points(), vtu.floats("PointData", "stress"));
+    assert_eq!(points.len(), 2 * 9 * 25);
+    // σ_r + σ_φ = 2A is constant in a pipe.
+    let square = 1.5_f64.powi(2);
+    let a = (10.0 - expected * square) / (square - 1.0);
+    let mut compared = 0;
+    for (p, s) in points.iter().zip(stress.chunks_exact(6)) {
+        let r = p[0].hypot(p[1]);
+        if r > 1.0 + 1e-9 && r < 1.5 - 1e-9 {
+            assert!(near(s[0] + s[1], 2.0 * a, 0.1), "{p:?} {s:?} {a}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 7 * 25);
 }
 
 #[test]

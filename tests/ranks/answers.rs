@@ -1,10 +1,12 @@
 //! The program under mpirun: the answer depends neither on the number of ranks nor on the distribution of subdomains.
 
 use crate::support::checks::{near, number};
+use crate::support::vtu::Vtu;
 use crate::support::{mpi, program};
 use mpi::Scratch;
 use program::run_fetifeti;
 use serde_json::Value;
+use std::collections::HashMap;
 
 fn solve(ranks: usize, scene: &str, more: &[&str]) -> Value {
     let args = [
@@ -144,7 +146,7 @@ fn more_ranks_than_subdomains() {
 #[test]
 fn files_are_written_once_for_all_ranks() {
     let scratch = Scratch::new("files");
-    let mut meshes = Vec::new();
+    let mut all = Vec::new();
     for n in [1, 3] {
         let dir = scratch.path(&format!("out{n}"));
         let out = run_fetifeti(
@@ -153,8 +155,14 @@ fn files_are_written_once_for_all_ranks() {
         );
         assert_eq!(out.code, 0, "{}", out.all());
         assert_eq!(out.stdout.matches("written:").count(), 1, "{}", out.all());
-        let bytes = std::fs::read(format!("{dir}/solution.vtu")).expect("the file is there");
-        meshes.push(bytes.len());
+        let vtu = Vtu::read(&format!("{dir}/solution.vtu"));
+        // Three bodies of 17² nodes, whatever their subdomains.
+        assert_eq!(vtu.count("NumberOfPoints"), 3 * 17 * 17);
+        let mut ranks = vtu.whole("CellData", "rank");
+        ranks.sort_unstable();
+        ranks.dedup();
+        assert_eq!(ranks, (0..n as i32).collect::<Vec<_>>());
+        all.push(vtu);
         assert!(
             std::fs::metadata(format!("{dir}/solution.png"))
                 .expect("the picture")
@@ -166,7 +174,65 @@ fn files_are_written_once_for_all_ranks() {
         )
         .expect("JSON");
     }
-    assert_eq!(meshes[0], meshes[1]);
+    assert_eq!(all[0].points(), all[1].points());
+    let u = |vtu: &Vtu| vtu.floats("PointData", "u");
+    for (a, b) in u(&all[0]).iter().zip(u(&all[1])) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}
+
+/// The pieces of three ranks have the stress of the whole, also where cells of several ranks meet in a node.
+#[test]
+fn pieces_have_the_fields_of_the_whole() {
+    let scratch = Scratch::new("pieces");
+    let solve = |ranks: usize, more: &[&str]| {
+        let dir = scratch.path(&format!("out{ranks}"));
+        let scene = "examples/scenes/annulus.toml";
+        let options = ["-fetifeti_ksp_rtol", "1e-12"];
+        let args = [&["solve", scene, "--out", &dir][..], &options, more].concat();
+        let out = run_fetifeti(ranks, &args);
+        assert_eq!(out.code, 0, "{}", out.all());
+        dir
+    };
+    let whole = Vtu::read(&format!("{}/solution.vtu", solve(1, &[])));
+    let dir = solve(3, &["--pieces"]);
+    assert!(!std::path::Path::new(&format!("{dir}/solution.vtu")).exists());
+    let index = Vtu::read(&format!("{dir}/solution.pvtu")).0;
+    let place = |p: [f64; 3]| p.map(|x| (1e9 * x).round() as i64);
+    // Two bodies have points in one place where they touch: their contact pressures are equal, and strains differ.
+    let names = [("u", 3), ("stress", 6), ("contact_pressure", 1), ("gap", 1)];
+    let mut expected: HashMap<_, Vec<Vec<f64>>> = HashMap::new();
+    let values = |vtu: &Vtu| -> Vec<Vec<f64>> {
+        let mut out = vec![Vec::new(); vtu.count("NumberOfPoints")];
+        for (name, n) in names {
+            let all = vtu.floats("PointData", name);
+            for (list, values) in out.iter_mut().zip(all.chunks_exact(n)) {
+                list.extend(values);
+            }
+        }
+        out
+    };
+    for (p, v) in whole.points().into_iter().zip(values(&whole)) {
+        expected.entry(place(p)).or_default().push(v);
+    }
+    let mut cells = 0;
+    for rank in 0..3 {
+        let name = format!("solution_{rank:04}.vtu");
+        assert!(index.contains(&format!("Source=\"{name}\"")), "{index}");
+        let piece = Vtu::read(&format!("{dir}/{name}"));
+        cells += piece.count("NumberOfCells");
+        assert!(piece.whole("CellData", "rank").iter().all(|&r| r == rank));
+        for (p, found) in piece.points().into_iter().zip(values(&piece)) {
+            let here = &expected[&place(p)];
+            let error = |e: &Vec<f64>| {
+                let pairs = e.iter().zip(&found);
+                pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            };
+            let least = here.iter().map(error).fold(f64::INFINITY, f64::min);
+            assert!(least < 1e-6, "{p:?}: {found:?} {here:?}");
+        }
+    }
+    assert_eq!(cells, whole.count("NumberOfCells"));
 }
 
 #[test]

@@ -19,4 +19,5 @@ pub mod rng;
 pub mod scene_message;
 pub mod session;
 pub mod solid;
+pub mod vtu;
 pub mod wall;
