@@ -147,14 +147,7 @@ fn solve(
         true => Place::EachRank,
         false => Place::FirstRank,
     };
-    let course = follow(
-        session,
-        scene,
-        &mut solver,
-        destination,
-        place,
-        checkpoints,
-    )?;
+    let course = follow(session, scene, &mut solver, destination, place, checkpoints)?;
     let solution = &course.solution;
     let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
         (false, _) => None,

@@ -10,7 +10,7 @@ use super::space::Camera;
 use super::stage::{pale, Stage, CLOSED};
 use super::surface::{diagonals, Surface};
 use super::values::Field;
-use crate::linalg::vec3::{cross, dot};
+use crate::linalg::vec3::{cross, dot, minus, norm};
 use crate::report::drawing::canvas::{Anchor, Canvas, Colour, TextStyle};
 use crate::report::drawing::colormap::viridis;
 use crate::report::drawing::raster::Raster;
@@ -28,6 +28,11 @@ const AXES: f64 = 62.0;
 /// The distance by which bodies are moved apart, relative to the distance of their centres from the middle: for two or
 /// three bodies, and for more.
 const APART: [f64; 2] = [0.75, 0.5];
+
+/// Faces count as one direction if their normals cancel by no more than to this part of their area.
+const FLAT: f64 = 0.9;
+/// The least distance by which bodies are moved in this direction, relative to the scene's size.
+const ALONG: f64 = 0.08;
 
 /// Another viewpoint is taken only if it shows the marked area by this factor better.
 const BETTER: f64 = 1.6;
@@ -59,7 +64,7 @@ fn draw(
     let (points, cells) = (solid.points.len(), solid.cells.len());
     fields.iter().try_for_each(|f| f.check(points, cells))?;
     let surface = solid.surface(marks);
-    let shifts = shifts(solid);
+    let shifts = shifts(solid, &surface);
     let several = shifts.len() > 1;
     let none = vec![[0.0; 3]; shifts.len()];
     let second = second_camera(solid, &surface, several);
@@ -121,8 +126,9 @@ fn draw(
     Ok(raster)
 }
 
-/// The shift of each body away from the common middle.
-fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
+/// The shift of each body away from the common middle. Two or three bodies that touch in faces of nearly one direction
+/// move in this direction, wherever their middles are.
+fn shifts(solid: &Solid, surface: &Surface) -> Vec<[f64; 3]> {
     let n = solid.body.iter().max().map_or(0, |&b| b as usize + 1);
     let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; n];
     for ((_, cell), &body) in solid.cells.iter().zip(solid.body) {
@@ -136,18 +142,33 @@ fn shifts(solid: &Solid) -> Vec<[f64; 3]> {
     }
     let [low, high] = bounds(solid.points.iter().copied());
     let apart = APART[usize::from(n > 3)];
-    let shift = |[a, b]: [[f64; 3]; 2]| {
-        [0, 1, 2].map(|d| {
-            let away = 0.5 * (a[d] + b[d]) - 0.5 * (low[d] + high[d]);
-            // A body number without cells has no centre.
-            if away.is_finite() {
-                apart * away
-            } else {
-                0.0
+    // Sum of the normals of marked faces, and their area.
+    let mut marked = vec![([0.0; 3], 0.0); n];
+    for face in surface.faces.iter().filter(|f| f.mark.is_some()) {
+        let ([u, v], _) = diagonals(face.corners.map(|p| solid.points[p as usize]));
+        let normal = cross(u, v);
+        let (sum, area) = &mut marked[solid.body[face.cell as usize] as usize];
+        (0..3).for_each(|d| sum[d] += normal[d]);
+        *area += norm(normal);
+    }
+    let least = ALONG * norm(minus(high, low));
+    let shift = |([a, b], (normals, area)): ([[f64; 3]; 2], ([f64; 3], f64))| {
+        let away = [0, 1, 2].map(|d| apart * (0.5 * (a[d] + b[d]) - 0.5 * (low[d] + high[d])));
+        // A body number without cells has no centre.
+        if !away.iter().all(|x| x.is_finite()) {
+            return [0.0; 3];
+        }
+        let length = norm(normals);
+        match n <= 3 && area > 0.0 && length > FLAT * area {
+            true => {
+                let back = normals.map(|x| -x / length);
+                let far = dot(away, back).max(least);
+                back.map(|x| far * x)
             }
-        })
+            false => away,
+        }
     };
-    boxes.into_iter().map(shift).collect()
+    boxes.into_iter().zip(marked).map(shift).collect()
 }
 
 /// The viewpoint that shows most of the marked area; the viewpoint of the first picture if no other is clearly better.
