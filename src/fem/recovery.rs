@@ -1,8 +1,8 @@
 //! Strain and stress of a solution, from the cells of subdomains to the nodes of bodies.
 //!
-//! Every cell gives values at its nodes ([`element::stress_at_nodes`]). They jump from cell to cell; a node has the mean
-//! of its cells, weighted by their volumes. On meshes of second order the mean converges with the square of the size of
-//! cells, one order faster than the values inside cells of first order do.
+//! Every cell gives values at its nodes ([`element::stress_at_nodes`]). They jump from cell to cell; a node has the
+//! mean of its cells, weighted by their volumes. On meshes of second order the mean converges with the square of the
+//! size of cells, one order faster than the values inside cells of first order do.
 
 use super::cell::{centre_stress, CellStress, Element};
 use super::element::{self, NodeStress};

@@ -66,8 +66,8 @@ impl InterfaceNodes {
     }
 }
 
-/// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure and area; in
-/// the plane without s and z. Pressure and area are empty where forces are not reported as pressures.
+/// All nodes as CSV: name, t, s (the second parameter), x, y, z, gap, multiplier, active (0 or 1), pressure and area;
+/// in the plane without s and z. Pressure and area are empty where forces are not reported as pressures.
 pub(super) fn csv<'a>(interfaces: impl Iterator<Item = &'a InterfaceNodes>, solid: bool) -> Table {
     let interfaces: Vec<_> = interfaces.map(|i| (i, i.pressure())).collect();
     let nodes = interfaces.iter();

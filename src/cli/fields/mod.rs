@@ -1,8 +1,8 @@
 //! The fields of the solution: u, and stress and strain at the nodes of bodies; as VTU.
 //!
-//! A node of a body is one point, whatever the number of subdomains around it. Stress jumps where materials meet: a body
-//! of a few materials has a point per node and material. In a body of more the coefficient is a field of its own, and
-//! stress is averaged over all cells around a node.
+//! A node of a body is one point, whatever the number of subdomains around it. Stress jumps where materials meet: a
+//! body of a few materials has a point per node and material. In a body of more the coefficient is a field of its own,
+//! and stress is averaged over all cells around a node.
 
 mod materials;
 mod shared;

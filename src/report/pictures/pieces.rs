@@ -1,5 +1,5 @@
-//! Plane cells and sides cut into quadrilaterals and triangles with corners at their nodes, to paint them: a curved edge
-//! of three nodes becomes two chords.
+//! Plane cells and sides cut into quadrilaterals and triangles with corners at their nodes, to paint them: a curved
+//! edge of three nodes becomes two chords.
 
 use crate::mesh::CellKind;
 

@@ -37,7 +37,8 @@ const ALONG: f64 = 0.08;
 /// Another viewpoint is taken only if it shows the marked area by this factor better.
 const BETTER: f64 = 1.6;
 
-/// Writes fields as PNG, side by side. The first picture shows the bodies in their places, beside the obstacles. The others show the bodies
+/// Writes fields as PNG, side by side. The first picture shows the bodies in their places, beside
+/// the obstacles. The others show the bodies
 /// moved apart, or another side of a single body, from the viewpoint that shows most of the faces in `marks`.
 ///
 /// # Errors

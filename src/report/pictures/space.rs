@@ -115,8 +115,8 @@ impl Buffer {
         }
     }
 
-    /// Lays another picture of the same size over this one: what is nearer there covers by a share, and where nothing is
-    /// here, whole.
+    /// Lays another picture of the same size over this one: what is nearer there covers by a share, and where nothing
+    /// is here, whole.
     pub fn lay(&mut self, over: &Buffer, share: f64) {
         for (k, &depth) in over.depth.iter().enumerate() {
             if depth > self.depth[k] {
