@@ -12,6 +12,8 @@ use fetifeti::report::pictures::field::{ContactMark, Field, Mesh};
 use fetifeti::report::plots::load_steps;
 use fetifeti::report::plots::profile;
 use fetifeti::report::plots::profile::Profile;
+use flate2::read::ZlibDecoder;
+use std::io::Read;
 use std::path::PathBuf;
 
 /// A clean directory.
@@ -322,7 +324,7 @@ fn xml(text: &str) -> Element {
     root.children.pop().unwrap()
 }
 
-/// The bytes of the numbers of an inline array, without the length in front.
+/// The bytes of the numbers of an inline array: blocks of zlib after their number, two sizes and the size of each.
 fn bytes(array: &Element) -> Vec<u8> {
     assert_eq!(array.get("format"), "binary");
     const DIGITS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -333,11 +335,16 @@ fn bytes(array: &Element) -> Vec<u8> {
         let padding = group.iter().filter(|&&c| c == b'=').count();
         out.extend(&bits.to_be_bytes()[1..4 - padding]);
     }
-    let data = out.split_off(8);
-    assert_eq!(
-        u64::from_le_bytes(out.try_into().unwrap()) as usize,
-        data.len()
-    );
+    let word = |k: usize| u64::from_le_bytes(out[8 * k..8 * k + 8].try_into().unwrap()) as usize;
+    let blocks = word(0);
+    let (mut start, mut data) = (8 * (3 + blocks), Vec::new());
+    for k in 0..blocks {
+        let end = start + word(3 + k);
+        let mut block = ZlibDecoder::new(&out[start..end]);
+        block.read_to_end(&mut data).unwrap();
+        start = end;
+    }
+    assert_eq!(start, out.len());
     data
 }
 
