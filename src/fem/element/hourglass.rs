@@ -6,8 +6,8 @@
 //! parallelepipeds resists linear displacements. A quadrilateral is a thick layer of such hexahedra, as CPE4R.
 
 use super::map::{for_each_sample, relative};
+use super::products::Products;
 use super::quadrature::Purpose;
-use super::stiffness::Products;
 use super::table::table;
 use crate::fem::cell::{Element, Material};
 use crate::mesh::CellKind;
@@ -18,8 +18,8 @@ const FACTOR: f64 = 0.0005;
 /// The stiffness of a cell; elastic only.
 pub(super) fn stiffness(kind: CellKind, points: &[[f64; 3]], material: &Material, out: &mut [f64]) {
     match kind {
-        CellKind::Quad4 => cell::<2, 4>(kind, points, material, out),
-        _ => cell::<3, 8>(kind, points, material, out),
+        CellKind::Quad4 => cell::<2, 4, 1>(kind, points, material, out),
+        _ => cell::<3, 8, 2>(kind, points, material, out),
     }
 }
 
@@ -41,14 +41,14 @@ pub(super) fn mean_gradient<const D: usize, const N: usize>(
     (mean.map(|row| row.map(|g| g / volume)), volume)
 }
 
-fn cell<const D: usize, const N: usize>(
+fn cell<const D: usize, const N: usize, const L: usize>(
     kind: CellKind,
     points: &[[f64; 3]],
     material: &Material,
     out: &mut [f64],
 ) {
     let (mean, volume) = mean_gradient::<D, N>(kind, points);
-    let mut products = Products::<D, N>::new();
+    let mut products = Products::<D, N, L>::new();
     products.add(volume, &mean);
     products.stiffness(material.moduli(D, Element::Q1), out);
 

@@ -6,8 +6,8 @@
 //! is C3D8I of CalculiX.
 
 use super::map::{for_each_sample, invert, jacobian, relative, slopes, Sample};
+use super::products::Products;
 use super::quadrature::Purpose;
-use super::stiffness::Products;
 use super::table::table;
 use crate::fem::cell::Moduli;
 use crate::mesh::CellKind;
@@ -18,8 +18,8 @@ const MOST: usize = 33;
 /// The stiffness of a cell, condensed.
 pub(super) fn stiffness(kind: CellKind, points: &[[f64; 3]], moduli: Moduli, out: &mut [f64]) {
     match kind {
-        CellKind::Quad4 => condensed::<2, 4, 6>(kind, points, moduli, out),
-        _ => condensed::<3, 8, 11>(kind, points, moduli, out),
+        CellKind::Quad4 => condensed::<2, 4, 6, 2>(kind, points, moduli, out),
+        _ => condensed::<3, 8, 11, 3>(kind, points, moduli, out),
     }
 }
 
@@ -32,19 +32,19 @@ pub(super) fn for_each_gradient(
     f: impl FnMut(usize, [[f64; 3]; 3]),
 ) {
     match kind {
-        CellKind::Quad4 => gradients::<2, 4, 6>(kind, points, moduli, nodal, f),
-        _ => gradients::<3, 8, 11>(kind, points, moduli, nodal, f),
+        CellKind::Quad4 => gradients::<2, 4, 6, 2>(kind, points, moduli, nodal, f),
+        _ => gradients::<3, 8, 11, 3>(kind, points, moduli, nodal, f),
     }
 }
 
-fn condensed<const D: usize, const N: usize, const M: usize>(
+fn condensed<const D: usize, const N: usize, const M: usize, const L: usize>(
     kind: CellKind,
     points: &[[f64; 3]],
     moduli: Moduli,
     out: &mut [f64],
 ) {
     let (n, m) = (D * N, D * M);
-    let k = Eliminated::new::<D, N, M>(kind, points, moduli);
+    let k = Eliminated::new::<D, N, M, L>(kind, points, moduli);
     for i in 0..n {
         for j in i..n {
             let inner: f64 = (n..m).map(|q| k.0[q][i] * k.0[q][j]).sum();
@@ -55,14 +55,14 @@ fn condensed<const D: usize, const N: usize, const M: usize>(
     }
 }
 
-fn gradients<const D: usize, const N: usize, const M: usize>(
+fn gradients<const D: usize, const N: usize, const M: usize, const L: usize>(
     kind: CellKind,
     points: &[[f64; 3]],
     moduli: Moduli,
     nodal: &[f64],
     mut f: impl FnMut(usize, [[f64; 3]; 3]),
 ) {
-    let all = Eliminated::new::<D, N, M>(kind, points, moduli).with_modes(D * N, D * M, nodal);
+    let all = Eliminated::new::<D, N, M, L>(kind, points, moduli).with_modes(D * N, D * M, nodal);
     for_each_extended::<D, N, M>(kind, points, |s| {
         let mut gradient = [[0.0; 3]; 3];
         for (a, node) in all[..D * M].chunks_exact(D).enumerate() {
@@ -81,12 +81,12 @@ fn gradients<const D: usize, const N: usize, const M: usize>(
 struct Eliminated([[f64; MOST]; MOST]);
 
 impl Eliminated {
-    fn new<const D: usize, const N: usize, const M: usize>(
+    fn new<const D: usize, const N: usize, const M: usize, const L: usize>(
         kind: CellKind,
         points: &[[f64; 3]],
         moduli: Moduli,
     ) -> Eliminated {
-        let mut products = Products::<D, M>::new();
+        let mut products = Products::<D, M, L>::new();
         for_each_extended::<D, N, M>(kind, points, |s| products.add(s.weight, &s.gradient));
         let (n, m) = (D * N, D * M);
         let mut flat = [0.0; MOST * MOST];

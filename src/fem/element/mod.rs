@@ -34,6 +34,7 @@ mod integration;
 mod loads;
 mod locate;
 mod map;
+mod products;
 mod quadrature;
 mod shape;
 mod sides;

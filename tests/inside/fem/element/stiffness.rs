@@ -311,3 +311,48 @@ fn straight_cells_have_the_volume_of_their_corners() {
         assert!((all - corners).abs() < 1e-14 * corners, "{kind:?}");
     }
 }
+
+#[test]
+fn motions_without_energy_of_single_cells_do_not_fit_together() {
+    let whole: Cuts = |_| Cut::Whole;
+    let wedges: Cuts = |_| Cut::Wedges;
+    for (dim, order, cut, regular) in [
+        (2, Order::Serendipity, whole, false),
+        (2, Order::Serendipity, whole, true),
+        (3, Order::Serendipity, whole, false),
+        (3, Order::Serendipity, whole, true),
+        (3, Order::First, wedges, false),
+        (3, Order::First, wedges, true),
+    ] {
+        let mut shake = shaken(dim);
+        let map = |p| if regular { p } else { shake(p) };
+        let mesh = Mesh::new(dim, 2, order, cut, map);
+        let n = dim * mesh.points.len();
+        let mut k = Mat::<f64>::zeros(n, n);
+        for (kind, nodes) in &mesh.cells {
+            let cell = matrix(
+                *kind,
+                &mesh.cell_points(nodes),
+                &STEEL,
+                Integration::Reduced,
+            );
+            let dofs: Vec<usize> = nodes
+                .iter()
+                .flat_map(|p| (0..dim).map(move |i| dim * p + i))
+                .collect();
+            for (i, &row) in dofs.iter().enumerate() {
+                for (j, &col) in dofs.iter().enumerate() {
+                    k[(row, col)] += cell[(i, j)];
+                }
+            }
+        }
+        let values = k
+            .self_adjoint_eigenvalues(Side::Lower)
+            .expect("eigenvalues");
+        let zeros = values
+            .iter()
+            .filter(|v| v.abs() < 1e-10 * values[n - 1])
+            .count();
+        assert_eq!(zeros, rigid_count(dim), "{dim} {order:?} {regular}");
+    }
+}
