@@ -19,6 +19,7 @@ pub fn form(scene: &Scene) -> String {
                 _ if solid => "three-dimensional elasticity",
                 Plane::Strain => "plane strain elasticity",
                 Plane::Stress => "plane stress elasticity",
+                Plane::Axial => "axisymmetric elasticity",
             },
             Some(match cure {
                 Cure::None => "no cure of locking",

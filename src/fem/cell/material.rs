@@ -10,6 +10,9 @@ pub enum Plane {
     Strain,
     /// A thin sheet: σ_zz = 0.
     Stress,
+    /// A ring: x is the radius, y the axis, ε_zz = u_x/x the strain around. Cells of [`element`](crate::fem::element)
+    /// only.
+    Axial,
 }
 
 /// The cure of the locking of Q1 when Poisson's ratio is close to 1/2.
@@ -43,7 +46,7 @@ pub enum Material {
         young: f64,
         /// Poisson's ratio ν.
         poisson: f64,
-        /// Plane strain or plane stress; ignored in 3D.
+        /// Plane strain, plane stress or axisymmetry; ignored in 3D.
         plane: Plane,
         /// Against locking; Q1 only.
         cure: Cure,
@@ -91,6 +94,24 @@ impl Material {
     /// # Errors
     /// One clause, without a full stop, that says what was found and what was expected; the caller knows the place.
     pub fn check(&self, dim: usize, element: Element) -> Result<(), String> {
+        self.check_numbers()?;
+        match *self {
+            Material::Elastic {
+                plane: Plane::Axial,
+                ..
+            } if dim == 2 => Err(
+                "axisymmetry is given with cells of a box, expected plane strain or plane stress"
+                    .into(),
+            ),
+            _ => self.check_cure(dim, element),
+        }
+    }
+
+    /// Whether these numbers make sense.
+    ///
+    /// # Errors
+    /// As [`Material::check`].
+    pub(crate) fn check_numbers(&self) -> Result<(), String> {
         match *self {
             Material::Scalar { rho } if !(rho > 0.0 && rho.is_finite()) => {
                 Err(format!("rho is {rho}, expected a positive number"))
@@ -99,12 +120,21 @@ impl Material {
             Material::Elastic { young, .. } if !(young > 0.0 && young.is_finite()) => Err(format!(
                 "Young's modulus is {young}, expected a positive number"
             )),
-            Material::Elastic { poisson, .. } if !(poisson > -1.0 && poisson < 0.5) => {
-                Err(format!(
-                    "Poisson's ratio is {poisson}, expected a number above -1 and below 0.5"
-                ))
-            }
-            Material::Elastic {
+            Material::Elastic { poisson, .. } if !(poisson > -1.0 && poisson < 0.5) => Err(
+                format!("Poisson's ratio is {poisson}, expected a number above -1 and below 0.5"),
+            ),
+            Material::Elastic { .. } => Ok(()),
+        }
+    }
+
+    /// Whether the element takes the cure.
+    ///
+    /// # Errors
+    /// As [`Material::check`].
+    pub(crate) fn check_cure(&self, dim: usize, element: Element) -> Result<(), String> {
+        match *self {
+            Material::Scalar { .. }
+            | Material::Elastic {
                 cure: Cure::None, ..
             } => Ok(()),
             Material::Elastic { .. } if element == Element::P1 => Err(

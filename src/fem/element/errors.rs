@@ -1,5 +1,6 @@
 //! Distance between a finite element function and an exact solution on one cell.
 
+use super::axial::{is_axial, per_radius};
 use super::integration::moduli;
 use super::map::{by_kind, for_each_sample, place, relative};
 use super::quadrature::Purpose;
@@ -7,13 +8,15 @@ use super::table::table;
 use super::Integration;
 use crate::fem::cell::{Material, Moduli};
 use crate::mesh::CellKind;
+use std::f64::consts::TAU;
 
 /// Squares of the L² norm, the H¹ seminorm (∫ |∇e|², all components) and the energy norm of e = u_h − u, by a rule of
 /// higher order.
 ///
 /// `nodal` has the cell's degrees of freedom; `exact` returns u and its gradient, `[i][j]` = ∂u_i/∂x_j, at a point. The
 /// energy is ∫ ρ|∇e|², or ∫ 2μ ε:ε + λ(∇·e)² where [`Cure`](crate::fem::cell::Cure) replaces ∇·e by its mean. u_h is
-/// what the nodes say: incompatible modes do not count.
+/// what the nodes say: incompatible modes do not count. With [`Plane::Axial`](crate::fem::cell::Plane) all are of the
+/// whole ring, and e_r/r belongs to the gradient.
 ///
 /// # Panics
 /// When a length is wrong, or [`check`](super::check) refuses.
@@ -47,6 +50,7 @@ fn squares<const D: usize, const N: usize>(
     let mut squares = [0.0; 3];
     let (mut volume, mut dilatation) = (0.0, 0.0);
     let table = table(kind, Purpose::Error);
+    let axial = is_axial(D, material);
     for_each_sample::<D, N>(&relative(points), table, |s| {
         let values = table.values(s.index);
         let (u, slope) = exact(place(points, values));
@@ -59,16 +63,23 @@ fn squares<const D: usize, const N: usize>(
                 }
             }
         }
+        // Around the axis: what a full turn has, and u_r/r.
+        let (mut full, mut around) = (s.weight, 0.0);
+        if axial {
+            let inverse = per_radius(points, table, s.index);
+            full *= TAU / inverse;
+            around = value[0] * inverse;
+        }
         let gradient = &gradient[..components];
         let l2: f64 = value[..components].iter().map(|v| v * v).sum();
         let rows = gradient.iter().flat_map(|row| &row[..D]);
-        let h1: f64 = rows.map(|v| v * v).sum();
+        let h1: f64 = rows.map(|v| v * v).sum::<f64>() + around * around;
         let energy = if let Material::Scalar { rho } = material {
             rho * h1
         } else {
-            let divergence: f64 = (0..D).map(|i| gradient[i][i]).sum();
-            dilatation += s.weight * divergence;
-            let mut strain = 0.0;
+            let divergence: f64 = (0..D).map(|i| gradient[i][i]).sum::<f64>() + around;
+            dilatation += full * divergence;
+            let mut strain = around * around;
             for i in 0..D {
                 for j in 0..D {
                     strain += (0.5 * (gradient[i][j] + gradient[j][i])).powi(2);
@@ -76,10 +87,10 @@ fn squares<const D: usize, const N: usize>(
             }
             2.0 * shear * strain + point * divergence * divergence
         };
-        volume += s.weight;
-        squares[0] += s.weight * l2;
-        squares[1] += s.weight * h1;
-        squares[2] += s.weight * energy;
+        volume += full;
+        squares[0] += full * l2;
+        squares[1] += full * h1;
+        squares[2] += full * energy;
     });
     squares[2] += mean * dilatation * dilatation / volume;
     squares

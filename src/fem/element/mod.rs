@@ -22,11 +22,16 @@
 //! Rules for stiffness are exact on affine cells, those for loads also for constants on curved ones. [`Integration`]
 //! says which of them is which element of CalculiX.
 //!
+//! With [`Plane::Axial`](super::cell::Plane) plane cells are rings: x is the radius, y the axis, and stiffness, energy
+//! and norms are those of the whole ring. Loads do not know the material: their forces have to be multiplied by 2π r.
+//!
 //! Units: lengths as the points, stresses as Young's modulus; a plane cell has thickness one.
 
 // Tensors are written by their indices, as on paper.
 #![allow(clippy::needless_range_loop)]
 
+mod axial;
+mod deck;
 mod errors;
 mod hourglass;
 mod incompatible;
@@ -44,12 +49,10 @@ mod table;
 mod valid;
 
 #[cfg(test)]
-#[path = "../../../tests/inside/fem/element/calculix.rs"]
-mod calculix;
-#[cfg(test)]
 #[path = "../../../tests/inside/fem/element/testing.rs"]
 mod testing;
 
+pub use deck::deck_element;
 pub use errors::error_squares;
 pub use integration::{check, Integration};
 pub use loads::{body_load, middle, volume};

@@ -1,5 +1,6 @@
 //! The stiffness of one cell.
 
+use super::axial::{self, is_axial};
 use super::hourglass;
 use super::incompatible;
 use super::integration::{moduli, Integration};
@@ -13,7 +14,7 @@ use crate::mesh::CellKind;
 /// The stiffness matrix of a cell, row-major into `out`, of length (nodes · C)²; symmetric to the last bit.
 ///
 /// Scalar: ∫ ρ ∇N_a·∇N_b. Elastic: ∫ 2μ ε(u):ε(v) + λ (∇·u)(∇·v), the last term as [`Cure`](crate::fem::cell::Cure)
-/// says, integrated as [`Integration`] says.
+/// says, integrated as [`Integration`] says; around the axis as [`Plane::Axial`](crate::fem::cell::Plane) says.
 ///
 /// # Panics
 /// When a length is wrong, or [`check`](super::check) refuses.
@@ -29,6 +30,13 @@ pub fn stiffness(
     assert_eq!(out.len(), n * n, "a cell has {n} degrees of freedom");
     let moduli = moduli(kind, dim, material, integration);
     let bilinear = matches!(kind, CellKind::Quad4 | CellKind::Hex8);
+    if is_axial(dim, material) {
+        let purpose = match integration {
+            Integration::Reduced => Purpose::Reduced,
+            _ => Purpose::Full,
+        };
+        return axial::stiffness(kind, points, moduli, purpose, out);
+    }
     let table = match integration {
         Integration::Reduced if bilinear => {
             return hourglass::stiffness(kind, points, material, out)

@@ -16,6 +16,7 @@
 //! | other quadrilaterals and hexahedra | 2 per direction | 1 and s in each direction |
 //! | wedge of 15 nodes | 3 × 3 | linear × linear |
 
+use super::axial::{is_axial, per_radius};
 use super::hourglass::mean_gradient;
 use super::incompatible;
 use super::integration::{is_plane_stress, moduli, Integration};
@@ -26,7 +27,8 @@ use crate::fem::cell::{Material, Moduli};
 use crate::mesh::CellKind;
 use std::sync::OnceLock;
 
-/// Strain and stress at a node, components xx, yy, zz, xy, yz, xz; in plane problems with those across the plane.
+/// Strain and stress at a node, components xx, yy, zz, xy, yz, xz; in plane problems with those across the plane,
+/// zz, which of rings are those around.
 ///
 /// For a scalar material the first three of `strain` are ∇u and those of `stress` ρ∇u; the rest is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -75,7 +77,13 @@ pub fn stress_at_nodes(
                 gradients.at[q] = gradient;
             });
         }
-        _ => by_kind!(kind, sample(kind, points, purpose, nodal, &mut gradients)),
+        _ => {
+            let axial = is_axial(dim, material);
+            by_kind!(
+                kind,
+                sample(kind, points, purpose, axial, nodal, &mut gradients)
+            );
+        }
     }
     let rows = extrapolation.len() / points.len();
     let mut values = [NodeStress::default(); MOST_POINTS];
@@ -104,15 +112,24 @@ fn sample<const D: usize, const N: usize>(
     kind: CellKind,
     points: &[[f64; 3]],
     purpose: Purpose,
+    axial: bool,
     nodal: &[f64],
     out: &mut Gradients,
 ) {
     let (mut dilatation, mut volume) = (0.0, 0.0);
-    for_each_sample::<D, N>(&relative(points), table(kind, purpose), |s| {
+    let table = table(kind, purpose);
+    for_each_sample::<D, N>(&relative(points), table, |s| {
         let gradient = &mut out.at[s.index];
         add_gradient(&s.gradient, nodal, gradient);
-        volume += s.weight;
-        dilatation += s.weight * (0..D).map(|i| gradient[i][i]).sum::<f64>();
+        let mut weight = s.weight;
+        if axial {
+            let inverse = per_radius(points, table, s.index);
+            let radial = nodal.iter().step_by(2).zip(table.values(s.index));
+            gradient[2][2] = inverse * radial.map(|(u, n)| u * n).sum::<f64>();
+            weight /= inverse;
+        }
+        volume += weight;
+        dilatation += weight * (0..3).map(|i| gradient[i][i]).sum::<f64>();
     });
     out.mean_dilatation = dilatation / volume;
 }
