@@ -2,14 +2,13 @@
 
 use crate::fem::cell::{Cure, Element, Plane};
 use crate::fem::Physics;
+use crate::mesh::{CellKind, Mesh};
 use crate::scene::Scene;
+use std::collections::BTreeSet;
 
 /// Equation and elements, such as "plane strain elasticity, Q1, no cure of locking". Units are those of the scene.
 pub fn form(scene: &Scene) -> String {
-    let element = match scene.form.element {
-        Element::Q1 => "Q1",
-        Element::P1 => "P1",
-    };
+    let element = elements(scene);
     let solid = scene.dim() == 3;
     let (equation, cure) = match scene.form.physics {
         Physics::Scalar if solid => ("three-dimensional scalar", None),
@@ -28,8 +27,28 @@ pub fn form(scene: &Scene) -> String {
             }),
         ),
     };
-    let parts = [Some(equation), Some(element), cure];
+    let parts = [Some(equation), Some(&element[..]), cure];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// The elements of all bodies: "Q1" or "P1" on boxes, the kinds of cells on meshes.
+fn elements(scene: &Scene) -> String {
+    let mut kinds: BTreeSet<CellKind> = BTreeSet::new();
+    let mut boxes = false;
+    for body in &scene.bodies {
+        match body.mesh() {
+            Mesh::Grid(_) => boxes = true,
+            Mesh::Cells(mesh) => kinds.extend(mesh.cells.kinds()),
+        }
+    }
+    let of_boxes = boxes.then_some(match scene.form.element {
+        Element::Q1 => "Q1",
+        Element::P1 => "P1",
+    });
+    let names = of_boxes
+        .into_iter()
+        .chain(kinds.into_iter().map(|kind| kind.name()));
+    names.collect::<Vec<&str>>().join(" and ")
 }
 
 #[cfg(test)]

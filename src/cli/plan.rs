@@ -16,7 +16,7 @@ use crate::feti::{MethodSettings, PcType};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
 use crate::report::tables::table::Table;
-use crate::scene::{distribution, Plan, Scene};
+use crate::scene::{distribution, BodyPlan, Plan, Scene};
 use crate::substructures::Substructures;
 use crate::{FetiFeti, Result};
 
@@ -113,15 +113,20 @@ fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
 
 fn bodies(plan: &Plan, sizes: &Sizes) -> String {
     // Only solids have elements in z.
-    let dim = if plan.bodies[0].elements[2] > 0 { 3 } else { 2 };
+    let solid = plan.bodies.iter().any(|b| b.elements[2] > 0);
+    // A mesh of cells has no rows of elements.
+    let dim = |b: &BodyPlan| match b.elements[1] {
+        0 => 1,
+        _ => 2 + usize::from(solid),
+    };
     let kernel = |defect: usize| match defect {
         0 => "held".into(),
         d => format!("floats ({d})"),
     };
     let table = Table::of(plan.bodies.iter().zip(&sizes.defect).take(LIST))
         .words("body", |(b, _)| &b.name)
-        .numbers("elements", |(b, _)| grid(b.elements, dim))
-        .numbers("subdomains", |(b, _)| grid(b.subdomains, dim))
+        .numbers("elements", |(b, _)| grid(b.elements, dim(b)))
+        .numbers("subdomains", |(b, _)| grid(b.subdomains, dim(b)))
         .numbers("dofs", |(b, _)| b.dofs)
         .numbers("prescribed", |(b, _)| b.prescribed)
         .numbers("primal", |(b, _)| b.primal)

@@ -16,6 +16,7 @@ use crate::checkpoint::Checkpoints;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::feti::MethodSettings;
+use crate::linalg::vec3::dot;
 use crate::mesh::deck::{self, Deck};
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
@@ -83,12 +84,13 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
                 .map(dat_table),
         );
     }
-    if let (Some(dir), false) = (&destination.out, tables.is_empty()) {
-        let text = deck::write_dat(&tables);
-        on_first_rank(session, || {
-            output::write_text(&dir.join(format!("{stem}.dat")), &text)
-        })?;
-    }
+    // Only rank 0 has tables.
+    on_first_rank(session, || match &destination.out {
+        Some(dir) if !tables.is_empty() => {
+            output::write_text(&dir.join(format!("{stem}.dat")), &deck::write_dat(&tables))
+        }
+        _ => Ok(()),
+    })?;
     Ok(())
 }
 
@@ -105,16 +107,16 @@ fn notes(deck: &Deck) -> String {
 
 /// A table of displacements for a `.dat` file.
 fn dat_table(print: &NodePrint) -> deck::Table {
-    let row = |&(id, x, y, z): &(u64, f64, f64, f64)| deck::TableRow {
+    let row = |(&(id, x, y, z), &local): (&(u64, f64, f64, f64), &bool)| deck::TableRow {
         id,
         vector: [x, y, z],
-        local: false,
+        local,
     };
     deck::Table {
         quantity: deck::Quantity::Displacement,
         set: print.set.clone(),
         time: print.time,
-        rows: print.nodes.iter().map(row).collect(),
+        rows: print.nodes.iter().zip(&print.local).map(row).collect(),
     }
 }
 
@@ -169,8 +171,8 @@ fn solve(
         if session.rank() == 0 {
             printed.extend(scene.prints.iter().map(|print| node_print(&values, print)));
         }
-        report.node_print.clone_from(&printed);
     }
+    report.node_print.clone_from(&printed);
     if let Some(dir) = &destination.out {
         write_fields(session, scene, &solver, &course, place, dir)?;
     }
@@ -191,13 +193,18 @@ fn solve(
 /// A table of displacements that a deck asks for; nodes that no element has do not move.
 fn node_print(values: &Values, print: &crate::scene::NodePrint) -> NodePrint {
     let row = |node: &PrintedNode| {
-        let [x, y, z] = node.node.map_or([0.0; 3], |at| values.at(at.body, at.node));
+        let u = node.node.map_or([0.0; 3], |at| values.at(at.body, at.node));
+        let [x, y, z] = match node.axes {
+            Some(axes) => axes.map(|axis| dot(axis, u)),
+            None => u,
+        };
         (node.id, x, y, z)
     };
     NodePrint {
         set: print.set.clone(),
         time: print.time,
         nodes: print.nodes.iter().map(row).collect(),
+        local: print.nodes.iter().map(|node| node.axes.is_some()).collect(),
     }
 }
 

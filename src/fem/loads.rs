@@ -39,7 +39,8 @@ where
         points.extend(nodes.iter().map(|&k| mesh.points[k as usize]));
         local.clear();
         local.resize(c * nodes.len(), 0.0);
-        element::body_load(kind, mesh.dim, &points, c, |x| f(e, x), &mut local);
+        let rule = mesh.integration(e);
+        element::body_load_by(rule, kind, mesh.dim, &points, c, |x| f(e, x), &mut local);
         let nodes = nodes.iter().map(|&k| k as usize);
         add(&mut out, c, nodes.zip(local.chunks_exact(c)));
     }

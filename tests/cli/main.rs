@@ -6,6 +6,7 @@ mod support;
 mod checkpoint;
 mod checkpoint_files;
 mod contact;
+mod deck;
 mod elastic;
 mod energy;
 mod input;

@@ -11,6 +11,7 @@ mod contact_input;
 mod contact_solution;
 mod counts;
 mod examples;
+mod gallery;
 mod input;
 mod input_bodies;
 mod meshes;

@@ -1,5 +1,6 @@
 //! Forces in a cell, its volume and a point inside.
 
+use super::integration::Integration;
 use super::map::{by_kind, invert, jacobian, place, relative, slopes};
 use super::quadrature::Purpose;
 use super::table::{table, Table};
@@ -15,6 +16,25 @@ pub fn body_load<F>(
     dim: usize,
     points: &[[f64; 3]],
     components: usize,
+    f: F,
+    out: &mut [f64],
+) where
+    F: FnMut([f64; 3]) -> [f64; 3],
+{
+    body_load_by(Integration::Full, kind, dim, points, components, f, out);
+}
+
+/// As [`body_load`], with the points of the stiffness on cells of second order with reduced integration: CalculiX's
+/// forces on C3D20R, C3D15 and CPE8R, exact for constants on affine cells.
+///
+/// # Panics
+/// As [`body_load`].
+pub fn body_load_by<F>(
+    integration: Integration,
+    kind: CellKind,
+    dim: usize,
+    points: &[[f64; 3]],
+    components: usize,
     mut f: F,
     out: &mut [f64],
 ) where
@@ -24,7 +44,13 @@ pub fn body_load<F>(
     let n = points.len() * components;
     assert_eq!(out.len(), n, "a cell has {n} degrees of freedom");
     out.fill(0.0);
-    let table = table(kind, Purpose::Load);
+    let reduced = integration == Integration::Reduced && kind.order() == 2;
+    let purpose = if reduced {
+        Purpose::Reduced
+    } else {
+        Purpose::Load
+    };
+    let table = table(kind, purpose);
     for_each_weight(kind, points, table, |index, weight| {
         let values = table.values(index);
         let force = f(place(points, values)).map(|value| value * weight);

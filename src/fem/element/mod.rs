@@ -55,7 +55,7 @@ mod testing;
 pub use deck::deck_element;
 pub use errors::error_squares;
 pub use integration::{check, Integration};
-pub use loads::{body_load, middle, volume};
+pub use loads::{body_load, body_load_by, middle, volume};
 pub use locate::locate;
 pub use sides::{side_load, side_weights, SideWeights};
 pub use stiffness::stiffness;

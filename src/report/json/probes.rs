@@ -24,6 +24,10 @@ pub struct NodePrint {
     pub set: String,
     /// The time at the end of the step.
     pub time: f64,
-    /// Number of the node, ux, uy, uz.
+    /// Number of the node, ux, uy, uz; in the system of the node where the deck gives it one (`*TRANSFORM`), unless it
+    /// asks for the global one.
     pub nodes: Vec<(u64, f64, f64, f64)>,
+    /// Whether each node is in a system of its own.
+    #[serde(skip)]
+    pub local: Vec<bool>,
 }

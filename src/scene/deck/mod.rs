@@ -19,12 +19,14 @@ use crate::substructures::BodyNode;
 use numbers::Numbers;
 
 /// A node of a deck that *NODE PRINT prints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrintedNode {
     /// Its number in the deck.
     pub id: u64,
     /// The node; `None` if no cell has it.
     pub node: Option<BodyNode>,
+    /// The axes along which the displacement is printed, by rows, if they are not those of the coordinates.
+    pub axes: Option<[[f64; 3]; 3]>,
 }
 
 /// A table of displacements that a deck asks for.
@@ -146,6 +148,7 @@ impl DeckScenes {
                     .map(|&k| PrintedNode {
                         id: deck.mesh.node_ids[k as usize],
                         node: numbers.node(k),
+                        axes: deck.frame(k).filter(|_| !print.global),
                     })
                     .collect(),
             })
