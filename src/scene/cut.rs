@@ -6,7 +6,7 @@ use crate::fem::cell::{Element, Material};
 use crate::fem::element::{self, Integration};
 use crate::fem::Form;
 use crate::mesh::partition::{subdomains_for, Adjacency, Entity, Interface, Partition, Sharing};
-use crate::mesh::{second_order, CellMesh, Mesh, SharedNodes};
+use crate::mesh::{defect, second_order, CellMesh, Mesh, SharedNodes};
 use std::sync::Arc;
 
 /// Gives a body its final mesh.
@@ -26,7 +26,13 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form) -> Result<()> {
     let Mesh::Cells(mesh) = &mut body.mesh else {
         return Ok(());
     };
-    if let Err(message) = check(mesh, form, &body.integration) {
+    // Boxes have none.
+    let found = check(mesh, form, &body.integration);
+    let torn = match mesh.in_file.is_empty() {
+        true => None,
+        false => defect(mesh),
+    };
+    if let Err(message) = found.and(torn.map_or(Ok(()), Err)) {
         let (written, name) = (&body.written, &body.name);
         return Err(Error::Input(format!("{written}body `{name}`: {message}")));
     }

@@ -308,6 +308,54 @@ fn what_does_not_fit_gets_one_sentence() {
     let whole = squares(2, 3, 1);
     let cut = &whole[..whole.len() / 2];
     Model::new("mesh_truncated", cut).refuses(TWO, "m.msh, line ");
+    // A square that is cut along a line: its nodes there are doubled. A cell whose neighbours are cut in two.
+    let quads = |cells: &[[usize; 4]], nodes: &[[f64; 2]]| {
+        let mut out = format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n",
+            nodes.len()
+        );
+        for (k, [x, y]) in nodes.iter().enumerate() {
+            out += &format!("{} {x} {y} 0\n", k + 1);
+        }
+        out += &format!("$EndNodes\n$Elements\n{}\n", cells.len());
+        for (k, [a, b, c, d]) in cells.iter().enumerate() {
+            out += &format!("{} 3 2 1 1 {a} {b} {c} {d}\n", k + 1);
+        }
+        out + "$EndElements\n"
+    };
+    let one = "[mesh]\nfile = \"m.msh\"\n[[body]]\nname = \"1\"\ndirichlet = [\"all\"]\n";
+    let torn = quads(
+        &[[1, 2, 5, 4], [2, 3, 6, 5], [4, 7, 9, 8], [10, 6, 11, 9]],
+        &[
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [2.0, 0.0],
+            [0.0, 1.0],
+            [1.0, 1.0],
+            [2.0, 1.0],
+            [1.0, 1.0],
+            [0.0, 2.0],
+            [1.0, 2.0],
+            [1.0, 1.0],
+            [2.0, 2.0],
+        ],
+    );
+    Model::new("mesh_torn", &torn).refuses(one, "are both at");
+    let hanging = quads(
+        &[[1, 2, 5, 4], [2, 3, 6, 5], [4, 6, 8, 7]],
+        &[
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [2.0, 0.0],
+            [0.0, 1.0],
+            [1.0, 1.0],
+            [2.0, 1.0],
+            [0.0, 2.0],
+            [2.0, 2.0],
+        ],
+    );
+    Model::new("mesh_hanging", &hanging)
+        .refuses(one, "node 5 at [1.0, 1.0, 0.0] hangs on a side of cell 3");
     // A triangle that is turned inside out.
     let mesh = squares(2, 3, 1);
     let line = mesh.lines().find(|l| l.contains(" 2 2 100 100 ")).unwrap();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::numbers::Numbers;
 use crate::error::Result;
-use crate::fem::element::Integration;
+use crate::fem::element::{deck_element, Integration};
 use crate::fem::Quadrature;
 use crate::mesh::deck::{self, BodyLoadKind, Deck, Place};
 use crate::mesh::{extract, CellMesh, SideGroup};
@@ -70,11 +70,7 @@ fn body(deck: &Deck, b: usize, part: &[u32], mut mesh: CellMesh, step: usize) ->
     }
     let rules = part
         .iter()
-        .map(|&c| match deck.elements[c as usize].integration() {
-            deck::Integration::Full => Integration::Full,
-            deck::Integration::Reduced => Integration::Reduced,
-            deck::Integration::Incompatible => Integration::Incompatible,
-        });
+        .map(|&c| deck_element(deck.elements[c as usize]).0);
     let integration: Vec<Integration> = rules.collect();
     let surface = pressures(deck, part, &mut mesh, &thickness, step);
     let load = volume_load(deck, part, &of_cell, &thickness, step)?;
