@@ -97,6 +97,9 @@ fn hanging(mesh: &CellMesh) -> Option<String> {
     for face in &skin.faces {
         let (nodes, corners) = outline(face);
         let near = ON * length(&corners);
+        if !is_straight(mesh, &nodes, &corners, near) {
+            continue;
+        }
         let bound = |f: fn(f64, f64) -> f64, d: usize| {
             corners.iter().map(|c| c[d]).reduce(f).unwrap_or_default()
         };
@@ -112,6 +115,18 @@ fn hanging(mesh: &CellMesh) -> Option<String> {
         }
     }
     None
+}
+
+/// Whether the middle nodes of a side are in the middle of its edges: the corners say little of a curved side.
+fn is_straight(mesh: &CellMesh, nodes: &[u32], corners: &[[f64; 3]], near: f64) -> bool {
+    let n = corners.len();
+    let edges = if n == 2 { 1 } else { n };
+    let middle = |k: usize| {
+        let (a, b) = (corners[k], corners[(k + 1) % n]);
+        [0, 1, 2].map(|d| 0.5 * (a[d] + b[d]))
+    };
+    let at = |k: usize| nodes.get(n + k).map(|&node| mesh.points[node as usize]);
+    (0..edges).all(|k| at(k).is_none_or(|x| norm(minus(x, middle(k))) <= near))
 }
 
 /// Whether a point is on a segment, or on a triangle or quadrilateral (of two triangles), away from its corners.

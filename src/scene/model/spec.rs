@@ -59,9 +59,9 @@ pub enum Force {
 /// beyond the end of the list are free. A scalar problem uses the first component only.
 pub type Sides = Vec<[Option<Field>; 3]>;
 
-/// No side is held.
+/// No side of a box is held.
 pub fn free_all_round() -> Sides {
-    Vec::new()
+    vec![[const { None }; 3]; SIDES.len()]
 }
 
 /// u = 0 on all sides of a box, in all components.
