@@ -3,6 +3,7 @@
 use super::body::{bounds_of, Body};
 use super::deck::{DeckScenes, NodePrint};
 use super::geometry::interface::Interface;
+use super::geometry::matching::Matching;
 use super::model::expr::Expr;
 use super::model::spec::{lee, Faces, GridSpec, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
@@ -121,11 +122,12 @@ impl Scene {
             first_dof += (nodes * components) as u64;
             first_subdomain += subdomains;
         }
-        rows::surfaces::expand(&bodies, &mut spec)?;
+        let mut matching = Matching::new(&bodies);
+        rows::surfaces::expand(&bodies, &mut matching, &mut spec)?;
         if let Some(steps) = &mut steps {
             steps.renumber(&spec);
         }
-        let interfaces = rows::entries::find(&bodies, &spec, &steps)?;
+        let interfaces = rows::entries::find(&bodies, matching, &spec, &steps)?;
         let obstacles = rows::obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
         let mut points = rows::points::collect(&mut bodies, &interfaces)?;
         rows::bounds::Checks::new(&bodies, &obstacles, &spec, &steps).apply(&mut points)?;

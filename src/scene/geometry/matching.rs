@@ -1,6 +1,7 @@
 //! Sides of meshes of cells that face each other: each node with the node opposite.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use super::facing::{interface, share};
 use super::interface::{Interface, Shape};
@@ -19,16 +20,67 @@ pub(crate) enum Mismatch {
     Lonely(String),
 }
 
-/// The interface of two sides, of which one at least belongs to a mesh of cells, where they are at most `reach` apart.
-/// Nodes beyond the edge of the other side have no partner.
-pub(crate) fn matching(
+/// Two bodies, a side of each, and the bits of the reach.
+type Sides = ([usize; 2], [usize; 2], u64);
+
+/// The search for nodes that face each other. It keeps the surfaces that it builds and the interfaces that it finds: a
+/// body has several neighbours, and who finds contacts asks for the same pair as who makes interfaces of them.
+pub(crate) struct Matching<'a> {
+    bodies: &'a [Body],
+    surfaces: HashMap<(usize, usize), Rc<Surface>>,
+    found: HashMap<Sides, Interface>,
+}
+
+impl<'a> Matching<'a> {
+    pub fn new(bodies: &'a [Body]) -> Matching<'a> {
+        Matching {
+            bodies,
+            surfaces: HashMap::new(),
+            found: HashMap::new(),
+        }
+    }
+
+    /// A side of a body.
+    pub fn surface(&mut self, body: usize, side: usize) -> Rc<Surface> {
+        let build = || Rc::new(Surface::new(&self.bodies[body].spec, side));
+        self.surfaces
+            .entry((body, side))
+            .or_insert_with(build)
+            .clone()
+    }
+
+    /// The interface of two sides, of which one at least belongs to a mesh of cells, where they are at most `reach`
+    /// apart. Nodes beyond the edge of the other side have no partner.
+    pub fn find(
+        &mut self,
+        pair: [usize; 2],
+        sides: [usize; 2],
+        reach: f64,
+    ) -> Result<&Interface, Mismatch> {
+        let key = (pair, sides, reach.to_bits());
+        if !self.found.contains_key(&key) {
+            let surfaces = [0, 1].map(|k| self.surface(pair[k], sides[k]));
+            let interface = join(
+                self.bodies,
+                pair,
+                sides,
+                [&surfaces[0], &surfaces[1]],
+                reach,
+            )?;
+            self.found.insert(key, interface);
+        }
+        Ok(&self.found[&key])
+    }
+}
+
+fn join(
     bodies: &[Body],
     pair: [usize; 2],
     sides: [usize; 2],
+    [a, b]: [&Surface; 2],
     reach: f64,
 ) -> Result<Interface, Mismatch> {
     let specs = pair.map(|k| &bodies[k].spec);
-    let [a, b] = [0, 1].map(|k| Surface::new(specs[k], sides[k]));
     // Far apart the nearest nodes say nothing about the faces opposite.
     let near = |surface: &Surface, i: usize| reach.min(4.0 * surface.edges[i]);
     let mut pairs = Vec::new();
@@ -37,7 +89,7 @@ pub(crate) fn matching(
         let (point, normals) = (a.points[i], &a.normals[i]);
         match b.opposite(point, normals, MATCH * a.edges[i], reach) {
             Some(other) => pairs.push([node, b.nodes[other]]),
-            None if b.covers(point, normals, near(&a, i), 2.0 * MATCH) => {
+            None if b.covers(point, normals, near(a, i), 2.0 * MATCH) => {
                 lonely.get_or_insert((0, node));
             }
             None => {}
@@ -49,7 +101,7 @@ pub(crate) fn matching(
     }
     for (j, &node) in b.nodes.iter().enumerate() {
         let normals = &b.normals[j];
-        if !taken.contains(&node) && a.covers(b.points[j], normals, near(&b, j), 2.0 * MATCH) {
+        if !taken.contains(&node) && a.covers(b.points[j], normals, near(b, j), 2.0 * MATCH) {
             lonely.get_or_insert((1, node));
         }
     }

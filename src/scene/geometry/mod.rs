@@ -8,5 +8,6 @@ pub mod nearest;
 pub mod normals;
 pub mod sides;
 pub mod surface;
+pub mod sweep;
 pub mod topology;
 pub mod touching;

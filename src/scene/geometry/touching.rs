@@ -3,34 +3,29 @@
 use super::facing::coinciding;
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::normals;
+use super::sweep::near_in_x;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, Mesh};
 use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
 
-/// Pairs of bodies that touch, in order of their numbers, found by a sweep in x.
+/// Pairs of bodies that touch, in order of their numbers.
 pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
-    let mut order: Vec<usize> = (0..bodies.len()).collect();
-    let left = |b: usize| bodies[b].bounds[0][0];
-    order.sort_by(|&a, &b| left(a).total_cmp(&left(b)).then(a.cmp(&b)));
-    let mut out = Vec::new();
-    for (k, &a) in order.iter().enumerate() {
+    let slack = |a: usize| {
         let [low, high] = bodies[a].bounds;
-        let reach = match bodies[a].mesh() {
-            Mesh::Grid(grid) => high[0] + TOLERANCE * grid.step()[0],
-            Mesh::Cells(_) => high[0] + TOLERANCE * (high[0] - low[0]),
-        };
-        for &b in &order[k + 1..] {
-            if left(b) > reach {
-                break;
+        TOLERANCE
+            * match bodies[a].mesh() {
+                Mesh::Grid(grid) => grid.step()[0],
+                Mesh::Cells(_) => high[0] - low[0],
             }
-            let (a, b) = (a.min(b), a.max(b));
-            match [a, b].map(|k| bodies[k].mesh().grid()) {
-                [Some(x), Some(y)] if bodies[a].spec.map == bodies[b].spec.map => {
-                    out.extend(common(bodies, [x, y], [a, b])?);
-                }
-                _ => out.extend(coinciding(bodies, [a, b])),
+    };
+    let mut out = Vec::new();
+    for [a, b] in near_in_x(bodies, slack) {
+        match [a, b].map(|k| bodies[k].mesh().grid()) {
+            [Some(x), Some(y)] if bodies[a].spec.map == bodies[b].spec.map => {
+                out.extend(common(bodies, [x, y], [a, b])?);
             }
+            _ => out.extend(coinciding(bodies, [a, b])),
         }
     }
     out.sort_by_key(|i| i.bodies);

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::facing::opposite;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
-use crate::scene::geometry::matching::{matching, Mismatch};
+use crate::scene::geometry::matching::{Matching, Mismatch};
 use crate::scene::geometry::touching::touching;
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{ByDefault, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
@@ -16,11 +16,12 @@ use std::collections::{HashMap, HashSet};
 /// All pairs that touch, with their ties and contacts.
 pub(crate) fn find(
     bodies: &[Body],
+    matching: Matching<'_>,
     spec: &SceneSpec,
     steps: &Option<Steps>,
 ) -> Result<Vec<Interface>> {
     let mut interfaces = touching(bodies)?;
-    facing(bodies, spec, &mut interfaces)?;
+    facing(bodies, matching, spec, &mut interfaces)?;
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
     let zero = Profile::constant(0.0);
@@ -48,7 +49,12 @@ pub(crate) fn find(
 }
 
 /// Interfaces of facing sides that an entry names; they replace the interface of the touching pair.
-fn facing(bodies: &[Body], spec: &SceneSpec, interfaces: &mut Vec<Interface>) -> Result<()> {
+fn facing(
+    bodies: &[Body],
+    mut matching: Matching<'_>,
+    spec: &SceneSpec,
+    interfaces: &mut Vec<Interface>,
+) -> Result<()> {
     let ties = spec.ties.iter();
     let ties = ties.map(|t| (t.sides, &t.pair, t.adjust, None, &t.written));
     let contacts = spec.contacts.iter();
@@ -78,9 +84,11 @@ fn facing(bodies: &[Body], spec: &SceneSpec, interfaces: &mut Vec<Interface>) ->
             },
             _ => {
                 let reach = distance.unwrap_or(f64::INFINITY);
-                matching(bodies, pair, sides, reach).map_err(|why| match why {
+                let found = matching.find(pair, sides, reach);
+                let found = found.map_err(|why| match why {
                     Mismatch::Apart(why) | Mismatch::Lonely(why) => Error::Input(format!("{written}{why}")),
-                })?
+                });
+                found?.clone()
             }
         };
         for distance in interface.distances.iter_mut() {
@@ -89,9 +97,11 @@ fn facing(bodies: &[Body], spec: &SceneSpec, interfaces: &mut Vec<Interface>) ->
             }
         }
         interface.entry = Some(number);
-        interfaces.retain(|i| i.bodies != pair || i.entry.is_some());
         interfaces.push(interface);
     }
+    let of_entries = interfaces.iter().filter(|i| i.entry.is_some());
+    let named: HashSet<[usize; 2]> = of_entries.map(|i| i.bodies).collect();
+    interfaces.retain(|i| i.entry.is_some() || !named.contains(&i.bodies));
     interfaces.sort_by_key(|i| i.bodies);
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
-use crate::scene::geometry::matching::{matching, Mismatch};
-use crate::scene::geometry::surface::Surface;
+use crate::scene::geometry::matching::{Matching, Mismatch};
+use crate::scene::geometry::sweep::{are_apart, near_in_x};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{AutoContact, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
 
@@ -11,12 +11,16 @@ use crate::scene::model::spec::{AutoContact, ContactSpec, Extent, Pair, SceneSpe
 const NEAR: f64 = 0.1;
 
 /// Replaces the surfaces in the entries by bodies and sides, and adds the contacts that `auto` finds.
-pub(crate) fn expand(bodies: &[Body], spec: &mut SceneSpec) -> Result<()> {
+pub(crate) fn expand(
+    bodies: &[Body],
+    matching: &mut Matching<'_>,
+    spec: &mut SceneSpec,
+) -> Result<()> {
     let mut ties = Vec::with_capacity(spec.ties.len());
     for tie in std::mem::take(&mut spec.ties) {
         match &tie.pair {
             Pair::Surfaces(a, b) => {
-                let found = pairs(bodies, [a, b], tie.adjust.max(0.0), &tie.written)?;
+                let found = pairs(bodies, matching, [a, b], tie.adjust.max(0.0), &tie.written)?;
                 ties.extend(found.into_iter().map(|(pair, sides)| TieSpec {
                     pair,
                     sides: Some(sides),
@@ -32,7 +36,7 @@ pub(crate) fn expand(bodies: &[Body], spec: &mut SceneSpec) -> Result<()> {
         match &contact.pair {
             Pair::Surfaces(a, b) => {
                 let reach = contact.distance.unwrap_or(f64::INFINITY);
-                let found = pairs(bodies, [a, b], reach, &contact.written)?;
+                let found = pairs(bodies, matching, [a, b], reach, &contact.written)?;
                 contacts.extend(found.into_iter().map(|(pair, sides)| ContactSpec {
                     pair,
                     sides: Some(sides),
@@ -43,7 +47,7 @@ pub(crate) fn expand(bodies: &[Body], spec: &mut SceneSpec) -> Result<()> {
         }
     }
     if let Some(auto) = spec.auto.clone() {
-        contacts.extend(found(bodies, &auto)?);
+        contacts.extend(found(bodies, matching, &auto)?);
     }
     spec.contacts = contacts;
     Ok(())
@@ -52,7 +56,13 @@ pub(crate) fn expand(bodies: &[Body], spec: &mut SceneSpec) -> Result<()> {
 type Found = (Pair, [usize; 2]);
 
 /// The pairs of bodies that have the surfaces, and whose nodes there face each other.
-fn pairs(bodies: &[Body], names: [&String; 2], reach: f64, written: &str) -> Result<Vec<Found>> {
+fn pairs(
+    bodies: &[Body],
+    matching: &mut Matching<'_>,
+    names: [&String; 2],
+    reach: f64,
+    written: &str,
+) -> Result<Vec<Found>> {
     let with = |name: &String| {
         let side = |b: usize| {
             let mesh = bodies[b].mesh();
@@ -84,7 +94,7 @@ fn pairs(bodies: &[Body], names: [&String; 2], reach: f64, written: &str) -> Res
             )
         };
         let reach = if reach > 0.0 { reach } else { f64::INFINITY };
-        match (alone, matching(bodies, pair, sides, reach)) {
+        match (alone, matching.find(pair, sides, reach)) {
             (_, Ok(_)) | (true, Err(_)) => out.push((named(), sides)),
             (_, Err(Mismatch::Lonely(message))) => {
                 return Err(Error::Input(format!("{written}{message}")))
@@ -103,43 +113,50 @@ fn pairs(bodies: &[Body], names: [&String; 2], reach: f64, written: &str) -> Res
 }
 
 /// Contacts between all bodies whose skins are near each other.
-fn found(bodies: &[Body], auto: &AutoContact) -> Result<Vec<ContactSpec>> {
+fn found(
+    bodies: &[Body],
+    matching: &mut Matching<'_>,
+    auto: &AutoContact,
+) -> Result<Vec<ContactSpec>> {
+    let skin = |k: usize| {
+        let mesh = bodies[k].mesh();
+        mesh.cells().map(|_| mesh.outer_sides().start)
+    };
+    let reach_of = |k: usize| match (auto.distance, skin(k)) {
+        (Some(distance), _) => distance,
+        (None, Some(side)) => NEAR * shortest(&matching.surface(k, side).edges),
+        (None, None) => 0.0,
+    };
+    let reaches: Vec<f64> = (0..bodies.len()).map(reach_of).collect();
+    let mut near = near_in_x(bodies, |k| reaches[k]);
+    near.sort_unstable();
     let mut out = Vec::new();
-    for a in 0..bodies.len() {
-        for b in a + 1..bodies.len() {
-            if bodies[a].mesh().cells().is_none() || bodies[b].mesh().cells().is_none() {
-                continue;
+    for [a, b] in near {
+        let (Some(first), Some(second)) = (skin(a), skin(b)) else {
+            continue;
+        };
+        let (sides, reach) = ([first, second], reaches[a].min(reaches[b]));
+        if are_apart([&bodies[a], &bodies[b]], reach) {
+            continue;
+        }
+        let names = [a, b].map(|k| bodies[k].spec.name.clone());
+        match matching.find([a, b], sides, reach) {
+            Err(Mismatch::Apart(_)) => {}
+            Err(Mismatch::Lonely(message)) => {
+                return Err(Error::Input(format!("{}{message}", auto.written)))
             }
-            let reach = auto
-                .distance
-                .unwrap_or_else(|| default_reach(&bodies[a]).min(default_reach(&bodies[b])));
-            let apart = (0..3).any(|d| {
-                let [x, y] = [&bodies[a].bounds, &bodies[b].bounds];
-                x[0][d] > y[1][d] + reach || y[0][d] > x[1][d] + reach
-            });
-            if apart {
-                continue;
-            }
-            let sides = [a, b].map(|k| bodies[k].mesh().outer_sides().start);
-            let names = [a, b].map(|k| bodies[k].spec.name.clone());
-            match matching(bodies, [a, b], sides, reach) {
-                Err(Mismatch::Apart(_)) => {}
-                Err(Mismatch::Lonely(message)) => {
-                    return Err(Error::Input(format!("{}{message}", auto.written)))
-                }
-                Ok(_) => {
-                    let [first, second] = names;
-                    out.push(ContactSpec {
-                        pair: Pair::Named(first, second),
-                        sides: Some(sides),
-                        extent: Extent::All,
-                        gap: Profile::constant(0.0),
-                        distance: Some(reach),
-                        adjust: auto.adjust,
-                        ramp: None,
-                        written: auto.written.clone(),
-                    });
-                }
+            Ok(_) => {
+                let [first, second] = names;
+                out.push(ContactSpec {
+                    pair: Pair::Named(first, second),
+                    sides: Some(sides),
+                    extent: Extent::All,
+                    gap: Profile::constant(0.0),
+                    distance: Some(reach),
+                    adjust: auto.adjust,
+                    ramp: None,
+                    written: auto.written.clone(),
+                });
             }
         }
     }
@@ -152,8 +169,6 @@ fn found(bodies: &[Body], auto: &AutoContact) -> Result<Vec<ContactSpec>> {
     }
 }
 
-fn default_reach(body: &Body) -> f64 {
-    let side = body.mesh().outer_sides().start;
-    let surface = Surface::new(&body.spec, side);
-    NEAR * surface.edges.iter().copied().fold(f64::INFINITY, f64::min)
+fn shortest(edges: &[f64]) -> f64 {
+    edges.iter().copied().fold(f64::INFINITY, f64::min)
 }
