@@ -221,11 +221,14 @@ impl Scene {
         } else {
             fem::load_vector(mesh, load.quadrature, |_, point| value(fields, point))
         };
+        let nodes = match body.spec.forces.is_empty() {
+            true => Vec::new(),
+            false => body.mesh().subdomain_nodes(inside),
+        };
         for &(dof, force) in &body.spec.forces {
             let (node, component) = (dof / body.components, dof % body.components);
             // Subdomains share nodes; the owner of a node bears its force.
             if body.mesh().owner(node) == inside {
-                let nodes = body.mesh().subdomain_nodes(inside);
                 let place = nodes.binary_search(&node).expect("a node of its owner");
                 out[place * body.components + component] += scale * force;
             }
