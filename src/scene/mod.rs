@@ -38,14 +38,16 @@ pub use model::cells::{Cells, NumberFormat, Tone};
 pub use model::expr::gradient::WithGradient;
 pub use model::expr::{Expr, Variables};
 pub use model::field::{At, By, Field, Region};
+pub use model::joints::{
+    AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec,
+};
 pub use model::map::{BodyShape, Map, Round};
 pub use model::profile::{Limit, Limits, Profile};
 pub use model::ramp::{Ramp, StepsSpec};
 pub use model::rigid::Rigid;
 pub use model::spec::{
-    free_all_round, held_all_round, lee, AutoContact, BodySpec, ByDefault, ContactSpec, Cut,
-    EquationSpec, Extent, Faces, Force, GridSpec, Load, ObstacleSpec, Pair, ProbeSpec, SceneSpec,
-    Sides, SurfaceLoad, TieSpec, SIDES,
+    free_all_round, held_all_round, lee, BodySpec, ByDefault, Cut, Faces, Force, GridSpec, Load,
+    ProbeSpec, SceneSpec, Sides, SurfaceLoad, SIDES,
 };
 pub use model::steps::Steps;
 pub use numbering::Numbering;

@@ -11,7 +11,8 @@ use crate::mesh::deck::{self, BodyLoadKind, Deck, Place};
 use crate::mesh::{extract, CellMesh, SideGroup};
 use crate::scene::model::expr::Expr;
 use crate::scene::model::field::Field;
-use crate::scene::model::spec::{BodySpec, Cut, EquationSpec, Force, Load, SurfaceLoad};
+use crate::scene::model::joints::EquationSpec;
+use crate::scene::model::spec::{BodySpec, Cut, Force, Load, SurfaceLoad};
 
 /// An axis of a node's system is along a coordinate if the others are below this.
 const ALONG: f64 = 1e-12;

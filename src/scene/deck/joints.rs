@@ -4,8 +4,8 @@ use super::bodies::axis;
 use super::numbers::Numbers;
 use crate::error::Result;
 use crate::mesh::deck::{Adjust, Deck, Overclosure};
+use crate::scene::model::joints::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
-use crate::scene::model::spec::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
 
 /// The ties, among them the contact pairs that tie.
 pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {

@@ -3,6 +3,7 @@
 pub mod cells;
 pub mod expr;
 pub mod field;
+pub mod joints;
 pub mod map;
 pub mod profile;
 pub mod ramp;

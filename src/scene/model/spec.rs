@@ -3,10 +3,9 @@
 
 use super::expr::{Expr, Variables};
 use super::field::{Field, Region};
+use super::joints::{AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec};
 use super::map::Map;
-use super::profile::Profile;
 use super::ramp::{Ramp, StepsSpec};
-use super::rigid::Rigid;
 use crate::fem::element::Integration;
 use crate::fem::Form;
 use crate::fem::Quadrature;
@@ -265,116 +264,6 @@ impl GridSpec {
         };
         places(*bodies).map(body).collect()
     }
-}
-
-/// The pairs of bodies to which an entry applies.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Pair {
-    /// All pairs that touch.
-    All,
-    /// Two bodies by name.
-    Named(String, String),
-    /// Two boundary groups by name: all bodies that have them, and whose nodes there match.
-    Surfaces(String, String),
-}
-
-/// The nodes of a common face (or of a side) to which an entry applies. The parameters run from 0 to 1 along the common
-/// face, in the directions of increasing x, y or z: one (t) in the plane, two in three dimensions.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Extent {
-    /// All nodes, and corners where bodies meet only in a point.
-    All,
-    /// None.
-    None,
-    /// Nodes with t0 ≤ t ≤ t1, for each parameter.
-    Range([[f64; 2]; 2]),
-    /// The nodes at these parameters (the second is 0 in the plane).
-    Points(Vec<[f64; 2]>),
-    /// The nodes with these numbers, counted from 0 along the common face.
-    Nodes(Vec<usize>),
-}
-
-/// A tie: u is continuous across (part of) a common face.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TieSpec {
-    /// The bodies.
-    pub pair: Pair,
-    /// The sides that are tied, in the order of the names; `None`: wherever the bodies touch.
-    pub sides: Option<[usize; 2]>,
-    /// The part of their common face.
-    pub extent: Extent,
-    /// Initial gaps and overclosures up to this length count as touching; ties close them all.
-    pub adjust: f64,
-    /// Where it was written, or empty.
-    pub written: String,
-}
-
-/// A unilateral contact: u_first − u_second ≤ g on (part of) a common face, so that the second body stays above the
-/// first; in elasticity n·(u_first − u_second) ≤ g with the normal n that points out of the first body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ContactSpec {
-    /// The bodies, in the order of the inequality. With [`Pair::All`] the lower number comes first.
-    pub pair: Pair,
-    /// The sides that face each other, in the order of the names, if the bodies do not touch; `None`: their common
-    /// faces.
-    pub sides: Option<[usize; 2]>,
-    /// The part of their common face.
-    pub extent: Extent,
-    /// The gap g, of either sign; it adds to the distance of the sides.
-    pub gap: Profile,
-    /// The largest distance of the sides of meshes at which they may touch; `None`: any.
-    pub distance: Option<f64>,
-    /// Initial gaps and overclosures up to this length count as touching.
-    pub adjust: f64,
-    /// Factor of the gap over the load steps; `None`: the factor of all gaps.
-    pub ramp: Option<Ramp>,
-    /// Where it was written, or empty.
-    pub written: String,
-}
-
-/// Rigid obstacles beside a body: below ≤ u ≤ above on (part of) its sides.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ObstacleSpec {
-    /// Name of the body; `None`: all bodies.
-    pub body: Option<String>,
-    /// The sides of the mesh.
-    pub sides: Vec<usize>,
-    /// The part of each side; t runs from 0 to 1 along it in the direction of increasing x or y.
-    pub extent: Extent,
-    /// The lower bound, if there is one.
-    pub below: Option<Profile>,
-    /// The upper bound, if there is one.
-    pub above: Option<Profile>,
-    /// In elasticity, the rigid body that the sides cannot enter.
-    pub rigid: Option<Rigid>,
-    /// The gap that is added to the distance from the rigid body.
-    pub gap: Profile,
-    /// Factor of the bounds over the load steps; `None`: the factor of all gaps.
-    pub ramp: Option<Ramp>,
-    /// Where it was written, or empty.
-    pub written: String,
-}
-
-/// Contacts between all sides that are near each other and have opposite normals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AutoContact {
-    /// The largest gap; `None`: a fraction of the edges there.
-    pub distance: Option<f64>,
-    /// Initial gaps and overclosures up to this length count as touching.
-    pub adjust: f64,
-    /// Where it was written, or empty.
-    pub written: String,
-}
-
-/// An equation Σ factor · u = value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EquationSpec {
-    /// Number of the body, degree of freedom C k + c in it, factor.
-    pub terms: Vec<(usize, usize, f64)>,
-    /// The right-hand side.
-    pub value: f64,
-    /// Where it was written, or empty.
-    pub written: String,
 }
 
 /// A point at which displacement and stress are reported.

@@ -3,10 +3,9 @@
 use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
+use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
-use crate::scene::model::spec::{
-    AutoContact, BodySpec, ByDefault, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec,
-};
+use crate::scene::model::spec::{BodySpec, ByDefault};
 
 impl Reader {
     pub(super) fn interface(&self, item: &Item) -> Result<ByDefault> {

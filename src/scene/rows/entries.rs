@@ -8,8 +8,9 @@ use crate::scene::geometry::facing::opposite;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
 use crate::scene::geometry::matching::{Matching, Mismatch};
 use crate::scene::geometry::touching::touching;
+use crate::scene::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
-use crate::scene::model::spec::{ByDefault, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
+use crate::scene::model::spec::{ByDefault, SceneSpec};
 use crate::scene::model::steps::{Factors, Steps};
 use std::collections::{HashMap, HashSet};
 

@@ -1,8 +1,8 @@
 //! An entry of [[tie]] or [[contact]], and its name in messages.
 
 use crate::scene::body::Body;
+use crate::scene::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
-use crate::scene::model::spec::{ContactSpec, Extent, Pair, TieSpec};
 
 /// One entry, a tie or a contact.
 #[derive(Clone, Copy)]

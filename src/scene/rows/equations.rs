@@ -6,7 +6,7 @@ use super::points::Point;
 use crate::error::{Error, Result};
 use crate::linalg::union_find::UnionFind;
 use crate::scene::body::Body;
-use crate::scene::model::spec::EquationSpec;
+use crate::scene::model::joints::EquationSpec;
 use crate::scene::validate::agree;
 
 /// An equation Σ coefficient · u(body dof) = value.

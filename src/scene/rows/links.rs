@@ -5,8 +5,8 @@ use super::select::{is_end, selected, Parameters};
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link};
+use crate::scene::model::joints::Extent;
 use crate::scene::model::profile::{Limit, Limits};
-use crate::scene::model::spec::Extent;
 use crate::scene::model::steps::Factors;
 use std::collections::HashMap;
 

@@ -5,9 +5,9 @@ use super::select::pick;
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::normals::parameters;
+use crate::scene::model::joints::{Extent, ObstacleSpec};
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::rigid::Rigid;
-use crate::scene::model::spec::{Extent, ObstacleSpec};
 use std::collections::BTreeMap;
 
 /// One bound on one side of a body.

@@ -4,7 +4,7 @@ use super::entry::Entry;
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Shape, TOLERANCE};
-use crate::scene::model::spec::{Extent, Pair};
+use crate::scene::model::joints::{Extent, Pair};
 
 /// Tolerance of the parameter t at the ends of a range.
 const T_TOLERANCE: f64 = 1e-9;

@@ -4,8 +4,9 @@ use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::matching::{Matching, Mismatch};
 use crate::scene::geometry::sweep::{are_apart, near_in_x};
+use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
-use crate::scene::model::spec::{AutoContact, ContactSpec, Extent, Pair, SceneSpec, TieSpec};
+use crate::scene::model::spec::SceneSpec;
 
 /// Where nothing is said, sides of bodies are in contact if their distance is at most this fraction of their edges.
 const NEAR: f64 = 0.1;
