@@ -133,5 +133,5 @@ impl<'a> Reader<'a> {
 }
 
 #[cfg(test)]
-#[path = "../../../../tests/inside/mesh/deck/reader.rs"]
+#[path = "../../../../tests/inside/mesh/deck/reader/mod.rs"]
 mod tests;
