@@ -1,10 +1,10 @@
 //! The solution by bodies and nodes on rank 0, and probes.
 
+use super::fields::to_first_rank;
 use crate::fem::element;
-use crate::parallel::exchange::exchange_words;
 use crate::petsc::Session;
 use crate::report::json::probes::ProbeValue;
-use crate::scene::Scene;
+use crate::scene::{Scene, SteppedMesh};
 use crate::{Error, FetiFeti, Result, Solution};
 
 /// Values at all nodes of every body, C components each, on rank 0; nothing on the other ranks.
@@ -22,18 +22,14 @@ impl Values {
         solution: &Solution,
         step: usize,
     ) -> Result<Values> {
-        let scale = scene.prescribed_factor(step) / scene.prescribed_factor(scene.n_steps() - 1);
-        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
-        for (sub, u) in solver.problem().local.iter().zip(&solution.u) {
-            let mut mesh = scene.subdomain_mesh(sub.index)?;
-            if scale != 1.0 && scale.is_finite() {
-                mesh.prescribed.iter_mut().for_each(|v| *v *= scale);
-            }
-            let nodal = mesh.nodal(u);
-            outgoing[0].extend([sub.index as u64, nodal.len() as u64]);
-            outgoing[0].extend(nodal.iter().map(|v| v.to_bits()));
-        }
-        let received = exchange_words(session.comm(), outgoing).concat();
+        let scale = scene.prescribed_factor(step);
+        let local = solver.problem().local.iter().map(|sub| sub.index);
+        let nodal = local.clone().zip(&solution.u).map(|(index, u)| {
+            let mut part = SteppedMesh::new(scene, index)?;
+            Ok(part.at(scale).nodal(u))
+        });
+        let nodal: Vec<Vec<f64>> = session.agree(nodal.collect::<Result<_>>())?;
+        let received = to_first_rank(session, local.zip(&nodal));
         let c = scene.components();
         let mut by_body = Vec::new();
         if session.rank() == 0 {
@@ -43,17 +39,12 @@ impl Values {
                 .map(|b| vec![0.0; c * b.mesh().n_nodes()])
                 .collect();
         }
-        let mut rest = &received[..];
-        while let [index, n, tail @ ..] = rest {
-            let (values, tail) = tail.split_at(*n as usize);
-            let (body, inside) = scene.body_of(*index as usize);
+        for (index, _, values) in received {
+            let (body, inside) = scene.body_of(index);
             let nodes = scene.bodies[body].mesh().subdomain_nodes(inside);
             for (node, u) in nodes.into_iter().zip(values.chunks_exact(c)) {
-                for (k, &word) in u.iter().enumerate() {
-                    by_body[body][c * node + k] = f64::from_bits(word);
-                }
+                by_body[body][c * node..c * (node + 1)].copy_from_slice(u);
             }
-            rest = tail;
         }
         Ok(Values {
             by_body,

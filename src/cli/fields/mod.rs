@@ -140,7 +140,7 @@ impl Gathered {
                 .zip(&solution.u)
                 .map(|(index, u)| (index, session.rank(), u.clone()))
                 .collect(),
-            Place::FirstRank => on_first_rank(session, local.zip(&solution.u)),
+            Place::FirstRank => to_first_rank(session, local.zip(&solution.u)),
         };
         solved.sort_unstable_by_key(|part| part.0);
         let c = scene.components();
@@ -209,16 +209,16 @@ impl Gathered {
     }
 }
 
-/// The solutions of all subdomains on rank 0, with number and rank; none on the others. Collective.
-fn on_first_rank<'a>(
+/// Values of all subdomains on rank 0, with number and rank; none on the others. Collective.
+pub(super) fn to_first_rank<'a>(
     session: &Session,
     local: impl Iterator<Item = (usize, &'a Vec<f64>)>,
 ) -> Vec<(usize, usize, Vec<f64>)> {
-    // [subdomain, n, u × n]
+    // [subdomain, n, value × n]
     let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
-    for (index, u) in local {
-        outgoing[0].extend([index as u64, u.len() as u64]);
-        outgoing[0].extend(u.iter().map(|v| v.to_bits()));
+    for (index, values) in local {
+        outgoing[0].extend([index as u64, values.len() as u64]);
+        outgoing[0].extend(values.iter().map(|v| v.to_bits()));
     }
     let mut out = Vec::new();
     let received = exchange_words(session.comm(), outgoing);
@@ -226,8 +226,8 @@ fn on_first_rank<'a>(
         let mut rest = &words[..];
         while let [index, n, tail @ ..] = rest {
             let (values, tail) = tail.split_at(*n as usize);
-            let u = values.iter().map(|&w| f64::from_bits(w)).collect();
-            out.push((*index as usize, rank, u));
+            let values = values.iter().map(|&w| f64::from_bits(w)).collect();
+            out.push((*index as usize, rank, values));
             rest = tail;
         }
     }
