@@ -1,5 +1,6 @@
 //! Which cells share which sides, and what hangs together.
 
+use crate::linalg::union_find::UnionFind;
 use crate::mesh::cells::Cells;
 
 /// What stands for "no cell" in [`Adjacency`].
@@ -167,13 +168,14 @@ pub struct Components {
 impl Components {
     /// Cells hang together that share a side. Crowded sides do not count.
     pub fn by_sides(adjacency: &Adjacency) -> Components {
-        let mut joined = Joined::new(adjacency.len());
-        for c in 0..adjacency.len() {
+        let n = adjacency.len();
+        let mut sets = UnionFind::new(n);
+        for c in 0..n {
             for d in adjacency.neighbours(c) {
-                joined.join(c as u32, d);
+                sets.join(c, d as usize);
             }
         }
-        joined.components(0..adjacency.len() as u32)
+        numbered(&mut sets, n, 0..n)
     }
 
     /// Cells hang together that share a node.
@@ -183,13 +185,13 @@ impl Components {
             .iter()
             .max()
             .map_or(0, |&m| m as usize + 1);
-        let mut joined = Joined::new(n_nodes);
+        let mut sets = UnionFind::new(n_nodes);
         for (_, nodes) in cells.iter() {
-            nodes
-                .windows(2)
-                .for_each(|pair| joined.join(pair[0], pair[1]));
+            let pairs = nodes.windows(2);
+            pairs.for_each(|pair| sets.join(pair[0] as usize, pair[1] as usize));
         }
-        joined.components(cells.iter().map(|(_, nodes)| nodes[0]))
+        let firsts = cells.iter().map(|(_, nodes)| nodes[0] as usize);
+        numbered(&mut sets, n_nodes, firsts)
     }
 
     /// The cells of each component, increasing.
@@ -202,46 +204,22 @@ impl Components {
     }
 }
 
-/// Disjoint sets of numbers. The lowest number of a set stands for it.
-pub(super) struct Joined(Vec<u32>);
-
-impl Joined {
-    pub fn new(n: usize) -> Joined {
-        Joined((0..n as u32).collect())
-    }
-
-    pub fn find(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            // Every second step is shortened.
-            let up = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = up;
-            i = up;
+/// Numbers the sets in the order in which `items` meet them.
+fn numbered(sets: &mut UnionFind, n: usize, items: impl Iterator<Item = usize>) -> Components {
+    let mut number = vec![NONE; n];
+    let mut count = 0;
+    let mut of = Vec::new();
+    for item in items {
+        let set = sets.find(item);
+        if number[set] == NONE {
+            number[set] = count;
+            count += 1;
         }
-        i
+        of.push(number[set]);
     }
-
-    pub fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-
-    /// Numbers the sets in the order in which `items` meet them.
-    pub fn components(&mut self, items: impl Iterator<Item = u32>) -> Components {
-        let mut number = vec![NONE; self.0.len()];
-        let mut count = 0;
-        let mut of = Vec::new();
-        for item in items {
-            let set = self.find(item) as usize;
-            if number[set] == NONE {
-                number[set] = count;
-                count += 1;
-            }
-            of.push(number[set]);
-        }
-        Components {
-            of,
-            count: count as usize,
-        }
+    Components {
+        of,
+        count: count as usize,
     }
 }
 

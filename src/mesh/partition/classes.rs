@@ -6,8 +6,9 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::adjacency::{Adjacency, Joined};
+use super::adjacency::Adjacency;
 use super::sharing::Sharing;
+use crate::linalg::union_find::UnionFind;
 use crate::mesh::cells::Cells;
 
 /// What a shared node belongs to.
@@ -124,11 +125,11 @@ impl<'a> Classes<'a> {
 
     /// The nodes of each edge or face, without those in `left_out`. Each list is increasing.
     pub fn entities(&self, cells: &Cells, left_out: &[bool]) -> Vec<(Kind, Vec<u32>)> {
-        let mut joined = Joined::new(self.class.len());
+        let mut joined = UnionFind::new(self.class.len());
         let stays = |node: &u32| !left_out[*node as usize];
         for &(a, b) in self.pairs.iter().filter(|(a, b)| self.same(*a, *b)) {
             if stays(&a) && stays(&b) {
-                joined.join(a, b);
+                joined.join(a as usize, b as usize);
             }
         }
         for &(c, side) in &self.sides {
@@ -136,7 +137,7 @@ impl<'a> Classes<'a> {
             let mut nodes = nodes.filter(|n| stays(n) && self.kind(*n) == Some(Kind::Face));
             let first = nodes.next();
             // Two subdomains meet at a side: nodes of faces on it have these two.
-            nodes.for_each(|n| joined.join(first.unwrap_or(n), n));
+            nodes.for_each(|n| joined.join(first.unwrap_or(n) as usize, n as usize));
         }
         let mut place = vec![NONE; self.class.len()];
         let mut entities: Vec<(Kind, Vec<u32>)> = Vec::new();
@@ -144,7 +145,7 @@ impl<'a> Classes<'a> {
             let Some(kind) = self.kind(node).filter(|k| *k != Kind::Vertex) else {
                 continue;
             };
-            let set = joined.find(node) as usize;
+            let set = joined.find(node as usize);
             if place[set] == NONE {
                 place[set] = entities.len() as u32;
                 entities.push((kind, Vec::new()));
