@@ -5,6 +5,7 @@ pub mod dense;
 pub mod nnls;
 pub mod semidefinite;
 pub mod single;
+pub(crate) mod small;
 pub mod sorted;
 pub mod symmetric;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The map from the unit cell to a cell: gradients and volumes at quadrature points.
 
 use super::reference::{for_each, q1_point, Element, ReferencePoint, Rule};
+use crate::linalg::small::invert;
 
 /// A quadrature point of a cell; what a cell of the plane does not have is zero.
 pub(super) struct Sample {
@@ -109,31 +110,6 @@ fn jacobian<const D: usize, const N: usize>(
         }
     }
     j
-}
-
-/// Determinant and inverse of a 2 × 2 or 3 × 3 matrix.
-#[inline]
-fn invert<const D: usize>(j: &[[f64; D]; D]) -> (f64, [[f64; D]; D]) {
-    let mut adjugate = [[0.0; D]; D];
-    if D == 2 {
-        adjugate[0][0] = j[1][1];
-        adjugate[0][1] = -j[0][1];
-        adjugate[1][0] = -j[1][0];
-        adjugate[1][1] = j[0][0];
-    } else {
-        for i in 0..3 {
-            for k in 0..3 {
-                let (p, q, r, s) = ((k + 1) % 3, (k + 2) % 3, (i + 1) % 3, (i + 2) % 3);
-                adjugate[i][k] = j[p][r] * j[q][s] - j[p][s] * j[q][r];
-            }
-        }
-    }
-    let det: f64 = (0..D).map(|i| j[0][i] * adjugate[i][0]).sum();
-    let factor = 1.0 / det;
-    for entry in adjugate.iter_mut().flatten() {
-        *entry *= factor;
-    }
-    (det, adjugate)
 }
 
 /// Whether det J is positive (and finite) wherever it is evaluated, and at the corners: a cell that fails is folded,

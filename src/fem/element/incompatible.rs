@@ -5,11 +5,12 @@
 //! Beresford and Wilson 1976): then constant stresses do no work on them, and the patch test holds on any cell. This
 //! is C3D8I of CalculiX.
 
-use super::map::{for_each_sample, invert, jacobian, relative, slopes, Sample};
+use super::map::{for_each_sample, jacobian, relative, slopes, Sample};
 use super::products::Products;
 use super::quadrature::Purpose;
 use super::table::table;
 use crate::fem::cell::Moduli;
+use crate::linalg::small::invert;
 use crate::mesh::CellKind;
 
 /// Rows of the largest matrix: three directions of eight nodes and three modes.

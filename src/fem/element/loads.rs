@@ -1,9 +1,10 @@
 //! Forces in a cell, its volume and a point inside.
 
 use super::integration::Integration;
-use super::map::{by_kind, invert, jacobian, place, relative, slopes};
+use super::map::{by_kind, jacobian, place, relative, slopes};
 use super::quadrature::Purpose;
 use super::table::{table, Table};
+use crate::linalg::small::invert;
 use crate::mesh::CellKind;
 
 /// The nodal forces ∫ f_i N_a of a force per volume `f`, into `out`, of length nodes · `components`. The total of a

@@ -1,6 +1,7 @@
 //! The map from the reference cell to a cell: gradients and volumes at the points of a rule.
 
 use super::table::Table;
+use crate::linalg::small::invert;
 
 /// A point of a rule on a cell.
 pub(super) struct Sample<const D: usize, const N: usize> {
@@ -112,31 +113,6 @@ pub(super) fn jacobian<const D: usize, const N: usize>(
         }
     }
     jacobian
-}
-
-/// Determinant and inverse of a 2 × 2 or 3 × 3 matrix.
-#[inline]
-pub(super) fn invert<const D: usize>(j: &[[f64; D]; D]) -> (f64, [[f64; D]; D]) {
-    let mut adjugate = [[0.0; D]; D];
-    if D == 2 {
-        adjugate[0][0] = j[1][1];
-        adjugate[0][1] = -j[0][1];
-        adjugate[1][0] = -j[1][0];
-        adjugate[1][1] = j[0][0];
-    } else {
-        for i in 0..3 {
-            for k in 0..3 {
-                let (p, q, r, s) = ((k + 1) % 3, (k + 2) % 3, (i + 1) % 3, (i + 2) % 3);
-                adjugate[i][k] = j[p][r] * j[q][s] - j[p][s] * j[q][r];
-            }
-        }
-    }
-    let det: f64 = (0..D).map(|i| j[0][i] * adjugate[i][0]).sum();
-    let factor = 1.0 / det;
-    for entry in adjugate.iter_mut().flatten() {
-        *entry *= factor;
-    }
-    (det, adjugate)
 }
 
 /// Σ N_a x_a with any number of nodes.

@@ -1,9 +1,10 @@
 //! Whether the map of a cell can be inverted.
 
 use super::loads::check_dim;
-use super::map::{by_kind, invert, jacobian, relative, slopes};
+use super::map::{by_kind, jacobian, relative, slopes};
 use super::quadrature::Purpose;
 use super::table::table;
+use crate::linalg::small::invert;
 use crate::mesh::CellKind;
 use std::fmt;
 
