@@ -273,7 +273,7 @@ fn supports(
 }
 
 /// Axis `dof` of a node's system.
-pub(super) fn axis(deck: &Deck, node: u32, dof: usize) -> [f64; 3] {
+fn axis(deck: &Deck, node: u32, dof: usize) -> [f64; 3] {
     match deck.frame(node) {
         Some(frame) => frame[dof],
         None => {
@@ -293,9 +293,9 @@ fn along(axis: [f64; 3]) -> Option<(usize, f64)> {
 
 /// Forces at nodes.
 fn forces(deck: &Deck, numbers: &Numbers, step: usize, bodies: &mut [BodySpec]) -> Result<()> {
-    let dim = deck.dim();
     for force in &deck.steps[step].forces {
-        let Some(at) = numbers.node(force.node) else {
+        let at = (force.node, force.dof);
+        let Some(parts) = along_coordinates(deck, numbers, at, force.value) else {
             return Err(deck.files.error(
                 force.place,
                 format!(
@@ -304,17 +304,23 @@ fn forces(deck: &Deck, numbers: &Numbers, step: usize, bodies: &mut [BodySpec]) 
                 ),
             ));
         };
-        let axis = axis(deck, force.node, force.dof.into());
-        for (d, part) in axis
-            .iter()
-            .enumerate()
-            .take(dim)
-            .filter(|(_, part)| **part != 0.0)
-        {
-            bodies[at.body]
-                .forces
-                .push((at.node * dim + d, force.value * part));
+        for (body, dof, value) in parts {
+            bodies[body].forces.push((dof, value));
         }
     }
     Ok(())
+}
+
+/// What `value` along an axis of a node's system is along the coordinates: body, degree of freedom, value; `None` for a
+/// node that no element has.
+pub(super) fn along_coordinates(
+    deck: &Deck,
+    numbers: &Numbers,
+    (node, dof): (u32, u8),
+    value: f64,
+) -> Option<impl Iterator<Item = (usize, usize, f64)>> {
+    let (dim, at) = (deck.dim(), numbers.node(node)?);
+    let axis = axis(deck, node, dof.into()).into_iter().take(dim);
+    let parts = axis.enumerate().filter(|(_, part)| *part != 0.0);
+    Some(parts.map(move |(d, part)| (at.body, at.node * dim + d, value * part)))
 }

@@ -1,6 +1,6 @@
 //! What joins the bodies of a deck: *TIE, *CONTACT PAIR, *EQUATION.
 
-use super::bodies::axis;
+use super::bodies::along_coordinates;
 use super::numbers::Numbers;
 use crate::error::Result;
 use crate::mesh::deck::{Adjust, Deck, Overclosure};
@@ -80,12 +80,12 @@ pub(super) fn contacts(deck: &Deck) -> Result<Vec<ContactSpec>> {
 
 /// The equations between displacements.
 pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSpec>> {
-    let dim = deck.dim();
     let mut out = Vec::new();
     for equation in &deck.equations {
         let mut terms = Vec::new();
         for term in &equation.terms {
-            let Some(node) = numbers.node(term.node) else {
+            let at = (term.node, term.dof);
+            let Some(parts) = along_coordinates(deck, numbers, at, term.factor) else {
                 return Err(deck.files.error(
                     equation.place,
                     format!(
@@ -94,15 +94,7 @@ pub(super) fn equations(deck: &Deck, numbers: &Numbers) -> Result<Vec<EquationSp
                     ),
                 ));
             };
-            let axis = axis(deck, term.node, term.dof.into());
-            for (d, part) in axis
-                .iter()
-                .enumerate()
-                .take(dim)
-                .filter(|(_, part)| **part != 0.0)
-            {
-                terms.push((node.body, node.node * dim + d, term.factor * part));
-            }
+            terms.extend(parts);
         }
         out.push(EquationSpec {
             terms,
