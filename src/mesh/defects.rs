@@ -1,8 +1,7 @@
 //! What makes a mesh of cells unfit: nodes that are there twice, and nodes that hang on the side of a cell.
 
-use std::collections::HashMap;
-
 use super::cell_mesh::CellMesh;
+use super::point_grid::PointGrid;
 use crate::linalg::vec3::{cross, dot, minus, norm};
 
 /// Two nodes of a body are one if their distance is at most this fraction of the body's size.
@@ -10,39 +9,6 @@ const SAME: f64 = 1e-9;
 
 /// A node lies on a side if its distance is at most this fraction of the side's length.
 const ON: f64 = 1e-6;
-
-/// Points by cells of equal width.
-struct Grid {
-    cells: HashMap<[i64; 3], Vec<u32>>,
-    width: f64,
-}
-
-impl Grid {
-    fn new(points: &[[f64; 3]], which: impl Iterator<Item = u32>, width: f64) -> Grid {
-        let mut grid = Grid {
-            cells: HashMap::new(),
-            width,
-        };
-        for k in which {
-            let cell = grid.cell(points[k as usize]);
-            grid.cells.entry(cell).or_default().push(k);
-        }
-        grid
-    }
-
-    fn cell(&self, x: [f64; 3]) -> [i64; 3] {
-        x.map(|v| (v / self.width).floor() as i64)
-    }
-
-    /// The points in the cells that meet a box.
-    fn within(&self, low: [f64; 3], high: [f64; 3]) -> impl Iterator<Item = u32> + '_ {
-        let (a, b) = (self.cell(low), self.cell(high));
-        let cells = (a[2]..=b[2]).flat_map(move |k| {
-            (a[1]..=b[1]).flat_map(move |j| (a[0]..=b[0]).map(move |i| [i, j, k]))
-        });
-        cells.filter_map(|c| self.cells.get(&c)).flatten().copied()
-    }
-}
 
 /// The first defect of a mesh, as the end of a sentence about its body.
 pub fn defect(mesh: &CellMesh) -> Option<String> {
@@ -58,15 +24,13 @@ fn doubled(mesh: &CellMesh) -> Option<String> {
     };
     let near = SAME * (0..3).map(range).fold(0.0, f64::max);
     // Cells much wider than the distance: most searches look into one of them.
-    let grid = Grid::new(&mesh.points, 0..mesh.points.len() as u32, 1e4 * near);
+    let grid = PointGrid::new(mesh.points.iter().copied().enumerate(), 1e4 * near);
     for (k, point) in mesh.points.iter().enumerate() {
-        let (low, high) = (point.map(|x| x - near), point.map(|x| x + near));
-        let same =
-            |&l: &u32| (l as usize) < k && norm(minus(mesh.points[l as usize], *point)) <= near;
-        if let Some(other) = grid.within(low, high).find(same) {
+        let same = |&l: &usize| l < k && norm(minus(mesh.points[l], *point)) <= near;
+        if let Some(other) = grid.around(*point, near).find(same) {
             return Some(format!(
                 "nodes {} and {} are both at {point:?} (one node was expected where cells of a body meet)",
-                mesh.node_ids[other as usize], mesh.node_ids[k]
+                mesh.node_ids[other], mesh.node_ids[k]
             ));
         }
     }
@@ -93,7 +57,8 @@ fn hanging(mesh: &CellMesh) -> Option<String> {
         .map(|face| length(&outline(face).1))
         .sum::<f64>()
         / skin.faces.len() as f64;
-    let grid = Grid::new(&mesh.points, skin.nodes.iter().copied(), mean);
+    let nodes = skin.nodes.iter();
+    let grid = PointGrid::new(nodes.map(|&k| (k as usize, mesh.points[k as usize])), mean);
     for face in &skin.faces {
         let (nodes, corners) = outline(face);
         let near = ON * length(&corners);
@@ -105,12 +70,12 @@ fn hanging(mesh: &CellMesh) -> Option<String> {
         };
         let low = [0, 1, 2].map(|d| bound(f64::min, d) - near);
         let high = [0, 1, 2].map(|d| bound(f64::max, d) + near);
-        let hangs = |k: &u32| !nodes.contains(k) && on(&corners, mesh.points[*k as usize], near);
+        let hangs = |&k: &usize| !nodes.contains(&(k as u32)) && on(&corners, mesh.points[k], near);
         if let Some(k) = grid.within(low, high).find(hangs) {
             return Some(format!(
                 "node {} at {:?} hangs on a side of cell {}, which does not have it (neighbours with common nodes \
                  were expected)",
-                mesh.node_ids[k as usize], mesh.points[k as usize], mesh.cell_ids[face.0 as usize]
+                mesh.node_ids[k], mesh.points[k], mesh.cell_ids[face.0 as usize]
             ));
         }
     }

@@ -13,6 +13,7 @@ mod kind;
 mod lists;
 pub mod partition;
 mod parts;
+mod point_grid;
 mod second_order;
 
 pub use body::{Mesh, SIDES};
@@ -25,6 +26,7 @@ pub use file::{Group, Members, MeshFile};
 pub use kind::{CellKind, CellSide};
 pub use lists::Lists;
 pub use parts::{Parts, SharedNodes};
+pub(crate) use point_grid::PointGrid;
 pub use second_order::second_order;
 
 use std::ops::Range;

@@ -3,11 +3,11 @@
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::normals::{of_side, parameters};
 use crate::linalg::vec3::{dot, minus, norm};
-use crate::mesh::{BoxMesh, Mesh};
+use crate::mesh::{BoxMesh, Mesh, PointGrid};
 use crate::scene::body::Body;
 use crate::scene::model::profile::Limits;
 use crate::scene::model::spec::BodySpec;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// The interfaces of two bodies with different maps: the coinciding nodes, by pairs of sides. A single common node is a
 /// corner.
@@ -24,9 +24,18 @@ pub(crate) fn coinciding(bodies: &[Body], pair: [usize; 2]) -> Vec<Interface> {
     let mut found = Vec::new();
     let mut seen = HashSet::new();
     for sb in b.mesh().outer_sides() {
-        let grid = Grid::new(&b.spec, sb, near);
+        let nodes = b.mesh().side_nodes(sb).into_iter();
+        let placed = nodes.map(|k| (k, b.spec.position(k)));
+        let grid = PointGrid::new(placed, 4.0 * near);
+        let twin = |x: [f64; 3]| {
+            let close = |&k: &usize| {
+                let y = b.spec.position(k);
+                (0..3).all(|d| (x[d] - y[d]).abs() <= near)
+            };
+            grid.around(x, near).find(close)
+        };
         for sa in a.mesh().outer_sides() {
-            let pair = |node| Some([node, grid.find(a.spec.position(node), near)?]);
+            let pair = |node| Some([node, twin(a.spec.position(node))?]);
             let nodes = a.mesh().side_nodes(sa).into_iter().filter_map(pair);
             let shared = share(&a.spec, sa, nodes.collect());
             let shape = match is_face([a, b], [sa, sb], &shared) {
@@ -199,44 +208,4 @@ fn shortest(body: &BodySpec) -> f64 {
         }
     }
     out
-}
-
-/// Nodes of a side by position.
-struct Grid<'a> {
-    body: &'a BodySpec,
-    cells: HashMap<[i64; 3], Vec<usize>>,
-    width: f64,
-}
-
-impl<'a> Grid<'a> {
-    fn new(body: &'a BodySpec, side: usize, near: f64) -> Grid<'a> {
-        let mut grid = Grid {
-            body,
-            cells: HashMap::new(),
-            width: 4.0 * near,
-        };
-        for node in body.mesh.side_nodes(side) {
-            let cell = grid.cell(body.position(node));
-            let list: &mut Vec<usize> = grid.cells.entry(cell).or_default();
-            list.push(node);
-        }
-        grid
-    }
-
-    fn cell(&self, x: [f64; 3]) -> [i64; 3] {
-        x.map(|v| (v / self.width).floor() as i64)
-    }
-
-    fn find(&self, x: [f64; 3], near: f64) -> Option<usize> {
-        let close = |&node: &usize| {
-            let y = self.body.position(node);
-            (0..3).all(|d| (x[d] - y[d]).abs() <= near)
-        };
-        let corner =
-            |c: usize| [0, 1, 2].map(|d| x[d] + if c >> d & 1 == 1 { near } else { -near });
-        (0..8).find_map(|c| {
-            let list = self.cells.get(&self.cell(corner(c)))?;
-            list.iter().copied().find(close)
-        })
-    }
 }

@@ -1,0 +1,40 @@
+//! Points by cells of equal width: which are in a box, without a look at all.
+
+use std::collections::HashMap;
+
+/// Numbered points by cells of equal width.
+pub(crate) struct PointGrid {
+    cells: HashMap<[i64; 3], Vec<usize>>,
+    width: f64,
+}
+
+impl PointGrid {
+    pub fn new(points: impl Iterator<Item = (usize, [f64; 3])>, width: f64) -> PointGrid {
+        let mut grid = PointGrid {
+            cells: HashMap::new(),
+            width,
+        };
+        for (k, x) in points {
+            grid.cells.entry(grid.cell(x)).or_default().push(k);
+        }
+        grid
+    }
+
+    fn cell(&self, x: [f64; 3]) -> [i64; 3] {
+        x.map(|v| (v / self.width).floor() as i64)
+    }
+
+    /// The points in the cells that meet a box.
+    pub fn within(&self, low: [f64; 3], high: [f64; 3]) -> impl Iterator<Item = usize> + '_ {
+        let (a, b) = (self.cell(low), self.cell(high));
+        let cells = (a[2]..=b[2]).flat_map(move |k| {
+            (a[1]..=b[1]).flat_map(move |j| (a[0]..=b[0]).map(move |i| [i, j, k]))
+        });
+        cells.filter_map(|c| self.cells.get(&c)).flatten().copied()
+    }
+
+    /// The points in the cells that meet the cube of half width `near` around a point.
+    pub fn around(&self, x: [f64; 3], near: f64) -> impl Iterator<Item = usize> + '_ {
+        self.within(x.map(|v| v - near), x.map(|v| v + near))
+    }
+}
