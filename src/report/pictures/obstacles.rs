@@ -4,6 +4,7 @@ use super::paint::View;
 use crate::linalg::vec3::{cross, dot, minus, norm};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::raster::Raster;
+use crate::scene::model::rigid::outward;
 use crate::scene::Rigid;
 use std::f64::consts::PI;
 
@@ -88,10 +89,7 @@ impl Obstacle {
             } => {
                 let radius = radius + if cavity { self.gap } else { -self.gap };
                 let reach = (0.6 * size / radius.abs().max(1e-300)).min(PI);
-                let mut away = minus(middle, centre);
-                if let Some(axis) = axis {
-                    away = plus(away, axis, -dot(away, axis));
-                }
+                let away = outward(centre, axis, middle);
                 let pole = unit(away).unwrap_or_else(|| across(axis.unwrap_or([0., 0., 1.]))[0]);
                 match axis {
                     Some(axis) => {

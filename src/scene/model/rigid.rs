@@ -37,11 +37,7 @@ impl Rigid {
                 radius,
                 cavity,
             } => {
-                let mut from = minus(x, centre);
-                if let Some(axis) = axis {
-                    let along = dot(from, axis);
-                    from = minus(from, axis.map(|v| along * v));
-                }
+                let from = outward(centre, axis, x);
                 let r = norm(from);
                 if r <= 1e-12 * radius {
                     return None;
@@ -50,6 +46,18 @@ impl Rigid {
                 Some((sign * (r - radius), from.map(|v| sign * v / r)))
             }
         }
+    }
+}
+
+/// The vector to a point from the nearest point of the axis, or from the centre of a sphere.
+pub(crate) fn outward(centre: [f64; 3], axis: Option<[f64; 3]>, x: [f64; 3]) -> [f64; 3] {
+    let from = minus(x, centre);
+    match axis {
+        Some(axis) => {
+            let along = dot(from, axis);
+            minus(from, axis.map(|v| along * v))
+        }
+        None => from,
     }
 }
 
