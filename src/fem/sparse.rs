@@ -68,15 +68,13 @@ impl Blocks {
 
 /// The nodes that share a cell with each node, itself included, increasing.
 fn neighbours(cells: &Cells, n_nodes: usize) -> Lists {
-    let of_cell = |c: usize| cells.nodes(c).iter().map(move |&k| (k as usize, c as u32));
-    let pairs = (0..cells.len()).flat_map(of_cell);
-    let of_node = Lists::of(n_nodes, pairs);
+    let around = cells.around_nodes(n_nodes);
     let mut seen = vec![u32::MAX; n_nodes];
     let mut out = Lists::default();
     let mut list = Vec::new();
     for node in 0..n_nodes {
         list.clear();
-        for &cell in of_node.at(node) {
+        for &cell in around.at(node) {
             for &other in cells.nodes(cell as usize) {
                 if seen[other as usize] != node as u32 {
                     seen[other as usize] = node as u32;

@@ -1,7 +1,8 @@
 //! The mesh of a body as a list of cells, with its boundary groups and its partition.
 
 use super::cells::Cells;
-use super::parts::{Parts, SharedNodes};
+use super::partition::{Interface, Sharing};
+use super::parts::Parts;
 
 /// A part of the boundary of a mesh of cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,7 +60,8 @@ impl CellMesh {
             faces: skin,
         });
         let of_cell = vec![0; cells.len()];
-        let parts = Parts::new(&cells, points.len(), of_cell, 1, SharedNodes::default());
+        let sharing = Sharing::new(&cells, &of_cell, 1, points.len());
+        let parts = Parts::new(of_cell, sharing, Interface::default());
         CellMesh {
             dim,
             node_ids: (1..=points.len() as u64).collect(),
@@ -72,16 +74,12 @@ impl CellMesh {
         }
     }
 
-    /// The same mesh in other subdomains.
+    /// The same mesh in `n` other subdomains, given that of every cell, and what they share.
     #[must_use]
-    pub fn partitioned(mut self, of_cell: Vec<u32>, n: usize, shared: SharedNodes) -> CellMesh {
-        self.set_parts(of_cell, n, shared);
+    pub fn partitioned(mut self, of_cell: Vec<u32>, n: usize, shared: Interface) -> CellMesh {
+        let sharing = Sharing::new(&self.cells, &of_cell, n, self.points.len());
+        self.parts = Parts::new(of_cell, sharing, shared);
         self
-    }
-
-    /// Cuts the mesh into `n` subdomains, given the subdomain of every cell and the roles of shared nodes.
-    pub fn set_parts(&mut self, of_cell: Vec<u32>, n: usize, shared: SharedNodes) {
-        self.parts = Parts::new(&self.cells, self.points.len(), of_cell, n, shared);
     }
 
     /// The positions of the nodes of a cell.

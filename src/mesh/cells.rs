@@ -1,6 +1,7 @@
 //! A list of cells of any kind.
 
 use super::kind::CellKind;
+use super::lists::Lists;
 
 /// Cells of any kind, one after the other: the kind and the nodes of each.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -71,6 +72,15 @@ impl Cells {
     /// Kind and nodes of all cells, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (CellKind, &[u32])> {
         (0..self.len()).map(|c| (self.kinds[c], self.nodes(c)))
+    }
+
+    /// The cells that have each of the nodes 0..`n_nodes`, increasing.
+    ///
+    /// # Panics
+    /// When a cell has a node beyond `n_nodes`.
+    pub fn around_nodes(&self, n_nodes: usize) -> Lists {
+        let of_cell = |c: usize| self.nodes(c).iter().map(move |&k| (k as usize, c as u32));
+        Lists::of(n_nodes, (0..self.len()).flat_map(of_cell))
     }
 
     /// The nodes of side `side` of cell `c`, in the order of [`CellKind::sides`].

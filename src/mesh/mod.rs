@@ -25,7 +25,7 @@ pub use extract::{connected, extract};
 pub use file::{Group, Members, MeshFile};
 pub use kind::{CellKind, CellSide};
 pub use lists::Lists;
-pub use parts::{Parts, SharedNodes};
+pub use parts::Parts;
 pub(crate) use point_grid::PointGrid;
 pub use second_order::second_order;
 

@@ -1,18 +1,7 @@
 //! The subdomains of a mesh of cells: their cells, their nodes, and what they share.
 
-use super::cells::Cells;
 use super::lists::Lists;
-
-/// Nodes that subdomains share, by what they become in the method.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct SharedNodes {
-    /// Nodes at which continuity is primal, increasing.
-    pub vertices: Vec<u32>,
-    /// Open edges of a solid: nodes, increasing.
-    pub edges: Vec<Vec<u32>>,
-    /// Open faces of a solid: nodes, increasing.
-    pub faces: Vec<Vec<u32>>,
-}
+use super::partition::{Interface, Sharing};
 
 /// A partition of a mesh of cells into subdomains.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,7 +10,7 @@ pub struct Parts {
     of_cell: Vec<u32>,
     cells: Lists,
     nodes: Lists,
-    sharers: Lists,
+    sharing: Sharing,
     owned: Lists,
     /// The place of every node among those that its owner owns.
     rank: Vec<u32>,
@@ -33,36 +22,17 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// The partition into `n` subdomains, given the subdomain of every cell and the roles of shared nodes.
-    pub fn new(
-        cells: &Cells,
-        n_nodes: usize,
-        of_cell: Vec<u32>,
-        n: usize,
-        shared: SharedNodes,
-    ) -> Parts {
-        let numbered = of_cell.iter().enumerate();
-        let in_part = Lists::of(n, numbered.map(|(c, &s)| (s as usize, c as u32)));
-        let mut nodes = Lists::default();
-        let mut seen = vec![u32::MAX; n_nodes];
-        for s in 0..n {
-            let mut list = Vec::new();
-            for &c in in_part.at(s) {
-                for &node in cells.nodes(c as usize) {
-                    if seen[node as usize] != s as u32 {
-                        seen[node as usize] = s as u32;
-                        list.push(node);
-                    }
-                }
-            }
-            list.sort_unstable();
-            nodes.push(list);
-        }
-        let pairs = (0..n).flat_map(|s| nodes.at(s).iter().map(move |&k| (k as usize, s as u32)));
-        let sharers = Lists::of(n_nodes, pairs);
-        let owner = |node: usize| sharers.at(node).first().map(|&s| s as usize);
-        let owners = (0..n_nodes).filter_map(|k| Some((owner(k)?, k as u32)));
-        let owned = Lists::of(n, owners);
+    /// The partition, given the subdomain of every cell, and what the subdomains share.
+    pub fn new(of_cell: Vec<u32>, sharing: Sharing, shared: Interface) -> Parts {
+        let (n, n_nodes) = (sharing.n, sharing.n_nodes());
+        let cells = Lists::of(n, of_cell.iter().zip(0..).map(|(&s, c)| (s as usize, c)));
+        let nodes = (0..n_nodes as u32).flat_map(|k| {
+            let sharers = sharing.of(k).iter();
+            sharers.map(move |&s| (s as usize, k))
+        });
+        let nodes = Lists::of(n, nodes);
+        let owner = |k: u32| sharing.of(k).first().map(|&s| s as usize);
+        let owned = Lists::of(n, (0..n_nodes as u32).filter_map(|k| Some((owner(k)?, k))));
         let mut rank = vec![0; n_nodes];
         for list in owned.iter() {
             for (k, &node) in list.iter().enumerate() {
@@ -78,22 +48,20 @@ impl Parts {
         let faces = shared.faces.into_iter().map(|list| (2, list));
         let entities: Vec<(usize, Vec<u32>)> = edges.chain(faces).collect();
         let beside = entities.iter().enumerate().flat_map(|(e, (_, list))| {
-            let sharers = list
-                .first()
-                .map_or(&[][..], |&node| sharers.at(node as usize));
+            let sharers = list.first().map_or(&[][..], |&node| sharing.of(node));
             sharers.iter().map(move |&s| (s as usize, e as u32))
         });
         let beside = Lists::of(n, beside);
         Parts {
             of_cell,
-            cells: in_part,
+            cells,
             nodes,
             owned,
             rank,
             vertex,
             entities,
             beside,
-            sharers,
+            sharing,
         }
     }
 
@@ -124,7 +92,7 @@ impl Parts {
 
     /// The subdomains that contain a node, increasing.
     pub fn sharers(&self, node: usize) -> &[u32] {
-        self.sharers.at(node)
+        self.sharing.of(node as u32)
     }
 
     /// The nodes that a subdomain owns: those that no subdomain of lower number contains.

@@ -4,7 +4,7 @@ use super::boxes::{places, BoxMesh};
 use super::cell_mesh::{CellMesh, SideGroup};
 use super::cells::Cells;
 use super::kind::CellKind;
-use super::parts::SharedNodes;
+use super::partition::Interface;
 use super::SIDES;
 
 /// The corners of a quadrilateral or hexahedron in the order of its kind, as lattice places 0 and 2.
@@ -137,10 +137,10 @@ fn faces(cells: &Cells, on: impl Fn(usize) -> bool) -> Vec<(u32, u8)> {
 }
 
 /// Vertices, edges and faces of the blocks: those that several blocks share, as entities, and all corners of blocks.
-fn shared(fine: &BoxMesh) -> SharedNodes {
+fn shared(fine: &BoxMesh) -> Interface {
     let each = fine.block_elements();
     let dim = fine.dim();
-    let mut out = SharedNodes::default();
+    let mut out = Interface::default();
     let mut entities: std::collections::BTreeMap<(Vec<usize>, [usize; 3]), Vec<u32>> =
         Default::default();
     for place in places(fine.nodes()) {

@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::fem::cell::{Element, Material};
 use crate::fem::element::{self, Integration};
 use crate::fem::Form;
-use crate::mesh::partition::{subdomains_for, Adjacency, Entity, Interface, Partition, Sharing};
-use crate::mesh::{defect, second_order, CellMesh, Mesh, SharedNodes};
+use crate::mesh::partition::{subdomains_for, Adjacency, Interface, Partition, Sharing};
+use crate::mesh::{defect, second_order, CellMesh, Mesh, Parts};
 use std::sync::Arc;
 
 /// Gives a body its final mesh.
@@ -59,13 +59,7 @@ fn cut(mesh: &mut CellMesh, n: usize) {
     let (cells, points) = (&mesh.cells, &mesh.points);
     let sharing = Sharing::new(cells, &partition.part, partition.n, points.len());
     let interface = Interface::new(cells, &adjacency, points, &partition.part, &sharing, true);
-    let nodes = |list: Vec<Entity>| list.into_iter().map(|e| e.nodes).collect();
-    let shared = SharedNodes {
-        vertices: interface.vertices,
-        edges: nodes(interface.edges),
-        faces: nodes(interface.faces),
-    };
-    mesh.set_parts(partition.part, partition.n, shared);
+    mesh.parts = Parts::new(partition.part, sharing, interface);
 }
 
 /// Checks every cell: its shape, and whether the form has an element of its kind.

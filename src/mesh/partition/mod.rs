@@ -13,7 +13,6 @@ mod adjacency;
 mod bisect;
 mod classes;
 mod graph;
-mod incidence;
 mod interface;
 mod kway;
 mod pairs;
@@ -23,8 +22,7 @@ mod size;
 mod vertices;
 
 pub use adjacency::{Adjacency, Components};
-pub use incidence::Incidence;
-pub use interface::{Entity, Held, Interface};
+pub use interface::Interface;
 pub use sharing::Sharing;
 pub use size::subdomains_for;
 
@@ -96,7 +94,7 @@ impl Partition {
                 .iter()
                 .max()
                 .map_or(0, |&m| m as usize + 1);
-            shape.smooth(cells, &Incidence::new(cells, n_nodes));
+            shape.smooth(cells, &cells.around_nodes(n_nodes));
         }
         Partition {
             part: shape.part,

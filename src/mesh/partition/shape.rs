@@ -6,8 +6,8 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use super::adjacency::Adjacency;
-use super::incidence::Incidence;
 use crate::mesh::cells::Cells;
+use crate::mesh::lists::Lists;
 
 /// Cells that are visited to see whether a part stays connected without a cell. A ring around a node or an edge of the
 /// mesh has fewer. If more were needed, the cell stays.
@@ -286,7 +286,7 @@ impl<'a> Shape<'a> {
 
     /// Smooths rims: a cell moves where fewer subdomains then share nodes, or as many and parts share fewer sides.
     /// Tells how many copies of nodes were saved.
-    pub fn smooth(&mut self, cells: &Cells, incidence: &Incidence) -> i64 {
+    pub fn smooth(&mut self, cells: &Cells, around: &Lists) -> i64 {
         let limit = self.limit(SMOOTH);
         let mut saved = 0;
         for _ in 0..SWEEPS {
@@ -297,13 +297,13 @@ impl<'a> Shape<'a> {
                 if gains.is_empty() || self.sizes[own] - self.work[c] < self.mean * LEFT / 1000 {
                     continue;
                 }
-                let alone = self.nodes_without(cells, incidence, c, own as u32);
+                let alone = self.nodes_without(cells, around, c, own as u32);
                 let mut best: Option<((i64, i64), u32)> = None;
                 for (p, gain) in gains {
                     if self.sizes[p as usize] + self.work[c] > limit {
                         continue;
                     }
-                    let copies = alone - self.nodes_without(cells, incidence, c, p);
+                    let copies = alone - self.nodes_without(cells, around, c, p);
                     let score = (copies, gain);
                     if score > (0, 0) && best.is_none_or(|b| score > b.0) {
                         best = Some((score, p));
@@ -326,10 +326,10 @@ impl<'a> Shape<'a> {
     }
 
     /// The nodes of `c` that no other cell of part `p` has.
-    fn nodes_without(&self, cells: &Cells, incidence: &Incidence, c: usize, p: u32) -> i64 {
+    fn nodes_without(&self, cells: &Cells, around: &Lists, c: usize, p: u32) -> i64 {
         let lacks = |&&node: &&u32| {
-            let mut around = incidence.cells(node).iter();
-            !around.any(|&d| d as usize != c && self.part[d as usize] == p)
+            let mut having = around.at(node as usize).iter();
+            !having.any(|&d| d as usize != c && self.part[d as usize] == p)
         };
         cells.nodes(c).iter().filter(lacks).count() as i64
     }

@@ -1,12 +1,12 @@
 //! Which subdomains have which nodes.
 
 use crate::mesh::cells::Cells;
+use crate::mesh::lists::Lists;
 
 /// The subdomains that have each node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Sharing {
-    starts: Vec<u32>,
-    parts: Vec<u32>,
+    parts: Lists,
     /// Number of subdomains.
     pub n: usize,
 }
@@ -18,32 +18,29 @@ impl Sharing {
     /// When a part is not below `n`, or a node not below `n_nodes`.
     pub fn new(cells: &Cells, part: &[u32], n: usize, n_nodes: usize) -> Sharing {
         assert_eq!(cells.len(), part.len(), "the part of every cell");
-        let mut starts = vec![0u32; n_nodes + 1];
-        for (node, _) in pairs(cells, part, n, n_nodes) {
-            starts[node as usize + 1] += 1;
+        let numbered = part.iter().zip(0..);
+        let members = Lists::of(n, numbered.map(|(&p, c)| (p as usize, c)));
+        let of_part = |p: usize| {
+            let nodes = members.at(p).iter().flat_map(|&c| cells.nodes(c as usize));
+            nodes.map(move |&node| (node as usize, p as u32))
+        };
+        // Parts follow each other, so that a node of several cells of a part was there last.
+        let mut last = vec![u32::MAX; n_nodes];
+        let new = move |&(node, p): &(usize, u32)| std::mem::replace(&mut last[node], p) != p;
+        Sharing {
+            parts: Lists::of(n_nodes, (0..n).flat_map(of_part).filter(new)),
+            n,
         }
-        for i in 0..n_nodes {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut parts = vec![0; starts[n_nodes] as usize];
-        for (node, p) in pairs(cells, part, n, n_nodes) {
-            let place = &mut next[node as usize];
-            parts[*place as usize] = p;
-            *place += 1;
-        }
-        Sharing { starts, parts, n }
     }
 
     /// The subdomains that have a node, increasing.
     pub fn of(&self, node: u32) -> &[u32] {
-        let node = node as usize;
-        &self.parts[self.starts[node] as usize..self.starts[node + 1] as usize]
+        self.parts.at(node as usize)
     }
 
     /// Number of nodes.
     pub fn n_nodes(&self) -> usize {
-        self.starts.len() - 1
+        self.parts.len()
     }
 
     /// The nodes that two subdomains or more have, increasing.
@@ -55,29 +52,4 @@ impl Sharing {
     pub fn copies(&self) -> usize {
         self.shared().map(|node| self.of(node).len() - 1).sum()
     }
-}
-
-/// Every node of every part once, parts in increasing order.
-fn pairs<'a>(
-    cells: &'a Cells,
-    part: &'a [u32],
-    n: usize,
-    n_nodes: usize,
-) -> impl Iterator<Item = (u32, u32)> + 'a {
-    let mut starts = vec![0usize; n + 1];
-    part.iter().for_each(|&p| starts[p as usize + 1] += 1);
-    for p in 0..n {
-        starts[p + 1] += starts[p];
-    }
-    let mut order = vec![0u32; part.len()];
-    for (&p, c) in part.iter().zip(0..) {
-        order[starts[p as usize]] = c;
-        starts[p as usize] += 1;
-    }
-    let mut last = vec![u32::MAX; n_nodes];
-    let all = order.into_iter().flat_map(move |c| {
-        let p = part[c as usize];
-        cells.nodes(c as usize).iter().map(move |&node| (node, p))
-    });
-    all.filter(move |&(node, p)| std::mem::replace(&mut last[node as usize], p) != p)
 }

@@ -8,9 +8,9 @@
 use std::collections::BTreeMap;
 
 use super::classes::{Classes, Kind};
-use super::incidence::Incidence;
 use super::sharing::Sharing;
 use crate::mesh::cells::Cells;
+use crate::mesh::lists::Lists;
 
 /// Vertices are well apart if their distance is at least this much of the largest possible one.
 const APART: f64 = 0.5;
@@ -21,7 +21,7 @@ const FLAT: f64 = 1e-6;
 /// Which nodes are vertices.
 pub(super) fn choose(
     cells: &Cells,
-    incidence: &Incidence,
+    around: &Lists,
     points: &[[f64; 3]],
     sharing: &Sharing,
     classes: &Classes,
@@ -31,7 +31,7 @@ pub(super) fn choose(
     for node in sharing.shared() {
         vertex[node as usize] = classes.kind(node) == Some(Kind::Vertex);
     }
-    ends(cells, incidence, sharing, classes, &corner, &mut vertex);
+    ends(cells, around, sharing, classes, &corner, &mut vertex);
     let space = cells.kinds().first().is_some_and(|k| k.dim() == 3);
     hold(points, sharing, classes, &corner, space, &mut vertex);
     vertex
@@ -52,7 +52,7 @@ fn corners(cells: &Cells, n_nodes: usize) -> Vec<bool> {
 /// of an edge that ends nowhere. An edge of one node that ends nowhere is such a node.
 fn ends(
     cells: &Cells,
-    incidence: &Incidence,
+    around: &Lists,
     sharing: &Sharing,
     classes: &Classes,
     corner: &[bool],
@@ -87,7 +87,7 @@ fn ends(
         let mut goals: Vec<u32> = nodes.iter().flat_map(|&node| goals_of(node)).collect();
         goals.sort_unstable();
         goals.dedup();
-        for group in groups(cells, incidence, &goals) {
+        for group in groups(cells, around, &goals) {
             let rank = |node: &&u32| {
                 (
                     vertex[**node as usize],
@@ -109,19 +109,15 @@ fn ends(
 }
 
 /// Groups of nodes that hang together because cells have two of them.
-fn groups(cells: &Cells, incidence: &Incidence, nodes: &[u32]) -> Vec<Vec<u32>> {
+fn groups(cells: &Cells, around: &Lists, nodes: &[u32]) -> Vec<Vec<u32>> {
     let mut left = nodes.to_vec();
     let mut groups = Vec::new();
     while let Some(first) = left.pop() {
         let mut group = vec![first];
         let mut next = 0;
         while next < group.len() {
-            let around = incidence.cells(group[next]);
-            let near = |node: &u32| {
-                around
-                    .iter()
-                    .any(|&c| cells.nodes(c as usize).contains(node))
-            };
+            let here = around.at(group[next] as usize);
+            let near = |node: &u32| here.iter().any(|&c| cells.nodes(c as usize).contains(node));
             let (found, others) = left.iter().partition::<Vec<u32>, _>(|node| near(node));
             left = others;
             group.extend(found);

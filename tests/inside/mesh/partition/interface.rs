@@ -5,6 +5,7 @@ use super::super::meshes::{
 };
 use super::super::Partition;
 use super::*;
+use crate::mesh::Parts;
 
 struct Cut {
     part: Vec<u32>,
@@ -53,44 +54,46 @@ fn counts(cut: &Cut) -> [usize; 3] {
     [i.vertices.len(), i.edges.len(), i.faces.len()]
 }
 
+/// The subdomains of an edge or face.
+fn sharers<'a>(cut: &'a Cut, nodes: &[u32]) -> &'a [u32] {
+    cut.sharing.of(nodes[0])
+}
+
 /// Every shared node is in one vertex, edge or face, with the right subdomains, which all know of it.
 fn check(mesh: &Mesh, cut: &Cut) {
     let mut times = vec![0; mesh.points.len()];
     let i = &cut.interface;
     i.vertices.iter().for_each(|&n| times[n as usize] += 1);
-    for entity in i.edges.iter().chain(&i.faces) {
-        assert!(entity.nodes.is_sorted() && !entity.nodes.is_empty());
-        for &n in &entity.nodes {
+    for nodes in i.edges.iter().chain(&i.faces) {
+        assert!(nodes.is_sorted() && !nodes.is_empty());
+        for &n in nodes {
             times[n as usize] += 1;
-            assert_eq!(cut.sharing.of(n), entity.sharers);
+            assert_eq!(cut.sharing.of(n), sharers(cut, nodes));
         }
     }
-    for n in 0..mesh.points.len() as u32 {
-        // By another way: the parts of all cells that have the node.
-        let having = (0..mesh.cells.len()).filter(|&c| mesh.cells.nodes(c).contains(&n));
-        let parts: BTreeSet<u32> = if mesh.cells.len() < 500 {
-            having.map(|c| cut.part[c]).collect()
-        } else {
-            cut.sharing.of(n).iter().copied().collect()
-        };
-        assert!(parts.iter().eq(cut.sharing.of(n)));
-        assert_eq!(times[n as usize], usize::from(parts.len() > 1), "node {n}");
+    // By another way: the parts of all cells that have a node.
+    let mut having = vec![BTreeSet::new(); mesh.points.len()];
+    for (c, (_, nodes)) in mesh.cells.iter().enumerate() {
+        nodes.iter().for_each(|&n| {
+            having[n as usize].insert(cut.part[c]);
+        });
     }
-    for (p, held) in i.of.iter().enumerate() {
-        let p = p as u32;
-        let has = |sharers: &[u32]| sharers.contains(&p);
-        let places = |list: &[Entity]| -> Vec<u32> {
-            let mine = list.iter().zip(0..).filter(|(e, _)| has(&e.sharers));
-            mine.map(|(_, k)| k).collect()
-        };
-        assert_eq!(held.edges, places(&i.edges));
-        assert_eq!(held.faces, places(&i.faces));
-        let mine = i
-            .vertices
-            .iter()
-            .zip(0..)
-            .filter(|(&n, _)| has(cut.sharing.of(n)));
-        assert_eq!(held.vertices, mine.map(|(_, k)| k).collect::<Vec<u32>>());
+    let parts = Parts::new(cut.part.clone(), cut.sharing.clone(), i.clone());
+    for (n, (having, times)) in having.iter().zip(times).enumerate() {
+        assert!(having.iter().eq(cut.sharing.of(n as u32)));
+        assert!(having.iter().eq(parts.sharers(n)));
+        assert_eq!(times, usize::from(having.len() > 1), "node {n}");
+        assert_eq!(parts.is_vertex(n), i.vertices.contains(&(n as u32)));
+    }
+    for p in 0..parts.len() {
+        let has = |n: u32| having[n as usize].contains(&(p as u32));
+        let all = (0..mesh.points.len() as u32).filter(|&n| has(n));
+        assert!(all.eq(parts.nodes(p).iter().copied()), "subdomain {p}");
+        let edges = i.edges.iter().map(|nodes| (1, nodes));
+        let entities = edges.chain(i.faces.iter().map(|nodes| (2, nodes)));
+        let mine = entities.enumerate().filter(|(_, (_, e))| has(e[0]));
+        let mine = mine.map(|(k, (dim, nodes))| (k, dim, &nodes[..]));
+        assert!(mine.eq(parts.entities(p)), "subdomain {p}");
     }
 }
 
@@ -216,19 +219,16 @@ fn blocks_of_bricks() {
         .interface
         .edges
         .iter()
-        .all(|e| e.nodes.len() == 2 && e.sharers.len() == 4));
+        .all(|e| e.len() == 2 && sharers(&cut, e).len() == 4));
     assert!(cut
         .interface
         .faces
         .iter()
-        .all(|f| f.nodes.len() == 9 && f.sharers.len() == 2));
+        .all(|f| f.len() == 9 && sharers(&cut, f).len() == 2));
     // On the surface 24 rims, which go around the edges of the body in pairs.
     let cut = of_parts(&mesh, eight, true);
     assert_eq!(counts(&cut), [7, 18, 12]);
-    assert_eq!(
-        cut.interface.faces.iter().map(|f| f.nodes.len()).max(),
-        Some(4)
-    );
+    assert_eq!(cut.interface.faces.iter().map(Vec::len).max(), Some(4));
     neighbours_hold(&mesh, &cut);
     let cut = of_parts(&mesh, blocks(&mesh, [3, 3, 3], [2.0; 3]), false);
     assert_eq!(counts(&cut), [8 + 24, 36, 54]);
@@ -246,7 +246,7 @@ fn blocks_of_squares() {
         .interface
         .edges
         .iter()
-        .all(|e| e.nodes.len() == 2 && e.sharers.len() == 2));
+        .all(|e| e.len() == 2 && sharers(&cut, e).len() == 2));
     assert_eq!(motions_left(&mesh, &cut), 3);
 }
 
@@ -289,7 +289,7 @@ fn one_inside_another() {
     let inner = |c: usize| u32::from(middle(&mesh, c).iter().all(|x| (2.0..4.0).contains(x)));
     let cut = of_parts(&mesh, (0..mesh.cells.len()).map(inner).collect(), true);
     assert_eq!(counts(&cut), [3, 0, 1]);
-    assert_eq!(cut.interface.faces[0].nodes.len(), 26 - 3);
+    assert_eq!(cut.interface.faces[0].len(), 26 - 3);
     neighbours_hold(&mesh, &cut);
     assert_eq!(motions_left(&mesh, &cut), 6);
 }
@@ -328,7 +328,7 @@ fn pieces_that_touch() {
     for rims in [false, true] {
         let cut = into(&edge, 2, rims);
         assert_eq!(counts(&cut), [2, 1, 0]);
-        assert_eq!(cut.interface.edges[0].nodes.len(), 4);
+        assert_eq!(cut.interface.edges[0].len(), 4);
         assert_eq!(motions_left(&edge, &cut), 7);
     }
 
@@ -345,7 +345,7 @@ fn nothing_shared() {
         let cut = into(&mesh, 1, true);
         assert_eq!(counts(&cut), [0, 0, 0]);
         assert_eq!(cut.sharing.copies(), 0);
-        assert_eq!(cut.interface.of, [Held::default()]);
+        assert_eq!(cut.interface, Interface::default());
     }
     let apart = without(&hexes([3, 1, 1]), |c| c == 1);
     assert_eq!(counts(&into(&apart, 2, true)), [0, 0, 0]);
@@ -385,10 +385,10 @@ fn rims_of_a_plate() {
     for edge in &cut.interface.edges {
         let inside = |n: &&u32| (0.5..5.5).contains(&mesh.points[**n as usize][1]);
         let level = |n: &u32| mesh.points[*n as usize][2] as u64;
-        let levels: BTreeSet<u64> = edge.nodes.iter().filter(inside).map(level).collect();
+        let levels: BTreeSet<u64> = edge.iter().filter(inside).map(level).collect();
         assert!(levels.len() <= 1, "{edge:?}");
     }
-    let nodes: usize = cut.interface.edges.iter().map(|e| e.nodes.len()).sum();
+    let nodes: usize = cut.interface.edges.iter().map(Vec::len).sum();
     assert_eq!(nodes + cut.interface.vertices.len(), 14);
     assert!(cut.interface.edges.len() >= 2);
     neighbours_hold(&mesh, &cut);
