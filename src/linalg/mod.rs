@@ -2,6 +2,7 @@
 
 pub mod csr;
 pub mod dense;
+pub mod lists;
 pub mod nnls;
 pub mod semidefinite;
 pub mod single;

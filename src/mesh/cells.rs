@@ -1,7 +1,7 @@
 //! A list of cells of any kind.
 
 use super::kind::CellKind;
-use super::lists::Lists;
+use crate::linalg::lists::Lists;
 
 /// Cells of any kind, one after the other: the kind and the nodes of each.
 #[derive(Debug, Clone, PartialEq, Eq)]

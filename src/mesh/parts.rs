@@ -1,7 +1,7 @@
 //! The subdomains of a mesh of cells: their cells, their nodes, and what they share.
 
-use super::lists::Lists;
 use super::partition::{Interface, Sharing};
+use crate::linalg::lists::Lists;
 
 /// A partition of a mesh of cells into subdomains.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -61,7 +61,7 @@ impl<'a> Pencil<'a> {
         }
         let mut of_body: Vec<Vec<u32>> = vec![Vec::new(); bodies.len()];
         for row in 0..jump.n_owned {
-            let terms = graph.terms.of(row).iter();
+            let terms = graph.terms.at(row).iter();
             for s in terms
                 .map(|&b| slot[b as usize])
                 .filter(|&s| s != usize::MAX)

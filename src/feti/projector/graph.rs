@@ -1,35 +1,10 @@
 //! The bodies that meet in each row, and groups of bodies that do not interact.
 
 use crate::feti::operators::stiffness::Stiffness;
+use crate::linalg::lists::Lists;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;
-
-/// Lists of bodies, one for each owned row.
-#[derive(Debug, Default)]
-pub struct Lists {
-    start: Vec<usize>,
-    item: Vec<u32>,
-}
-
-impl Lists {
-    fn new(lists: impl Iterator<Item = Vec<u32>>) -> Lists {
-        let mut out = Lists {
-            start: vec![0],
-            item: Vec::new(),
-        };
-        for list in lists {
-            out.item.extend(distinct(list));
-            out.start.push(out.item.len());
-        }
-        out
-    }
-
-    /// The bodies of row `i`, increasing.
-    pub fn of(&self, i: usize) -> &[u32] {
-        &self.item[self.start[i]..self.start[i + 1]]
-    }
-}
 
 /// The bodies and the rows between them. Neighbours are known to every rank, rows to their owner.
 pub struct BodyGraph {
@@ -76,8 +51,8 @@ impl BodyGraph {
         }
         BodyGraph {
             n,
-            terms: Lists::new(terms.into_iter()),
-            touched: Lists::new(touched.into_iter()),
+            terms: sorted(terms),
+            touched: sorted(touched),
             near: near.into_iter().map(distinct).collect(),
         }
     }
@@ -107,4 +82,11 @@ impl BodyGraph {
         }
         groups
     }
+}
+
+/// Lists of bodies, one for each owned row, each increasing.
+fn sorted(lists: Vec<Vec<u32>>) -> Lists {
+    let mut out = Lists::default();
+    lists.into_iter().for_each(|list| out.push(distinct(list)));
+    out
 }

@@ -74,7 +74,7 @@ pub fn images(
                 out[c].reach = graph.around(&columns[c].reach);
             }
             for (row, &value) in y.array()?.iter().enumerate().filter(|v| *v.1 != 0.0) {
-                let bodies = graph.touched.of(row).iter();
+                let bodies = graph.touched.at(row).iter();
                 let column = bodies.map(|&b| owner[b as usize]).find(|&c| c != NONE);
                 if let Some(c) = column {
                     out[c as usize].entries.push((row as u32, value));

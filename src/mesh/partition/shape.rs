@@ -6,8 +6,8 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use super::adjacency::Adjacency;
+use crate::linalg::lists::Lists;
 use crate::mesh::cells::Cells;
-use crate::mesh::lists::Lists;
 
 /// Cells that are visited to see whether a part stays connected without a cell. A ring around a node or an edge of the
 /// mesh has fewer. If more were needed, the cell stays.

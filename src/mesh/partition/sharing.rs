@@ -1,7 +1,7 @@
 //! Which subdomains have which nodes.
 
+use crate::linalg::lists::Lists;
 use crate::mesh::cells::Cells;
-use crate::mesh::lists::Lists;
 
 /// The subdomains that have each node.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 
 use super::classes::{Classes, Kind};
 use super::sharing::Sharing;
+use crate::linalg::lists::Lists;
 use crate::mesh::cells::Cells;
-use crate::mesh::lists::Lists;
 
 /// Vertices are well apart if their distance is at least this much of the largest possible one.
 const APART: f64 = 0.5;
