@@ -64,6 +64,11 @@ impl Cells {
         &self.nodes
     }
 
+    /// One more than the highest number of a node.
+    pub fn n_nodes(&self) -> usize {
+        self.nodes.iter().max().map_or(0, |&k| k as usize + 1)
+    }
+
     /// The nodes of cell `c`, to renumber or reorder them.
     pub fn nodes_mut(&mut self, c: usize) -> &mut [u32] {
         &mut self.nodes[self.starts[c]..self.starts[c + 1]]

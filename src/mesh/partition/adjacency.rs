@@ -112,11 +112,7 @@ impl Adjacency {
 
 /// All sides, sorted by their lowest corner, and where those of each corner end.
 fn by_lowest_corner(cells: &Cells, n_sides: usize) -> (Vec<usize>, Vec<Half>) {
-    let n_nodes = cells
-        .all_nodes()
-        .iter()
-        .max()
-        .map_or(0, |&m| m as usize + 1);
+    let n_nodes = cells.n_nodes();
     let corners = |c: usize, side: usize| {
         let nodes = cells.nodes(c);
         let side = &cells.kind(c).sides()[side];
@@ -180,11 +176,7 @@ impl Components {
 
     /// Cells hang together that share a node.
     pub fn by_nodes(cells: &Cells) -> Components {
-        let n_nodes = cells
-            .all_nodes()
-            .iter()
-            .max()
-            .map_or(0, |&m| m as usize + 1);
+        let n_nodes = cells.n_nodes();
         let mut sets = UnionFind::new(n_nodes);
         for (_, nodes) in cells.iter() {
             let pairs = nodes.windows(2);

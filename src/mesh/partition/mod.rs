@@ -89,27 +89,13 @@ impl Partition {
             shape.fill();
             shape.connect();
             shape.even();
-            let n_nodes = cells
-                .all_nodes()
-                .iter()
-                .max()
-                .map_or(0, |&m| m as usize + 1);
-            shape.smooth(cells, &cells.around_nodes(n_nodes));
+            shape.smooth(cells, &cells.around_nodes(cells.n_nodes()));
         }
         Partition {
             part: shape.part,
             n,
             pieces: members.len(),
         }
-    }
-
-    /// The cells of each part, increasing.
-    pub fn members(&self) -> Vec<Vec<u32>> {
-        let mut members = vec![Vec::new(); self.n];
-        for (&p, c) in self.part.iter().zip(0..) {
-            members[p as usize].push(c);
-        }
-        members
     }
 }
 
