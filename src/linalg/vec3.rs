@@ -10,6 +10,12 @@ pub(crate) fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// a / |a|; `None` for 0.
+pub(crate) fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
+    let length = norm(a);
+    (length > 0.0).then(|| a.map(|v| v / length))
+}
+
 /// a − b.
 pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|d| a[d] - b[d])

@@ -1,7 +1,7 @@
 //! Rigid obstacles beside bodies: grey shapes.
 
 use super::paint::View;
-use crate::linalg::vec3::{cross, dot, minus, norm};
+use crate::linalg::vec3::{cross, dot, minus, norm, unit};
 use crate::report::drawing::canvas::Colour;
 use crate::report::drawing::raster::Raster;
 use crate::scene::model::rigid::outward;
@@ -139,11 +139,6 @@ fn quads(n: usize, m: usize, at: impl Fn(usize, usize) -> [f64; 3]) -> Vec<[[f64
 
 fn plus(a: [f64; 3], b: [f64; 3], factor: f64) -> [f64; 3] {
     [0, 1, 2].map(|d| a[d] + factor * b[d])
-}
-
-fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
-    let length = norm(v);
-    (length > 0.0).then(|| v.map(|x| x / length))
 }
 
 /// Two unit vectors that are orthogonal to a vector and to each other.

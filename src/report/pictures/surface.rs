@@ -2,7 +2,7 @@
 
 use super::mesh::Solid;
 use super::pieces::{edges, pieces};
-use crate::linalg::vec3::{cross, dot, minus, norm};
+use crate::linalg::vec3::{cross, dot, minus, unit};
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
 
@@ -175,9 +175,7 @@ pub(super) fn diagonals([a, b, c, d]: [[f64; 3]; 4]) -> ([[f64; 3]; 2], [f64; 3]
 
 /// The unit vector along a × b; zero if a × b is zero.
 pub(super) fn unit_cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    let v = cross(a, b);
-    let length = norm(v);
-    v.map(|x| if length > 0.0 { x / length } else { 0.0 })
+    unit(cross(a, b)).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::curves;
 use super::sides::Face;
 use crate::fem::cell::Element;
-use crate::linalg::vec3::norm;
+use crate::linalg::vec3::unit;
 use crate::mesh::{BoxMesh, Mesh};
 use crate::scene::model::spec::BodySpec;
 
@@ -35,17 +35,9 @@ pub(crate) fn of_side(body: &BodySpec, side: usize, nodes: &[usize]) -> Vec<[f64
             sums.entry(node).or_insert(sum);
         }
     }
-    let unit = |sum: [f64; 3]| {
-        let length = norm(sum);
-        match length > 0.0 {
-            true => sum.map(|v| v / length),
-            false => sum,
-        }
-    };
-    nodes
-        .iter()
-        .map(|n| sums.get(n).map_or([0.0; 3], |&sum| unit(sum)))
-        .collect()
+    let normal = |n: &usize| unit(*sums.get(n)?);
+    let normals = nodes.iter().map(normal);
+    normals.map(Option::unwrap_or_default).collect()
 }
 
 /// Parameters of nodes along a side, 0 ≤ t ≤ 1: one in the plane (the other is 0), two on the sides of solids.

@@ -1,7 +1,7 @@
 //! A side of a body as a surface in space: what the search for the nodes opposite needs.
 
 use super::nearest::Nearest;
-use crate::linalg::vec3::{cross, dot, minus, norm};
+use crate::linalg::vec3::{cross, dot, minus, norm, unit};
 use crate::scene::model::spec::BodySpec;
 
 /// Faces around a node count as one smooth piece if the cosine of the angle between their normals is above this.
@@ -49,7 +49,6 @@ impl Surface {
             let sum = weights
                 .iter()
                 .fold([0.0; 3], |s, (_, n)| [0, 1, 2].map(|d| s[d] + n[d]));
-            let length = norm(sum);
             for node in &face.nodes {
                 if let Ok(i) = nodes.binary_search(node) {
                     edges[i] = f64::min(edges[i], shortest);
@@ -58,7 +57,7 @@ impl Surface {
             }
             facets.push(Facet {
                 corners,
-                normal: sum.map(|v| if length > 0.0 { v / length } else { 0.0 }),
+                normal: unit(sum).unwrap_or_default(),
             });
         }
         let normals = around.iter().map(|list| smooth(&facets, list)).collect();
@@ -121,11 +120,8 @@ fn smooth(facets: &[Facet], list: &[u32]) -> Vec<[f64; 3]> {
             None => sums.push(normal),
         }
     }
-    let unit = |sum: [f64; 3]| {
-        let length = norm(sum);
-        sum.map(|v| if length > 0.0 { v / length } else { 0.0 })
-    };
-    sums.into_iter().map(unit).collect()
+    let units = sums.into_iter().map(unit);
+    units.map(Option::unwrap_or_default).collect()
 }
 
 /// Whether a point lies inside a segment, triangle or quadrilateral, seen along its normal.

@@ -3,7 +3,7 @@
 use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
-use crate::linalg::vec3::norm;
+use crate::linalg::vec3::unit;
 use crate::mesh::BoxMesh;
 use crate::scene::model::expr::Expr;
 use crate::scene::model::map::{BodyShape, Map, Round};
@@ -152,11 +152,9 @@ impl Reader {
 
     /// The unit vector in the given direction.
     fn direction(&self, item: &Item) -> Result<[f64; 3]> {
-        let v = self.vector(item, "a direction")?;
-        let length = norm(v);
-        match length > 0.0 {
-            true => Ok(v.map(|c| c / length)),
-            false => item.error("the direction 0 where a vector was expected"),
+        match unit(self.vector(item, "a direction")?) {
+            Some(direction) => Ok(direction),
+            None => item.error("the direction 0 where a vector was expected"),
         }
     }
 }
