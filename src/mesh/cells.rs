@@ -69,11 +69,6 @@ impl Cells {
         self.nodes.iter().max().map_or(0, |&k| k as usize + 1)
     }
 
-    /// The nodes of cell `c`, to renumber or reorder them.
-    pub fn nodes_mut(&mut self, c: usize) -> &mut [u32] {
-        &mut self.nodes[self.starts[c]..self.starts[c + 1]]
-    }
-
     /// Kind and nodes of all cells, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (CellKind, &[u32])> {
         (0..self.len()).map(|c| (self.kinds[c], self.nodes(c)))

@@ -47,9 +47,4 @@ impl Sharing {
     pub fn shared(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.n_nodes() as u32).filter(|&node| self.of(node).len() > 1)
     }
-
-    /// The copies of nodes that the cuts make: all nodes of all subdomains, less the nodes of the mesh.
-    pub fn copies(&self) -> usize {
-        self.shared().map(|node| self.of(node).len() - 1).sum()
-    }
 }

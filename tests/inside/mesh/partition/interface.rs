@@ -344,7 +344,7 @@ fn nothing_shared() {
     for mesh in [hexes([1, 1, 1]), tets([2, 2, 2]), quads([3, 3])] {
         let cut = into(&mesh, 1, true);
         assert_eq!(counts(&cut), [0, 0, 0]);
-        assert_eq!(cut.sharing.copies(), 0);
+        assert_eq!(cut.sharing.shared().count(), 0);
         assert_eq!(cut.interface, Interface::default());
     }
     let apart = without(&hexes([3, 1, 1]), |c| c == 1);
