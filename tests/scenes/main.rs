@@ -12,6 +12,7 @@ mod contact_solution;
 mod counts;
 mod examples;
 mod gallery;
+mod guided;
 mod input;
 mod input_bodies;
 mod meshes;

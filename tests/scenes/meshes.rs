@@ -283,6 +283,28 @@ fn contact_carries_the_load_or_opens() {
     }
 }
 
+/// The unit cube and on its top a box of length `length`, a cell each: the groups 1 and 2.
+fn layer_pair(length: f64) -> String {
+    let mut nodes = String::new();
+    let mut cells = String::new();
+    for (k, end) in [1.0, length].into_iter().enumerate() {
+        let first = 8 * k + 1;
+        for (n, [x, y]) in [[0.0, 0.0], [end, 0.0], [end, 1.0], [0.0, 1.0]]
+            .iter()
+            .enumerate()
+        {
+            for z in [0, 1] {
+                nodes += &format!("{} {x} {} {z}\n", first + n + 4 * z, y + k as f64);
+            }
+        }
+        let list: Vec<String> = (first..first + 8).map(|n| n.to_string()).collect();
+        cells += &format!("{0} 5 2 {0} {0} {1}\n", k + 1, list.join(" "));
+    }
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n16\n{nodes}$EndNodes\n$Elements\n2\n{cells}$EndElements\n"
+    )
+}
+
 #[test]
 fn what_does_not_fit_gets_one_sentence() {
     let model = Model::new("mesh_mistakes", &squares(2, 3, 1));
@@ -304,6 +326,12 @@ fn what_does_not_fit_gets_one_sentence() {
         &format!("{TWO}[[contact]]\nsurfaces = [\"left\", \"right\"]\n"),
         "lies opposite",
     );
+    // Layers of one element: all nodes of a side lie on its rim.
+    let stacked =
+        "dimension = 3\n[mesh]\nfile = \"m.msh\"\n[contact]\nauto = true\ndistance = 0.1\n\
+                   [[body]]\nname = \"1\"\n[[body]]\nname = \"2\"\n";
+    Model::new("mesh_layers", &layer_pair(1.0)).scene(stacked);
+    Model::new("mesh_rim", &layer_pair(0.4)).refuses(stacked, "lies opposite no node");
     // Every part of one file is named by its place.
     let whole = squares(2, 3, 1);
     let cut = &whole[..whole.len() / 2];

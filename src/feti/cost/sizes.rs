@@ -134,7 +134,7 @@ fn defects(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<usize> {
     let mut words = Vec::new();
     for sub in &problem.local {
         let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
-        let factor = kernel::residual_factor(&sub.k, columns);
+        let factor = kernel::motion_factors(&sub.k, columns);
         words.extend([sub.body as u64, columns.len() as u64]);
         words.extend(factor.data.iter().map(|v| v.to_bits()));
     }
@@ -143,9 +143,9 @@ fn defects(comm: &SimpleCommunicator, problem: &Substructures) -> Vec<usize> {
     let mut rest = &all[..];
     while let [body, k, tail @ ..] = rest {
         let k = *k as usize;
-        let (data, tail) = tail.split_at(k * k);
+        let (data, tail) = tail.split_at(2 * k * k);
         factors[*body as usize].push(Dense {
-            rows: k,
+            rows: 2 * k,
             cols: k,
             data: data.iter().map(|&w| f64::from_bits(w)).collect(),
         });

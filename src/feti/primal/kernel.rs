@@ -5,6 +5,9 @@
 //! terms that should cancel in that row. This test sees a boundary condition or a spring in the softest corner of a
 //! body with coefficient jumps of any size. Eigenvalues of the whole matrix would hide it. Without candidates, the
 //! kernel of the body's primal matrix S_Π decides.
+//!
+//! Matrices have no rows for given values, so N is known at free dofs only. Where every node has one component given,
+//! the translation along it has N c = 0. That is no motion, although K N c = 0: such c are taken out first.
 
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
@@ -13,15 +16,20 @@ use crate::linalg::dense::Dense;
 /// spring of 1e-8 of a row's stiffness leaves 1e-8.
 const FREE: f64 = 1e-11;
 
+/// A combination c with |N c| below this fraction of the largest moves no free dof. Entries of N are of order one;
+/// coordinates leave rounding of 1e-16 times the distance of the body from the origin, relative to the body. What is
+/// above is a motion, and its rows of K N are compared with [`FREE`].
+const MOVES: f64 = 1e-10;
+
 /// Eigenvalues of the scaled S_Π below this count as zero. S_Π carries the rounding of the local elimination, about
 /// 1e-14 times the subdomain's condition number.
 const FREE_SPECTRUM: f64 = 1e-10;
 
-/// The triangular factor of the row-scaled K N (k × k, column-major): one subdomain's contribution to the kernel of its
-/// body.
+/// One subdomain's contribution to the kernel of its body: the triangular factor of the row-scaled K N and below it
+/// that of N, 2k × k together.
 ///
 /// `columns` has the k columns of N, entries of order one.
-pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
+pub fn motion_factors(k: &Csr, columns: &[Vec<f64>]) -> Dense {
     let (n, m) = (k.n(), columns.len());
     let mut rows = faer::Mat::<f64>::zeros(n.max(m), m);
     let mut first = 0;
@@ -34,18 +42,22 @@ pub fn residual_factor(k: &Csr, columns: &[Vec<f64>]) -> Dense {
         }
         first += group.len();
     }
-    if m == 1 {
-        // The usual scalar case needs no Householder reflections.
-        let mut out = Dense::zeros(1, 1);
-        out.data[0] = rows.norm_l2();
-        return out;
-    }
-    let r = rows.qr();
-    let r = r.thin_R();
-    let mut out = Dense::zeros(m, m);
-    for j in 0..m {
-        for i in 0..=j {
-            out.set(i, j, r[(i, j)]);
+    let motions = faer::Mat::from_fn(n.max(m), m, |i, j| {
+        columns[j].get(i).copied().unwrap_or(0.0)
+    });
+    let mut out = Dense::zeros(2 * m, m);
+    for (first, rows) in [(0, rows), (m, motions)] {
+        if m == 1 {
+            // The usual scalar case needs no Householder reflections.
+            out.set(first, 0, rows.norm_l2());
+            continue;
+        }
+        let r = rows.qr();
+        let r = r.thin_R();
+        for j in 0..m {
+            for i in 0..=j {
+                out.set(first + i, j, r[(i, j)]);
+            }
         }
     }
     out
@@ -82,23 +94,45 @@ fn residuals<const W: usize>(
     }
 }
 
-/// Combinations c (k × defect) with K N c = 0 in all subdomains of a body, from their stacked factors.
+/// A basis of the combinations c (k × defect) with K N c = 0 in all subdomains of a body and N c ≠ 0 in some, from
+/// their [`motion_factors`]. It is orthogonal, to those with N c = 0 as well.
 pub fn null_combinations(factors: &[Dense]) -> Dense {
     let Some(k) = factors.first().map(|f| f.cols) else {
         return Dense::default();
     };
-    let stacked = faer::Mat::from_fn(factors.len() * k, k, |i, j| factors[i / k].get(i % k, j));
-    // Left singular vectors are not needed; there are as many as rows.
-    let svd = stacked
-        .thin_svd()
-        .expect("an SVD of a small finite matrix converges");
-    let sigma = svd.S().column_vector();
-    let scale = (stacked.nrows() as f64).sqrt();
-    let rank = (0..k).filter(|&i| sigma[i] > FREE * scale).count();
-    let mut out = Dense::zeros(k, k - rank);
-    for j in rank..k {
+    // Singular values in decreasing order, and the right singular vectors. Left ones are not needed; there are as many
+    // as rows.
+    let decompose = |a: &faer::Mat<f64>| {
+        let svd = a
+            .thin_svd()
+            .expect("an SVD of a small finite matrix converges");
+        let values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+        (values, svd.V().to_owned())
+    };
+    let stacked = |first: usize| {
+        faer::Mat::from_fn(factors.len() * k, k, |i, j| {
+            factors[i / k].get(first + i % k, j)
+        })
+    };
+    let (sizes, v) = decompose(&stacked(k));
+    let largest = sizes.first().copied().unwrap_or(0.0);
+    let moving = sizes.iter().filter(|s| **s > MOVES * largest).count();
+    // Where everything moves, as usual, V would only change the basis.
+    let basis = match moving == k {
+        true => faer::Mat::identity(k, k),
+        false => v.get(.., ..moving).to_owned(),
+    };
+    if moving == 0 {
+        return Dense::zeros(k, 0);
+    }
+    let (sigma, v) = decompose(&(stacked(0) * &basis));
+    let scale = ((factors.len() * k) as f64).sqrt();
+    let rank = sigma.iter().filter(|s| **s > FREE * scale).count();
+    let null = &basis * v.get(.., rank..);
+    let mut out = Dense::zeros(k, moving - rank);
+    for j in 0..out.cols {
         for i in 0..k {
-            out.set(i, j - rank, svd.V()[(i, j)]);
+            out.set(i, j, null[(i, j)]);
         }
     }
     out

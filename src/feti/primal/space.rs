@@ -176,7 +176,7 @@ impl PrimalSpace {
         locals: &[Scaled],
         asked: &[Vec<u32>],
     ) {
-        // Messages of the subdomains: [body, k, factor (k²)], and N at the primal dofs: [number, k values].
+        // Messages of the subdomains: [body, k, factors (2k²)], and N at the primal dofs: [number, k values].
         let size = comm.size() as usize;
         let mut factors: Vec<Vec<u64>> = vec![Vec::new(); size];
         let mut values: Vec<Vec<u64>> = vec![Vec::new(); size];
@@ -184,7 +184,7 @@ impl PrimalSpace {
             let to = self.owner[sub.body] as usize;
             let local = &locals[j];
             let columns = sub.near_kernel.as_deref().unwrap_or(&[]);
-            let factor = kernel::residual_factor(&sub.k, columns);
+            let factor = kernel::motion_factors(&sub.k, columns);
             factors[to].extend([sub.body as u64, columns.len() as u64]);
             factors[to].extend(factor.data.iter().map(|v| v.to_bits()));
             if columns.is_empty() {
@@ -263,11 +263,11 @@ impl PrimalSpace {
         let mut rest = factors;
         while let [index, k, tail @ ..] = rest {
             let k = *k as usize;
-            let (data, tail) = tail.split_at(k * k);
+            let (data, tail) = tail.split_at(2 * k * k);
             if *index as usize == body.body {
                 known &= k > 0;
                 mine.push(Dense {
-                    rows: k,
+                    rows: 2 * k,
                     cols: k,
                     data: data.iter().map(|&w| f64::from_bits(w)).collect(),
                 });

@@ -94,8 +94,8 @@ impl Surface {
         normals.iter().any(fits).then_some(i)
     }
 
-    /// Whether a point, moved along one of its normals by `reach` at most, lies inside a face, by more than `margin`
-    /// of the face's size.
+    /// Whether a point, moved along one of its normals by `reach` at most, lies inside a face or on one of its edges,
+    /// farther from the corners than `margin` of the face's size.
     pub fn covers(&self, point: [f64; 3], normals: &[[f64; 3]], reach: f64, margin: f64) -> bool {
         let Some(i) = self.nearest.find(point) else {
             return false;
@@ -124,7 +124,8 @@ fn smooth(facets: &[Facet], list: &[u32]) -> Vec<[f64; 3]> {
     units.map(Option::unwrap_or_default).collect()
 }
 
-/// Whether a point lies inside a segment, triangle or quadrilateral, seen along its normal.
+/// Whether a point lies in a segment, triangle or quadrilateral, seen along its normal, and at none of its corners. A
+/// point on an edge counts: bodies of one layer of elements have all nodes of a side on its rim.
 fn inside(corners: &[[f64; 3]], point: [f64; 3], normal: [f64; 3], margin: f64) -> bool {
     let flat = |v: [f64; 3]| {
         let part = dot(v, normal);
@@ -135,7 +136,8 @@ fn inside(corners: &[[f64; 3]], point: [f64; 3], normal: [f64; 3], margin: f64) 
         let t = dot(edge, from) / dot(edge, edge);
         return (margin..=1.0 - margin).contains(&t);
     }
-    // The areas of the triangles between the point and each edge have one sign inside.
+    // The areas of the triangles between the point and each edge have one sign inside. One of them vanishes on an edge,
+    // two at a corner.
     let areas = (0..corners.len()).map(|k| {
         let [a, b] = [corners[k], corners[(k + 1) % corners.len()]].map(|c| flat(minus(c, point)));
         dot(cross(a, b), normal)
@@ -143,5 +145,6 @@ fn inside(corners: &[[f64; 3]], point: [f64; 3], normal: [f64; 3], margin: f64) 
     let areas: Vec<f64> = areas.collect();
     let total: f64 = areas.iter().sum();
     let least = margin * total.abs();
-    areas.iter().all(|a| a * total.signum() > least)
+    let areas = areas.iter().map(|a| a * total.signum());
+    areas.clone().all(|a| a > -least) && areas.filter(|a| *a <= least).count() < 2
 }

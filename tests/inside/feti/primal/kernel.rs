@@ -18,7 +18,7 @@ fn a_weak_spring_holds_and_rounding_does_not() {
         let (mut stiff, _) = grid_laplacian(60, 60, 0.0);
         stiff.val.iter_mut().for_each(|v| *v *= 1e12);
         let ones = vec![vec![1.0; k.n()]];
-        let factors = [residual_factor(&k, &ones), residual_factor(&stiff, &ones)];
+        let factors = [motion_factors(&k, &ones), motion_factors(&stiff, &ones)];
         assert_eq!(
             null_combinations(&factors).cols,
             defect,
@@ -35,9 +35,34 @@ fn several_columns_find_the_one_combination() {
         x.iter().map(|p| p[0] / 8.0 + 0.5).collect(),
         x.iter().map(|p| p[0] / 8.0 - 0.5).collect(),
     ];
-    let c = null_combinations(&[residual_factor(&k, &columns)]);
+    let c = null_combinations(&[motion_factors(&k, &columns)]);
     assert_eq!(c.cols, 1);
     assert!((c.get(0, 0) + c.get(1, 0)).abs() < 1e-12);
+}
+
+#[test]
+fn a_motion_that_moves_no_free_dof_is_none() {
+    // N = {x, y, rotation} at the free dofs of one component; where y is given everywhere, its column is zero.
+    let (k, at) = grid_laplacian(9, 4, 0.0);
+    let columns = |x: f64, y: f64| {
+        let turn = at.iter().map(|p| -x * p[1]).collect::<Vec<f64>>();
+        vec![vec![x; k.n()], vec![y; k.n()], turn]
+    };
+    let c = null_combinations(&[motion_factors(&k, &columns(1.0, 0.0))]);
+    assert_eq!(c.cols, 1);
+    // Only the translation along x, with nothing of the one along y.
+    assert!((c.get(0, 0).abs() - 1.0).abs() < 1e-12 && c.get(1, 0).abs() < 1e-12);
+    // A body whose other subdomain moves along y, by rounding, a little, or as much; and the same held by springs.
+    let (held, _) = grid_laplacian(9, 4, 0.1);
+    for (y, free) in [(0.0, 1), (1e-15, 1), (1e-3, 2), (1.0, 2)] {
+        let counted = |k: &Csr| {
+            let parts = [columns(1.0, 0.0), columns(0.0, y)].map(|n| motion_factors(k, &n));
+            null_combinations(&parts).cols
+        };
+        assert_eq!([counted(&k), counted(&held)], [free, 0], "{y:e}");
+    }
+    // All values are given: there is no free dof.
+    assert_eq!(null_combinations(&[Dense::zeros(6, 3)]).cols, 0);
 }
 
 #[test]
