@@ -6,7 +6,7 @@ use std::path::Path;
 use super::coefficient::Coefficient;
 use super::first_rank::say;
 use super::physics;
-use super::solve::adaptive;
+use super::solve::{adaptive, lines};
 use crate::fem::cell::rigid_count;
 use crate::feti::cost::sizes::Sizes;
 use crate::feti::cost::variation::JUMPS;
@@ -16,7 +16,7 @@ use crate::feti::{MethodSettings, PcType};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
 use crate::report::tables::table::Table;
-use crate::scene::{distribution, BodyPlan, Plan, Scene};
+use crate::scene::{distribution, BodyPlan, InterfacePlan, Plan, Scene, SidePair};
 use crate::substructures::Substructures;
 use crate::{FetiFeti, Result};
 
@@ -100,9 +100,10 @@ fn deflation(
 
 fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
     let plan = scene.plan();
-    let mut out = format!("{}\n\n", plan.title);
+    let mut out = lines(&scene.notes);
+    let _ = writeln!(out, "{}\n", plan.title);
     out += &bodies(&plan, sizes);
-    out += &interfaces(&plan);
+    out += &interfaces(scene, &plan);
     if scene.dim() == 3 || scene.form.is_elastic() {
         let _ = writeln!(out, "{:<22}{}", "physics", physics::form(scene));
     }
@@ -143,27 +144,55 @@ fn more(count: usize, what: &str) -> String {
     }
 }
 
+/// A number in four digits.
+fn short(x: f64) -> String {
+    match x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
+        true => format!("{}", format!("{x:.3e}").parse::<f64>().unwrap_or(x)),
+        false => format!("{x:.3e}"),
+    }
+}
+
 /// Counts in x, y and z, such as "16 x 16 x 16".
 fn grid(counts: [usize; 3], dim: usize) -> String {
     let each: Vec<String> = counts[..dim].iter().map(usize::to_string).collect();
     each.join(" x ")
 }
 
-fn interfaces(plan: &Plan) -> String {
+/// The pairs of bodies that touch or face each other, with the area, the gaps and the angle between their sides.
+fn interfaces(scene: &Scene, plan: &Plan) -> String {
     if plan.interfaces.is_empty() {
         return String::new();
     }
-    let faces = plan.interfaces.iter().filter(|i| !i.corner);
+    let faces = plan
+        .interfaces
+        .iter()
+        .enumerate()
+        .filter(|(_, i)| !i.corner);
     let name = |b: usize| &plan.bodies[b].name;
-    let table = Table::of(faces.clone().take(LIST))
-        .words("touch", |i| {
+    let listed: Vec<(&InterfacePlan, SidePair)> = faces
+        .clone()
+        .take(LIST)
+        .map(|(k, i)| (i, scene.side_pair(k)))
+        .collect();
+    let gap = |[low, high]: [f64; 2]| match low == high {
+        true => short(low),
+        false => format!("{} to {}", short(low), short(high)),
+    };
+    let table = Table::of(&listed)
+        .words("touch", |(i, _)| {
             format!("{} - {}", name(i.bodies[0]), name(i.bodies[1]))
         })
-        .numbers("nodes", |i| i.nodes)
-        .numbers("tied", |i| i.tied)
+        .numbers("nodes", |(i, _)| i.nodes)
+        .numbers("tied", |(i, _)| i.tied)
         .when(plan.contact_pairs > 0, |t| {
-            t.numbers("contact", |i| i.contact)
+            t.numbers("contact", |(i, _)| i.contact)
         })
+        .numbers(
+            if scene.dim() == 2 { "length" } else { "area" },
+            |(_, p)| short(p.area),
+        )
+        .numbers("gap", |(_, p)| gap(p.gap))
+        .numbers("angle", |(_, p)| format!("{:.1}°", p.angle))
         .table();
     format!("{table}{}\n", more(faces.count(), "faces"))
 }

@@ -17,7 +17,7 @@ use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::feti::MethodSettings;
 use crate::linalg::vec3::dot;
-use crate::mesh::deck::{self, Deck};
+use crate::mesh::deck;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
 use crate::report::destination::Destination;
@@ -43,7 +43,10 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
         return run_deck(session, &args, &destination);
     }
     let scene = distribution::load(session, &args.scene)?;
-    on_first_rank(session, || destination.prepare())?;
+    on_first_rank(session, || {
+        destination.prepare()?;
+        destination.print(&lines(&scene.notes))
+    })?;
     solve(session, &args, &destination, &scene, clock, Vec::new())?;
     Ok(())
 }
@@ -58,7 +61,7 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
         .file_stem()
         .map(|s| s.to_string_lossy().into_owned());
     let stem = stem.unwrap_or_default();
-    on_first_rank(session, || destination.print(&notes(deck.deck())))?;
+    on_first_rank(session, || destination.print(&lines(&deck.notes())))?;
     let (mut printed, mut tables) = (Vec::new(), Vec::new());
     let n = deck.n_steps();
     for step in 0..n {
@@ -94,15 +97,9 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
     Ok(())
 }
 
-/// What of a deck is ignored, or solved as something else: a line for each.
-fn notes(deck: &Deck) -> String {
-    let line = |what: &str, note: &deck::Note| {
-        let place = deck.files.at(note.place);
-        format!("{place}: {} {what}: {}\n", note.keyword, note.reason)
-    };
-    let ignored = deck.ignored.iter().map(|note| line("is ignored", note));
-    let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
-    ignored.chain(replaced).collect()
+/// A line for each sentence.
+pub(super) fn lines(notes: &[String]) -> String {
+    notes.iter().map(|note| format!("{note}\n")).collect()
 }
 
 /// A table of displacements for a `.dat` file.
@@ -324,6 +321,7 @@ fn report(
             h1,
             energy_norm,
         }),
+        notes: scene.notes.clone(),
         probes: Vec::new(),
         node_print: Vec::new(),
         communication: solver.communication(),

@@ -19,6 +19,28 @@ pub struct MeshFile {
     pub groups: Vec<Group>,
 }
 
+impl MeshFile {
+    /// A sentence on the points that no cell of dimension `dim` has, if there are any: they are left out.
+    pub fn unused(&self, dim: usize) -> Option<String> {
+        let mut has = vec![false; self.points.len()];
+        for c in (0..self.cells.len()).filter(|&c| self.cells.kind(c).dim() == dim) {
+            self.cells
+                .nodes(c)
+                .iter()
+                .for_each(|&k| has[k as usize] = true);
+        }
+        let first = has.iter().position(|has| !has)?;
+        let text = match has.iter().filter(|has| !**has).count() {
+            1 => "1 node that no cell has is left out:".to_string(),
+            n => format!("{n} nodes that no cell has are left out, the first is"),
+        };
+        Some(format!(
+            "{}: {text} node {} at {:?}",
+            self.name, self.node_ids[first], self.points[first]
+        ))
+    }
+}
+
 /// A named group of a mesh file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Group {

@@ -69,6 +69,8 @@ pub struct Scene {
     pub exact: Option<Vec<Expr>>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
     pub options: Vec<(String, String)>,
+    /// What of the input is left out, ignored or replaced: a sentence each.
+    pub notes: Vec<String>,
     /// Number of subdomains.
     n_subdomains: usize,
 }
@@ -107,9 +109,12 @@ impl Scene {
         let mut steps = Steps::new(&spec)?;
         let mut bodies = Vec::with_capacity(spec.bodies.len());
         let (mut first_dof, mut first_subdomain) = (0, 0);
-        for mut body in std::mem::take(&mut spec.bodies) {
-            cut::prepare(&mut body, &spec.form)?;
+        for (b, mut body) in std::mem::take(&mut spec.bodies).into_iter().enumerate() {
             let components = spec.form.components(body.mesh.dim());
+            let terms = spec.equations.iter().flat_map(|e| &e.terms);
+            let of_body = terms.filter(|term| term.0 == b);
+            let joined = of_body.map(|term| (term.1 / components) as u32);
+            cut::prepare(&mut body, &spec.form, &joined.collect())?;
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
                 components,
@@ -146,6 +151,7 @@ impl Scene {
             steps,
             exact: spec.exact,
             options: spec.options,
+            notes: spec.notes,
             n_subdomains: first_subdomain,
         })
     }

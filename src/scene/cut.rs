@@ -7,13 +7,14 @@ use crate::fem::element::{self, Integration};
 use crate::fem::Form;
 use crate::mesh::partition::{subdomains_for, Adjacency, Interface, Partition, Sharing};
 use crate::mesh::{defect, second_order, CellMesh, Mesh, Parts};
+use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Gives a body its final mesh.
+/// Gives a body its final mesh. `joined` are its nodes in equations, which may join what the mesh does not.
 ///
 /// # Errors
 /// [`Error::Input`] for cells that are inverted or degenerate, or that the form has no element for.
-pub(super) fn prepare(body: &mut BodySpec, form: &Form) -> Result<()> {
+pub(super) fn prepare(body: &mut BodySpec, form: &Form, joined: &HashSet<u32>) -> Result<()> {
     if let (Mesh::Grid(grid), 2) = (&body.mesh, body.order) {
         let simplices = form.element == Element::P1;
         let place = |point| body.map.as_ref().map_or(point, |map| map.apply(point));
@@ -30,7 +31,7 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form) -> Result<()> {
     let found = check(mesh, form, &body.integration);
     let torn = match mesh.in_file.is_empty() {
         true => None,
-        false => defect(mesh),
+        false => defect(mesh, joined),
     };
     if let Err(message) = found.and(torn.map_or(Ok(()), Err)) {
         let (written, name) = (&body.written, &body.name);

@@ -27,6 +27,7 @@ mod numbering;
 mod plan;
 mod read;
 pub(crate) mod rows;
+mod side_pair;
 mod validate;
 
 pub use body::Body;
@@ -55,3 +56,4 @@ pub use plan::{BodyPlan, InterfacePlan, Plan};
 pub use rows::equations::Equation;
 pub use rows::obstacles::Obstacle;
 pub use rows::points::{Inequality, Point, PointRow};
+pub use side_pair::SidePair;

@@ -283,6 +283,123 @@ fn contact_carries_the_load_or_opens() {
     }
 }
 
+/// Triangles of 6 nodes: one below an arc of 60 degrees from (-½, 0) to (½, 0), and two above it that have a common
+/// node on the arc, and their middle nodes, too; they meet the other in the ends of the arc. With `more` they leave a
+/// hole of that height.
+fn arcs(more: f64) -> String {
+    let arc = |degrees: f64, more: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        [sin, cos - 0.75f64.sqrt() + more]
+    };
+    let (a, b, low, high) = (arc(-30.0, 0.0), arc(30.0, 0.0), [0.0, -1.0], [0.0, 1.0]);
+    let half = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+    let top = arc(0.0, more);
+    let nodes = [
+        a,
+        b,
+        low,
+        high,
+        arc(0.0, 0.0),
+        half(b, low),
+        half(low, a),
+        // The two above: their common node, their middle nodes.
+        top,
+        arc(-15.0, 0.5 * more),
+        arc(15.0, 0.5 * more),
+        half(top, high),
+        half(high, a),
+        half(b, high),
+    ];
+    // The node on the arc is that of the middle of the first cell, once only.
+    let common = if more > 0.0 { 8 } else { 5 };
+    let cells = [
+        [1, 3, 2, 7, 6, 5],
+        [1, common, 4, 9, 11, 12],
+        [common, 2, 4, 10, 13, 11],
+    ];
+    let mut out = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n13\n");
+    for (k, [x, y]) in nodes.iter().enumerate() {
+        out += &format!("{} {x} {y} 0\n", k + 1);
+    }
+    out += "$EndNodes\n$Elements\n3\n";
+    for (k, cell) in cells.iter().enumerate() {
+        let list: Vec<String> = cell.iter().map(|n| n.to_string()).collect();
+        out += &format!("{} 9 2 1 1 {}\n", k + 1, list.join(" "));
+    }
+    out + "$EndElements\n"
+}
+
+#[test]
+fn nodes_without_a_cell_are_left_out_and_said() {
+    let whole = squares(2, 3, 1);
+    let model = Model::new("mesh_unused", &whole);
+    assert_eq!(model.scene(TWO).notes, Vec::<String>::new());
+    let n: usize = whole
+        .split("$Nodes\n")
+        .nth(1)
+        .unwrap()
+        .lines()
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    let more = whole.replacen(
+        &format!("$Nodes\n{n}\n"),
+        &format!("$Nodes\n{}\n901 7 8 0\n900 5 6 0\n", n + 2),
+        1,
+    );
+    let scene = Model::new("mesh_unused_two", &more).scene(TWO);
+    assert_eq!(scene.notes.len(), 1);
+    let note = &scene.notes[0];
+    for part in [
+        "m.msh",
+        "2 nodes that no cell has",
+        "the first is node 901 at [7.0, 8.0, 0.0]",
+    ] {
+        assert!(note.contains(part), "{note}");
+    }
+    assert_eq!(scene.plan().dofs, model.scene(TWO).plan().dofs);
+}
+
+/// Boxes and groups of a mesh that are near each other, with a gap of 0.01: found, and nothing else is.
+#[test]
+fn contacts_of_boxes_and_meshes_are_found() {
+    let model = Model::new("mesh_auto_boxes", &squares(2, 4, 1));
+    let body = |name: &str, origin: [f64; 2]| {
+        format!("[[body]]\nname = \"{name}\"\norigin = {origin:?}\nsize = [1, 1]\nelements = 4\n")
+    };
+    let head = "physics = \"elasticity\"\n[mesh]\nfile = \"m.msh\"\n[contact]\nauto = true\ndistance = 0.05\n\
+                [[body]]\nname = \"b0\"\n[[body]]\nname = \"b1\"\n";
+    let text = format!(
+        "{head}{}{}{}",
+        body("above", [0.0, 1.01]),
+        body("beside", [-1.01, 1.01]),
+        body("far", [2.1, 0.0])
+    );
+    let scene = model.scene(&text);
+    let name = |b: usize| scene.bodies[b].spec.name.as_str();
+    let mut found: Vec<([&str; 2], f64, usize)> = Vec::new();
+    for (k, i) in scene.interfaces.iter().enumerate() {
+        let pair = scene.side_pair(k);
+        if i.has_contact() {
+            assert!(
+                (pair.area - 1.0).abs() < 1e-12 && pair.angle < 1e-5,
+                "{pair:?}"
+            );
+            assert!(pair.gap[1] - pair.gap[0] < 1e-12, "{pair:?}");
+            let nodes = i.shared.iter().filter(|s| s.link.is_contact()).count();
+            found.push((i.bodies.map(name), (1e6 * pair.gap[0]).round() / 1e6, nodes));
+        }
+    }
+    found.sort_by_key(|f| f.0);
+    let expected = [
+        (["above", "beside"], 0.01, 5),
+        (["b0", "above"], 0.01, 5),
+        (["b0", "b1"], 0.0, 5),
+    ];
+    assert_eq!(found, expected);
+}
+
 /// The unit cube and on its top a box of length `length`, a cell each: the groups 1 and 2.
 fn layer_pair(length: f64) -> String {
     let mut nodes = String::new();
@@ -384,6 +501,14 @@ fn what_does_not_fit_gets_one_sentence() {
     );
     Model::new("mesh_hanging", &hanging)
         .refuses(one, "node 5 at [1.0, 1.0, 0.0] hangs on a side of cell 3");
+    // The edge from node 1 to 2 is an arc of 60 degrees; on its other side two edges have their ends on the arc.
+    for (more, fits) in [(0.0, false), (0.05, true)] {
+        let model = Model::new("mesh_arc", &arcs(more));
+        match fits {
+            false => model.refuses(one, "hangs on a side of cell 1"),
+            true => drop(model.scene(one)),
+        }
+    }
     // A triangle that is turned inside out.
     let mesh = squares(2, 3, 1);
     let line = mesh.lines().find(|l| l.contains(" 2 2 100 100 ")).unwrap();

@@ -60,6 +60,9 @@ pub struct SolveReport {
     /// Error against the exact solution, where the scene has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<ErrorNorms>,
+    /// What of the input is left out, ignored or replaced.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// The values at the scene's probes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<ProbeValue>,

@@ -79,6 +79,19 @@ impl DeckScenes {
         &self.deck
     }
 
+    /// What of the deck is ignored, solved as something else or left out: a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        let deck = &self.deck;
+        let line = |what: &str, note: &deck::Note| {
+            let place = deck.files.at(note.place);
+            format!("{place}: {} {what}: {}", note.keyword, note.reason)
+        };
+        let ignored = deck.ignored.iter().map(|note| line("is ignored", note));
+        let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
+        let unused = deck.mesh.unused(deck.dim());
+        ignored.chain(replaced).chain(unused).collect()
+    }
+
     /// Number of steps, ≥ 1.
     pub fn n_steps(&self) -> usize {
         self.deck.steps.len()
@@ -126,6 +139,7 @@ impl DeckScenes {
             ties: joints::ties(deck),
             contacts: joints::contacts(deck)?,
             equations,
+            notes: self.notes(),
             ..SceneSpec::tied(title, bodies)
         };
         let mut scene = Scene::new(spec)?;

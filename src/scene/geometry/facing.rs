@@ -74,7 +74,7 @@ pub(crate) fn share(first: &BodySpec, side: usize, pairs: Vec<[usize; 2]>) -> Ve
 
 /// Whether the nodes form a face: on boxes if every parameter varies, on meshes of cells if a face of a cell has all
 /// its nodes among them.
-fn is_face(bodies: [&Body; 2], sides: [usize; 2], shared: &[SharedNode]) -> bool {
+pub(crate) fn is_face(bodies: [&Body; 2], sides: [usize; 2], shared: &[SharedNode]) -> bool {
     for k in [0, 1] {
         if bodies[k].mesh().cells().is_some() {
             let nodes: HashSet<usize> = shared.iter().map(|s| s.nodes[k]).collect();

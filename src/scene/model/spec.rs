@@ -321,6 +321,8 @@ pub struct SceneSpec {
     pub exact: Option<Vec<Expr>>,
     /// PETSc options (without the dash) that hold unless the command line says otherwise.
     pub options: Vec<(String, String)>,
+    /// What of the input is left out, ignored or replaced: a sentence each.
+    pub notes: Vec<String>,
 }
 
 impl SceneSpec {
@@ -340,6 +342,7 @@ impl SceneSpec {
             steps: None,
             exact: None,
             options: Vec::new(),
+            notes: Vec::new(),
         }
     }
 }

@@ -47,6 +47,11 @@ impl Source {
         })
     }
 
+    /// A sentence on nodes that are left out.
+    pub fn note(&self) -> Option<String> {
+        self.file.unused(self.dim)
+    }
+
     /// Whether a body is a group of this mesh, not a box.
     pub fn has(item: &Item) -> bool {
         let Ok(section) = item.section("[[body]]") else {

@@ -72,6 +72,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
         steps,
         exact,
         options: options.unwrap_or_default(),
+        notes: source.iter().filter_map(mesh::Source::note).collect(),
     })
 }
 

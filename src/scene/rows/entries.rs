@@ -73,8 +73,10 @@ fn facing(
             true => ([a, b], sides),
             false => ([b, a], [sides[1], sides[0]]),
         };
-        let mut interface = match pair.map(|k| bodies[k].mesh().grid()) {
-            [Some(x), Some(y)] => match opposite(bodies, [x, y], pair, sides) {
+        // Sides of boxes that the user names meet as a whole; those that are found, as far as they are near.
+        let grids = pair.map(|k| bodies[k].mesh().grid());
+        let mut interface = match (grids, distance) {
+            ([Some(x), Some(y)], None) => match opposite(bodies, [x, y], pair, sides) {
                 Some(interface) => interface,
                 None => {
                     return Err(Error::Input(format!(

@@ -1,7 +1,10 @@
 //! Entries that name surfaces, and contacts that are found: both become entries that name bodies and their sides.
 
 use crate::error::{Error, Result};
+use crate::linalg::vec3::{dot, minus};
 use crate::scene::body::Body;
+use crate::scene::geometry::facing::is_face;
+use crate::scene::geometry::interface::Interface;
 use crate::scene::geometry::matching::{Matching, Mismatch};
 use crate::scene::geometry::sweep::{are_apart, near_in_x};
 use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
@@ -113,43 +116,42 @@ fn pairs(
     Ok(out)
 }
 
-/// Contacts between all bodies whose skins are near each other.
+/// Contacts between all bodies whose sides are near each other.
 fn found(
     bodies: &[Body],
     matching: &mut Matching<'_>,
     auto: &AutoContact,
 ) -> Result<Vec<ContactSpec>> {
-    let skin = |k: usize| {
-        let mesh = bodies[k].mesh();
-        mesh.cells().map(|_| mesh.outer_sides().start)
+    let mut edge = |k: usize| {
+        let sides = bodies[k].mesh().outer_sides();
+        sides.fold(f64::INFINITY, |least, side| {
+            least.min(shortest(&matching.surface(k, side).edges))
+        })
     };
-    let reach_of = |k: usize| match (auto.distance, skin(k)) {
-        (Some(distance), _) => distance,
-        (None, Some(side)) => NEAR * shortest(&matching.surface(k, side).edges),
-        (None, None) => 0.0,
-    };
+    let reach_of = |k: usize| auto.distance.unwrap_or_else(|| NEAR * edge(k));
     let reaches: Vec<f64> = (0..bodies.len()).map(reach_of).collect();
     let mut near = near_in_x(bodies, |k| reaches[k]);
     near.sort_unstable();
     let mut out = Vec::new();
     for [a, b] in near {
-        let (Some(first), Some(second)) = (skin(a), skin(b)) else {
-            continue;
-        };
-        let (sides, reach) = ([first, second], reaches[a].min(reaches[b]));
+        let reach = reaches[a].min(reaches[b]);
         if are_apart([&bodies[a], &bodies[b]], reach) {
             continue;
         }
-        let names = [a, b].map(|k| bodies[k].spec.name.clone());
-        match matching.find([a, b], sides, reach) {
-            Err(Mismatch::Apart(_)) => {}
-            Err(Mismatch::Lonely(message)) => {
-                return Err(Error::Input(format!("{}{message}", auto.written)))
-            }
-            Ok(_) => {
-                let [first, second] = names;
-                out.push(ContactSpec {
-                    pair: Pair::Named(first, second),
+        // A mesh of cells has one side, its skin; a box has four or six.
+        let sides = bodies[a].mesh().outer_sides().flat_map(|first| {
+            let others = bodies[b].mesh().outer_sides();
+            others.map(move |second| [first, second])
+        });
+        for sides in sides {
+            match matching.find([a, b], sides, reach) {
+                Err(Mismatch::Apart(_)) => {}
+                Err(Mismatch::Lonely(message)) => {
+                    return Err(Error::Input(format!("{}{message}", auto.written)))
+                }
+                Ok(interface) if is_no_pair(bodies, interface) => {}
+                Ok(_) => out.push(ContactSpec {
+                    pair: Pair::Named(bodies[a].spec.name.clone(), bodies[b].spec.name.clone()),
                     sides: Some(sides),
                     extent: Extent::All,
                     gap: Profile::constant(0.0),
@@ -157,7 +159,7 @@ fn found(
                     adjust: auto.adjust,
                     ramp: None,
                     written: auto.written.clone(),
-                });
+                }),
             }
         }
     }
@@ -168,6 +170,26 @@ fn found(
         ))),
         false => Ok(out),
     }
+}
+
+/// Whether two sides, of which one at least is a box's, are no pair although some of their nodes face each other: they
+/// meet in a corner, or they are the far sides of two thin bodies, which seem to overlap by both thicknesses.
+fn is_no_pair(bodies: &[Body], interface: &Interface) -> bool {
+    let both = interface.bodies.map(|b| &bodies[b]);
+    if both.iter().all(|b| b.mesh().cells().is_some()) {
+        return false;
+    }
+    if !is_face(both, interface.sides, &interface.shared) {
+        return true;
+    }
+    let centre = |b: usize| {
+        let [low, high] = bodies[b].bounds;
+        [0, 1, 2].map(|d| 0.5 * (low[d] + high[d]))
+    };
+    let [a, b] = interface.bodies.map(centre);
+    let overlap = interface.distances.iter().all(|d| *d < 0.0);
+    let across = interface.normals.iter().map(|n| dot(minus(b, a), *n));
+    overlap && across.sum::<f64>() < 0.0
 }
 
 fn shortest(edges: &[f64]) -> f64 {

@@ -40,6 +40,7 @@ fn report() -> SolveReport {
         energy: f64::INFINITY,
         contact: None,
         error: None,
+        notes: Vec::new(),
         probes: Vec::new(),
         node_print: Vec::new(),
         communication: None,

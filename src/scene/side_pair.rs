@@ -1,0 +1,63 @@
+//! How the sides of two bodies lie to each other: what `plan` says of a pair.
+
+use super::checked::Scene;
+use super::geometry::interface::{Link, Shape};
+use super::geometry::normals::of_side;
+use crate::linalg::vec3::dot;
+use std::collections::HashSet;
+
+/// The sides of two bodies that touch or face each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SidePair {
+    /// The area (in the plane the length) of the first body's cells that have all their nodes opposite the second body.
+    pub area: f64,
+    /// The smallest and the largest gap: the distance of opposite nodes, with the gap of the contact added to it;
+    /// negative where the bodies overlap.
+    pub gap: [f64; 2],
+    /// The largest angle at a node between the normal of one side and the opposite of the other's, in degrees.
+    pub angle: f64,
+}
+
+impl Scene {
+    /// The sides of interface `k`; at corners everything is zero.
+    pub fn side_pair(&self, k: usize) -> SidePair {
+        let interface = &self.interfaces[k];
+        let mut out = SidePair {
+            area: 0.0,
+            gap: [0.0; 2],
+            angle: 0.0,
+        };
+        if interface.shape == Shape::Corner {
+            return out;
+        }
+        let gaps = interface.shared.iter().zip(&interface.distances);
+        let gaps = gaps.map(|(s, &distance)| match s.link {
+            Link::Contact { gap } => gap + distance,
+            _ => distance,
+        });
+        let ends = [f64::INFINITY, f64::NEG_INFINITY];
+        out.gap = gaps.fold(ends, |[low, high], g| [low.min(g), high.max(g)]);
+
+        let [first, second] = [0, 1].map(|i| {
+            let nodes: Vec<usize> = interface.shared.iter().map(|s| s.nodes[i]).collect();
+            of_side(
+                &self.bodies[interface.bodies[i]].spec,
+                interface.sides[i],
+                &nodes,
+            )
+        });
+        let cosines = first.iter().zip(&second).map(|(a, b)| -dot(*a, *b));
+        let least = cosines.fold(1.0, f64::min);
+        out.angle = least.max(-1.0).acos().to_degrees();
+
+        let spec = &self.bodies[interface.bodies[0]].spec;
+        let shared: HashSet<usize> = interface.shared.iter().map(|s| s.nodes[0]).collect();
+        for face in spec.faces(interface.sides[0]) {
+            if face.nodes.iter().all(|node| shared.contains(node)) {
+                let weights = spec.face_weights(interface.sides[0], &face, self.form.element);
+                out.area += weights.iter().map(|w| w.0).sum::<f64>();
+            }
+        }
+        out
+    }
+}
