@@ -4,7 +4,8 @@ import math
 import gmsh
 
 BORE, PIPE, FLANGE, BOLTS = 50.0, 60.0, 110.0, 85.0  # radii of the pipe, the flange and the circle of bolts
-SHANK, HOLE, HEAD = 8.0, 9.0, 14.0
+CORE, SHANK, HOLE, HEAD = 4.0, 8.0, 9.0, 14.0
+ARC = 2  # cells on a quarter of the hole
 THICK, HEIGHT, NECK = 20.0, 10.0, 40.0  # of a flange, of the head of a bolt, of the pipe beyond the flange
 
 gmsh.initialize()
@@ -19,13 +20,32 @@ def quarter(inner, outer):
 
 
 axis = BOLTS / math.sqrt(2)
+center = (axis, axis, -THICK - NECK)
 discs = [(2, occ.addDisk(axis, axis, 0, r, r)) for r in (HEAD, HOLE, SHANK)]
 plates = quarter(BORE, PIPE) + quarter(PIPE, FLANGE)
-plane, _ = occ.fragment(plates, discs)
+# The bolt and the rings around it are blocks: free meshes of thin rings fold, those of small discs have flat corners.
+corners, cuts = [], []
+for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1)):
+    ends = [occ.addPoint(axis + r * dx, axis + r * dy, 0) for r in (CORE, HEAD)]
+    corners.append(ends[0])
+    cuts.append((1, occ.addLine(*ends)))
+cuts += [(1, occ.addLine(corners[k - 1], corners[k])) for k in range(4)]
+plane = [face for face in occ.fragment(plates, discs + cuts)[0] if face[0] == 2]
 occ.translate(plane, 0, 0, -THICK - NECK)
 levels = [-THICK - NECK, -THICK - HEIGHT, -THICK, 0, THICK, THICK + HEIGHT, THICK + NECK]
 layers = [2, 1, 2, 2, 1, 2]
-floor = [tag for dim, tag in plane if dim == 2]
+floor = [tag for _, tag in plane]
+occ.synchronize()
+blocks = {"core": 2 * CORE**2, "shank": math.pi / 4 * SHANK**2 - CORE**2 / 2}
+for name, r, inner in (("clearance", HOLE, SHANK), ("ring", HEAD, HOLE)):
+    blocks[name] = math.pi / 4 * (r**2 - inner**2)
+for tag in floor:
+    if any(abs(occ.getMass(2, tag) / area - 1) < 1e-6 for area in blocks.values()):
+        for _, line in gmsh.model.getBoundary([(2, tag)], oriented=False):
+            xy = [gmsh.model.getValue(0, end, []) for _, end in gmsh.model.getBoundary([(1, line)])]
+            across = abs(math.dist(xy[0], center) - math.dist(xy[1], center)) > 1e-6
+            gmsh.model.mesh.setTransfiniteCurve(line, 2 if across else 1 + ARC)
+        gmsh.model.mesh.setTransfiniteSurface(tag)
 for low, high, count in zip(levels, levels[1:], layers):
     made = occ.extrude([(2, tag) for tag in floor], 0, 0, high - low, numElements=[count], recombine=True)
     floor = [made[k - 1][1] for k, (dim, _) in enumerate(made) if dim == 3]
@@ -40,9 +60,7 @@ def zone(tag):
     area = occ.getMass(*low)
     kinds = {
         "pipe": math.pi / 4 * (PIPE**2 - BORE**2),
-        "shank": math.pi * SHANK**2,
-        "clearance": math.pi * (HOLE**2 - SHANK**2),
-        "ring": math.pi * (HEAD**2 - HOLE**2),
+        **blocks,
     }
     name = next((name for name, size in kinds.items() if abs(area / size - 1) < 1e-6), "plate")
     return name, z
@@ -51,7 +69,7 @@ def zone(tag):
 cells = {"upper": [], "lower": [], "bolt": []}
 for _, tag in gmsh.model.getEntities(3):
     where, z = zone(tag)
-    bolt = where == "shank" and abs(z) < THICK + HEIGHT
+    bolt = where in ("core", "shank") and abs(z) < THICK + HEIGHT
     bolt |= where in ("clearance", "ring") and THICK < abs(z) < THICK + HEIGHT
     flange = where == "pipe" or where in ("plate", "ring") and abs(z) < THICK
     if bolt:
