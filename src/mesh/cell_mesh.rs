@@ -31,8 +31,6 @@ pub struct CellMesh {
     pub cells: Cells,
     /// The number of every cell in its file.
     pub cell_ids: Vec<u64>,
-    /// The place of every cell in the list of its file; empty where there is no file.
-    pub in_file: Vec<u32>,
     /// The named boundary groups, then the whole boundary, [`SKIN`].
     pub sides: Vec<SideGroup>,
     /// The partition into subdomains.
@@ -66,7 +64,6 @@ impl CellMesh {
             dim,
             node_ids: (1..=points.len() as u64).collect(),
             cell_ids: (1..=cells.len() as u64).collect(),
-            in_file: Vec::new(),
             points,
             cells,
             sides: groups,

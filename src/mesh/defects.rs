@@ -1,8 +1,10 @@
-//! What makes a mesh of cells unfit: nodes that are there twice, and nodes that hang on the side of a cell.
+//! What makes a mesh of cells unfit: nodes that are there twice, nodes that hang on the side of a cell, and cells that
+//! lie on each other.
 
 use std::collections::HashSet;
 
 use super::cell_mesh::CellMesh;
+use super::partition::Adjacency;
 use super::point_grid::PointGrid;
 use crate::linalg::vec3::{cross, dot, minus, norm};
 
@@ -17,14 +19,38 @@ const ON: f64 = 1e-6;
 /// height.
 const ON_ARC: f64 = 0.02;
 
-/// The first defect of a mesh, as the end of a sentence about its body. Equations join the nodes `joined` to others:
-/// they may be there twice, and hang.
-pub fn defect(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<String> {
-    doubled(mesh, joined).or_else(|| hanging(mesh, joined))
+/// A kind of defect in a mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Defect {
+    /// The first place, as a sentence without its end.
+    pub first: String,
+    /// What was expected instead.
+    pub expected: &'static str,
+    /// Number of places.
+    pub places: usize,
+}
+
+impl Defect {
+    /// The defect at `places`, each as a sentence; `None` if there is none.
+    fn of(mut places: impl Iterator<Item = String>, expected: &'static str) -> Option<Defect> {
+        let first = places.next()?;
+        Some(Defect {
+            first,
+            expected,
+            places: 1 + places.count(),
+        })
+    }
+}
+
+/// The defects of a mesh, at most one of each kind. Equations join the nodes `joined` to others: they may be there
+/// twice, and hang.
+pub fn defects(mesh: &CellMesh, joined: &HashSet<u32>) -> Vec<Defect> {
+    let kinds = [doubled(mesh, joined), hanging(mesh, joined), folded(mesh)];
+    kinds.into_iter().flatten().collect()
 }
 
 /// Two nodes at one place: the mesh is torn there.
-fn doubled(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<String> {
+fn doubled(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<Defect> {
     let range = |d: usize| {
         let of = mesh.points.iter().map(|p| p[d]);
         let low = of.clone().fold(f64::INFINITY, f64::min);
@@ -33,31 +59,85 @@ fn doubled(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<String> {
     let near = SAME * (0..3).map(range).fold(0.0, f64::max);
     // Cells much wider than the distance: most searches look into one of them.
     let grid = PointGrid::new(mesh.points.iter().copied().enumerate(), 1e4 * near);
-    for (k, point) in mesh.points.iter().enumerate() {
+    let twice = mesh.points.iter().enumerate().filter_map(|(k, point)| {
         let apart = |l: usize| ![l, k].iter().all(|&n| joined.contains(&(n as u32)));
         let same = |&l: &usize| l < k && norm(minus(mesh.points[l], *point)) <= near && apart(l);
-        if let Some(other) = grid.around(*point, near).find(same) {
-            return Some(format!(
-                "nodes {} and {} are both at {point:?} (one node was expected where cells of a body meet)",
-                mesh.node_ids[other], mesh.node_ids[k]
-            ));
-        }
+        let other = grid.around(*point, near).find(same)?;
+        let (a, b) = (mesh.node_ids[other], mesh.node_ids[k]);
+        Some(format!("nodes {a} and {b} are both at {point:?}"))
+    });
+    Defect::of(twice, "one node was expected where cells of a body meet")
+}
+
+/// Two cells on one side of the side that they share. Both have its nodes in the same order, where neighbours have them
+/// in opposite orders. The centres are looked at, too: an inverted cell has a sentence of its own.
+fn folded(mesh: &CellMesh) -> Option<Defect> {
+    let adjacency = Adjacency::new(&mesh.cells);
+    let sides = |c: usize| 0..mesh.cells.kind(c).sides().len();
+    let behind = |(c, side): (usize, usize)| {
+        let other = adjacency.across(c, side)? as usize;
+        let on = corners(mesh, c, side);
+        let twin = |s: &usize| {
+            let theirs = corners(mesh, other, *s);
+            theirs.len() == on.len() && theirs.iter().all(|k| on.contains(k))
+        };
+        let theirs = corners(mesh, other, sides(other).find(twin)?);
+        let one_side = ahead(mesh, c, &on) * ahead(mesh, other, &on) > 0.0;
+        (c < other && same_order(&on, &theirs) && one_side).then(|| {
+            let [a, b] = [c, other].map(|c| mesh.cell_ids[c]);
+            let nodes: Vec<String> = on.iter().map(|&k| mesh.node_ids[k as usize].to_string()).collect();
+            let nodes = nodes.join(", ");
+            format!("cells {a} and {b} lie on the same side of the side that they share (nodes {nodes})")
+        })
+    };
+    let all = (0..mesh.cells.len()).flat_map(|c| sides(c).map(move |side| (c, side)));
+    Defect::of(all.filter_map(behind), "one on each side was expected")
+}
+
+/// The corners of a side of a cell.
+fn corners(mesh: &CellMesh, cell: usize, side: usize) -> Vec<u32> {
+    let n = mesh.cells.kind(cell).sides()[side].kind.corners();
+    mesh.cells.side_nodes(cell, side).take(n).collect()
+}
+
+/// Whether two lists of the same corners go around them the same way.
+fn same_order(a: &[u32], b: &[u32]) -> bool {
+    match (a, b.iter().position(|k| *k == a[0])) {
+        // A segment has one way there and one back.
+        ([_, _], first) => first == Some(0),
+        (_, Some(first)) => b[(first + 1) % b.len()] == a[1],
+        (_, None) => false,
     }
-    None
+}
+
+/// How far the centre of a cell is in front of the plane through some corners, times an area.
+fn ahead(mesh: &CellMesh, cell: usize, on: &[u32]) -> f64 {
+    let mean = |points: &[[f64; 3]]| {
+        [0, 1, 2].map(|d| points.iter().map(|p| p[d]).sum::<f64>() / points.len() as f64)
+    };
+    let on: Vec<[f64; 3]> = on.iter().map(|&k| mesh.points[k as usize]).collect();
+    let along = minus(on[1], on[0]);
+    let normal = match on[..] {
+        [_, _] => [along[1], -along[0], 0.0],
+        [a, b, p, q] => cross(minus(p, a), minus(q, b)),
+        _ => cross(along, minus(on[2], on[0])),
+    };
+    let all = mesh.cell_points(cell);
+    dot(
+        normal,
+        minus(mean(&all[..mesh.cells.kind(cell).corners()]), mean(&on)),
+    )
 }
 
 /// A node on the side of a cell that does not have it.
-fn hanging(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<String> {
+fn hanging(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<Defect> {
     let skin = &mesh.sides[mesh.skin()];
     let outline = |&(cell, side): &(u32, u8)| {
         let (cell, side) = (cell as usize, usize::from(side));
-        let n = mesh.cells.kind(cell).sides()[side].kind.corners();
         let nodes: Vec<u32> = mesh.cells.side_nodes(cell, side).collect();
-        let corners: Vec<[f64; 3]> = nodes[..n]
-            .iter()
-            .map(|&k| mesh.points[k as usize])
-            .collect();
-        (nodes, corners)
+        let places = corners(mesh, cell, side).into_iter();
+        let places: Vec<[f64; 3]> = places.map(|k| mesh.points[k as usize]).collect();
+        (nodes, places)
     };
     let length = |corners: &[[f64; 3]]| norm(minus(corners[1], corners[0]));
     let mean = skin
@@ -68,13 +148,13 @@ fn hanging(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<String> {
         / skin.faces.len() as f64;
     let nodes = skin.nodes.iter();
     let grid = PointGrid::new(nodes.map(|&k| (k as usize, mesh.points[k as usize])), mean);
-    for face in &skin.faces {
+    let hung = skin.faces.iter().filter_map(|face| {
         let (nodes, corners) = outline(face);
         let near = ON * length(&corners);
         let straight = is_straight(mesh, &nodes, &corners, near);
         // Curved faces of solids are not looked at.
         if !straight && corners.len() > 2 {
-            continue;
+            return None;
         }
         // A curved edge reaches beyond its corners by less than its length.
         let slack = if straight { near } else { length(&corners) };
@@ -85,22 +165,22 @@ fn hanging(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<String> {
         let high = [0, 1, 2].map(|d| bound(f64::max, d) + slack);
         let hangs = |&k: &usize| {
             let (node, x) = (k as u32, mesh.points[k]);
-            !nodes.contains(&node)
-                && !joined.contains(&node)
+            // A second node at the place of a node of the side does not hang.
+            let of_side = |&l: &u32| l == node || norm(minus(mesh.points[l as usize], x)) <= near;
+            !joined.contains(&node)
                 && match straight {
                     true => on(&corners, x, near),
                     false => on_arc(&corners, mesh.points[nodes[2] as usize], x, near),
                 }
+                && !nodes.iter().any(of_side)
         };
-        if let Some(k) = grid.within(low, high).find(hangs) {
-            return Some(format!(
-                "node {} at {:?} hangs on a side of cell {}, which does not have it (neighbours with common nodes \
-                 were expected)",
-                mesh.node_ids[k], mesh.points[k], mesh.cell_ids[face.0 as usize]
-            ));
-        }
-    }
-    None
+        let k = grid.within(low, high).find(hangs)?;
+        Some(format!(
+            "node {} at {:?} hangs on a side of cell {}, which does not have it",
+            mesh.node_ids[k], mesh.points[k], mesh.cell_ids[face.0 as usize]
+        ))
+    });
+    Defect::of(hung, "neighbours with common nodes were expected")
 }
 
 /// Whether the middle nodes of a side are in the middle of its edges: the corners say little of a curved side.

@@ -61,7 +61,6 @@ pub fn extract(file: &MeshFile, dim: usize, chosen: &[u32], scale: f64) -> Resul
     let mut mesh = CellMesh::new(dim, points, cells, groups, skin);
     mesh.node_ids = node_ids;
     mesh.cell_ids = cell_ids;
-    mesh.in_file = chosen.to_vec();
     Ok(mesh)
 }
 

@@ -20,7 +20,7 @@ pub use body::{Mesh, SIDES};
 pub use boxes::{places, Block, BoxMesh};
 pub use cell_mesh::{CellMesh, SideGroup, SKIN};
 pub use cells::Cells;
-pub use defects::defect;
+pub use defects::{defects, Defect};
 pub use extract::{connected, extract};
 pub use file::{Group, Members, MeshFile};
 pub use kind::{CellKind, CellSide};

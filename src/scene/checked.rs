@@ -109,12 +109,9 @@ impl Scene {
         let mut steps = Steps::new(&spec)?;
         let mut bodies = Vec::with_capacity(spec.bodies.len());
         let (mut first_dof, mut first_subdomain) = (0, 0);
-        for (b, mut body) in std::mem::take(&mut spec.bodies).into_iter().enumerate() {
+        for mut body in std::mem::take(&mut spec.bodies) {
             let components = spec.form.components(body.mesh.dim());
-            let terms = spec.equations.iter().flat_map(|e| &e.terms);
-            let of_body = terms.filter(|term| term.0 == b);
-            let joined = of_body.map(|term| (term.1 / components) as u32);
-            cut::prepare(&mut body, &spec.form, &joined.collect())?;
+            cut::prepare(&mut body, &spec.form)?;
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
                 components,

@@ -6,15 +6,14 @@ use crate::fem::cell::{Element, Material};
 use crate::fem::element::{self, Integration};
 use crate::fem::Form;
 use crate::mesh::partition::{subdomains_for, Adjacency, Interface, Partition, Sharing};
-use crate::mesh::{defect, second_order, CellMesh, Mesh, Parts};
-use std::collections::HashSet;
+use crate::mesh::{second_order, CellMesh, Mesh, Parts};
 use std::sync::Arc;
 
-/// Gives a body its final mesh. `joined` are its nodes in equations, which may join what the mesh does not.
+/// Gives a body its final mesh.
 ///
 /// # Errors
 /// [`Error::Input`] for cells that are inverted or degenerate, or that the form has no element for.
-pub(super) fn prepare(body: &mut BodySpec, form: &Form, joined: &HashSet<u32>) -> Result<()> {
+pub(super) fn prepare(body: &mut BodySpec, form: &Form) -> Result<()> {
     if let (Mesh::Grid(grid), 2) = (&body.mesh, body.order) {
         let simplices = form.element == Element::P1;
         let place = |point| body.map.as_ref().map_or(point, |map| map.apply(point));
@@ -27,13 +26,7 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, joined: &HashSet<u32>) -
     let Mesh::Cells(mesh) = &mut body.mesh else {
         return Ok(());
     };
-    // Boxes have none.
-    let found = check(mesh, form, &body.integration);
-    let torn = match mesh.in_file.is_empty() {
-        true => None,
-        false => defect(mesh, joined),
-    };
-    if let Err(message) = found.and(torn.map_or(Ok(()), Err)) {
+    if let Err(message) = check(mesh, form, &body.integration) {
         let (written, name) = (&body.written, &body.name);
         return Err(Error::Input(format!("{written}body `{name}`: {message}")));
     }

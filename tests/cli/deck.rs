@@ -69,3 +69,57 @@ fn a_deck_that_is_not_solved_is_refused_with_its_line() {
         run.stderr
     );
 }
+
+/// Four squares on a pulled plate; nodes 5 and 10 are at one place, and `more` says what joins them.
+fn cut_plate(upper: [u32; 4], more: &str) -> String {
+    let [a, b, c, d] = upper;
+    format!(
+        "*NODE, NSET=N\n1,0,0\n2,1,0\n3,2,0\n4,0,1\n5,1,1\n6,2,1\n7,0,2\n8,1,2\n9,2,2\n10,1,1\n\
+         *ELEMENT, TYPE=CPS4, ELSET=E\n1,1,2,5,4\n2,2,3,6,5\n3,4,{a},{b},7\n4,{c},6,9,{d}\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000,0.3\n*SOLID SECTION, ELSET=E, MATERIAL=M\n{more}\
+         *BOUNDARY\n1,1,2\n2,2\n3,2\n*STEP\n*STATIC\n*CLOAD\n7,2,1\n8,2,4\n9,2,1\n\
+         *NODE PRINT, NSET=N\nU\n*END STEP\n"
+    )
+}
+
+/// A deck that is cut between two of its nodes is solved as it is: the cut opens, unless equations join them.
+#[test]
+fn a_cut_deck_is_solved_and_said() {
+    let scratch = Scratch::new("deck_cut");
+    let json = scratch.path("report.json");
+    let joined = "*EQUATION\n2\n10,1,1,5,1,-1\n2\n10,2,1,5,2,-1\n";
+    let solve = |name: &str, deck: &str| {
+        let deck = scratch.file(name, deck);
+        let run = run_fetifeti(1, &["solve", &deck, "--json", &json]);
+        assert_eq!(run.code, 0, "{}", run.all());
+        let report: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+        let notes = report["notes"].to_string();
+        let said = run.stdout.contains("nodes 5 and 10 are both at")
+            && notes.contains("nodes 5 and 10 are both at");
+        (report["energy"].as_f64().expect("energy"), said, notes)
+    };
+    let (whole, none, notes) = solve("whole.inp", &cut_plate([5, 8, 5, 8], ""));
+    assert!(!none, "{notes}");
+    let (same, none, notes) = solve("joined.inp", &cut_plate([10, 8, 10, 8], joined));
+    assert!(!none, "{notes}");
+    let (cut, said, notes) = solve("cut.inp", &cut_plate([10, 8, 10, 8], ""));
+    assert!(said && notes.contains("as CalculiX does"), "{notes}");
+    assert!(
+        (same - whole).abs() < 1e-7 * whole.abs(),
+        "{same}, not {whole}"
+    );
+    // Energies are negative: half the work of the forces, with a minus.
+    assert!(cut < 1.1 * whole, "{cut} beside {whole}");
+    // As the mesh of a scene the same file is refused.
+    scratch.file(
+        "cut.toml",
+        "[mesh]\nfile = \"cut.inp\"\n[[body]]\nname = \"E\"\ndirichlet = [\"all\"]\n",
+    );
+    let run = run_fetifeti(1, &["solve", &scratch.path("cut.toml")]);
+    assert_eq!(run.code, 2, "{}", run.all());
+    assert!(
+        run.stderr.contains("nodes 5 and 10 are both at"),
+        "{}",
+        run.stderr
+    );
+}

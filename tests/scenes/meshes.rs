@@ -509,6 +509,31 @@ fn what_does_not_fit_gets_one_sentence() {
             true => drop(model.scene(one)),
         }
     }
+    // Two cells above the edge from node 2 to 3, two tetrahedra above one triangle.
+    let fold = quads(
+        &[[1, 2, 3, 4], [2, 3, 6, 5]],
+        &[
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 1.0],
+            [0.0, 1.0],
+            [0.6, 0.1],
+            [0.6, 0.9],
+        ],
+    );
+    let on = "cells 1 and 2 lie on the same side of the side that they share (nodes ";
+    Model::new("mesh_fold", &fold).refuses(one, &format!("{on}2, 3)"));
+    let tetrahedra = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n\
+                      5 0.2 0.2 HEIGHT\n$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 CELL\n$EndElements\n";
+    let solid = format!("dimension = 3\n{one}").replace("dirichlet", "# dirichlet");
+    let above = tetrahedra
+        .replace("HEIGHT", "0.7")
+        .replace("CELL", "1 2 3 5");
+    Model::new("mesh_fold_3d", &above).refuses(&solid, on);
+    let below = tetrahedra
+        .replace("HEIGHT", "-0.7")
+        .replace("CELL", "1 3 2 5");
+    Model::new("mesh_no_fold", &below).scene(&solid);
     // A triangle that is turned inside out.
     let mesh = squares(2, 3, 1);
     let line = mesh.lines().find(|l| l.contains(" 2 2 100 100 ")).unwrap();

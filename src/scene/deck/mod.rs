@@ -6,6 +6,7 @@
 mod bodies;
 mod joints;
 mod numbers;
+mod torn;
 
 use std::path::Path;
 
@@ -44,6 +45,8 @@ pub struct NodePrint {
 #[derive(Debug, Clone)]
 pub struct DeckScenes {
     deck: Deck,
+    /// A sentence for each kind of defect in its mesh.
+    torn: Vec<String>,
 }
 
 impl DeckScenes {
@@ -71,7 +74,8 @@ impl DeckScenes {
                 "{name}: the deck has no *STEP (one at least was expected)"
             )));
         }
-        Ok(DeckScenes { deck })
+        let torn = torn::notes(&deck);
+        Ok(DeckScenes { deck, torn })
     }
 
     /// The deck as it was read.
@@ -79,7 +83,7 @@ impl DeckScenes {
         &self.deck
     }
 
-    /// What of the deck is ignored, solved as something else or left out: a sentence each.
+    /// What of the deck is ignored, solved as something else or left out, and where its mesh is torn: a sentence each.
     pub fn notes(&self) -> Vec<String> {
         let deck = &self.deck;
         let line = |what: &str, note: &deck::Note| {
@@ -89,7 +93,8 @@ impl DeckScenes {
         let ignored = deck.ignored.iter().map(|note| line("is ignored", note));
         let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
         let unused = deck.mesh.unused(deck.dim());
-        ignored.chain(replaced).chain(unused).collect()
+        let torn = self.torn.iter().cloned();
+        ignored.chain(replaced).chain(unused).chain(torn).collect()
     }
 
     /// Number of steps, ≥ 1.

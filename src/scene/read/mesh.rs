@@ -4,9 +4,10 @@ use super::document::{Item, Section, Value};
 use super::fields::Shape;
 use super::Reader;
 use crate::error::{Error, Result};
-use crate::mesh::{connected, deck, extract, gmsh, BoxMesh, CellMesh, Members, MeshFile};
+use crate::mesh::{connected, deck, defects, extract, gmsh, BoxMesh, CellMesh, Members, MeshFile};
 use crate::scene::model::field::Field;
 use crate::scene::model::spec::{held, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, POISSON};
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 /// The mesh of a scene.
@@ -167,7 +168,7 @@ impl Reader {
         })?;
         let parts = source.parts(item, &name)?;
         let several = parts.len() > 1;
-        let mut names = std::collections::BTreeSet::new();
+        let mut names = BTreeSet::new();
         for part in &parts {
             names.extend(part.sides.iter().map(|side| side.name.clone()));
         }
@@ -222,6 +223,10 @@ impl Reader {
             if several {
                 body.name = format!("{name}.{}", k + 1);
             }
+            if let Some(defect) = defects(&mesh, &HashSet::new()).first() {
+                let (name, first, expected) = (&body.name, &defect.first, defect.expected);
+                return item.error(format!("body `{name}`: {first} ({expected})"));
+            }
             for (name, force) in &forces {
                 let force = force.clone();
                 body.surface
@@ -239,9 +244,9 @@ impl Reader {
             }
             body.dirichlet = sides;
             body.mesh = mesh.into();
-            body
+            Ok(body)
         };
-        Ok(parts.into_iter().enumerate().map(body).collect())
+        parts.into_iter().enumerate().map(body).collect()
     }
 
     /// The entries of a table whose keys are boundary groups.
@@ -249,7 +254,7 @@ impl Reader {
         &self,
         section: &mut Section<'a>,
         key: &'static str,
-        names: &std::collections::BTreeSet<String>,
+        names: &BTreeSet<String>,
     ) -> Result<Vec<(&'a str, &'a Item<'a>)>> {
         let Some(item) = section.take(key) else {
             return Ok(Vec::new());
@@ -266,7 +271,7 @@ impl Reader {
     fn held_groups(
         &self,
         section: &mut Section,
-        names: &std::collections::BTreeSet<String>,
+        names: &BTreeSet<String>,
     ) -> Result<Vec<(String, [Option<Field>; 3])>> {
         let Some(item) = section.entry("dirichlet") else {
             section.take("dirichlet");
@@ -302,7 +307,7 @@ impl Reader {
 }
 
 /// An error if no part of the body has a boundary group of this name.
-fn known(item: &Item, name: &str, names: &std::collections::BTreeSet<String>) -> Result<()> {
+fn known(item: &Item, name: &str, names: &BTreeSet<String>) -> Result<()> {
     if names.contains(name) {
         return Ok(());
     }

@@ -1,0 +1,44 @@
+//! Where the mesh of a deck is torn: a note, no error.
+//!
+//! A deck says by itself what is joined: CalculiX takes two nodes at one place for two nodes, as at a crack, and decks
+//! may join some nodes of a tear by equations. A scene has no equations: in its mesh a tear is a mistake.
+
+use std::collections::{BTreeMap, HashSet};
+
+use super::numbers::Numbers;
+use crate::mesh::deck::Deck;
+use crate::mesh::{defects, extract, Defect};
+
+/// A sentence for each kind of defect in the bodies of a deck.
+pub(super) fn notes(deck: &Deck) -> Vec<String> {
+    let numbers = Numbers::new(deck);
+    let mut joined = vec![HashSet::new(); numbers.parts.len()];
+    let terms = deck.equations.iter().flat_map(|e| &e.terms);
+    for at in terms.filter_map(|term| numbers.node(term.node)) {
+        joined[at.body].insert(at.node as u32);
+    }
+    // By what was expected, which each kind has of its own.
+    let mut found: BTreeMap<&str, Defect> = BTreeMap::new();
+    for (part, joined) in numbers.parts.iter().zip(&joined) {
+        // A mesh that cannot be extracted gets its sentence when the scene is made.
+        let Ok(mesh) = extract(&deck.mesh, deck.dim(), part, 1.0) else {
+            continue;
+        };
+        for defect in defects(&mesh, joined) {
+            let known = found.get_mut(defect.expected);
+            match known {
+                Some(known) => known.places += defect.places,
+                None => drop(found.insert(defect.expected, defect)),
+            }
+        }
+    }
+    let note = |defect: &Defect| {
+        let more = match defect.places {
+            1 => String::new(),
+            n => format!(" (one of {n} such places)"),
+        };
+        let (file, first) = (&deck.mesh.name, &defect.first);
+        format!("{file}: {first}{more}; solved as it is, as CalculiX does")
+    };
+    found.values().map(note).collect()
+}
