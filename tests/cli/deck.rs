@@ -46,6 +46,14 @@ fn a_deck_has_the_displacements_of_calculix() {
             }
         }
         let report: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+        // It also asks for forces, at lines 37 and 53.
+        let notes = report["notes"].as_array().expect("notes");
+        let forces = |note: &&Value| {
+            note.as_str()
+                .unwrap()
+                .ends_with("RF is not printed, only U")
+        };
+        assert_eq!(notes.iter().filter(forces).count(), 2, "{notes:?}");
         let printed = report["node_print"].as_array().expect("tables");
         assert_eq!(printed.len(), theirs.len());
         assert_eq!(printed[0]["set"], theirs[0].set.as_str());

@@ -8,6 +8,7 @@ mod joints;
 mod numbers;
 mod torn;
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use super::checked::Scene;
@@ -94,7 +95,23 @@ impl DeckScenes {
         let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
         let unused = deck.mesh.unused(deck.dim());
         let torn = self.torn.iter().cloned();
-        ignored.chain(replaced).chain(unused).chain(torn).collect()
+        let all = ignored.chain(self.without_forces()).chain(replaced);
+        all.chain(unused).chain(torn).collect()
+    }
+
+    /// A sentence for each *NODE PRINT that asks for forces, which are not computed.
+    fn without_forces(&self) -> Vec<String> {
+        let prints = self.deck.steps.iter().flat_map(|step| &step.prints);
+        let forces = prints.filter(|p| p.printed.contains(&deck::Printed::Force));
+        let note = |print: &deck::NodePrint| {
+            let place = self.deck.files.at(print.place);
+            format!("{place}: *NODE PRINT is ignored: RF is not printed, only U")
+        };
+        let mut notes: Vec<String> = forces.map(note).collect();
+        // Later steps have the requests of those before.
+        let mut said = HashSet::new();
+        notes.retain(|note| said.insert(note.clone()));
+        notes
     }
 
     /// Number of steps, ≥ 1.
