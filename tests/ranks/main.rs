@@ -5,4 +5,5 @@ mod support;
 
 mod answers;
 mod communication;
+mod direct;
 mod pairs;

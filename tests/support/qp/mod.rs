@@ -176,10 +176,25 @@ impl Qp {
                 kkt: Kkt::default(),
             };
         }
+        self.polished(&|problem, _, epsilon| interior::solve(problem, epsilon))
+    }
+
+    /// As [`Qp::solve`] for a problem that has a solution, from a guess: the equations are solved on the rows that hold
+    /// there, and rows exchanged until all signs are right. The guess decides nothing but the time: what comes out
+    /// satisfies all conditions.
+    ///
+    /// # Panics
+    /// Where no solution is certified.
+    pub fn near(&self, u: &[f64], equal: &[f64], below: &[f64]) -> Solved {
+        self.polished(&|problem, scales, _| scales.to(problem, u, equal, below))
+    }
+
+    /// The certified solution from starts that depend on ε.
+    fn polished(&self, start: &dyn Fn(&Qp, &scaled::Scales, f64) -> scaled::Point) -> Solved {
         let (problem, scales) = scaled::scale(self);
         let mut failed = Vec::new();
         for epsilon in EPSILON {
-            let start = interior::solve(&problem, epsilon);
+            let start = start(&problem, &scales, epsilon);
             let Some(point) = polish::polish(&problem, start, epsilon) else {
                 failed.push("the active sets cycle".to_string());
                 continue;

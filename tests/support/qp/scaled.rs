@@ -79,6 +79,20 @@ pub fn scale(qp: &Qp) -> (Qp, Scales) {
 }
 
 impl Scales {
+    /// The point of the scaled problem `qp` that is u, λ_E and λ_I in the units of the problem.
+    pub fn to(&self, qp: &Qp, u: &[f64], equal: &[f64], below: &[f64]) -> Point {
+        let over = |(v, d): (&f64, &f64)| v / d / self.size;
+        let times = |(v, norm): (&f64, &f64)| v * norm / self.size;
+        let u: Vec<f64> = u.iter().zip(&self.d).map(over).collect();
+        Point {
+            equal: equal.iter().zip(&self.equal).map(times).collect(),
+            below: below.iter().zip(&self.below).map(times).collect(),
+            slack: qp.below.iter().map(|r| r.rhs - r.times(&u)).collect(),
+            closed: Vec::new(),
+            u,
+        }
+    }
+
     /// u, λ_E and λ_I in the units of the problem.
     pub fn back(&self, point: &Point) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let times = |(v, d): (&f64, &f64)| self.size * v * d;

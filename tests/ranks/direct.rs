@@ -1,0 +1,154 @@
+//! Every example equals a direct solution of its assembled problem, on 1, 2 and 4 ranks.
+//!
+//! The method solves with `-fetifeti_ksp_rtol 1e-12`: the default of 1e-6 gives errors of about its size. The problem
+//! is assembled body by body and its equations are factored and refined in twice the working precision
+//! (`tests/support/qp`). Which rows hold is guessed from the method's multipliers, which saves the direct solver its
+//! search; the solution is then certified by all conditions of optimality, to 1e-11, and so is the only one.
+
+use std::path::Path;
+
+use crate::support::assembled::{Assembled, Place};
+use crate::support::mpi::{as_rank, Scratch};
+use fetifeti::scene::{Numbering, Scene};
+use fetifeti::{gather_all, Error, FetiFeti, MethodSettings};
+
+const RTOL: f64 = 1e-12;
+
+/// The bound of the distance in the energy norm, relative.
+const RIGHT: f64 = 1e-8;
+
+/// The models of the gallery, and scenes of boxes up to this size.
+const FOLDERS: [(&str, u64, usize); 2] = [("gallery", u64::MAX, 5), ("scenes", 5_000, 15)];
+
+/// The scenes of a folder of examples with at most so many unknowns, by name.
+fn scenes(folder: &str) -> Vec<(String, Scene)> {
+    let most = FOLDERS.iter().find(|f| f.0 == folder).expect("a folder").1;
+    let entries = std::fs::read_dir(Path::new("examples").join(folder)).expect("a folder");
+    let mut paths: Vec<_> = entries.map(|e| e.expect("an entry").path()).collect();
+    paths.retain(|p| p.extension().is_some_and(|e| e == "toml"));
+    paths.sort();
+    let load = |path: &std::path::PathBuf| {
+        let name = path.file_stem().expect("a name").to_string_lossy().into();
+        (name, Scene::load(path).expect("a scene"))
+    };
+    let all = paths.iter().map(load);
+    all.filter(|(_, s)| Numbering::new(s).len() <= most)
+        .collect()
+}
+
+/// The method's answer: values by body dof, one for each subdomain that has it, and multipliers by row.
+struct Answer {
+    copies: Vec<(u64, f64)>,
+    multipliers: Vec<f64>,
+}
+
+impl Answer {
+    /// From a file of words: a count, so many dofs and values, then the multipliers.
+    fn read(path: &str) -> Answer {
+        let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{path}: {e}"));
+        let word = |b: &[u8]| u64::from_le_bytes(b.try_into().expect("eight bytes"));
+        let words: Vec<u64> = bytes.chunks_exact(8).map(word).collect();
+        let (n, rest) = (words[0] as usize, &words[1..]);
+        let values = rest[n..].iter().map(|w| f64::from_bits(*w));
+        let values: Vec<f64> = values.collect();
+        Answer {
+            copies: rest[..n].iter().copied().zip(values.clone()).collect(),
+            multipliers: values[n..].to_vec(),
+        }
+    }
+}
+
+#[test]
+fn every_example_has_the_direct_solution() {
+    let ranks = as_rank(|session, case| {
+        let (folder, out) = case.split_once(' ').expect("a folder and a directory");
+        for (name, scene) in scenes(folder) {
+            let share = fetifeti::share(session, scene.n_subdomains());
+            let problem = scene.substructures(&|s| share.contains(&s))?;
+            let settings = MethodSettings {
+                rtol: RTOL,
+                ..MethodSettings::default()
+            };
+            let solver = FetiFeti::new(session, problem, settings)?;
+            let solution = solver.solve()?;
+            if !solution.converged() {
+                let why = format!("{name}: {}", solution.status);
+                return Err(Error::NotConverged(why));
+            }
+            let all = |values: Vec<u64>| gather_all(session.comm(), &values).concat();
+            let dofs = solver.problem().local.iter().flat_map(|s| &s.dofs);
+            let dofs = all(dofs.copied().collect());
+            let values = solution.u.iter().flatten().map(|u| u.to_bits());
+            let values = all(values.collect());
+            let rows = solution.rows().iter().map(|r| r.multiplier.to_bits());
+            let rows = all(rows.collect());
+            if session.rank() == 0 {
+                let words = [vec![dofs.len() as u64], dofs, values, rows].concat();
+                let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+                std::fs::write(Path::new(out).join(name), bytes)
+                    .map_err(|e| Error::input(e.to_string()))?;
+            }
+        }
+        Ok(())
+    });
+    for (folder, _, least) in FOLDERS {
+        let scratch = [1, 2, 4].map(|n| {
+            let scratch = Scratch::new(&format!("direct-{n}"));
+            let out = ranks.run(n, &format!("{folder} {}", scratch.0.display()));
+            assert_eq!(out.code, 0, "{}", out.all());
+            println!("{folder} on {n} ranks: {:.1} s", out.seconds);
+            scratch
+        });
+        let all = scenes(folder);
+        assert!(all.len() >= least, "{} {folder}", all.len());
+        for (name, scene) in all {
+            let answers = [0, 1, 2].map(|k| Answer::read(&scratch[k].path(&name)));
+            compare(&name, &scene, &answers);
+        }
+    }
+}
+
+/// The answers on 1, 2 and 4 ranks against the direct solution.
+fn compare(name: &str, scene: &Scene, answers: &[Answer; 3]) {
+    let clock = std::time::Instant::now();
+    let problem = Assembled::of_scene(scene);
+    let qp = &problem.qp;
+    let gathered = answers.each_ref().map(|a| {
+        let copies = a.copies.iter().copied();
+        problem
+            .gather(copies, RIGHT)
+            .unwrap_or_else(|e| panic!("{name}: {e}"))
+    });
+    // On one rank rows are in the order of the scene.
+    assert_eq!(answers[0].multipliers.len(), problem.rows.len());
+    let (mut equal, mut below) = (vec![0.0; qp.equal.len()], vec![0.0; qp.below.len()]);
+    for (place, multiplier) in problem.place.iter().zip(&answers[0].multipliers) {
+        match *place {
+            Place::Nowhere => {}
+            Place::Equal(k) => equal[k] = *multiplier,
+            Place::Below(k) => below[k] = *multiplier,
+        }
+    }
+    let direct = qp.near(&gathered[0], &equal, &below);
+    let square = |v: &[f64]| {
+        let mut kv = vec![0.0; v.len()];
+        qp.k.mul(v, &mut kv);
+        kv.iter().zip(v).map(|(a, b)| a * b).sum::<f64>().max(0.0)
+    };
+    let size = square(&direct.u);
+    let away = gathered.map(|u| {
+        let wrong: Vec<f64> = u.iter().zip(&direct.u).map(|(a, b)| a - b).collect();
+        (square(&wrong) / size).sqrt()
+    });
+    println!(
+        "{name}: {} unknowns, {} of {} inequalities hold, {:.1e} {:.1e} {:.1e} away on 1, 2 and 4 ranks, {:.1} s",
+        qp.f.len(),
+        direct.closed.len(),
+        below.len(),
+        away[0],
+        away[1],
+        away[2],
+        clock.elapsed().as_secs_f64()
+    );
+    assert!(away.iter().all(|a| *a <= RIGHT), "{name}: {away:?}");
+}
