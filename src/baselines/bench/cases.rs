@@ -1,4 +1,11 @@
-//! The scenes of the benchmark, as text in the format of scene files.
+//! The scenes of the benchmark, as text in the format of scene files, with their meshes.
+
+use std::path::{Path, PathBuf};
+
+use super::unstructured;
+use crate::mesh::{gmsh, MeshFile};
+use crate::report::output;
+use crate::Result;
 
 /// A scene with a name.
 #[derive(Debug)]
@@ -9,6 +16,8 @@ pub struct Named {
     pub description: &'static str,
     /// The scene, and a smaller one for `--quick`.
     scene: fn(quick: bool) -> String,
+    /// The mesh that the scene names, if it names one.
+    mesh: Option<fn(quick: bool) -> MeshFile>,
 }
 
 impl Named {
@@ -17,44 +26,103 @@ impl Named {
         CASES.iter().find(|c| c.name == name)
     }
 
-    /// The text of the scene file.
-    pub fn scene(&self, quick: bool) -> String {
-        (self.scene)(quick)
+    /// Writes the scene file, and the mesh beside it. Returns the path of the scene and the names of all files.
+    ///
+    /// # Errors
+    /// [`Error::Environment`](crate::Error::Environment) if they cannot be written.
+    pub fn write(&self, dir: &Path, quick: bool) -> Result<(PathBuf, Vec<String>)> {
+        let mut names = vec![format!("{}.toml", self.name)];
+        let file = dir.join(&names[0]);
+        let mut text = (self.scene)(quick);
+        if let Some(mesh) = self.mesh {
+            let mesh = mesh(quick);
+            // Cases that stand in one directory have meshes of their own.
+            let name = format!("{}.msh", self.name);
+            text = text.replace(&mesh.name, &name);
+            let bytes = gmsh::write(&mesh);
+            output::write_file(&dir.join(&name), |out| out.write_all(&bytes))?;
+            names.push(name);
+        }
+        output::write_text(&file, &text)?;
+        Ok((file, names))
     }
 }
 
 /// All cases, in the order in which they are run.
-pub const CASES: [Named; 6] = [
+pub const CASES: [Named; 12] = [
     Named {
         name: "poisson-1024",
         description: "tied Poisson problem in the plane, 1024 x 1024 elements, equal subdomains (quick: 128 x 128)",
         scene: |quick| poisson(quick, false),
+        mesh: None,
     },
     Named {
         name: "poisson-1024-random",
         description: "the same with every node moved and rho random by element: \
                       no two subdomains are equal (quick: 128 x 128)",
         scene: |quick| poisson(quick, true),
+        mesh: None,
     },
     Named {
         name: "contact-512",
         description: "model contact problem, 2 bodies of 512 x 512 elements, one of them floating (quick: 64 x 64)",
         scene: contact,
+        mesh: None,
     },
     Named {
         name: "cube-24",
         description: "tied elastic cube, 24 x 24 x 24 elements (quick: 12 x 12 x 12)",
         scene: |quick| cube(if quick { 12 } else { 24 }),
+        mesh: None,
     },
     Named {
         name: "cube-40",
         description: "tied elastic cube, 40 x 40 x 40 elements (quick: 20 x 20 x 20)",
         scene: |quick| cube(if quick { 20 } else { 40 }),
+        mesh: None,
     },
     Named {
         name: "cube-contact-24",
         description: "two elastic blocks in contact, 24 x 24 x 24 elements together (quick: 12 x 12 x 12)",
         scene: cube_contact,
+        mesh: None,
+    },
+    Named {
+        name: "holes",
+        description: "Poisson problem on a plate with 25 holes, a million triangles' corners (quick: 20,000)",
+        scene: |quick| unstructured::plate(quick, false),
+        mesh: Some(|quick| unstructured::plate_mesh(quick, false)),
+    },
+    Named {
+        name: "plate",
+        description: "elastic plate with 25 holes, triangles, a million unknowns (quick: 20,000)",
+        scene: |quick| unstructured::plate(quick, true),
+        mesh: Some(|quick| unstructured::plate_mesh(quick, true)),
+    },
+    Named {
+        name: "rod-4",
+        description: "connecting rod, tied to cap, journal and pin, tetrahedra of 4 nodes, 300,000 unknowns \
+                      (quick: 20,000)",
+        scene: |_| unstructured::rod(false, false),
+        mesh: Some(|quick| unstructured::rod_mesh(quick, false)),
+    },
+    Named {
+        name: "rod-10",
+        description: "the same of tetrahedra of 10 nodes",
+        scene: |_| unstructured::rod(false, true),
+        mesh: Some(|quick| unstructured::rod_mesh(quick, true)),
+    },
+    Named {
+        name: "rod-contact-4",
+        description: "connecting rod, tied to its cap, in contact with journal and pin, tetrahedra of 4 nodes",
+        scene: |_| unstructured::rod(true, false),
+        mesh: Some(|quick| unstructured::rod_mesh(quick, false)),
+    },
+    Named {
+        name: "rod-contact-10",
+        description: "the same of tetrahedra of 10 nodes",
+        scene: |_| unstructured::rod(true, true),
+        mesh: Some(|quick| unstructured::rod_mesh(quick, true)),
     },
 ];
 

@@ -8,6 +8,8 @@
 //! the solutions of the first round. A method that fails in one round is not run again.
 
 mod cases;
+mod shapes;
+mod unstructured;
 
 use std::path::PathBuf;
 
@@ -19,7 +21,6 @@ use super::table::{self, Baseline};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, MethodRun};
-use crate::report::output;
 use crate::report::tables::bench as tables;
 use crate::scene::{distribution, Scene};
 use crate::{Error, Result};
@@ -46,9 +47,12 @@ pub struct Benchmark {
 /// A case of this benchmark.
 struct Case {
     name: String,
-    /// The scene file; `None`: the scene is in `text` only.
-    file: Option<PathBuf>,
-    text: String,
+    /// The scene file.
+    file: PathBuf,
+    /// What is written where results go; `None` for a file of the user.
+    named: Option<&'static Named>,
+    /// Where the scene file of a named case is, for as long as the case.
+    _home: Option<Workspace>,
     scene: Scene,
     plan: Plan,
 }
@@ -88,11 +92,16 @@ impl Case {
         quick: bool,
         baselines: &[&'static Baseline],
     ) -> Result<Case> {
-        let read = || -> Result<(String, Option<PathBuf>, String, Scene)> {
+        // Every process writes files of its own.
+        let write = |named: &'static Named| -> Result<(PathBuf, Workspace)> {
+            let home = Workspace::new()?;
+            Ok((named.write(home.dir(), quick)?.0, home))
+        };
+        let read = || -> Result<(String, PathBuf, Option<Workspace>, Scene)> {
             if let Some(named) = Named::find(name) {
-                let text = named.scene(quick);
-                let scene = Scene::parse(&format!("{name}.toml"), &text)?;
-                return Ok((name.to_string(), None, text, scene));
+                let (file, home) = write(named)?;
+                let scene = Scene::load(&file)?;
+                return Ok((name.to_string(), file, Some(home), scene));
             }
             let file = PathBuf::from(name);
             if !name.ends_with(".toml") && !file.is_file() {
@@ -106,16 +115,17 @@ impl Case {
             let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned());
             let full = std::fs::canonicalize(&file).unwrap_or(file);
             let name = stem.unwrap_or_else(|| name.to_string());
-            Ok((name, Some(full), String::new(), scene))
+            Ok((name, full, None, scene))
         };
-        let (name, file, text, scene) = session.agree(read())?;
+        let (name, file, home, scene) = session.agree(read())?;
         let plan = distribution::with_options(session, &scene, || {
             Plan::new(session, &scene, baselines, Layouts::Three)
         })?;
         Ok(Case {
+            named: home.as_ref().and(Named::find(&name)),
             name,
             file,
-            text,
+            _home: home,
             scene,
             plan,
         })
@@ -141,15 +151,7 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
             limit: case.plan.limit,
             petsc: forwarded(&wanted.petsc),
         };
-        let file = match &case.file {
-            Some(file) => file.clone(),
-            None => {
-                let file = launcher.workspace.file(&format!("{}.toml", case.name));
-                output::write_text(&file, &case.text)?;
-                file
-            }
-        };
-        let mut methods = Methods::new(&launcher, &case.plan, &case.scene, file);
+        let mut methods = Methods::new(&launcher, &case.plan, &case.scene, case.file.clone());
         methods.again = true;
         report.cases.push(blank(case));
         let mut sequence = 0;
@@ -173,7 +175,7 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
             }
         }
     }
-    write(destination, cases, &report)?;
+    write(wanted, cases, &report)?;
     let cases = report.cases.iter();
     stopped(cases.flat_map(|c| c.methods.iter().map(|r| (&r.run, c.case.clone()))))
 }
@@ -296,17 +298,16 @@ fn progress(wanted: &Benchmark, what: &str) {
     }
 }
 
-fn write(destination: &Destination, cases: &[Case], report: &BenchReport) -> Result<()> {
-    destination.finish("bench", &tables::text(report), report, |dir| {
+fn write(wanted: &Benchmark, cases: &[Case], report: &BenchReport) -> Result<()> {
+    let text = tables::text(report);
+    wanted.destination.finish("bench", &text, report, |dir| {
         tables::csv(report).write_csv(&dir.join("bench.csv"))?;
         tables::figure(report).save(&dir.join("bench"))?;
         let mut files = ["csv", "png", "svg"]
             .map(|end| format!("bench.{end}"))
             .to_vec();
-        for case in cases.iter().filter(|c| c.file.is_none()) {
-            let name = format!("{}.toml", case.name);
-            output::write_text(&dir.join(&name), &case.text)?;
-            files.push(name);
+        for named in cases.iter().filter_map(|c| c.named) {
+            files.extend(named.write(dir, wanted.quick)?.1);
         }
         Ok(files)
     })

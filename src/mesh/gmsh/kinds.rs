@@ -48,6 +48,14 @@ pub(super) fn known(kind: i64) -> Option<(CellKind, Order)> {
     })
 }
 
+/// Gmsh's number of a kind, and the order of [`known`].
+pub(super) fn number(kind: CellKind) -> (i32, Order) {
+    let same = |number: &i64| known(*number).is_some_and(|(k, _)| k == kind);
+    let number = (1..=18).find(same).expect("Gmsh has all our kinds");
+    let (_, order) = known(number).expect("it was found");
+    (number as i32, order)
+}
+
 /// The name of a type that is not [`known`].
 pub(super) fn foreign(kind: i64) -> &'static str {
     match kind {

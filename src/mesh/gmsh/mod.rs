@@ -16,6 +16,7 @@ mod nodes;
 mod scan;
 mod version2;
 mod version4;
+mod write;
 
 use super::file::MeshFile;
 use crate::error::{Error, Result};
@@ -25,6 +26,7 @@ use nodes::Nodes;
 use scan::{quoted, Encoding, Scan, Width};
 use std::path::Path;
 use version4::{Entities, Layout};
+pub use write::write;
 
 /// Reads the file `path`.
 ///

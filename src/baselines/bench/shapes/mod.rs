@@ -1,0 +1,11 @@
+//! Meshes of the benchmark that no two elements of which are equal: triangles in the plane by Delaunay refinement, and
+//! tetrahedra over them.
+
+mod build;
+mod planform;
+mod plate;
+mod rod;
+mod solid;
+
+pub(super) use plate::plate;
+pub(super) use rod::rod;
