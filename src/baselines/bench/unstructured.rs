@@ -74,7 +74,7 @@ pub(super) fn rod(contact: bool, quadratic: bool) -> String {
 /// Its mesh.
 pub(super) fn rod_mesh(quick: bool, quadratic: bool) -> MeshFile {
     let edge = match (quick, quadratic) {
-        (false, false) => 0.9e-3,
+        (false, false) => 1.05e-3,
         (false, true) => 1.9e-3,
         (true, false) => 2.5e-3,
         (true, true) => 5e-3,
