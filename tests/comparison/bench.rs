@@ -1,6 +1,8 @@
 //! `fetifeti bench` from the outside: every method runs in every round, and the statistics follow from the samples. No
 //! test depends on how long something took.
 
+use std::path::Path;
+
 use crate::support::keys::{self, Keys};
 use crate::support::{mpi, program};
 use fetifeti::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, Spread};
@@ -298,7 +300,13 @@ fn named_cases_are_listed_and_run_small() {
             "contact-512",
             "cube-24",
             "cube-40",
-            "cube-contact-24"
+            "cube-contact-24",
+            "holes",
+            "plate",
+            "rod-4",
+            "rod-10",
+            "rod-contact-4",
+            "rod-contact-10"
         ]
     );
     let dir = Scratch::new("bench-named");
@@ -321,6 +329,29 @@ fn named_cases_are_listed_and_run_small() {
         std::fs::read_to_string(format!("{out}/poisson-1024-random.toml")).expect("the scene");
     let plan = fetifeti(&["plan", &format!("{out}/poisson-1024-random.toml")]);
     assert!(plan.code == 0 && scene.contains("rho = "), "{}", plan.all());
+}
+
+#[test]
+fn a_named_case_on_a_mesh_leaves_scene_and_mesh() {
+    let dir = Scratch::new("bench-mesh");
+    let out = dir.path("out");
+    let quick = [
+        "rod-contact-10",
+        "--quick",
+        "--rounds",
+        "1",
+        "--with",
+        "mumps",
+        "--quiet",
+        "--out",
+        &out,
+    ];
+    let report = bench(&quick);
+    check(&report.cases[0], 1);
+    let plan = fetifeti(&["plan", &format!("{out}/rod-contact-10.toml")]);
+    assert_eq!(plan.code, 0, "{}", plan.all());
+    let kept = Path::new(&out).join("rod-contact-10.msh");
+    assert!(kept.is_file(), "{}", kept.display());
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 /// Unknowns of a subdomain in the plane and in space. With fewer, the coarse problem and the interface grow. With more,
 /// factorisations and dense Schur complements become dear: in space their work grows as the square of the unknowns.
+/// Measured on the cases `holes`, `plate` and `rod-4` of `bench`: half and double the unknowns take up to a quarter
+/// longer in all, four times as many take half as long again, or twice.
 const UNKNOWNS: [usize; 2] = [2500, 1000];
 
 /// The number of subdomains for a body of so many unknowns, at least one.

@@ -9,3 +9,7 @@ mod solid;
 
 pub(super) use plate::plate;
 pub(super) use rod::rod;
+
+#[cfg(test)]
+#[path = "../../../../tests/inside/baselines/bench/shapes.rs"]
+mod tests;

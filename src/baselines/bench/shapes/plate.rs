@@ -50,7 +50,7 @@ pub(in super::super) fn plate(across: usize) -> MeshFile {
 
 /// Centre and radius of a hole. Sizes and places follow no pattern that subdomains could repeat.
 fn hole(i: usize, j: usize) -> ([f64; 2], f64) {
-    let radius = 0.03 + 0.0125 * ((7 * i + 3 * j) % 5) as f64 / 1.25;
+    let radius = 0.03 + 0.01 * ((7 * i + 3 * j) % 5) as f64;
     let shift = |k: usize| 0.018 * ((k % 3) as f64 - 1.0);
     let centre = [
         0.1 + 0.2 * i as f64 + shift(i + 2 * j),

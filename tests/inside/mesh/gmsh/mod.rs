@@ -8,6 +8,7 @@ use std::path::PathBuf;
 mod fuzz;
 mod groups;
 mod mistakes;
+mod written;
 
 /// Where the meshes are that tests/fixtures/meshes/make_gmsh.py wrote.
 fn folder() -> PathBuf {
