@@ -19,6 +19,10 @@ use crate::substructures::{Subdomain, Substructures};
 /// or from jumps that the weights alone deal with.
 const SMOOTH: f64 = 1e2;
 
+/// Where ρ varies by no more than this, differences in the diagonal of K come from the mesh, however large: a corner of
+/// a single tetrahedron beside a node inside has a hundredth of its stiffness.
+const EQUAL: f64 = 2.0;
+
 /// Dual dofs of one subdomain that the same subdomains share, in the order of body dof.
 pub struct Class {
     /// The subdomains, increasing.
@@ -117,16 +121,18 @@ fn diagonal(sub: &Subdomain) -> Vec<f64> {
     (0..sub.k.n()).map(|i| sub.k.get(i, i)).collect()
 }
 
-/// Whether stiffness (the diagonal of K) varies along these dofs of a subdomain or next to them.
+/// Whether stiffness (the diagonal of K) and ρ vary along these dofs of a subdomain or next to them.
 fn varies(sub: &Subdomain, stiff: &[f64], dofs: impl Iterator<Item = u32>) -> bool {
-    let (mut low, mut high) = (f64::INFINITY, 0.0f64);
+    let mut stiffness = (f64::INFINITY, 0.0f64);
+    let mut rho = stiffness;
+    let widen = |(low, high): &mut (f64, f64), v: f64| (*low, *high) = (low.min(v), high.max(v));
     for i in dofs {
         for &k in sub.k.row(i as usize).0 {
-            let d = stiff[k as usize];
-            (low, high) = (low.min(d), high.max(d));
+            widen(&mut stiffness, stiff[k as usize]);
+            widen(&mut rho, sub.rho[k as usize]);
         }
     }
-    high > SMOOTH * low
+    stiffness.1 > SMOOTH * stiffness.0 && rho.1 > EQUAL * rho.0
 }
 
 /// Places in the class of the dofs of the averages that are primal already.

@@ -6,16 +6,16 @@ use super::kinds;
 use crate::mesh::{CellKind, Members, MeshFile};
 
 /// The bytes of a file with the points, the cells and the groups of cells of `mesh`. A cell that is in no group has the
-/// physical tag 0, one that is in several is written once for each.
+/// physical tag 0.
 ///
 /// # Panics
-/// For groups of nodes or of sides, which the format does not have.
+/// For groups of nodes or of sides, and for a cell in several groups, which the format does not have.
 pub fn write(mesh: &MeshFile) -> Vec<u8> {
     let mut out = Vec::new();
     text(&mut out, "$MeshFormat\n2.2 1 8\n");
     number(&mut out, 1);
     text(&mut out, "\n$EndMeshFormat\n");
-    let mut tags = vec![Vec::new(); mesh.cells.len()];
+    let mut tags = vec![0; mesh.cells.len()];
     text(
         &mut out,
         &format!("$PhysicalNames\n{}\n", mesh.groups.len()),
@@ -25,7 +25,9 @@ pub fn write(mesh: &MeshFile) -> Vec<u8> {
             panic!("{}: a group of cells was expected", group.name);
         };
         for &c in cells {
-            tags[c as usize].push(k as i32 + 1);
+            let tag: &mut i32 = &mut tags[c as usize];
+            assert_eq!(*tag, 0, "cell {c} is in two groups");
+            *tag = k as i32 + 1;
         }
         text(&mut out, &format!("{dim} {} \"{}\"\n", k + 1, group.name));
     }
@@ -39,25 +41,17 @@ pub fn write(mesh: &MeshFile) -> Vec<u8> {
             out.extend_from_slice(&x.to_le_bytes());
         }
     }
-    let elements: usize = tags.iter().map(|t| t.len().max(1)).sum();
+    let elements = mesh.cells.len();
     text(&mut out, &format!("\n$EndNodes\n$Elements\n{elements}\n"));
-    for ((c, (kind, nodes)), tags) in mesh.cells.iter().enumerate().zip(&tags) {
-        let all = if tags.is_empty() { &[0][..] } else { tags };
-        for &tag in all {
-            cell(
-                &mut out,
-                mesh,
-                (kind, nodes),
-                [mesh.cell_ids[c] as i32, tag],
-            );
-        }
+    for ((c, cell), &tag) in mesh.cells.iter().enumerate().zip(&tags) {
+        element(&mut out, mesh, cell, [mesh.cell_ids[c] as i32, tag]);
     }
     text(&mut out, "\n$EndElements\n");
     out
 }
 
 /// One element: a block of its own, with a physical and an elementary tag.
-fn cell(
+fn element(
     out: &mut Vec<u8>,
     mesh: &MeshFile,
     (kind, nodes): (CellKind, &[u32]),

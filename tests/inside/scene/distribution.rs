@@ -1,0 +1,72 @@
+//! Unit tests of `src/scene/distribution.rs`.
+
+use super::*;
+
+/// The blocks of all ranks.
+fn blocks(works: &[f64], ranks: usize) -> Vec<Range<usize>> {
+    (0..ranks).map(|r| by_work(works, ranks, r)).collect()
+}
+
+#[test]
+fn blocks_follow_each_other_and_weigh_about_the_same() {
+    let mut state = 12345u64;
+    let mut draw = || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 33) as f64 / 2f64.powi(31)
+    };
+    for n in [5, 17, 100] {
+        let works: Vec<f64> = (0..n).map(|_| 1.0 + 20.0 * draw()).collect();
+        let total: f64 = works.iter().sum();
+        for ranks in [1, 2, 4, 5] {
+            let found = blocks(&works, ranks);
+            assert_eq!((found[0].start, found[ranks - 1].end), (0, n));
+            assert!(
+                found.windows(2).all(|w| w[0].end == w[1].start),
+                "{found:?}"
+            );
+            for block in &found {
+                assert!(!block.is_empty(), "{found:?}");
+                let work: f64 = works[block.clone()].iter().sum();
+                // Both ends lie within half an item of where they should.
+                let fair = total / ranks as f64;
+                assert!(
+                    (work - fair).abs() <= 21.0 || block.len() == 1,
+                    "{work} beside {fair}"
+                );
+            }
+        }
+    }
+    // One item of most of the work does not leave ranks without any.
+    let heavy = [1.0, 1.0, 100.0, 1.0];
+    assert_eq!(blocks(&heavy, 4), [0..1, 1..2, 2..3, 3..4]);
+    assert_eq!(blocks(&heavy, 2), [0..2, 2..4]);
+    // Few items, many ranks.
+    assert_eq!(blocks(&[1.0, 5.0], 4), [0..1, 1..2, 2..2, 2..2]);
+}
+
+#[test]
+fn bodies_of_a_mesh_are_dealt_out_by_work() {
+    let scene = Scene::load("examples/gallery/roller_bearing.toml").expect("a scene");
+    let works = |s: usize| {
+        let (body, inside) = scene.body_of(s);
+        let body = &scene.bodies[body];
+        ((body.components * body.mesh().subdomain_nodes(inside).len()) as f64).powf(WORK)
+    };
+    let all: Vec<f64> = (0..scene.n_subdomains()).map(works).collect();
+    let largest = all.iter().copied().fold(0.0, f64::max);
+    let fair = all.iter().sum::<f64>() / 2.0;
+    let first: f64 = all[share(&scene, 2, 0)].iter().sum();
+    assert!(
+        (first - fair).abs() <= 0.5 * largest,
+        "{first} of {}",
+        2.0 * fair
+    );
+    // Boxes are dealt out by number, as programs expect that use `fetifeti::share`.
+    let boxes = Scene::load("examples/scenes/unequal_bodies.toml").expect("a scene");
+    let n = boxes.n_subdomains();
+    for rank in 0..3 {
+        assert_eq!(share(&boxes, 3, rank), contiguous_share(n, 3, rank));
+    }
+}
