@@ -62,8 +62,8 @@ pub(crate) fn owner(session: &Session, scene: &Scene) -> Result<impl Fn(usize) -
     })
 }
 
-/// The block of subdomains of a rank: of equal work where there are meshes of cells, else of equal number. A body may lie
-/// on several ranks.
+/// The block of subdomains of a rank: of equal work where there are meshes of cells, else of equal number. A body may
+/// lie on several ranks.
 fn share(scene: &Scene, ranks: usize, rank: usize) -> Range<usize> {
     let n = scene.n_subdomains();
     if ranks == 1 || scene.bodies.iter().all(|b| b.mesh().cells().is_none()) {
@@ -80,8 +80,8 @@ fn share(scene: &Scene, ranks: usize, rank: usize) -> Range<usize> {
     by_work(&works.collect::<Vec<f64>>(), ranks, rank)
 }
 
-/// The work of a subdomain grows as this power of its unknowns: solves as the power 1.2 to 1.4, factorisations as 1.5 in
-/// the plane and 2 in space.
+/// The work of a subdomain grows as this power of its unknowns: solves as the power 1.2 to 1.4, factorisations as 1.5
+/// in the plane and 2 in space.
 const WORK: f64 = 1.5;
 
 /// The items of a rank if all are dealt out in contiguous blocks of about equal work. Every rank gets one if there are

@@ -578,6 +578,6 @@ fn meshes_in_space_are_scaled_by_stiffness_unless_told_otherwise() {
     // Who says so keeps the weights that boxes have.
     let text = std::fs::read_to_string("examples/gallery/hip_stem.toml").expect("a file");
     let text = format!("{text}\n[options]\nfetifeti_scaling = \"rho\"\n");
-    let told = Scene::parse("examples/gallery/told.toml", &text).expect("a scene");
+    let told = Scene::parse("examples/gallery/hip_stem.toml", &text).expect("a scene");
     assert_eq!(scaling(&told), ["rho"]);
 }

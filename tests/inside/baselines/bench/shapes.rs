@@ -119,9 +119,8 @@ fn the_rod_has_its_parts_and_surfaces() {
             .into_iter()
             .enumerate()
         {
-            for d in 0..3 {
-                assert!((at[4 + k][d] - 0.5 * (at[p][d] + at[q][d])).abs() < 1e-15);
-            }
+            let middle = [0, 1, 2].map(|d| 0.5 * (at[p][d] + at[q][d]));
+            assert!(norm(minus(at[4 + k], middle)) < 1e-15);
         }
     }
 }
