@@ -76,6 +76,10 @@ fn folded(mesh: &CellMesh) -> Option<Defect> {
     let sides = |c: usize| 0..mesh.cells.kind(c).sides().len();
     let behind = |(c, side): (usize, usize)| {
         let other = adjacency.across(c, side)? as usize;
+        // Every pair is looked at once.
+        if other < c {
+            return None;
+        }
         let on = corners(mesh, c, side);
         let twin = |s: &usize| {
             let theirs = corners(mesh, other, *s);
@@ -83,7 +87,7 @@ fn folded(mesh: &CellMesh) -> Option<Defect> {
         };
         let theirs = corners(mesh, other, sides(other).find(twin)?);
         let one_side = ahead(mesh, c, &on) * ahead(mesh, other, &on) > 0.0;
-        (c < other && same_order(&on, &theirs) && one_side).then(|| {
+        (same_order(&on, &theirs) && one_side).then(|| {
             let [a, b] = [c, other].map(|c| mesh.cell_ids[c]);
             let nodes: Vec<String> = on.iter().map(|&k| mesh.node_ids[k as usize].to_string()).collect();
             let nodes = nodes.join(", ");

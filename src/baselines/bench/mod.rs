@@ -21,6 +21,7 @@ use super::table::{self, Baseline};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, MethodRun};
+use crate::report::output;
 use crate::report::tables::bench as tables;
 use crate::scene::{distribution, Scene};
 use crate::{Error, Result};
@@ -44,15 +45,16 @@ pub struct Benchmark {
     pub petsc: Vec<String>,
 }
 
+/// The directory of a named case and its files.
+type Home = (Workspace, Vec<String>);
+
 /// A case of this benchmark.
 struct Case {
     name: String,
     /// The scene file.
     file: PathBuf,
-    /// What is written where results go; `None` for a file of the user.
-    named: Option<&'static Named>,
-    /// Where the scene file of a named case is, for as long as the case.
-    _home: Option<Workspace>,
+    /// It lives as long as the case; `None` for a file of the user.
+    home: Option<Home>,
     scene: Scene,
     plan: Plan,
 }
@@ -93,15 +95,12 @@ impl Case {
         baselines: &[&'static Baseline],
     ) -> Result<Case> {
         // Every process writes files of its own.
-        let write = |named: &'static Named| -> Result<(PathBuf, Workspace)> {
-            let home = Workspace::new()?;
-            Ok((named.write(home.dir(), quick)?.0, home))
-        };
-        let read = || -> Result<(String, PathBuf, Option<Workspace>, Scene)> {
+        let read = || -> Result<(String, PathBuf, Option<Home>, Scene)> {
             if let Some(named) = Named::find(name) {
-                let (file, home) = write(named)?;
+                let home = Workspace::new()?;
+                let (file, names) = named.write(home.dir(), quick)?;
                 let scene = Scene::load(&file)?;
-                return Ok((name.to_string(), file, Some(home), scene));
+                return Ok((name.to_string(), file, Some((home, names)), scene));
             }
             let file = PathBuf::from(name);
             if !name.ends_with(".toml") && !file.is_file() {
@@ -122,10 +121,9 @@ impl Case {
             Plan::new(session, &scene, baselines, Layouts::Three)
         })?;
         Ok(Case {
-            named: home.as_ref().and(Named::find(&name)),
             name,
             file,
-            _home: home,
+            home,
             scene,
             plan,
         })
@@ -175,7 +173,7 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
             }
         }
     }
-    write(wanted, cases, &report)?;
+    write(destination, cases, &report)?;
     let cases = report.cases.iter();
     stopped(cases.flat_map(|c| c.methods.iter().map(|r| (&r.run, c.case.clone()))))
 }
@@ -298,16 +296,21 @@ fn progress(wanted: &Benchmark, what: &str) {
     }
 }
 
-fn write(wanted: &Benchmark, cases: &[Case], report: &BenchReport) -> Result<()> {
-    let text = tables::text(report);
-    wanted.destination.finish("bench", &text, report, |dir| {
+fn write(destination: &Destination, cases: &[Case], report: &BenchReport) -> Result<()> {
+    destination.finish("bench", &tables::text(report), report, |dir| {
         tables::csv(report).write_csv(&dir.join("bench.csv"))?;
         tables::figure(report).save(&dir.join("bench"))?;
         let mut files = ["csv", "png", "svg"]
             .map(|end| format!("bench.{end}"))
             .to_vec();
-        for named in cases.iter().filter_map(|c| c.named) {
-            files.extend(named.write(dir, wanted.quick)?.1);
+        // Copies: to make a mesh of a million nodes again takes seconds.
+        for (home, names) in cases.iter().filter_map(|c| c.home.as_ref()) {
+            for name in names {
+                let bytes = std::fs::read(home.file(name))
+                    .map_err(|e| Error::environment(format!("cannot read {name}: {e}")))?;
+                output::write_file(&dir.join(name), |out| out.write_all(&bytes))?;
+            }
+            files.extend_from_slice(names);
         }
         Ok(files)
     })
