@@ -4,8 +4,8 @@
     scripts/decks.py [--program target/release/fetifeti] [--decks DIR] [--only NAME ...] > table.md
 
 The decks and their reference results (*.dat.ref) are read where the package installs them, compressed or not. Each deck
-gets one line: solved, with the largest difference of a displacement relative to the largest displacement of its table,
-or refused, with the reason. Decks that crash or do not end within the time limit are named as such.
+gets one line: solved, with the largest difference of a displacement or force relative to the largest of its table, or
+refused, with the reason. Decks that crash or do not end within the time limit are named as such.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import sys
 import tempfile
 
 DECKS = "/usr/share/doc/calculix-ccx-test/examples/test"
-TITLE = re.compile(r"\s*displacements \(vx,vy,vz\) for set (\S+) and time\s+(\S+)")
+TITLE = re.compile(r"\s*(displacements \(vx,vy,vz\)|(total )?forces? \(fx,fy,fz\)) for set (\S+) and time\s+(\S+)")
 LIMIT = 300
 
 
@@ -33,17 +33,20 @@ def unpack(source, target):
 
 
 def tables(path):
-    """The tables of displacements of a .dat file: a dictionary of vectors by node for each."""
+    """The tables of displacements and forces of a .dat file: a dictionary of vectors by node for each."""
     found, current = [], None
     with open(path, errors="replace") as file:
         for line in file:
-            if TITLE.match(line):
-                current = {}
+            title = TITLE.match(line)
+            if title:
+                current, total = {}, title.group(2)
                 found.append(current)
                 continue
             words = line.split()
             if current is None or not words:
                 continue
+            if total:
+                words.insert(0, "0")
             try:
                 current[int(words[0])] = [float(word) for word in words[1:4]]
             except ValueError:
@@ -52,7 +55,7 @@ def tables(path):
 
 
 def difference(ours, theirs):
-    """The largest difference relative to the largest displacement of each table, and the number of nodes."""
+    """The largest difference relative to the largest number of each table, and the number of vectors."""
     worst, nodes = 0.0, 0
     for a, b in zip(ours, theirs):
         size = max((abs(x) for vector in b.values() for x in vector), default=0.0)
@@ -78,9 +81,9 @@ def run(program, deck, out):
         return "failed", message
     printed, reference = os.path.join(out, f"{name}.dat"), deck.removesuffix(".inp") + ".dat.ref"
     if not (os.path.exists(printed) and os.path.exists(reference)):
-        return "solved", "prints no displacements"
+        return "solved", "prints no displacements or forces"
     worst, nodes = difference(tables(printed), tables(reference))
-    return "solved", f"{worst:.1e} at {nodes} nodes" if nodes else "prints no displacements"
+    return "solved", f"{worst:.1e} of {nodes} vectors" if nodes else "prints no displacements or forces"
 
 
 def keyword(reason):

@@ -33,14 +33,12 @@ pub(super) fn bodies(
     }
     // Rank 0 has all rows; the lists of the other ranks are empty.
     for row in rows {
-        let members = row.label.members.into_iter().flatten();
-        for (sign, BodyNode { body: b, node }) in [-1.0, 1.0].into_iter().zip(members) {
+        for (BodyNode { body: b, node }, force) in row.forces() {
             let body = &scene.bodies[b];
-            let n = match body.components {
-                1 => [row.normal().iter().sum(), 0.0, 0.0],
-                _ => row.normal(),
+            let force = match body.components {
+                1 => [force.iter().sum(), 0.0, 0.0],
+                _ => force,
             };
-            let force = n.map(|n| sign * row.multiplier * n);
             let at = body.spec.position(node);
             let moment = cross(minus(at, body.ball().0), force);
             let [_, contact, moments, sizes] = &mut sums[b];

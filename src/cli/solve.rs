@@ -16,7 +16,6 @@ use crate::checkpoint::Checkpoints;
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::feti::MethodSettings;
-use crate::linalg::vec3::dot;
 use crate::mesh::deck;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{max_memory, Session};
@@ -29,7 +28,8 @@ use crate::report::output;
 use crate::report::pictures::contact_map;
 use crate::report::plots::{load_steps, profile};
 use crate::report::tables::summary;
-use crate::scene::{distribution, DeckScenes, PrintedNode, Scene};
+use crate::scene::{distribution, DeckScenes, Scene};
+use crate::substructures::BodyNode;
 use crate::{Error, FetiFeti, Result, Spectrum, Status};
 
 /// Number of directions that a load step passes on to the next one.
@@ -47,7 +47,7 @@ pub fn run(session: &Session, args: Solve) -> Result<()> {
         destination.prepare()?;
         destination.print(&lines(&scene.notes))
     })?;
-    solve(session, &args, &destination, &scene, clock, Vec::new())?;
+    solve(session, &args, &destination, &scene, clock, None)?;
     Ok(())
 }
 
@@ -62,7 +62,8 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
         .map(|s| s.to_string_lossy().into_owned());
     let stem = stem.unwrap_or_default();
     on_first_rank(session, || destination.print(&lines(&deck.notes())))?;
-    let (mut printed, mut tables) = (Vec::new(), Vec::new());
+    // Only rank 0 has tables.
+    let mut printed = Vec::new();
     let n = deck.n_steps();
     for step in 0..n {
         let clock = Instant::now();
@@ -80,16 +81,16 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
             of_step.json = destination.json.clone().filter(|_| step + 1 == n);
             on_first_rank(session, || of_step.prepare())?;
         }
-        printed = solve(session, args, &of_step, &scene, clock, printed)?;
-        tables.extend(
-            printed[printed.len().saturating_sub(scene.prints.len())..]
-                .iter()
-                .map(dat_table),
-        );
+        let deck = FromDeck {
+            deck: &deck,
+            step,
+            printed,
+        };
+        printed = solve(session, args, &of_step, &scene, clock, Some(deck))?;
     }
-    // Only rank 0 has tables.
     on_first_rank(session, || match &destination.out {
-        Some(dir) if !tables.is_empty() => {
+        Some(dir) if !printed.is_empty() => {
+            let tables: Vec<deck::Table> = printed.iter().flat_map(|p| p.tables.clone()).collect();
             output::write_text(&dir.join(format!("{stem}.dat")), &deck::write_dat(&tables))
         }
         _ => Ok(()),
@@ -102,29 +103,22 @@ pub(super) fn lines(notes: &[String]) -> String {
     notes.iter().map(|note| format!("{note}\n")).collect()
 }
 
-/// A table of displacements for a `.dat` file.
-fn dat_table(print: &NodePrint) -> deck::Table {
-    let row = |(&(id, x, y, z), &local): (&(u64, f64, f64, f64), &bool)| deck::TableRow {
-        id,
-        vector: [x, y, z],
-        local,
-    };
-    deck::Table {
-        quantity: deck::Quantity::Displacement,
-        set: print.set.clone(),
-        time: print.time,
-        rows: print.nodes.iter().zip(&print.local).map(row).collect(),
-    }
+/// The step of a deck that a scene describes.
+struct FromDeck<'a> {
+    deck: &'a DeckScenes,
+    step: usize,
+    /// What earlier steps have printed.
+    printed: Vec<NodePrint>,
 }
 
-/// Solves a scene and writes its results. `printed` are the tables of earlier steps; returned with those of this one.
+/// Solves a scene and writes its results; returned is what the steps of its deck have printed up to this one.
 fn solve(
     session: &Session,
     args: &Solve,
     destination: &Destination,
     scene: &Scene,
     clock: Instant,
-    mut printed: Vec<NodePrint>,
+    deck: Option<FromDeck>,
 ) -> Result<Vec<NodePrint>> {
     let checkpoints = Checkpoints::new(
         session,
@@ -158,16 +152,28 @@ fn solve(
         report.check = Some(checks(&solver, exact)?);
     }
     report.seconds.assemble = assemble;
-    if !scene.probes.is_empty() || !scene.prints.is_empty() {
-        let values = Values::gather(session, scene, &solver, solution, course.step)?;
+    let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
+    let mut printed = Vec::new();
+    if !scene.probes.is_empty() || asked.is_some() {
+        let values = Values::displacements(session, scene, &solver, solution, course.step)?;
         let found = match session.rank() {
             0 => values.probes(scene),
             _ => Ok(Vec::new()),
         };
         report.probes = session.agree(found)?;
-        if session.rank() == 0 {
-            printed.extend(scene.prints.iter().map(|print| node_print(&values, print)));
+        let forces = match asked {
+            Some(true) => Some(Values::forces(session, scene, &solver, &course)?),
+            _ => None,
+        };
+        if let (0, Some(deck)) = (session.rank(), &deck) {
+            let displacement = |at: BodyNode| values.at(at.body, at.node);
+            let force = |at: BodyNode| forces.as_ref().map_or([0.0; 3], |f| f.at(at.body, at.node));
+            let tables = deck.deck.tables(deck.step, &displacement, &force);
+            printed.extend(tables.into_iter().map(NodePrint::new));
         }
+    }
+    if let Some(deck) = deck {
+        printed.splice(0..0, deck.printed);
     }
     report.node_print.clone_from(&printed);
     if let Some(dir) = &destination.out {
@@ -184,24 +190,6 @@ fn solve(
             (_, n) => format!("the contact problem of {scene} ({n} contact steps)"),
         };
         Err(not_converged(&what, &solution.status, solution.iterations))
-    }
-}
-
-/// A table of displacements that a deck asks for; nodes that no element has do not move.
-fn node_print(values: &Values, print: &crate::scene::NodePrint) -> NodePrint {
-    let row = |node: &PrintedNode| {
-        let u = node.node.map_or([0.0; 3], |at| values.at(at.body, at.node));
-        let [x, y, z] = match node.axes {
-            Some(axes) => axes.map(|axis| dot(axis, u)),
-            None => u,
-        };
-        (node.id, x, y, z)
-    };
-    NodePrint {
-        set: print.set.clone(),
-        time: print.time,
-        nodes: print.nodes.iter().map(row).collect(),
-        local: print.nodes.iter().map(|node| node.axes.is_some()).collect(),
     }
 }
 

@@ -1,7 +1,8 @@
 //! The solution by bodies and nodes on rank 0, and probes.
 
+use super::course::Course;
 use super::fields::to_first_rank;
-use crate::fem::element;
+use crate::fem::{element, internal_force, SubdomainMesh};
 use crate::petsc::Session;
 use crate::report::json::probes::ProbeValue;
 use crate::scene::{Scene, SteppedMesh};
@@ -15,21 +16,61 @@ pub(super) struct Values {
 
 impl Values {
     /// The displacements of a solution at load step `step`. Collective.
-    pub fn gather(
+    pub fn displacements(
         session: &Session,
         scene: &Scene,
         solver: &FetiFeti,
         solution: &Solution,
         step: usize,
     ) -> Result<Values> {
+        let of = |_: &SubdomainMesh, nodal: Vec<f64>| nodal;
+        let put = |to: &mut f64, u: f64| *to = u;
+        Values::gather(session, scene, solver, (solution, step), &of, &put)
+    }
+
+    /// The forces that act on the nodes from outside, as CalculiX prints them (RF): K u without the forces of contact.
+    /// They are loads and reactions, and the forces of ties and equations. Collective.
+    pub fn forces(
+        session: &Session,
+        scene: &Scene,
+        solver: &FetiFeti,
+        course: &Course,
+    ) -> Result<Values> {
+        let add = |to: &mut f64, force: f64| *to += force;
+        let of = |mesh: &SubdomainMesh, nodal: Vec<f64>| internal_force(mesh, &nodal);
+        let solved = (&course.solution, course.step);
+        let mut all = Values::gather(session, scene, solver, solved, &of, &add)?;
+        // Rank 0 has all rows; the lists of the other ranks are empty.
+        for row in course.rows.iter().filter(|row| row.is_inequality()) {
+            for (member, force) in row.forces() {
+                let first = all.components * member.node;
+                let to = &mut all.by_body[member.body][first..first + all.components];
+                to.iter_mut().zip(force).for_each(|(to, f)| *to -= f);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Values `of` every subdomain, which `put` puts to the nodes of the bodies. Collective.
+    fn gather(
+        session: &Session,
+        scene: &Scene,
+        solver: &FetiFeti,
+        (solution, step): (&Solution, usize),
+        of: &dyn Fn(&SubdomainMesh, Vec<f64>) -> Vec<f64>,
+        put: &dyn Fn(&mut f64, f64),
+    ) -> Result<Values> {
         let scale = scene.prescribed_factor(step);
         let local = solver.problem().local.iter().map(|sub| sub.index);
         let nodal = local.clone().zip(&solution.u).map(|(index, u)| {
             let mut part = SteppedMesh::new(scene, index)?;
-            Ok(part.at(scale).nodal(u))
+            let mesh = part.at(scale);
+            Ok(of(mesh, mesh.nodal(u)))
         });
         let nodal: Vec<Vec<f64>> = session.agree(nodal.collect::<Result<_>>())?;
-        let received = to_first_rank(session, local.zip(&nodal));
+        let mut received = to_first_rank(session, local.zip(&nodal));
+        // Sums are taken in the same order on any number of ranks.
+        received.sort_unstable_by_key(|part| part.0);
         let c = scene.components();
         let mut by_body = Vec::new();
         if session.rank() == 0 {
@@ -42,8 +83,9 @@ impl Values {
         for (index, _, values) in received {
             let (body, inside) = scene.body_of(index);
             let nodes = scene.bodies[body].mesh().subdomain_nodes(inside);
-            for (node, u) in nodes.into_iter().zip(values.chunks_exact(c)) {
-                by_body[body][c * node..c * (node + 1)].copy_from_slice(u);
+            for (node, part) in nodes.into_iter().zip(values.chunks_exact(c)) {
+                let to = by_body[body][c * node..c * (node + 1)].iter_mut();
+                to.zip(part).for_each(|(to, &value)| put(to, value));
             }
         }
         Ok(Values {

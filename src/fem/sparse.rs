@@ -89,7 +89,7 @@ fn neighbours(cells: &Cells, n_nodes: usize) -> Lists {
 }
 
 /// Calls `f` with the nodes and the stiffness matrix, by rows, of every cell.
-fn each_matrix(mesh: &SubdomainMesh, cells: &Cells, mut f: impl FnMut(&[u32], &[f64])) {
+pub fn each_matrix(mesh: &SubdomainMesh, cells: &Cells, mut f: impl FnMut(&[u32], &[f64])) {
     let c = mesh.components();
     let (mut points, mut matrix) = (Vec::new(), Vec::new());
     for (e, (kind, nodes)) in cells.iter().enumerate() {

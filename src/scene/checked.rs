@@ -1,7 +1,7 @@
 //! A checked scene, with every default filled in.
 
 use super::body::{bounds_of, Body};
-use super::deck::{DeckScenes, NodePrint};
+use super::deck::DeckScenes;
 use super::geometry::interface::Interface;
 use super::geometry::matching::Matching;
 use super::model::expr::Expr;
@@ -59,8 +59,6 @@ pub struct Scene {
     pub equations: Vec<Equation>,
     /// Points of interest.
     pub probes: Vec<ProbeSpec>,
-    /// Tables of displacements that a deck asks for.
-    pub prints: Vec<NodePrint>,
     /// Rigid obstacles, by body, side and bound.
     pub obstacles: Vec<Obstacle>,
     /// Load steps; `None`: everything is applied at once.
@@ -144,7 +142,6 @@ impl Scene {
             points,
             equations,
             probes: spec.probes,
-            prints: Vec::new(),
             obstacles,
             steps,
             exact: spec.exact,

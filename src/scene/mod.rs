@@ -32,7 +32,7 @@ mod validate;
 
 pub use body::Body;
 pub use checked::Scene;
-pub use deck::{DeckScenes, NodePrint, PrintedNode};
+pub use deck::DeckScenes;
 pub use geometry::interface::{Interface, Link, Shape, SharedNode};
 pub use loads::{SteppedMesh, Stepping};
 pub use model::cells::{Cells, NumberFormat, Tone};

@@ -144,6 +144,15 @@ impl SolvedRow {
         self.label.normal
     }
 
+    /// The forces of the row on its nodes, along the normal.
+    pub fn forces(&self) -> impl Iterator<Item = (BodyNode, [f64; 3])> + '_ {
+        let members = [-1.0, 1.0].into_iter().zip(self.label.members);
+        members.filter_map(|(sign, member)| {
+            let force = self.normal().map(|n| sign * self.multiplier * n);
+            Some((member?, force))
+        })
+    }
+
     /// Force per area; `None` where no area is known.
     pub fn pressure(&self) -> Option<f64> {
         (self.label.area > 0.0).then(|| self.multiplier / self.label.area)

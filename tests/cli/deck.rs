@@ -1,4 +1,4 @@
-//! `fetifeti solve deck.inp`: displacements as CalculiX prints them.
+//! `fetifeti solve deck.inp`: displacements and forces as CalculiX prints them.
 
 use crate::support::mpi::Scratch;
 use crate::support::program::run_fetifeti;
@@ -6,61 +6,87 @@ use fetifeti::mesh::deck::{read_dat, Quantity, Table};
 use serde_json::Value;
 
 const DECK: &str = "tests/inside/mesh/deck/block.inp";
-const REFERENCE: &str = "tests/inside/mesh/deck/block.dat";
 
-/// The tables of displacements in a file.
-fn displacements(path: &str) -> Vec<Table> {
-    let text = std::fs::read_to_string(path).expect(path);
-    let tables = read_dat(&text).into_iter();
-    tables
-        .filter(|t| t.quantity == Quantity::Displacement)
-        .collect()
+/// The tables in a file.
+fn tables(path: &str) -> Vec<Table> {
+    read_dat(&std::fs::read_to_string(path).expect(path))
+}
+
+/// Solves a deck on some ranks and compares its tables with CalculiX's, to `tolerance` of the largest displacement and
+/// the largest force of the file.
+fn compare(name: &str, ranks: usize, tolerance: f64) -> Value {
+    let scratch = Scratch::new(&format!("deck_{name}_{ranks}"));
+    let (out, json) = (scratch.path("out"), scratch.path("report.json"));
+    let deck = format!("tests/inside/mesh/deck/{name}.inp");
+    let rtol = ["-fetifeti_ksp_rtol", "1e-10"];
+    let files = ["solve", &deck, "--out", &out, "--json", &json];
+    let run = run_fetifeti(ranks, &[&files[..], &rtol].concat());
+    assert_eq!(run.code, 0, "{}", run.all());
+    let ours = tables(&format!("{out}/{name}.dat"));
+    let theirs = tables(&format!("tests/inside/mesh/deck/{name}.dat"));
+    assert_eq!(ours.len(), theirs.len());
+    let moves = |t: &Table| t.quantity == Quantity::Displacement;
+    let largest = |of: bool| {
+        let tables = theirs.iter().filter(|t| moves(t) == of);
+        let all = tables.flat_map(|t| &t.rows).flat_map(|r| r.vector);
+        all.fold(0.0_f64, |m, x| m.max(x.abs()))
+    };
+    for (a, b) in ours.iter().zip(&theirs) {
+        assert_eq!(
+            (a.quantity, &a.set, a.time, a.rows.len()),
+            (b.quantity, &b.set, b.time, b.rows.len())
+        );
+        let size = largest(moves(b));
+        for (p, q) in a.rows.iter().zip(&b.rows) {
+            assert_eq!((p.id, p.local), (q.id, q.local));
+            for (x, y) in p.vector.iter().zip(q.vector) {
+                let away = (x - y).abs();
+                assert!(
+                    away <= tolerance * size,
+                    "{p:?}, not {q:?} in {:?}",
+                    b.quantity
+                );
+            }
+        }
+    }
+    serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap()
 }
 
 /// Steps, local axes, amplitudes and reduced integration: what `ccx block` has printed, up to its last digit.
 #[test]
-fn a_deck_has_the_displacements_of_calculix() {
-    let scratch = Scratch::new("deck");
-    let (out, json) = (scratch.path("out"), scratch.path("report.json"));
+fn a_deck_has_the_displacements_and_forces_of_calculix() {
     for ranks in [1, 2] {
-        let run = run_fetifeti(ranks, &["solve", DECK, "--out", &out, "--json", &json]);
-        assert_eq!(run.code, 0, "{}", run.all());
-        let ours = displacements(&format!("{out}/block.dat"));
-        let theirs = displacements(REFERENCE);
-        assert_eq!(ours.len(), theirs.len());
-        for (a, b) in ours.iter().zip(&theirs) {
-            assert_eq!(
-                (&a.set, a.time, a.rows.len()),
-                (&b.set, b.time, b.rows.len())
-            );
-            let size = b
-                .rows
-                .iter()
-                .flat_map(|r| r.vector)
-                .fold(0.0_f64, |m, x| m.max(x.abs()));
-            for (p, q) in a.rows.iter().zip(&b.rows) {
-                assert_eq!((p.id, p.local), (q.id, q.local));
-                for (x, y) in p.vector.iter().zip(q.vector) {
-                    assert!((x - y).abs() <= 2e-6 * size, "node {}: {x}, not {y}", p.id);
-                }
-            }
-        }
-        let report: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
-        // It also asks for forces, at lines 37 and 53.
-        let notes = report["notes"].as_array().expect("notes");
-        let forces = |note: &&Value| {
-            note.as_str()
-                .unwrap()
-                .ends_with("RF is not printed, only U")
-        };
-        assert_eq!(notes.iter().filter(forces).count(), 2, "{notes:?}");
+        let report = compare("block", ranks, 2e-6);
         let printed = report["node_print"].as_array().expect("tables");
-        assert_eq!(printed.len(), theirs.len());
-        assert_eq!(printed[0]["set"], theirs[0].set.as_str());
-        assert_eq!(
-            printed[0]["nodes"].as_array().unwrap().len(),
-            theirs[0].rows.len()
-        );
+        // Two *NODE PRINT in the first and in the second step, one in the third.
+        assert_eq!(printed.len(), 5);
+        assert_eq!(printed[0]["set"], "REV");
+        for key in ["nodes", "forces"] {
+            assert_eq!(printed[0][key].as_array().unwrap().len(), 10, "{key}");
+        }
+        assert!(printed[1].get("forces").is_none() && printed[1].get("total_force").is_none());
+        // TOTALS=ONLY; the whole load is 7 along x.
+        assert!(printed[4].get("forces").is_none());
+        let total = printed[4]["total_force"][0].as_f64().expect("a force");
+        assert!((total + 7.0).abs() < 1e-9, "{total}");
+    }
+}
+
+/// Forces at nodes with load and support, at the nodes of a tie, and where bodies press on each other: forces of ties
+/// count, forces of contact do not. The contact of CalculiX is soft.
+#[test]
+fn forces_between_bodies_are_those_of_calculix() {
+    for ranks in [1, 2, 4] {
+        for (name, tolerance) in [("tied", 1e-6), ("pressed", 1e-3)] {
+            let forces_only = |report: &Value| report["node_print"][0]["forces"].clone();
+            let report = compare(name, ranks, tolerance);
+            // All loads and all reactions are in balance.
+            let mut sums = [0.0; 3];
+            for node in forces_only(&report).as_array().expect("forces") {
+                (0..3).for_each(|d| sums[d] += node[d + 1].as_f64().expect("a number"));
+            }
+            assert!(sums.iter().all(|s| s.abs() < 1e-9), "{name}: {sums:?}");
+        }
     }
 }
 

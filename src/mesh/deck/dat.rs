@@ -130,17 +130,18 @@ fn fortran(word: &str) -> Option<f64> {
 }
 
 impl Deck {
-    /// The tables that step `step` asks for, of the displacements and forces of all nodes (by place, in the global
-    /// system).
+    /// The tables that step `step` asks for, a list for each *NODE PRINT, of the displacements and forces of all nodes
+    /// (by place, in the global system).
     pub fn tables(
         &self,
         step: usize,
         displacements: &[[f64; 3]],
         forces: &[[f64; 3]],
-    ) -> Vec<Table> {
+    ) -> Vec<Vec<Table>> {
         let step = &self.steps[step];
-        let mut tables = Vec::new();
+        let mut all = Vec::new();
         for print in &step.prints {
+            let mut tables = Vec::new();
             let table = |quantity, rows| Table {
                 quantity,
                 set: print.nset.clone(),
@@ -183,8 +184,9 @@ impl Deck {
                     }
                 }
             }
+            all.push(tables);
         }
-        tables
+        all
     }
 }
 

@@ -66,7 +66,7 @@ pub struct SolveReport {
     /// The values at the scene's probes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probes: Vec<ProbeValue>,
-    /// The displacements that a deck prints, step by step.
+    /// The displacements and forces that a deck prints, step by step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub node_print: Vec<NodePrint>,
     /// The messages of a Krylov iteration; `null` where there was none.

@@ -8,7 +8,6 @@ mod joints;
 mod numbers;
 mod torn;
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use super::checked::Scene;
@@ -19,28 +18,6 @@ use crate::fem::{Form, Physics};
 use crate::mesh::deck::{self, Deck, Model};
 use crate::substructures::BodyNode;
 use numbers::Numbers;
-
-/// A node of a deck that *NODE PRINT prints.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PrintedNode {
-    /// Its number in the deck.
-    pub id: u64,
-    /// The node; `None` if no cell has it.
-    pub node: Option<BodyNode>,
-    /// The axes along which the displacement is printed, by rows, if they are not those of the coordinates.
-    pub axes: Option<[[f64; 3]; 3]>,
-}
-
-/// A table of displacements that a deck asks for.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NodePrint {
-    /// The node set.
-    pub set: String,
-    /// The time of the step's end.
-    pub time: f64,
-    /// The nodes in the order in which they are printed.
-    pub nodes: Vec<PrintedNode>,
-}
 
 /// A deck that has been read.
 #[derive(Debug, Clone)]
@@ -95,23 +72,8 @@ impl DeckScenes {
         let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
         let unused = deck.mesh.unused(deck.dim());
         let torn = self.torn.iter().cloned();
-        let all = ignored.chain(self.without_forces()).chain(replaced);
-        all.chain(unused).chain(torn).collect()
-    }
-
-    /// A sentence for each *NODE PRINT that asks for forces, which are not computed.
-    fn without_forces(&self) -> Vec<String> {
-        let prints = self.deck.steps.iter().flat_map(|step| &step.prints);
-        let forces = prints.filter(|p| p.printed.contains(&deck::Printed::Force));
-        let note = |print: &deck::NodePrint| {
-            let place = self.deck.files.at(print.place);
-            format!("{place}: *NODE PRINT is ignored: RF is not printed, only U")
-        };
-        let mut notes: Vec<String> = forces.map(note).collect();
-        // Later steps have the requests of those before.
-        let mut said = HashSet::new();
-        notes.retain(|note| said.insert(note.clone()));
-        notes
+        let all = ignored.chain(replaced).chain(unused);
+        all.chain(torn).collect()
     }
 
     /// Number of steps, ≥ 1.
@@ -164,30 +126,31 @@ impl DeckScenes {
             notes: self.notes(),
             ..SceneSpec::tied(title, bodies)
         };
-        let mut scene = Scene::new(spec)?;
-        scene.prints = self.prints(&numbers, step);
-        Ok(scene)
+        Scene::new(spec)
     }
 
-    fn prints(&self, numbers: &Numbers, step: usize) -> Vec<NodePrint> {
-        let deck = &self.deck;
-        let step = &deck.steps[step];
-        let asked = step.prints.iter();
-        let asked = asked.filter(|p| p.printed.contains(&deck::Printed::Displacement));
-        asked
-            .map(|print| NodePrint {
-                set: print.nset.clone(),
-                time: step.time,
-                nodes: print
-                    .nodes
-                    .iter()
-                    .map(|&k| PrintedNode {
-                        id: deck.mesh.node_ids[k as usize],
-                        node: numbers.node(k),
-                        axes: deck.frame(k).filter(|_| !print.global),
-                    })
-                    .collect(),
-            })
-            .collect()
+    /// Whether step `step` asks for tables, and whether for forces among them.
+    pub fn asks(&self, step: usize) -> Option<bool> {
+        let prints = &self.deck.steps[step].prints;
+        let force = |print: &deck::NodePrint| print.printed.contains(&deck::Printed::Force);
+        (!prints.is_empty()).then(|| prints.iter().any(force))
+    }
+
+    /// The tables that step `step` asks for, a list for each *NODE PRINT; nodes that no element has do not move and
+    /// bear no force.
+    pub fn tables(
+        &self,
+        step: usize,
+        displacement: &dyn Fn(BodyNode) -> [f64; 3],
+        force: &dyn Fn(BodyNode) -> [f64; 3],
+    ) -> Vec<Vec<deck::Table>> {
+        let numbers = Numbers::new(&self.deck);
+        let all = |of: &dyn Fn(BodyNode) -> [f64; 3]| -> Vec<[f64; 3]> {
+            let nodes = 0..self.deck.mesh.points.len() as u32;
+            nodes
+                .map(|k| numbers.node(k).map_or([0.0; 3], of))
+                .collect()
+        };
+        self.deck.tables(step, &all(displacement), &all(force))
     }
 }

@@ -47,7 +47,7 @@ impl<'a> Reader<'a> {
                     "RF" => printed.push(Printed::Force),
                     "" => {}
                     other => {
-                        let reason = format!("{} is not printed, only U", clip(other));
+                        let reason = format!("{} is not printed, only U and RF", clip(other));
                         self.deck.ignored.push(Self::note(card, row.place, reason));
                     }
                 }

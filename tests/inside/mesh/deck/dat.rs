@@ -56,7 +56,7 @@ fn tables_of_a_deck_are_those_of_calculix() {
             &global(Quantity::Displacement),
             &global(Quantity::Force),
         );
-        for table in &tables {
+        for table in tables.iter().flatten() {
             let same = at_time
                 .iter()
                 .find(|t| t.quantity == table.quantity && t.set == table.set);
