@@ -277,7 +277,7 @@ fn line_marks(
     out
 }
 
-/// The faces of elements all of whose nodes may touch, on both bodies of an interface.
+/// The faces of elements all of whose nodes are tied or may touch, on both bodies of an interface.
 fn face_marks(scene: &Scene, rows: &[SolvedRow]) -> Vec<FaceMark> {
     let mut out = Vec::new();
     for rows in by_source(rows) {
@@ -290,20 +290,23 @@ fn face_marks(scene: &Scene, rows: &[SolvedRow]) -> Vec<FaceMark> {
             sides.extend(other.map(|side| (1, second.body, side)));
         }
         for (member, body, side) in sides {
-            let contact = rows.iter().filter(|r| r.is_inequality());
-            let active: HashMap<usize, bool> = contact
-                .filter_map(|r| Some((r.label.members[member]?.node, r.holds())))
-                .collect();
+            // The state of each node; `None`: tied.
+            let state = |row: &SolvedRow| row.is_inequality().then(|| row.holds());
+            let node = |row: &SolvedRow| Some((row.label.members[member]?.node, state(row)));
+            let state: HashMap<usize, Option<bool>> = rows.iter().filter_map(node).collect();
+            let partner = rows[0].label.members[1 - member].map(|m| m.body as u32);
             let spec = &scene.bodies[body].spec;
             for face in spec.faces(side) {
-                let state = |node: &usize| active.get(node);
-                if face.nodes.iter().all(|node| state(node).is_some()) {
+                let states = face.nodes.iter().map(|node| state.get(node).copied());
+                if let Some(states) = states.collect::<Option<Vec<Option<bool>>>>() {
+                    let tied = states.iter().all(Option::is_none);
                     let corners = face.outline();
                     let last = corners.len() - 1;
                     out.push(FaceMark {
                         body: body as u32,
+                        partner,
                         corners: std::array::from_fn(|a| spec.position(corners[a.min(last)])),
-                        closed: face.nodes.iter().all(|node| state(node) == Some(&true)),
+                        closed: (!tied).then(|| states.iter().all(|s| *s != Some(false))),
                     });
                 }
             }

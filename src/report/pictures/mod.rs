@@ -1,5 +1,6 @@
 //! Pictures of fields on meshes: plane bodies from above, solids from a corner, faces of contact.
 
+mod apart;
 pub mod contact_map;
 pub mod field;
 mod marks;

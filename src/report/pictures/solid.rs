@@ -4,13 +4,14 @@
 //! The projection is parallel and from a fixed direction, y upwards, so that pictures of different scenes and meshes
 //! can be compared. Hidden parts are found pixel by pixel.
 
+use super::apart::shifts;
 use super::mesh::bounds;
 use super::paint::{colour_bar, legend, sheet, BAR, LABELS, TEXT};
 use super::space::Camera;
 use super::stage::{pale, Stage, CLOSED};
 use super::surface::{diagonals, Surface};
 use super::values::Field;
-use crate::linalg::vec3::{cross, dot, minus, norm};
+use crate::linalg::vec3::{cross, dot};
 use crate::report::drawing::canvas::{Anchor, Canvas, Colour, TextStyle};
 use crate::report::drawing::colormap::viridis;
 use crate::report::drawing::raster::Raster;
@@ -25,21 +26,12 @@ const SMALL_TEXT: f64 = 11.5;
 const MARGIN: f64 = 16.0;
 /// Height for the axes below a picture.
 const AXES: f64 = 62.0;
-/// The distance by which bodies are moved apart, relative to the distance of their centres from the middle: for two or
-/// three bodies, and for more.
-const APART: [f64; 2] = [0.75, 0.5];
-
-/// Faces count as one direction if their normals cancel by no more than to this part of their area.
-const FLAT: f64 = 0.9;
-/// The least distance by which bodies are moved in this direction, relative to the scene's size.
-const ALONG: f64 = 0.08;
-
 /// Another viewpoint is taken only if it shows the marked area by this factor better.
 const BETTER: f64 = 1.6;
 
-/// Writes fields as PNG, side by side. The first picture shows the bodies in their places, beside
-/// the obstacles. The others show the bodies
-/// moved apart, or another side of a single body, from the viewpoint that shows most of the faces in `marks`.
+/// Writes fields as PNG, side by side. The first picture shows the bodies in their places, beside the obstacles. The
+/// others show the bodies moved apart, or another side of a single body, from the viewpoint that shows most of the
+/// faces in `marks` that may touch.
 ///
 /// # Errors
 /// [`crate::Error::Input`] when an array does not fit the mesh; [`crate::Error::Environment`] with the path.
@@ -85,7 +77,8 @@ fn draw(
     let panel_height = scenes.iter().map(|s| s.size().1).fold(90.0, f64::max);
     let width = |s: &Stage| MARGIN + s.size().0.max(150.0) + MARGIN + BAR + LABELS;
     let total: f64 = scenes.iter().map(width).sum();
-    let below = if marks.is_empty() { 0.0 } else { 26.0 };
+    let may_touch = marks.iter().any(|m| m.closed.is_some());
+    let below = if may_touch { 26.0 } else { 0.0 };
     let content = 2.4 * TEXT + panel_height + AXES + below;
     let (mut raster, total, top) = sheet(title, (total, content));
     let height = top + content;
@@ -121,55 +114,10 @@ fn draw(
         left += width(scene);
     }
     extent(&mut raster, solid, (MARGIN + 78.0, height - below - 14.0));
-    if !marks.is_empty() {
+    if may_touch {
         key(&mut raster, marks, (0.5 * total, height - 14.0));
     }
     Ok(raster)
-}
-
-/// The shift of each body away from the common middle. Two or three bodies that touch in faces of nearly one direction
-/// move in this direction, wherever their middles are.
-fn shifts(solid: &Solid, surface: &Surface) -> Vec<[f64; 3]> {
-    let n = solid.body.iter().max().map_or(0, |&b| b as usize + 1);
-    let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; n];
-    for ((_, cell), &body) in solid.cells.iter().zip(solid.body) {
-        let [low, high] = &mut boxes[body as usize];
-        for p in cell.iter().map(|&p| solid.points[p as usize]) {
-            for d in 0..3 {
-                low[d] = low[d].min(p[d]);
-                high[d] = high[d].max(p[d]);
-            }
-        }
-    }
-    let [low, high] = bounds(solid.points.iter().copied());
-    let apart = APART[usize::from(n > 3)];
-    // Sum of the normals of marked faces, and their area.
-    let mut marked = vec![([0.0; 3], 0.0); n];
-    for face in surface.faces.iter().filter(|f| f.mark.is_some()) {
-        let ([u, v], _) = diagonals(face.corners.map(|p| solid.points[p as usize]));
-        let normal = cross(u, v);
-        let (sum, area) = &mut marked[solid.body[face.cell as usize] as usize];
-        (0..3).for_each(|d| sum[d] += normal[d]);
-        *area += norm(normal);
-    }
-    let least = ALONG * norm(minus(high, low));
-    let shift = |([a, b], (normals, area)): ([[f64; 3]; 2], ([f64; 3], f64))| {
-        let away = [0, 1, 2].map(|d| apart * (0.5 * (a[d] + b[d]) - 0.5 * (low[d] + high[d])));
-        // A body number without cells has no centre.
-        if !away.iter().all(|x| x.is_finite()) {
-            return [0.0; 3];
-        }
-        let length = norm(normals);
-        match n <= 3 && area > 0.0 && length > FLAT * area {
-            true => {
-                let back = normals.map(|x| -x / length);
-                let far = dot(away, back).max(least);
-                back.map(|x| far * x)
-            }
-            false => away,
-        }
-    };
-    boxes.into_iter().zip(marked).map(shift).collect()
 }
 
 /// The viewpoint that shows most of the marked area; the viewpoint of the first picture if no other is clearly better.
@@ -238,7 +186,7 @@ fn key(raster: &mut Raster, marks: &[FaceMark], middle: (f64, f64)) {
         (true, CLOSED, "in contact"),
         (false, pale(viridis(0.25)), "may touch, open (pale)"),
     ] {
-        if marks.iter().any(|m| m.closed == closed) {
+        if marks.iter().any(|m| m.closed == Some(closed)) {
             shown.push((colour, label));
         }
     }

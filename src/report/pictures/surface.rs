@@ -6,15 +6,17 @@ use crate::linalg::vec3::{cross, dot, minus, unit};
 use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
 
-/// The face of an element that may touch another body or an obstacle.
+/// The face of an element that is tied to another body, or that may touch another body or an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaceMark {
     /// Body of the element.
     pub body: u32,
+    /// The other body; `None` beside an obstacle.
+    pub partner: Option<u32>,
     /// The corners in the undeformed body, in any order; a triangle repeats its last one.
     pub corners: [[f64; 3]; 4],
-    /// Whether the face touches.
-    pub closed: bool,
+    /// Whether the face touches; `None` if it is tied.
+    pub closed: Option<bool>,
 }
 
 /// An outer face, or a part of one.
@@ -22,8 +24,10 @@ pub(super) struct Face {
     /// Corners, counter-clockwise seen from outside; a triangle repeats its last one.
     pub corners: [u32; 4],
     pub cell: u32,
-    /// Whether the face touches; `None` if it cannot touch.
+    /// Whether the face touches; `None` if it is tied, or cannot touch.
     pub mark: Option<bool>,
+    /// The body on the other side, if there may be one.
+    pub partner: Option<u32>,
 }
 
 /// A line on the surface, given by the points at its ends.
@@ -57,9 +61,9 @@ impl Solid<'_> {
     pub(super) fn surface(&self, marks: &[FaceMark]) -> Surface {
         let key = self.rounding();
         let position = |p: u32| self.points[p as usize];
-        let marked: HashMap<(u32, Key), bool> = marks
+        let marked: HashMap<(u32, Key), &FaceMark> = marks
             .iter()
-            .map(|m| ((m.body, middle(&key, &m.corners)), m.closed))
+            .map(|m| ((m.body, middle(&key, &m.corners)), m))
             .collect();
 
         let mut by_place: HashMap<(u32, Key), (usize, usize)> = HashMap::new(); // a side, how many there are
@@ -71,12 +75,12 @@ impl Solid<'_> {
             let entry = by_place.entry((self.body[cell as usize], at));
             entry.or_insert((f, 0)).1 += 1;
         }
-        let mut keep: Vec<(usize, Option<bool>)> = by_place
+        let mut keep: Vec<(usize, Option<&FaceMark>)> = by_place
             .into_iter()
             .filter(|(_, (_, count))| *count == 1)
             .map(|(place, (f, _))| (f, marked.get(&place).copied()))
             .collect();
-        keep.sort_unstable();
+        keep.sort_unstable_by_key(|(f, _)| *f);
         let mut faces = Vec::with_capacity(keep.len());
         for (f, mark) in keep {
             let (cell, side) = alone[f];
@@ -86,7 +90,8 @@ impl Solid<'_> {
             faces.extend(pieces(kind).iter().map(|piece| Face {
                 corners: piece.map(|a| nodes[usize::from(a)]),
                 cell,
-                mark,
+                mark: mark.and_then(|m| m.closed),
+                partner: mark.and_then(|m| m.partner),
             }));
         }
         let edges = self.edges(&faces, &|p| key(position(p)));

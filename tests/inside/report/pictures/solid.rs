@@ -30,8 +30,9 @@ fn a_contact_zone_between_bodies_is_seen_where_they_are_moved_apart() {
             let corners = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
             [0, 1].map(|body| FaceMark {
                 body,
+                partner: Some(1 - body),
                 corners,
-                closed: k < 8,
+                closed: Some(k < 8),
             })
         })
         .collect();
@@ -50,8 +51,9 @@ fn the_lower_side_is_shown_where_it_touches() {
     let corners = [[0.0; 3], [0.5, 0.0, 0.0], [0.5, 0.0, 0.5], [0.0, 0.0, 0.5]];
     let mark = FaceMark {
         body: 0,
+        partner: None,
         corners,
-        closed: true,
+        closed: Some(true),
     };
     let solid = blocks.view();
     let camera = second_camera(&solid, &solid.surface(&[mark]), false);
@@ -97,38 +99,4 @@ fn obstacles_are_shown_where_bodies_are_in_their_places() {
     let ([before, other], [left, right]) = (grey(&[]), grey(&[ball]));
     assert!(left > before + 20_000, "{before} {left}");
     assert!(right < other + 1000, "{other} {right}");
-}
-
-/// Two blocks on top of each other, marked on a part of their common face only: both move along its normal.
-#[test]
-fn bodies_move_apart_along_the_normal_of_their_contact() {
-    let mut blocks = Blocks::new(2, 2);
-    // The upper block is moved aside, so that the middles of the blocks differ in x, too.
-    for p in blocks.points.iter_mut().filter(|p| p[1] > 1.5) {
-        p[0] += 0.5;
-    }
-    let corners = [
-        [0.0, 1.0, 0.0],
-        [0.5, 1.0, 0.0],
-        [0.5, 1.0, 0.5],
-        [0.0, 1.0, 0.5],
-    ];
-    let marks = [0, 1].map(|body| FaceMark {
-        body,
-        corners,
-        closed: true,
-    });
-    let solid = blocks.view();
-    let [lower, upper] = shifts(&solid, &solid.surface(&marks))[..] else {
-        panic!("two bodies");
-    };
-    for d in [0, 2] {
-        assert!(
-            lower[d].abs() < 1e-12 && upper[d].abs() < 1e-12,
-            "{lower:?} {upper:?}"
-        );
-    }
-    assert!(lower[1] < -0.1 && upper[1] > 0.1, "{lower:?} {upper:?}");
-    let plain = shifts(&solid, &solid.surface(&[]));
-    assert!(plain[0][0] < -0.05, "{plain:?}");
 }

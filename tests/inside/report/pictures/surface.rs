@@ -61,13 +61,14 @@ fn the_surface_of_two_cubes() {
     let blocks = Blocks::new(2, 4);
     let mark = FaceMark {
         body: 1,
+        partner: None,
         corners: [
             [0.0, 1.0, 0.0],
             [0.25, 1.0, 0.0],
             [0.25, 1.0, 0.25],
             [0.0, 1.0, 0.25],
         ],
-        closed: true,
+        closed: Some(true),
     };
     let surface = blocks.view().surface(&[mark]);
     assert_eq!(surface.faces.len(), 2 * 6 * 16);
@@ -164,8 +165,9 @@ fn the_surface_of_cells_of_other_kinds() {
     };
     let mark = FaceMark {
         body: 0,
+        partner: None,
         corners: [corner[0], corner[2], corner[1], corner[1]],
-        closed: false,
+        closed: Some(false),
     };
     let surface = solid.surface(&[mark]);
     assert_eq!(surface.faces.len(), 6 * 4);
