@@ -157,3 +157,71 @@ fn a_cut_deck_is_solved_and_said() {
         run.stderr
     );
 }
+
+/// Three columns of two squares under pressure, with gaps 0.01, 0.01 and −0.01. The slave nodes of the first and the
+/// third, and the master nodes of the second, are in the node set that ADJUST names: the gaps of the first and the third
+/// count as none.
+fn columns(adjust: &str) -> String {
+    let (mut nodes, mut cells) = (String::new(), String::new());
+    for (c, gap) in [0.01, 0.01, -0.01].into_iter().enumerate() {
+        for (k, y) in [0.0, 1.0, 1.0 + gap, 2.0 + gap].into_iter().enumerate() {
+            for side in 0..2 {
+                nodes += &format!("{},{},{y}\n", 10 * c + 2 * k + side + 1, 2 * c + side);
+            }
+        }
+        for k in 0..2 {
+            let first = 10 * c + 4 * k + 1;
+            let [a, b, d] = [first + 1, first + 3, first + 2];
+            cells += &format!("{},{first},{a},{b},{d}\n", 2 * c + k + 1);
+        }
+    }
+    format!(
+        "*NODE,NSET=N\n{nodes}*ELEMENT,TYPE=CPE4,ELSET=E\n{cells}*NSET,NSET=MOVED\n5,6,13,14,25,26\n\
+         *NSET,NSET=BASE\n1,2,11,12,21,22\n*SURFACE,NAME=UP\n2,S1\n4,S1\n6,S1\n\
+         *SURFACE,NAME=DOWN\n1,S3\n3,S3\n5,S3\n\
+         *MATERIAL,NAME=M\n*ELASTIC\n1000,0\n*SOLID SECTION,ELSET=E,MATERIAL=M\n\
+         *SURFACE INTERACTION,NAME=I\n*CONTACT PAIR,INTERACTION=I,SMALL SLIDING,{adjust}\nUP,DOWN\n\
+         *BOUNDARY\nN,1\nBASE,2\n*STEP\n*STATIC\n*DLOAD\n2,P3,5.\n4,P3,5.\n6,P3,5.\n\
+         *NODE PRINT,NSET=N\nU\n*END STEP\n"
+    )
+}
+
+#[test]
+fn contact_pairs_move_the_nodes_of_a_set_onto_the_master() {
+    let scratch = Scratch::new("deck_adjust");
+    let json = scratch.path("report.json");
+    let rtol = ["-fetifeti_ksp_rtol", "1e-12"];
+    for (adjust, gaps) in [
+        ("ADJUST=MOVED", [0.0, 0.01, 0.0]),
+        ("ADJUST=0.02", [0.0, 0.0, 0.0]),
+        ("TYPE=NODE TO SURFACE", [0.01, 0.01, -0.01]),
+    ] {
+        let deck = scratch.file("columns.inp", &columns(adjust));
+        let run = run_fetifeti(1, &[&["solve", &deck, "--json", &json][..], &rtol].concat());
+        assert_eq!(run.code, 0, "{}", run.all());
+        let report: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+        for (c, gap) in gaps.into_iter().enumerate() {
+            // Poisson's ratio is 0: every square is shorter by 5/1000.
+            for (node, uy) in [(3, -0.005), (5, -0.005 - gap), (7, -0.01 - gap)] {
+                let row = &report["node_print"][0]["nodes"][8 * c + node];
+                let found = row[2].as_f64().expect("a number");
+                assert!((found - uy).abs() < 1e-9, "{adjust}: {row}, not {uy}");
+            }
+        }
+    }
+    for (adjust, message) in [
+        (
+            "ADJUST=NOWHERE",
+            "line 50: *CONTACT PAIR: there is no node set NOWHERE",
+        ),
+        (
+            "ADJUST=BASE",
+            "line 51: the node set of ADJUST has no node of the slave surface UP",
+        ),
+    ] {
+        let deck = scratch.file("columns.inp", &columns(adjust));
+        let run = run_fetifeti(1, &["solve", &deck]);
+        assert_eq!(run.code, 2, "{}", run.all());
+        assert!(run.stderr.contains(message), "{}", run.stderr);
+    }
+}

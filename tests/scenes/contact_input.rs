@@ -342,6 +342,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
         gap: Profile::Table(Vec::new()),
         distance: None,
         adjust: 0.0,
+        adjusted: Vec::new(),
         ramp: None,
         written: String::new(),
     });

@@ -148,6 +148,7 @@ pub fn spec(seed: u64) -> SceneSpec {
             gap: Profile::constant(number(rng, 0.0, 0.1)),
             distance: None,
             adjust: 0.0,
+            adjusted: Vec::new(),
             ramp: None,
             written: String::new(),
         });
@@ -309,6 +310,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             gap: gap(rng, tame),
             distance: None,
             adjust: 0.0,
+            adjusted: Vec::new(),
             ramp: None,
             written: String::new(),
         });

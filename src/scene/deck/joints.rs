@@ -3,9 +3,12 @@
 use super::bodies::along_coordinates;
 use super::numbers::Numbers;
 use crate::error::Result;
-use crate::mesh::deck::{Adjust, Deck, Overclosure};
+use crate::mesh::deck::{Adjust, ContactPair, Deck, Overclosure};
+use crate::mesh::Members;
 use crate::scene::model::joints::{ContactSpec, EquationSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
+use crate::substructures::BodyNode;
+use std::collections::BTreeSet;
 
 /// The ties, among them the contact pairs that tie.
 pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
@@ -42,22 +45,17 @@ pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
 }
 
 /// The contact pairs that do not tie; soft laws are hard here.
-pub(super) fn contacts(deck: &Deck) -> Result<Vec<ContactSpec>> {
+pub(super) fn contacts(deck: &Deck, numbers: &Numbers) -> Result<Vec<ContactSpec>> {
     let mut out = Vec::new();
     for pair in &deck.contacts {
         let interaction = &deck.interactions[pair.interaction as usize];
         if matches!(interaction.overclosure, Overclosure::Tied { .. }) {
             continue;
         }
-        let adjust = match &pair.adjust {
-            Adjust::No => 0.0,
-            Adjust::Within(distance) => *distance,
-            Adjust::Nodes(_) => {
-                return Err(deck.files.error(
-                    pair.place,
-                    "ADJUST with a node set (a distance was expected)",
-                ))
-            }
+        let (adjust, adjusted) = match &pair.adjust {
+            Adjust::No => (0.0, Vec::new()),
+            Adjust::Within(distance) => (*distance, Vec::new()),
+            Adjust::Nodes(nodes) => (0.0, adjusted(deck, numbers, pair, nodes)?),
         };
         out.push(ContactSpec {
             pair: Pair::Surfaces(pair.slave.name.clone(), pair.master.name.clone()),
@@ -71,11 +69,39 @@ pub(super) fn contacts(deck: &Deck) -> Result<Vec<ContactSpec>> {
             } else {
                 adjust
             },
+            adjusted,
             ramp: None,
             written: at(deck, pair.place),
         });
     }
     Ok(out)
+}
+
+/// The nodes of the slave that a contact pair moves onto its master: those of a set.
+fn adjusted(
+    deck: &Deck,
+    numbers: &Numbers,
+    pair: &ContactPair,
+    set: &[u32],
+) -> Result<Vec<BodyNode>> {
+    let mesh = &deck.mesh;
+    let slave: BTreeSet<u32> = match &mesh.groups[pair.slave.group as usize].members {
+        Members::Nodes(nodes) => nodes.iter().copied().collect(),
+        Members::Sides(sides) => {
+            let nodes = |&(c, side): &(u32, u8)| mesh.cells.side_nodes(c as usize, side.into());
+            sides.iter().flat_map(nodes).collect()
+        }
+        Members::Cells { .. } => BTreeSet::new(),
+    };
+    let both: Vec<u32> = set.iter().copied().filter(|k| slave.contains(k)).collect();
+    if both.is_empty() {
+        let name = &pair.slave.name;
+        return Err(deck.files.error(
+            pair.place,
+            format!("the node set of ADJUST has no node of the slave surface {name} (one at least was expected)"),
+        ));
+    }
+    Ok(both.into_iter().filter_map(|k| numbers.node(k)).collect())
 }
 
 /// The equations between displacements.

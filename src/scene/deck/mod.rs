@@ -121,7 +121,7 @@ impl DeckScenes {
             form,
             default: ByDefault::Free,
             ties: joints::ties(deck),
-            contacts: joints::contacts(deck)?,
+            contacts: joints::contacts(deck, &numbers)?,
             equations,
             notes: self.notes(),
             ..SceneSpec::tied(title, bodies)

@@ -3,6 +3,7 @@
 use super::profile::Profile;
 use super::ramp::Ramp;
 use super::rigid::Rigid;
+use crate::substructures::BodyNode;
 
 /// The pairs of bodies to which an entry applies.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,6 +64,8 @@ pub struct ContactSpec {
     pub distance: Option<f64>,
     /// Initial gaps and overclosures up to this length count as touching.
     pub adjust: f64,
+    /// Nodes of the first body that count as touching, whatever their gap is.
+    pub adjusted: Vec<BodyNode>,
     /// Factor of the gap over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, or empty.

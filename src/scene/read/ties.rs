@@ -53,6 +53,7 @@ impl Reader {
             gap: gap.unwrap_or_else(|| Profile::constant(0.0)),
             distance,
             adjust: adjust.unwrap_or(0.0),
+            adjusted: Vec::new(),
             ramp,
             written: item.written(),
         })

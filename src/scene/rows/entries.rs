@@ -12,6 +12,7 @@ use crate::scene::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{ByDefault, SceneSpec};
 use crate::scene::model::steps::{Factors, Steps};
+use crate::substructures::BodyNode;
 use std::collections::{HashMap, HashSet};
 
 /// All pairs that touch, with their ties and contacts.
@@ -57,9 +58,12 @@ fn facing(
     interfaces: &mut Vec<Interface>,
 ) -> Result<()> {
     let ties = spec.ties.iter();
-    let ties = ties.map(|t| (t.sides, &t.pair, t.adjust, None, &t.written));
+    let ties = ties.map(|t| (t.sides, &t.pair, (t.adjust, &[][..]), None, &t.written));
     let contacts = spec.contacts.iter();
-    let contacts = contacts.map(|c| (c.sides, &c.pair, c.adjust, c.distance, &c.written));
+    let contacts = contacts.map(|c| {
+        let adjust = (c.adjust, &c.adjusted[..]);
+        (c.sides, &c.pair, adjust, c.distance, &c.written)
+    });
     for (number, (sides, pair, adjust, distance, written)) in ties.chain(contacts).enumerate() {
         let (Some(sides), Pair::Named(first, second)) = (sides, pair) else {
             continue;
@@ -94,8 +98,13 @@ fn facing(
                 found?.clone()
             }
         };
-        for distance in interface.distances.iter_mut() {
-            if distance.abs() <= adjust {
+        let (within, adjusted) = adjust;
+        let adjusted: HashSet<&BodyNode> = adjusted.iter().collect();
+        // The first body of the entry is the second of the pair if its number is higher.
+        let first = usize::from(pair[0] != a);
+        let shared = interface.shared.iter().map(|s| s.nodes[first]);
+        for (distance, node) in interface.distances.iter_mut().zip(shared) {
+            if distance.abs() <= within || adjusted.contains(&BodyNode { body: a, node }) {
                 *distance = 0.0;
             }
         }

@@ -157,6 +157,7 @@ fn found(
                     gap: Profile::constant(0.0),
                     distance: Some(reach),
                     adjust: auto.adjust,
+                    adjusted: Vec::new(),
                     ramp: None,
                     written: auto.written.clone(),
                 }),
