@@ -159,8 +159,8 @@ fn a_cut_deck_is_solved_and_said() {
 }
 
 /// Three columns of two squares under pressure, with gaps 0.01, 0.01 and −0.01. The slave nodes of the first and the
-/// third, and the master nodes of the second, are in the node set that ADJUST names: the gaps of the first and the third
-/// count as none.
+/// third, and the master nodes of the second, are in the node set that ADJUST names: gaps of the first and the third
+/// column count as none.
 fn columns(adjust: &str) -> String {
     let (mut nodes, mut cells) = (String::new(), String::new());
     for (c, gap) in [0.01, 0.01, -0.01].into_iter().enumerate() {
