@@ -1,5 +1,7 @@
 //! Facts about the problem that the set-up finds.
 
+use std::collections::BTreeMap;
+use std::mem::size_of_val;
 use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
@@ -60,6 +62,12 @@ impl Facts {
         kinds.dedup_by(|a, b| Arc::ptr_eq(a, b));
         let bytes = kinds.iter().map(|l| l.bytes());
         let (factor_bytes, dense_bytes) = bytes.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+        // Turned copies have Ψ of their own, those that are turned alike one in common.
+        let turned = stiffness.locals.iter().filter(|l| l.turn().is_some());
+        let psi: BTreeMap<u64, usize> = turned
+            .map(|l| (l.name(), size_of_val(&l.gamma().psi.data[..])))
+            .collect();
+        let dense_bytes = dense_bytes + psi.values().sum::<usize>();
         Facts {
             multipliers_local: jump.n_local,
             multipliers_global: jump.n_global - jump.n_local,

@@ -107,9 +107,10 @@ impl Scene {
         let mut steps = Steps::new(&spec)?;
         let mut bodies = Vec::with_capacity(spec.bodies.len());
         let (mut first_dof, mut first_subdomain) = (0, 0);
+        let mut cuts = cut::Cuts::default();
         for mut body in std::mem::take(&mut spec.bodies) {
             let components = spec.form.components(body.mesh.dim());
-            cut::prepare(&mut body, &spec.form)?;
+            cut::prepare(&mut body, &spec.form, &mut cuts)?;
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
                 components,

@@ -6,14 +6,15 @@ use crate::fem::cell::{Element, Material};
 use crate::fem::element::{self, Integration};
 use crate::fem::Form;
 use crate::mesh::partition::{subdomains_for, Adjacency, Interface, Partition, Sharing};
-use crate::mesh::{second_order, CellMesh, Mesh, Parts};
+use crate::mesh::{congruent, second_order, CellMesh, Mesh, Parts};
 use std::sync::Arc;
 
-/// Gives a body its final mesh.
+/// Gives a body its final mesh. A copy of a mesh in `before`, also a turned or mirrored one, is cut as that is, so that
+/// the subdomains of both are alike.
 ///
 /// # Errors
 /// [`Error::Input`] for cells that are inverted or degenerate, or that the form has no element for.
-pub(super) fn prepare(body: &mut BodySpec, form: &Form) -> Result<()> {
+pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Result<()> {
     if let (Mesh::Grid(grid), 2) = (&body.mesh, body.order) {
         let simplices = form.element == Element::P1;
         let place = |point| body.map.as_ref().map_or(point, |map| map.apply(point));
@@ -36,8 +37,25 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form) -> Result<()> {
         Cut::Auto => subdomains_for(mesh.points.len() * components, mesh.dim),
         Cut::Into(n) => n,
     };
-    cut(Arc::make_mut(mesh), n);
+    before.cut(mesh, n);
     Ok(())
+}
+
+/// The meshes that have been cut so far, each with the number of subdomains that it was to have.
+#[derive(Default)]
+pub(super) struct Cuts(Vec<(usize, Arc<CellMesh>)>);
+
+impl Cuts {
+    /// Cuts a mesh as the first of its copies was cut.
+    fn cut(&mut self, mesh: &mut Arc<CellMesh>, n: usize) {
+        let like = |(of, known): &&(usize, Arc<CellMesh>)| *of == n && congruent(known, mesh);
+        if let Some((_, known)) = self.0.iter().find(like) {
+            Arc::make_mut(mesh).parts = known.parts.clone();
+            return;
+        }
+        cut(Arc::make_mut(mesh), n);
+        self.0.push((n, mesh.clone()));
+    }
 }
 
 /// Cuts a mesh into `n` subdomains of about equal work.

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use crate::support::assembled::{Assembled, Place};
 use crate::support::mpi::{as_rank, Scratch};
+use fetifeti::petsc::Session;
 use fetifeti::scene::{Numbering, Scene};
 use fetifeti::{gather_all, Error, FetiFeti, MethodSettings};
 
@@ -37,14 +38,14 @@ fn scenes(folder: &str) -> Vec<(String, Scene)> {
 }
 
 /// The method's answer: values by body dof, one for each subdomain that has it, and multipliers by row.
-struct Answer {
+pub struct Answer {
     copies: Vec<(u64, f64)>,
     multipliers: Vec<f64>,
 }
 
 impl Answer {
     /// From a file of words: a count, so many dofs and values, then the multipliers.
-    fn read(path: &str) -> Answer {
+    pub fn read(path: &str) -> Answer {
         let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{path}: {e}"));
         let word = |b: &[u8]| u64::from_le_bytes(b.try_into().expect("eight bytes"));
         let words: Vec<u64> = bytes.chunks_exact(8).map(word).collect();
@@ -58,36 +59,42 @@ impl Answer {
     }
 }
 
+/// Solves this rank's part of a scene and writes the answer into `out`. Collective.
+pub fn solve(session: &Session, name: &str, scene: &Scene, out: &str) -> fetifeti::Result<()> {
+    let share = fetifeti::share(session, scene.n_subdomains());
+    let problem = scene.substructures(&|s| share.contains(&s))?;
+    let settings = MethodSettings {
+        rtol: RTOL,
+        ..MethodSettings::default()
+    };
+    let solver = FetiFeti::new(session, problem, settings)?;
+    let solution = solver.solve()?;
+    if !solution.converged() {
+        let why = format!("{name}: {}", solution.status);
+        return Err(Error::NotConverged(why));
+    }
+    let all = |values: Vec<u64>| gather_all(session.comm(), &values).concat();
+    let dofs = solver.problem().local.iter().flat_map(|s| &s.dofs);
+    let dofs = all(dofs.copied().collect());
+    let values = solution.u.iter().flatten().map(|u| u.to_bits());
+    let values = all(values.collect());
+    let rows = solution.rows().iter().map(|r| r.multiplier.to_bits());
+    let rows = all(rows.collect());
+    if session.rank() == 0 {
+        let words = [vec![dofs.len() as u64], dofs, values, rows].concat();
+        let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+        std::fs::write(Path::new(out).join(name), bytes)
+            .map_err(|e| Error::input(e.to_string()))?;
+    }
+    Ok(())
+}
+
 #[test]
 fn every_example_has_the_direct_solution() {
     let ranks = as_rank(|session, case| {
         let (folder, out) = case.split_once(' ').expect("a folder and a directory");
         for (name, scene) in scenes(folder) {
-            let share = fetifeti::share(session, scene.n_subdomains());
-            let problem = scene.substructures(&|s| share.contains(&s))?;
-            let settings = MethodSettings {
-                rtol: RTOL,
-                ..MethodSettings::default()
-            };
-            let solver = FetiFeti::new(session, problem, settings)?;
-            let solution = solver.solve()?;
-            if !solution.converged() {
-                let why = format!("{name}: {}", solution.status);
-                return Err(Error::NotConverged(why));
-            }
-            let all = |values: Vec<u64>| gather_all(session.comm(), &values).concat();
-            let dofs = solver.problem().local.iter().flat_map(|s| &s.dofs);
-            let dofs = all(dofs.copied().collect());
-            let values = solution.u.iter().flatten().map(|u| u.to_bits());
-            let values = all(values.collect());
-            let rows = solution.rows().iter().map(|r| r.multiplier.to_bits());
-            let rows = all(rows.collect());
-            if session.rank() == 0 {
-                let words = [vec![dofs.len() as u64], dofs, values, rows].concat();
-                let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
-                std::fs::write(Path::new(out).join(name), bytes)
-                    .map_err(|e| Error::input(e.to_string()))?;
-            }
+            solve(session, &name, &scene, out)?;
         }
         Ok(())
     });
@@ -109,7 +116,7 @@ fn every_example_has_the_direct_solution() {
 }
 
 /// The answers on 1, 2 and 4 ranks against the direct solution.
-fn compare(name: &str, scene: &Scene, answers: &[Answer; 3]) {
+pub fn compare(name: &str, scene: &Scene, answers: &[Answer; 3]) {
     let clock = std::time::Instant::now();
     let problem = Assembled::of_scene(scene);
     let qp = &problem.qp;

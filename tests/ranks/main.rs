@@ -5,5 +5,6 @@ mod support;
 
 mod answers;
 mod communication;
+mod copies;
 mod direct;
 mod pairs;

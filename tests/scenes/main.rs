@@ -9,6 +9,7 @@ mod coefficient_scenes;
 mod contact;
 mod contact_input;
 mod contact_solution;
+mod copies;
 mod counts;
 mod examples;
 mod gallery;

@@ -7,6 +7,7 @@ pub mod checks;
 pub mod common;
 pub mod compared;
 pub mod contact_judge;
+pub mod copies;
 pub mod direct;
 pub mod elastic_scene;
 pub mod keys;

@@ -14,6 +14,7 @@ use crate::cholesky::symbolic::Keep;
 use crate::cholesky::symbolic::Symbolic;
 use crate::feti::jump::operator::Jump;
 use crate::feti::settings::Operators;
+use crate::feti::subdomain::equal::Likeness;
 use crate::feti::subdomain::which::OperatorForm;
 use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
@@ -118,19 +119,15 @@ impl Kind<'_> {
 }
 
 /// One of each kind of subdomain. `first` has the representative of every local subdomain.
-pub fn kinds<'a>(
-    problem: &'a Substructures,
-    jump: &'a Jump,
-    first: &[(usize, f64)],
-) -> Vec<Kind<'a>> {
-    let own = (0..first.len()).filter(|&j| first[j].0 == j);
+pub fn kinds<'a>(problem: &'a Substructures, jump: &'a Jump, first: &[Likeness]) -> Vec<Kind<'a>> {
+    let own = (0..first.len()).filter(|&j| first[j].first == j);
     let of = |j: usize| Kind {
         j,
         sub: &problem.local[j],
         delta: &jump.delta[j],
         primal: &jump.primal[j],
         averages: jump.averages[j].len(),
-        copies: first.iter().filter(|f| f.0 == j).count(),
+        copies: first.iter().filter(|f| f.first == j).count(),
     };
     own.map(of).collect()
 }

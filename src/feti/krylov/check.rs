@@ -3,6 +3,7 @@
 use super::system::System;
 use crate::feti::operators::dual::Dual;
 use crate::feti::operators::work::Work;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::feti::subdomain::which::Operator;
 use crate::parallel::exchange::{max_all, sum_all};
 use crate::petsc::Vec as PetscVec;
@@ -223,7 +224,7 @@ impl Check<'_> {
         let (stiffness, natural) = (&self.dual.stiffness, &self.dual.natural);
         let locals = self.problem.local.iter().zip(&stiffness.locals);
         let g: Vec<Vec<f64>> = locals
-            .map(|(sub, local)| local.kind().condense(&sub.f).1)
+            .map(|(sub, local)| Scaled::condense_many(&[local], &[&sub.f]).remove(0).1)
             .collect();
         let lambda = self.dual.multipliers()?;
         lambda.set(0.0)?;

@@ -7,12 +7,12 @@
 use crate::cholesky::lanes::LANES;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::natural::KernelLoad;
+use crate::feti::subdomain::scaled::Scaled;
 use crate::substructures::Substructures;
 
 /// The data of the right-hand side of the dual problem.
 pub struct Loads {
-    /// K_II⁻¹ f_I of each local subdomain, as
-    /// [`LocalProblem::condense`](crate::feti::subdomain::problem::LocalProblem) leaves it.
+    /// K_II⁻¹ f_I of each local subdomain, as [`Scaled::condense_many`] leaves it.
     pub interiors: Vec<Vec<f64>>,
     /// g of each local subdomain, length n_Γ.
     pub g: Vec<Vec<f64>>,
@@ -36,7 +36,7 @@ impl Loads {
         let batches = stiffness.batches(LANES);
         let condensed = stiffness.by_batch(&batches, |locals, members| {
             let loads: Vec<&[f64]> = members.iter().map(|&j| f[j]).collect();
-            locals[0].kind().condense_many(&loads)
+            Scaled::condense_many(locals, &loads)
         });
         let (interiors, g): (Vec<_>, Vec<_>) = condensed.into_iter().unzip();
         let kernel = dual.natural.kernel_load(dual.comm(), f, &g);

@@ -109,7 +109,7 @@ impl Sums {
 fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe]) -> Vec<usize> {
     let mut names: HashMap<Vec<u64>, u64> = HashMap::new();
     let mut name = |j: usize| {
-        let mut key = vec![Arc::as_ptr(locals[j].kind()) as u64];
+        let mut key = vec![locals[j].name()];
         for &(p, c, w) in &functions[j].weights {
             key.extend([u64::from(p) << 32 | u64::from(c), w.to_bits()]);
         }
@@ -120,10 +120,7 @@ fn representatives(locals: &[Scaled], functions: &[Functions], recipes: &[Recipe
     let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
     let first = |(j, recipe): (usize, &Recipe)| {
         let mut key = recipe.signature(|i| names[i]);
-        key.extend([
-            Arc::as_ptr(locals[j].kind()) as u64,
-            locals[j].factor.to_bits(),
-        ]);
+        key.extend([locals[j].name(), locals[j].factor.to_bits()]);
         *known.entry(key).or_insert(j)
     };
     recipes.iter().enumerate().map(first).collect()

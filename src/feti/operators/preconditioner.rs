@@ -137,7 +137,7 @@ impl Preconditioner {
         team.for_each(work, |j, w| {
             let v = &w.v;
             products.take(j, &locals[j], &mut w.y, |y| match rounded(j) {
-                Some(s) => s.mul(locals[j].factor, v, y),
+                Some(s) => locals[j].around(v, y, |v, y| s.mul(locals[j].factor, v, y)),
                 None => locals[j].apply_one(Operator::S, v, y),
             });
         });

@@ -2,7 +2,8 @@
 //! factor, serves many subdomains.
 //!
 //! A matrix-vector product reads an n × n operator for 2 n² operations and waits for memory. With thirty vectors side
-//! by side, one reading of the operator serves thirty times the operations.
+//! by side, one reading of the operator serves thirty times the operations. Vectors of turned copies are turned on the
+//! way in and out.
 
 use std::cell::{Ref, RefCell};
 
@@ -79,6 +80,7 @@ impl Products {
                 panel.live[c] = v.iter().any(|v| *v != 0.0);
                 if panel.live[c] {
                     panel.v.col_mut(n).copy_from_slice(v);
+                    locals[j].turn_back(panel.v.col_mut(n));
                     n += 1;
                 }
             }
@@ -118,6 +120,7 @@ impl Results<'_> {
                 for (y, p) in head.iter_mut().zip(panel.y.col(before)) {
                     *y = multiple * p;
                 }
+                local.turn_forth(head);
                 tail.fill(0.0);
             }
             Some(_) => y.fill(0.0),

@@ -2,52 +2,91 @@
 //!
 //! Two subdomains are equal if interface and averages are the same and one matrix is a multiple of the other, up to the
 //! rounding of assembly. Their position does not matter. On a regular grid a handful of different subdomains remain,
-//! whatever their coefficients, and the dense operators of these stay in the cache.
+//! whatever their coefficients, and the dense operators of these stay in the cache. Those that are equal but for a
+//! rotation or reflection are found by [`congruent`](super::congruent).
 
 use std::collections::hash_map::DefaultHasher;
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
+use super::congruent;
+use super::turn::Turn;
 use crate::feti::jump::operator::Jump;
 use crate::linalg::csr::Csr;
 use crate::parallel::team::Team;
 use crate::substructures::Substructures;
 
+/// What a subdomain shares: its matrix is `factor` · R K Rᵀ, K being the matrix of local subdomain `first`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Likeness {
+    /// The first subdomain of this kind.
+    pub first: usize,
+    /// φ.
+    pub factor: f64,
+    /// R; `None` for the identity.
+    pub turn: Option<Turn>,
+}
+
+/// For every local subdomain, the first one that equals it up to a factor, a rotation and a reflection.
+pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<Likeness> {
+    let equal = |(first, factor)| Likeness {
+        first,
+        factor,
+        turn: None,
+    };
+    let multiples = multiples(problem, jump, team).into_iter();
+    let mut out: Vec<Likeness> = multiples.map(equal).collect();
+    congruent::merge(problem, jump, team, &mut out);
+    out
+}
+
 /// For every local subdomain, the first one that equals it and the multiple of its matrix.
-pub fn representatives(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<(usize, f64)> {
+fn multiples(problem: &Substructures, jump: &Jump, team: &Team) -> Vec<(usize, f64)> {
     let n = problem.local.len();
-    let mut found: HashMap<u64, Vec<usize>> = HashMap::new();
     let buckets: Vec<u64> = (0..n).map(|j| hash(problem, jump, j)).collect();
+    first_of_each(team, &buckets, 1.0, |i, j| multiple(problem, jump, i, j))
+}
+
+/// For each item, the first one that it is like, and how. Only items of the same bucket are compared. `own` says how an
+/// item is like itself.
+pub(super) fn first_of_each<T: Copy + Send + Sync>(
+    team: &Team,
+    buckets: &[u64],
+    own: T,
+    like: impl Fn(usize, usize) -> Option<T> + Sync + Send,
+) -> Vec<(usize, T)> {
+    let n = buckets.len();
+    let mut found: HashMap<u64, Vec<usize>> = HashMap::new();
     for (j, &bucket) in buckets.iter().enumerate() {
         found.entry(bucket).or_insert_with(|| vec![j]);
     }
     // Reading the matrices is the main cost. All are compared at once, each with the first of its bucket.
-    let equal: Vec<Option<f64>> = team.map(n, |j| match found[&buckets[j]][0] {
-        first if first == j => Some(1.0),
-        first => multiple(problem, jump, first, j),
+    let equal: Vec<Option<T>> = team.map(n, |j| match found[&buckets[j]][0] {
+        first if first == j => Some(own),
+        first => like(first, j),
     });
     let mut out = Vec::with_capacity(n);
     for (j, bucket) in buckets.iter().enumerate() {
         let candidates = found.entry(*bucket).or_default();
-        if let Some(factor) = equal[j] {
-            out.push((candidates[0], factor));
+        if let Some(how) = equal[j] {
+            out.push((candidates[0], how));
             continue;
         }
         let mut others = candidates[1..].iter();
-        let known = others.find_map(|&i| Some((i, multiple(problem, jump, i, j)?)));
+        let known = others.find_map(|&i| Some((i, like(i, j)?)));
         out.push(known.unwrap_or_else(|| {
             candidates.push(j);
-            (j, 1.0)
+            (j, own)
         }));
     }
     out
 }
 
 /// Number of matrix entries that enter the hash.
-const SAMPLES: usize = 64;
+pub(super) const SAMPLES: usize = 64;
 
 /// Ratios of entries enter the hash as multiples of one over this, so that rounding does not change it.
-const UNIT: f64 = 1e6;
+pub(super) const UNIT: f64 = 1e6;
 
 /// Entries may differ by this fraction of √(k_ii k_jj): a few additions in another order change them by as much.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -72,16 +111,23 @@ fn reference(k: &Csr) -> f64 {
     k.get(0, 0)
 }
 
+/// Whether two local subdomains have the same interface and averages, and matrices of the same pattern.
+pub(super) fn same_pattern(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> bool {
+    let averaged = |j: usize| jump.averages[j].iter().map(|a| &a.dofs);
+    let (a, b) = (&problem.local[i].k, &problem.local[j].k);
+    jump.delta[i] == jump.delta[j]
+        && jump.primal[i] == jump.primal[j]
+        && averaged(i).eq(averaged(j))
+        && a.row_ptr == b.row_ptr
+        && a.col == b.col
+}
+
 /// φ with K_j = φ K_i if the subdomains are equal, `None` otherwise.
 fn multiple(problem: &Substructures, jump: &Jump, i: usize, j: usize) -> Option<f64> {
-    let averaged = |j: usize| jump.averages[j].iter().map(|a| &a.dofs);
-    let same = jump.delta[i] == jump.delta[j]
-        && jump.primal[i] == jump.primal[j]
-        && averaged(i).eq(averaged(j));
-    let (a, b) = (&problem.local[i].k, &problem.local[j].k);
-    if !same || a.row_ptr != b.row_ptr || a.col != b.col {
+    if !same_pattern(problem, jump, i, j) {
         return None;
     }
+    let (a, b) = (&problem.local[i].k, &problem.local[j].k);
     if a.val == b.val {
         return Some(1.0);
     }

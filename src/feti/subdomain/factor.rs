@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
-use super::equal;
+use super::equal::{self, Likeness};
 use super::problem::LocalProblem;
 use super::scaled::Scaled;
 use super::which::OperatorForm;
@@ -58,14 +58,14 @@ pub(crate) fn factor(
         wants_s,
     );
     let analyses = analyses(&kinds, &forms, team, settings.local);
-    let factored = team.map(kinds.len(), |k| {
-        let (kind, sub) = (&kinds[k], kinds[k].sub);
+    let make = |k: usize, j: usize| {
+        let (kind, sub) = (&kinds[k], &problem.local[j]);
         let condenser = Condenser {
             solver: settings.local,
             analysis: analyses.of[k].map(|a| &*analyses.all[a]),
             keep: kind.keep(),
         };
-        let averages = jump.averages[kind.j].iter();
+        let averages = jump.averages[j].iter();
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
         let places = sub.coordinates.as_deref();
         let (delta, primal, form) = (kind.delta, kind.primal, forms[k]);
@@ -77,11 +77,30 @@ pub(crate) fn factor(
                 Arc::new(local)
             })
             .map_err(|e| no_factor(problem, sub, e))
-    });
+    };
+    let factored = team.map(kinds.len(), |k| make(k, kinds[k].j));
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
     let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
-    let of = |&(j, factor): &(usize, f64)| Scaled::new(factored[place(j)].clone(), factor);
-    Ok(first.iter().map(of).collect())
+    // Copies that are turned alike have Ψ in common.
+    let mut turned: Vec<(usize, Scaled)> = Vec::new();
+    let of = |(j, like): (usize, &Likeness)| {
+        let k = place(like.first);
+        let Some(turn) = like.turn else {
+            return Ok(Scaled::new(factored[k].clone(), like.factor));
+        };
+        // Free dofs of the interior that joined Γ tear nodes apart.
+        if factored[k].gamma.n_gamma() > kinds[k].delta.len() + kinds[k].primal.len() {
+            return Ok(Scaled::new(make(k, j)?, 1.0));
+        }
+        let same = |(first, s): &&(usize, Scaled)| *first == like.first && s.turn() == Some(&turn);
+        if let Some((_, known)) = turned.iter().find(same) {
+            return Ok(known.with_factor(like.factor));
+        }
+        let new = Scaled::turned(factored[k].clone(), like.factor, turn);
+        turned.push((like.first, new.clone()));
+        Ok(new)
+    };
+    first.iter().enumerate().map(of).collect()
 }
 
 /// Symbolic analyses of patterns that several kinds share.

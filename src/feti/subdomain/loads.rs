@@ -3,14 +3,9 @@
 use super::problem::{Inside, LocalProblem};
 
 impl LocalProblem {
-    /// Condenses a load: returns (work, g) with g = f_Γ − K_ΓI K_II⁻¹ f_I in the order of Γ. `work` is for
+    /// Condenses loads, at most [`LANES`](crate::cholesky::lanes::LANES). Returns (work, g) for each with g = f_Γ −
+    /// K_ΓI K_II⁻¹ f_I in the order of Γ. `work` is for
     /// [`Scaled::recover_many`](super::scaled::Scaled::recover_many).
-    pub fn condense(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let mut both = self.condense_many(&[f]);
-        both.pop().expect("one load")
-    }
-
-    /// [`condense`](Self::condense) of several loads, at most [`LANES`](crate::cholesky::lanes::LANES).
     pub fn condense_many(&self, loads: &[&[f64]]) -> Vec<(Vec<f64>, Vec<f64>)> {
         let factor = match &self.inside {
             Inside::Partial(factor) => factor,
@@ -34,8 +29,8 @@ impl LocalProblem {
     }
 
     /// Solutions on all dofs for at most [`LANES`](crate::cholesky::lanes::LANES) parts, each with `work` of
-    /// [`condense`](Self::condense) and the interface values `u_gamma`. The matrix of each part is the factored one
-    /// times its entry of `scales`.
+    /// [`condense_many`](Self::condense_many) and the interface values `u_gamma`. The matrix of each part is the
+    /// factored one times its entry of `scales`.
     pub(crate) fn recover_many(&self, parts: &[(&[f64], &[f64])], scales: &[f64]) -> Vec<Vec<f64>> {
         let placed = |((work, u_gamma), scale): (&(&[f64], &[f64]), &f64)| {
             let mut x: Vec<f64> = match *scale {

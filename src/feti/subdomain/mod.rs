@@ -2,6 +2,7 @@
 
 pub mod basis;
 pub mod condense;
+mod congruent;
 pub mod equal;
 pub mod factor;
 pub mod implicit;
@@ -9,4 +10,5 @@ pub mod loads;
 pub mod operators;
 pub mod problem;
 pub mod scaled;
+pub mod turn;
 pub mod which;

@@ -25,6 +25,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::basis::Basis;
 use super::implicit::Implicit;
+use super::turn::Turn;
 use super::which::OperatorForm;
 use crate::cholesky::interior::{Condenser, Factor, LocalSolver, NoFactor, Solver};
 use crate::cholesky::symbolic::Keep;
@@ -59,6 +60,8 @@ pub struct Gamma {
     pub fixing: Vec<usize>,
     /// Ψ on Δ, n_Δ × n_Π (on the vertices it is the identity in their columns and zero in the others).
     pub psi: Dense,
+    /// R of a turned copy, whose fixing dofs are dofs of Rᵀ u; see [`Turn`].
+    pub turn: Option<Turn>,
 }
 
 /// One subdomain, factored. What all multiples of its matrix have in common is read from its [`Gamma`].
@@ -114,6 +117,9 @@ impl Gamma {
     pub fn primal_values(&self, u: &[f64]) -> Vec<f64> {
         let mut changed = u.to_vec();
         if !self.fixing.is_empty() {
+            if let Some(turn) = &self.turn {
+                turn.back(&mut changed);
+            }
             self.basis.to_coordinates(&mut changed);
         }
         let vertices = u[self.n_delta..].iter().copied();
@@ -171,6 +177,7 @@ impl LocalProblem {
                         basis,
                         fixing: Vec::new(),
                         psi: coarse.psi,
+                        turn: None,
                     },
                     sigma: coarse.sigma,
                     s: OnceLock::new(),

@@ -15,7 +15,12 @@ fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
         let sharing =
             Sharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
         let jump = Jump::new(session.comm(), &problem, &sharing);
-        let first: Vec<(usize, f64)> = (0..problem.local.len()).map(|j| (j, 1.0)).collect();
+        let own = |first| Likeness {
+            first,
+            factor: 1.0,
+            turn: None,
+        };
+        let first: Vec<Likeness> = (0..problem.local.len()).map(own).collect();
         let team = Team::new(1).expect("threads");
         let kinds = kinds(&problem, &jump, &first);
         check(&choose(

@@ -16,7 +16,7 @@ fn a_regular_grid_has_one_matrix_per_kind_of_boundary() {
             Sharing::new(session.comm(), &problem, &weights, Primal::default()).expect("shared");
         let jump = Jump::new(session.comm(), &problem, &sharing);
         let first = representatives(&problem, &jump, &Team::new(2).expect("threads"));
-        let mut kinds: Vec<usize> = first.iter().map(|f| f.0).collect();
+        let mut kinds: Vec<usize> = first.iter().map(|f| f.first).collect();
         kinds.sort_unstable();
         kinds.dedup();
         // Subdomains inside a body, at its faces and corners, and at the sides and corners of the square.
@@ -26,8 +26,9 @@ fn a_regular_grid_has_one_matrix_per_kind_of_boundary() {
             kinds.len(),
             first.len()
         );
-        for (j, &(i, factor)) in first.iter().enumerate() {
-            assert!(i <= j && factor == 1.0);
+        for (j, like) in first.iter().enumerate() {
+            let i = like.first;
+            assert!(i <= j && like.factor == 1.0 && like.turn.is_none());
             assert_eq!(multiple(&problem, &jump, i, j), Some(1.0));
         }
     });
@@ -44,7 +45,11 @@ fn coefficients_of_subdomains_do_not_make_kinds_but_those_of_elements_do() {
                 Sharing::new(session.comm(), problem, &weights, Primal::default()).expect("shared");
             let jump = Jump::new(session.comm(), problem, &sharing);
             let first = representatives(problem, &jump, &Team::new(1).expect("threads"));
-            let kinds = first.iter().enumerate().filter(|(j, f)| f.0 == *j).count();
+            let kinds = first
+                .iter()
+                .enumerate()
+                .filter(|(j, f)| f.first == *j)
+                .count();
             (kinds, first)
         };
         let (plain, before) = count(&problem);
@@ -56,16 +61,16 @@ fn coefficients_of_subdomains_do_not_make_kinds_but_those_of_elements_do() {
         let (scaled, first) = count(&problem);
         assert_eq!(plain, scaled);
         for (j, (f, b)) in first.iter().zip(&before).enumerate() {
-            assert_eq!(f.0, b.0);
-            let expected = (j as f64 + 1.0) / (f.0 as f64 + 1.0);
-            assert!((f.1 - expected).abs() < 1e-14 * expected);
+            assert_eq!(f.first, b.first);
+            let expected = (j as f64 + 1.0) / (f.first as f64 + 1.0);
+            assert!((f.factor - expected).abs() < 1e-14 * expected);
         }
         // One element that is stiffer by a millionth is another matrix.
-        let last = first.iter().rposition(|f| f.0 + 1 < first.len());
+        let last = first.iter().rposition(|f| f.first + 1 < first.len());
         let j = last.expect("a subdomain");
         let k = &mut problem.local[j].k;
         let at = k.row_ptr[1] - 1;
         k.val[at] *= 1.0 + 1e-6;
-        assert!(count(&problem).0 > scaled || first[j].0 == j);
+        assert!(count(&problem).0 > scaled || first[j].first == j);
     });
 }

@@ -30,7 +30,7 @@ fn s_plus_inverts(k: &Csr, x: &[[f64; 3]], delta: &[u32], form: OperatorForm) {
     let u = random(k.n(), 5);
     let mut f = vec![0.0; k.n()];
     k.mul(&u, &mut f);
-    let (work, g) = local.condense(&f);
+    let (work, g) = local.condense_many(&[&f]).remove(0);
     let mut p = vec![0.0; 2];
     local.gamma.psi_transpose(&g, &mut p);
     let s = |i, j| local.sigma.get(i, j);

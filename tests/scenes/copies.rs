@@ -1,0 +1,229 @@
+//! Turned and mirrored copies of a part share its factorisations, and nothing else changes.
+
+use crate::support::checks::{identities, near};
+use crate::support::copies::{Copies, Kind};
+use crate::support::mpi::Scratch;
+use crate::support::session::with_session;
+use fetifeti::feti::{Adaptive, MethodSettings, Operators, PcType, Precision, Scaling};
+use fetifeti::scene::Scene;
+use fetifeti::substructures::Substructures;
+use fetifeti::FetiFeti;
+
+const TIED: Copies = Copies {
+    kind: Kind::Tetrahedra,
+    n: 5,
+    pairs: 2,
+    moved: 0.0,
+    joint: "tie",
+    subdomains: 4,
+};
+
+fn scene(name: &str, copies: &Copies) -> Scene {
+    let scratch = Scratch::new(name);
+    Scene::load(copies.write(&scratch)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+fn problem(name: &str, copies: &Copies) -> Substructures {
+    scene(name, copies)
+        .substructures(&|_| true)
+        .expect("substructures")
+}
+
+/// What a solution is compared by.
+struct Found {
+    kinds: usize,
+    constraints: usize,
+    iterations: usize,
+    kappa: f64,
+    energy: f64,
+    u: Vec<Vec<f64>>,
+}
+
+fn solve(problem: Substructures, settings: MethodSettings, what: &str) -> Found {
+    let what = what.to_string();
+    with_session(move |session| {
+        let solver = FetiFeti::new(session, problem, settings).expect("set up");
+        // Vectors are rounded before a product in single precision.
+        identities(&solver, if what == "mixed" { 1e-6 } else { 1e-9 }, &what);
+        let solution = solver.solve().expect("solved");
+        assert!(solution.converged(), "{what}: {}", solution.status);
+        let spectrum = solution.estimate.expect("an estimate");
+        Found {
+            kinds: solver.facts().kinds,
+            constraints: solver.facts().adaptive_constraints.iter().sum(),
+            iterations: solution.iterations,
+            kappa: spectrum.kappa(),
+            energy: solution.energy,
+            u: solution.u,
+        }
+    })
+}
+
+/// The same problem without positions: matrices are compared as they are.
+fn unplaced(mut problem: Substructures) -> Substructures {
+    problem
+        .local
+        .iter_mut()
+        .for_each(|sub| sub.coordinates = None);
+    problem
+}
+
+#[test]
+fn copies_have_the_factorisations_of_one_part() {
+    let settings = || MethodSettings {
+        rtol: 1e-10,
+        ..MethodSettings::default()
+    };
+    for (kind, joint) in [
+        (Kind::Tetrahedra, "tie"),
+        (Kind::Hexahedra, "tie"),
+        (Kind::Hexahedra, ""),
+    ] {
+        let copies = Copies {
+            kind,
+            joint,
+            ..TIED
+        };
+        let what = format!("copies {joint} {}", kind == Kind::Hexahedra);
+        let problem = problem(&what, &copies);
+        assert_eq!(problem.local.len(), 16);
+        let shared = solve(problem.clone(), settings(), &what);
+        assert_eq!(shared.kinds, 4, "{what}");
+        let alone = solve(unplaced(problem), settings(), &what);
+        assert_eq!(alone.kinds, 16, "{what}");
+        same(&shared, &alone, 1e-8, &what);
+    }
+}
+
+/// The same solution in as many iterations, up to one, with the same κ.
+#[track_caller]
+fn same(a: &Found, b: &Found, tolerance: f64, what: &str) {
+    assert!(
+        a.iterations.abs_diff(b.iterations) <= 1,
+        "{what}: {} {}",
+        a.iterations,
+        b.iterations
+    );
+    assert!(
+        near(a.kappa, b.kappa, 1e-4),
+        "{what}: {} {}",
+        a.kappa,
+        b.kappa
+    );
+    assert!(
+        near(a.energy, b.energy, 1e-12),
+        "{what}: {} {}",
+        a.energy,
+        b.energy
+    );
+    let size = b.u.iter().flatten().fold(0.0f64, |s, u| s.max(u.abs()));
+    let pairs = a.u.iter().flatten().zip(b.u.iter().flatten());
+    let far = pairs.fold(0.0f64, |far, (a, b)| far.max((a - b).abs()));
+    assert!(far < tolerance * size, "{what}: {far:.1e} of {size:.1e}");
+}
+
+#[test]
+fn every_form_of_the_method_is_right_on_copies() {
+    let usual = MethodSettings {
+        rtol: 1e-10,
+        ..MethodSettings::default()
+    };
+    let cases = [
+        (
+            "implicit",
+            MethodSettings {
+                operators: Operators::Implicit,
+                ..usual.clone()
+            },
+        ),
+        (
+            "explicit",
+            MethodSettings {
+                operators: Operators::Explicit,
+                ..usual.clone()
+            },
+        ),
+        (
+            "lumped",
+            MethodSettings {
+                pc_type: Some(PcType::Lumped),
+                ..usual.clone()
+            },
+        ),
+        (
+            "dirichlet",
+            MethodSettings {
+                pc_type: Some(PcType::Dirichlet),
+                ..usual.clone()
+            },
+        ),
+        (
+            "corrected",
+            MethodSettings {
+                pc_type: Some(PcType::CoarseCorrected),
+                ..usual.clone()
+            },
+        ),
+        (
+            "deluxe",
+            MethodSettings {
+                scaling: Scaling::Deluxe,
+                ..usual.clone()
+            },
+        ),
+        (
+            "mixed",
+            MethodSettings {
+                precision: Precision::Mixed,
+                ..usual.clone()
+            },
+        ),
+        (
+            "adaptive",
+            MethodSettings {
+                adaptive: Adaptive::Below(1.5),
+                ..usual
+            },
+        ),
+    ];
+    let problem = problem("copies-forms", &TIED);
+    for (what, settings) in cases {
+        let shared = solve(problem.clone(), settings.clone(), what);
+        let alone = solve(unplaced(problem.clone()), settings, what);
+        // A copy with adaptive constraints has operators of its own.
+        match what {
+            "adaptive" => assert!(shared.kinds > 4 && shared.constraints > 0),
+            _ => assert_eq!(shared.kinds, 4, "{what}"),
+        }
+        same(&shared, &alone, 1e-8, what);
+    }
+}
+
+#[test]
+fn a_copy_with_one_node_moved_is_another_part() {
+    for moved in [1e-6, 1e-9] {
+        let problem = problem("copies-moved", &Copies { moved, ..TIED });
+        let found = solve(problem, MethodSettings::default(), "moved");
+        // The node is in one subdomain or in several.
+        assert!((5..=8).contains(&found.kinds), "{moved:e}: {}", found.kinds);
+    }
+}
+
+#[test]
+fn contact_between_copies_is_the_same_with_and_without_sharing() {
+    let copies = Copies {
+        joint: "contact",
+        kind: Kind::Hexahedra,
+        ..TIED
+    };
+    let settings = MethodSettings {
+        rtol: 1e-10,
+        ..MethodSettings::default()
+    };
+    let problem = problem("copies-contact", &copies);
+    let shared = solve(problem.clone(), settings.clone(), "contact");
+    assert!(shared.kinds <= 8, "{}", shared.kinds);
+    let alone = solve(unplaced(problem), settings, "contact alone");
+    assert_eq!(alone.kinds, 16);
+    same(&shared, &alone, 1e-8, "contact");
+}
