@@ -5,8 +5,9 @@
 //! that is independent of the earlier ones holds a motion that was free.
 
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 
-use crate::fem::cell::{rigid_count, rigid_motions};
+use crate::fem::cell::rigid_motions;
 use crate::scene::{Body, Scene};
 
 /// A form is dependent if its remainder, relative to its largest entry, is below this.
@@ -117,8 +118,8 @@ impl Echelon {
 pub struct Motions {
     dim: usize,
     components: usize,
-    /// Number of motions of one body.
-    count: usize,
+    /// Which of the rigid motions a body has.
+    own: Range<usize>,
     /// Centre and radius of every body.
     bodies: Vec<([f64; 3], f64)>,
 }
@@ -130,25 +131,29 @@ impl Motions {
         Motions {
             dim,
             components,
-            count: if components == 1 { 1 } else { rigid_count(dim) },
+            own: match components {
+                1 => 0..1,
+                _ => scene.form.rigid(dim),
+            },
             bodies: scene.bodies.iter().map(Body::ball).collect(),
         }
     }
 
     /// Number of motions of all bodies.
     pub fn len(&self) -> usize {
-        self.count * self.bodies.len()
+        self.own.len() * self.bodies.len()
     }
 
     /// The form of component `component` of u at a point of a body.
     pub fn form(&self, body: usize, point: [f64; 3], component: usize) -> Functional {
-        let first = body * self.count;
+        let first = body * self.own.len();
         if self.components == 1 {
             return vec![(first, 1.0)];
         }
         let (centre, radius) = self.bodies[body];
         let motions = rigid_motions(self.dim, centre, radius, point);
-        let entries = (0..self.count).map(|m| (first + m, motions[m][component]));
+        let own = motions[self.own.clone()].iter().enumerate();
+        let entries = own.map(|(m, motion)| (first + m, motion[component]));
         entries.filter(|e| e.1 != 0.0).collect()
     }
 

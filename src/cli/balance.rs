@@ -50,15 +50,14 @@ pub(super) fn bodies(
     }
     sum_all(session.comm(), sums.as_flattened_mut().as_flattened_mut());
     let floating = &solver.dual().stiffness.space.defect;
-    let balance = if scene.form.is_elastic() {
-        elastic
-    } else {
-        scalar
-    };
+    let axial = scene.form.is_axial();
     let each = scene.bodies.iter().zip(&sums).zip(floating);
-    Ok(each
-        .map(|((body, sums), &defect)| balance(body, sums, defect > 0))
-        .collect())
+    let balance = |((body, sums), &defect): ((&Body, &Sums), &usize)| match scene.form.is_elastic()
+    {
+        true => elastic(body, sums, defect > 0, axial),
+        false => scalar(body, sums, defect > 0),
+    };
+    Ok(each.map(balance).collect())
 }
 
 fn scalar(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
@@ -81,15 +80,19 @@ fn scalar(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
 }
 
 /// In components that are prescribed somewhere, reactions balance the other forces. In the other components the forces
-/// themselves must balance, and the moments must where nothing is prescribed at all.
-fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
+/// themselves must balance, and the moments must where nothing is prescribed at all. Rings bear radial forces by
+/// themselves: those along the axis alone must balance.
+fn elastic(body: &Body, sums: &Sums, floats: bool, axial: bool) -> BodyBalance {
     let [load, contact, moment, [size, of_rows, of_load]] = *sums;
     let c = body.components;
     let mut held = [false; 3];
     for &(dof, _) in &body.prescribed {
         held[dof % c] = true;
     }
-    let rest = [0, 1, 2].map(|d| load[d] + contact[d]);
+    let rest = [0, 1, 2].map(|d| match axial && d == 0 {
+        true => 0.0,
+        false => load[d] + contact[d],
+    });
     let free = |d: usize| if held[d] { 0.0 } else { rest[d] };
     let relative = |rest: f64, scale: f64| if scale > 0.0 { rest / scale } else { 0.0 };
     let loose = body.prescribed.is_empty();
@@ -104,6 +107,6 @@ fn elastic(body: &Body, sums: &Sums, floats: bool) -> BodyBalance {
         contact: vector(&|d| contact[d]),
         reaction: (!loose).then(|| vector(&|d| if held[d] { -rest[d] } else { 0.0 })),
         imbalance: relative(norm([0, 1, 2].map(free)), norm(load).max(size)),
-        moment_imbalance: loose.then(|| relative(norm(moment), lever)),
+        moment_imbalance: (loose && !axial).then(|| relative(norm(moment), lever)),
     }
 }

@@ -7,7 +7,6 @@ use super::coefficient::Coefficient;
 use super::first_rank::say;
 use super::physics;
 use super::solve::{adaptive, lines};
-use crate::fem::cell::rigid_count;
 use crate::feti::cost::sizes::Sizes;
 use crate::feti::cost::variation::JUMPS;
 use crate::feti::deflation::watch;
@@ -188,7 +187,10 @@ fn interfaces(scene: &Scene, plan: &Plan) -> String {
             t.numbers("contact", |(i, _)| i.contact)
         })
         .numbers(
-            if scene.dim() == 2 { "length" } else { "area" },
+            match scene.dim() == 2 && !scene.form.is_axial() {
+                true => "length",
+                false => "area",
+            },
             |(_, p)| short(p.area),
         )
         .numbers("gap", |(_, p)| gap(p.gap))
@@ -300,7 +302,7 @@ fn kernels(scene: &Scene, sizes: &Sizes) -> String {
     if !scene.form.is_elastic() {
         return String::new();
     }
-    let all = rigid_count(scene.dim());
+    let all = scene.form.rigid(scene.dim()).len();
     let freely = sizes.defect.iter().filter(|d| **d == all).count();
     let partly = sizes
         .defect

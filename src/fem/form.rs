@@ -1,6 +1,8 @@
 //! The equation of a scene and its finite elements.
 
-use super::cell::{Cure, Element, Material, Plane};
+use super::cell::{rigid_count, Cure, Element, Material, Plane};
+use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// The bilinear form of a scene and its discretisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +20,7 @@ pub enum Physics {
     Scalar,
     /// −∇·σ(u) = f, linear elasticity.
     Elasticity {
-        /// Plane strain or plane stress; ignored in three dimensions.
+        /// Plane strain, plane stress or axisymmetry; ignored in three dimensions.
         plane: Plane,
         /// The cure of volumetric locking.
         cure: Cure,
@@ -54,6 +56,30 @@ impl Form {
                 plane,
                 cure,
             },
+        }
+    }
+
+    /// Whether bodies are rings around the axis x = 0: x is the radius, y runs along the axis.
+    pub fn is_axial(&self) -> bool {
+        let Physics::Elasticity { plane, .. } = self.physics else {
+            return false;
+        };
+        plane == Plane::Axial
+    }
+
+    /// What a piece of a plane cell or side at this point is multiplied by: the way around the axis in rings, else 1.
+    pub fn around(&self, point: [f64; 3]) -> f64 {
+        match self.is_axial() {
+            true => TAU * point[0],
+            false => 1.0,
+        }
+    }
+
+    /// Which of the [`rigid_motions`](super::cell::rigid_motions) take no energy; rings have the one along the axis.
+    pub fn rigid(&self, dim: usize) -> Range<usize> {
+        match self.is_axial() {
+            true => 1..2,
+            false => 0..rigid_count(dim),
         }
     }
 

@@ -40,7 +40,8 @@ where
         local.clear();
         local.resize(c * nodes.len(), 0.0);
         let rule = mesh.integration(e);
-        element::body_load_by(rule, kind, mesh.dim, &points, c, |x| f(e, x), &mut local);
+        let around = |x| f(e, x).map(|v| v * mesh.form.around(x));
+        element::body_load_by(rule, kind, mesh.dim, &points, c, around, &mut local);
         let nodes = nodes.iter().map(|&k| k as usize);
         add(&mut out, c, nodes.zip(local.chunks_exact(c)));
     }
@@ -169,7 +170,8 @@ fn add_on_faces<F>(
         let points: Vec<[f64; 3]> = nodes.iter().map(|&k| mesh.points[k]).collect();
         local.clear();
         local.resize(c * nodes.len(), 0.0);
-        element::side_load(kind, mesh.dim, &points, c, &mut f, &mut local);
+        let around = |x, normal| f(x, normal).map(|v| v * mesh.form.around(x));
+        element::side_load(kind, mesh.dim, &points, c, around, &mut local);
         add(out, c, nodes.into_iter().zip(local.chunks_exact(c)));
     }
 }

@@ -10,7 +10,7 @@ use super::model::steps::Steps;
 use super::rows::equations::Equation;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
-use super::{cut, read, rows, validate};
+use super::{axis, cut, read, rows, validate};
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use std::path::Path;
@@ -111,6 +111,7 @@ impl Scene {
         for mut body in std::mem::take(&mut spec.bodies) {
             let components = spec.form.components(body.mesh.dim());
             cut::prepare(&mut body, &spec.form, &mut cuts)?;
+            axis::hold(&mut body, &spec.form)?;
             let (nodes, subdomains) = (body.mesh.n_nodes(), body.mesh.n_subdomains());
             bodies.push(Body {
                 components,

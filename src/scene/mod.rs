@@ -11,6 +11,7 @@
 //! the same on every rank: it holds data on the boundaries of bodies only, O(boundary nodes). Matrices are assembled
 //! subdomain by subdomain, on the rank that owns the subdomain. Coefficients in array files are read there, too.
 
+mod axis;
 mod body;
 mod checked;
 mod coefficient;

@@ -54,8 +54,8 @@ impl Scene {
         let shared: HashSet<usize> = interface.shared.iter().map(|s| s.nodes[0]).collect();
         for face in spec.faces(interface.sides[0]) {
             if face.nodes.iter().all(|node| shared.contains(node)) {
-                let weights = spec.face_weights(interface.sides[0], &face, self.form.element);
-                out.area += weights.iter().map(|w| w.0).sum::<f64>();
+                let areas = spec.face_areas(interface.sides[0], &face, &self.form);
+                out.area += areas.iter().sum::<f64>();
             }
         }
         out

@@ -5,5 +5,6 @@ mod support;
 
 mod adaptive;
 mod patch;
+mod rings;
 mod solve;
 mod spectra;

@@ -9,7 +9,7 @@ use fetifeti::scene::Scene;
 use fetifeti::FetiFeti;
 
 /// Error norms of the solution of a scene, against the exact solution in the scene.
-fn errors(session: &Session, text: &str, rtol: f64) -> ErrorNorms {
+pub fn errors(session: &Session, text: &str, rtol: f64) -> ErrorNorms {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let problem = scene.substructures(&|_| true).expect("substructures");
     let settings = MethodSettings {

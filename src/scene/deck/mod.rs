@@ -19,6 +19,9 @@ use crate::mesh::deck::{self, Deck, Model};
 use crate::substructures::BodyNode;
 use numbers::Numbers;
 
+/// What CalculiX prints of a force on a ring: that on one of the sectors of 2° of which it makes the ring.
+const SECTOR: f64 = 1.0 / 180.0;
+
 /// A deck that has been read.
 #[derive(Debug, Clone)]
 pub struct DeckScenes {
@@ -90,12 +93,7 @@ impl DeckScenes {
         let plane = match deck.model() {
             Model::Solid | Model::PlaneStrain => Plane::Strain,
             Model::PlaneStress => Plane::Stress,
-            Model::Axisymmetric => {
-                return Err(Error::Input(format!(
-                    "{}: elements of revolution (CAX) are not solved (solid or plane elements were expected)",
-                    deck.mesh.name
-                )))
-            }
+            Model::Axisymmetric => Plane::Axial,
         };
         if let Some(k) = deck.elements.iter().position(|e| e.model() != deck.model()) {
             return Err(Error::Input(format!(
@@ -151,6 +149,10 @@ impl DeckScenes {
                 .map(|k| numbers.node(k).map_or([0.0; 3], of))
                 .collect()
         };
-        self.deck.tables(step, &all(displacement), &all(force))
+        let mut forces = all(force);
+        if self.deck.model() == Model::Axisymmetric {
+            forces.iter_mut().flatten().for_each(|f| *f *= SECTOR);
+        }
+        self.deck.tables(step, &all(displacement), &forces)
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::fem::cell::{side_weights, Element, Side};
-use crate::fem::element;
+use crate::fem::{element, Form};
 use crate::mesh::{places, BoxMesh, CellKind, Mesh};
 use crate::scene::model::spec::BodySpec;
 
@@ -65,6 +65,28 @@ impl BodySpec {
                 let weights = side_weights(dim, &points, outward, element);
                 let each = weights.area.into_iter().zip(weights.normal);
                 each.take(points.len()).collect()
+            }
+        }
+    }
+
+    /// Nodal areas of one of the faces of a side, by node of the face; around the axis in rings.
+    pub fn face_areas(&self, side: usize, face: &Face, form: &Form) -> Vec<f64> {
+        match face.kind {
+            Some(kind) if form.is_axial() => {
+                let points: Vec<[f64; 3]> = face.nodes.iter().map(|&k| self.position(k)).collect();
+                let mut out = vec![0.0; points.len()];
+                let around = |x, _| [form.around(x), 0.0, 0.0];
+                element::side_load(kind, self.mesh.dim(), &points, 1, around, &mut out);
+                // A segment of second order has none at its end on the axis, but for rounding.
+                let rounding = 1e-12 * out.iter().sum::<f64>();
+                out.iter_mut()
+                    .filter(|area| area.abs() <= rounding)
+                    .for_each(|area| *area = 0.0);
+                out
+            }
+            _ => {
+                let weights = self.face_weights(side, face, form.element);
+                weights.into_iter().map(|(area, _)| area).collect()
             }
         }
     }

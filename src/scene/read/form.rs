@@ -23,7 +23,11 @@ impl Reader {
         }
         let plane = scene.read("plane", |item| match !elastic || dim == 3 {
             true => item.error("`plane` outside plane elasticity, where it says nothing"),
-            false => item.choice(&[("strain", Plane::Strain), ("stress", Plane::Stress)]),
+            false => item.choice(&[
+                ("strain", Plane::Strain),
+                ("stress", Plane::Stress),
+                ("axisymmetric", Plane::Axial),
+            ]),
         })?;
         let locking = scene.take("locking");
         let cure = locking.map(|item| match elastic {
@@ -39,7 +43,8 @@ impl Reader {
             let cure = cure.unwrap_or_default();
             form.physics = Physics::Elasticity { plane, cure };
         }
-        if let Some(item) = locking {
+        // Rings have no cells of boxes; what others refuse is said when their mesh is known.
+        if let Some(item) = locking.filter(|_| !form.is_axial()) {
             let material = form.material(1.0, 0.3);
             if let Err(message) = material.check(dim, form.element) {
                 return item.error(message);

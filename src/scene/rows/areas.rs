@@ -82,8 +82,8 @@ fn areas(scene: &Scene, source: RowSource, body: usize) -> HashMap<usize, f64> {
         if !face.nodes.iter().all(|node| areas.contains_key(node)) {
             continue;
         }
-        let weights = spec.face_weights(side, &face, scene.form.element);
-        for (&node, (area, _)) in face.nodes.iter().zip(weights) {
+        let weights = spec.face_areas(side, &face, &scene.form);
+        for (&node, area) in face.nodes.iter().zip(weights) {
             *areas.entry(node).or_default() += area;
         }
     }
