@@ -184,27 +184,45 @@ fn files_are_written_once_for_all_ranks() {
 /// The pieces of three ranks have the stress of the whole, also where cells of several ranks meet in a node.
 #[test]
 fn pieces_have_the_fields_of_the_whole() {
-    let scratch = Scratch::new("pieces");
+    // Two bodies have points in one place where they touch: their contact pressures are equal, and strains differ.
+    let names = [("u", 3), ("stress", 6), ("contact_pressure", 1), ("gap", 1)];
+    compare_pieces("annulus", &["solution"], &names);
+}
+
+/// Load steps have pieces of their own, and `solution.pvd` names the index of each.
+#[test]
+fn load_steps_have_pieces() {
+    let names = [("u", 1), ("multiplier", 1), ("gap", 1)];
+    let steps: Vec<String> = (1..=10).map(|k| format!("step_{k:04}")).collect();
+    let mut files: Vec<&str> = steps.iter().map(String::as_str).collect();
+    files.push("solution");
+    let scratch = compare_pieces("press_ramp", &files, &names);
+    let course = std::fs::read_to_string(scratch.path("out3/solution.pvd")).expect("an index");
+    for (k, step) in steps.iter().enumerate() {
+        let entry = format!("timestep=\"{}\"", (k + 1) as f64 / 10.0);
+        let line = course.lines().find(|line| line.contains(&entry));
+        let line = line.unwrap_or_else(|| panic!("{entry}: {course}"));
+        assert!(line.contains(&format!("file=\"{step}.pvtu\"")), "{line}");
+    }
+}
+
+/// Compares the pieces of three ranks with the files that one rank writes, by place and the fields `names`.
+fn compare_pieces(scene: &str, files: &[&str], names: &[(&str, usize)]) -> Scratch {
+    let scratch = Scratch::new(&format!("pieces_{scene}"));
+    let scene = format!("examples/scenes/{scene}.toml");
     let solve = |ranks: usize, more: &[&str]| {
         let dir = scratch.path(&format!("out{ranks}"));
-        let scene = "examples/scenes/annulus.toml";
         let options = ["-fetifeti_ksp_rtol", "1e-12"];
-        let args = [&["solve", scene, "--out", &dir][..], &options, more].concat();
+        let args = [&["solve", &scene, "--out", &dir][..], &options, more].concat();
         let out = run_fetifeti(ranks, &args);
         assert_eq!(out.code, 0, "{}", out.all());
         dir
     };
-    let whole = Vtu::read(&format!("{}/solution.vtu", solve(1, &[])));
-    let dir = solve(3, &["--pieces"]);
-    assert!(!std::path::Path::new(&format!("{dir}/solution.vtu")).exists());
-    let index = Vtu::read(&format!("{dir}/solution.pvtu")).0;
+    let (one, dir) = (solve(1, &[]), solve(3, &["--pieces"]));
     let place = |p: [f64; 3]| p.map(|x| (1e9 * x).round() as i64);
-    // Two bodies have points in one place where they touch: their contact pressures are equal, and strains differ.
-    let names = [("u", 3), ("stress", 6), ("contact_pressure", 1), ("gap", 1)];
-    let mut expected: HashMap<_, Vec<Vec<f64>>> = HashMap::new();
     let values = |vtu: &Vtu| -> Vec<Vec<f64>> {
         let mut out = vec![Vec::new(); vtu.count("NumberOfPoints")];
-        for (name, n) in names {
+        for &(name, n) in names {
             let all = vtu.floats("PointData", name);
             for (list, values) in out.iter_mut().zip(all.chunks_exact(n)) {
                 list.extend(values);
@@ -212,27 +230,40 @@ fn pieces_have_the_fields_of_the_whole() {
         }
         out
     };
-    for (p, v) in whole.points().into_iter().zip(values(&whole)) {
-        expected.entry(place(p)).or_default().push(v);
-    }
-    let mut cells = 0;
-    for rank in 0..3 {
-        let name = format!("solution_{rank:04}.vtu");
-        assert!(index.contains(&format!("Source=\"{name}\"")), "{index}");
-        let piece = Vtu::read(&format!("{dir}/{name}"));
-        cells += piece.count("NumberOfCells");
-        assert!(piece.whole("CellData", "rank").iter().all(|&r| r == rank));
-        for (p, found) in piece.points().into_iter().zip(values(&piece)) {
-            let here = &expected[&place(p)];
-            let error = |e: &Vec<f64>| {
-                let pairs = e.iter().zip(&found);
-                pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-            };
-            let least = here.iter().map(error).fold(f64::INFINITY, f64::min);
-            assert!(least < 1e-6, "{p:?}: {found:?} {here:?}");
+    for file in files {
+        assert!(!std::path::Path::new(&format!("{dir}/{file}.vtu")).exists());
+        let whole = Vtu::read(&format!("{one}/{file}.vtu"));
+        let index = Vtu::read(&format!("{dir}/{file}.pvtu")).0;
+        let mut expected: HashMap<_, Vec<Vec<f64>>> = HashMap::new();
+        for (p, v) in whole.points().into_iter().zip(values(&whole)) {
+            expected.entry(place(p)).or_default().push(v);
         }
+        let mut cells = 0;
+        for rank in 0..3 {
+            let name = format!("{file}_{rank:04}.vtu");
+            assert!(index.contains(&format!("Source=\"{name}\"")), "{index}");
+            let piece = Vtu::read(&format!("{dir}/{name}"));
+            cells += piece.count("NumberOfCells");
+            assert!(piece.whole("CellData", "rank").iter().all(|&r| r == rank));
+            for (p, found) in piece.points().into_iter().zip(values(&piece)) {
+                let here = &expected[&place(p)];
+                let error = |e: &Vec<f64>| {
+                    let pairs = e.iter().zip(&found);
+                    // Where nothing is known both have NaN.
+                    let apart = |(a, b): (&f64, &f64)| match a.is_nan() && b.is_nan() {
+                        true => 0.0,
+                        false if a.is_nan() || b.is_nan() => f64::INFINITY,
+                        false => (a - b).abs(),
+                    };
+                    pairs.map(apart).fold(0.0, f64::max)
+                };
+                let least = here.iter().map(error).fold(f64::INFINITY, f64::min);
+                assert!(least < 1e-6, "{file} {p:?}: {found:?} {here:?}");
+            }
+        }
+        assert_eq!(cells, whole.count("NumberOfCells"));
     }
-    assert_eq!(cells, whole.count("NumberOfCells"));
+    scratch
 }
 
 #[test]
