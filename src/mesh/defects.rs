@@ -156,10 +156,6 @@ fn hanging(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<Defect> {
         let (nodes, corners) = outline(face);
         let near = ON * length(&corners);
         let straight = is_straight(mesh, &nodes, &corners, near);
-        // Curved faces of solids are not looked at.
-        if !straight && corners.len() > 2 {
-            return None;
-        }
         // A curved edge reaches beyond its corners by less than its length.
         let slack = if straight { near } else { length(&corners) };
         let bound = |f: fn(f64, f64) -> f64, d: usize| {
@@ -174,7 +170,7 @@ fn hanging(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<Defect> {
             !joined.contains(&node)
                 && match straight {
                     true => on(&corners, x, near),
-                    false => on_arc(&corners, mesh.points[nodes[2] as usize], x, near),
+                    false => on_edge(mesh, &nodes, &corners, x, near),
                 }
                 && !nodes.iter().any(of_side)
         };
@@ -197,6 +193,20 @@ fn is_straight(mesh: &CellMesh, nodes: &[u32], corners: &[[f64; 3]], near: f64) 
     };
     let at = |k: usize| nodes.get(n + k).map(|&node| mesh.points[node as usize]);
     (0..edges).all(|k| at(k).is_none_or(|x| norm(minus(x, middle(k))) <= near))
+}
+
+/// Whether a point is on an edge of a curved side, away from its nodes. Of curved faces this finds what splits an edge,
+/// as every cut into smaller faces does; nodes that hang inside a face, between whole edges, are not found.
+fn on_edge(mesh: &CellMesh, nodes: &[u32], corners: &[[f64; 3]], x: [f64; 3], near: f64) -> bool {
+    let n = corners.len();
+    let edges = if n == 2 { 1 } else { n };
+    (0..edges).any(|k| {
+        let ends = [corners[k], corners[(k + 1) % n]];
+        match nodes.get(n + k).map(|&node| mesh.points[node as usize]) {
+            Some(m) => on_arc(&ends, m, x, near),
+            None => on(&ends, x, near),
+        }
+    })
 }
 
 /// Whether a point is on a curved edge with the middle node m, away from its nodes.

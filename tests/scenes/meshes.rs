@@ -544,6 +544,63 @@ fn what_does_not_fit_gets_one_sentence() {
 }
 
 /// As many subdomains as the cost model finds best.
+/// Half of a tetrahedron's neighbour ends in the middle of its edge from (0, 0, 0) to (1, 0, 0), which a middle node at
+/// `bulge` below may curve. `quarter` moves the nodes of the small cells off the edge.
+fn split_edge(bulge: f64, quarter: f64) -> String {
+    let m = [0.5, -bulge, 0.0];
+    let mut points = vec![
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+        m,
+    ];
+    let mut known = std::collections::HashMap::from([((0, 1), 5)]);
+    let mut elements = Vec::new();
+    for corners in [[0, 1, 2, 3], [0, 2, 5, 4], [5, 2, 1, 4]] {
+        let mut nodes: Vec<usize> = corners.to_vec();
+        // Edges in Gmsh's order.
+        for (i, j) in [(0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3)] {
+            let (a, b) = (corners[i].min(corners[j]), corners[i].max(corners[j]));
+            let place = *known.entry((a, b)).or_insert_with(|| {
+                let mut p = [0, 1, 2].map(|d| 0.5 * (points[a][d] + points[b][d]));
+                if b == 5 && a < 2 {
+                    // On the parabola through the three nodes of the edge.
+                    p[1] = -0.75 * bulge - quarter;
+                }
+                points.push(p);
+                points.len() - 1
+            });
+            nodes.push(place);
+        }
+        let nodes: Vec<String> = nodes.iter().map(|k| (k + 1).to_string()).collect();
+        elements.push(format!(" 11 2 1 1 {}", nodes.join(" ")));
+    }
+    let mut out = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n");
+    out += &format!("3 1 \"a\"\n$EndPhysicalNames\n$Nodes\n{}\n", points.len());
+    for (k, [x, y, z]) in points.iter().enumerate() {
+        out += &format!("{} {x} {y} {z}\n", k + 1);
+    }
+    out += &format!("$EndNodes\n$Elements\n{}\n", elements.len());
+    for (k, element) in elements.iter().enumerate() {
+        out += &format!("{}{element}\n", k + 1);
+    }
+    out + "$EndElements\n"
+}
+
+#[test]
+fn nodes_that_hang_on_curved_edges_of_solids_are_found() {
+    let text = "dimension = 3\nphysics = \"elasticity\"\n[mesh]\nfile = \"m.msh\"\n[[body]]\nname = \"a\"\n";
+    for bulge in [0.05, 0.1] {
+        let model = Model::new("split_edge", &split_edge(bulge, 0.0));
+        model.refuses(text, "hangs on a side of cell 1");
+        // Away from the edge there is a gap, as between two parts that share some nodes.
+        let apart = Model::new("split_apart", &split_edge(bulge, -0.3 * bulge));
+        apart.scene(text);
+    }
+}
+
 #[test]
 fn subdomains_are_chosen() {
     let model = Model::new("mesh_auto", &squares(2, 70, 1));
