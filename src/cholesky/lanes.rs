@@ -5,7 +5,7 @@
 //! sides are stored side by side, row by row: each entry of the factor multiplies eight numbers in a vector register.
 
 use super::multifrontal::PartialCholesky;
-use super::panel;
+use super::panel::{self, COLUMNS, LOT};
 
 /// Number of right-hand sides that are solved together.
 pub const LANES: usize = 8;
@@ -53,70 +53,51 @@ impl PartialCholesky {
     }
 
     fn lower_lanes(&self, x: &mut [Lane]) {
+        let mut work = Vec::new();
         for front in &self.symbolic.fronts {
             let (width, size) = (front.width(), front.size());
             let panel = &self.panels[front.panel..];
-            let (head, below) = x.split_at_mut(front.end);
-            let pivots = &mut head[front.start..];
-            for j in 0..width {
-                let (start, first) = panel::column(j, size);
-                let l = &panel[start..][..width - first];
-                let (done, rest) = pivots.split_at_mut(j + 1);
-                scale(&mut done[j], 1.0 / l[j - first]);
-                for (y, &l) in rest.iter_mut().zip(&l[j + 1 - first..]) {
-                    subtract(y, l, &done[j]);
+            let (pivots, below) = x[front.start..].split_at_mut(width);
+            work.clear();
+            work.extend_from_slice(pivots);
+            work.resize(size, [0.0; LANES]);
+            for j in (0..width).step_by(COLUMNS) {
+                let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
+                match width - j {
+                    1 => eliminate::<1>(group, work),
+                    2 => eliminate::<2>(group, work),
+                    3 => eliminate::<3>(group, work),
+                    _ => eliminate::<COLUMNS>(group, work),
                 }
             }
-            for j in (0..width).step_by(panel::COLUMNS) {
-                let rows = size - j;
-                let group = &panel[panel::group(j, size)..];
-                let at = |k: usize| &group[k * rows + width - j..(k + 1) * rows];
-                if j + panel::COLUMNS <= width {
-                    let (l0, l1, l2, l3) = (at(0), at(1), at(2), at(3));
-                    for (k, &p) in front.below.iter().enumerate() {
-                        let y = &mut below[p as usize - front.end];
-                        subtract(y, l0[k], &pivots[j]);
-                        subtract(y, l1[k], &pivots[j + 1]);
-                        subtract(y, l2[k], &pivots[j + 2]);
-                        subtract(y, l3[k], &pivots[j + 3]);
-                    }
-                } else {
-                    for (k, pivot) in pivots[j..].iter().enumerate() {
-                        for (&p, &l) in front.below.iter().zip(at(k)) {
-                            subtract(&mut below[p as usize - front.end], l, pivot);
-                        }
-                    }
-                }
+            pivots.copy_from_slice(&work[..width]);
+            for (&p, w) in front.below.iter().zip(&work[width..]) {
+                let y = &mut below[p as usize - front.end];
+                y.iter_mut().zip(w).for_each(|(y, w)| *y += w);
             }
         }
     }
 
     fn upper_lanes(&self, x: &mut [Lane]) {
+        let mut work = Vec::new();
         for front in self.symbolic.fronts.iter().rev() {
             let (width, size) = (front.width(), front.size());
             let panel = &self.panels[front.panel..];
-            let (head, below) = x.split_at_mut(front.end);
-            let pivots = &mut head[front.start..];
-            let column = |j: usize| {
-                let (start, first) = panel::column(j, size);
-                &panel[start + j - first..start + size - first]
-            };
-            for (j, y) in pivots.iter_mut().enumerate() {
-                let mut sum = *y;
-                for (&p, &l) in front.below.iter().zip(&column(j)[width - j..]) {
-                    subtract(&mut sum, l, &below[p as usize - front.end]);
+            let (pivots, below) = x[front.start..].split_at_mut(width);
+            work.clear();
+            work.extend_from_slice(pivots);
+            let rows = front.below.iter().map(|&p| below[p as usize - front.end]);
+            work.extend(rows);
+            for j in (0..width).step_by(COLUMNS).rev() {
+                let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
+                match width - j {
+                    1 => substitute::<1>(group, work),
+                    2 => substitute::<2>(group, work),
+                    3 => substitute::<3>(group, work),
+                    _ => substitute::<COLUMNS>(group, work),
                 }
-                *y = sum;
             }
-            for j in (0..width).rev() {
-                let l = column(j);
-                let (first, done) = pivots.split_at_mut(j + 1);
-                let y = &mut first[j];
-                for (x, &l) in done.iter().zip(&l[1..width - j]) {
-                    subtract(y, l, x);
-                }
-                scale(y, 1.0 / l[0]);
-            }
+            pivots.copy_from_slice(&work[..width]);
         }
     }
 
@@ -139,6 +120,54 @@ impl PartialCholesky {
             }
         }
     }
+}
+
+/// Solves with the square of `N` pivots and subtracts their columns from the rows below: `work` = [x; rows below].
+fn eliminate<const N: usize>(group: &[f64], work: &mut [Lane]) {
+    let (square, below) = group.split_at(N * N);
+    let (pivots, rest) = work.split_at_mut(N);
+    let mut x = [[0.0; LANES]; N];
+    for k in 0..N {
+        scale(&mut pivots[k], 1.0 / square[k * (N + 1)]);
+        x[k] = pivots[k];
+        for i in k + 1..N {
+            subtract(&mut pivots[i], square[k * N + i], &x[k]);
+        }
+    }
+    let lots = below[..N * rest.len()].chunks(N * LOT);
+    for (l, rows) in lots.zip(rest.chunks_mut(LOT)) {
+        let r = rows.len();
+        for (i, y) in rows.iter_mut().enumerate() {
+            for k in 0..N {
+                subtract(y, l[k * r + i], &x[k]);
+            }
+        }
+    }
+}
+
+/// Subtracts the products of `N` columns with the rows below and solves with the transposed square.
+fn substitute<const N: usize>(group: &[f64], work: &mut [Lane]) {
+    let (square, below) = group.split_at(N * N);
+    let (pivots, rest) = work.split_at_mut(N);
+    let mut x = [[0.0; LANES]; N];
+    x.copy_from_slice(pivots);
+    let lots = below[..N * rest.len()].chunks(N * LOT);
+    for (l, rows) in lots.zip(rest.chunks(LOT)) {
+        let r = rows.len();
+        for (i, w) in rows.iter().enumerate() {
+            for k in 0..N {
+                subtract(&mut x[k], l[k * r + i], w);
+            }
+        }
+    }
+    for k in (0..N).rev() {
+        for i in k + 1..N {
+            let done = x[i];
+            subtract(&mut x[k], square[k * N + i], &done);
+        }
+        scale(&mut x[k], 1.0 / square[k * (N + 1)]);
+    }
+    pivots.copy_from_slice(&x);
 }
 
 #[cfg(test)]

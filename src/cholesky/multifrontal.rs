@@ -78,11 +78,11 @@ impl PartialCholesky {
     fn relative_pivots<'a>(&'a self, k: &'a Csr) -> impl Iterator<Item = (u32, f64)> + 'a {
         self.symbolic.fronts.iter().flat_map(move |front| {
             let panel = &self.panels[front.panel..];
-            let size = front.size();
+            let (width, size) = (front.width(), front.size());
             let dofs = &self.symbolic.interior[front.start..front.end];
             dofs.iter().enumerate().map(move |(j, &dof)| {
                 let d = k.get(dof as usize, dof as usize);
-                (dof, panel[panel::diagonal(j, size)].powi(2) / d)
+                (dof, panel[panel::diagonal(j, width, size)].powi(2) / d)
             })
         })
     }

@@ -1,11 +1,23 @@
-//! The memory layout of a front's panel: columns come in groups of four, and each group starts with the row of its
-//! first pivot.
+//! The memory layout of a front's panel: in the order in which a solve reads it.
 //!
-//! Entries above the pivots are zero and are not stored, except for the triangles inside the groups. The columns of a
-//! group have equal length: the kernels read four columns side by side.
+//! Columns come in groups of four. A group starts with the square of its pivots. The rows below follow in lots of
+//! eight: the eight entries of the first column, those of the second, and so on. The last lot has what remains. So
+//! the kernels read one stream, and the rows of a lot stand in vector registers while all columns meet them.
+//!
+//! ```text
+//!     group   n² entries   l_jj l_j+1,j …           the square, column after column; above its diagonal: any values
+//!             8 n          rows 1–8 of column 1, rows 1–8 of column 2, …
+//!             8 n          rows 9–16 of column 1, …
+//!             r n          the last r < 8 rows of column 1, …
+//! ```
+//!
+//! Entries above the pivots are zero and are not stored, except for those in the squares.
 
 /// Number of columns in a group.
 pub const COLUMNS: usize = 4;
+
+/// Number of rows in a lot: two vector registers of four numbers, or one of eight.
+pub const LOT: usize = 8;
 
 /// Start of the group whose first column is `j`, a multiple of four, in a panel of `size` rows.
 pub fn group(j: usize, size: usize) -> usize {
@@ -18,23 +30,27 @@ pub fn length(width: usize, size: usize) -> usize {
     group(last, size) + (width - last) * (size - last)
 }
 
-/// Start of column `j`, and the row of its first entry.
-pub fn column(j: usize, size: usize) -> (usize, usize) {
+/// Where the pivot of column `j` is, in a panel of `width` columns and `size` rows.
+pub fn diagonal(j: usize, width: usize, size: usize) -> usize {
     let first = j / COLUMNS * COLUMNS;
-    (group(first, size) + (j - first) * (size - first), first)
-}
-
-/// Where the pivot of column `j` is.
-pub fn diagonal(j: usize, size: usize) -> usize {
-    let (start, first) = column(j, size);
-    start + j - first
+    let n = COLUMNS.min(width - first);
+    group(first, size) + (j - first) * (n + 1)
 }
 
 /// Stores the first `size` rows of `width` columns that lie `stride` apart.
 pub fn store(columns: &[f64], stride: usize, width: usize, size: usize, out: &mut [f64]) {
-    for j in 0..width {
-        let (start, first) = column(j, size);
-        out[start..][..size - first].copy_from_slice(&columns[j * stride..][first..size]);
+    let mut rest = &mut out[..length(width, size)];
+    for j in (0..width).step_by(COLUMNS) {
+        let n = COLUMNS.min(width - j);
+        let mut row = j;
+        while row < size {
+            let rows = if row == j { n } else { LOT.min(size - row) };
+            let (lot, after) = rest.split_at_mut(n * rows);
+            for (k, lot) in lot.chunks_exact_mut(rows).enumerate() {
+                lot.copy_from_slice(&columns[(j + k) * stride + row..][..rows]);
+            }
+            (rest, row) = (after, row + rows);
+        }
     }
 }
 

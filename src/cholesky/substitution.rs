@@ -2,13 +2,10 @@
 //!
 //! Every front works on one dense vector [x; w]: x at its pivots, w at the rows below them. Four columns of the panel
 //! are applied together to all rows below them. The vector is read and written once for four columns, the panel is read
-//! once.
+//! once, from one end to the other.
 
 use super::multifrontal::PartialCholesky;
-use super::panel::{self, COLUMNS};
-
-/// Number of partial sums of a product: two vector registers for each column.
-const SUMS: usize = 8;
+use super::panel::{self, COLUMNS, LOT};
 
 impl PartialCholesky {
     /// Forward elimination: `b` (length n, by dof) becomes [L_II⁻¹ b_I; b_Γ − L_ΓI L_II⁻¹ b_I].
@@ -81,36 +78,16 @@ impl PartialCholesky {
     }
 }
 
-/// Column `k` of a group of columns with `rows` entries each.
-fn column(group: &[f64], rows: usize, k: usize) -> &[f64] {
-    &group[k * rows..(k + 1) * rows]
-}
-
 /// x ← L⁻¹ x and w ← w − L_below x for `work` = [x; w] and a panel of `width` columns.
 fn eliminate(panel: &[f64], width: usize, work: &mut [f64]) {
     let size = work.len();
     for j in (0..width).step_by(COLUMNS) {
-        let (n, rows) = (COLUMNS.min(width - j), size - j);
-        let group = &panel[panel::group(j, size)..];
-        let inverse = reciprocals(group, rows, n);
-        let (x, rest) = work[j..].split_at_mut(n);
-        for k in 0..n {
-            let l = column(group, rows, k);
-            x[k] *= inverse[k];
-            for i in k + 1..n {
-                x[i] -= l[i] * x[k];
-            }
-        }
-        let below = |k: usize| &column(group, rows, k)[n..];
-        if n == COLUMNS {
-            let minus = [-x[0], -x[1], -x[2], -x[3]];
-            add_columns([below(0), below(1), below(2), below(3)], minus, rest);
-        } else {
-            for (k, x) in x.iter().enumerate() {
-                for (y, l) in rest.iter_mut().zip(below(k)) {
-                    *y = (-l).mul_add(*x, *y);
-                }
-            }
+        let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
+        match width - j {
+            1 => eliminate_group::<1>(group, work),
+            2 => eliminate_group::<2>(group, work),
+            3 => eliminate_group::<3>(group, work),
+            _ => eliminate_group::<COLUMNS>(group, work),
         }
     }
 }
@@ -119,80 +96,88 @@ fn eliminate(panel: &[f64], width: usize, work: &mut [f64]) {
 fn substitute(panel: &[f64], width: usize, work: &mut [f64]) {
     let size = work.len();
     for j in (0..width).step_by(COLUMNS).rev() {
-        let (n, rows) = (COLUMNS.min(width - j), size - j);
-        let group = &panel[panel::group(j, size)..];
-        let (x, rest) = work[j..].split_at_mut(n);
-        let below = |k: usize| &column(group, rows, k)[n..];
-        if n == COLUMNS {
-            let pulled = products([below(0), below(1), below(2), below(3)], rest);
-            x.iter_mut().zip(pulled).for_each(|(x, p)| *x -= p);
-        } else {
-            for (k, x) in x.iter_mut().enumerate() {
-                *x -= crate::linalg::dense::dot(below(k), rest);
+        let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
+        match width - j {
+            1 => substitute_group::<1>(group, work),
+            2 => substitute_group::<2>(group, work),
+            3 => substitute_group::<3>(group, work),
+            _ => substitute_group::<COLUMNS>(group, work),
+        }
+    }
+}
+
+/// Solves with the square of `N` pivots and subtracts their columns from the rows below: `work` = [x; rows below].
+fn eliminate_group<const N: usize>(group: &[f64], work: &mut [f64]) {
+    let (square, below) = group.split_at(N * N);
+    let (x, rest) = work.split_at_mut(N);
+    let inverse = reciprocals::<N>(square);
+    let mut minus = [0.0; N];
+    for k in 0..N {
+        x[k] *= inverse[k];
+        for i in k + 1..N {
+            x[i] -= square[k * N + i] * x[k];
+        }
+        minus[k] = -x[k];
+    }
+    let below = &below[..N * rest.len()];
+    let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact_mut(LOT));
+    for (l, y) in (&mut lots).zip(&mut rows) {
+        let y: &mut Lot = y.try_into().expect("as long");
+        let mut sum = *y;
+        for (k, x) in minus.iter().enumerate() {
+            let l = lot(l, k);
+            for i in 0..LOT {
+                sum[i] = l[i].mul_add(*x, sum[i]);
             }
         }
-        let inverse = reciprocals(group, rows, n);
-        for k in (0..n).rev() {
-            let l = column(group, rows, k);
-            let pulled: f64 = (k + 1..n).map(|i| l[i] * x[i]).sum();
-            x[k] = (x[k] - pulled) * inverse[k];
+        *y = sum;
+    }
+    let (l, y) = (lots.remainder(), rows.into_remainder());
+    let r = y.len();
+    for (i, y) in y.iter_mut().enumerate() {
+        for (k, x) in minus.iter().enumerate() {
+            *y = l[k * r + i].mul_add(*x, *y);
         }
     }
 }
 
-/// The reciprocals of the `n` pivots of a group, computed first: these divisions do not depend on each other.
-fn reciprocals(group: &[f64], rows: usize, n: usize) -> [f64; COLUMNS] {
-    let mut out = [0.0; COLUMNS];
-    for (k, out) in out.iter_mut().enumerate().take(n) {
-        *out = 1.0 / group[k * (rows + 1)];
-    }
-    out
-}
-
-/// A fixed number of entries that are processed together: two vector registers.
-type Lot = [f64; SUMS];
-
-fn lot(values: &[f64], at: usize) -> &Lot {
-    values[at..at + SUMS].try_into().expect("as long")
-}
-
-/// y ← y + Σ x_k column_k, in lots of fixed length, which the compiler vectorises.
-fn add_columns([l0, l1, l2, l3]: [&[f64]; COLUMNS], x: [f64; COLUMNS], y: &mut [f64]) {
-    let whole = y.len() - y.len() % SUMS;
-    for at in (0..whole).step_by(SUMS) {
-        let (l0, l1, l2, l3) = (lot(l0, at), lot(l1, at), lot(l2, at), lot(l3, at));
-        let y: &mut Lot = (&mut y[at..at + SUMS]).try_into().expect("as long");
-        for i in 0..SUMS {
-            let first = l1[i].mul_add(x[1], l0[i].mul_add(x[0], y[i]));
-            y[i] = l3[i].mul_add(x[3], l2[i].mul_add(x[2], first));
+/// Subtracts the products of `N` columns with the rows below and solves with the transposed square.
+fn substitute_group<const N: usize>(group: &[f64], work: &mut [f64]) {
+    let (square, below) = group.split_at(N * N);
+    let (x, rest) = work.split_at_mut(N);
+    let below = &below[..N * rest.len()];
+    let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact(LOT));
+    let mut sums = [[0.0; LOT]; N];
+    for (l, w) in (&mut lots).zip(&mut rows) {
+        let w = lot(w, 0);
+        for (k, sum) in sums.iter_mut().enumerate() {
+            let l = lot(l, k);
+            for i in 0..LOT {
+                sum[i] = l[i].mul_add(w[i], sum[i]);
+            }
         }
     }
-    for i in whole..y.len() {
-        y[i] += (l0[i] * x[0] + l1[i] * x[1]) + (l2[i] * x[2] + l3[i] * x[3]);
+    let (l, w) = (lots.remainder(), rows.remainder());
+    let r = w.len();
+    let inverse = reciprocals::<N>(square);
+    for k in (0..N).rev() {
+        let last: f64 = l[k * r..][..r].iter().zip(w).map(|(l, w)| l * w).sum();
+        let inside: f64 = (k + 1..N).map(|i| square[k * N + i] * x[i]).sum();
+        x[k] = (x[k] - (sums[k].iter().sum::<f64>() + last) - inside) * inverse[k];
     }
 }
 
-/// The products of four columns with one vector.
-fn products([l0, l1, l2, l3]: [&[f64]; COLUMNS], w: &[f64]) -> [f64; COLUMNS] {
-    let (mut s0, mut s1, mut s2, mut s3) = ([0.0; SUMS], [0.0; SUMS], [0.0; SUMS], [0.0; SUMS]);
-    let whole = w.len() - w.len() % SUMS;
-    let add = |sums: &mut Lot, l: &Lot, w: &Lot| {
-        for i in 0..SUMS {
-            sums[i] = l[i].mul_add(w[i], sums[i]);
-        }
-    };
-    for at in (0..whole).step_by(SUMS) {
-        let w = lot(w, at);
-        add(&mut s0, lot(l0, at), w);
-        add(&mut s1, lot(l1, at), w);
-        add(&mut s2, lot(l2, at), w);
-        add(&mut s3, lot(l3, at), w);
-    }
-    let total = |sums: Lot, l: &[f64]| {
-        let rest = l[whole..].iter().zip(&w[whole..]);
-        sums.iter().sum::<f64>() + rest.map(|(l, w)| l * w).sum::<f64>()
-    };
-    [total(s0, l0), total(s1, l1), total(s2, l2), total(s3, l3)]
+/// The reciprocals of the pivots in a square, computed first: these divisions do not depend on each other.
+fn reciprocals<const N: usize>(square: &[f64]) -> [f64; N] {
+    std::array::from_fn(|k| 1.0 / square[k * (N + 1)])
+}
+
+/// A fixed number of entries that are processed together.
+type Lot = [f64; LOT];
+
+/// Lot `k` of `values`.
+fn lot(values: &[f64], k: usize) -> &Lot {
+    values[k * LOT..][..LOT].try_into().expect("as long")
 }
 
 #[cfg(test)]

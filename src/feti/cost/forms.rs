@@ -28,7 +28,7 @@ pub(crate) const DENSE: f64 = 2e-10;
 pub(crate) const DENSE_SHARED: f64 = 6e-11;
 
 /// Seconds per entry of a sparse factor and pass over it: for one vector, and for each of several.
-const SPARSE: f64 = 6e-10;
+const SPARSE: f64 = 4e-10;
 const SPARSE_SHARED: f64 = 2e-10;
 
 /// Number of copies on a rank from which on products with S and T are matrix-matrix products. With fewer copies,

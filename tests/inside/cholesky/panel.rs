@@ -1,32 +1,45 @@
 //! Unit tests of `src/cholesky/panel.rs`.
 
 use super::*;
-use crate::linalg::dense::Dense;
+
+/// The entries (row, column) of a panel in the order of memory.
+fn order(width: usize, size: usize) -> Vec<(usize, usize)> {
+    let mut order = Vec::new();
+    for j in (0..width).step_by(COLUMNS) {
+        let columns = j..width.min(j + COLUMNS);
+        let square: Vec<usize> = columns.clone().collect();
+        let below: Vec<usize> = (columns.end..size).collect();
+        for rows in [&square[..]].into_iter().chain(below.chunks(LOT)) {
+            order.extend(
+                columns
+                    .clone()
+                    .flat_map(|j| rows.iter().map(move |&i| (i, j))),
+            );
+        }
+    }
+    order
+}
 
 #[test]
-fn every_entry_below_the_diagonal_has_a_place_of_its_own() {
-    for (width, more) in (1..=13).flat_map(|w| [0, 1, 9].map(|m| (w, m))) {
-        let size = width + more;
-        let mut dense = Dense::zeros(size + 2, width);
-        for j in 0..width {
-            for i in j..size + 2 {
-                dense.set(i, j, (100 * j + i + 1) as f64);
-            }
-        }
+fn squares_come_first_and_rows_in_lots() {
+    for (width, more) in (1..=13).flat_map(|w| [0, 1, 8, 9, 23].map(|m| (w, m))) {
+        let (size, stride) = (width + more, width + more + 2);
+        let value = |i: usize, j: usize| (100 * j + i + 1) as f64;
+        let columns: Vec<f64> = (0..width)
+            .flat_map(|j| (0..stride).map(move |i| value(i, j)))
+            .collect();
         let mut out = vec![0.0; length(width, size)];
-        store(&dense.data, size + 2, width, size, &mut out);
+        store(&columns, stride, width, size, &mut out);
+        let expected: Vec<f64> = order(width, size)
+            .iter()
+            .map(|&(i, j)| value(i, j))
+            .collect();
+        assert_eq!(out, expected, "{width} {size}");
         for j in 0..width {
-            let (start, first) = column(j, size);
-            assert_eq!(out[diagonal(j, size)], dense.get(j, j));
-            for i in first..size {
-                assert_eq!(
-                    out[start + i - first],
-                    dense.get(i, j),
-                    "{width} {size} {i} {j}"
-                );
-            }
+            assert_eq!(out[diagonal(j, width, size)], value(j, j));
         }
-        let groups: usize = (0..width).map(|j| size - j / COLUMNS * COLUMNS).sum();
-        assert_eq!(out.len(), groups);
+        for j in (0..width).step_by(COLUMNS) {
+            assert_eq!(out[group(j, size)], value(j, j));
+        }
     }
 }
