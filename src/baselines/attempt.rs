@@ -53,8 +53,6 @@ pub fn solve_to(
     const SMALLEST: f64 = 1e-16;
     // A residual counts as smaller below this fraction of the previous one.
     const GAIN: f64 = 0.9;
-    // The tolerance becomes smaller by at most this factor: the last solve must not run far below the target.
-    const LEAST: f64 = 1e-2;
     let mut rtol = first;
     let mut best: Option<(Attempt, f64)> = None;
     loop {
@@ -84,7 +82,7 @@ pub fn solve_to(
             let message = format!("the residual stays at {:.1e}", best.residual);
             return Ok((best, rtol, Some(message)));
         }
-        rtol *= (0.5 * target / residual).clamp(LEAST, 0.5);
+        rtol *= (0.5 * target / residual).clamp(1e-4, 0.5);
     }
 }
 

@@ -5,7 +5,8 @@
 //! sides are stored side by side, row by row: each entry of the factor multiplies eight numbers in a vector register.
 
 use super::multifrontal::PartialCholesky;
-use super::panel::{self, COLUMNS, LOT};
+use super::panel::LOT;
+use super::sweep::Entry;
 
 /// Number of right-hand sides that are solved together.
 pub const LANES: usize = 8;
@@ -26,14 +27,14 @@ impl PartialCholesky {
     /// Applies [`forward`](Self::forward) to at most [`LANES`] vectors, each of length n, by dof.
     pub fn forward_many(&self, columns: &mut [Vec<f64>]) {
         let mut x = self.gather(columns);
-        self.lower_lanes(&mut x);
+        self.lower(&mut x);
         self.scatter(&x, columns);
     }
 
     /// Applies [`backward`](Self::backward) to at most [`LANES`] vectors, each of length n, by dof.
     pub fn backward_many(&self, columns: &mut [Vec<f64>]) {
         let mut x = self.gather(columns);
-        self.upper_lanes(&mut x);
+        self.upper(&mut x);
         self.scatter(&x, columns);
     }
 
@@ -45,59 +46,10 @@ impl PartialCholesky {
                 continue;
             }
             let mut x = self.gather(lanes);
-            self.lower_lanes(&mut x);
+            self.lower(&mut x);
             x[self.symbolic.n_interior()..].fill([0.0; LANES]);
-            self.upper_lanes(&mut x);
+            self.upper(&mut x);
             self.scatter(&x, lanes);
-        }
-    }
-
-    fn lower_lanes(&self, x: &mut [Lane]) {
-        let mut work = Vec::new();
-        for front in &self.symbolic.fronts {
-            let (width, size) = (front.width(), front.size());
-            let panel = &self.panels[front.panel..];
-            let (pivots, below) = x[front.start..].split_at_mut(width);
-            work.clear();
-            work.extend_from_slice(pivots);
-            work.resize(size, [0.0; LANES]);
-            for j in (0..width).step_by(COLUMNS) {
-                let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
-                match width - j {
-                    1 => eliminate::<1>(group, work),
-                    2 => eliminate::<2>(group, work),
-                    3 => eliminate::<3>(group, work),
-                    _ => eliminate::<COLUMNS>(group, work),
-                }
-            }
-            pivots.copy_from_slice(&work[..width]);
-            for (&p, w) in front.below.iter().zip(&work[width..]) {
-                let y = &mut below[p as usize - front.end];
-                y.iter_mut().zip(w).for_each(|(y, w)| *y += w);
-            }
-        }
-    }
-
-    fn upper_lanes(&self, x: &mut [Lane]) {
-        let mut work = Vec::new();
-        for front in self.symbolic.fronts.iter().rev() {
-            let (width, size) = (front.width(), front.size());
-            let panel = &self.panels[front.panel..];
-            let (pivots, below) = x[front.start..].split_at_mut(width);
-            work.clear();
-            work.extend_from_slice(pivots);
-            let rows = front.below.iter().map(|&p| below[p as usize - front.end]);
-            work.extend(rows);
-            for j in (0..width).step_by(COLUMNS).rev() {
-                let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
-                match width - j {
-                    1 => substitute::<1>(group, work),
-                    2 => substitute::<2>(group, work),
-                    3 => substitute::<3>(group, work),
-                    _ => substitute::<COLUMNS>(group, work),
-                }
-            }
-            pivots.copy_from_slice(&work[..width]);
         }
     }
 
@@ -122,52 +74,56 @@ impl PartialCholesky {
     }
 }
 
-/// Solves with the square of `N` pivots and subtracts their columns from the rows below: `work` = [x; rows below].
-fn eliminate<const N: usize>(group: &[f64], work: &mut [Lane]) {
-    let (square, below) = group.split_at(N * N);
-    let (pivots, rest) = work.split_at_mut(N);
-    let mut x = [[0.0; LANES]; N];
-    for k in 0..N {
-        scale(&mut pivots[k], 1.0 / square[k * (N + 1)]);
-        x[k] = pivots[k];
-        for i in k + 1..N {
-            subtract(&mut pivots[i], square[k * N + i], &x[k]);
-        }
+impl Entry for Lane {
+    fn add(&mut self, other: &Lane) {
+        self.iter_mut().zip(other).for_each(|(y, w)| *y += w);
     }
-    let lots = below[..N * rest.len()].chunks(N * LOT);
-    for (l, rows) in lots.zip(rest.chunks_mut(LOT)) {
-        let r = rows.len();
-        for (i, y) in rows.iter_mut().enumerate() {
-            for k in 0..N {
-                subtract(y, l[k * r + i], &x[k]);
-            }
-        }
-    }
-}
 
-/// Subtracts the products of `N` columns with the rows below and solves with the transposed square.
-fn substitute<const N: usize>(group: &[f64], work: &mut [Lane]) {
-    let (square, below) = group.split_at(N * N);
-    let (pivots, rest) = work.split_at_mut(N);
-    let mut x = [[0.0; LANES]; N];
-    x.copy_from_slice(pivots);
-    let lots = below[..N * rest.len()].chunks(N * LOT);
-    for (l, rows) in lots.zip(rest.chunks(LOT)) {
-        let r = rows.len();
-        for (i, w) in rows.iter().enumerate() {
-            for k in 0..N {
-                subtract(&mut x[k], l[k * r + i], w);
+    fn eliminate<const N: usize>(group: &[f64], work: &mut [Lane]) {
+        let (square, below) = group.split_at(N * N);
+        let (pivots, rest) = work.split_at_mut(N);
+        let mut x = [[0.0; LANES]; N];
+        for k in 0..N {
+            scale(&mut pivots[k], 1.0 / square[k * (N + 1)]);
+            x[k] = pivots[k];
+            for i in k + 1..N {
+                subtract(&mut pivots[i], square[k * N + i], &x[k]);
+            }
+        }
+        let lots = below[..N * rest.len()].chunks(N * LOT);
+        for (l, rows) in lots.zip(rest.chunks_mut(LOT)) {
+            let r = rows.len();
+            for (i, y) in rows.iter_mut().enumerate() {
+                for k in 0..N {
+                    subtract(y, l[k * r + i], &x[k]);
+                }
             }
         }
     }
-    for k in (0..N).rev() {
-        for i in k + 1..N {
-            let done = x[i];
-            subtract(&mut x[k], square[k * N + i], &done);
+
+    fn substitute<const N: usize>(group: &[f64], work: &mut [Lane]) {
+        let (square, below) = group.split_at(N * N);
+        let (pivots, rest) = work.split_at_mut(N);
+        let mut x = [[0.0; LANES]; N];
+        x.copy_from_slice(pivots);
+        let lots = below[..N * rest.len()].chunks(N * LOT);
+        for (l, rows) in lots.zip(rest.chunks(LOT)) {
+            let r = rows.len();
+            for (i, w) in rows.iter().enumerate() {
+                for k in 0..N {
+                    subtract(&mut x[k], l[k * r + i], w);
+                }
+            }
         }
-        scale(&mut x[k], 1.0 / square[k * (N + 1)]);
+        for k in (0..N).rev() {
+            for i in k + 1..N {
+                let done = x[i];
+                subtract(&mut x[k], square[k * N + i], &done);
+            }
+            scale(&mut x[k], 1.0 / square[k * (N + 1)]);
+        }
+        pivots.copy_from_slice(&x);
     }
-    pivots.copy_from_slice(&x);
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@
 //! | [`symbolic`] | fronts, their rows, and where these stand in the parent's front |
 //! | [`multifrontal`] | factors front by front; what reaches the root is S |
 //! | [`panel`] | how the columns of a front lie in memory |
+//! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
 //! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
 //!
@@ -24,4 +25,5 @@ pub mod lanes;
 pub mod multifrontal;
 pub mod panel;
 pub mod substitution;
+mod sweep;
 pub mod symbolic;

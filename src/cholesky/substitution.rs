@@ -1,11 +1,8 @@
 //! Forward and backward substitution for one right-hand side.
-//!
-//! Every front works on one dense vector [x; w]: x at its pivots, w at the rows below them. Four columns of the panel
-//! are applied together to all rows below them. The vector is read and written once for four columns, the panel is read
-//! once, from one end to the other.
 
 use super::multifrontal::PartialCholesky;
-use super::panel::{self, COLUMNS, LOT};
+use super::panel::LOT;
+use super::sweep::Entry;
 
 impl PartialCholesky {
     /// Forward elimination: `b` (length n, by dof) becomes [L_II⁻¹ b_I; b_Γ − L_ΓI L_II⁻¹ b_I].
@@ -33,40 +30,6 @@ impl PartialCholesky {
         self.by_dof(&y, b);
     }
 
-    /// y ← [L_II⁻¹ y_I; y_Γ − L_ΓI L_II⁻¹ y_I] in the order of elimination.
-    fn lower(&self, y: &mut [f64]) {
-        let mut work = Vec::new();
-        for front in &self.symbolic.fronts {
-            let (width, size) = (front.width(), front.size());
-            let panel = &self.panels[front.panel..];
-            let (pivots, below) = y[front.start..].split_at_mut(width);
-            work.clear();
-            work.extend_from_slice(pivots);
-            work.resize(size, 0.0);
-            eliminate(panel, width, &mut work);
-            pivots.copy_from_slice(&work[..width]);
-            for (&p, w) in front.below.iter().zip(&work[width..]) {
-                below[p as usize - front.end] += w;
-            }
-        }
-    }
-
-    /// y ← [L_II⁻ᵀ (y_I − L_ΓIᵀ y_Γ); y_Γ] in the order of elimination.
-    fn upper(&self, y: &mut [f64]) {
-        let mut work = Vec::new();
-        for front in self.symbolic.fronts.iter().rev() {
-            let width = front.width();
-            let panel = &self.panels[front.panel..];
-            let (pivots, below) = y[front.start..].split_at_mut(width);
-            work.clear();
-            work.extend_from_slice(pivots);
-            let rows = front.below.iter().map(|&p| below[p as usize - front.end]);
-            work.extend(rows);
-            substitute(panel, width, &mut work);
-            pivots.copy_from_slice(&work[..width]);
-        }
-    }
-
     fn in_order(&self, b: &[f64]) -> Vec<f64> {
         self.symbolic.dofs().map(|i| b[i as usize]).collect()
     }
@@ -78,92 +41,68 @@ impl PartialCholesky {
     }
 }
 
-/// x ← L⁻¹ x and w ← w − L_below x for `work` = [x; w] and a panel of `width` columns.
-fn eliminate(panel: &[f64], width: usize, work: &mut [f64]) {
-    let size = work.len();
-    for j in (0..width).step_by(COLUMNS) {
-        let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
-        match width - j {
-            1 => eliminate_group::<1>(group, work),
-            2 => eliminate_group::<2>(group, work),
-            3 => eliminate_group::<3>(group, work),
-            _ => eliminate_group::<COLUMNS>(group, work),
-        }
+impl Entry for f64 {
+    fn add(&mut self, other: &f64) {
+        *self += other;
     }
-}
 
-/// x ← L⁻ᵀ (x − L_belowᵀ w) for `work` = [x; w].
-fn substitute(panel: &[f64], width: usize, work: &mut [f64]) {
-    let size = work.len();
-    for j in (0..width).step_by(COLUMNS).rev() {
-        let (group, work) = (&panel[panel::group(j, size)..], &mut work[j..]);
-        match width - j {
-            1 => substitute_group::<1>(group, work),
-            2 => substitute_group::<2>(group, work),
-            3 => substitute_group::<3>(group, work),
-            _ => substitute_group::<COLUMNS>(group, work),
-        }
-    }
-}
-
-/// Solves with the square of `N` pivots and subtracts their columns from the rows below: `work` = [x; rows below].
-fn eliminate_group<const N: usize>(group: &[f64], work: &mut [f64]) {
-    let (square, below) = group.split_at(N * N);
-    let (x, rest) = work.split_at_mut(N);
-    let inverse = reciprocals::<N>(square);
-    let mut minus = [0.0; N];
-    for k in 0..N {
-        x[k] *= inverse[k];
-        for i in k + 1..N {
-            x[i] -= square[k * N + i] * x[k];
-        }
-        minus[k] = -x[k];
-    }
-    let below = &below[..N * rest.len()];
-    let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact_mut(LOT));
-    for (l, y) in (&mut lots).zip(&mut rows) {
-        let y: &mut Lot = y.try_into().expect("as long");
-        let mut sum = *y;
-        for (k, x) in minus.iter().enumerate() {
-            let l = lot(l, k);
-            for i in 0..LOT {
-                sum[i] = l[i].mul_add(*x, sum[i]);
+    fn eliminate<const N: usize>(group: &[f64], work: &mut [f64]) {
+        let (square, below) = group.split_at(N * N);
+        let (x, rest) = work.split_at_mut(N);
+        let inverse = reciprocals::<N>(square);
+        let mut minus = [0.0; N];
+        for k in 0..N {
+            x[k] *= inverse[k];
+            for i in k + 1..N {
+                x[i] -= square[k * N + i] * x[k];
             }
+            minus[k] = -x[k];
         }
-        *y = sum;
-    }
-    let (l, y) = (lots.remainder(), rows.into_remainder());
-    let r = y.len();
-    for (i, y) in y.iter_mut().enumerate() {
-        for (k, x) in minus.iter().enumerate() {
-            *y = l[k * r + i].mul_add(*x, *y);
+        let below = &below[..N * rest.len()];
+        let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact_mut(LOT));
+        for (l, y) in (&mut lots).zip(&mut rows) {
+            let y: &mut Lot = y.try_into().expect("as long");
+            let mut sum = *y;
+            for (k, x) in minus.iter().enumerate() {
+                let l = lot(l, k);
+                for i in 0..LOT {
+                    sum[i] = l[i].mul_add(*x, sum[i]);
+                }
+            }
+            *y = sum;
         }
-    }
-}
-
-/// Subtracts the products of `N` columns with the rows below and solves with the transposed square.
-fn substitute_group<const N: usize>(group: &[f64], work: &mut [f64]) {
-    let (square, below) = group.split_at(N * N);
-    let (x, rest) = work.split_at_mut(N);
-    let below = &below[..N * rest.len()];
-    let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact(LOT));
-    let mut sums = [[0.0; LOT]; N];
-    for (l, w) in (&mut lots).zip(&mut rows) {
-        let w = lot(w, 0);
-        for (k, sum) in sums.iter_mut().enumerate() {
-            let l = lot(l, k);
-            for i in 0..LOT {
-                sum[i] = l[i].mul_add(w[i], sum[i]);
+        let (l, y) = (lots.remainder(), rows.into_remainder());
+        let r = y.len();
+        for (i, y) in y.iter_mut().enumerate() {
+            for (k, x) in minus.iter().enumerate() {
+                *y = l[k * r + i].mul_add(*x, *y);
             }
         }
     }
-    let (l, w) = (lots.remainder(), rows.remainder());
-    let r = w.len();
-    let inverse = reciprocals::<N>(square);
-    for k in (0..N).rev() {
-        let last: f64 = l[k * r..][..r].iter().zip(w).map(|(l, w)| l * w).sum();
-        let inside: f64 = (k + 1..N).map(|i| square[k * N + i] * x[i]).sum();
-        x[k] = (x[k] - (sums[k].iter().sum::<f64>() + last) - inside) * inverse[k];
+
+    fn substitute<const N: usize>(group: &[f64], work: &mut [f64]) {
+        let (square, below) = group.split_at(N * N);
+        let (x, rest) = work.split_at_mut(N);
+        let below = &below[..N * rest.len()];
+        let (mut lots, mut rows) = (below.chunks_exact(N * LOT), rest.chunks_exact(LOT));
+        let mut sums = [[0.0; LOT]; N];
+        for (l, w) in (&mut lots).zip(&mut rows) {
+            let w = lot(w, 0);
+            for (k, sum) in sums.iter_mut().enumerate() {
+                let l = lot(l, k);
+                for i in 0..LOT {
+                    sum[i] = l[i].mul_add(w[i], sum[i]);
+                }
+            }
+        }
+        let (l, w) = (lots.remainder(), rows.remainder());
+        let r = w.len();
+        let inverse = reciprocals::<N>(square);
+        for k in (0..N).rev() {
+            let last: f64 = l[k * r..][..r].iter().zip(w).map(|(l, w)| l * w).sum();
+            let inside: f64 = (k + 1..N).map(|i| square[k * N + i] * x[i]).sum();
+            x[k] = (x[k] - (sums[k].iter().sum::<f64>() + last) - inside) * inverse[k];
+        }
     }
 }
 

@@ -16,6 +16,7 @@ mod gallery;
 mod guided;
 mod input;
 mod input_bodies;
+mod mesh_mistakes;
 mod meshes;
 mod solution;
 mod springs;

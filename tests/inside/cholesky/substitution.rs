@@ -1,6 +1,7 @@
 //! Unit tests of `src/cholesky/substitution.rs`.
 
-use super::*;
+use crate::cholesky::panel;
+use crate::cholesky::sweep::{eliminate, substitute};
 use crate::linalg::testing::random;
 
 /// The columns of a panel with `width` columns and `size` rows and a large diagonal.
