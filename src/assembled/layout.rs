@@ -45,7 +45,8 @@ pub struct Layout<'a> {
     pub forms: Vec<Functional>,
     /// The equations of `held` and `forms` together, without the supports.
     all_held: Echelon,
-    /// Why the inequalities cannot be written in frames; `None` where they can.
+    /// Why w cannot stand for the problem: inequalities that are no bounds in frames, or equations beside ties. `None`
+    /// where it can.
     pub trouble: Option<String>,
 }
 
@@ -67,7 +68,7 @@ impl<'a> Layout<'a> {
             motions,
             held,
             forms: Vec::new(),
-            trouble: None,
+            trouble: trouble(scene),
         };
         layout.fill();
         let rows = scene.rows(&|_| true);
@@ -415,6 +416,19 @@ impl<'a> Layout<'a> {
         }
         Ok(())
     }
+}
+
+/// Equations with any number of terms tie w in a way that numbering nodes once does not.
+fn trouble(scene: &Scene) -> Option<String> {
+    let n = scene.equations.len();
+    let named = match n {
+        0 => return None,
+        1 => "one equation".into(),
+        n => format!("{n} equations"),
+    };
+    Some(format!(
+        "it has {named} between displacements (*EQUATION), and the assembled problem knows ties only"
+    ))
 }
 
 /// Of a direction and its opposite, the one whose first nonzero entry is positive.

@@ -57,21 +57,23 @@ pub fn solve(
             .system
             .mean(session, local, &solution.u, &unknowns, copies);
         let (u, weight) = mean?;
-        let (residual, contact) = match scene.has_contact() {
-            true => {
+        let (residual, contact) = match (&layout.trouble, scene.has_contact()) {
+            // Without an assembled problem there is no residual.
+            (Some(_), contact) => {
+                let rows = || active(session, scene, &solution, &problem.rows);
+                let active = contact.then(rows).transpose()?;
+                (
+                    0.0,
+                    active.map(|a| outcome(&solution, problem.rows.list(&a))),
+                )
+            }
+            (None, true) => {
                 let active = active(session, scene, &solution, &problem.rows)?;
-                let outcome = ContactOutcome {
-                    steps: Some(solution.steps.len()),
-                    active: problem.rows.list(&active),
-                };
-                let residual = match layout.trouble {
-                    None => close(session, problem, active, &u, &weight)?,
-                    // Without an assembled problem there is no residual.
-                    Some(_) => 0.0,
-                };
+                let outcome = outcome(&solution, problem.rows.list(&active));
+                let residual = close(session, problem, active, &u, &weight)?;
                 (residual, Some(outcome))
             }
-            false => (problem.system.relative_residual(&u)?, None),
+            (None, false) => (problem.system.relative_residual(&u)?, None),
         };
         let recover = solution.recover_seconds;
         let mut seconds = [solution.solve_seconds + recover, recover];
@@ -102,6 +104,13 @@ pub fn solve(
         outcome.residual = None;
     }
     Ok(outcome)
+}
+
+fn outcome(solution: &Solution, active: Vec<usize>) -> ContactOutcome {
+    ContactOutcome {
+        steps: Some(solution.steps.len()),
+        active,
+    }
 }
 
 /// Seconds of a solve for another load with the existing set-up; the contact loop starts from its initial set.

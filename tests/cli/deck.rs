@@ -186,6 +186,28 @@ fn a_cut_deck_is_solved_and_said() {
     );
 }
 
+/// The assembled problem of PETSc's methods knows ties only: nothing is compared with a problem without the equations.
+#[test]
+fn equations_are_not_compared_with_a_problem_without_them() {
+    let scratch = Scratch::new("deck_compare");
+    let joined = "*EQUATION\n2\n10,1,1,5,1,-1\n2\n10,2,1,5,2,-1\n";
+    let deck = scratch.file("joined.inp", &cut_plate([10, 8, 10, 8], joined));
+    let json = scratch.path("compare.json");
+    let run = run_fetifeti(1, &["compare", &deck, "--with", "mumps", "--json", &json]);
+    assert_eq!(run.code, 0, "{}", run.all());
+    assert!(
+        run.stdout.contains("2 equations between displacements"),
+        "{}",
+        run.all()
+    );
+    let report: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    for method in report["rows"].as_array().expect("a list") {
+        assert!(method["residual"].is_null(), "{method}");
+        let ours = method["method"] == "fetifeti";
+        assert_eq!(method["converged"] == true, ours, "{method}");
+    }
+}
+
 /// Three columns of two squares under pressure, with gaps 0.01, 0.01 and −0.01. The slave nodes of the first and the
 /// third, and the master nodes of the second, are in the node set that ADJUST names: gaps of the first and the third
 /// column count as none.
