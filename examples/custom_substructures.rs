@@ -34,6 +34,7 @@ fn run(session: &Session) -> Result<()> {
     let problem = Substructures {
         n_bodies: BOARDS,
         n_subdomains: n,
+        ragged: false,
         body_names: (1..=BOARDS).map(|b| format!("board {b}")).collect(),
         local: mine.map(half).collect(),
         // Any rank may provide any row, as long as exactly one does and rows of one block stay together.

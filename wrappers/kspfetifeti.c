@@ -250,6 +250,7 @@ static PetscErrorCode KSPView_FETIFETI(KSP ksp, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  multipliers: %.0f inside bodies, %.0f between bodies\n",
                                      facts.local_rows, facts.global_rows));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  primal dofs: %d\n", facts.primal));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  scaling: %s\n", facts.scaling));
     PetscCall(PetscViewerASCIIPrintf(viewer, "Inner KSP solver details\n"));
   }
   PetscCall(PetscViewerASCIIPushTab(viewer));

@@ -29,6 +29,9 @@ typedef struct {
 #define FF_RAISED   3
 #define FF_ALONE    4
 
+/* Longest name of an option's value with its end. */
+#define FETIFETI_NAME 16
+
 typedef struct {
   int    body;     /* body of this rank, or -1 */
   IS     bodies;   /* body of each row that this rank owns, or NULL */
@@ -40,6 +43,7 @@ typedef struct {
 typedef struct {
   int    bodies, floating, kernel, subdomains, primal;
   double local_rows, global_rows;
+  char   scaling[FETIFETI_NAME];
 } FetiFetiFacts;
 
 typedef struct {

@@ -21,6 +21,9 @@ pub struct Wishes {
     max_it: c_int,
 }
 
+/// Longest name of an option's value with its end, FETIFETI_NAME in wrappers/kspfetifeti.h.
+const NAME: usize = 16;
+
 /// The data that -ksp_view shows.
 #[repr(C)]
 pub struct Facts {
@@ -31,6 +34,7 @@ pub struct Facts {
     primal: c_int,
     local_rows: f64,
     global_rows: f64,
+    scaling: [c_char; NAME],
 }
 
 /// The result of a solve.
@@ -274,6 +278,7 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
             primal: known.primal as c_int,
             local_rows: known.multipliers_local as f64,
             global_rows: known.multipliers_global as f64,
+            scaling: name(known.scaling.name()),
         }
     };
 }
@@ -289,6 +294,15 @@ pub unsafe extern "C" fn fetifeti_plugin_free(solver: *mut c_void) {
         drop(unsafe { Box::from_raw(solver.cast::<Embedded>()) });
         Ok(())
     });
+}
+
+/// A name as a string of C. Names that are too long are cut.
+fn name(name: &str) -> [c_char; NAME] {
+    let mut out = [0; NAME];
+    for (to, from) in out[..NAME - 1].iter_mut().zip(name.bytes()) {
+        *to = from as c_char;
+    }
+    out
 }
 
 /// # Safety

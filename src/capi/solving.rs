@@ -69,7 +69,7 @@ impl Object {
         let mut text = format!(
             "FetiFeti Object: {} MPI processes\n  bodies: {} ({} floating, kernels of dimension {}), subdomains: {}\
              \n  multipliers: {} inside bodies, {} between bodies, {n} of these for rows given ({} inequalities)\
-             \n  primal dofs: {}\n",
+             \n  primal dofs: {}\n  scaling: {}\n",
             self.session.size(),
             problem.n_bodies,
             known.floating_bodies,
@@ -78,7 +78,8 @@ impl Object {
             known.multipliers_local,
             known.multipliers_global,
             known.inequalities,
-            known.primal
+            known.primal,
+            known.scaling.name()
         );
         if let Some(o) = &self.outcome {
             text += &format!(

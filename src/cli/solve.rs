@@ -325,6 +325,7 @@ fn report(
         converged_reason: solution.status.to_string(),
         ksp_type: solver.ksp().type_name()?,
         preconditioner: dual.preconditioner.kind.name().into(),
+        scaling: facts.scaling.name().into(),
         local_solver: solver.settings().method.local.kind.name().into(),
         local_ordering: solver
             .settings()

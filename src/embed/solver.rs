@@ -149,6 +149,8 @@ impl Embedded {
         let problem = Substructures {
             n_bodies,
             n_subdomains: sharers.n_subdomains,
+            // Its ρ is the diagonal of K already.
+            ragged: false,
             body_names: (0..n_bodies).map(|b| b.to_string()).collect(),
             local: local.collect(),
             rows,

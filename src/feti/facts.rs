@@ -7,6 +7,7 @@ use std::sync::Arc;
 use mpi::topology::SimpleCommunicator;
 
 use super::operators::dual::Dual;
+use super::settings::Scaling;
 use super::subdomain::problem::LocalProblem;
 use super::subdomain::scaled::Scaled;
 use crate::parallel::exchange::sum_all;
@@ -14,6 +15,8 @@ use crate::parallel::exchange::sum_all;
 /// Facts about the problem as the solver sees it.
 #[derive(Debug, Clone, Default)]
 pub struct Facts {
+    /// The weights of the scaled jump operator.
+    pub scaling: Scaling,
     /// Rows of B_loc.
     pub multipliers_local: usize,
     /// Rows of B_gl.
@@ -48,7 +51,7 @@ pub struct Facts {
 
 impl Facts {
     /// The facts of these operators. The fields about the time and the additions of set-up are left empty. Collective.
-    pub(super) fn new(comm: &SimpleCommunicator, dual: &Dual) -> Facts {
+    pub(super) fn new(comm: &SimpleCommunicator, dual: &Dual, scaling: Scaling) -> Facts {
         let (stiffness, natural) = (&dual.stiffness, &dual.natural);
         let jump = &stiffness.jump;
         let contact = jump.active[jump.n_owned_local..].iter();
@@ -69,6 +72,7 @@ impl Facts {
             .collect();
         let dense_bytes = dense_bytes + psi.values().sum::<usize>();
         Facts {
+            scaling,
             multipliers_local: jump.n_local,
             multipliers_global: jump.n_global - jump.n_local,
             multipliers_active: counts[0] as usize,

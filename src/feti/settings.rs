@@ -26,11 +26,12 @@ impl PcType {
 }
 
 /// The weights D of the scaled jump operator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Scaling {
     /// D = 1: every copy counts the same.
     Multiplicity,
     /// D = ρ^γ.
+    #[default]
     Rho,
     /// D = diag(K).
     Stiffness,
@@ -210,8 +211,9 @@ pub struct MethodSettings {
     /// `fetifeti_lifting`: the coarse functions of M_C. `None` means vertices if `pc_type` is chosen automatically, all
     /// if coarse_corrected is asked for.
     pub lifting: Option<CoarseFunctions>,
-    /// `fetifeti_scaling`.
-    pub scaling: Scaling,
+    /// `fetifeti_scaling`; `None` chooses stiffness where meshes in space are cut
+    /// ([`Substructures::ragged`](crate::Substructures::ragged)), rho otherwise.
+    pub scaling: Option<Scaling>,
     /// `fetifeti_scaling_gamma`, γ ∈ [1/2, ∞).
     pub gamma: f64,
     /// `fetifeti_precision`.
@@ -250,7 +252,7 @@ impl Default for MethodSettings {
         MethodSettings {
             pc_type: None,
             lifting: None,
-            scaling: Scaling::Rho,
+            scaling: None,
             gamma: 1.0,
             primal: Primal::default(),
             precision: Precision::Double,
@@ -280,7 +282,7 @@ impl MethodSettings {
         let help = "coarse functions that coarse_corrected takes away";
         self.lifting = o.named_or_auto("lifting", self.lifting, help)?;
         let help = "weights of the scaled jump operator";
-        self.scaling = o.named("scaling", self.scaling, help)?;
+        self.scaling = o.named_or_auto("scaling", self.scaling, help)?;
         let help = "exponent of rho in the scaling, at least 0.5";
         self.gamma = o.f64("scaling_gamma", self.gamma, help)?;
         if !(self.gamma >= 0.5 && self.gamma.is_finite()) {

@@ -58,7 +58,10 @@ impl LinearMethod {
         let clock = Instant::now();
         let comm = session.comm();
         session.agree(entities::check(&problem, settings.primal))?;
-        let weights = weights(&problem, &settings);
+        let scaling = settings
+            .scaling
+            .unwrap_or_else(|| choice::scaling(&problem));
+        let weights = weights(&problem, scaling, settings.gamma);
         let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
         drop(weights);
         let mut jump = Jump::new(comm, &problem, &sharing); /*                B, B_D                 */
@@ -72,7 +75,7 @@ impl LinearMethod {
             &sharing,
             &mut jump,
             &team,
-            (kind, &settings),
+            (kind, scaling, &settings),
         )?; /* S, T, Ψ */
         let varies = variation::varies(comm, &problem);
         team.set_load(locals.iter().map(|l| l.gamma().n_delta.pow(2)).sum());
@@ -106,7 +109,7 @@ impl LinearMethod {
             NaturalCoarse::new(&problem, &stiffness, &preconditioner, projector, &prefix)
         })?; /*                                                                 G, P                   */
         let dual = Dual::new(stiffness, preconditioner, natural)?;
-        let facts = Facts::new(comm, &dual);
+        let facts = Facts::new(comm, &dual, scaling);
         let system = Rc::new(System::new(session, dual, settings.recycle)?);
         let ksp = krylov(session, &system, &settings)?;
         Ok(LinearMethod {
@@ -134,7 +137,7 @@ fn subdomains(
     sharing: &Sharing,
     jump: &mut Jump,
     team: &Team,
-    (kind, settings): (PcType, &MethodSettings),
+    (kind, scaling, settings): (PcType, Scaling, &MethodSettings),
 ) -> Result<(Vec<Scaled>, Added)> {
     let comm = session.comm();
     let factored = clock::timed(Phase::LocalSetup, || {
@@ -144,7 +147,7 @@ fn subdomains(
     for (j, local) in locals.iter().enumerate() {
         jump.place(j, &local.gamma().interface);
     }
-    if settings.scaling == Scaling::Deluxe {
+    if scaling == Scaling::Deluxe {
         deluxe::apply(comm, problem, sharing, jump, &locals);
     }
     let adapting = Instant::now();

@@ -136,7 +136,7 @@ impl Scene {
         let equations = rows::equations::collect(&bodies, &mut points, &spec.equations)?;
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
-            options: with_scaling(spec.options, &bodies),
+            options: spec.options,
             title: spec.title,
             form: spec.form,
             bodies,
@@ -173,6 +173,12 @@ impl Scene {
         self.bodies[0].mesh().dim()
     }
 
+    /// Whether a body is a mesh of cells in space. Boxes are cut regularly.
+    pub(super) fn is_ragged(&self) -> bool {
+        let cells = |b: &Body| b.mesh().cells().is_some();
+        self.dim() == 3 && self.bodies.iter().any(cells)
+    }
+
     /// Number C of components of the field.
     pub fn components(&self) -> usize {
         self.bodies[0].components
@@ -196,16 +202,4 @@ impl Scene {
             .saturating_sub(1);
         (body, index - self.bodies[body].first_subdomain)
     }
-}
-
-/// Meshes in space are scaled by diag(K) if nobody says otherwise. Where a subdomain has a single corner of a cell at
-/// a node, it resists little there. As large a weight as its neighbours have lets κ grow: 889 instead of 55 for the
-/// case `rod-4` of `bench`. In the plane ρ is the better weight (8 instead of 20 for the case `holes`).
-fn with_scaling(mut options: Vec<(String, String)>, bodies: &[Body]) -> Vec<(String, String)> {
-    const SCALING: &str = "fetifeti_scaling";
-    let ragged = |b: &Body| b.mesh().dim() == 3 && b.mesh().cells().is_some();
-    if bodies.iter().any(ragged) && options.iter().all(|(name, _)| name != SCALING) {
-        options.push((SCALING.into(), "stiffness".into()));
-    }
-    options
 }

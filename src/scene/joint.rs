@@ -27,6 +27,7 @@ impl Scene {
         Ok(Substructures {
             n_bodies: self.n_bodies(),
             n_subdomains: self.n_subdomains(),
+            ragged: self.is_ragged(),
             body_names: self.bodies.iter().map(|b| b.spec.name.clone()).collect(),
             local: local?,
             rows: self.rows(owns),

@@ -102,6 +102,7 @@ pub struct Entity {
 /// let problem = Substructures {
 ///     n_bodies: 2,
 ///     n_subdomains: 2,
+///     ragged: false,
 ///     body_names: vec!["fixed".into(), "free".into()],
 ///     local: vec![
 ///         spring(0, fixed, vec![0.0], vec![0]),
@@ -125,6 +126,10 @@ pub struct Substructures {
     pub n_bodies: usize,
     /// Number of subdomains over all ranks.
     pub n_subdomains: usize,
+    /// Whether a body in space is a mesh of cells without a regular structure, the same on all ranks. The subdomains
+    /// that share a node then differ in how many cells they have there, and so in how much they resist; the method
+    /// chooses its weights accordingly ([`MethodSettings::scaling`](crate::MethodSettings::scaling)).
+    pub ragged: bool,
     /// Name of every body, for messages; length n_bodies.
     pub body_names: Vec<String>,
     /// This rank's subdomains, in increasing order of `index`.

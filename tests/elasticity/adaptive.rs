@@ -30,7 +30,7 @@ fn solver(
     adaptive: Adaptive,
 ) -> FetiFeti {
     let settings = MethodSettings {
-        scaling,
+        scaling: Some(scaling),
         adaptive,
         rtol: 1e-10,
         ..MethodSettings::default()

@@ -86,7 +86,10 @@ fn every_scaling_solves_and_jumps_do_no_harm() {
         for rows in [Rows::Tied, Rows::Normals] {
             let solid = Solid::new(3, [2, 2, 2], ELASTIC, rows);
             for scaling in [Scaling::Rho, Scaling::Stiffness, Scaling::Deluxe] {
-                let settings = MethodSettings { scaling, ..tight() };
+                let settings = MethodSettings {
+                    scaling: Some(scaling),
+                    ..tight()
+                };
                 let what = format!("{scaling:?}");
                 lambda_min(&verify(session, &solid, settings, &what), &what);
             }
@@ -97,7 +100,10 @@ fn every_scaling_solves_and_jumps_do_no_harm() {
                 ..Solid::new(dim, [1, 3, 4], physics, Rows::Tied)
             };
             for scaling in [Scaling::Stiffness, Scaling::Deluxe] {
-                let settings = MethodSettings { scaling, ..tight() };
+                let settings = MethodSettings {
+                    scaling: Some(scaling),
+                    ..tight()
+                };
                 let solver = verify(session, &solid, settings, "jumps");
                 let s = solver.spectrum().expect("eigenvalues");
                 let s = s.expect("multipliers");
@@ -241,7 +247,10 @@ fn on_a_rank(session: &Session, scaling: Scaling) {
     };
     let (size, rank) = (session.size(), session.rank());
     let problem = solid.substructures(|s| s % size == rank);
-    let settings = MethodSettings { scaling, ..tight() };
+    let settings = MethodSettings {
+        scaling: Some(scaling),
+        ..tight()
+    };
     let solver = FetiFeti::new(session, problem, settings).expect("set up");
     identities(&solver, 1e-10, "on ranks");
     let solution = solver.solve().expect("solved");

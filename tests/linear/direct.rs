@@ -124,7 +124,7 @@ fn every_scaling_with_every_projector() {
                         for pc in [PcType::Dirichlet, PcType::CoarseCorrected] {
                             let what = format!("{name} {scaling:?} {gamma} {projector:?} {pc:?}");
                             let settings = MethodSettings {
-                                scaling,
+                                scaling: Some(scaling),
                                 gamma,
                                 projector,
                                 pc_type: Some(pc),

@@ -167,7 +167,7 @@ fn every_form_of_the_method_is_right_on_copies() {
         (
             "deluxe",
             MethodSettings {
-                scaling: Scaling::Deluxe,
+                scaling: Some(Scaling::Deluxe),
                 ..usual.clone()
             },
         ),

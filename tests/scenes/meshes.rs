@@ -369,26 +369,3 @@ fn subdomains_are_chosen() {
     let away = distance_from_direct(&scene, "auto");
     assert!(away < 1e-8, "{away:e}");
 }
-
-#[test]
-fn meshes_in_space_are_scaled_by_stiffness_unless_told_otherwise() {
-    let scaling = |scene: &Scene| -> Vec<String> {
-        let named = scene
-            .options
-            .iter()
-            .filter(|(n, _)| n == "fetifeti_scaling");
-        named.map(|(_, value)| value.clone()).collect()
-    };
-    let load = |file: &str| Scene::load(file).expect("a scene");
-    assert_eq!(
-        scaling(&load("examples/gallery/hip_stem.toml")),
-        ["stiffness"]
-    );
-    assert!(scaling(&load("examples/gallery/pin_lug.toml")).is_empty());
-    assert!(scaling(&load("examples/scenes/cube_3d.toml")).is_empty());
-    // Who says so keeps the weights that boxes have.
-    let text = std::fs::read_to_string("examples/gallery/hip_stem.toml").expect("a file");
-    let text = format!("{text}\n[options]\nfetifeti_scaling = \"rho\"\n");
-    let told = Scene::parse("examples/gallery/hip_stem.toml", &text).expect("a scene");
-    assert_eq!(scaling(&told), ["rho"]);
-}

@@ -181,6 +181,7 @@ impl Grid {
         Substructures {
             n_bodies: nb * nb,
             n_subdomains,
+            ragged: false,
             body_names: (0..nb * nb)
                 .map(|b| format!("b{}_{}", b % nb, b / nb))
                 .collect(),

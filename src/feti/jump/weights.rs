@@ -1,6 +1,6 @@
 //! D: the weights of the copies of a dof in averages.
 
-use crate::feti::settings::{MethodSettings, Scaling};
+use crate::feti::settings::Scaling;
 use crate::substructures::{Subdomain, Substructures};
 
 /// ρ is noise if ln ρ changes from dof to dof by at least this part of its standard deviation. White noise has about
@@ -18,21 +18,21 @@ const SAMPLE: usize = 100;
 /// edges.
 const MODERATE: f64 = 1e3;
 
-/// The diagonal of D for every local subdomain.
+/// The diagonal of D for every local subdomain; γ = `gamma` is the exponent of ρ.
 ///
 /// ρ stands for the resistance of a copy that is moved together with its neighbours. Where ρ is noise, that resistance
 /// is the mean. Weights as rough as ρ itself would turn smooth jumps into rough averages, whose energy is larger by up
 /// to H/h.
-pub fn weights(problem: &Substructures, settings: &MethodSettings) -> Vec<Vec<f64>> {
+pub fn weights(problem: &Substructures, scaling: Scaling, gamma: f64) -> Vec<Vec<f64>> {
     let of = |sub: &Subdomain| -> Vec<f64> {
-        match settings.scaling {
+        match scaling {
             Scaling::Multiplicity => vec![1.0; sub.k.n()],
             Scaling::Rho if is_noise(sub) => {
                 let mean = sub.rho.iter().sum::<f64>() / sub.rho.len() as f64;
-                vec![mean.powf(settings.gamma); sub.rho.len()]
+                vec![mean.powf(gamma); sub.rho.len()]
             }
-            Scaling::Rho if settings.gamma == 1.0 => sub.rho.clone(),
-            Scaling::Rho => sub.rho.iter().map(|r| r.powf(settings.gamma)).collect(),
+            Scaling::Rho if gamma == 1.0 => sub.rho.clone(),
+            Scaling::Rho => sub.rho.iter().map(|r| r.powf(gamma)).collect(),
             Scaling::Stiffness | Scaling::Deluxe => sub.k.diagonal(),
         }
     };

@@ -30,7 +30,7 @@ pub(crate) fn factor(
 ) -> Result<Vec<Scaled>> {
     // A matrix S is needed by every user that multiplies with it or reads its entries before the iteration begins.
     let wants_s = kind == PcType::CoarseCorrected
-        || settings.scaling == Scaling::Deluxe
+        || settings.scaling == Some(Scaling::Deluxe)
         || matches!(settings.adaptive, Adaptive::Below(_));
     let ours = settings.local.kind == Solver::Multifrontal;
     if !ours && settings.operators == Operators::Implicit {

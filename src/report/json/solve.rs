@@ -86,6 +86,9 @@ pub struct SolveReport {
     pub ksp_type: String,
     /// `none`, `lumped`, `dirichlet` or `coarse_corrected`.
     pub preconditioner: String,
+    /// Weights of the scaled jump operator: `rho`, `stiffness`, `multiplicity` or `deluxe`.
+    #[serde(default)]
+    pub scaling: String,
     /// Factorisation of the subdomains: `multifrontal`, `faer`, `cholmod` or `mumps`.
     #[serde(default)]
     pub local_solver: String,

@@ -339,6 +339,7 @@ impl Solid {
         Substructures {
             n_bodies: self.n_bodies(),
             n_subdomains: self.n_subdomains(),
+            ragged: false,
             body_names: (0..self.n_bodies()).map(|b| format!("b{b}")).collect(),
             local: (0..self.n_subdomains())
                 .filter(|&s| mine(s))

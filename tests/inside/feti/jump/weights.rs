@@ -34,7 +34,7 @@ fn weights_of_noise_are_the_mean() {
     );
     let scene = Scene::parse("field.toml", &text).expect("a scene");
     let problem = scene.substructures(&|_| true).expect("substructures");
-    let d = &weights(&problem, &MethodSettings::default())[0];
+    let d = &weights(&problem, Scaling::Rho, 1.0)[0];
     let mean = problem.local[0].rho.iter().sum::<f64>() / d.len() as f64;
     assert!(d.iter().all(|d| (d - mean).abs() < 1e-14 * mean));
     assert!((1.5..3.0).contains(&mean));

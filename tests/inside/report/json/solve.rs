@@ -49,6 +49,7 @@ fn report() -> SolveReport {
         converged_reason: "CONVERGED_RTOL".into(),
         ksp_type: "cg".into(),
         preconditioner: "dirichlet".into(),
+        scaling: "rho".into(),
         local_solver: "multifrontal".into(),
         local_ordering: "nd".into(),
         projector: "identity".into(),
