@@ -1,7 +1,9 @@
 //! The mesh of a body as a list of cells, with its boundary groups and its partition.
 
+use std::sync::Arc;
+
 use super::cells::Cells;
-use super::partition::{Interface, Sharing};
+use super::partition::{Adjacency, Interface, Sharing};
 use super::parts::Parts;
 
 /// A part of the boundary of a mesh of cells.
@@ -35,6 +37,8 @@ pub struct CellMesh {
     pub sides: Vec<SideGroup>,
     /// The partition into subdomains.
     pub parts: Parts,
+    /// Which cells share sides, from the extraction of the mesh until it is cut.
+    pub(super) adjacency: Option<Arc<Adjacency>>,
 }
 
 impl CellMesh {
@@ -68,6 +72,7 @@ impl CellMesh {
             cells,
             sides: groups,
             parts,
+            adjacency: None,
         }
     }
 
@@ -77,6 +82,17 @@ impl CellMesh {
         let sharing = Sharing::new(&self.cells, &of_cell, n, self.points.len());
         self.parts = Parts::new(of_cell, sharing, shared);
         self
+    }
+
+    /// Which cells share sides: found once for a mesh that comes from a file, whose cells must not change.
+    pub fn adjacency(&self) -> Arc<Adjacency> {
+        let known = self.adjacency.clone();
+        known.unwrap_or_else(|| Arc::new(Adjacency::new(&self.cells)))
+    }
+
+    /// Frees what [`CellMesh::adjacency`] knows.
+    pub fn forget_adjacency(&mut self) {
+        self.adjacency = None;
     }
 
     /// The positions of the nodes of a cell.

@@ -4,7 +4,6 @@
 use std::collections::HashSet;
 
 use super::cell_mesh::CellMesh;
-use super::partition::Adjacency;
 use super::point_grid::PointGrid;
 use crate::linalg::vec3::{cross, dot, minus, norm};
 
@@ -72,7 +71,7 @@ fn doubled(mesh: &CellMesh, joined: &HashSet<u32>) -> Option<Defect> {
 /// Two cells on one side of the side that they share. Both have its nodes in the same order, where neighbours have them
 /// in opposite orders. The centres are looked at, too: an inverted cell has a sentence of its own.
 fn folded(mesh: &CellMesh) -> Option<Defect> {
-    let adjacency = Adjacency::new(&mesh.cells);
+    let adjacency = mesh.adjacency();
     let sides = |c: usize| 0..mesh.cells.kind(c).sides().len();
     let behind = |(c, side): (usize, usize)| {
         let other = adjacency.across(c, side)? as usize;

@@ -1,79 +1,208 @@
 //! From a mesh file to the meshes of bodies.
 
+use std::borrow::Borrow;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::cell_mesh::{CellMesh, SideGroup};
 use super::cells::Cells;
-use super::file::{Group, Members, MeshFile};
+use super::file::{Members, MeshFile};
 use super::partition::{Adjacency, Components};
 use crate::error::{Error, Result};
+use crate::linalg::lists::Lists;
 
 /// Most corners of a side of a cell.
 const CORNERS: usize = 4;
 
-/// The mesh of some cells of a file, as places in its list: nodes are numbered in the order of the file, and groups
-/// become boundary groups. Lengths are multiplied by `scale`.
-///
-/// # Errors
-/// [`Error::Input`] where three cells share a side.
-pub fn extract(file: &MeshFile, dim: usize, chosen: &[u32], scale: f64) -> Result<CellMesh> {
-    let mut local = vec![u32::MAX; file.points.len()];
-    for &c in chosen {
-        for &k in file.cells.nodes(c as usize) {
-            local[k as usize] = 0;
-        }
-    }
-    let mut points = Vec::new();
-    let mut node_ids = Vec::new();
-    for (k, place) in local.iter_mut().enumerate() {
-        if *place != u32::MAX {
-            *place = points.len() as u32;
-            points.push(file.points[k].map(|x| scale * x));
-            node_ids.push(file.node_ids[k]);
-        }
-    }
-    let mut cells = Cells::default();
-    let mut of_file = HashMap::with_capacity(chosen.len());
-    for &c in chosen {
-        let nodes = file.cells.nodes(c as usize).iter();
-        let nodes: Vec<u32> = nodes.map(|&k| local[k as usize]).collect();
-        of_file.insert(c, cells.len() as u32);
-        cells.push(file.cells.kind(c as usize), &nodes);
-    }
-    let cell_ids: Vec<u64> = chosen.iter().map(|&c| file.cell_ids[c as usize]).collect();
-    let adjacency = Adjacency::new(&cells);
-    if let Some(crowd) = adjacency.crowded.first() {
-        let names: Vec<String> = crowd
-            .iter()
-            .map(|&(c, _)| cell_ids[c as usize].to_string())
-            .collect();
-        return Err(Error::Input(format!(
-            "{}: the cells {} share one side (two cells at most were expected)",
-            file.name,
-            names.join(", ")
-        )));
-    }
-    let skin = adjacency.boundary;
-    let sides = Sides::new(&cells, &skin);
-    let groups = file.groups.iter();
-    let groups = groups.filter_map(|group| sides.group(file, group, dim, &local, &of_file));
-    let groups: Vec<SideGroup> = groups.collect();
-    let mut mesh = CellMesh::new(dim, points, cells, groups, skin);
-    mesh.node_ids = node_ids;
-    mesh.cell_ids = cell_ids;
-    Ok(mesh)
+/// What stands for "not in the body at hand".
+const NONE: u32 = u32::MAX;
+
+/// Takes the meshes of bodies out of a file. The time for a body grows with its own cells, not with those of the file.
+#[derive(Debug, Clone)]
+pub struct Extractor<F> {
+    file: F,
+    dim: usize,
+    /// The members of all boundary groups: the group, and a place in the list of its members.
+    members: Vec<(u32, u32)>,
+    /// The members at each point: cells by their first node, and nodes.
+    at_node: Lists,
+    /// The members at each cell: its sides.
+    at_cell: Lists,
+    /// The node of the body at hand at each point of the file; `NONE` outside, and between bodies.
+    local: Vec<u32>,
 }
 
-/// The connected parts of some cells of a file: cells are connected if they have a node in common.
-pub fn connected(file: &MeshFile, chosen: &[u32]) -> Vec<Vec<u32>> {
-    let mut cells = Cells::default();
-    for &c in chosen {
-        cells.push(file.cells.kind(c as usize), file.cells.nodes(c as usize));
+impl<F: Borrow<MeshFile>> Extractor<F> {
+    /// Prepares a file whose bodies have cells of dimension `dim`.
+    pub fn new(file: F, dim: usize) -> Extractor<F> {
+        let of = file.borrow();
+        let (mut members, mut at_node, mut at_cell) = (Vec::new(), Vec::new(), Vec::new());
+        for (g, group) in (0..).zip(&of.groups) {
+            let mut add = |list: &mut Vec<(usize, u32)>, place: u32, at: u32| {
+                list.push((at as usize, members.len() as u32));
+                members.push((g, place));
+            };
+            match &group.members {
+                Members::Cells { dim: of_group, .. } if *of_group >= dim => {}
+                Members::Cells { cells, .. } => {
+                    for (place, &c) in (0..).zip(cells) {
+                        add(&mut at_node, place, of.cells.nodes(c as usize)[0]);
+                    }
+                }
+                Members::Nodes(list) => {
+                    let places = (0..).zip(list);
+                    places.for_each(|(place, &k)| add(&mut at_node, place, k));
+                }
+                Members::Sides(list) => {
+                    let places = (0..).zip(list);
+                    places.for_each(|(place, &(c, _))| add(&mut at_cell, place, c));
+                }
+            }
+        }
+        let (n_points, n_cells) = (of.points.len(), of.cells.len());
+        Extractor {
+            at_node: Lists::of(n_points, at_node.iter().copied()),
+            at_cell: Lists::of(n_cells, at_cell.iter().copied()),
+            local: vec![NONE; n_points],
+            members,
+            file,
+            dim,
+        }
     }
-    let components = Components::by_nodes(&cells).members();
-    let parts = components.into_iter();
-    let parts = parts.map(|part| part.into_iter().map(|c| chosen[c as usize]).collect());
-    parts.collect()
+
+    /// The file.
+    pub fn file(&self) -> &MeshFile {
+        self.file.borrow()
+    }
+
+    /// The dimension of the cells of bodies.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// The mesh of some cells, as places in the list of the file: nodes are numbered in the order of the file, and
+    /// groups become boundary groups. Lengths are multiplied by `scale`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where three cells share a side.
+    pub fn extract(&mut self, chosen: &[u32], scale: f64) -> Result<CellMesh> {
+        let mut own = self.enter(chosen);
+        own.sort_unstable();
+        for (place, &k) in (0..).zip(&own) {
+            self.local[k as usize] = place;
+        }
+        let mesh = self.mesh(chosen, &own, scale);
+        self.leave(&own);
+        mesh
+    }
+
+    /// The connected parts of some cells: cells are connected if they have a node in common.
+    pub fn connected(&mut self, chosen: &[u32]) -> Vec<Vec<u32>> {
+        let own = self.enter(chosen);
+        let components = Components::by_nodes(&self.cells(chosen)).members();
+        self.leave(&own);
+        let parts = components.into_iter();
+        let parts = parts.map(|part| part.into_iter().map(|c| chosen[c as usize]).collect());
+        parts.collect()
+    }
+
+    /// Numbers the points of some cells in the order in which they come, and returns them.
+    fn enter(&mut self, chosen: &[u32]) -> Vec<u32> {
+        let mut own = Vec::new();
+        for &c in chosen {
+            for &k in self.file.borrow().cells.nodes(c as usize) {
+                let place = &mut self.local[k as usize];
+                if *place == NONE {
+                    *place = own.len() as u32;
+                    own.push(k);
+                }
+            }
+        }
+        own
+    }
+
+    /// Forgets the numbers of the points of a body.
+    fn leave(&mut self, own: &[u32]) {
+        own.iter().for_each(|&k| self.local[k as usize] = NONE);
+    }
+
+    /// Some cells with the body's numbers of nodes.
+    fn cells(&self, chosen: &[u32]) -> Cells {
+        let file = self.file();
+        let mut cells = Cells::default();
+        for &c in chosen {
+            let nodes = file.cells.nodes(c as usize).iter();
+            let nodes: Vec<u32> = nodes.map(|&k| self.local[k as usize]).collect();
+            cells.push(file.cells.kind(c as usize), &nodes);
+        }
+        cells
+    }
+
+    /// The mesh of the body at hand, whose points are `own`.
+    fn mesh(&self, chosen: &[u32], own: &[u32], scale: f64) -> Result<CellMesh> {
+        let file = self.file();
+        let points = own
+            .iter()
+            .map(|&k| file.points[k as usize].map(|x| scale * x));
+        let points: Vec<[f64; 3]> = points.collect();
+        let cells = self.cells(chosen);
+        let cell_ids: Vec<u64> = chosen.iter().map(|&c| file.cell_ids[c as usize]).collect();
+        let adjacency = Adjacency::new(&cells);
+        if let Some(crowd) = adjacency.crowded.first() {
+            let names: Vec<String> = crowd
+                .iter()
+                .map(|&(c, _)| cell_ids[c as usize].to_string())
+                .collect();
+            return Err(Error::Input(format!(
+                "{}: the cells {} share one side (two cells at most were expected)",
+                file.name,
+                names.join(", ")
+            )));
+        }
+        let skin = adjacency.boundary.clone();
+        let sides = Sides::new(&cells, &skin);
+        let groups = self.members(chosen, own);
+        let groups = groups
+            .chunk_by(|a, b| a.group == b.group)
+            .filter_map(|members| sides.group(file, self.dim, members, &self.local));
+        let groups: Vec<SideGroup> = groups.collect();
+        let mut mesh = CellMesh::new(self.dim, points, cells, groups, skin);
+        mesh.node_ids = own.iter().map(|&k| file.node_ids[k as usize]).collect();
+        mesh.cell_ids = cell_ids;
+        mesh.adjacency = Some(Arc::new(adjacency));
+        Ok(mesh)
+    }
+
+    /// The members of groups that may belong to the body at hand, by group and place.
+    fn members(&self, chosen: &[u32], own: &[u32]) -> Vec<Member> {
+        let member = |&k: &u32, cell: usize| {
+            let (group, place) = self.members[k as usize];
+            Member {
+                group: group as usize,
+                place: place as usize,
+                cell: cell as u32,
+            }
+        };
+        let at_nodes = own.iter().flat_map(|&k| self.at_node.at(k as usize));
+        let at_nodes = at_nodes.map(|k| member(k, 0));
+        let at_cells = chosen.iter().enumerate().flat_map(|(inside, &c)| {
+            let list = self.at_cell.at(c as usize).iter();
+            list.map(move |k| member(k, inside))
+        });
+        let mut found: Vec<Member> = at_nodes.chain(at_cells).collect();
+        found.sort_unstable();
+        found
+    }
+}
+
+/// A member of a group that may belong to the body at hand.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Member {
+    group: usize,
+    /// Its place in the list of the group.
+    place: usize,
+    /// The body's cell, if the member is the side of one.
+    cell: u32,
 }
 
 /// The sides on the skin of a mesh, by their corners.
@@ -97,28 +226,27 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// The part of a group that belongs to the body: `local` has the node of the body of each node of the file,
-    /// `of_file` the cell of each cell. `None` if there is none.
+    /// The part of a group that belongs to the body: `members` are those of one group, `local` has the node of the body
+    /// of each node of the file. `None` if there is none.
     fn group(
         &self,
         file: &MeshFile,
-        group: &Group,
         dim: usize,
+        members: &[Member],
         local: &[u32],
-        of_file: &HashMap<u32, u32>,
     ) -> Option<SideGroup> {
+        let group = &file.groups[members.first()?.group];
         let mut nodes = Vec::new();
         let mut faces = Vec::new();
         match &group.members {
-            Members::Cells { dim: of, .. } if *of >= dim => return None,
             Members::Cells { cells, dim: of } => {
-                for &c in cells {
-                    let all = file.cells.nodes(c as usize);
-                    let own: Vec<u32> = all.iter().map(|&k| local[k as usize]).collect();
-                    if own.contains(&u32::MAX) {
+                for c in members.iter().map(|m| cells[m.place] as usize) {
+                    let all = file.cells.nodes(c).iter();
+                    let own: Vec<u32> = all.map(|&k| local[k as usize]).collect();
+                    if own.contains(&NONE) {
                         continue;
                     }
-                    let corners = file.cells.kind(c as usize).corners();
+                    let corners = file.cells.kind(c).corners();
                     nodes.extend(&own);
                     if of + 1 == dim {
                         faces.extend(self.by_corners.get(&key(own[..corners].iter().copied())));
@@ -126,8 +254,7 @@ impl<'a> Sides<'a> {
                 }
             }
             Members::Nodes(list) => {
-                let own = list.iter().map(|&k| local[k as usize]);
-                nodes.extend(own.filter(|&k| k != u32::MAX));
+                nodes.extend(members.iter().map(|m| local[list[m.place] as usize]));
                 nodes.sort_unstable();
                 // Faces with all their nodes in the group belong to it: surfaces may be given by nodes.
                 let has = |&(c, side): &(u32, u8)| {
@@ -137,11 +264,10 @@ impl<'a> Sides<'a> {
                 faces.extend(self.skin.iter().filter(|face| has(face)));
             }
             Members::Sides(list) => {
-                for &(c, side) in list {
-                    if let Some(&c) = of_file.get(&c) {
-                        faces.push((c, side));
-                        nodes.extend(self.cells.side_nodes(c as usize, side.into()));
-                    }
+                for member in members {
+                    let side = list[member.place].1;
+                    faces.push((member.cell, side));
+                    nodes.extend(self.cells.side_nodes(member.cell as usize, side.into()));
                 }
             }
         }
@@ -166,3 +292,7 @@ fn key(corners: impl Iterator<Item = u32>) -> [u32; CORNERS] {
     out.sort_unstable();
     out
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/mesh/extract.rs"]
+mod tests;

@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::fem::cell::{Element, Material};
 use crate::fem::element::{self, Integration};
 use crate::fem::Form;
-use crate::mesh::partition::{subdomains_for, Adjacency, Interface, Partition, Sharing};
-use crate::mesh::{congruent, second_order, CellMesh, Mesh, Parts};
+use crate::mesh::partition::{subdomains_for, Interface, Partition, Sharing};
+use crate::mesh::{congruent, second_order, CellMesh, Mesh, Outline, Parts};
 use std::sync::Arc;
 
 /// Gives a body its final mesh. A copy of a mesh in `before`, also a turned or mirrored one, is cut as that is, so that
@@ -43,24 +43,29 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
 
 /// The meshes that have been cut so far, each with the number of subdomains that it was to have.
 #[derive(Default)]
-pub(super) struct Cuts(Vec<(usize, Arc<CellMesh>)>);
+pub(super) struct Cuts(Vec<(usize, Outline, Arc<CellMesh>)>);
 
 impl Cuts {
     /// Cuts a mesh as the first of its copies was cut.
     fn cut(&mut self, mesh: &mut Arc<CellMesh>, n: usize) {
-        let like = |(of, known): &&(usize, Arc<CellMesh>)| *of == n && congruent(known, mesh);
-        if let Some((_, known)) = self.0.iter().find(like) {
-            Arc::make_mut(mesh).parts = known.parts.clone();
+        let outline = Outline::new(mesh);
+        let like = |(of, outlined, known): &&(usize, Outline, Arc<CellMesh>)| {
+            *of == n && outlined.may_be(&outline) && congruent(known, mesh)
+        };
+        if let Some((_, _, known)) = self.0.iter().find(like) {
+            let mesh = Arc::make_mut(mesh);
+            mesh.parts = known.parts.clone();
+            mesh.forget_adjacency();
             return;
         }
         cut(Arc::make_mut(mesh), n);
-        self.0.push((n, mesh.clone()));
+        self.0.push((n, outline, mesh.clone()));
     }
 }
 
 /// Cuts a mesh into `n` subdomains of about equal work.
 fn cut(mesh: &mut CellMesh, n: usize) {
-    let adjacency = Adjacency::new(&mesh.cells);
+    let adjacency = mesh.adjacency();
     let work: Vec<f64> = mesh
         .cells
         .kinds()
@@ -72,6 +77,7 @@ fn cut(mesh: &mut CellMesh, n: usize) {
     let sharing = Sharing::new(cells, &partition.part, partition.n, points.len());
     let interface = Interface::new(cells, &adjacency, points, &partition.part, &sharing, true);
     mesh.parts = Parts::new(partition.part, sharing, interface);
+    mesh.forget_adjacency();
 }
 
 /// Checks every cell: its shape, and whether the form has an element of its kind.

@@ -1,14 +1,14 @@
 //! The bodies of a deck with material, supports and loads.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use super::numbers::Numbers;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fem::element::{deck_element, Integration};
 use crate::fem::Quadrature;
-use crate::mesh::deck::{self, BodyLoadKind, Deck, Place};
-use crate::mesh::{extract, CellMesh, SideGroup};
+use crate::mesh::deck::{self, BodyLoadKind, Deck, Place, Pressure};
+use crate::mesh::{CellMesh, Extractor, Mesh, SideGroup};
 use crate::scene::model::expr::Expr;
 use crate::scene::model::field::Field;
 use crate::scene::model::joints::EquationSpec;
@@ -17,16 +17,37 @@ use crate::scene::model::spec::{BodySpec, Cut, Force, Load, SurfaceLoad};
 /// An axis of a node's system is along a coordinate if the others are below this.
 const ALONG: f64 = 1e-12;
 
+/// The mesh of a body, or what is wrong with it.
+pub(super) type Extracted = std::result::Result<Arc<CellMesh>, String>;
+
+/// The meshes of the bodies of a deck. All steps share them.
+pub(super) fn meshes(deck: &Deck, numbers: &Numbers) -> Vec<Extracted> {
+    let mut file = Extractor::new(&deck.mesh, deck.dim());
+    let mesh = |part: &Vec<u32>| match file.extract(part, 1.0) {
+        Ok(mesh) => Ok(Arc::new(mesh)),
+        Err(error) => Err(error.to_string()),
+    };
+    numbers.parts.iter().map(mesh).collect()
+}
+
 /// The bodies at the end of a step, and the supports along oblique axes as equations.
 pub(super) fn of(
     deck: &Deck,
     numbers: &Numbers,
+    meshes: &[Extracted],
     step: usize,
 ) -> Result<(Vec<BodySpec>, Vec<EquationSpec>)> {
     let mut out = Vec::with_capacity(numbers.parts.len());
-    for (b, part) in numbers.parts.iter().enumerate() {
-        let mesh = extract(&deck.mesh, deck.dim(), part, 1.0)?;
-        out.push(body(deck, b, part, mesh, step)?);
+    let mut pressures = vec![Vec::new(); numbers.parts.len()];
+    for pressure in &deck.steps[step].pressures {
+        let node = deck.mesh.cells.nodes(pressure.cell as usize)[0];
+        let at = numbers.node(node);
+        at.iter().for_each(|at| pressures[at.body].push(pressure));
+    }
+    for (b, mesh) in meshes.iter().enumerate() {
+        let mesh = mesh.clone().map_err(Error::Input)?;
+        let part = &numbers.parts[b];
+        out.push(body(deck, b, part, mesh, (step, &pressures[b]))?);
     }
     name(deck, numbers, &mut out);
     let equations = supports(deck, numbers, step, &mut out)?;
@@ -42,8 +63,12 @@ fn name(deck: &Deck, numbers: &Numbers, bodies: &mut [BodySpec]) {
         one.then(|| deck.sections[first as usize].elset.clone())
     };
     let names: Vec<Option<String>> = numbers.parts.iter().map(|part| section(part)).collect();
+    let mut bodies_of: HashMap<&String, usize> = HashMap::new();
+    for name in names.iter().flatten() {
+        *bodies_of.entry(name).or_default() += 1;
+    }
     for (b, body) in bodies.iter_mut().enumerate() {
-        let unique = |name: &&String| names.iter().flatten().filter(|n| n == name).count() == 1;
+        let unique = |name: &&String| bodies_of[name] == 1;
         body.name = match names[b].as_ref().filter(unique) {
             Some(name) => name.clone(),
             None => format!("part {}", b + 1),
@@ -51,7 +76,14 @@ fn name(deck: &Deck, numbers: &Numbers, bodies: &mut [BodySpec]) {
     }
 }
 
-fn body(deck: &Deck, b: usize, part: &[u32], mut mesh: CellMesh, step: usize) -> Result<BodySpec> {
+/// A body at the end of a step, with the pressures on it.
+fn body(
+    deck: &Deck,
+    b: usize,
+    part: &[u32],
+    mut mesh: Arc<CellMesh>,
+    (step, pressed): (usize, &[&Pressure]),
+) -> Result<BodySpec> {
     let of_cell = |c: u32| {
         let section = &deck.sections[deck.cell_section[c as usize] as usize];
         (section, &deck.materials[section.material as usize])
@@ -73,9 +105,9 @@ fn body(deck: &Deck, b: usize, part: &[u32], mut mesh: CellMesh, step: usize) ->
         .iter()
         .map(|&c| deck_element(deck.elements[c as usize]).0);
     let integration: Vec<Integration> = rules.collect();
-    let surface = pressures(deck, part, &mut mesh, &thickness, step);
+    let surface = pressures(part, &mut mesh, &thickness, pressed);
     let load = volume_load(deck, part, &of_cell, &thickness, step)?;
-    let mut body = BodySpec::new(format!("part {}", b + 1), mesh);
+    let mut body = BodySpec::new(format!("part {}", b + 1), Mesh::Cells(mesh));
     body.rho = by_cell(young);
     body.poisson = by_cell(poisson);
     body.integration = integration;
@@ -95,14 +127,13 @@ fn by_cell(values: Vec<f64>) -> Field {
 
 /// The pressures of a step on one body, as loads on boundary groups of their own, one for each value.
 fn pressures(
-    deck: &Deck,
     part: &[u32],
-    mesh: &mut CellMesh,
+    mesh: &mut Arc<CellMesh>,
     thickness: &[f64],
-    step: usize,
+    pressed: &[&Pressure],
 ) -> Vec<SurfaceLoad> {
     let mut by_value: BTreeMap<u64, Vec<(u32, u8)>> = BTreeMap::new();
-    for pressure in &deck.steps[step].pressures {
+    for pressure in pressed {
         if let Ok(c) = part.binary_search(&pressure.cell) {
             let value = pressure.value * thickness[c];
             by_value
@@ -125,7 +156,7 @@ fn pressures(
         };
         // The whole boundary stays the last.
         let side = mesh.skin();
-        mesh.sides.insert(side, group);
+        Arc::make_mut(mesh).sides.insert(side, group);
         loads.push(SurfaceLoad {
             side,
             force: Force::Pressure(Field::constant(f64::from_bits(value))),
@@ -146,11 +177,7 @@ fn volume_load<'d>(
     let mut constant = vec![vec![0.0; part.len()]; dim];
     let mut turning: Option<(Vec<String>, Place)> = None;
     for load in &deck.steps[step].body_loads {
-        let own: Vec<usize> = load
-            .cells
-            .iter()
-            .filter_map(|c| part.binary_search(c).ok())
-            .collect();
+        let own = common(part, &load.cells);
         let mass = |inside: usize| {
             let (_, material) = of_cell(part[inside]);
             let density = material.density.ok_or_else(|| {
@@ -223,6 +250,18 @@ fn volume_load<'d>(
         fields,
         quadrature: Quadrature::Gauss,
     })
+}
+
+/// The places in `part` of the cells that are in `cells`, too. Both lists are increasing, and either may be much
+/// longer.
+fn common(part: &[u32], cells: &[u32]) -> Vec<usize> {
+    if cells.len() < part.len() {
+        let inside = cells.iter().filter_map(|c| part.binary_search(c).ok());
+        return inside.collect();
+    }
+    let places = 0..part.len();
+    let inside = places.filter(|&k| cells.binary_search(&part[k]).is_ok());
+    inside.collect()
 }
 
 /// strength · (r − (r·d) d) with r = x − point, as formulas.

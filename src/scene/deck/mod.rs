@@ -17,6 +17,7 @@ use crate::fem::cell::{Cure, Plane};
 use crate::fem::{Form, Physics};
 use crate::mesh::deck::{self, Deck, Model};
 use crate::substructures::BodyNode;
+use bodies::Extracted;
 use numbers::Numbers;
 
 /// What CalculiX prints of a force on a ring: that on one of the sectors of 2° of which it makes the ring.
@@ -26,6 +27,8 @@ const SECTOR: f64 = 1.0 / 180.0;
 #[derive(Debug, Clone)]
 pub struct DeckScenes {
     deck: Deck,
+    numbers: Numbers,
+    meshes: Vec<Extracted>,
     /// A sentence for each kind of defect in its mesh.
     torn: Vec<String>,
 }
@@ -55,8 +58,15 @@ impl DeckScenes {
                 "{name}: the deck has no *STEP (one at least was expected)"
             )));
         }
-        let torn = torn::notes(&deck);
-        Ok(DeckScenes { deck, torn })
+        let numbers = Numbers::new(&deck);
+        let meshes = bodies::meshes(&deck, &numbers);
+        let torn = torn::notes(&deck, &numbers, &meshes);
+        Ok(DeckScenes {
+            deck,
+            numbers,
+            meshes,
+            torn,
+        })
     }
 
     /// The deck as it was read.
@@ -112,14 +122,14 @@ impl DeckScenes {
             physics,
             ..Form::default()
         };
-        let numbers = Numbers::new(deck);
-        let (bodies, mut equations) = bodies::of(deck, &numbers, step)?;
-        equations.extend(joints::equations(deck, &numbers)?);
+        let numbers = &self.numbers;
+        let (bodies, mut equations) = bodies::of(deck, numbers, &self.meshes, step)?;
+        equations.extend(joints::equations(deck, numbers)?);
         let spec = SceneSpec {
             form,
             default: ByDefault::Free,
             ties: joints::ties(deck),
-            contacts: joints::contacts(deck, &numbers)?,
+            contacts: joints::contacts(deck, numbers)?,
             equations,
             notes: self.notes(),
             ..SceneSpec::tied(title, bodies)
@@ -142,7 +152,7 @@ impl DeckScenes {
         displacement: &dyn Fn(BodyNode) -> [f64; 3],
         force: &dyn Fn(BodyNode) -> [f64; 3],
     ) -> Vec<Vec<deck::Table>> {
-        let numbers = Numbers::new(&self.deck);
+        let numbers = &self.numbers;
         let all = |of: &dyn Fn(BodyNode) -> [f64; 3]| -> Vec<[f64; 3]> {
             let nodes = 0..self.deck.mesh.points.len() as u32;
             nodes

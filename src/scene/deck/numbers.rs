@@ -1,10 +1,11 @@
 //! Which body has which cells and nodes of a deck.
 
-use crate::mesh::connected;
 use crate::mesh::deck::Deck;
+use crate::mesh::partition::Components;
 use crate::substructures::BodyNode;
 
 /// The bodies of a deck, in numbers.
+#[derive(Debug, Clone)]
 pub(super) struct Numbers {
     /// The cells of each body, increasing.
     pub parts: Vec<Vec<u32>>,
@@ -15,10 +16,7 @@ pub(super) struct Numbers {
 impl Numbers {
     pub fn new(deck: &Deck) -> Numbers {
         let mesh = &deck.mesh;
-        let all: Vec<u32> = (0..mesh.cells.len() as u32).collect();
-        let mut parts = connected(mesh, &all);
-        parts.iter_mut().for_each(|part| part.sort_unstable());
-        parts.sort_by_key(|part| part[0]);
+        let parts = Components::by_nodes(&mesh.cells).members();
         let mut body_of = vec![usize::MAX; mesh.points.len()];
         for (b, part) in parts.iter().enumerate() {
             for &c in part {

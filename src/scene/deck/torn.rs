@@ -5,13 +5,13 @@
 
 use std::collections::{BTreeMap, HashSet};
 
+use super::bodies::Extracted;
 use super::numbers::Numbers;
 use crate::mesh::deck::Deck;
-use crate::mesh::{defects, extract, Defect};
+use crate::mesh::{defects, Defect};
 
 /// A sentence for each kind of defect in the bodies of a deck.
-pub(super) fn notes(deck: &Deck) -> Vec<String> {
-    let numbers = Numbers::new(deck);
+pub(super) fn notes(deck: &Deck, numbers: &Numbers, meshes: &[Extracted]) -> Vec<String> {
     let mut joined = vec![HashSet::new(); numbers.parts.len()];
     let terms = deck.equations.iter().flat_map(|e| &e.terms);
     for at in terms.filter_map(|term| numbers.node(term.node)) {
@@ -19,12 +19,12 @@ pub(super) fn notes(deck: &Deck) -> Vec<String> {
     }
     // By what was expected, which each kind has of its own.
     let mut found: BTreeMap<&str, Defect> = BTreeMap::new();
-    for (part, joined) in numbers.parts.iter().zip(&joined) {
+    for (mesh, joined) in meshes.iter().zip(&joined) {
         // A mesh that cannot be extracted gets its sentence when the scene is made.
-        let Ok(mesh) = extract(&deck.mesh, deck.dim(), part, 1.0) else {
+        let Ok(mesh) = mesh else {
             continue;
         };
-        for defect in defects(&mesh, joined) {
+        for defect in defects(mesh, joined) {
             let known = found.get_mut(defect.expected);
             match known {
                 Some(known) => known.places += defect.places,

@@ -124,7 +124,9 @@ fn written(file: &str, line: usize) -> String {
 
 /// The text of a scene file as a table; `file` names it in messages.
 pub(super) fn parse<'a>(file: &'a str, text: &str) -> Result<Item<'a>> {
-    let source = Source { file, text };
+    let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
+    let ends = ends.map(|(place, _)| place).collect();
+    let source = Source { file, ends };
     let table = DeTable::parse(text).map_err(|e| {
         let place = written(file, e.span().map_or(1, |span| source.line(span.start)));
         let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
@@ -137,19 +139,15 @@ pub(super) fn parse<'a>(file: &'a str, text: &str) -> Result<Item<'a>> {
     })
 }
 
-struct Source<'a, 't> {
+struct Source<'a> {
     file: &'a str,
-    text: &'t str,
+    /// Where lines end.
+    ends: Vec<usize>,
 }
 
-impl<'a> Source<'a, '_> {
+impl<'a> Source<'a> {
     fn line(&self, byte: usize) -> usize {
-        let end = byte.min(self.text.len());
-        self.text.as_bytes()[..end]
-            .iter()
-            .filter(|&&b| b == b'\n')
-            .count()
-            + 1
+        self.ends.partition_point(|&end| end < byte) + 1
     }
 
     fn table(&self, table: &DeTable<'_>) -> Result<Value<'a>> {

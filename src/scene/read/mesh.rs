@@ -4,18 +4,19 @@ use super::document::{Item, Section, Value};
 use super::fields::Shape;
 use super::Reader;
 use crate::error::{Error, Result};
-use crate::mesh::{connected, deck, defects, extract, gmsh, BoxMesh, CellMesh, Members, MeshFile};
+use crate::mesh::{deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
 use crate::scene::model::field::Field;
 use crate::scene::model::spec::{held, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, POISSON};
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// The mesh of a scene.
 pub(super) struct Source {
-    file: MeshFile,
+    mesh: Extractor<MeshFile>,
+    /// The groups of cells of the scene's dimension: their places in the list of groups. Of equal names the first.
+    groups: HashMap<String, usize>,
     /// The factor of all lengths.
     scale: f64,
-    dim: usize,
 }
 
 /// The keys that only boxes have.
@@ -38,19 +39,26 @@ impl Source {
         let path = PathBuf::from(file.text("the name of a file")?);
         let directory = Path::new(item.file).parent();
         let path = directory.map_or(path.clone(), |directory| directory.join(path));
+        let mesh = load(&path).or_else(|e| match e {
+            Error::Input(message) => file.error(message),
+            other => Err(other),
+        })?;
+        let mut groups = HashMap::new();
+        for (k, group) in mesh.groups.iter().enumerate() {
+            if matches!(group.members, Members::Cells { dim, .. } if dim == reader.dim) {
+                groups.entry(group.name.clone()).or_insert(k);
+            }
+        }
         Ok(Source {
-            file: load(&path).or_else(|e| match e {
-                Error::Input(message) => file.error(message),
-                other => Err(other),
-            })?,
+            mesh: Extractor::new(mesh, reader.dim),
+            groups,
             scale: scale.unwrap_or(1.0),
-            dim: reader.dim,
         })
     }
 
     /// A sentence on nodes that are left out.
     pub fn note(&self) -> Option<String> {
-        self.file.unused(self.dim)
+        self.mesh.file().unused(self.mesh.dim())
     }
 
     /// Whether a body is a group of this mesh, not a box.
@@ -62,21 +70,22 @@ impl Source {
     }
 
     /// The connected parts of a group of cells: one mesh each.
-    fn parts(&self, item: &Item, name: &str) -> Result<Vec<CellMesh>> {
+    fn parts(&mut self, item: &Item, name: &str) -> Result<Vec<CellMesh>> {
         let cells = self.group(item, name)?;
-        let parts = connected(&self.file, &cells);
+        let parts = self.mesh.connected(&cells);
         let mesh = |part: &Vec<u32>| {
-            let mesh = extract(&self.file, self.dim, part, self.scale)?;
+            let mesh = self.mesh.extract(part, self.scale)?;
             // The plane of a plane scene is z = 0.
             match mesh
                 .points
                 .iter()
                 .zip(&mesh.node_ids)
-                .find(|(p, _)| self.dim == 2 && p[2] != 0.0)
+                .find(|(p, _)| mesh.dim == 2 && p[2] != 0.0)
             {
                 Some((point, id)) => item.error(format!(
                     "node {id} of {} has z = {} where 0 was expected in a plane scene",
-                    self.file.name, point[2]
+                    self.mesh.file().name,
+                    point[2]
                 )),
                 None => Ok(mesh),
             }
@@ -86,14 +95,17 @@ impl Source {
 
     /// The cells of the group `name` of the scene's dimension.
     fn group(&self, item: &Item, name: &str) -> Result<Vec<u32>> {
+        let (file, of_scene) = (self.mesh.file(), self.mesh.dim());
+        if let Some(&k) = self.groups.get(name) {
+            if let Members::Cells { cells, .. } = &file.groups[k].members {
+                return Ok(cells.clone());
+            }
+        }
         let mut others = Vec::new();
         let mut lower = None;
-        for group in &self.file.groups {
+        for group in &file.groups {
             let dim = match &group.members {
-                Members::Cells { dim, cells } if *dim == self.dim => {
-                    if group.name == name {
-                        return Ok(cells.clone());
-                    }
+                Members::Cells { dim, .. } if *dim == of_scene => {
                     others.push(format!("`{}`", group.name));
                     continue;
                 }
@@ -105,23 +117,21 @@ impl Source {
                 lower = Some(dim);
             }
         }
-        let file = &self.file.name;
+        let all = 0..file.cells.len() as u32;
+        let all = all.filter(|&c| file.cells.kind(c as usize).dim() == of_scene);
+        let all: Vec<u32> = all.collect();
+        let file = &file.name;
         if let Some(dim) = lower {
             return item.error(format!(
-                "the group `{name}` of {file} is {dim} where cells of dimension {} were expected",
-                self.dim
+                "the group `{name}` of {file} is {dim} where cells of dimension {of_scene} were expected"
             ));
         }
-        let all: Vec<u32> = (0..self.file.cells.len() as u32)
-            .filter(|&c| self.file.cells.kind(c as usize).dim() == self.dim)
-            .collect();
         match (others.is_empty(), all.is_empty()) {
             // A mesh without groups is one body, whatever its name.
             (true, false) => Ok(all),
-            (true, true) => item.error(format!("{file} has no cells of dimension {}", self.dim)),
+            (true, true) => item.error(format!("{file} has no cells of dimension {of_scene}")),
             (false, _) => item.error(format!(
-                "{file} has no group `{name}` of cells of dimension {} (groups are {})",
-                self.dim,
+                "{file} has no group `{name}` of cells of dimension {of_scene} (groups are {})",
                 some(&others)
             )),
         }
@@ -156,7 +166,7 @@ pub(crate) fn load(path: &Path) -> Result<MeshFile> {
 
 impl Reader {
     /// The bodies of a group of cells: one for each connected part. Parts after the first are numbered.
-    pub(super) fn mesh_bodies(&self, item: &Item, source: &Source) -> Result<Vec<BodySpec>> {
+    pub(super) fn mesh_bodies(&self, item: &Item, source: &mut Source) -> Result<Vec<BodySpec>> {
         let mut section = item.section("[[body]]")?;
         let name = section.need("name", "the name of a group of cells")?;
         let name = name.text("the name of a group of cells")?;

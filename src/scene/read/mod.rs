@@ -31,11 +31,11 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
         (_, Some(item)) | (Some(item), None) => item.text("a title")?,
         (None, None) => stem(file),
     };
-    let source = scene.read("mesh", |item| mesh::Source::read(&reader, item))?;
+    let mut source = scene.read("mesh", |item| mesh::Source::read(&reader, item))?;
     let grids = scene.each("grid", |item| Ok(reader.grid(item)?.expand()))?;
     let mut bodies = grids.concat();
     for item in scene.tables("body")? {
-        match &source {
+        match &mut source {
             Some(source) if mesh::Source::has(item) => {
                 bodies.extend(reader.mesh_bodies(item, source)?)
             }
