@@ -12,6 +12,9 @@ use crate::scene::body::Body;
 /// edge around the first of them.
 pub(crate) const MATCH: f64 = 0.01;
 
+/// A node may lie opposite the inside of a face if it is no more than this many of its shortest edges away.
+pub(crate) const FAR: f64 = 4.0;
+
 /// Why two sides have no interface: the end of a sentence.
 pub(crate) enum Mismatch {
     /// They do not face each other.
@@ -82,7 +85,7 @@ fn join(
 ) -> Result<Interface, Mismatch> {
     let specs = pair.map(|k| &bodies[k].spec);
     // Far apart the nearest nodes say nothing about the faces opposite.
-    let near = |surface: &Surface, i: usize| reach.min(4.0 * surface.edges[i]);
+    let near = |surface: &Surface, i: usize| reach.min(FAR * surface.edges[i]);
     let mut pairs = Vec::new();
     let mut lonely = None;
     for (i, &node) in a.nodes.iter().enumerate() {
@@ -114,16 +117,22 @@ fn join(
             specs[k].spot(node),
             specs[1 - k].name
         ))),
-        None if pairs.is_empty() => Err(Mismatch::Apart(format!(
-            "no node of side `{}` of `{}` lies opposite a node of side `{}` of `{}`",
-            specs[0].mesh.side_name(sides[0]),
-            specs[0].name,
-            specs[1].mesh.side_name(sides[1]),
-            specs[1].name
-        ))),
+        None if pairs.is_empty() => Err(Mismatch::Apart(apart(bodies, pair, sides))),
         None => {
             let shared = share(specs[0], sides[0], pairs);
             Ok(interface(bodies, pair, sides, Shape::Face, shared))
         }
     }
+}
+
+/// The end of a sentence on sides that do not face each other.
+pub(crate) fn apart(bodies: &[Body], pair: [usize; 2], sides: [usize; 2]) -> String {
+    let [a, b] = pair.map(|k| &bodies[k].spec);
+    format!(
+        "no node of side `{}` of `{}` lies opposite a node of side `{}` of `{}`",
+        a.mesh.side_name(sides[0]),
+        a.name,
+        b.mesh.side_name(sides[1]),
+        b.name
+    )
 }

@@ -64,11 +64,15 @@ fn facing(
         let adjust = (c.adjust, &c.adjusted[..]);
         (c.sides, &c.pair, adjust, c.distance, &c.written)
     });
+    let mut numbers = HashMap::new();
+    for (k, body) in bodies.iter().enumerate() {
+        numbers.entry(body.spec.name.as_str()).or_insert(k);
+    }
     for (number, (sides, pair, adjust, distance, written)) in ties.chain(contacts).enumerate() {
         let (Some(sides), Pair::Named(first, second)) = (sides, pair) else {
             continue;
         };
-        let find = |name: &String| bodies.iter().position(|b| b.spec.name == *name);
+        let find = |name: &String| numbers.get(name.as_str()).copied();
         let (Some(a), Some(b)) = (find(first), find(second)) else {
             // The check of entries that name bodies reports this error.
             continue;

@@ -5,8 +5,8 @@ use crate::linalg::vec3::{dot, minus};
 use crate::scene::body::Body;
 use crate::scene::geometry::facing::is_face;
 use crate::scene::geometry::interface::Interface;
-use crate::scene::geometry::matching::{Matching, Mismatch};
-use crate::scene::geometry::sweep::{are_apart, near_in_x};
+use crate::scene::geometry::matching::{apart, Matching, Mismatch};
+use crate::scene::geometry::sweep::{are_apart, may_face, near_in_x};
 use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::SceneSpec;
@@ -79,35 +79,56 @@ fn pairs(
     };
     let lists = names.map(with);
     let same = names[0] == names[1];
-    let mut candidates = Vec::new();
-    for &(a, side_a) in &lists[0] {
-        for &(b, side_b) in &lists[1] {
-            if a != b && !(same && b < a) {
-                candidates.push(([a, b], [side_a, side_b]));
-            }
-        }
+    let fits = |first: &(usize, usize), second: &(usize, usize)| {
+        first.0 != second.0 && !(same && second.0 < first.0)
+    };
+    // The last of all pairs, first body by first body: its sentence is told if none meets.
+    let last = lists[0].iter().rev().find_map(|first| {
+        let second = lists[1].iter().rev().find(|second| fits(first, second));
+        second.map(|second| (*first, *second))
+    });
+    let Some(last) = last else {
+        return Err(Error::Input(format!(
+            "{written}the surfaces `{}` and `{}` do not meet: no two bodies have them",
+            names[0], names[1]
+        )));
+    };
+    let found = |first: (usize, usize), second: (usize, usize)| {
+        let [a, b] = [first, second].map(|(body, _)| bodies[body].spec.name.clone());
+        (Pair::Named(a, b), [first.1, second.1])
+    };
+    let pairs = lists[0].iter().flat_map(|first| {
+        let seconds = lists[1].iter().filter(move |second| fits(first, second));
+        seconds.map(move |second| (*first, *second))
+    });
+    if pairs.take(2).count() == 1 {
+        // Whether a single pair meets is found where its interface is made.
+        return Ok(vec![found(last.0, last.1)]);
     }
-    let alone = candidates.len() == 1;
+    let reach = if reach > 0.0 { reach } else { f64::INFINITY };
+    let mut surfaces = |list: &[(usize, usize)]| -> Vec<_> {
+        let each = list.iter();
+        each.map(|&(body, side)| matching.surface(body, side))
+            .collect()
+    };
+    let near = may_face(&surfaces(&lists[0]), &surfaces(&lists[1]), reach);
     let mut out = Vec::new();
-    let mut why = None;
-    for (pair, sides) in candidates {
-        let named = || {
-            Pair::Named(
-                bodies[pair[0]].spec.name.clone(),
-                bodies[pair[1]].spec.name.clone(),
-            )
-        };
-        let reach = if reach > 0.0 { reach } else { f64::INFINITY };
-        match (alone, matching.find(pair, sides, reach)) {
-            (_, Ok(_)) | (true, Err(_)) => out.push((named(), sides)),
-            (_, Err(Mismatch::Lonely(message))) => {
+    for [k, l] in near {
+        let (first, second) = (lists[0][k], lists[1][l]);
+        if !fits(&first, &second) {
+            continue;
+        }
+        match matching.find([first.0, second.0], [first.1, second.1], reach) {
+            Ok(_) => out.push(found(first, second)),
+            Err(Mismatch::Lonely(message)) => {
                 return Err(Error::Input(format!("{written}{message}")))
             }
-            (_, Err(Mismatch::Apart(message))) => why = Some(message),
+            Err(Mismatch::Apart(_)) => {}
         }
     }
     if out.is_empty() {
-        let why = why.unwrap_or_else(|| "no two bodies have them".into());
+        let (first, second) = last;
+        let why = apart(bodies, [first.0, second.0], [first.1, second.1]);
         return Err(Error::Input(format!(
             "{written}the surfaces `{}` and `{}` do not meet: {why}",
             names[0], names[1]
