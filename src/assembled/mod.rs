@@ -1,5 +1,5 @@
-//! The assembled problem of a scene: one matrix, one unknown where tied bodies have several copies, inequalities as
-//! bounds of differences.
+//! The assembled problem of a scene: one matrix, one unknown where tied bodies have several copies, none where an
+//! equation determines it, inequalities as bounds of differences.
 //!
 //! ```text
 //! Scene ──> Layout (unknowns w, frames, supports) ──> Unknowns ──> System (A, b) ──> Reduced (Tᵀ K T of active sets)
@@ -8,6 +8,7 @@
 
 mod cycles;
 mod damped;
+mod eliminated;
 pub mod frame;
 pub mod groups;
 mod judged;

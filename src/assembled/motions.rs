@@ -177,7 +177,7 @@ impl Motions {
         self.form(body, at, inside % self.components)
     }
 
-    /// The equations of ties, springs and prescribed values.
+    /// The equations of ties, springs and prescribed values, and those between displacements.
     pub fn held(&self, scene: &Scene) -> Echelon {
         let mut out = Echelon::default();
         for (b, body) in scene.bodies.iter().enumerate() {
@@ -207,6 +207,9 @@ impl Motions {
                     out.insert(&self.of_terms(scene, &tie), 0.0);
                 }
             }
+        }
+        for equation in &scene.equations {
+            out.insert(&self.of_terms(scene, &equation.terms), 0.0);
         }
         out
     }

@@ -134,19 +134,20 @@ impl<'a> Reference<'a> {
     /// # Errors
     /// PETSc's.
     pub fn values(&self, subdomains: &[Subdomain]) -> Result<Vec<Vec<f64>>> {
-        // In the coordinates of the contact frames: u = Σ coefficient · w.
+        // Through contact frames and equations: u = Σ coefficient · w + offset.
         let dofs = || subdomains.iter().flat_map(|s| &s.dofs);
-        let terms: Vec<Vec<(u64, f64)>> = dofs()
+        let terms: Vec<(Vec<(u64, f64)>, f64)> = dofs()
             .map(|&dof| self.layout.terms(self.layout.index(dof)))
             .collect();
-        let places: Vec<i32> = terms.iter().flatten().map(|t| t.0 as i32).collect();
+        let places = terms.iter().flat_map(|(list, _)| list);
+        let places: Vec<i32> = places.map(|t| t.0 as i32).collect();
         let w = PetscVec::seq(&self.session, places.len())?;
         Scatter::new(&self.found.u, &places, &w)?.forward(&self.found.u, &w)?;
         let w = w.array()?;
         let mut w = w.iter();
-        let mut u = terms.iter().map(|list| {
+        let mut u = terms.iter().map(|(list, offset)| {
             let each = list.iter().zip(&mut w);
-            each.map(|((_, c), w)| c * w).sum::<f64>()
+            each.map(|((_, c), w)| c * w).sum::<f64>() + offset
         });
         let of = |s: &Subdomain| u.by_ref().take(s.dofs.len()).collect();
         Ok(subdomains.iter().map(of).collect())
@@ -203,13 +204,15 @@ impl<'a> Reference<'a> {
         let mut forces = vec![0.0; supports.len()];
         for (s, u) in mine.iter().zip(&u) {
             for (i, &dof) in s.dofs.iter().enumerate() {
-                let at = self.layout.index(dof);
-                let Ok(k) = supports.binary_search(&at) else {
-                    continue;
-                };
-                let (cols, vals) = s.k.row(i);
-                let ku: f64 = cols.iter().zip(vals).map(|(&j, v)| v * u[j as usize]).sum();
-                forces[k] += s.f[i] - ku;
+                // A dependent unknown hands its force on to those that it follows.
+                for (at, coefficient) in self.layout.terms(self.layout.index(dof)).0 {
+                    let Ok(k) = supports.binary_search(&at) else {
+                        continue;
+                    };
+                    let (cols, vals) = s.k.row(i);
+                    let ku: f64 = cols.iter().zip(vals).map(|(&j, v)| v * u[j as usize]).sum();
+                    forces[k] += coefficient * (s.f[i] - ku);
+                }
             }
         }
         sum_all(self.session.comm(), &mut forces);

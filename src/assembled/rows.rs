@@ -34,7 +34,7 @@ pub struct Inequalities {
     pub rows: Vec<Row>,
     /// Whether each row is active at the start.
     pub initial: Vec<bool>,
-    /// The equations in the rigid motions that ties, springs and prescribed values give.
+    /// The equations in the rigid motions that ties, equations, springs and prescribed values give.
     pub(super) held: Echelon,
     /// The linear forms of the rows in the rigid motions.
     pub(super) forms: Vec<Functional>,
@@ -147,8 +147,8 @@ impl Inequalities {
     }
 
     /// Adds rows to `active` until they hold every rigid motion that all rows together can hold. Rows are tried in the
-    /// order of their scores; one is added if it removes a motion that ties, springs, prescribed values and the active
-    /// rows leave free. Returns the added rows.
+    /// order of their scores; one is added if it removes a motion that ties, equations, springs, prescribed values and
+    /// the active rows leave free. Returns the added rows.
     pub fn restore(&self, active: &mut [bool], score: &[f64]) -> Vec<usize> {
         let mut held = self.held.clone();
         let (mut on, mut off): (Vec<usize>, Vec<usize>) = (0..self.len()).partition(|&r| active[r]);

@@ -65,7 +65,8 @@ impl System {
         };
         let b = PetscVec::mpi(session, owned.len())?;
         Scatter::new(&b, &part.unknowns, &part.f)?.reverse_add(&part.f, &b)?;
-        let mut reference = match unknowns.are_all() {
+        let all = unknowns.are_all() && !unknowns.layout.has_dependent();
+        let mut reference = match all {
             true => b.norm2()?,
             false => norm_f(session, &mine, unknowns.layout)?,
         };
@@ -243,11 +244,10 @@ impl Part {
                 // The diagonal entries of void places are of the size of those of the same node.
                 let (void, itself) = all.void_beside(s.dofs[i]);
                 let diagonal = || entries_at(col, val, i);
-                if itself {
-                    let row = find(all.layout.index(s.dofs[i]));
-                    k.add_values(&[row], &[row], &[diagonal()])?;
-                }
-                for &v in void.iter().filter(|_| !itself) {
+                // One without a dof of its own takes those of all others, also where these are void.
+                let own = all.layout.index(s.dofs[i]);
+                let takes = |v: u64| !itself || v == own || all.layout.is_inserted(v);
+                for &v in void.iter().filter(|v| takes(**v)) {
                     k.add_values(&[find(v)], &[find(v)], &[diagonal()])?;
                 }
             }

@@ -89,8 +89,9 @@ impl<'a> Unknowns<'a> {
 
     /// u at a body dof as Σ coefficient · v plus an offset.
     pub fn terms(&self, body_dof: u64) -> (Vec<(u64, f64)>, f64) {
-        let mut out = (Vec::new(), 0.0);
-        for (unknown, coefficient) in self.layout.terms(self.layout.index(body_dof)) {
+        let (terms, offset) = self.layout.terms(self.layout.index(body_dof));
+        let mut out = (Vec::with_capacity(terms.len()), offset);
+        for (unknown, coefficient) in terms {
             let (lead, offset) = self.of(unknown);
             out.0.extend(lead.map(|lead| (lead, coefficient)));
             out.1 += coefficient * offset;

@@ -6,4 +6,5 @@ mod support;
 mod bench;
 mod contact;
 mod elastic;
+mod equations;
 mod scalar;

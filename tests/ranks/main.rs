@@ -7,4 +7,5 @@ mod answers;
 mod communication;
 mod copies;
 mod direct;
+mod equations;
 mod pairs;

@@ -56,6 +56,15 @@ impl SceneFile {
         }
     }
 
+    /// A deck instead of a scene.
+    pub fn deck(name: &str, text: &str) -> SceneFile {
+        let scratch = Scratch::new(&format!("compare-{name}"));
+        SceneFile {
+            path: scratch.file("deck.inp", text),
+            scratch,
+        }
+    }
+
     pub fn path(&self) -> &str {
         &self.path
     }

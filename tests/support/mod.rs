@@ -12,6 +12,7 @@ pub mod direct;
 pub mod elastic_scene;
 pub mod keys;
 pub mod mpi;
+pub mod plates;
 pub mod plugin;
 pub mod program;
 pub mod qp;

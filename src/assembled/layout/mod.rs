@@ -5,21 +5,27 @@
 //! ```
 //!
 //! A node with some components prescribed keeps places for them, in which w = 0 with a row of its own (*void* places):
-//! multigrid for elasticity needs all components of a node. Supports are void, too: where ties, springs, prescribed
-//! values and inequalities together leave rigid motions free, as many dofs are set to zero. Under a balanced load these
-//! supports bear no force.
+//! multigrid for elasticity needs all components of a node. Unknowns that equations between displacements determine
+//! are void, too: there u is a combination of others and an offset. So are supports: where ties, equations, springs,
+//! prescribed values and inequalities together leave rigid motions free, as many dofs are set to zero. Under a balanced
+//! load these supports bear no force.
+
+mod rows;
 
 use std::collections::BTreeMap;
 
-use super::frame::{parallel, Frame};
+use super::eliminated::Eliminated;
+use super::frame::Frame;
 use super::motions::{Echelon, Functional, Motions};
-use crate::linalg::vec3::{ball, norm};
+use crate::linalg::vec3::ball;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::scene::{Numbering, Scene};
 use crate::substructures::{InterfaceRow, RowKind};
 use crate::Result;
 use std::ops::Range;
+
+use rows::Bounded;
 
 /// The layout of w.
 pub struct Layout<'a> {
@@ -31,22 +37,24 @@ pub struct Layout<'a> {
     inserted: Vec<u64>,
     /// The inserted places, increasing.
     filled: Vec<u64>,
-    /// The void places, increasing: those inserted and the supports.
+    /// The void places, increasing: those inserted, the dependent ones and the supports.
     void: Vec<u64>,
+    /// The unknowns that equations between displacements determine.
+    eliminated: Eliminated,
     /// Supports with their linear forms in the rigid motions.
     supports: Vec<(u64, Functional)>,
     /// The frames of nodes at which w is not u.
     frames: BTreeMap<u64, Frame>,
     /// The rigid motions of the bodies.
     pub motions: Motions,
-    /// The equations in the rigid motions that ties, springs and prescribed values give.
+    /// The equations in the rigid motions that ties, equations, springs and prescribed values give.
     pub held: Echelon,
     /// The linear forms of the inequalities in the rigid motions.
     pub forms: Vec<Functional>,
     /// The equations of `held` and `forms` together, without the supports.
     all_held: Echelon,
-    /// Why w cannot stand for the problem: inequalities that are no bounds in frames, or equations beside ties. `None`
-    /// where it can.
+    /// Why w cannot stand for the problem: inequalities that are no bounds in frames, or an equation that cannot be
+    /// solved for an unknown. `None` where it can.
     pub trouble: Option<String>,
 }
 
@@ -62,13 +70,14 @@ impl<'a> Layout<'a> {
             inserted: Vec::new(),
             filled: Vec::new(),
             void: Vec::new(),
+            eliminated: Eliminated::default(),
             supports: Vec::new(),
             frames: BTreeMap::new(),
             all_held: held.clone(),
             motions,
             held,
             forms: Vec::new(),
-            trouble: trouble(scene),
+            trouble: None,
         };
         layout.fill();
         let rows = scene.rows(&|_| true);
@@ -81,8 +90,10 @@ impl<'a> Layout<'a> {
             layout.all_held.insert(&form, 0.0);
             layout.forms.push(form);
         }
-        layout.turn(&inequalities);
-        layout.support(&inequalities);
+        let bounded = layout.bounded(&inequalities);
+        layout.eliminate(&rows, &bounded);
+        layout.turn(&inequalities, &bounded);
+        layout.support(&bounded);
         layout
     }
 
@@ -131,68 +142,13 @@ impl<'a> Layout<'a> {
         self.void.clone_from(&self.filled);
     }
 
-    /// Computes the frames of the nodes in inequalities.
-    fn turn(&mut self, rows: &[&InterfaceRow]) {
-        let mut directions: BTreeMap<u64, Vec<[f64; 3]>> = BTreeMap::new();
-        for row in rows {
-            for (block, direction) in self.ends(row).0 {
-                let list = directions.entry(block).or_default();
-                if !list.iter().any(|d| parallel(*d, direction)) {
-                    list.push(upright(direction));
-                }
-            }
-        }
-        for (block, list) in directions {
-            let c = self.components as u64;
-            let free =
-                [0, 1, 2].map(|k| k < c && self.void.binary_search(&(block * c + k)).is_err());
-            match Frame::new(&list, free) {
-                Some(frame) if frame.is_identity() => {}
-                Some(frame) => {
-                    self.frames.insert(block, frame);
-                }
-                None => {
-                    let x = self.position(block);
-                    self.trouble.get_or_insert_with(|| {
-                        format!(
-                            "at ({}, {}, {}) the node is in inequalities along {} directions that \
-                             are not independent, so that they are no bounds of single unknowns",
-                            x[0],
-                            x[1],
-                            x[2],
-                            list.len()
-                        )
-                    });
-                }
-            }
-        }
-        for row in rows {
-            if self.trouble.is_none() && self.bound(row).is_none() {
-                let x = self
-                    .ends(row)
-                    .0
-                    .first()
-                    .map_or([0.0; 3], |e| self.position(e.0));
-                self.trouble = Some(format!(
-                    "the inequality at ({}, {}, {}) is not the difference of two unknowns",
-                    x[0], x[1], x[2]
-                ));
-            }
-        }
-    }
-
-    /// Chooses supports for the rigid motions that nothing holds.
-    fn support(&mut self, rows: &[&InterfaceRow]) {
+    /// Chooses supports for the rigid motions that nothing holds, beside the nodes in inequalities.
+    fn support(&mut self, bounded: &Bounded) {
         let loose = self.motions.len() - self.all_held.rank();
         if loose == 0 {
             return;
         }
         let c = self.components as u64;
-        let in_rows: std::collections::HashSet<u64> = rows
-            .iter()
-            .flat_map(|row| self.ends(row).0)
-            .map(|(block, _)| block)
-            .collect();
         let mut candidates: Vec<(u64, Functional)> = Vec::new();
         for (b, body) in self.scene.bodies.iter().enumerate() {
             let mesh = body.mesh();
@@ -203,7 +159,7 @@ impl<'a> Layout<'a> {
                         continue;
                     }
                     let at = self.index(body.first_dof + inside as u64);
-                    if in_rows.contains(&(at / c)) {
+                    if bounded.contains_key(&(at / c)) || self.eliminated.get(at).is_some() {
                         continue;
                     }
                     candidates.push((at, self.motions.form(b, body.spec.position(node), k)));
@@ -235,45 +191,6 @@ impl<'a> Layout<'a> {
         let mut places: Vec<u64> = self.supports.iter().map(|s| s.0).collect();
         places.sort_unstable();
         places
-    }
-
-    /// The nodes of a row, each with the vector whose product with u the row takes. All vectors are divided by the
-    /// length of the first, which is returned as well.
-    pub fn ends(&self, row: &InterfaceRow) -> (Vec<(u64, [f64; 3])>, f64) {
-        let mut ends: Vec<(u64, [f64; 3])> = Vec::new();
-        let c = self.components as u64;
-        for &(dof, coefficient) in &row.terms {
-            let at = self.index(dof);
-            let (block, component) = (at / c, (at % c) as usize);
-            match ends.iter_mut().find(|e| e.0 == block) {
-                Some(end) => end.1[component] += coefficient,
-                None => {
-                    let mut end = (block, [0.0; 3]);
-                    end.1[component] = coefficient;
-                    ends.push(end);
-                }
-            }
-        }
-        // A row may vanish once ties are applied.
-        ends.retain(|e| norm(e.1) > 1e-12);
-        let scale = ends.first().map_or(1.0, |e| norm(e.1));
-        ends.iter_mut().for_each(|e| e.1 = e.1.map(|v| v / scale));
-        (ends, scale)
-    }
-
-    /// A row as w_plus − w_minus ≤ gap / scale: (plus, minus, scale). `None` if it does not have this form.
-    pub fn bound(&self, row: &InterfaceRow) -> Option<([Option<u64>; 2], f64)> {
-        let (ends, scale) = self.ends(row);
-        let mut out = [None; 2];
-        for (block, direction) in ends {
-            let (slot, sign) = self.frame(block).place(direction)?;
-            let place = &mut out[usize::from(sign < 0.0)];
-            if place.is_some() {
-                return None;
-            }
-            *place = Some(block * self.components as u64 + slot as u64);
-        }
-        Some((out, scale))
     }
 
     fn frame(&self, block: u64) -> &Frame {
@@ -323,6 +240,11 @@ impl<'a> Layout<'a> {
         &self.void
     }
 
+    /// Whether a void place is none of a dof: that of a prescribed component.
+    pub fn is_inserted(&self, index: u64) -> bool {
+        self.filled.binary_search(&index).is_ok()
+    }
+
     /// The void places of the node of place `index`.
     pub fn void_beside(&self, index: u64) -> &[u64] {
         let c = self.components as u64;
@@ -331,8 +253,27 @@ impl<'a> Layout<'a> {
         &self.void[at(first)..at(first + c)]
     }
 
-    /// u at place `index` as Σ coefficient · w.
-    pub fn terms(&self, index: u64) -> Vec<(u64, f64)> {
+    /// u at place `index` as Σ coefficient · w and an offset.
+    pub fn terms(&self, index: u64) -> (Vec<(u64, f64)>, f64) {
+        match self.eliminated.get(index) {
+            None => (self.turned(index), 0.0),
+            Some((terms, offset)) => {
+                let turned = |(&place, t): (&u64, &f64)| {
+                    let list = self.turned(place).into_iter();
+                    list.map(|(w, v)| (w, t * v)).collect::<Vec<_>>()
+                };
+                (terms.iter().flat_map(turned).collect(), offset)
+            }
+        }
+    }
+
+    /// Whether equations determine some unknowns.
+    pub fn has_dependent(&self) -> bool {
+        !self.eliminated.is_empty()
+    }
+
+    /// u at a place that is not dependent as Σ coefficient · w.
+    fn turned(&self, index: u64) -> Vec<(u64, f64)> {
         let c = self.components as u64;
         let Some(frame) = self.frames.get(&(index / c)) else {
             return vec![(index, 1.0)];
@@ -369,7 +310,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Converts u, found by a method without supports and frames, to w: subtracts the rigid motions that the supports
-    /// exclude, and changes to the coordinates of the frames. Collective.
+    /// exclude, leaves out what equations determine, and changes to the coordinates of the frames. Collective.
     ///
     /// # Errors
     /// PETSc's.
@@ -404,6 +345,12 @@ impl<'a> Layout<'a> {
             }
         }
         let mut u = u.array_mut()?;
+        for place in self.eliminated.places() {
+            let place = place as usize;
+            if range.contains(&place) {
+                u[place - range.start] = 0.0;
+            }
+        }
         for (&block, frame) in &self.frames {
             let first = block as usize * c;
             if range.contains(&first) {
@@ -416,23 +363,4 @@ impl<'a> Layout<'a> {
         }
         Ok(())
     }
-}
-
-/// Equations with any number of terms tie w in a way that numbering nodes once does not.
-fn trouble(scene: &Scene) -> Option<String> {
-    let n = scene.equations.len();
-    let named = match n {
-        0 => return None,
-        1 => "one equation".into(),
-        n => format!("{n} equations"),
-    };
-    Some(format!(
-        "it has {named} between displacements (*EQUATION), and the assembled problem knows ties only"
-    ))
-}
-
-/// Of a direction and its opposite, the one whose first nonzero entry is positive.
-fn upright(d: [f64; 3]) -> [f64; 3] {
-    let first = d.iter().find(|v| v.abs() > 1e-6).copied().unwrap_or(1.0);
-    d.map(|v| v * first.signum() + 0.0)
 }

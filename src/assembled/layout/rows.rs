@@ -1,0 +1,151 @@
+//! What the rows of a scene do to w: equations leave unknowns out, inequalities turn nodes.
+
+use std::collections::BTreeMap;
+
+use super::Layout;
+use crate::assembled::eliminated::{Eliminated, Trouble};
+use crate::assembled::frame::{parallel, Frame};
+use crate::linalg::vec3::norm;
+use crate::substructures::{InterfaceRow, RowSource};
+
+/// Nodes, and the directions along which inequalities bound them.
+pub(super) type Bounded = BTreeMap<u64, Vec<[f64; 3]>>;
+
+impl Layout<'_> {
+    /// The nodes in inequalities with their directions.
+    pub(super) fn bounded(&self, rows: &[&InterfaceRow]) -> Bounded {
+        let mut directions = Bounded::new();
+        for row in rows {
+            for (block, direction) in self.ends(row).0 {
+                let list = directions.entry(block).or_default();
+                if !list.iter().any(|d| parallel(*d, direction)) {
+                    list.push(upright(direction));
+                }
+            }
+        }
+        directions
+    }
+
+    /// Solves the equations beside ties. What inequalities take of a node stays.
+    pub(super) fn eliminate(&mut self, rows: &[InterfaceRow], bounded: &Bounded) {
+        let equations = rows
+            .iter()
+            .filter(|row| matches!(row.label.source, RowSource::Equation(_)));
+        let placed = equations.map(|row| {
+            let terms = row.terms.iter().map(|&(dof, b)| (self.index(dof), b));
+            (terms.collect(), row.gap)
+        });
+        let c = self.components as u64;
+        let kept = |place: u64| {
+            let list = bounded.get(&(place / c));
+            list.is_some_and(|list| list.iter().any(|d| d[(place % c) as usize].abs() > 1e-12))
+        };
+        match Eliminated::new(placed, &kept) {
+            Ok(eliminated) => {
+                self.void.extend(eliminated.places());
+                self.void.sort_unstable();
+                self.eliminated = eliminated;
+            }
+            Err(trouble) => {
+                let (Trouble::Kept(place) | Trouble::Contradicts(place)) = trouble;
+                let x = self.position(place / c);
+                let why = match trouble {
+                    Trouble::Kept(_) => {
+                        "joins only displacements that inequalities bound, so that it determines no other"
+                    }
+                    Trouble::Contradicts(_) => "contradicts the others",
+                };
+                self.trouble = Some(format!(
+                    "an equation between displacements at ({}, {}, {}) {why}",
+                    x[0], x[1], x[2]
+                ));
+            }
+        }
+    }
+
+    /// Computes the frames of the nodes in inequalities.
+    pub(super) fn turn(&mut self, rows: &[&InterfaceRow], bounded: &Bounded) {
+        for (&block, list) in bounded {
+            let c = self.components as u64;
+            let free =
+                [0, 1, 2].map(|k| k < c && self.void.binary_search(&(block * c + k)).is_err());
+            match Frame::new(list, free) {
+                Some(frame) if frame.is_identity() => {}
+                Some(frame) => {
+                    self.frames.insert(block, frame);
+                }
+                None => {
+                    let x = self.position(block);
+                    self.trouble.get_or_insert_with(|| {
+                        format!(
+                            "at ({}, {}, {}) the node is in inequalities along {} directions that \
+                             are not independent, so that they are no bounds of single unknowns",
+                            x[0],
+                            x[1],
+                            x[2],
+                            list.len()
+                        )
+                    });
+                }
+            }
+        }
+        for row in rows {
+            if self.trouble.is_none() && self.bound(row).is_none() {
+                let x = self
+                    .ends(row)
+                    .0
+                    .first()
+                    .map_or([0.0; 3], |e| self.position(e.0));
+                self.trouble = Some(format!(
+                    "the inequality at ({}, {}, {}) is not the difference of two unknowns",
+                    x[0], x[1], x[2]
+                ));
+            }
+        }
+    }
+
+    /// The nodes of a row, each with the vector whose product with u the row takes. All vectors are divided by the
+    /// length of the first, which is returned as well.
+    pub fn ends(&self, row: &InterfaceRow) -> (Vec<(u64, [f64; 3])>, f64) {
+        let mut ends: Vec<(u64, [f64; 3])> = Vec::new();
+        let c = self.components as u64;
+        for &(dof, coefficient) in &row.terms {
+            let at = self.index(dof);
+            let (block, component) = (at / c, (at % c) as usize);
+            match ends.iter_mut().find(|e| e.0 == block) {
+                Some(end) => end.1[component] += coefficient,
+                None => {
+                    let mut end = (block, [0.0; 3]);
+                    end.1[component] = coefficient;
+                    ends.push(end);
+                }
+            }
+        }
+        // A row may vanish once ties are applied.
+        ends.retain(|e| norm(e.1) > 1e-12);
+        let scale = ends.first().map_or(1.0, |e| norm(e.1));
+        ends.iter_mut().for_each(|e| e.1 = e.1.map(|v| v / scale));
+        (ends, scale)
+    }
+
+    /// A row as w_plus − w_minus ≤ gap / scale: (plus, minus, scale). `None` if it does not have this form.
+    pub fn bound(&self, row: &InterfaceRow) -> Option<([Option<u64>; 2], f64)> {
+        let (ends, scale) = self.ends(row);
+        let mut out = [None; 2];
+        for (block, direction) in ends {
+            let (slot, sign) = self.frame(block).place(direction)?;
+            let place = &mut out[usize::from(sign < 0.0)];
+            if place.is_some() {
+                return None;
+            }
+            *place = Some(block * self.components as u64 + slot as u64);
+        }
+        Some((out, scale))
+    }
+}
+
+/// Of a direction and its opposite, the one whose first nonzero entry is positive.
+fn upright(d: [f64; 3]) -> [f64; 3] {
+    let first = d.iter().find(|v| v.abs() > 1e-6).copied().unwrap_or(1.0);
+    d.map(|v| v * first.signum() + 0.0)
+}
