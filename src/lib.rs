@@ -113,6 +113,7 @@ pub mod fem;
 pub mod feti;
 pub(crate) mod linalg;
 pub mod mesh;
+pub(crate) mod mortar;
 pub(crate) mod parallel;
 #[allow(unsafe_code)]
 pub mod petsc;

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The doors, from the first to the last.
-const ORDER: [&str; 25] = [
+const ORDER: [&str; 26] = [
     "error",
     "linalg",
     "petsc",
@@ -18,6 +18,7 @@ const ORDER: [&str; 25] = [
     "cholesky",
     "mesh",
     "fem",
+    "mortar",
     "substructures",
     "feti",
     "contact",

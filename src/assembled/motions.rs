@@ -211,6 +211,9 @@ impl Motions {
         for equation in &scene.equations {
             out.insert(&self.of_terms(scene, &equation.terms), 0.0);
         }
+        for row in scene.mortar.iter().filter(|row| row.inequality.is_none()) {
+            out.insert(&self.of_terms(scene, &row.terms), 0.0);
+        }
         out
     }
 }

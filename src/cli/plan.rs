@@ -195,6 +195,12 @@ fn interfaces(scene: &Scene, plan: &Plan) -> String {
         )
         .numbers("gap", |(_, p)| gap(p.gap))
         .numbers("angle", |(_, p)| format!("{:.1}°", p.angle))
+        .when(listed.iter().any(|(i, _)| i.multipliers.is_some()), |t| {
+            t.words("mortar", |(i, _)| match i.multipliers {
+                Some(b) => format!("multipliers on {}", name(b)),
+                None => "nodes match".into(),
+            })
+        })
         .table();
     format!("{table}{}\n", more(faces.count(), "faces"))
 }

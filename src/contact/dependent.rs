@@ -8,6 +8,7 @@
 //! multipliers moves them along N by what the springs give way, so that it takes many updates until the row that must
 //! leave has left. Here they go all the way at once, node by node.
 
+use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::springs::forceless;
 use crate::linalg::dense::Dense;
@@ -18,7 +19,8 @@ const LEVEL: f64 = 1e-12;
 /// Moves the multipliers of all blocks of dependent rows downhill in cᵀλ, until rows with multipliers do not contradict
 /// each other. Forces Bᵀλ stay.
 pub fn settle(jump: &Jump, lambda: &mut [f64]) {
-    for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
+    let may_depend = |b: &&Block| b.rows.len() > 1 && !b.independent;
+    for block in jump.blocks.iter().filter(may_depend) {
         let rows = block.rows.clone();
         let (inequality, c) = (&jump.inequality[rows.clone()], &jump.gap[rows.clone()]);
         settle_rows(&block.b, inequality, c, &mut lambda[rows]);

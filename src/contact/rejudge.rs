@@ -66,6 +66,12 @@ fn leave(block: &Block, jump: &Jump, lambda: &[f64], pull: f64, active: &mut [bo
     if !held.iter().any(pulls) {
         return;
     }
+    if block.independent {
+        held.iter()
+            .filter(|r| pulls(r))
+            .for_each(|&r| active[r] = false);
+        return;
+    }
     let entry = |j: usize, i: usize| block.b.get(held[i] - block.rows.start, j);
     let b = Dense::from_fn(block.dofs.len(), held.len(), entry);
     let mut forces = vec![0.0; block.dofs.len()];

@@ -7,7 +7,8 @@ use super::geometry::matching::Matching;
 use super::model::expr::Expr;
 use super::model::spec::{lee, Faces, GridSpec, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
-use super::rows::equations::Equation;
+use super::rows::equations::{Chain, Equation};
+use super::rows::mortar::MortarRow;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
 use super::{axis, cut, read, rows, validate};
@@ -57,6 +58,8 @@ pub struct Scene {
     pub points: Vec<Point>,
     /// Equations between displacements beside those of ties.
     pub equations: Vec<Equation>,
+    /// Rows between sides whose nodes do not match.
+    pub mortar: Vec<MortarRow>,
     /// Points of interest.
     pub probes: Vec<ProbeSpec>,
     /// Rigid obstacles, by body, side and bound.
@@ -129,11 +132,30 @@ impl Scene {
         if let Some(steps) = &mut steps {
             steps.renumber(&spec);
         }
-        let interfaces = rows::entries::find(&bodies, matching, &spec, &steps)?;
+        let mut interfaces = rows::entries::find(&bodies, matching, &spec, &steps)?;
         let obstacles = rows::obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
         let mut points = rows::points::collect(&mut bodies, &interfaces)?;
-        rows::bounds::Checks::new(&bodies, &obstacles, &spec, &steps).apply(&mut points)?;
-        let equations = rows::equations::collect(&bodies, &mut points, &spec.equations)?;
+        let checks = rows::bounds::Checks::new(&bodies, &obstacles, &spec, &steps);
+        checks.apply(&mut points)?;
+        let form = &spec.form;
+        let (mut mortar, notes) =
+            rows::mortar::collect(&bodies, form, &mut interfaces, &points, &checks)?;
+        let mut equations = rows::equations::collect(&bodies, &spec.equations)?;
+        let of_equations = equations.iter_mut().map(|e| Chain {
+            terms: &e.terms,
+            block: &mut e.block,
+            subdomain: &mut e.subdomain,
+        });
+        let of_mortar = mortar.iter_mut().map(|m| Chain {
+            terms: &m.terms,
+            block: &mut m.block,
+            subdomain: &mut m.subdomain,
+        });
+        let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
+        rows::equations::join(&bodies, &mut points, &mut chains);
+        drop(chains);
+        rows::mortar::check_sizes(&bodies, &interfaces, &mortar)?;
+        spec.notes.extend(notes);
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             options: spec.options,
@@ -143,6 +165,7 @@ impl Scene {
             interfaces,
             points,
             equations,
+            mortar,
             probes: spec.probes,
             obstacles,
             steps,

@@ -49,6 +49,8 @@ pub struct InterfacePlan {
     pub tied: usize,
     /// Nodes that are in contact.
     pub contact: usize,
+    /// The body that carries the multipliers where nodes do not match.
+    pub multipliers: Option<usize>,
 }
 
 /// The sizes of a scene.
@@ -102,6 +104,7 @@ impl Scene {
                 unmatched: i.unmatched.len(),
                 tied: i.shared.iter().filter(|s| s.link == Link::Tied).count(),
                 contact: i.shared.iter().filter(|s| s.link.is_contact()).count(),
+                multipliers: i.mortar.as_ref().map(|m| i.bodies[m.multipliers]),
             })
             .collect();
         Plan {
@@ -113,10 +116,15 @@ impl Scene {
             assembled: Numbering::new(self).len(),
             primal: bodies.iter().map(|b| b.primal).sum(),
             local_multipliers: bodies.iter().map(|b| b.local_multipliers).sum(),
-            global_multipliers: self.rows_that(|r| r.holds),
+            global_multipliers: self.rows_that(|r| r.holds) + self.mortar.len(),
             open_rows: self.rows_that(|r| !r.holds && r.inequality.is_none()),
             contact_pairs: self.interfaces.iter().filter(|i| i.has_contact()).count(),
-            contact_rows: self.rows_that(|r| r.inequality.is_some() && !r.is_beside_obstacle()),
+            contact_rows: self.rows_that(|r| r.inequality.is_some() && !r.is_beside_obstacle())
+                + self
+                    .mortar
+                    .iter()
+                    .filter(|m| m.inequality.is_some())
+                    .count(),
             obstacles: self.obstacles.len(),
             obstacle_rows: self.rows_that(PointRow::is_beside_obstacle),
             steps: self.steps.as_ref().map(|s| s.times.len()),

@@ -50,6 +50,10 @@ impl Scene {
         let least = cosines.fold(1.0, f64::min);
         out.angle = least.max(-1.0).acos().to_degrees();
 
+        if let Some(mortar) = &interface.mortar {
+            out.area = mortar.area;
+            return out;
+        }
         let spec = &self.bodies[interface.bodies[0]].spec;
         let shared: HashSet<usize> = interface.shared.iter().map(|s| s.nodes[0]).collect();
         for face in spec.faces(interface.sides[0]) {

@@ -60,7 +60,8 @@ fn keys_and_geometry() {
     bad_scene(&grid("rhoo = 2"), &["s.toml:7", "unknown key `rhoo`"]);
     bad_scene("[grid\n", &["s.toml:1", "not valid TOML"]);
     bad_scene(&two("0.5", 1, ""), &["`held` and `loose` overlap"]);
-    let finer = two("1", 1, "").replacen("elements = 4", "elements = 3", 1);
+    let points = "[[tie]]\nbodies = [\"held\", \"loose\"]\npoints = [0.25]\n";
+    let finer = two("1", 1, points).replacen("elements = 4", "elements = 3", 1);
     bad_scene(&finer, &["`held` and `loose` are tied", "matching nodes"]);
     bad_scene(
         &GRID.replace("elements = 4", "elements = 0"),

@@ -9,4 +9,5 @@ mod direct;
 mod forms;
 mod lifting;
 mod local_solvers;
+mod mortar;
 mod spectra;

@@ -8,4 +8,5 @@ mod communication;
 mod copies;
 mod direct;
 mod equations;
+mod mortar;
 mod pairs;

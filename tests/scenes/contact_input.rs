@@ -33,7 +33,7 @@ fn contacts() {
     check(
         &with("gapp = 1"),
         "s.toml:13: unknown key `gapp` in [[contact]] (known keys are surfaces, bodies, \
-         sides, adjust, distance, where, range, points, nodes, gap, ramp)",
+         sides, multipliers, adjust, distance, where, range, points, nodes, gap, ramp)",
     );
     check(
         &pair("[[contact]]\ngap = 1\n"),
@@ -82,7 +82,7 @@ fn contacts() {
     );
     let unmatched = body("a", "[0, 0]", "") + &body("b", "[1, 0.125]", "");
     check(
-        &format!("{unmatched}[[contact]]\nbodies = \"all\"\n"),
+        &format!("{unmatched}[[contact]]\nbodies = [\"a\", \"b\"]\nnodes = [0]\n"),
         "s.toml:11: bodies `a` and `b` are in contact, but node (1, 0.125) of `b` (t = 0) meets no node of `a` \
          (matching nodes were expected on a contact face)",
     );
@@ -341,6 +341,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
         extent: Extent::All,
         gap: Profile::Table(Vec::new()),
         distance: None,
+        multipliers: None,
         adjust: 0.0,
         adjusted: Vec::new(),
         ramp: None,

@@ -31,14 +31,17 @@ fn bodies_together() {
         ),
         "s.toml:6: bodies `a` and `b` overlap in [0, 1] × [0, 1] (bodies may only touch)",
     );
+    // Single nodes can be tied only where both bodies have them.
+    let points = "[[tie]]\nbodies = [\"a\", \"b\"]\npoints = [0.2]\n";
     check(
-        &format!("{}{}", body("a", "[0, 0]", "elements = 4"), body("b", "[1, 0]", "elements = 5")),
-        "s.toml:6: bodies `a` and `b` are tied, but node (1, 0.2) of `b` (t = 0.2) meets no node of `a` \
+        &format!("{}{}{points}", body("a", "[0, 0]", "elements = 4"), body("b", "[1, 0]", "elements = 5")),
+        "s.toml:11: bodies `a` and `b` are tied, but node (1, 0.2) of `b` (t = 0.2) meets no node of `a` \
          (matching nodes were expected on a tied face)",
     );
     // With a shift by half an element, no node matches, not even the end of the common face.
+    let nodes = "[[tie]]\nbodies = [\"a\", \"b\"]\nnodes = [0]\n";
     let e = message(&format!(
-        "{}{}",
+        "{}{}{nodes}",
         body("a", "[0, 0]", "elements = 4"),
         body("b", "[1, 0.125]", "elements = 4")
     ));

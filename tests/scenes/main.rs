@@ -18,6 +18,7 @@ mod input;
 mod input_bodies;
 mod mesh_mistakes;
 mod meshes;
+mod mortar;
 mod scaling;
 mod solution;
 mod springs;

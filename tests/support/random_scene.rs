@@ -147,6 +147,7 @@ pub fn spec(seed: u64) -> SceneSpec {
             extent: Extent::All,
             gap: Profile::constant(number(rng, 0.0, 0.1)),
             distance: None,
+            multipliers: None,
             adjust: 0.0,
             adjusted: Vec::new(),
             ramp: None,
@@ -292,6 +293,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             pair: Pair::Named(a, b),
             sides: None,
             extent,
+            multipliers: None,
             adjust: 0.0,
             written: String::new(),
         });
@@ -309,6 +311,7 @@ fn face(rng: &mut Rng, spec: &mut SceneSpec, pair: [usize; 2], upwards: bool, ta
             extent,
             gap: gap(rng, tame),
             distance: None,
+            multipliers: None,
             adjust: 0.0,
             adjusted: Vec::new(),
             ramp: None,

@@ -6,7 +6,7 @@ use super::Layout;
 use crate::assembled::eliminated::{Eliminated, Trouble};
 use crate::assembled::frame::{parallel, Frame};
 use crate::linalg::vec3::norm;
-use crate::substructures::{InterfaceRow, RowSource};
+use crate::substructures::{InterfaceRow, RowKind, RowSource};
 
 /// Nodes, and the directions along which inequalities bound them.
 pub(super) type Bounded = BTreeMap<u64, Vec<[f64; 3]>>;
@@ -30,7 +30,7 @@ impl Layout<'_> {
     pub(super) fn eliminate(&mut self, rows: &[InterfaceRow], bounded: &Bounded) {
         let equations = rows
             .iter()
-            .filter(|row| matches!(row.label.source, RowSource::Equation(_)));
+            .filter(|row| row.kind == RowKind::Equality && self.is_chained(row.label.source));
         let placed = equations.map(|row| {
             let terms = row.terms.iter().map(|&(dof, b)| (self.index(dof), b));
             (terms.collect(), row.gap)
@@ -60,6 +60,15 @@ impl Layout<'_> {
                     x[0], x[1], x[2]
                 ));
             }
+        }
+    }
+
+    /// Whether rows of a source have many terms, so that they are no ties of two unknowns.
+    fn is_chained(&self, source: RowSource) -> bool {
+        match source {
+            RowSource::Equation(_) => true,
+            RowSource::Interface(k) => self.scene.interfaces[k].mortar.is_some(),
+            RowSource::Obstacle(_) => false,
         }
     }
 

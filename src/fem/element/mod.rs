@@ -33,6 +33,7 @@
 mod axial;
 mod deck;
 mod errors;
+pub mod face_values;
 mod hourglass;
 mod incompatible;
 mod integration;
@@ -54,9 +55,11 @@ mod testing;
 
 pub use deck::deck_element;
 pub use errors::error_squares;
+pub use face_values::FaceValues;
 pub use integration::{check, Integration};
 pub use loads::{body_load, body_load_by, middle, volume};
 pub use locate::locate;
+pub(crate) use quadrature::{gauss, triangle_rule};
 pub use sides::{side_load, side_weights, SideWeights};
 pub use stiffness::stiffness;
 pub use stress::{principal_stresses, stress_at_nodes, von_mises, NodeStress};

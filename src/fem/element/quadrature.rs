@@ -96,7 +96,7 @@ fn tetrahedron(kind: CellKind, purpose: Purpose) -> Vec<Point> {
 }
 
 /// The Gauss rule with `n` points on \[−1, 1\], exact for degree 2n − 1: (point, weight).
-pub(super) fn gauss(n: usize) -> Vec<(f64, f64)> {
+pub fn gauss(n: usize) -> Vec<(f64, f64)> {
     let mut rule: Vec<(f64, f64)> = (0..n)
         .map(|k| {
             // Newton's method from a point that is close to the k-th zero of the Legendre polynomial.
@@ -187,6 +187,12 @@ fn collapsed_axis(n: usize) -> Vec<(f64, f64)> {
         (z, 0.5 * weight * (1.0 - z) * (1.0 - z))
     })
     .collect()
+}
+
+/// A rule on the triangle with n² points, exact for degree 2n − 2: ((r, s), weight); the weights sum to 1/2.
+pub fn triangle_rule(n: usize) -> Vec<([f64; 2], f64)> {
+    let rule = collapsed(2, n).into_iter();
+    rule.map(|([r, s, _], weight)| ([r, s], weight)).collect()
 }
 
 /// A simplex as a collapsed cube with n Gauss points in each direction: exact for degree 2n − D.

@@ -1,6 +1,7 @@
 //! Blocks of B_gl. A block is a set of rows that share body dofs; its scaling (B D⁻¹ Bᵀ)⁺ is computed as a whole. A
 //! change of Z^k is applied block by block.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
@@ -14,6 +15,9 @@ use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange, Record};
 use crate::substructures::Substructures;
 
+/// A block is large if it has more rows than this: more than meet at a point.
+const LARGE: usize = 24;
+
 /// Rows of B_gl that share body dofs, on the rank that owns them.
 #[derive(Debug)]
 pub struct Block {
@@ -25,6 +29,12 @@ pub struct Block {
     pub b: Dense,
     /// D summed over the copies of each dof.
     pub weights: Vec<f64>,
+    /// The weights in B_D: D summed over as many copies as those dofs of the same body have that have the fewest. Along
+    /// a side, the nodes at which subdomains meet then weigh no more than others.
+    scaling: Vec<f64>,
+    /// Whether the block is large and its rows are independent: nothing has to be asked about which of them follow from
+    /// others.
+    pub independent: bool,
     /// Body of each dof.
     pub bodies: Vec<u32>,
     /// The copies of each dof.
@@ -95,7 +105,10 @@ impl Block {
     /// The entries of B and B_D for the rows in `active` (one per row of the block). `first` is the number of this
     /// rank's first row.
     pub(crate) fn entries(&self, first: usize, active: &[bool], send: &mut impl FnMut(Entry)) {
-        let bd = scaling::block(&self.b, &self.weights, active);
+        let bd = match self.independent {
+            true => scaling::independent(&self.b, &self.scaling, active),
+            false => scaling::block(&self.b, &self.scaling, active),
+        };
         for (r, &on) in active.iter().enumerate() {
             let row = (first + self.rows.start + r) as u64;
             for (j, copies) in self.copies.iter().enumerate() {
@@ -116,6 +129,9 @@ impl Block {
     /// Where all candidates hold, gaps around a cross point contradict each other, and so do both sides of an obstacle.
     fn consistent(&self, active: &[bool], c: &[f64]) -> Vec<f64> {
         let mut out = c.to_vec();
+        if self.independent {
+            return out;
+        }
         let rows: Vec<usize> = (0..active.len()).filter(|&r| active[r]).collect();
         let largest = rows.iter().fold(0.0f64, |a, &r| a.max(c[r].abs()));
         if rows.len() < 2 || largest == 0.0 {
@@ -149,6 +165,9 @@ impl Block {
     fn implied(&self, active: &[bool], c: &[f64]) -> Vec<usize> {
         let mut held = active.to_vec();
         let mut out = Vec::new();
+        if self.independent {
+            return out;
+        }
         let rank = |on: &[bool]| {
             let rows: Vec<usize> = (0..on.len()).filter(|&r| on[r]).collect();
             let b = faer::Mat::from_fn(rows.len(), self.dofs.len(), |i, j| self.b.get(rows[i], j));
@@ -195,25 +214,43 @@ pub(crate) fn collect(
             }
         }
         let copies: Vec<Vec<Copy>> = dofs.iter().map(|dof| sharing.copies[dof].clone()).collect();
-        let weights = copies
+        let weights: Vec<f64> = copies
             .iter()
             .map(|copies| copies.iter().map(|c| c.weight).sum())
+            .collect();
+        let bodies: Vec<u32> = copies
+            .iter()
+            .map(|copies| sharing.body_of[copies[0].subdomain as usize])
             .collect();
         let end = start + rows.len();
         blocks.push(Block {
             rows: start..end,
+            independent: rows.len() > LARGE && scaling::are_independent(&b),
             dofs,
             b,
+            scaling: even(&weights, &bodies, &copies),
             weights,
-            bodies: copies
-                .iter()
-                .map(|copies| sharing.body_of[copies[0].subdomain as usize])
-                .collect(),
+            bodies,
             copies,
         });
         start = end;
     }
     (order, blocks)
+}
+
+/// The weights of B_D from sums over copies.
+fn even(sums: &[f64], bodies: &[u32], copies: &[Vec<Copy>]) -> Vec<f64> {
+    let mut fewest: HashMap<u32, usize> = HashMap::new();
+    for (body, list) in bodies.iter().zip(copies) {
+        let n = fewest.entry(*body).or_insert(list.len());
+        *n = list.len().min(*n);
+    }
+    let of_dof = sums.iter().zip(bodies).zip(copies);
+    let weight = |((sum, body), list): ((&f64, &u32), &Vec<Copy>)| match fewest[body] {
+        n if n == list.len() => *sum,
+        n => sum * n as f64 / list.len() as f64,
+    };
+    of_dof.map(weight).collect()
 }
 
 impl Jump {

@@ -14,6 +14,7 @@
 //!     (F + C)⁻¹ ≈ Π M⁻¹ Πᵀ + X
 //! ```
 
+use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
 use crate::feti::jump::scaling;
 use crate::linalg::dense::Dense;
@@ -43,7 +44,8 @@ impl Springs {
     /// Computes X again for the rows that hold now.
     pub fn renew(&mut self, jump: &Jump) {
         self.dependent.clear();
-        for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
+        let may_depend = |b: &&Block| b.rows.len() > 1 && !b.independent;
+        for block in jump.blocks.iter().filter(may_depend) {
             let rows: Vec<usize> = block.rows.clone().filter(|&r| jump.active[r]).collect();
             if rows.len() < 2 {
                 continue;

@@ -31,18 +31,15 @@ impl BodyGraph {
         let mut touched = terms.clone();
         let mut pairs: Vec<u64> = Vec::new();
         for block in &jump.blocks {
+            let bodies = distinct(block.bodies.iter().copied());
             for r in 0..block.rows.len() {
                 let inside = (0..block.dofs.len()).filter(|&j| block.b.get(r, j) != 0.0);
                 terms.push(inside.map(|j| block.bodies[j]).collect());
-                touched.push(block.bodies.clone());
+                touched.push(bodies.clone());
             }
-            for &a in &block.bodies {
-                pairs.extend(
-                    block
-                        .bodies
-                        .iter()
-                        .map(|&b| u64::from(a) << 32 | u64::from(b)),
-                );
+            for &a in &bodies {
+                let with = |&b: &u32| u64::from(a) << 32 | u64::from(b);
+                pairs.extend(bodies.iter().map(with));
             }
         }
         let mut near: Vec<Vec<u32>> = (0..n as u32).map(|b| vec![b]).collect();

@@ -16,6 +16,7 @@ pub(super) fn ties(deck: &Deck) -> Vec<TieSpec> {
         pair: Pair::Surfaces(slave.into(), master.into()),
         sides: None,
         extent: Extent::All,
+        multipliers: None,
         adjust: tolerance.unwrap_or(0.0),
         written,
     };
@@ -64,6 +65,7 @@ pub(super) fn contacts(deck: &Deck, numbers: &Numbers) -> Result<Vec<ContactSpec
             gap: Profile::constant(pair.clearance.unwrap_or(0.0)),
             distance: None,
             // A clearance replaces the geometric gap, whatever that is.
+            multipliers: None,
             adjust: if pair.clearance.is_some() {
                 f64::INFINITY
             } else {

@@ -178,6 +178,7 @@ pub(crate) fn interface(
         entry: None,
         distances,
         limits: Limits::default(),
+        mortar: None,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The interface of two bodies: pairs of nodes, and how each pair is joined.
 
+use super::mortar_sides::Mortar;
 use crate::scene::model::profile::Limits;
 
 /// Two positions are equal if they differ by less than this fraction of the smaller element.
@@ -74,6 +75,9 @@ pub struct Interface {
     pub distances: Vec<f64>,
     /// The gaps at the nodes in contact.
     pub limits: Limits,
+    /// Where nodes do not match: `shared` then has the nodes that carry multipliers, each with the nearest node of the
+    /// other body. `None`: nodes of `shared` are opposite each other.
+    pub mortar: Option<Mortar>,
 }
 
 impl Interface {

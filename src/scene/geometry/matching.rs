@@ -5,7 +5,9 @@ use std::rc::Rc;
 
 use super::facing::{interface, share};
 use super::interface::{Interface, Shape};
+use super::mortar::interface as interface_of_mortar;
 use super::surface::Surface;
+use crate::fem::Form;
 use crate::scene::body::Body;
 
 /// Two nodes are opposite each other if they differ, across the normal, by no more than this fraction of the shortest
@@ -32,6 +34,7 @@ pub(crate) struct Matching<'a> {
     bodies: &'a [Body],
     surfaces: HashMap<(usize, usize), Rc<Surface>>,
     found: HashMap<Sides, Interface>,
+    mortar: HashMap<(Sides, usize), Option<Interface>>,
 }
 
 impl<'a> Matching<'a> {
@@ -40,6 +43,7 @@ impl<'a> Matching<'a> {
             bodies,
             surfaces: HashMap::new(),
             found: HashMap::new(),
+            mortar: HashMap::new(),
         }
     }
 
@@ -73,6 +77,20 @@ impl<'a> Matching<'a> {
             self.found.insert(key, interface);
         }
         Ok(&self.found[&key])
+    }
+
+    /// The interface of two sides whose nodes do not match, of which number `which` carries the multipliers; `None` if
+    /// they do not face each other.
+    pub fn mortar(
+        &mut self,
+        form: &Form,
+        (pair, sides): ([usize; 2], [usize; 2]),
+        which: usize,
+        reach: f64,
+    ) -> &mut Option<Interface> {
+        let key = ((pair, sides, reach.to_bits()), which);
+        let find = || interface_of_mortar(self.bodies, form, pair, sides, which, reach);
+        self.mortar.entry(key).or_insert_with(find)
     }
 }
 

@@ -4,6 +4,8 @@ pub mod curves;
 pub mod facing;
 pub mod interface;
 pub mod matching;
+pub mod mortar;
+pub mod mortar_sides;
 pub mod nearest;
 pub mod normals;
 pub mod sides;

@@ -41,6 +41,9 @@ pub struct TieSpec {
     pub sides: Option<[usize; 2]>,
     /// The part of their common face.
     pub extent: Extent,
+    /// Which of the two carries the multipliers where nodes do not match, 0 or 1 in the order of the names; `None`: the
+    /// first.
+    pub multipliers: Option<usize>,
     /// Initial gaps and overclosures up to this length count as touching; ties close them all.
     pub adjust: f64,
     /// Where it was written, or empty.
@@ -62,6 +65,9 @@ pub struct ContactSpec {
     pub gap: Profile,
     /// The largest distance of the sides of meshes at which they may touch; `None`: any.
     pub distance: Option<f64>,
+    /// Which of the two carries the multipliers where nodes do not match, 0 or 1 in the order of the names; `None`: the
+    /// first.
+    pub multipliers: Option<usize>,
     /// Initial gaps and overclosures up to this length count as touching.
     pub adjust: f64,
     /// Nodes of the first body that count as touching, whatever their gap is.

@@ -390,6 +390,7 @@ pub fn lee(bodies: usize, subdomains: usize, elements: usize, faces: Faces) -> S
                 pair: Pair::All,
                 sides: None,
                 extent: Extent::Range([[1.0 / 3.0, 2.0 / 3.0], [0.0, 1.0]]),
+                multipliers: None,
                 adjust: 0.0,
                 written: String::new(),
             });

@@ -24,6 +24,7 @@ impl Reader {
         let mut section = item.section("[[tie]]")?;
         let pair = self.pair_of(&mut section, bodies)?;
         let sides = section.read("sides", |item| self.pair_of_sides(item, &pair, bodies))?;
+        let multipliers = section.read("multipliers", |item| which(item, &pair))?;
         let adjust = section.read("adjust", |item| self.positive(item))?;
         let extent = self.extent(&mut section, item, "[[tie]]")?;
         section.finish()?;
@@ -31,6 +32,7 @@ impl Reader {
             pair,
             sides,
             extent,
+            multipliers,
             adjust: adjust.unwrap_or(0.0),
             written: item.written(),
         })
@@ -40,6 +42,7 @@ impl Reader {
         let mut section = item.section("[[contact]]")?;
         let pair = self.pair_of(&mut section, bodies)?;
         let sides = section.read("sides", |item| self.pair_of_sides(item, &pair, bodies))?;
+        let multipliers = section.read("multipliers", |item| which(item, &pair))?;
         let adjust = section.read("adjust", |item| self.positive(item))?;
         let distance = section.read("distance", |item| self.positive(item))?;
         let extent = self.extent(&mut section, item, "[[contact]]")?;
@@ -52,6 +55,7 @@ impl Reader {
             extent,
             gap: gap.unwrap_or_else(|| Profile::constant(0.0)),
             distance,
+            multipliers,
             adjust: adjust.unwrap_or(0.0),
             adjusted: Vec::new(),
             ramp,
@@ -317,6 +321,17 @@ impl Reader {
                 "{what} has several of `where`, `range`, `points` and `nodes` where one was expected"
             )),
         }
+    }
+}
+
+/// `multipliers`: the one of two bodies or surfaces that carries them.
+fn which(item: &Item, pair: &Pair) -> Result<usize> {
+    let (Pair::Named(a, b) | Pair::Surfaces(a, b)) = pair else {
+        return item.error("`multipliers` for all pairs, where two names were expected");
+    };
+    match [a, b].iter().position(|name| item.is(name)) {
+        Some(k) => Ok(k),
+        None => item.expected(format!("`{a}` or `{b}`")),
     }
 }
 

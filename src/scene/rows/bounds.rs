@@ -1,5 +1,6 @@
 //! Inequalities at points: adds the rows of obstacles; checks and drops inequalities that given values or ties decide.
 
+use super::mortar::MortarRow;
 use super::obstacles::Obstacle;
 use super::points::{Inequality, Point, PointRow};
 use crate::error::{Error, Result};
@@ -7,6 +8,7 @@ use crate::scene::body::Body;
 use crate::scene::model::profile::Limit;
 use crate::scene::model::spec::SceneSpec;
 use crate::scene::model::steps::{Factors, Steps};
+use crate::scene::validate::agree;
 use crate::substructures::{BodyNode, RowSource};
 use std::collections::HashMap;
 
@@ -95,6 +97,36 @@ impl<'a> Checks<'a> {
             }
         }
         Ok(tied || fixed)
+    }
+
+    /// Whether given values decide a row between sides whose nodes do not match.
+    pub fn is_decided_mortar(&self, row: &MortarRow) -> Result<bool> {
+        if !row.terms.is_empty() {
+            if let Some(inequality) = &row.inequality {
+                for factors in &self.factors {
+                    self.finite(factors, &inequality.limits, row.members[0])?;
+                }
+            }
+            return Ok(false);
+        }
+        let [a, b] = row.members.map(|m| &self.bodies[m.body].spec.name);
+        let at = row.members[0].spot(self.bodies);
+        for factors in &self.factors {
+            let c = row.right_hand_side(factors);
+            let wrong = match row.inequality {
+                Some(_) => exceeds(0.0, c),
+                None => !agree(c, 0.0),
+            };
+            if wrong {
+                return Err(Error::Input(format!(
+                    "{}the given values of bodies `{a}` and `{b}` contradict their joint at {at}{} by {}",
+                    self.bodies[row.members[0].body].spec.written,
+                    factors.when(),
+                    c.abs()
+                )));
+            }
+        }
+        Ok(true)
     }
 
     /// The tightest bound at a step; an error if the bound times its factor is not finite.

@@ -7,6 +7,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::facing::opposite;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
 use crate::scene::geometry::matching::{Matching, Mismatch};
+use crate::scene::geometry::mortar;
 use crate::scene::geometry::touching::touching;
 use crate::scene::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
@@ -23,6 +24,7 @@ pub(crate) fn find(
     steps: &Option<Steps>,
 ) -> Result<Vec<Interface>> {
     let mut interfaces = touching(bodies)?;
+    unmatched(bodies, spec, &mut interfaces);
     facing(bodies, matching, spec, &mut interfaces)?;
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
@@ -50,6 +52,55 @@ pub(crate) fn find(
     Ok(interfaces)
 }
 
+/// Common faces of boxes whose nodes do not match become interfaces with mortar rows where entries mean all of them or
+/// a range; single nodes have to match.
+fn unmatched(bodies: &[Body], spec: &SceneSpec, interfaces: &mut [Interface]) {
+    let whole = |e: &Extent| matches!(e, Extent::All | Extent::Range(_));
+    for interface in interfaces {
+        if interface.unmatched.is_empty() || interface.shape == Shape::Corner {
+            continue;
+        }
+        let names = interface.bodies.map(|k| &bodies[k].spec.name);
+        let [a, b] = names;
+        // Which body the entry says, in the order of the pair; `None`: the entry is of another pair.
+        let meant = |pair: &Pair, which: Option<usize>| match pair {
+            Pair::All => Some(which.unwrap_or(0)),
+            Pair::Named(x, y) if x == a && y == b => Some(which.unwrap_or(0)),
+            Pair::Named(x, y) if x == b && y == a => Some(1 - which.unwrap_or(0)),
+            _ => None,
+        };
+        let ties = spec
+            .ties
+            .iter()
+            .map(|t| (&t.pair, t.multipliers, &t.extent, t.sides));
+        let contacts = spec
+            .contacts
+            .iter()
+            .map(|c| (&c.pair, c.multipliers, &c.extent, c.sides));
+        let mut which = None;
+        let mut single = false;
+        for (pair, of_entry, extent, sides) in ties.chain(contacts) {
+            let Some(found) = meant(pair, of_entry).filter(|_| sides.is_none()) else {
+                continue;
+            };
+            single |= !whole(extent) && *extent != Extent::None;
+            if which.is_none() || *pair != Pair::All {
+                which = Some(found);
+            }
+        }
+        if single || (which.is_none() && spec.default == ByDefault::Free) {
+            continue;
+        }
+        let (pair, sides) = (interface.bodies, interface.sides);
+        let which = which.unwrap_or(0);
+        if let Some(found) =
+            mortar::interface(bodies, &spec.form, pair, sides, which, f64::INFINITY)
+        {
+            *interface = found;
+        }
+    }
+}
+
 /// Interfaces of facing sides that an entry names; they replace the interface of the touching pair.
 fn facing(
     bodies: &[Body],
@@ -58,17 +109,35 @@ fn facing(
     interfaces: &mut Vec<Interface>,
 ) -> Result<()> {
     let ties = spec.ties.iter();
-    let ties = ties.map(|t| (t.sides, &t.pair, (t.adjust, &[][..]), None, &t.written));
+    let ties = ties.map(|t| {
+        (
+            t.sides,
+            &t.pair,
+            t.multipliers,
+            (t.adjust, &[][..]),
+            None,
+            &t.written,
+        )
+    });
     let contacts = spec.contacts.iter();
     let contacts = contacts.map(|c| {
         let adjust = (c.adjust, &c.adjusted[..]);
-        (c.sides, &c.pair, adjust, c.distance, &c.written)
+        (
+            c.sides,
+            &c.pair,
+            c.multipliers,
+            adjust,
+            c.distance,
+            &c.written,
+        )
     });
     let mut numbers = HashMap::new();
     for (k, body) in bodies.iter().enumerate() {
         numbers.entry(body.spec.name.as_str()).or_insert(k);
     }
-    for (number, (sides, pair, adjust, distance, written)) in ties.chain(contacts).enumerate() {
+    for (number, (sides, pair, which, adjust, distance, written)) in
+        ties.chain(contacts).enumerate()
+    {
         let (Some(sides), Pair::Named(first, second)) = (sides, pair) else {
             continue;
         };
@@ -83,23 +152,29 @@ fn facing(
         };
         // Sides of boxes that the user names meet as a whole; those that are found, as far as they are near.
         let grids = pair.map(|k| bodies[k].mesh().grid());
-        let mut interface = match (grids, distance) {
+        let reach = distance.unwrap_or(f64::INFINITY);
+        let matched = match (grids, distance) {
             ([Some(x), Some(y)], None) => match opposite(bodies, [x, y], pair, sides) {
-                Some(interface) => interface,
-                None => {
-                    return Err(Error::Input(format!(
-                        "{written}the sides of bodies `{first}` and `{second}` have different numbers \
-                         of nodes (equal numbers were expected, so that each node has one opposite)"
-                    )))
-                }
+                Some(interface) => Ok(interface),
+                None => Err(format!(
+                    "the sides of bodies `{first}` and `{second}` do not face each other"
+                )),
             },
-            _ => {
-                let reach = distance.unwrap_or(f64::INFINITY);
-                let found = matching.find(pair, sides, reach);
-                let found = found.map_err(|why| match why {
-                    Mismatch::Apart(why) | Mismatch::Lonely(why) => Error::Input(format!("{written}{why}")),
-                });
-                found?.clone()
+            _ => match matching.find(pair, sides, reach) {
+                Ok(found) => Ok(found.clone()),
+                Err(Mismatch::Apart(why) | Mismatch::Lonely(why)) => Err(why),
+            },
+        };
+        let mut interface = match matched {
+            Ok(interface) => interface,
+            // The first body of the entry carries the multipliers, unless it says something else.
+            Err(why) => {
+                let which = which.unwrap_or(0);
+                let which = if a < b { which } else { 1 - which };
+                let found = matching
+                    .mortar(&spec.form, (pair, sides), which, reach)
+                    .take();
+                found.ok_or_else(|| Error::Input(format!("{written}{why}")))?
             }
         };
         let (within, adjusted) = adjust;

@@ -24,15 +24,11 @@ pub struct Equation {
     pub subdomain: usize,
 }
 
-/// The equations of a scene. Points that share a degree of freedom with an equation get its block and subdomain.
+/// The equations of a scene, each a block of its own.
 ///
 /// # Errors
 /// [`Error::Input`] where all terms of an equation are given and contradict it.
-pub(crate) fn collect(
-    bodies: &[Body],
-    points: &mut [Point],
-    specs: &[EquationSpec],
-) -> Result<Vec<Equation>> {
+pub(crate) fn collect(bodies: &[Body], specs: &[EquationSpec]) -> Result<Vec<Equation>> {
     let mut out = Vec::with_capacity(specs.len());
     if specs.is_empty() {
         return Ok(out);
@@ -75,13 +71,22 @@ pub(crate) fn collect(
             subdomain,
         });
     }
-    join(bodies, points, &mut out);
     Ok(out)
 }
 
+/// A row of many terms, with the block and the subdomain that it gets.
+pub(crate) struct Chain<'a> {
+    pub terms: &'a [(u64, f64)],
+    pub block: &'a mut u64,
+    pub subdomain: &'a mut usize,
+}
+
 /// Gives rows with common degrees of freedom one block and one subdomain, the lowest of each.
-fn join(bodies: &[Body], points: &mut [Point], equations: &mut [Equation]) {
-    let mut sets = UnionFind::new(points.len() + equations.len());
+pub(crate) fn join(bodies: &[Body], points: &mut [Point], chains: &mut [Chain<'_>]) {
+    if chains.is_empty() {
+        return;
+    }
+    let mut sets = UnionFind::new(points.len() + chains.len());
     let mut of_dof: HashMap<u64, usize> = HashMap::new();
     for (p, point) in points.iter().enumerate() {
         for member in &point.members {
@@ -90,8 +95,8 @@ fn join(bodies: &[Body], points: &mut [Point], equations: &mut [Equation]) {
             }
         }
     }
-    for (e, equation) in equations.iter().enumerate() {
-        for (dof, _) in &equation.terms {
+    for (e, chain) in chains.iter().enumerate() {
+        for (dof, _) in chain.terms {
             let known = *of_dof.entry(*dof).or_insert(points.len() + e);
             sets.join(known, points.len() + e);
         }
@@ -99,7 +104,7 @@ fn join(bodies: &[Body], points: &mut [Point], equations: &mut [Equation]) {
     let n = points.len();
     let mut lowest: HashMap<usize, (u64, usize)> = HashMap::new();
     let each = points.iter().map(|p| (p.block, p.subdomain));
-    let all = each.chain(equations.iter().map(|e| (e.block, e.subdomain)));
+    let all = each.chain(chains.iter().map(|c| (*c.block, *c.subdomain)));
     for (k, (block, subdomain)) in all.enumerate() {
         let low = lowest.entry(sets.find(k)).or_insert((block, subdomain));
         *low = (low.0.min(block), low.1.min(subdomain));
@@ -107,8 +112,8 @@ fn join(bodies: &[Body], points: &mut [Point], equations: &mut [Equation]) {
     for (p, point) in points.iter_mut().enumerate() {
         (point.block, point.subdomain) = lowest[&sets.find(p)];
     }
-    for (e, equation) in equations.iter_mut().enumerate() {
-        (equation.block, equation.subdomain) = lowest[&sets.find(n + e)];
+    for (e, chain) in chains.iter_mut().enumerate() {
+        (*chain.block, *chain.subdomain) = lowest[&sets.find(n + e)];
     }
     points.sort_by_key(|p| p.block);
 }

@@ -24,6 +24,7 @@ pub mod entries;
 pub mod entry;
 pub mod equations;
 pub mod links;
+pub mod mortar;
 pub mod obstacles;
 pub mod points;
 pub mod select;

@@ -99,18 +99,10 @@ pub(crate) struct Along {
 impl PointRow {
     /// The right-hand side c at a load step; 0 for an equality.
     pub(crate) fn right_hand_side(&self, factors: &Factors<'_>) -> f64 {
-        let Some(inequality) = &self.inequality else {
-            return 0.0;
-        };
-        let (mut g, _) = factors.bound(&inequality.limits);
-        g += inequality.distance;
-        // The row is u_a ≤ g + u_b, or −u_b ≤ g − u_a.
-        let [a, b] = inequality.given.map(|given| given * factors.dirichlet());
-        g -= a;
-        if self.members[1].is_some() {
-            g += b;
-        }
-        g
+        let inequality = self.inequality.as_ref();
+        inequality.map_or(0.0, |i| {
+            i.right_hand_side(factors, self.members[1].is_some())
+        })
     }
 
     /// The bounds of an inequality; empty for an equality.
@@ -121,6 +113,21 @@ impl PointRow {
     /// Whether it comes from an obstacle.
     pub fn is_beside_obstacle(&self) -> bool {
         matches!(self.source, RowSource::Obstacle(_))
+    }
+}
+
+impl Inequality {
+    /// The right-hand side at a load step; `paired`: there is a b.
+    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>, paired: bool) -> f64 {
+        let (mut g, _) = factors.bound(&self.limits);
+        g += self.distance;
+        // The row is u_a ≤ g + u_b, or −u_b ≤ g − u_a.
+        let [a, b] = self.given.map(|given| given * factors.dirichlet());
+        g -= a;
+        if paired {
+            g += b;
+        }
+        g
     }
 }
 
@@ -200,7 +207,11 @@ fn coinciding(bodies: &[Body], interfaces: &[Interface]) -> Vec<(Point, Vec<Shar
     let mut nodes: Vec<BodyNode> = Vec::new();
     let mut sets = UnionFind::default();
     let mut pairs: Vec<Shared> = Vec::new();
-    for (i, interface) in interfaces.iter().enumerate() {
+    let matching = interfaces
+        .iter()
+        .enumerate()
+        .filter(|(_, i)| i.mortar.is_none());
+    for (i, interface) in matching {
         for (k, shared) in interface.shared.iter().enumerate() {
             let members = [0, 1].map(|k| {
                 let member = BodyNode {

@@ -1,6 +1,7 @@
 //! Entries that name surfaces, and contacts that are found: both become entries that name bodies and their sides.
 
 use crate::error::{Error, Result};
+use crate::fem::Form;
 use crate::linalg::vec3::{dot, minus};
 use crate::scene::body::Body;
 use crate::scene::geometry::facing::is_face;
@@ -24,7 +25,14 @@ pub(crate) fn expand(
     for tie in std::mem::take(&mut spec.ties) {
         match &tie.pair {
             Pair::Surfaces(a, b) => {
-                let found = pairs(bodies, matching, [a, b], tie.adjust.max(0.0), &tie.written)?;
+                let found = pairs(
+                    bodies,
+                    matching,
+                    &spec.form,
+                    [a, b],
+                    (tie.multipliers, tie.adjust.max(0.0)),
+                    &tie.written,
+                )?;
                 ties.extend(found.into_iter().map(|(pair, sides)| TieSpec {
                     pair,
                     sides: Some(sides),
@@ -40,7 +48,14 @@ pub(crate) fn expand(
         match &contact.pair {
             Pair::Surfaces(a, b) => {
                 let reach = contact.distance.unwrap_or(f64::INFINITY);
-                let found = pairs(bodies, matching, [a, b], reach, &contact.written)?;
+                let found = pairs(
+                    bodies,
+                    matching,
+                    &spec.form,
+                    [a, b],
+                    (contact.multipliers, reach),
+                    &contact.written,
+                )?;
                 contacts.extend(found.into_iter().map(|(pair, sides)| ContactSpec {
                     pair,
                     sides: Some(sides),
@@ -51,7 +66,7 @@ pub(crate) fn expand(
         }
     }
     if let Some(auto) = spec.auto.clone() {
-        contacts.extend(found(bodies, matching, &auto)?);
+        contacts.extend(found(bodies, matching, &spec.form, &auto)?);
     }
     spec.contacts = contacts;
     Ok(())
@@ -63,8 +78,9 @@ type Found = (Pair, [usize; 2]);
 fn pairs(
     bodies: &[Body],
     matching: &mut Matching<'_>,
+    form: &Form,
     names: [&String; 2],
-    reach: f64,
+    (multipliers, reach): (Option<usize>, f64),
     written: &str,
 ) -> Result<Vec<Found>> {
     let with = |name: &String| {
@@ -120,8 +136,12 @@ fn pairs(
         }
         match matching.find([first.0, second.0], [first.1, second.1], reach) {
             Ok(_) => out.push(found(first, second)),
-            Err(Mismatch::Lonely(message)) => {
-                return Err(Error::Input(format!("{written}{message}")))
+            Err(Mismatch::Lonely(_)) => {
+                let both = ([first.0, second.0], [first.1, second.1]);
+                let which = multipliers.unwrap_or(0);
+                if matching.mortar(form, both, which, reach).is_some() {
+                    out.push(found(first, second));
+                }
             }
             Err(Mismatch::Apart(_)) => {}
         }
@@ -141,6 +161,7 @@ fn pairs(
 fn found(
     bodies: &[Body],
     matching: &mut Matching<'_>,
+    form: &Form,
     auto: &AutoContact,
 ) -> Result<Vec<ContactSpec>> {
     let mut edge = |k: usize| {
@@ -149,8 +170,9 @@ fn found(
             least.min(shortest(&matching.surface(k, side).edges))
         })
     };
-    let reach_of = |k: usize| auto.distance.unwrap_or_else(|| NEAR * edge(k));
-    let reaches: Vec<f64> = (0..bodies.len()).map(reach_of).collect();
+    let edges: Vec<f64> = (0..bodies.len()).map(&mut edge).collect();
+    let reach_of = |edge: &f64| auto.distance.unwrap_or(NEAR * edge);
+    let reaches: Vec<f64> = edges.iter().map(reach_of).collect();
     let mut near = near_in_x(bodies, |k| reaches[k]);
     near.sort_unstable();
     let mut out = Vec::new();
@@ -165,23 +187,29 @@ fn found(
             others.map(move |second| [first, second])
         });
         for sides in sides {
-            match matching.find([a, b], sides, reach) {
-                Err(Mismatch::Apart(_)) => {}
-                Err(Mismatch::Lonely(message)) => {
-                    return Err(Error::Input(format!("{}{message}", auto.written)))
+            // The finer side carries the multipliers where nodes do not match.
+            let which = usize::from(edges[b] < edges[a]);
+            let interface = match matching.find([a, b], sides, reach) {
+                Err(Mismatch::Apart(_)) => None,
+                Err(Mismatch::Lonely(_)) => {
+                    matching.mortar(form, ([a, b], sides), which, reach).clone()
                 }
-                Ok(interface) if is_no_pair(bodies, interface) => {}
-                Ok(_) => out.push(ContactSpec {
+                Ok(interface) => Some(interface.clone()),
+            };
+            match interface {
+                Some(interface) if !is_no_pair(bodies, &interface) => out.push(ContactSpec {
                     pair: Pair::Named(bodies[a].spec.name.clone(), bodies[b].spec.name.clone()),
                     sides: Some(sides),
                     extent: Extent::All,
                     gap: Profile::constant(0.0),
                     distance: Some(reach),
+                    multipliers: Some(which),
                     adjust: auto.adjust,
                     adjusted: Vec::new(),
                     ramp: None,
                     written: auto.written.clone(),
                 }),
+                _ => {}
             }
         }
     }
@@ -201,7 +229,7 @@ fn is_no_pair(bodies: &[Body], interface: &Interface) -> bool {
     if both.iter().all(|b| b.mesh().cells().is_some()) {
         return false;
     }
-    if !is_face(both, interface.sides, &interface.shared) {
+    if interface.mortar.is_none() && !is_face(both, interface.sides, &interface.shared) {
         return true;
     }
     let centre = |b: usize| {

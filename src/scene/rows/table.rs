@@ -2,6 +2,7 @@
 
 use super::areas::Areas;
 use super::equations::Equation;
+use super::mortar::MortarRow;
 use super::points::{Point, PointRow};
 use crate::error::Result;
 use crate::scene::checked::Scene;
@@ -40,8 +41,20 @@ impl Scene {
             block: e.block,
             label: RowLabel::new(RowSource::Equation(k), [None; 2]),
         };
+        let mortar = |m: &MortarRow| InterfaceRow {
+            terms: m.terms.clone(),
+            gap: m.right_hand_side(&last),
+            kind: match m.inequality {
+                Some(_) => RowKind::Inequality,
+                None => RowKind::Equality,
+            },
+            holds: true,
+            block: m.block,
+            label: self.mortar_label(m),
+        };
         let mut out: Vec<InterfaceRow> = self.each_row(owns).map(row).collect();
         out.extend(self.own_equations(owns).map(equation));
+        out.extend(self.own_mortar(owns).map(mortar));
         out
     }
 
@@ -54,6 +67,14 @@ impl Scene {
         all.filter(move |(_, e)| owns(e.subdomain))
     }
 
+    /// The rows between sides whose nodes do not match.
+    fn own_mortar<'s>(
+        &'s self,
+        owns: &'s dyn Fn(usize) -> bool,
+    ) -> impl Iterator<Item = &'s MortarRow> {
+        self.mortar.iter().filter(move |m| owns(m.subdomain))
+    }
+
     /// The right-hand sides of the rows of [`Scene::rows`] at load step `step` (without `[steps]` the only step is 0).
     ///
     /// # Errors
@@ -64,13 +85,16 @@ impl Scene {
         let mut out: Vec<f64> = rows.map(|(_, row)| row.right_hand_side(&factors)).collect();
         let equations = self.own_equations(owns);
         out.extend(equations.map(|(_, e)| e.value - factors.dirichlet() * e.given));
+        out.extend(self.own_mortar(owns).map(|m| m.right_hand_side(&factors)));
         Ok(out)
     }
 
     /// Whether there is an inequality; the solver then runs an outer loop.
     pub fn has_contact(&self) -> bool {
-        self.each_row(|_| true)
-            .any(|(_, row)| row.inequality.is_some())
+        self.mortar.iter().any(|m| m.inequality.is_some())
+            || self
+                .each_row(|_| true)
+                .any(|(_, row)| row.inequality.is_some())
     }
 
     /// The rows in order: by point, pairs before obstacles.
@@ -80,6 +104,20 @@ impl Scene {
     ) -> impl Iterator<Item = (&Point, &PointRow)> {
         let points = self.points.iter().filter(move |p| owns(p.subdomain));
         points.flat_map(|point| point.rows.iter().map(move |row| (point, row)))
+    }
+
+    fn mortar_label(&self, row: &MortarRow) -> RowLabel {
+        RowLabel {
+            source: RowSource::Interface(row.interface),
+            members: row.members.map(Some),
+            point: row.members[0].position(&self.bodies),
+            t: self.interfaces[row.interface].shared[row.node].t,
+            normal: row.direction,
+            area: match row.inequality.is_some() && self.has_pressure() {
+                true => row.area,
+                false => 0.0,
+            },
+        }
     }
 
     fn label(&self, point: &Point, row: &PointRow, areas: &mut Areas<'_>) -> RowLabel {

@@ -1,0 +1,28 @@
+//! Points of quadrature on the multiplier side, each with the point opposite.
+
+use super::side::Side;
+use super::{plane, space};
+
+/// A point of the multiplier side and the point opposite it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The face of the multiplier side.
+    pub face: u32,
+    /// Where the point is in the reference cell of that face.
+    pub at: [f64; 3],
+    /// The face of the other side.
+    pub other: u32,
+    /// Where the point opposite is in the reference cell of that face.
+    pub opposite: [f64; 3],
+    /// The weight of the point: lengths in the plane, areas in space.
+    pub weight: f64,
+}
+
+/// The points of quadrature on the part of `side` that lies opposite `other`, at a distance of `reach` at most along
+/// the normals of `side`, by increasing face. Sides face each other where their normals are opposite.
+pub fn samples(side: &Side, other: &Side, reach: f64) -> Vec<Sample> {
+    match side.dim() {
+        2 => plane::samples(side, other, reach),
+        _ => space::samples(side, other, reach),
+    }
+}

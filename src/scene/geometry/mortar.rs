@@ -1,0 +1,124 @@
+//! Sides whose nodes do not match: one of them carries the multipliers, and mortar integrals join it to the other.
+
+use std::collections::HashMap;
+
+use super::interface::{Interface, Shape};
+use super::matching::FAR;
+use super::mortar_sides::{Mortar, Surfaces};
+use super::nearest::Nearest;
+use super::normals::of_side;
+use super::sides::Face as BodyFace;
+use crate::fem::cell::Element;
+use crate::fem::Form;
+use crate::linalg::vec3::dot;
+use crate::mesh::CellKind;
+use crate::mortar::{self, Face, Side};
+use crate::scene::body::Body;
+use crate::scene::geometry::facing::share;
+use crate::scene::model::profile::Limits;
+use crate::scene::model::spec::BodySpec;
+
+/// The interface of two sides whose nodes do not match; body number `multipliers` of the pair (0 or 1) carries the
+/// multipliers. The sides may be `reach` apart, or, where that is infinite, a few edges. `None` if they do not face
+/// each other.
+pub(crate) fn interface(
+    bodies: &[Body],
+    form: &Form,
+    pair: [usize; 2],
+    sides: [usize; 2],
+    multipliers: usize,
+    reach: f64,
+) -> Option<Interface> {
+    let order = [multipliers, 1 - multipliers];
+    let specs = order.map(|k| &bodies[pair[k]].spec);
+    let [own, other] = [0, 1].map(|k| surface(specs[k], sides[order[k]]));
+    let reach = match reach.is_finite() {
+        true => reach,
+        false => FAR * own.0.longest().max(other.0.longest()),
+    };
+    let samples = mortar::samples(&own.0, &other.0, reach);
+    let surfaces = Surfaces {
+        sides: [own.0, other.0],
+        nodes: [own.1, other.1],
+        samples,
+    };
+    let rows = surfaces.rows(form, &|_| false);
+    if rows.is_empty() {
+        return None;
+    }
+    // For reports every node has a partner, the nearest one.
+    let places: Vec<[f64; 3]> = surfaces.nodes[1]
+        .iter()
+        .map(|&k| specs[1].position(k))
+        .collect();
+    let nearest = Nearest::new(&places);
+    let partner = |node: usize| {
+        let found = nearest.find(specs[0].position(node));
+        surfaces.nodes[1][found.expect("a side has nodes")]
+    };
+    let nodes: Vec<usize> = rows.iter().map(|r| r.node).collect();
+    let out = of_side(specs[0], sides[multipliers], &nodes);
+    let distances = rows.iter().zip(&out);
+    let distances = distances
+        .map(|(row, n)| row.distance(specs[0], specs[1], *n))
+        .collect();
+    let pairs = nodes.iter().map(|&node| [node, partner(node)]).collect();
+    let mut shared = share(specs[0], sides[multipliers], pairs);
+    if multipliers == 1 {
+        shared.iter_mut().for_each(|s| s.nodes.reverse());
+    }
+    let sign = if multipliers == 0 { 1.0 } else { -1.0 };
+    Some(Interface {
+        bodies: pair,
+        shape: Shape::Face,
+        sides,
+        shared,
+        unmatched: Vec::new(),
+        order: [0, 1],
+        normals: out.into_iter().map(|n| n.map(|v| sign * v + 0.0)).collect(),
+        entry: None,
+        distances,
+        limits: Limits::default(),
+        mortar: Some(Mortar {
+            multipliers,
+            area: rows.iter().map(|r| r.area).sum(),
+            surfaces: Some(Box::new(surfaces)),
+        }),
+    })
+}
+
+/// A side of a body, and the node of the body for each of its nodes.
+fn surface(spec: &BodySpec, side: usize) -> (Side, Vec<usize>) {
+    let nodes = spec.mesh.side_nodes(side);
+    let place: HashMap<usize, u32> = nodes.iter().copied().zip(0..).collect();
+    let points = nodes.iter().map(|&k| spec.position(k)).collect();
+    let faces = spec.faces(side).into_iter().map(|face| {
+        let (kind, list) = oriented(spec, side, &face);
+        Face {
+            kind,
+            nodes: list.iter().map(|k| place[k]).collect(),
+        }
+    });
+    let faces = faces.collect();
+    (Side::new(spec.mesh.dim(), points, faces), nodes)
+}
+
+/// The kind of a face and its nodes, in the order in which the normal points out of the body.
+fn oriented(spec: &BodySpec, side: usize, face: &BodyFace) -> (CellKind, Vec<usize>) {
+    if let Some(kind) = face.kind {
+        return (kind, face.nodes.clone());
+    }
+    let mut nodes = face.outline();
+    let weights = spec.face_weights(side, face, Element::Q1);
+    let outward = weights
+        .iter()
+        .fold([0.0; 3], |s, w| [0, 1, 2].map(|d| s[d] + w.1[d]));
+    let x: Vec<[f64; 3]> = nodes.iter().map(|&k| spec.position(k)).collect();
+    if dot(mortar::across(&x), outward) < 0.0 {
+        nodes.reverse();
+    }
+    match nodes.len() {
+        2 => (CellKind::Line2, nodes),
+        _ => (CellKind::Quad4, nodes),
+    }
+}

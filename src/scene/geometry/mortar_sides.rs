@@ -1,0 +1,82 @@
+//! Two sides that mortar integrals join, and the rows that follow, with nodes of bodies.
+
+use crate::fem::Form;
+use crate::linalg::vec3::{dot, minus};
+use crate::mortar::{self, Row, Sample, Side};
+use crate::scene::model::spec::BodySpec;
+
+/// What joins two sides whose nodes do not match.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mortar {
+    /// Which of the two bodies of the interface carries the multipliers, 0 or 1.
+    pub multipliers: usize,
+    /// The area (in the plane the length) of the multiplier side that lies opposite the other side.
+    pub area: f64,
+    /// The surfaces, until rows are made of them.
+    pub(crate) surfaces: Option<Box<Surfaces>>,
+}
+
+/// Two sides that face each other, the one with the multipliers first.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Surfaces {
+    pub(super) sides: [Side; 2],
+    /// The node of its body for each node of a side.
+    pub(super) nodes: [Vec<usize>; 2],
+    pub(super) samples: Vec<Sample>,
+}
+
+impl Surfaces {
+    /// The rows of the nodes of the multiplier side for which `excluded` (called with the node of the body) does not
+    /// hold. Nodes in rows are those of the bodies.
+    pub fn rows(&self, form: &Form, excluded: &dyn Fn(usize) -> bool) -> Vec<BodyRow> {
+        let [own, theirs] = [0, 1].map(|k| {
+            move |list: Vec<(u32, f64)>| -> Vec<(usize, f64)> {
+                let node = |(n, v): (u32, f64)| (self.nodes[k][n as usize], v);
+                list.into_iter().map(node).collect()
+            }
+        });
+        let around = |x: [f64; 3]| match form.is_axial() {
+            true => form.around(x),
+            false => 1.0,
+        };
+        let left_out = |k: u32| excluded(self.nodes[0][k as usize]);
+        let [side, other] = [&self.sides[0], &self.sides[1]];
+        let rows = mortar::rows(side, other, &self.samples, &left_out, &around);
+        let in_bodies = |row: Row| BodyRow {
+            node: self.nodes[0][row.node as usize],
+            own: own(row.own),
+            other: theirs(row.other),
+            area: row.area,
+        };
+        rows.into_iter().map(in_bodies).collect()
+    }
+}
+
+/// A row with nodes of bodies: Σ own · u − Σ other · u°.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct BodyRow {
+    pub node: usize,
+    pub own: Vec<(usize, f64)>,
+    pub other: Vec<(usize, f64)>,
+    pub area: f64,
+}
+
+impl BodyRow {
+    /// The gap: how far the other side is along the normal `n` out of the multiplier side, in the sense of the row.
+    pub fn distance(&self, own: &BodySpec, other: &BodySpec, n: [f64; 3]) -> f64 {
+        // Positions from the row's node, so that large coordinates cost no digits.
+        let origin = own.position(self.node);
+        let along = |spec: &BodySpec, list: &[(usize, f64)]| {
+            let each = list
+                .iter()
+                .map(|&(k, v)| v * dot(minus(spec.position(k), origin), n));
+            each.sum::<f64>()
+        };
+        let distance = along(other, &self.other) - along(own, &self.own);
+        let size = origin.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+        match distance.abs() <= 1e-13 * size {
+            true => 0.0,
+            false => distance,
+        }
+    }
+}

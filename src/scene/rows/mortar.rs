@@ -1,0 +1,330 @@
+//! Rows between sides whose nodes do not match.
+
+use std::collections::{HashMap, HashSet};
+
+use super::bounds::Checks;
+use super::points::{Inequality, Point};
+use crate::error::{Error, Result};
+use crate::fem::Form;
+use crate::scene::body::Body;
+use crate::scene::geometry::interface::{Interface, Link};
+use crate::scene::geometry::mortar_sides::{BodyRow, Surfaces};
+use crate::scene::model::steps::Factors;
+use crate::substructures::BodyNode;
+
+/// A row between two sides: Σ coefficient · u = 0 (tie) or ≤ g (contact), along a direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MortarRow {
+    /// The interface.
+    pub interface: usize,
+    /// Index into its `shared`.
+    pub node: usize,
+    /// The node with the multiplier and the nearest one of the other side, in the order of the inequality.
+    pub members: [BodyNode; 2],
+    /// The unit vector along which u is taken: a component, or the normal out of the first body of the inequality.
+    pub direction: [f64; 3],
+    /// (body dof, coefficient) of the free degrees of freedom.
+    pub terms: Vec<(u64, f64)>,
+    /// Σ coefficient · u of the given values, without the factors of load steps.
+    pub given: f64,
+    /// The data of an inequality; `None`: an equality.
+    pub inequality: Option<Box<Inequality>>,
+    /// D_p: a multiplier divided by it is a pressure.
+    pub area: f64,
+    /// Its block: rows with a degree of freedom in common have the same.
+    pub block: u64,
+    /// The subdomain of lowest index that has a degree of freedom of the block.
+    pub subdomain: usize,
+}
+
+impl MortarRow {
+    /// The right-hand side c at a load step.
+    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>) -> f64 {
+        match &self.inequality {
+            None => 0.0 - self.given * factors.dirichlet(),
+            Some(inequality) => inequality.right_hand_side(factors, true),
+        }
+    }
+}
+
+/// The rows of all interfaces that have surfaces, which are freed, and sentences on nodes that are left out. A node
+/// that is tied carries no multiplier of another tie or of a contact.
+pub(crate) fn collect(
+    bodies: &[Body],
+    form: &Form,
+    interfaces: &mut [Interface],
+    points: &[Point],
+    checks: &Checks<'_>,
+) -> Result<(Vec<MortarRow>, Vec<String>)> {
+    let mut tied = tied_at(points);
+    let (mut out, mut notes) = (Vec::new(), Vec::new());
+    // Ties come first: nodes that they hold are not in contact.
+    for contact in [false, true] {
+        for (k, interface) in interfaces.iter_mut().enumerate() {
+            let Some(surfaces) = interface
+                .mortar
+                .as_ref()
+                .and_then(|m| m.surfaces.as_deref())
+            else {
+                continue;
+            };
+            let mut pair = Pairing::new(bodies, form, k, interface, surfaces);
+            let rows = match contact {
+                false => pair.ties(&tied),
+                true => pair.contacts(&tied),
+            };
+            notes.extend(pair.note(contact, &tied));
+            if !contact {
+                tied.extend(rows.iter().map(|r| r.carrier));
+            }
+            let mut distances = Vec::new();
+            for Carried { row, distance, .. } in rows {
+                distances.push((row.node, distance));
+                if !checks.is_decided_mortar(&row)? {
+                    out.push(row);
+                }
+            }
+            for (node, distance) in distances {
+                interface.distances[node] = distance;
+            }
+        }
+    }
+    for interface in interfaces {
+        if let Some(mortar) = &mut interface.mortar {
+            mortar.surfaces = None;
+        }
+    }
+    Ok((out, notes))
+}
+
+/// Most rows of a block: the rows of B_D of a block are full, so that memory grows with the square of their number.
+const MOST: usize = 2500;
+
+/// Checks that no block has too many rows.
+pub(crate) fn check_sizes(
+    bodies: &[Body],
+    interfaces: &[Interface],
+    rows: &[MortarRow],
+) -> Result<()> {
+    let mut counts: HashMap<u64, usize> = HashMap::new();
+    for row in rows {
+        let count = counts.entry(row.block).or_default();
+        *count += 1;
+        if *count > MOST {
+            let [a, b] = interfaces[row.interface].bodies.map(|k| &bodies[k].spec);
+            return Err(Error::Input(format!(
+                "{}the joint of bodies `{}` and `{}`, whose nodes do not match, belongs to more than {MOST} rows with \
+                 common degrees of freedom (fewer were expected: coarser sides, or matching nodes)",
+                b.written, a.name, b.name
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Nodes that are tied at a point.
+fn tied_at(points: &[Point]) -> HashSet<BodyNode> {
+    let mut out = HashSet::new();
+    for point in points {
+        for (m, &to) in point.tied_to.iter().enumerate().filter(|(m, to)| m != *to) {
+            out.extend([point.members[m], point.members[to]]);
+        }
+    }
+    out
+}
+
+/// A row, the node that carries its multiplier, and the distance of the sides there.
+struct Carried {
+    row: MortarRow,
+    carrier: BodyNode,
+    distance: f64,
+}
+
+/// One interface.
+struct Pairing<'a> {
+    bodies: &'a [Body],
+    form: &'a Form,
+    number: usize,
+    interface: &'a Interface,
+    surfaces: &'a Surfaces,
+    /// The body with the multipliers, 0 or 1, and the sign of its terms in a row.
+    own: usize,
+    sign: f64,
+    /// Index into `shared` of each node with a multiplier.
+    place: HashMap<usize, usize>,
+}
+
+impl<'a> Pairing<'a> {
+    fn new(
+        bodies: &'a [Body],
+        form: &'a Form,
+        number: usize,
+        interface: &'a Interface,
+        surfaces: &'a Surfaces,
+    ) -> Pairing<'a> {
+        let own = interface.mortar.as_ref().map_or(0, |m| m.multipliers);
+        let shared = interface.shared.iter().enumerate();
+        Pairing {
+            bodies,
+            form,
+            number,
+            interface,
+            surfaces,
+            own,
+            sign: if interface.order[0] == own { 1.0 } else { -1.0 },
+            place: shared.map(|(i, s)| (s.nodes[own], i)).collect(),
+        }
+    }
+
+    /// A node of the body with the multipliers.
+    fn carrier(&self, node: usize) -> BodyNode {
+        let body = self.interface.bodies[self.own];
+        BodyNode { body, node }
+    }
+
+    fn link(&self, node: usize) -> Link {
+        let place = self.place.get(&node);
+        place.map_or(Link::Free, |&i| self.interface.shared[i].link)
+    }
+
+    /// The rows u = u° by component.
+    fn ties(&mut self, tied: &HashSet<BodyNode>) -> Vec<Carried> {
+        let mut out = Vec::new();
+        if self.interface.shared.iter().all(|s| s.link != Link::Tied) {
+            return out;
+        }
+        let mut known: Vec<(Vec<usize>, Vec<BodyRow>)> = Vec::new();
+        for c in 0..self.bodies[0].components {
+            let held = |node: usize| {
+                let carrier = self.carrier(node);
+                self.link(node) != Link::Tied
+                    || carrier.given(self.bodies, c).is_some()
+                    || tied.contains(&carrier)
+            };
+            let mut left_out: Vec<usize> =
+                self.place.keys().copied().filter(|&n| held(n)).collect();
+            left_out.sort_unstable();
+            let same = known.iter().position(|(list, _)| *list == left_out);
+            let which = same.unwrap_or_else(|| {
+                known.push((left_out, self.surfaces.rows(self.form, &held)));
+                known.len() - 1
+            });
+            let mut direction = [0.0; 3];
+            direction[c] = 1.0;
+            let rows = known[which].1.iter();
+            out.extend(rows.map(|row| self.carried(row, direction, None)));
+        }
+        out
+    }
+
+    /// The rows n · (u_first − u_second) ≤ g.
+    fn contacts(&mut self, tied: &HashSet<BodyNode>) -> Vec<Carried> {
+        if !self.interface.has_contact() {
+            return Vec::new();
+        }
+        let held = |node: usize| {
+            let carrier = self.carrier(node);
+            !self.link(node).is_contact() || tied.contains(&carrier) || self.is_given(node)
+        };
+        let rows = self.surfaces.rows(self.form, &held);
+        let contact = |row: &BodyRow| {
+            let i = self.place[&row.node];
+            let n = self.interface.normal_in_order(i);
+            // Out of the body with the multipliers.
+            let out = n.map(|v| self.sign * v);
+            let [own, other] =
+                [self.own, 1 - self.own].map(|k| &self.bodies[self.interface.bodies[k]].spec);
+            let closed = self.interface.distances[i] == 0.0;
+            let distance = match closed {
+                true => 0.0,
+                false => row.distance(own, other, out),
+            };
+            self.carried(row, self.along(i), Some(distance))
+        };
+        rows.iter().map(contact).collect()
+    }
+
+    /// The direction of contact at a node of `shared`: the normal out of the first body of the inequality; scalars have
+    /// one component.
+    fn along(&self, i: usize) -> [f64; 3] {
+        match self.bodies[0].components {
+            1 => [1.0, 0.0, 0.0],
+            _ => self.interface.normal_in_order(i),
+        }
+    }
+
+    /// Whether u is given along the normal at a node with a multiplier.
+    fn is_given(&self, node: usize) -> bool {
+        let Some(&i) = self.place.get(&node) else {
+            return true;
+        };
+        let carrier = self.carrier(node);
+        carrier.along(self.bodies, self.along(i)).terms.is_empty()
+    }
+
+    /// A row along a direction; with a distance it is an inequality.
+    fn carried(&self, row: &BodyRow, direction: [f64; 3], distance: Option<f64>) -> Carried {
+        let i = self.place[&row.node];
+        let (mut terms, mut given) = (Vec::new(), [0.0; 2]);
+        for (k, list) in [(self.own, &row.own), (1 - self.own, &row.other)] {
+            let sign = if k == self.own { self.sign } else { -self.sign };
+            let first = usize::from(k != self.interface.order[0]);
+            for &(node, v) in list {
+                let body = self.interface.bodies[k];
+                let along = BodyNode { body, node }.along(self.bodies, direction);
+                terms.extend(along.terms.into_iter().map(|(dof, n)| (dof, sign * v * n)));
+                given[first] += v * along.given;
+            }
+        }
+        let members = self.interface.order.map(|k| BodyNode {
+            body: self.interface.bodies[k],
+            node: self.interface.shared[i].nodes[k],
+        });
+        let dofs = terms.iter().map(|t| t.0);
+        let owners = members.map(|m| {
+            let body = &self.bodies[m.body];
+            body.first_subdomain + body.mesh().owner(m.node)
+        });
+        let inequality = distance.map(|distance| {
+            Box::new(Inequality {
+                limits: self.interface.limits.at(i).to_vec(),
+                distance,
+                given,
+            })
+        });
+        Carried {
+            carrier: self.carrier(row.node),
+            distance: distance.unwrap_or(self.interface.distances[i]),
+            row: MortarRow {
+                interface: self.number,
+                node: i,
+                members,
+                direction,
+                block: dofs.min().unwrap_or_default(),
+                subdomain: owners[0].min(owners[1]),
+                terms,
+                given: given[0] - given[1],
+                inequality,
+                area: row.area,
+            },
+        }
+    }
+
+    /// A sentence on the nodes that carry no multiplier because they are tied elsewhere.
+    fn note(&self, contact: bool, tied: &HashSet<BodyNode>) -> Option<String> {
+        let meant = |node: &usize| match contact {
+            true => self.link(*node).is_contact(),
+            false => self.link(*node) == Link::Tied,
+        };
+        let nodes = self.place.keys().filter(|n| meant(n));
+        let n = nodes.filter(|n| tied.contains(&self.carrier(**n))).count();
+        let [a, b] =
+            [self.own, 1 - self.own].map(|k| &self.bodies[self.interface.bodies[k]].spec.name);
+        let what = if contact { "contact" } else { "tie" };
+        (n > 0).then(|| {
+            format!(
+                "{n} nodes of `{a}` carry no multipliers of the {what} with `{b}`: another tie holds them"
+            )
+        })
+    }
+}

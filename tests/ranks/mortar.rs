@@ -1,0 +1,55 @@
+//! Sides whose nodes do not match: the answers on 1, 2 and 4 ranks are the direct solution of the assembled problem.
+
+use super::direct::{compare, solve, Answer};
+use crate::support::mpi::{as_rank, Scratch};
+use fetifeti::scene::Scene;
+
+/// Two tied plates; a plate on another one, with a gap that opens to one side; two blocks, of which one is bulged.
+fn scenes() -> Vec<(&'static str, String)> {
+    let plates = |joint: &str| {
+        format!(
+            "physics = \"elasticity\"\n[[body]]\nname = \"low\"\nsize = [2, 1]\nelements = [15, 8]\n\
+             subdomains = [3, 2]\nyoung = 100\npoisson = 0.3\ndirichlet = [\"bottom\"]\n\
+             [[body]]\nname = \"up\"\norigin = [0, 1]\n\
+             size = [2, 1]\nelements = [20, 8]\nsubdomains = [4, 2]\nyoung = 300\n\
+             poisson = 0.3\ndirichlet = {{ left = {{ x = 0 }} }}\n\
+             traction = {{ top = [0.1, -1] }}\n{joint}"
+        )
+    };
+    let blocks = "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"low\"\nsize = [2, 1, 2]\n\
+        elements = [6, 3, 6]\nsubdomains = [2, 1, 2]\nyoung = 100\npoisson = 0.3\ndirichlet = [\"bottom\"]\n\
+        [[body]]\nname = \"high\"\norigin = [0, 1, 0]\nshape = { y = \"y + 0.02*(x^2 + z^2)*(2 - y)\" }\n\
+        size = [2, 1, 2]\nelements = [8, 3, 7]\nsubdomains = [2, 1, 1]\nyoung = 200\npoisson = 0.3\n\
+        dirichlet = { left = { x = 0 }, back = { z = 0 } }\ntraction = { top = [0, -2, 0] }\n\
+        [[contact]]\nbodies = [\"high\", \"low\"]\nsides = [\"bottom\", \"top\"]\n";
+    vec![
+        ("tied", plates("[[tie]]\nbodies = [\"low\", \"up\"]\n")),
+        (
+            "gap",
+            plates("[[contact]]\nbodies = [\"low\", \"up\"]\ngap = \"0.004*x\"\nmultipliers = \"up\"\n"),
+        ),
+        ("blocks", blocks.into()),
+    ]
+}
+
+#[test]
+fn sides_that_do_not_match_have_the_direct_solution() {
+    let ranks = as_rank(|session, out| {
+        for (name, text) in scenes() {
+            solve(session, name, &Scene::parse("s.toml", &text)?, out)?;
+        }
+        Ok(())
+    });
+    let scratch = [1, 2, 4].map(|n| {
+        let scratch = Scratch::new(&format!("mortar-{n}"));
+        let out = ranks.run(n, &scratch.0.display().to_string());
+        assert_eq!(out.code, 0, "{}", out.all());
+        scratch
+    });
+    for (name, text) in scenes() {
+        let scene = Scene::parse("s.toml", &text).expect("a scene");
+        assert!(scene.mortar.len() > 15, "{name}: {}", scene.mortar.len());
+        let answers = [0, 1, 2].map(|k| Answer::read(&scratch[k].path(name)));
+        compare(name, &scene, &answers);
+    }
+}
