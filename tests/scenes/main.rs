@@ -19,6 +19,7 @@ mod input_bodies;
 mod mesh_mistakes;
 mod meshes;
 mod mortar;
+mod mortar_rings;
 mod scaling;
 mod solution;
 mod springs;

@@ -151,3 +151,38 @@ fn mistakes_get_a_sentence() {
         "{told}"
     );
 }
+
+/// Four plates that meet at a point, all with different meshes: linear displacements pass, and no row is too much.
+#[test]
+fn four_tied_plates_may_meet_at_a_point() {
+    let plate = |name: &str, x: usize, y: usize, n: usize| {
+        format!(
+            "[[body]]\nname = \"{name}\"\norigin = [{x}, {y}]\nsize = 1\nelements = {n}\nyoung = 10\n\
+             poisson = 0.3\n{}{}",
+            if x == 0 { "dirichlet = { left = { x = 0 }" } else { "dirichlet = { right = { x = 0.02 }" },
+            if y == 0 { ", bottom = { y = 0 } }\n" } else { " }\n" }
+        )
+    };
+    let text = format!(
+        "physics = \"elasticity\"\n{}{}{}{}",
+        plate("a", 0, 0, 4),
+        plate("b", 1, 0, 5),
+        plate("c", 0, 1, 6),
+        plate("d", 1, 1, 7)
+    );
+    let (scene, solution) = solve(&text);
+    assert_eq!(scene.notes.len(), 4, "{:?}", scene.notes);
+    let problem = scene.substructures(&|_| true).expect("substructures");
+    // u = (0.01 x, −ν/(1 − ν) 0.01 y) in plane strain.
+    for (sub, u) in problem.local.iter().zip(&solution.u) {
+        let x = sub.coordinates.as_ref().expect("coordinates");
+        let body = scene.body_of(sub.index).0;
+        for ((&dof, x), u) in sub.dofs.iter().zip(x).zip(u) {
+            let exact = match (dof - scene.bodies[body].first_dof) % 2 {
+                0 => 0.01 * x[0],
+                _ => -0.3 / 0.7 * 0.01 * x[1],
+            };
+            assert!((u - exact).abs() < 1e-12, "{u}, not {exact}");
+        }
+    }
+}

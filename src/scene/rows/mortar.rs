@@ -322,9 +322,7 @@ impl<'a> Pairing<'a> {
             [self.own, 1 - self.own].map(|k| &self.bodies[self.interface.bodies[k]].spec.name);
         let what = if contact { "contact" } else { "tie" };
         (n > 0).then(|| {
-            format!(
-                "{n} nodes of `{a}` carry no multipliers of the {what} with `{b}`: another tie holds them"
-            )
+            format!("Another tie holds nodes of `{a}` ({n}): they carry no multipliers of the {what} with `{b}`.")
         })
     }
 }
