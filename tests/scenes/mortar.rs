@@ -57,7 +57,7 @@ fn a_constant_pressure_passes() {
             for slope in [0.0, 0.1] {
                 for multipliers in ["low", "up"] {
                     let joint = format!(
-                        "[[contact]]\nbodies = [\"low\", \"up\"]\nsides = [\"top\", \"bottom\"]\n\
+                        "[[contact]]\nbodies = [\"low\", \"up\"]\n\
                          multipliers = \"{multipliers}\"\n"
                     );
                     let what = format!("{dim}D, order {order}, slope {slope}, {multipliers}");
@@ -83,12 +83,7 @@ fn a_constant_pressure_passes() {
 fn ties_leave_no_trace_in_a_constant_stress() {
     for dim in [2, 3] {
         for slope in [0.0, 0.1] {
-            let (scene, solution) = solve(&blocks(
-                dim,
-                1,
-                slope,
-                "[[tie]]\nbodies = [\"up\", \"low\"]\nsides = [\"bottom\", \"top\"]\n",
-            ));
+            let (scene, solution) = solve(&blocks(dim, 1, slope, ""));
             assert!(scene.mortar.iter().all(|r| r.inequality.is_none()));
             let rows: usize = solution.rows().len();
             let nodes = scene.interfaces[0].shared.len();

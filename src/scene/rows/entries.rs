@@ -2,6 +2,7 @@
 
 use super::entry::{some_names, Contact, Entry};
 use super::links::Links;
+use super::surfaces::{shortest, NEAR};
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::facing::opposite;
@@ -19,12 +20,12 @@ use std::collections::{HashMap, HashSet};
 /// All pairs that touch, with their ties and contacts.
 pub(crate) fn find(
     bodies: &[Body],
-    matching: Matching<'_>,
+    mut matching: Matching<'_>,
     spec: &SceneSpec,
     steps: &Option<Steps>,
 ) -> Result<Vec<Interface>> {
     let mut interfaces = touching(bodies)?;
-    unmatched(bodies, spec, &mut interfaces);
+    unmatched(bodies, &mut matching, spec, &mut interfaces);
     facing(bodies, matching, spec, &mut interfaces)?;
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
@@ -54,12 +55,14 @@ pub(crate) fn find(
 
 /// Common faces of boxes whose nodes do not match become interfaces with mortar rows where entries mean all of them or
 /// a range; single nodes have to match.
-fn unmatched(bodies: &[Body], spec: &SceneSpec, interfaces: &mut [Interface]) {
+fn unmatched(
+    bodies: &[Body],
+    matching: &mut Matching<'_>,
+    spec: &SceneSpec,
+    interfaces: &mut [Interface],
+) {
     let whole = |e: &Extent| matches!(e, Extent::All | Extent::Range(_));
     for interface in interfaces {
-        if interface.unmatched.is_empty() || interface.shape == Shape::Corner {
-            continue;
-        }
         let names = interface.bodies.map(|k| &bodies[k].spec.name);
         let [a, b] = names;
         // Which body the entry says, in the order of the pair; `None`: the entry is of another pair.
@@ -92,13 +95,32 @@ fn unmatched(bodies: &[Body], spec: &SceneSpec, interfaces: &mut [Interface]) {
             continue;
         }
         let (pair, sides) = (interface.bodies, interface.sides);
+        let Some(reach) = loose(bodies, matching, interface) else {
+            continue;
+        };
         let which = which.unwrap_or(0);
-        if let Some(found) =
-            mortar::interface(bodies, &spec.form, pair, sides, which, f64::INFINITY)
-        {
+        if let Some(found) = mortar::interface(bodies, &spec.form, pair, sides, which, reach) {
             *interface = found;
         }
     }
+}
+
+/// How far apart the sides of a common face with nodes that do not match may be; `None` for other interfaces.
+fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) -> Option<f64> {
+    if !interface.unmatched.is_empty() {
+        return (interface.shape == Shape::Face).then_some(f64::INFINITY);
+    }
+    let (pair, sides) = (interface.bodies, interface.sides);
+    let unbent = |k: usize| bodies[k].mesh().grid().is_some() && bodies[k].spec.map.is_none();
+    if pair.iter().all(|&k| unbent(k)) {
+        return None;
+    }
+    // Curved sides with different meshes are different polygons. What seems to be a corner may be a face of which no
+    // cell has all nodes in common with the other body.
+    let mut edge = |k: usize| shortest(&matching.surface(pair[k], sides[k]).edges);
+    let reach = NEAR * edge(0).min(edge(1));
+    let found = matching.find(pair, sides, reach);
+    matches!(found, Err(Mismatch::Lonely(_))).then_some(reach)
 }
 
 /// Interfaces of facing sides that an entry names; they replace the interface of the touching pair.

@@ -13,7 +13,7 @@ use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::SceneSpec;
 
 /// Where nothing is said, sides of bodies are in contact if their distance is at most this fraction of their edges.
-const NEAR: f64 = 0.1;
+pub(super) const NEAR: f64 = 0.1;
 
 /// Replaces the surfaces in the entries by bodies and sides, and adds the contacts that `auto` finds.
 pub(crate) fn expand(
@@ -242,6 +242,6 @@ fn is_no_pair(bodies: &[Body], interface: &Interface) -> bool {
     overlap && across.sum::<f64>() < 0.0
 }
 
-fn shortest(edges: &[f64]) -> f64 {
+pub(super) fn shortest(edges: &[f64]) -> f64 {
     edges.iter().copied().fold(f64::INFINITY, f64::min)
 }
