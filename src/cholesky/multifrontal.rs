@@ -49,12 +49,23 @@ impl PartialCholesky {
         symbolic: &Symbolic,
         inside: Arc<Symbolic>,
     ) -> Result<(Self, Dense), SingularInterior> {
-        let (panels, s) = factor(k, symbolic, &inside)?;
+        let (panels, s) = factor(k, symbolic, &inside, Pivots::Regular)?;
         let factor = PartialCholesky {
             symbolic: inside,
             panels,
         };
         Ok((factor, s))
+    }
+
+    /// The factor of a semidefinite `k` without an interface, and the dofs that it leaves out: those with a pivot below
+    /// this fraction of their diagonal entry. Such a pivot becomes so large that the solution at the dof is zero after
+    /// rounding, and that of the others is the solution without the dof.
+    pub fn semidefinite(k: &Csr, symbolic: Arc<Symbolic>, least: f64) -> (Self, Vec<u32>) {
+        debug_assert!(symbolic.interface.is_empty());
+        let mut left = Vec::new();
+        let pivots = Pivots::Above(least, &mut left);
+        let (panels, _) = factor(k, &symbolic, &symbolic, pivots).expect("no pivot is too small");
+        (PartialCholesky { symbolic, panels }, left)
     }
 
     /// Number of dofs.
@@ -93,8 +104,24 @@ impl PartialCholesky {
     }
 }
 
+/// Pivots that vanish.
+enum Pivots<'a> {
+    /// None may.
+    Regular,
+    /// Those below this fraction of the diagonal entry are replaced; the list takes their dofs.
+    Above(f64, &'a mut Vec<u32>),
+}
+
+/// Added to the diagonal entry of a dof that is left out. Its root divides what other dofs have in common with it.
+const OUT: f64 = 1e300;
+
 /// Returns S and the panels of the fronts in `kept`.
-fn factor(k: &Csr, sym: &Symbolic, kept: &Symbolic) -> Result<(Vec<f64>, Dense), SingularInterior> {
+fn factor(
+    k: &Csr,
+    sym: &Symbolic,
+    kept: &Symbolic,
+    mut pivots: Pivots<'_>,
+) -> Result<(Vec<f64>, Dense), SingularInterior> {
     let mut s = schur_start(k, sym);
     let mut panels = vec![0.0; kept.storage];
     let mut updates: Vec<Vec<f64>> = vec![Vec::new(); sym.fronts.len()];
@@ -133,11 +160,24 @@ fn factor(k: &Csr, sym: &Symbolic, kept: &Symbolic) -> Result<(Vec<f64>, Dense),
             extend_add(&mut panel, &mut update, &child.into_parent, &updates[c]);
             updates[c] = Vec::new();
         }
-        factor_front(&mut panel, &mut update, &diagonal, &mut scratch).map_err(|j| {
-            SingularInterior {
-                dof: sym.interior[front.start + j],
+        match &mut pivots {
+            Pivots::Regular => {
+                let done = factor_front(&mut panel, &mut update, &diagonal, SINGULAR, &mut scratch);
+                done.map_err(|j| SingularInterior {
+                    dof: sym.interior[front.start + j],
+                })?;
             }
-        })?;
+            Pivots::Above(least, left) => {
+                let mut start = panel.clone();
+                while let Err(j) =
+                    factor_front(&mut panel, &mut update, &diagonal, *least, &mut scratch)
+                {
+                    left.push(sym.interior[front.start + j]);
+                    start.set(j, j, OUT);
+                    panel.clone_from(&start);
+                }
+            }
+        }
         let into = &kept.fronts[f];
         panel::store(
             &panel.data,
@@ -207,21 +247,27 @@ fn add_lower(s: &mut Dense, map: &[u32], update: &[f64]) {
     }
 }
 
-/// Factors the pivot block, scales the rows below it and updates the rest; returns `Err(j)` if pivot j vanishes.
+/// Factors the pivot block, scales the rows below it and updates the rest; returns `Err(j)` if pivot j is below
+/// `least`, relative to its diagonal entry.
 fn factor_front(
     panel: &mut Dense,
     update: &mut Dense,
     diagonal: &[f64],
+    least: f64,
     scratch: &mut Scratch,
 ) -> Result<(), usize> {
     let width = panel.cols;
     let (mut pivot, mut below) = panel.view_mut().split_at_row_mut(width);
-    dense::cholesky(pivot.as_mut(), scratch).map_err(|e| e.index)?;
-    for (j, &d) in diagonal.iter().enumerate() {
+    let failed = dense::cholesky(pivot.as_mut(), scratch).err();
+    let done = failed.map_or(width, |e| e.index);
+    for (j, &d) in diagonal.iter().enumerate().take(done) {
         let l = pivot[(j, j)];
-        if l * l <= SINGULAR * d || l.is_nan() {
+        if l * l <= least * d || l.is_nan() {
             return Err(j);
         }
+    }
+    if done < width {
+        return Err(done);
     }
     dense::solve_right_transpose(pivot.as_ref(), below.as_mut());
     dense::rank_k_update(update.view_mut(), -1.0, below.as_ref());

@@ -8,7 +8,6 @@
 //! multipliers moves them along N by what the springs give way, so that it takes many updates until the row that must
 //! leave has left. Here they go all the way at once, node by node.
 
-use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::springs::forceless;
 use crate::linalg::dense::Dense;
@@ -19,19 +18,34 @@ const LEVEL: f64 = 1e-12;
 /// Moves the multipliers of all blocks of dependent rows downhill in cᵀλ, until rows with multipliers do not contradict
 /// each other. Forces Bᵀλ stay.
 pub fn settle(jump: &Jump, lambda: &mut [f64]) {
-    let may_depend = |b: &&Block| b.rows.len() > 1 && !b.independent;
-    for block in jump.blocks.iter().filter(may_depend) {
-        let rows = block.rows.clone();
-        let (inequality, c) = (&jump.inequality[rows.clone()], &jump.gap[rows.clone()]);
-        settle_rows(&block.b, inequality, c, &mut lambda[rows]);
+    for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
+        let on: Vec<bool> = block
+            .rows
+            .clone()
+            .map(|r| carries(jump.inequality[r], lambda[r]))
+            .collect();
+        let Some((rows, b)) = block.dependent(&on) else {
+            continue;
+        };
+        let rows: Vec<usize> = rows.iter().map(|r| block.rows.start + r).collect();
+        let inequality: Vec<bool> = rows.iter().map(|&r| jump.inequality[r]).collect();
+        let c: Vec<f64> = rows.iter().map(|&r| jump.gap[r]).collect();
+        let mut own: Vec<f64> = rows.iter().map(|&r| lambda[r]).collect();
+        settle_rows(&b, &inequality, &c, &mut own);
+        rows.iter().zip(own).for_each(|(&r, l)| lambda[r] = l);
     }
+}
+
+/// Whether a row may have a multiplier, or has one.
+fn carries(inequality: bool, lambda: f64) -> bool {
+    !inequality || lambda > 0.0
 }
 
 /// The same for the rows `b` of one node.
 fn settle_rows(b: &Dense, inequality: &[bool], c: &[f64], lambda: &mut [f64]) {
     // A row leaves in each pass.
     for _ in 0..lambda.len() {
-        let on = |&r: &usize| !inequality[r] || lambda[r] > 0.0;
+        let on = |&r: &usize| carries(inequality[r], lambda[r]);
         let rows: Vec<usize> = (0..lambda.len()).filter(on).collect();
         if rows.len() < 2 {
             return;

@@ -21,11 +21,9 @@ pub fn check(problem: &Substructures, dual: &Dual) -> Result<()> {
 
 fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
     let jump = &dual.stiffness.jump;
-    // Independent rows can be satisfied whatever their gaps are.
-    for block in jump.blocks.iter().filter(|b| !b.independent) {
-        let rows: Vec<usize> = (0..block.rows.len())
-            .filter(|&r| jump.is_candidate(block.rows.start + r))
-            .collect();
+    for block in &jump.blocks {
+        let candidate = |r: &usize| jump.is_candidate(block.rows.start + r);
+        let mut rows: Vec<usize> = (0..block.rows.len()).filter(candidate).collect();
         let gap = |r: usize| jump.gap[block.rows.start + r];
         let equation = |r: usize| !jump.inequality[block.rows.start + r];
         // Rows without interference are satisfied by u = 0.
@@ -35,11 +33,21 @@ fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
         {
             continue;
         }
-        let n = block.dofs.len();
+        // Independent rows can be satisfied whatever their gaps are.
+        let on: Vec<bool> = (0..block.rows.len()).map(|r| candidate(&r)).collect();
+        let Some((members, b)) = block.dependent(&on) else {
+            continue;
+        };
+        let at: Vec<usize> = (0..members.len()).filter(|&i| on[members[i]]).collect();
+        rows = at.iter().map(|&i| members[i]).collect();
+        let n = b.cols;
         let largest = rows.iter().fold(0.0f64, |a, &r| a.max(gap(r).abs()));
+        if largest == 0.0 {
+            continue;
+        }
         let mut a = Dense::zeros(n + 1, rows.len());
         for (k, &r) in rows.iter().enumerate() {
-            (0..n).for_each(|j| a.set(j, k, block.b.get(r, j)));
+            (0..n).for_each(|j| a.set(j, k, b.get(at[k], j)));
             a.set(n, k, gap(r) / largest);
         }
         let mut wanted = vec![0.0; n + 1];
@@ -49,13 +57,15 @@ fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
         if rest.iter().all(|v| v.abs() < CONTRADICTION) {
             let name = |&b: &u32| format!("\"{}\"", problem.body_names[b as usize]);
             let bodies = distinct(block.bodies.iter().map(name));
-            let place = block.place(problem).map_or(String::new(), |[x, y, z]| {
-                if z == 0.0 {
-                    format!(" at ({x}, {y})")
-                } else {
-                    format!(" at ({x}, {y}, {z})")
-                }
-            });
+            let place = block
+                .place(problem, &rows)
+                .map_or(String::new(), |[x, y, z]| {
+                    if z == 0.0 {
+                        format!(" at ({x}, {y})")
+                    } else {
+                        format!(" at ({x}, {y}, {z})")
+                    }
+                });
             return Err(Error::input(format!(
                 "the gaps of {} {}{place} contradict each other: \
                  no displacement satisfies all {} conditions there, expected gaps that leave room",

@@ -61,28 +61,25 @@ pub fn again(method: &LinearMethod, solution: &LinearSolution) -> Result<Option<
 /// Takes rows of `block` that pull by more than `pull` out of the set. Rows that depend on each other may carry their
 /// forces with multipliers of both signs: then others that are not negative do as well.
 fn leave(block: &Block, jump: &Jump, lambda: &[f64], pull: f64, active: &mut [bool]) {
-    let held: Vec<usize> = block.rows.clone().filter(|&r| active[r]).collect();
-    let pulls = |r: &usize| jump.inequality[*r] && lambda[*r] < -pull;
-    if !held.iter().any(pulls) {
+    let start = block.rows.start;
+    let held = active[block.rows.clone()].to_vec();
+    let pulls = |r: &usize| jump.inequality[start + r] && lambda[start + r] < -pull;
+    let on = |r: &usize| held[*r];
+    if !(0..held.len()).filter(on).any(|r| pulls(&r)) {
         return;
     }
-    if block.independent {
-        held.iter()
-            .filter(|r| pulls(r))
-            .for_each(|&r| active[r] = false);
-        return;
+    let mut leaves: Vec<usize> = (0..held.len()).filter(on).filter(pulls).collect();
+    if let Some((rows, part)) = block.dependent(&held) {
+        let at: Vec<usize> = (0..rows.len()).filter(|&i| held[rows[i]]).collect();
+        let b = Dense::from_fn(part.cols, at.len(), |j, i| part.get(at[i], j));
+        let mut forces = vec![0.0; part.cols];
+        let own: Vec<f64> = at.iter().map(|&i| lambda[start + rows[i]]).collect();
+        b.add_mul(&own, &mut forces);
+        let free = at.iter().map(|&i| !jump.inequality[start + rows[i]]);
+        let (_, rest) = nnls(&b, &forces, &free.collect::<Vec<_>>());
+        if rest.iter().all(|v| v.abs() <= pull) {
+            leaves.retain(|r| !rows.contains(r));
+        }
     }
-    let entry = |j: usize, i: usize| block.b.get(held[i] - block.rows.start, j);
-    let b = Dense::from_fn(block.dofs.len(), held.len(), entry);
-    let mut forces = vec![0.0; block.dofs.len()];
-    let own: Vec<f64> = held.iter().map(|&r| lambda[r]).collect();
-    b.add_mul(&own, &mut forces);
-    let free: Vec<bool> = held.iter().map(|&r| !jump.inequality[r]).collect();
-    let (_, rest) = nnls(&b, &forces, &free);
-    if rest.iter().all(|v| v.abs() <= pull) {
-        return;
-    }
-    for &r in held.iter().filter(|r| pulls(r)) {
-        active[r] = false;
-    }
+    leaves.iter().for_each(|r| active[start + r] = false);
 }

@@ -1,5 +1,6 @@
 //! Settings of the linear method, with defaults (options with the prefix `fetifeti_`, see docs/options.md).
 
+use super::jump::coupled::MANY;
 use crate::cholesky::interior::LocalSolver;
 use crate::petsc::{named, Options, Session};
 use crate::substructures::EntityKind;
@@ -237,6 +238,9 @@ pub struct MethodSettings {
     pub local: LocalSolver,
     /// `fetifeti_threads`: threads of this rank; `None` means the cores of the machine divided by the ranks on it.
     pub threads: Option<usize>,
+    /// Blocks of rows between bodies that have more rows than this are scaled with a sparse factorisation. There is no
+    /// option for it: both ways give the same operators after rounding.
+    pub coupled: usize,
     /// `fetifeti_check`: print the identities of the theory with their defects.
     pub check: bool,
     /// `fetifeti_spectrum`: exact extreme eigenvalues of the preconditioned operator.
@@ -264,6 +268,7 @@ impl Default for MethodSettings {
             recycle: 0,
             local: LocalSolver::default(),
             threads: None,
+            coupled: MANY,
             check: false,
             spectrum: false,
             rtol: 1e-6,

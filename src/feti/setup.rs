@@ -64,7 +64,8 @@ impl LinearMethod {
         let weights = weights(&problem, scaling, settings.gamma);
         let sharing = session.agree(Sharing::new(comm, &problem, &weights, settings.primal))?;
         drop(weights);
-        let mut jump = Jump::new(comm, &problem, &sharing); /*                B, B_D                 */
+        let many = settings.coupled;
+        let mut jump = Jump::coupling(comm, &problem, &sharing, many); /*     B, B_D                 */
         let mut team = Team::new(threads(session, &settings))?;
         let kind = settings.pc_type.unwrap_or_else(|| {
             choice::preconditioner(comm, &problem, &sharing, &jump, settings.coarse_functions())
@@ -182,7 +183,7 @@ fn stiffness(
     })?;
     let layout = PetscVec::mpi(session, jump.n_owned)?;
     let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;
-    let mut stiffness = Stiffness::new(session, jump, locals, space, primal, dual_halo, team);
+    let mut stiffness = Stiffness::new(session, jump, locals, space, primal, dual_halo, team)?;
     if varies > refinement::PLAIN {
         stiffness.refine(Refinement::new(problem, &stiffness.locals));
     }

@@ -154,7 +154,6 @@ impl Scene {
         let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
         rows::equations::join(&bodies, &mut points, &mut chains);
         drop(chains);
-        rows::mortar::check_sizes(&bodies, &interfaces, &mortar)?;
         spec.notes.extend(notes);
         validate::check_unknowns(&bodies)?;
         Ok(Scene {

@@ -3,6 +3,7 @@
 use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi, random_scene};
 use assembled::compare::Agreement;
+use contact_judge::How;
 use fetifeti::contact::ContactType;
 use fetifeti::petsc::Session;
 use fetifeti::Error;
@@ -14,33 +15,20 @@ const KINDS: [ContactType; 3] = [
     ContactType::Smalbe,
 ];
 
-fn judge(
-    session: &Session,
-    case: &Case,
-    kind: ContactType,
-) -> std::result::Result<Agreement, String> {
+fn judge(session: &Session, case: &Case, how: How) -> std::result::Result<Agreement, String> {
     let Fate::Solvable(reference) = &case.fate else {
         panic!("seed {} has no solution", case.seed)
     };
     let cards = case.seed % 2 == 1;
-    contact_judge::judge(
-        session,
-        (&case.scene, &case.problem, reference),
-        cards,
-        kind,
-    )
+    contact_judge::judge(session, (&case.scene, &case.problem, reference), cards, how)
 }
 
 /// Solves all cases; prints the failures, and the largest deviations that were accepted.
-fn all_agree(
-    session: &Session,
-    cases: &[Case],
-    kind: ContactType,
-) -> std::result::Result<(), String> {
+fn all_agree(session: &Session, cases: &[Case], how: How) -> std::result::Result<(), String> {
     let mut wrong = Vec::new();
     let (mut energy, mut u, mut kkt, mut degenerate) = (0.0f64, 0.0f64, 0.0f64, 0);
     for case in cases {
-        match judge(session, case, kind) {
+        match judge(session, case, how) {
             Ok(a) => {
                 energy = energy.max(a.energy);
                 u = u.max(a.u);
@@ -52,7 +40,7 @@ fn all_agree(
     }
     if session.rank() == 0 {
         println!(
-            "{kind:?}: {} of {} agree; energy within {energy:.1e}, \
+            "{how:?}: {} of {} agree; energy within {energy:.1e}, \
              u {u:.1e}, KKT {kkt:.1e}; {degenerate} with degenerate rows",
             cases.len() - wrong.len(),
             cases.len()
@@ -65,10 +53,10 @@ fn all_agree(
     }
 }
 
-fn on_one_rank(kind: ContactType) {
+fn on_one_rank(how: How) {
     with_session(move |session| {
         let cases = Collection::new(0, 500).solvable;
-        if let Err(why) = all_agree(session, &cases, kind) {
+        if let Err(why) = all_agree(session, &cases, how) {
             panic!("{why}");
         }
     });
@@ -76,17 +64,33 @@ fn on_one_rank(kind: ContactType) {
 
 #[test]
 fn five_hundred_random_scenes_by_active_sets() {
-    mpi::alone(|| on_one_rank(ContactType::ActiveSet));
+    mpi::alone(|| on_one_rank(ContactType::ActiveSet.into()));
 }
 
 #[test]
 fn five_hundred_random_scenes_by_the_augmented_lagrangian() {
-    mpi::alone(|| on_one_rank(ContactType::AugmentedLagrangian));
+    mpi::alone(|| on_one_rank(ContactType::AugmentedLagrangian.into()));
 }
 
 #[test]
 fn five_hundred_random_scenes_by_smalbe() {
-    mpi::alone(|| on_one_rank(ContactType::Smalbe));
+    mpi::alone(|| on_one_rank(ContactType::Smalbe.into()));
+}
+
+/// As if all rows at a point were a large block, cross points with rows that depend on each other included.
+#[test]
+fn random_scenes_with_coupled_blocks() {
+    mpi::alone(|| {
+        with_session(|session| {
+            let cases = Collection::new(20_000, 150).solvable;
+            for kind in KINDS {
+                let how = How { kind, coupled: 0 };
+                if let Err(why) = all_agree(session, &cases, how) {
+                    panic!("{why}");
+                }
+            }
+        });
+    });
 }
 
 #[test]
@@ -125,7 +129,7 @@ fn random_scenes_on_two_and_four_ranks() {
     let started = mpi::as_rank(|session, _| {
         let cases = Collection::new(10_000, 40).solvable;
         for kind in KINDS {
-            all_agree(session, &cases, kind).map_err(Error::input)?;
+            all_agree(session, &cases, kind.into()).map_err(Error::input)?;
         }
         Ok(())
     });

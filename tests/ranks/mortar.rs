@@ -4,7 +4,8 @@ use super::direct::{compare, solve, Answer};
 use crate::support::mpi::{as_rank, Scratch};
 use fetifeti::scene::Scene;
 
-/// Two tied plates; a plate on another one, with a gap that opens to one side; two blocks, of which one is bulged.
+/// A strip on a stiff one, with a curved gap, with a block of many rows on the stiff or the soft side; two tied plates;
+/// a plate on another one, with a gap that opens to one side; two blocks, of which one is bulged.
 fn scenes() -> Vec<(&'static str, String)> {
     let plates = |joint: &str| {
         format!(
@@ -22,7 +23,14 @@ fn scenes() -> Vec<(&'static str, String)> {
         size = [2, 1, 2]\nelements = [8, 3, 7]\nsubdomains = [2, 1, 1]\nyoung = 200\npoisson = 0.3\n\
         dirichlet = { left = { x = 0 }, back = { z = 0 } }\ntraction = { top = [0, -2, 0] }\n\
         [[contact]]\nbodies = [\"high\", \"low\"]\nsides = [\"bottom\", \"top\"]\n";
+    let long = "physics = \"elasticity\"\n[[body]]\nname = \"low\"\nsize = [6, 0.4]\nelements = [90, 6]\n\
+        subdomains = [6, 1]\nyoung = 1e6\npoisson = 0.3\ndirichlet = [\"bottom\"]\n[[body]]\nname = \"up\"\n\
+        origin = [0, 0.4]\nsize = [6, 0.4]\nelements = [70, 6]\n\
+        subdomains = [5, 1]\nyoung = 1\npoisson = 0.3\ndirichlet = { left = { x = 0 } }\n\
+        traction = { top = [0, -0.01] }\n[[contact]]\nbodies = [\"low\", \"up\"]\ngap = \"0.001*(x - 2)^2\"\n";
     vec![
+        ("long", long.into()),
+        ("soft", format!("{long}multipliers = \"up\"\n")),
         ("tied", plates("[[tie]]\nbodies = [\"low\", \"up\"]\n")),
         (
             "gap",

@@ -135,16 +135,33 @@ fn mistakes_get_a_sentence() {
     let apart = text("[[contact]]\nbodies = [\"low\", \"up\"]\nsides = [\"bottom\", \"top\"]\n");
     let told = message(&apart);
     assert!(told.contains("do not face each other"), "{told}");
-    // A block of rows that would not fit into memory.
-    let wall = |name: &str, x: usize, n: usize| {
-        format!("[[body]]\nname = \"{name}\"\norigin = [{x}, 0, 0]\nsize = 1\nelements = [1, {n}, {n}]\n")
-    };
-    let large = format!("dimension = 3\n{}{}", wall("a", 0, 60), wall("b", 1, 7));
-    let told = message(&large);
-    assert!(
-        told.contains("bodies `a` and `b`, whose nodes do not match"),
-        "{told}"
-    );
+}
+
+/// Two blocks side by side, one with a fine common face and one with a coarse one, and given values at their far sides.
+#[test]
+fn a_joint_may_have_thousands_of_rows() {
+    for multipliers in ["a", "b"] {
+        let wall = |name: &str, x: usize, n: usize, given: &str| {
+            format!(
+                "[[body]]\nname = \"{name}\"\norigin = [{x}, 0, 0]\nsize = 1\nelements = [2, {n}, {n}]\n\
+                 subdomains = [1, 3, 3]\ndirichlet = {{ {given} }}\n"
+            )
+        };
+        let text = format!(
+            "dimension = 3\n{}{}[[tie]]\nbodies = [\"a\", \"b\"]\nmultipliers = \"{multipliers}\"\n",
+            wall("a", 0, 54, "left = 0"),
+            wall("b", 1, 42, "right = 1"),
+        );
+        let (scene, solution) = solve(&text);
+        assert!(scene.mortar.len() > 1800, "{}", scene.mortar.len());
+        let problem = scene.substructures(&|_| true).expect("substructures");
+        for (sub, u) in problem.local.iter().zip(&solution.u) {
+            let x = sub.coordinates.as_ref().expect("coordinates");
+            for (x, u) in x.iter().zip(u) {
+                assert!((u - x[0] / 2.0).abs() < 1e-9, "{multipliers}: {x:?} {u}");
+            }
+        }
+    }
 }
 
 /// Four plates that meet at a point, all with different meshes: linear displacements pass, and no row is too much.

@@ -10,12 +10,27 @@ use fetifeti::{Error, Result};
 use fetifeti::{FetiFeti, MethodSettings, Settings};
 use std::collections::HashMap;
 
-fn settings(kind: ContactType) -> Settings {
+/// The loop, and the number of rows from which a block is scaled with a sparse factorisation.
+#[derive(Debug, Clone, Copy)]
+pub struct How {
+    pub kind: ContactType,
+    pub coupled: usize,
+}
+
+impl From<ContactType> for How {
+    fn from(kind: ContactType) -> How {
+        let coupled = MethodSettings::default().coupled;
+        How { kind, coupled }
+    }
+}
+
+fn settings(how: How) -> Settings {
     let mut settings = Settings::from(MethodSettings {
         rtol: 1e-11,
+        coupled: how.coupled,
         ..MethodSettings::default()
     });
-    settings.contact.kind = kind;
+    settings.contact.kind = how.kind;
     settings
 }
 
@@ -25,7 +40,7 @@ pub fn answer(
     scene: &Scene,
     problem: &Assembled,
     cards: bool,
-    kind: ContactType,
+    how: impl Into<How>,
 ) -> Result<(Vec<f64>, Vec<f64>, f64)> {
     let (rank, size) = (session.rank(), session.size());
     // Subdomains are distributed in contiguous runs, or in turn.
@@ -34,7 +49,7 @@ pub fn answer(
         false => share.contains(&s),
         true => s % size == rank,
     };
-    let solver = FetiFeti::new(session, scene.substructures(&mine)?, settings(kind))?;
+    let solver = FetiFeti::new(session, scene.substructures(&mine)?, settings(how.into()))?;
     let solution = solver.solve()?;
     if !solution.converged() {
         let reason = format!("not converged: {}", solution.status);
@@ -72,9 +87,9 @@ pub fn judge(
     session: &Session,
     (scene, problem, reference): (&Scene, &Assembled, &Reference),
     cards: bool,
-    kind: ContactType,
+    how: impl Into<How>,
 ) -> std::result::Result<Agreement, String> {
-    let answer = answer(session, scene, problem, cards, kind);
+    let answer = answer(session, scene, problem, cards, how);
     let (u, lambda, energy) = answer.map_err(|e| e.to_string())?;
     let answer = Candidate {
         u: &u,

@@ -1,22 +1,30 @@
 //! Blocks of B_gl. A block is a set of rows that share body dofs; its scaling (B D⁻¹ Bᵀ)⁺ is computed as a whole. A
 //! change of Z^k is applied block by block.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::coupled::Coupled;
 use super::operator::Jump;
-use super::scaling;
+use super::{dependent, scaling};
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange, Record};
 use crate::substructures::Substructures;
 
-/// A block is large if it has more rows than this: more than meet at a point.
-const LARGE: usize = 24;
+/// B of a block.
+#[derive(Debug)]
+pub enum Form {
+    /// On (rows, dofs): the rows of a point where bodies meet. B_D has entries for all of these.
+    Dense(Dense),
+    /// Many rows, such as those of an interface.
+    Coupled(Box<Coupled>),
+}
 
 /// Rows of B_gl that share body dofs, on the rank that owns them.
 #[derive(Debug)]
@@ -25,16 +33,15 @@ pub struct Block {
     pub rows: Range<usize>,
     /// Body dofs that the rows touch.
     pub dofs: Vec<u64>,
-    /// B on (rows, dofs).
-    pub b: Dense,
+    /// B.
+    pub form: Form,
+    /// The dofs of a coupled block among those of all coupled blocks of this rank; empty for others.
+    pub slots: Range<usize>,
     /// D summed over the copies of each dof.
     pub weights: Vec<f64>,
     /// The weights in B_D: D summed over as many copies as those dofs of the same body have that have the fewest. Along
     /// a side, the nodes at which subdomains meet then weigh no more than others.
     scaling: Vec<f64>,
-    /// Whether the block is large and its rows are independent: nothing has to be asked about which of them follow from
-    /// others.
-    pub independent: bool,
     /// Body of each dof.
     pub bodies: Vec<u32>,
     /// The copies of each dof.
@@ -93,126 +100,143 @@ impl Entry {
 }
 
 impl Block {
-    /// The position of the block, if a subdomain of this rank knows it.
-    pub fn place(&self, problem: &Substructures) -> Option<[f64; 3]> {
-        self.copies.iter().flatten().find_map(|copy| {
+    /// The position of the block, if a subdomain of this rank knows it; that of these rows if it is coupled.
+    pub fn place(&self, problem: &Substructures, rows: &[usize]) -> Option<[f64; 3]> {
+        let dofs = match &self.form {
+            Form::Dense(_) => (0..self.dofs.len()).collect(),
+            Form::Coupled(coupled) => coupled.dofs(rows).iter().map(|&j| j as usize).collect(),
+        };
+        let dofs: Vec<usize> = dofs;
+        let copies = dofs.iter().flat_map(|&j| &self.copies[j]);
+        let place = |copy: &Copy| {
             let index = |sub: &&crate::Subdomain| sub.index == copy.subdomain as usize;
             let sub = problem.local.iter().find(index)?;
             Some(sub.coordinates.as_ref()?[copy.local as usize])
-        })
+        };
+        copies.into_iter().find_map(place)
     }
 
-    /// The entries of B and B_D for the rows in `active` (one per row of the block). `first` is the number of this
-    /// rank's first row.
-    pub(crate) fn entries(&self, first: usize, active: &[bool], send: &mut impl FnMut(Entry)) {
-        let bd = match self.independent {
-            true => scaling::independent(&self.b, &self.scaling, active),
-            false => scaling::block(&self.b, &self.scaling, active),
+    /// The bodies with an entry in row `r`.
+    pub fn bodies_of(&self, r: usize) -> Vec<u32> {
+        match &self.form {
+            Form::Dense(b) => {
+                let inside = (0..b.cols).filter(|&j| b.get(r, j) != 0.0);
+                inside.map(|j| self.bodies[j]).collect()
+            }
+            Form::Coupled(coupled) => {
+                let (dofs, values) = coupled.row(r);
+                let inside = dofs.iter().zip(values).filter(|e| *e.1 != 0.0);
+                inside.map(|e| self.bodies[*e.0 as usize]).collect()
+            }
+        }
+    }
+
+    /// The rows of `on` that may depend on each other, and B on them: all of a point; those of a coupled block that do.
+    /// Multipliers without forces, Bᵀ N = 0, are zero on all other rows in `on`. `None` if no row depends on others.
+    pub fn dependent(&self, on: &[bool]) -> Option<(Vec<usize>, Cow<'_, Dense>)> {
+        match &self.form {
+            Form::Dense(b) => Some(((0..on.len()).collect(), Cow::Borrowed(b))),
+            Form::Coupled(coupled) => {
+                let rows = coupled.dependent(on);
+                let b = (!rows.is_empty()).then(|| coupled.part(&rows))?;
+                Some((rows, Cow::Owned(b)))
+            }
+        }
+    }
+
+    /// The copies of each dof.
+    pub(super) fn copies(&self) -> &[Vec<Copy>] {
+        &self.copies
+    }
+
+    /// Prepares B_D for the rows in `active` (one per row of the block) and sends the entries that change with them:
+    /// those of dense blocks, and of rows of coupled blocks that held before or now, but not both. `first` is the
+    /// number of this rank's first row.
+    fn hold(
+        &mut self,
+        first: usize,
+        change: impl Fn(usize) -> bool,
+        active: &[bool],
+        send: &mut impl FnMut(Entry),
+    ) {
+        // A row acts on the weighted average of the copies of one body (docs/theory.md, section 3). B_Dᵀ λ is then the
+        // same on all of them, as a function in W̃ must be.
+        let (start, copies, weights) = (self.rows.start, &self.copies, &self.weights);
+        let mut send = |r: usize, j: usize, value: f64, bd: f64| {
+            let row = (first + start + r) as u64;
+            for copy in &copies[j] {
+                let full = value * copy.weight / weights[j];
+                let b = if active[r] { full } else { 0.0 };
+                send(Entry::new(row, copy, true, [full, b, bd]));
+            }
         };
-        for (r, &on) in active.iter().enumerate() {
-            let row = (first + self.rows.start + r) as u64;
-            for (j, copies) in self.copies.iter().enumerate() {
-                // A row acts on the weighted average of the copies of one body (docs/theory.md, section 3). B_Dᵀ λ is
-                // then the same on all of them, as a function in W̃ must be.
-                for copy in copies {
-                    let full = self.b.get(r, j) * copy.weight / self.weights[j];
-                    let b = if on { full } else { 0.0 };
-                    send(Entry::new(row, copy, true, [full, b, bd.get(r, j)]));
+        match &mut self.form {
+            Form::Dense(b) => {
+                let bd = scaling::block(b, &self.scaling, active);
+                for r in 0..active.len() {
+                    (0..b.cols).for_each(|j| send(r, j, b.get(r, j), bd.get(r, j)));
+                }
+            }
+            Form::Coupled(coupled) => {
+                coupled.hold(active);
+                for r in (0..active.len()).filter(|&r| change(r)) {
+                    let (dofs, values) = coupled.row(r);
+                    let entries = dofs.iter().zip(values);
+                    entries.for_each(|(&j, value)| send(r, j as usize, *value, 0.0));
                 }
             }
         }
     }
-}
 
-impl Block {
     /// B B⁺ c over the active rows, the nearest right-hand side that they can satisfy together; `c` on the others.
     /// Where all candidates hold, gaps around a cross point contradict each other, and so do both sides of an obstacle.
     fn consistent(&self, active: &[bool], c: &[f64]) -> Vec<f64> {
         let mut out = c.to_vec();
-        if self.independent {
+        if c.iter().zip(active).all(|(c, on)| !on || *c == 0.0) {
             return out;
         }
-        let rows: Vec<usize> = (0..active.len()).filter(|&r| active[r]).collect();
-        let largest = rows.iter().fold(0.0f64, |a, &r| a.max(c[r].abs()));
-        if rows.len() < 2 || largest == 0.0 {
-            return out;
-        }
-        let b = faer::Mat::from_fn(rows.len(), self.dofs.len(), |i, j| self.b.get(rows[i], j));
-        let range = scaling::range(&b);
-        if range.ncols() == rows.len() {
-            return out;
-        }
-        let mut near = vec![0.0; rows.len()];
-        for l in 0..range.ncols() {
-            let along: f64 = (0..rows.len()).map(|i| range[(i, l)] * c[rows[i]]).sum();
-            near.iter_mut()
-                .enumerate()
-                .for_each(|(i, n)| *n += along * range[(i, l)]);
-        }
-        for (&r, n) in rows.iter().zip(&near) {
-            // A difference of the size of rounding means that both values are the same.
-            if (n - c[r]).abs() > 1e-12 * largest {
-                out[r] = *n;
-            }
+        if let Some((rows, b)) = self.dependent(active) {
+            let near = dependent::consistent(&b, &pick(active, &rows), &pick(c, &rows));
+            rows.iter().zip(near).for_each(|(&r, c)| out[r] = c);
         }
         out
     }
-}
 
-impl Block {
     /// Rows that follow from the active ones: they depend on them, and their right-hand side `c` is the same
     /// combination.
     fn implied(&self, active: &[bool], c: &[f64]) -> Vec<usize> {
-        let mut held = active.to_vec();
-        let mut out = Vec::new();
-        if self.independent {
-            return out;
-        }
-        let rank = |on: &[bool]| {
-            let rows: Vec<usize> = (0..on.len()).filter(|&r| on[r]).collect();
-            let b = faer::Mat::from_fn(rows.len(), self.dofs.len(), |i, j| self.b.get(rows[i], j));
-            if rows.is_empty() {
-                0
-            } else {
-                scaling::range(&b).ncols()
-            }
+        let all = vec![true; active.len()];
+        let Some((rows, b)) = self.dependent(&all) else {
+            return Vec::new();
         };
-        let known = rank(active);
-        for r in (0..active.len()).filter(|&r| !active[r]) {
-            held[r] = true;
-            let follows = known > 0 && rank(&held) == known;
-            if follows && self.consistent(&held, c) == c {
-                out.push(r);
-            }
-            held[r] = false;
-        }
-        out
+        let follow = dependent::implied(&b, &pick(active, &rows), &pick(c, &rows));
+        follow.into_iter().map(|i| rows[i]).collect()
     }
 }
 
+/// The values at these places.
+fn pick<T: Clone>(values: &[T], at: &[usize]) -> Vec<T> {
+    at.iter().map(|&i| values[i].clone()).collect()
+}
+
 /// Sorts this rank's rows by block. Returns the order of the rows and the blocks, with `rows` counted after `first`
-/// local rows.
+/// local rows. Blocks with more than `many` rows are coupled.
 pub(crate) fn collect(
     problem: &Substructures,
     sharing: &Sharing,
-    first: usize,
+    (first, many): (usize, usize),
 ) -> (Vec<usize>, Vec<Block>) {
     let mut order: Vec<usize> = (0..problem.rows.len()).collect();
     order.sort_by_key(|&r| problem.rows[r].block);
     let mut blocks = Vec::new();
-    let mut start = first;
+    let (mut start, mut slots) = (first, 0);
     for rows in order.chunk_by(|&a, &b| problem.rows[a].block == problem.rows[b].block) {
         let terms = rows.iter().flat_map(|&r| &problem.rows[r].terms);
         let dofs = distinct(terms.map(|t| t.0));
-        let mut b = Dense::zeros(rows.len(), dofs.len());
-        for (i, &r) in rows.iter().enumerate() {
-            for (dof, coefficient) in &problem.rows[r].terms {
-                let j = dofs
-                    .binary_search(dof)
-                    .expect("every term's dof was collected");
-                b.set(i, j, b.get(i, j) + coefficient);
-            }
-        }
+        let place = |dof| {
+            let found = dofs.binary_search(dof);
+            found.expect("every term's dof was collected")
+        };
         let copies: Vec<Vec<Copy>> = dofs.iter().map(|dof| sharing.copies[dof].clone()).collect();
         let weights: Vec<f64> = copies
             .iter()
@@ -222,18 +246,41 @@ pub(crate) fn collect(
             .iter()
             .map(|copies| sharing.body_of[copies[0].subdomain as usize])
             .collect();
+        let scaling = even(&weights, &bodies, &copies);
+        let form = if rows.len() > many {
+            let row = |&r: &usize| {
+                let terms = problem.rows[r].terms.iter();
+                terms.map(|t| (place(&t.0) as u32, t.1)).collect()
+            };
+            let rows: Vec<_> = rows.iter().map(row).collect();
+            Form::Coupled(Box::new(Coupled::new(&rows, &scaling)))
+        } else {
+            let mut b = Dense::zeros(rows.len(), dofs.len());
+            for (i, &r) in rows.iter().enumerate() {
+                for (dof, coefficient) in &problem.rows[r].terms {
+                    let j = place(dof);
+                    b.set(i, j, b.get(i, j) + coefficient);
+                }
+            }
+            Form::Dense(b)
+        };
+        let coupled = match &form {
+            Form::Dense(_) => 0,
+            Form::Coupled(_) => dofs.len(),
+        };
         let end = start + rows.len();
         blocks.push(Block {
             rows: start..end,
-            independent: rows.len() > LARGE && scaling::are_independent(&b),
+            slots: slots..slots + coupled,
             dofs,
-            b,
-            scaling: even(&weights, &bodies, &copies),
+            form,
+            scaling,
             weights,
             bodies,
             copies,
         });
         start = end;
+        slots += coupled;
     }
     (order, blocks)
 }
@@ -251,6 +298,13 @@ fn even(sums: &[f64], bodies: &[u32], copies: &[Vec<Copy>]) -> Vec<f64> {
         n => sum * n as f64 / list.len() as f64,
     };
     of_dof.map(weight).collect()
+}
+
+impl Block {
+    /// The entries of all rows; those in `active` hold to begin with.
+    pub(crate) fn start(&mut self, first: usize, active: &[bool], send: &mut impl FnMut(Entry)) {
+        self.hold(first, |_| true, active, send);
+    }
 }
 
 impl Jump {
@@ -289,17 +343,22 @@ impl Jump {
         debug_assert!(active[..self.n_owned_local].iter().all(|&on| on));
         let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
         let mut changed = 0;
-        for block in &self.blocks {
+        for block in &mut self.blocks {
             let (old, new) = (
                 &self.active[block.rows.clone()],
                 &active[block.rows.clone()],
             );
             let here = old.iter().zip(new).filter(|(a, b)| a != b).count();
             if here > 0 {
-                block.entries(self.first, new, &mut |entry: Entry| {
-                    let to = self.rank_of[entry.subdomain as usize];
-                    outgoing[to as usize].push(entry);
-                });
+                block.hold(
+                    self.first,
+                    |r| old[r] != new[r],
+                    new,
+                    &mut |entry: Entry| {
+                        let to = self.rank_of[entry.subdomain as usize];
+                        outgoing[to as usize].push(entry);
+                    },
+                );
             }
             changed += here;
         }

@@ -10,6 +10,8 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::blocks::{self, Block, Entry};
+use super::coupled::slots::{Places, Slots};
+use super::coupled::MANY;
 use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::{Copy, Sharing};
@@ -26,8 +28,10 @@ pub struct JumpColumns {
     pub at: Vec<u32>,
     /// Entry of Z B; zero where only B_D has one, and in rows that do not hold.
     pub b: Vec<f64>,
-    /// Entry of Z B_D.
+    /// Entry of Z B_D; zero in coupled blocks.
     pub bd: Vec<f64>,
+    /// (Ghost, interface position) of each dof in a coupled block; before [`Jump::place`], (ghost, local dof).
+    pub coupled: Places,
     /// Entries of B_gl: (place in the lists above, value in B whether or not the row holds).
     pub contact: Vec<(u32, f64)>,
 }
@@ -67,12 +71,30 @@ impl JumpColumns {
     }
 
     /// v ← B_Dᵀ λ on this subdomain's interface.
-    pub fn bd_transpose(&self, ghost: &[f64], v: &mut [f64]) {
-        self.bd_transpose_of(ghost, v, |_| true);
+    pub fn bd_transpose(&self, ghosts: &ScaledGhosts, v: &mut [f64]) {
+        self.bd_transpose_of(&ghosts.rows, v, |_| true);
+        self.add_coupled(ghosts, v);
+    }
+
+    /// v ← B_D,locᵀ λ on this subdomain's interface; `between` says of each ghost row whether it is a row of B_gl.
+    pub fn bd_transpose_inside(&self, ghosts: &ScaledGhosts, between: &[bool], v: &mut [f64]) {
+        self.bd_transpose_of(&ghosts.rows, v, |r| !between[r]);
+    }
+
+    /// v ← B_D,glᵀ λ on this subdomain's interface.
+    pub fn bd_transpose_between(&self, ghosts: &ScaledGhosts, between: &[bool], v: &mut [f64]) {
+        self.bd_transpose_of(&ghosts.rows, v, |r| between[r]);
+        self.add_coupled(ghosts, v);
+    }
+
+    fn add_coupled(&self, ghosts: &ScaledGhosts, v: &mut [f64]) {
+        for &(slot, at) in &self.coupled {
+            v[at as usize] += ghosts.dofs[slot as usize];
+        }
     }
 
     /// v ← B_Dᵀ λ with the ghost rows that `rows` selects.
-    pub fn bd_transpose_of(&self, ghost: &[f64], v: &mut [f64], rows: impl Fn(usize) -> bool) {
+    fn bd_transpose_of(&self, ghost: &[f64], v: &mut [f64], rows: impl Fn(usize) -> bool) {
         v.fill(0.0);
         for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
             if rows(r as usize) {
@@ -88,11 +110,33 @@ impl JumpColumns {
         }
     }
 
-    /// ghost ← ghost + B_D y.
-    pub fn add_bd(&self, y: &[f64], ghost: &mut [f64]) {
+    /// Adds this subdomain's part of B_D y to the ghosts.
+    pub fn add_bd(&self, y: &[f64], ghosts: &mut ScaledGhosts) {
+        let ghost = &mut ghosts.rows;
         for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
             ghost[r as usize] += b * y[i as usize];
         }
+        for &(slot, at) in &self.coupled {
+            ghosts.dofs[slot as usize] += y[at as usize];
+        }
+    }
+}
+
+/// What the subdomains of a rank exchange with the owners of multipliers for B_Dᵀ λ and B_D y
+/// ([`Stiffness::fetch_scaled`](crate::feti::operators::stiffness::Stiffness::fetch_scaled) and `sum_scaled`).
+#[derive(Debug, Clone, Default)]
+pub struct ScaledGhosts {
+    /// By ghost row: λ, or sums of entries of B_D times y.
+    pub rows: Vec<f64>,
+    /// By ghost dof of coupled blocks: B_Dᵀ λ, or sums of y.
+    pub dofs: Vec<f64>,
+}
+
+impl ScaledGhosts {
+    /// Sets all to zero.
+    pub fn clear(&mut self) {
+        self.rows.fill(0.0);
+        self.dofs.fill(0.0);
     }
 }
 
@@ -126,6 +170,8 @@ pub struct Jump {
     pub active: Vec<bool>,
     /// Blocks of the owned rows of B_gl.
     pub blocks: Vec<Block>,
+    /// The dofs of coupled blocks.
+    pub slots: Slots,
     /// For each owned row of B_gl, its index among the rows that this rank provides.
     pub(in crate::feti) order: Vec<usize>,
     /// First owned local row of each local subdomain, and the end. A subdomain has the rows of the dofs in which it is
@@ -164,6 +210,16 @@ impl Jump {
 
     /// Builds Z B and Z B_D with the rows that hold to begin with. Collective.
     pub fn new(comm: &SimpleCommunicator, problem: &Substructures, sharing: &Sharing) -> Jump {
+        Jump::coupling(comm, problem, sharing, MANY)
+    }
+
+    /// The same; blocks with more than `many` rows are coupled. Collective.
+    pub fn coupling(
+        comm: &SimpleCommunicator,
+        problem: &Substructures,
+        sharing: &Sharing,
+        many: usize,
+    ) -> Jump {
         let rank = comm.rank() as u32;
         let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
         let mut send = |entry: Entry| {
@@ -191,12 +247,13 @@ impl Jump {
             }
         }
 
-        let (order, blocks) = blocks::collect(problem, sharing, n_owned_local);
+        let (order, mut blocks) = blocks::collect(problem, sharing, (n_owned_local, many));
         let locals_hold = std::iter::repeat_n(true, n_owned_local);
         let contacts_hold = order.iter().map(|&r| problem.rows[r].holds);
         let active: Vec<bool> = locals_hold.chain(contacts_hold).collect();
-        for block in &blocks {
-            block.entries(first, &active[block.rows.clone()], &mut send);
+        for block in &mut blocks {
+            let active = &active[block.rows.clone()];
+            block.start(first, active, &mut send);
         }
 
         let rows: Vec<_> = order.iter().map(|&r| &problem.rows[r]).collect();
@@ -225,6 +282,10 @@ impl Jump {
         jump.held = jump.gap.clone();
         jump.reconcile(|_| true);
         jump.receive(problem, sharing, exchange(comm, outgoing));
+        let (slots, places) = Slots::new(comm, &jump.blocks, &jump.rank_of, &jump.subdomains);
+        let columns = jump.columns.iter_mut().zip(places);
+        columns.for_each(|(columns, places)| columns.coupled = places);
+        jump.slots = slots;
         jump
     }
 
@@ -338,7 +399,9 @@ impl Jump {
     pub fn place(&mut self, j: usize, interface: &[u32]) {
         let mut position: Vec<(u32, u32)> = interface.iter().copied().zip(0..).collect();
         position.sort_unstable();
-        for at in &mut self.columns[j].at {
+        let columns = &mut self.columns[j];
+        let coupled = columns.coupled.iter_mut().map(|c| &mut c.1);
+        for at in columns.at.iter_mut().chain(coupled) {
             let found = position.binary_search_by_key(at, |p| p.0);
             *at = position[found.expect("a row's dof is an interface dof")].1;
         }

@@ -4,15 +4,12 @@
 //! an average: jumps of any size in the coefficients cost no digits. Inverting B D⁻¹ Bᵀ would cost digits. B B_Dᵀ B = B
 //! follows from B P_D = B.
 
-use crate::linalg::dense::{self, multiply, Dense, Scratch};
+use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
 
 /// Rank tolerance of a block: singular values below this, relative to the largest, are zero. Entries of B are of order
 /// one, and nonzero singular values are far larger.
 const RANK: f64 = 1e-10;
-
-/// Weights that differ by more than this would cost more than six digits in B D⁻¹ Bᵀ.
-const STEEP: f64 = 1e6;
 
 /// B_D for the fully redundant ±1 pairs between q copies of one dof: entry of row (a, b) on copy c.
 pub fn pair_entry(weights: &[f64], (a, b): (usize, usize), c: usize) -> f64 {
@@ -72,51 +69,6 @@ pub fn block(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
         }
     }
     out
-}
-
-/// B_D = (B D⁻¹ Bᵀ)⁻¹ B D⁻¹ of the rows that hold in a large block of independent rows. It costs a Cholesky
-/// factorisation; where D varies so much that this would cost digits, B_D is computed as in [`block`].
-pub fn independent(b: &Dense, weights: &[f64], active: &[bool]) -> Dense {
-    let ends = weights.iter().fold([f64::INFINITY, 0.0], |[low, high], w| {
-        [w.min(low), w.max(high)]
-    });
-    let rows: Vec<usize> = (0..b.rows).filter(|&r| active[r]).collect();
-    let (low, high) = (ends[0], ends[1]);
-    if rows.is_empty() || high > STEEP * low {
-        return block(b, weights, active);
-    }
-    // low D⁻¹: the factor cancels.
-    let held = Dense::from_fn(rows.len(), b.cols, |i, j| b.get(rows[i], j));
-    let mut scaled = Dense::from_fn(rows.len(), b.cols, |i, j| held.get(i, j) * low / weights[j]);
-    let mut g = Dense::zeros(rows.len(), rows.len());
-    multiply(
-        g.view_mut(),
-        false,
-        1.0,
-        scaled.view(),
-        held.view().transpose(),
-    );
-    if dense::cholesky(g.view_mut(), &mut Scratch::default()).is_err() {
-        return block(b, weights, active);
-    }
-    dense::solve_lower(g.view(), scaled.view_mut());
-    dense::solve_lower_transpose(g.view(), scaled.view_mut());
-    let mut out = Dense::zeros(b.rows, b.cols);
-    for (i, &r) in rows.iter().enumerate() {
-        for j in 0..b.cols {
-            out.set(r, j, scaled.get(i, j));
-        }
-    }
-    out
-}
-
-/// Whether the rows of B are independent.
-pub fn are_independent(b: &Dense) -> bool {
-    let mut g = Dense::zeros(b.rows, b.rows);
-    multiply(g.view_mut(), false, 1.0, b.view(), b.view().transpose());
-    let size: Vec<f64> = (0..b.rows).map(|r| g.get(r, r)).collect();
-    dense::cholesky(g.view_mut(), &mut Scratch::default()).is_ok()
-        && (0..b.rows).all(|r| g.get(r, r).powi(2) > RANK * size[r])
 }
 
 /// An orthonormal basis of range B for a matrix of a few rows.

@@ -188,8 +188,8 @@ impl Check<'_> {
         let mut work = self.torn();
         let first = self.dual.multipliers()?;
         stiffness.jump_of(&work, &first)?;
-        let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
-        stiffness.dual_halo.fetch(&first, &mut ghost)?;
+        let mut ghost = stiffness.scaled_ghosts();
+        stiffness.fetch_scaled(&first, &mut ghost)?;
         for (w, columns) in work.iter_mut().zip(columns) {
             columns.bd_transpose(&ghost, &mut w.y);
         }

@@ -62,7 +62,7 @@ impl LinearMethod {
         let z = correction(dual, loads)?;
 
         // B_Dᵀ δ
-        let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+        let mut ghost = stiffness.scaled_ghosts();
         let rows = dual.multipliers()?;
         {
             let jump = &stiffness.jump;
@@ -73,7 +73,7 @@ impl LinearMethod {
                 }
             }
         }
-        stiffness.dual_halo.fetch(&rows, &mut ghost)?;
+        stiffness.fetch_scaled(&rows, &mut ghost)?;
         let (locals, columns) = (&stiffness.locals, &stiffness.jump.columns);
         let parts = stiffness.team.map(problem.local.len(), |j| {
             let (k, interface) = (&problem.local[j].k, &locals[j].gamma().interface);
@@ -111,15 +111,15 @@ fn correction(dual: &Dual, loads: Loads) -> Result<Vec<(Vec<f64>, Vec<f64>)>> {
             ..loads
         },
     )?;
-    let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
+    let mut ghost = stiffness.scaled_ghosts();
     for (columns, g) in columns.iter().zip(&at.loads.g) {
         columns.add_bd(g, &mut ghost); /*                       λ ← B_D g                 */
     }
-    stiffness.dual_halo.sum(&ghost, &at.lambda)?;
+    stiffness.sum_scaled(&ghost, &at.lambda)?;
     at.balance(dual)?; /*                                       λ ← λ + Q G (GᵀQG)⁻¹ (…)  */
     at.place(dual)?; /*                                         y ← S̃⁺(g − Bᵀλ) + R α     */
     stiffness.jump_of(&at.residual.work, &at.residual.r)?;
-    stiffness.dual_halo.fetch(&at.residual.r, &mut ghost)?;
+    stiffness.fetch_scaled(&at.residual.r, &mut ghost)?;
     stiffness.team.for_each(&mut at.residual.work, |j, w| {
         columns[j].bd_transpose(&ghost, &mut w.v);
         w.y.iter_mut().zip(&w.v).for_each(|(y, v)| *y -= v); /* z ← y − B_Dᵀ B y          */

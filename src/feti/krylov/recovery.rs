@@ -116,8 +116,8 @@ pub(super) fn displacements(
     let jump = &residual.r;
     stiffness.jump_of(work, jump)?;
     jump.array_mut()?[stiffness.jump.n_owned_local..].fill(0.0);
-    let mut ghost = vec![0.0; stiffness.jump.ghosts.len()];
-    stiffness.dual_halo.fetch(jump, &mut ghost)?;
+    let mut ghost = stiffness.scaled_ghosts();
+    stiffness.fetch_scaled(jump, &mut ghost)?;
     let columns = &stiffness.jump.columns;
     stiffness.team.for_each(work, |j, w| {
         columns[j].bd_transpose(&ghost, &mut w.v);

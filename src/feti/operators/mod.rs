@@ -1,5 +1,6 @@
 //! F, M⁻¹ and P as products, and as PETSc operators.
 
+pub mod coupling;
 pub mod dual;
 pub mod preconditioner;
 pub mod products;

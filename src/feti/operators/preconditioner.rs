@@ -15,6 +15,7 @@ use mpi::topology::SimpleCommunicator;
 use super::products::Products;
 use super::stiffness::Stiffness;
 use super::work::{Columns, Work};
+use crate::feti::jump::operator::ScaledGhosts;
 use crate::feti::lifting::correction::Lifting;
 use crate::feti::settings::{PcType, Precision};
 use crate::feti::subdomain::problem::LocalProblem;
@@ -41,7 +42,7 @@ pub struct Preconditioner {
     single: Vec<Option<Arc<Single>>>,
     /// Products with S for subdomains that share it.
     products: Products,
-    buffers: RefCell<(Vec<Work>, Vec<f64>)>,
+    buffers: RefCell<(Vec<Work>, ScaledGhosts)>,
 }
 
 impl Preconditioner {
@@ -77,7 +78,7 @@ impl Preconditioner {
             k_gamma,
             single,
             products: Products::new(&stiffness.locals, |most| stiffness.batches(most)),
-            buffers: RefCell::new((stiffness.work(), vec![0.0; stiffness.jump.ghosts.len()])),
+            buffers: RefCell::new((stiffness.work(), stiffness.scaled_ghosts())),
         }
     }
 
@@ -93,7 +94,7 @@ impl Preconditioner {
         }
         let (work, ghost) = &mut *self.buffers.borrow_mut();
         let columns = &stiffness.jump.columns;
-        stiffness.dual_halo.fetch(lambda, ghost)?;
+        stiffness.fetch_scaled(lambda, ghost)?;
         let (received, kind, k_gamma) = (&*ghost, self.kind, &self.k_gamma);
         let team = &stiffness.team;
         team.for_each(work, |j, w| {
@@ -114,11 +115,11 @@ impl Preconditioner {
         if let Some(lifting) = lifting {
             lifting.finish(stiffness, work, |work| self.multiply(stiffness, work))?;
         }
-        ghost.fill(0.0);
+        ghost.clear();
         for (w, columns) in work.iter().zip(columns) {
             columns.add_bd(&w.y, ghost); /*                   out ← B_D y        */
         }
-        stiffness.dual_halo.sum(ghost, out)
+        stiffness.sum_scaled(ghost, out)
     }
 }
 
@@ -163,7 +164,7 @@ impl Preconditioner {
         };
         let mut blocks: Vec<Columns> = locals.iter().map(room).collect();
         for (c, lambda) in lambdas.iter().enumerate() {
-            stiffness.dual_halo.fetch(lambda, ghost)?;
+            stiffness.fetch_scaled(lambda, ghost)?;
             let received = &*ghost;
             stiffness.team.for_each(&mut blocks, |j, b| {
                 columns[j].bd_transpose(received, b.v.col_mut(c)); /* v ← B_Dᵀ λ   */
@@ -179,11 +180,11 @@ impl Preconditioner {
             lifting.finish_many(stiffness, &mut blocks, multiply)?;
         }
         for (c, out) in outs.iter().enumerate() {
-            ghost.fill(0.0);
+            ghost.clear();
             for (b, columns) in blocks.iter().zip(columns) {
                 columns.add_bd(b.y.col(c), ghost); /*             out ← B_D y      */
             }
-            stiffness.dual_halo.sum(ghost, out)?;
+            stiffness.sum_scaled(ghost, out)?;
         }
         Ok(())
     }

@@ -14,7 +14,6 @@
 //!     (F + C)⁻¹ ≈ Π M⁻¹ Πᵀ + X
 //! ```
 
-use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
 use crate::feti::jump::scaling;
 use crate::linalg::dense::Dense;
@@ -44,14 +43,18 @@ impl Springs {
     /// Computes X again for the rows that hold now.
     pub fn renew(&mut self, jump: &Jump) {
         self.dependent.clear();
-        let may_depend = |b: &&Block| b.rows.len() > 1 && !b.independent;
-        for block in jump.blocks.iter().filter(may_depend) {
-            let rows: Vec<usize> = block.rows.clone().filter(|&r| jump.active[r]).collect();
+        for block in jump.blocks.iter().filter(|b| b.rows.len() > 1) {
+            let start = block.rows.start;
+            let Some((members, b)) = block.dependent(&jump.active[block.rows.clone()]) else {
+                continue;
+            };
+            let held = |&i: &usize| jump.active[start + members[i]];
+            let own: Vec<usize> = (0..members.len()).filter(held).collect();
+            let rows: Vec<usize> = own.iter().map(|&i| start + members[i]).collect();
             if rows.len() < 2 {
                 continue;
             }
-            let own: Vec<usize> = rows.iter().map(|r| r - block.rows.start).collect();
-            let n = forceless(&block.b, &own);
+            let n = forceless(&b, &own);
             if n.cols > 0 {
                 let c: Vec<f64> = rows.iter().map(|&r| self.compliance[r]).collect();
                 self.dependent.push((rows, inverse(&n, &c)));

@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 use mpi::topology::SimpleCommunicator;
 
+use super::coupling::Coupling;
 use super::products::Products;
 use super::springs::Springs;
 use super::work::Work;
@@ -43,6 +44,8 @@ pub struct Stiffness {
     pub primal: PrimalProblem,
     /// Exchanges multipliers between their owners and the ranks of the subdomains.
     pub dual_halo: Halo,
+    /// Exchanges the dofs of coupled blocks, where there are any.
+    pub(super) coupling: Option<Coupling>,
     /// The threads of this rank.
     pub team: Team,
     /// Products with T for subdomains that share it.
@@ -70,15 +73,16 @@ impl Stiffness {
         primal: PrimalProblem,
         dual_halo: Halo,
         team: Team,
-    ) -> Stiffness {
+    ) -> Result<Stiffness> {
         let buffers = Buffers {
             work: locals.iter().map(Work::for_subdomain).collect(),
             ghost: vec![0.0; jump.ghosts.len()],
         };
         let products = Products::new(&locals, |most| batches(&locals, most));
-        Stiffness {
+        Ok(Stiffness {
             session: session.clone(),
             products,
+            coupling: Coupling::new(session, &jump)?,
             jump,
             locals,
             space,
@@ -88,7 +92,7 @@ impl Stiffness {
             refinement: None,
             springs: None,
             buffers: RefCell::new(buffers),
-        }
+        })
     }
 
     /// The ranks.
@@ -325,17 +329,18 @@ impl Stiffness {
     /// removes these functionals from the jumps inside bodies. It is not used for B_gl, which acts on weighted averages
     /// of the copies: N does not commute with these averages. Collective.
     pub fn range_projection(&self, lambda: &PetscVec, out: &PetscVec) -> Result<()> {
-        let Buffers { work, ghost } = &mut *self.buffers.borrow_mut();
-        self.dual_halo.fetch(lambda, ghost)?;
+        let work = &mut self.buffers.borrow_mut().work;
+        let mut ghosts = self.scaled_ghosts();
+        self.fetch_scaled(lambda, &mut ghosts)?;
         let contact = &self.jump.ghost_is_contact;
-        let mut inside = vec![0.0; ghost.len()];
-        let mut between = vec![0.0; ghost.len()];
+        let mut inside = vec![0.0; contact.len()];
+        let mut between = inside.clone();
         for (j, w) in work.iter_mut().enumerate() {
             let columns = &self.jump.columns[j];
-            columns.bd_transpose_of(ghost, &mut w.y, |r| !contact[r]);
+            columns.bd_transpose_inside(&ghosts, contact, &mut w.y);
             self.locals[j].gamma().basis.remove(&mut w.y); /*     y ← N B_D,locᵀ λ */
             columns.add_b(&w.y, &mut inside); /*          inside ← B y     */
-            columns.bd_transpose_of(ghost, &mut w.y, |r| contact[r]);
+            columns.bd_transpose_between(&ghosts, contact, &mut w.y);
             columns.add_b(&w.y, &mut between); /*         between ← B B_D,glᵀ λ */
         }
         for ((sum, other), contact) in inside.iter_mut().zip(&between).zip(contact) {

@@ -33,8 +33,7 @@ impl BodyGraph {
         for block in &jump.blocks {
             let bodies = distinct(block.bodies.iter().copied());
             for r in 0..block.rows.len() {
-                let inside = (0..block.dofs.len()).filter(|&j| block.b.get(r, j) != 0.0);
-                terms.push(inside.map(|j| block.bodies[j]).collect());
+                terms.push(block.bodies_of(r));
                 touched.push(bodies.clone());
             }
             for &a in &bodies {

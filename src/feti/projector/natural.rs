@@ -202,7 +202,8 @@ impl NaturalCoarse {
         largest
     }
 
-    /// diag(B_D diag(K) B_Dᵀ) on the owned rows. Collective.
+    /// diag(B_D diag(K) B_Dᵀ) on the owned rows, with diag(G)⁻¹ in place of G⁻¹ in coupled blocks: any positive
+    /// diagonal gives a projector. Collective.
     pub fn superlumped(&self, problem: &Substructures, stiffness: &Stiffness) -> Result<Vec<f64>> {
         let jump = &stiffness.jump;
         let mut ghost = vec![0.0; jump.ghosts.len()];
@@ -215,7 +216,13 @@ impl NaturalCoarse {
         }
         let q = PetscVec::mpi(&stiffness.session, jump.n_owned)?;
         stiffness.dual_halo.sum(&ghost, &q)?;
-        q.to_vec()
+        let mut q = q.to_vec()?;
+        let entry = |j: usize, at: usize| {
+            let dof = stiffness.locals[j].gamma().interface[at] as usize;
+            problem.local[j].k.get(dof, dof)
+        };
+        stiffness.add_diagonal(entry, &mut q)?;
+        Ok(q)
     }
 
     /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, zero on the others. A

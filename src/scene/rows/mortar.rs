@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::bounds::Checks;
 use super::points::{Inequality, Point};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fem::Form;
 use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link};
@@ -95,31 +95,6 @@ pub(crate) fn collect(
         }
     }
     Ok((out, notes))
-}
-
-/// Most rows of a block: the rows of B_D of a block are full, so that memory grows with the square of their number.
-const MOST: usize = 2500;
-
-/// Checks that no block has too many rows.
-pub(crate) fn check_sizes(
-    bodies: &[Body],
-    interfaces: &[Interface],
-    rows: &[MortarRow],
-) -> Result<()> {
-    let mut counts: HashMap<u64, usize> = HashMap::new();
-    for row in rows {
-        let count = counts.entry(row.block).or_default();
-        *count += 1;
-        if *count > MOST {
-            let [a, b] = interfaces[row.interface].bodies.map(|k| &bodies[k].spec);
-            return Err(Error::Input(format!(
-                "{}the joint of bodies `{}` and `{}`, whose nodes do not match, belongs to more than {MOST} rows with \
-                 common degrees of freedom (fewer were expected: coarser sides, or matching nodes)",
-                b.written, a.name, b.name
-            )));
-        }
-    }
-    Ok(())
 }
 
 /// Nodes that are tied at a point.

@@ -69,3 +69,44 @@ fn an_interior_that_nothing_holds_is_reported() {
     let sym = Arc::new(Symbolic::new(&k, &[], Some(&x)));
     assert!(PartialCholesky::new(&k, sym).is_err());
 }
+
+#[test]
+fn dofs_that_follow_from_others_are_left_out() {
+    // Two copies of a few rows and columns of a regular matrix.
+    let (k, _) = grid_laplacian(9, 8, 0.5);
+    let twins = [3u32, 4, 40, 71];
+    let n = k.n();
+    let of = |i: usize| if i < n { i } else { twins[i - n] as usize };
+    let m = n + twins.len();
+    let mut triplets = Vec::new();
+    for i in 0..m {
+        for j in 0..m {
+            let value = k.get(of(i), of(j));
+            if value != 0.0 {
+                triplets.push((i as u32, j as u32, value));
+            }
+        }
+    }
+    let double = Csr::from_triplets(m, &triplets);
+    let symbolic = Arc::new(Symbolic::new(&double, &[], None));
+    let (factor, left) = PartialCholesky::semidefinite(&double, symbolic, 1e-12);
+    let mut left: Vec<usize> = left.iter().map(|&i| of(i as usize)).collect();
+    left.sort_unstable();
+    assert_eq!(left, [3, 4, 40, 71]);
+    // What is in the range is solved for.
+    let u = random(m, 8);
+    let mut b = vec![0.0; m];
+    double.mul(&u, &mut b);
+    let mut x = b.clone();
+    factor.solve(&mut x);
+    let mut back = vec![0.0; m];
+    double.mul(&x, &mut back);
+    let away = back
+        .iter()
+        .zip(&b)
+        .fold(0.0f64, |a, (p, q)| a.max((p - q).abs()));
+    assert!(away < 1e-12, "{away:.1e}");
+    let zeros =
+        (0..n).filter(|&i| x[i] == 0.0).count() + (n..m).filter(|&i| x[i].abs() < 1e-100).count();
+    assert!(zeros >= 1 && x.iter().filter(|x| x.abs() < 1e-100).count() == twins.len());
+}

@@ -1,0 +1,110 @@
+//! Rows of a coupled block that follow from others, and multipliers without forces.
+//!
+//! ```text
+//!     Bᵀ N = 0,      Π = I − N (Nᵀ N)⁻¹ Nᵀ      the orthogonal projection onto range B
+//! ```
+//!
+//! B_Dᵀ is that of the other rows times Π: as for dense blocks B B_Dᵀ = Π, and B_D y has no part in N. Most sets of
+//! rows are independent by their pattern, and then nothing has to be computed.
+
+use super::by_rows::ByRows;
+use super::pattern::{Matrices, FAINT};
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::Semidefinite;
+use crate::linalg::sorted::distinct;
+
+/// With D = 1, a row with a pivot below this fraction of its diagonal entry follows from others. Rounding leaves 1e-15.
+const FOLLOWS: f64 = 1e-12;
+
+/// Entries of N below this are rounding; the largest of each column is at least one.
+const NOTHING: f64 = 1e-11;
+
+/// N, column by column. Each belongs to a row that follows from others.
+#[derive(Debug)]
+pub struct Dependencies {
+    columns: Vec<Vec<(u32, f64)>>,
+    /// Nᵀ N.
+    gram: Semidefinite,
+}
+
+impl Dependencies {
+    /// The dependencies among the rows in `on`, and the rows that are left out of a set of independent ones; `None` if
+    /// the rows are independent.
+    pub fn new(b: &Matrices, on: &[bool]) -> Option<(Dependencies, Vec<u32>)> {
+        let held = peeled(b, on);
+        if !held.contains(&true) {
+            return None;
+        }
+        let mut plain = ByRows::new(b, &vec![1.0; b.columns.n()]);
+        let left = plain.hold(b, &held, FOLLOWS);
+        if left.is_empty() {
+            return None;
+        }
+        let column = |&d: &u32| {
+            let entries = (0..).zip(plain.combination(d).into_iter().map(|v| -v));
+            let mut out: Vec<(u32, f64)> = entries.filter(|e| e.1.abs() > NOTHING).collect();
+            out.push((d, 1.0));
+            out
+        };
+        let columns: Vec<_> = left.iter().map(column).collect();
+        let p = columns.len();
+        let mut gram = Dense::zeros(p, p);
+        let mut full = vec![0.0; on.len()];
+        for (i, column) in columns.iter().enumerate() {
+            column.iter().for_each(|&(r, v)| full[r as usize] = v);
+            for (j, other) in columns.iter().enumerate() {
+                gram.set(j, i, other.iter().map(|&(r, v)| v * full[r as usize]).sum());
+            }
+            column.iter().for_each(|&(r, _)| full[r as usize] = 0.0);
+        }
+        let gram = Semidefinite::new(&gram);
+        Some((Dependencies { columns, gram }, left))
+    }
+
+    /// λ ← Π λ.
+    pub fn project(&self, lambda: &mut [f64]) {
+        let of = |c: &Vec<(u32, f64)>| c.iter().map(|&(r, v)| v * lambda[r as usize]).sum();
+        let mut along: Vec<f64> = self.columns.iter().map(of).collect();
+        self.gram.solve(&mut along);
+        for (column, a) in self.columns.iter().zip(along) {
+            column
+                .iter()
+                .for_each(|&(r, v)| lambda[r as usize] -= a * v);
+        }
+    }
+
+    /// The rows that are not zero in N.
+    pub fn support(&self) -> Vec<usize> {
+        let rows = self.columns.iter().flatten();
+        distinct(rows.map(|e| e.0 as usize))
+    }
+}
+
+/// `on` without rows that have a dof that no other row in `on` has, again and again until there are none: all that may
+/// depend on each other by the pattern of B.
+fn peeled(b: &Matrices, on: &[bool]) -> Vec<bool> {
+    let Matrices { rows, columns } = b;
+    let mut held = on.to_vec();
+    let users = |j| columns.row(j).0.iter().filter(|&&r| on[r as usize]).count();
+    let mut users: Vec<usize> = (0..columns.n()).map(users).collect();
+    let mut queue: Vec<usize> = (0..users.len()).filter(|&j| users[j] == 1).collect();
+    while let Some(j) = queue.pop() {
+        let mut those = columns.row(j).0.iter().map(|&r| r as usize);
+        let Some(r) = those.find(|&r| held[r]) else {
+            continue;
+        };
+        let largest = rows.row(r).1.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        if rows.get(r, j).abs() <= FAINT * largest {
+            continue;
+        }
+        held[r] = false;
+        for &k in rows.row(r).0 {
+            let k = k as usize;
+            users[k] -= 1;
+            if users[k] == 1 {
+                queue.push(k);
+            }
+        }
+    }
+    held
+}

@@ -1,0 +1,66 @@
+//! The dofs of coupled blocks and their copies: where B_Dᵀ λ goes to and B_D y comes from.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use crate::feti::jump::blocks::Block;
+use crate::linalg::sorted::distinct;
+use crate::parallel::exchange::{any, exchange_words, offsets};
+
+/// The dofs of coupled blocks, numbered block after block on the rank that owns the block.
+#[derive(Debug, Clone, Default)]
+pub struct Slots {
+    /// Whether some rank has a coupled block.
+    pub anywhere: bool,
+    /// Number of dofs of this rank's blocks.
+    pub n_owned: usize,
+    /// Global number of each dof that a subdomain of this rank has, increasing.
+    pub ghosts: Vec<u32>,
+}
+
+/// (Index among the ghosts, local dof) of the dofs in coupled blocks that a subdomain has.
+pub type Places = Vec<(u32, u32)>;
+
+impl Slots {
+    /// Tells the subdomains which of their dofs are in coupled blocks. Also returns these places for each local
+    /// subdomain; `subdomains` lists them. Collective.
+    pub fn new(
+        comm: &SimpleCommunicator,
+        blocks: &[Block],
+        rank_of: &[u32],
+        subdomains: &[u32],
+    ) -> (Slots, Vec<Places>) {
+        let mut places: Vec<Places> = vec![Vec::new(); subdomains.len()];
+        let n_owned = blocks.iter().map(|b| b.slots.len()).sum();
+        if !any(comm, n_owned > 0) {
+            return (Slots::default(), places);
+        }
+        let (first, _) = offsets(comm, n_owned);
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); comm.size() as usize];
+        for block in blocks {
+            for (slot, copies) in block.slots.clone().zip(block.copies()) {
+                for copy in copies {
+                    let place = u64::from(copy.subdomain) << 32 | u64::from(copy.local);
+                    let to = &mut outgoing[rank_of[copy.subdomain as usize] as usize];
+                    to.extend([place, (first + slot) as u64]);
+                }
+            }
+        }
+        let received = exchange_words(comm, outgoing).concat();
+        let pairs = || received.chunks_exact(2).map(|w| (w[0], w[1] as u32));
+        let ghosts = distinct(pairs().map(|p| p.1));
+        for (place, slot) in pairs() {
+            let j = subdomains.binary_search(&((place >> 32) as u32));
+            let ghost = ghosts.binary_search(&slot).expect("it was collected");
+            places[j.expect("it was sent to the rank of the subdomain")]
+                .push((ghost as u32, place as u32));
+        }
+        places.iter_mut().for_each(|list| list.sort_unstable());
+        let slots = Slots {
+            anywhere: true,
+            n_owned,
+            ghosts,
+        };
+        (slots, places)
+    }
+}

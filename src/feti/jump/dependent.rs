@@ -1,0 +1,59 @@
+//! Rows that depend on each other: right-hand sides that they can satisfy together, and rows that follow from others.
+
+use super::scaling;
+use crate::linalg::dense::Dense;
+
+/// B B⁺ c over the active rows of B, the nearest right-hand side that they can satisfy together; `c` on the others.
+pub fn consistent(b: &Dense, active: &[bool], c: &[f64]) -> Vec<f64> {
+    let mut out = c.to_vec();
+    let rows: Vec<usize> = (0..active.len()).filter(|&r| active[r]).collect();
+    let largest = rows.iter().fold(0.0f64, |a, &r| a.max(c[r].abs()));
+    if rows.len() < 2 || largest == 0.0 {
+        return out;
+    }
+    let b = faer::Mat::from_fn(rows.len(), b.cols, |i, j| b.get(rows[i], j));
+    let range = scaling::range(&b);
+    if range.ncols() == rows.len() {
+        return out;
+    }
+    let mut near = vec![0.0; rows.len()];
+    for l in 0..range.ncols() {
+        let along: f64 = (0..rows.len()).map(|i| range[(i, l)] * c[rows[i]]).sum();
+        near.iter_mut()
+            .enumerate()
+            .for_each(|(i, n)| *n += along * range[(i, l)]);
+    }
+    for (&r, n) in rows.iter().zip(&near) {
+        // A difference of the size of rounding means that both values are the same.
+        if (n - c[r]).abs() > 1e-12 * largest {
+            out[r] = *n;
+        }
+    }
+    out
+}
+
+/// Rows of B that follow from the active ones: they depend on them, and their right-hand side `c` is the same
+/// combination.
+pub fn implied(b: &Dense, active: &[bool], c: &[f64]) -> Vec<usize> {
+    let mut held = active.to_vec();
+    let mut out = Vec::new();
+    let rank = |on: &[bool]| {
+        let rows: Vec<usize> = (0..on.len()).filter(|&r| on[r]).collect();
+        let b = faer::Mat::from_fn(rows.len(), b.cols, |i, j| b.get(rows[i], j));
+        if rows.is_empty() {
+            0
+        } else {
+            scaling::range(&b).ncols()
+        }
+    };
+    let known = rank(active);
+    for r in (0..active.len()).filter(|&r| !active[r]) {
+        held[r] = true;
+        let follows = known > 0 && rank(&held) == known;
+        if follows && consistent(b, &held, c) == c {
+            out.push(r);
+        }
+        held[r] = false;
+    }
+    out
+}
