@@ -107,7 +107,7 @@ impl<'s> Covered<'s> {
         Covered {
             face,
             samples,
-            modified: here.iter().map(|v| modified(kind, v.values)).collect(),
+            modified: here.iter().map(|v| positive(kind, v.values)).collect(),
             own: here.iter().map(|v| v.values).collect(),
             other: there.collect(),
             weights: here
@@ -215,7 +215,7 @@ fn carriers(
             .collect();
         let weights = crate::fem::element::side_weights(face.kind, side.dim(), &x);
         let middle = [0, 1, 2].map(|d| x.iter().map(|x| x[d]).sum::<f64>() / x.len() as f64);
-        let areas = modified(face.kind, weights.area);
+        let areas = positive(face.kind, weights.area);
         for (&k, area) in face.nodes.iter().zip(areas) {
             whole[k as usize] += area * factor(middle);
         }
@@ -224,9 +224,15 @@ fn carriers(
     (0..n).map(carries).collect()
 }
 
+/// Whether the shape functions of a face have positive integrals. At the corners of triangles of 6 and quadrilaterals
+/// of 8 nodes these are zero and negative.
+pub fn has_positive_integrals(kind: CellKind) -> bool {
+    !matches!(kind, CellKind::Triangle6 | CellKind::Quad8)
+}
+
 /// Functions with positive integrals whose sum is 1, from shape functions (or their integrals).
-fn modified(kind: CellKind, values: [f64; 9]) -> [f64; 9] {
-    if !matches!(kind, CellKind::Triangle6 | CellKind::Quad8) {
+pub fn positive(kind: CellKind, values: [f64; 9]) -> [f64; 9] {
+    if has_positive_integrals(kind) {
         return values;
     }
     let mut out = values;

@@ -23,6 +23,6 @@ mod side;
 mod space;
 mod tree;
 
-pub use dual::{rows, Row};
+pub use dual::{has_positive_integrals, positive, rows, Row};
 pub use sample::{samples, Sample};
 pub use side::{across, Face, Side};

@@ -20,6 +20,7 @@ mod mesh_mistakes;
 mod meshes;
 mod mortar;
 mod mortar_rings;
+mod mortar_second_order;
 mod scaling;
 mod solution;
 mod springs;

@@ -1,6 +1,6 @@
 //! Sides whose nodes do not match: one of them carries the multipliers, and mortar integrals join it to the other.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::interface::{Interface, Shape};
 use super::matching::FAR;
@@ -84,6 +84,23 @@ pub(crate) fn interface(
             area: rows.iter().map(|r| r.area).sum(),
             surfaces: Some(Box::new(surfaces)),
         }),
+    })
+}
+
+/// Whether contact between sides whose nodes match takes mortar rows all the same: on triangles of 6 and quadrilaterals
+/// of 8 nodes functions of corners have integrals that are not positive, and the force at a corner says nothing of the
+/// pressure there.
+pub(crate) fn is_for_contact(bodies: &[Body], interface: &Interface) -> bool {
+    if interface.shape != Shape::Face || bodies[0].components == 1 {
+        return false;
+    }
+    [0, 1].into_iter().any(|k| {
+        let spec = &bodies[interface.bodies[k]].spec;
+        let shared: HashSet<usize> = interface.shared.iter().map(|s| s.nodes[k]).collect();
+        let of_interface = |face: &BodyFace| face.nodes.iter().all(|n| shared.contains(n));
+        let signs = |face: &BodyFace| face.kind.is_none_or(mortar::has_positive_integrals);
+        let mut faces = spec.faces(interface.sides[k]).into_iter();
+        faces.any(|face| !signs(&face) && of_interface(&face))
     })
 }
 

@@ -3,8 +3,11 @@
 use std::collections::HashMap;
 
 use crate::fem::cell::{side_weights, Element, Side};
+use crate::fem::element::face_values;
 use crate::fem::{element, Form};
+use crate::linalg::vec3::{cross, unit};
 use crate::mesh::{places, BoxMesh, CellKind, Mesh};
+use crate::mortar;
 use crate::scene::model::spec::BodySpec;
 
 /// The face of an element on a side of a body.
@@ -91,7 +94,9 @@ impl BodySpec {
         }
     }
 
-    /// ∫ N_a n with the unit normal n out of the body, by node, over the faces of a side that `among` accepts.
+    /// ∫ N_a n with the unit normal n out of the body, by node, over the faces of a side that `among` accepts. On
+    /// triangles of 6 and quadrilaterals of 8 nodes N_a has the integral zero or less at corners: the normal at the
+    /// node times the integral of a positive function stands in its place there.
     pub fn side_normals(
         &self,
         side: usize,
@@ -100,13 +105,32 @@ impl BodySpec {
     ) -> HashMap<usize, [f64; 3]> {
         let mut sums: HashMap<usize, [f64; 3]> = HashMap::new();
         for face in self.faces(side).iter().filter(|f| among(f)) {
-            let weights = self.face_weights(side, face, element);
-            for (&node, (_, normal)) in face.nodes.iter().zip(weights) {
+            let normals = self.face_normals(side, face, element);
+            for (&node, normal) in face.nodes.iter().zip(normals) {
                 let sum = sums.entry(node).or_default();
                 sum.iter_mut().zip(normal).for_each(|(s, n)| *s += n);
             }
         }
         sums
+    }
+
+    fn face_normals(&self, side: usize, face: &Face, element: Element) -> Vec<[f64; 3]> {
+        let weights = self.face_weights(side, face, element);
+        let Some(kind) = face.kind.filter(|&k| !mortar::has_positive_integrals(k)) else {
+            return weights.into_iter().map(|(_, normal)| normal).collect();
+        };
+        let mut areas = [0.0; 9];
+        areas.iter_mut().zip(&weights).for_each(|(a, w)| *a = w.0);
+        let points = || face.nodes.iter().map(|&k| self.position(k));
+        let normal = |(at, area): ([f64; 3], f64)| {
+            let [s, t] = face_values::at(kind, points(), at).tangents;
+            unit(cross(s, t)).unwrap_or_default().map(|v| area * v)
+        };
+        let places = face_values::nodes(kind).into_iter();
+        places
+            .zip(mortar::positive(kind, areas))
+            .map(normal)
+            .collect()
     }
 }
 

@@ -81,12 +81,14 @@ fn unmatched(
             .iter()
             .map(|c| (&c.pair, c.multipliers, &c.extent, c.sides));
         let mut which = None;
-        let mut single = false;
-        for (pair, of_entry, extent, sides) in ties.chain(contacts) {
+        let (mut single, mut contact) = (false, false);
+        let numbered = ties.chain(contacts).enumerate();
+        for (number, (pair, of_entry, extent, sides)) in numbered {
             let Some(found) = meant(pair, of_entry).filter(|_| sides.is_none()) else {
                 continue;
             };
             single |= !whole(extent) && *extent != Extent::None;
+            contact |= number >= spec.ties.len();
             if which.is_none() || *pair != Pair::All {
                 which = Some(found);
             }
@@ -95,7 +97,12 @@ fn unmatched(
             continue;
         }
         let (pair, sides) = (interface.bodies, interface.sides);
-        let Some(reach) = loose(bodies, matching, interface) else {
+        contact |= which.is_none() && spec.default == ByDefault::Contact;
+        let reach = match contact && mortar::is_for_contact(bodies, interface) {
+            true => Some(near(matching, interface)),
+            false => loose(bodies, matching, interface),
+        };
+        let Some(reach) = reach else {
             continue;
         };
         let which = which.unwrap_or(0);
@@ -117,10 +124,18 @@ fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) ->
     }
     // Curved sides with different meshes are different polygons. What seems to be a corner may be a face of which no
     // cell has all nodes in common with the other body.
-    let mut edge = |k: usize| shortest(&matching.surface(pair[k], sides[k]).edges);
-    let reach = NEAR * edge(0).min(edge(1));
+    let reach = near(matching, interface);
     let found = matching.find(pair, sides, reach);
     matches!(found, Err(Mismatch::Lonely(_))).then_some(reach)
+}
+
+/// How far apart sides may be that touch: a part of their shortest edge.
+fn near(matching: &mut Matching<'_>, interface: &Interface) -> f64 {
+    let mut edge = |k: usize| {
+        let surface = matching.surface(interface.bodies[k], interface.sides[k]);
+        shortest(&surface.edges)
+    };
+    NEAR * edge(0).min(edge(1))
 }
 
 /// Interfaces of facing sides that an entry names; they replace the interface of the touching pair.
@@ -187,16 +202,24 @@ fn facing(
                 Err(Mismatch::Apart(why) | Mismatch::Lonely(why)) => Err(why),
             },
         };
+        let is_contact = number >= spec.ties.len();
+        let nodal = match &matched {
+            Ok(found) => !is_contact || !mortar::is_for_contact(bodies, found),
+            Err(_) => false,
+        };
         let mut interface = match matched {
-            Ok(interface) => interface,
+            Ok(interface) if nodal => interface,
             // The first body of the entry carries the multipliers, unless it says something else.
-            Err(why) => {
+            other => {
                 let which = which.unwrap_or(0);
                 let which = if a < b { which } else { 1 - which };
                 let found = matching
                     .mortar(&spec.form, (pair, sides), which, reach)
                     .take();
-                found.ok_or_else(|| Error::Input(format!("{written}{why}")))?
+                // Without a common part of faces, nodes that match stay what they are.
+                found
+                    .map_or(other, Ok)
+                    .map_err(|why| Error::Input(format!("{written}{why}")))?
             }
         };
         let (within, adjusted) = adjust;
