@@ -61,7 +61,7 @@ impl Blocks {
         for k in 0..n[0] * n[1] * n[2] {
             let cell = [k % n[0], k / n[0] % n[1], k / n[0] / n[1]];
             let corner = |a: usize| {
-                let step = [(a + 1) / 2 % 2, a / 2 % 2, a / 4];
+                let step = [a.div_ceil(2) % 2, a / 2 % 2, a / 4];
                 [0, 1, 2].map(|d| (cell[d] + step[d]) as f64 / n[d] as f64 * size[d])
             };
             let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
