@@ -159,8 +159,9 @@ fn grid(counts: [usize; 3], dim: usize) -> String {
 
 /// The pairs of bodies that touch or face each other, with the area, the gaps and the angle between their sides.
 fn interfaces(scene: &Scene, plan: &Plan) -> String {
+    let surfaces = surfaces(scene);
     if plan.interfaces.is_empty() {
-        return String::new();
+        return surfaces;
     }
     let faces = plan
         .interfaces
@@ -173,10 +174,6 @@ fn interfaces(scene: &Scene, plan: &Plan) -> String {
         .take(LIST)
         .map(|(k, i)| (i, scene.side_pair(k)))
         .collect();
-    let gap = |[low, high]: [f64; 2]| match low == high {
-        true => short(low),
-        false => format!("{} to {}", short(low), short(high)),
-    };
     let table = Table::of(&listed)
         .words("touch", |(i, _)| {
             format!("{} - {}", name(i.bodies[0]), name(i.bodies[1]))
@@ -186,14 +183,8 @@ fn interfaces(scene: &Scene, plan: &Plan) -> String {
         .when(plan.contact_pairs > 0, |t| {
             t.numbers("contact", |(i, _)| i.contact)
         })
-        .numbers(
-            match scene.dim() == 2 && !scene.form.is_axial() {
-                true => "length",
-                false => "area",
-            },
-            |(_, p)| short(p.area),
-        )
-        .numbers("gap", |(_, p)| gap(p.gap))
+        .numbers(size(scene), |(_, p)| short(p.area))
+        .numbers("gap", |(_, p)| range(p.gap))
         .numbers("angle", |(_, p)| format!("{:.1}°", p.angle))
         .when(listed.iter().any(|(i, _)| i.multipliers.is_some()), |t| {
             t.words("mortar", |(i, _)| match i.multipliers {
@@ -202,7 +193,38 @@ fn interfaces(scene: &Scene, plan: &Plan) -> String {
             })
         })
         .table();
-    format!("{table}{}\n", more(faces.count(), "faces"))
+    format!("{table}{}\n{surfaces}", more(faces.count(), "faces"))
+}
+
+/// What the size of a side is called.
+fn size(scene: &Scene) -> &'static str {
+    match scene.dim() == 2 && !scene.form.is_axial() {
+        true => "length",
+        false => "area",
+    }
+}
+
+/// The smallest and the largest gap.
+fn range([low, high]: [f64; 2]) -> String {
+    match low == high {
+        true => short(low),
+        false => format!("{} to {}", short(low), short(high)),
+    }
+}
+
+/// The rigid surfaces beside bodies.
+fn surfaces(scene: &Scene) -> String {
+    let all = scene.surface_obstacles();
+    if all.is_empty() {
+        return String::new();
+    }
+    let table = Table::of(all.iter().take(LIST))
+        .words("rigid surface", |s| &s.name)
+        .numbers("nodes", |s| s.nodes)
+        .numbers(size(scene), |s| short(s.area))
+        .numbers("gap", |s| range(s.gap))
+        .table();
+    format!("{table}{}\n", more(all.len(), "rigid surfaces"))
 }
 
 fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {

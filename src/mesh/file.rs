@@ -20,10 +20,17 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// A sentence on the points that no cell of dimension `dim` has, if there are any: they are left out.
-    pub fn unused(&self, dim: usize) -> Option<String> {
+    /// A sentence on the points that no cell of dimension `dim` has, nor one of the groups `kept`, if there are any:
+    /// they are left out.
+    pub fn unused(&self, dim: usize, kept: &[String]) -> Option<String> {
         let mut has = vec![false; self.points.len()];
-        for c in (0..self.cells.len()).filter(|&c| self.cells.kind(c).dim() == dim) {
+        let named = self.groups.iter().filter(|g| kept.contains(&g.name));
+        let named = named.flat_map(|g| match &g.members {
+            Members::Cells { cells, .. } => cells.clone(),
+            Members::Sides(_) | Members::Nodes(_) => Vec::new(),
+        });
+        let whole = (0..self.cells.len()).filter(|&c| self.cells.kind(c).dim() == dim);
+        for c in whole.chain(named.map(|c| c as usize)) {
             self.cells
                 .nodes(c)
                 .iter()

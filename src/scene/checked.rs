@@ -8,7 +8,7 @@ use super::model::expr::Expr;
 use super::model::spec::{lee, Faces, GridSpec, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
 use super::rows::equations::{Chain, Equation};
-use super::rows::mortar::MortarRow;
+use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
 use super::{axis, cut, read, rows, validate};
@@ -133,7 +133,8 @@ impl Scene {
             steps.renumber(&spec);
         }
         let mut interfaces = rows::entries::find(&bodies, matching, &spec, &steps)?;
-        let obstacles = rows::obstacles::find(&bodies, &spec.obstacles, spec.contacts.len())?;
+        let mut obstacles =
+            rows::obstacles::find(&bodies, &spec.obstacles, &spec.form, spec.contacts.len())?;
         let mut points = rows::points::collect(&mut bodies, &interfaces)?;
         let checks = rows::bounds::Checks::new(&bodies, &obstacles, &spec, &steps);
         checks.apply(&mut points)?;
@@ -154,6 +155,7 @@ impl Scene {
         let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
         rows::equations::join(&bodies, &mut points, &mut chains);
         drop(chains);
+        obstacles.iter_mut().for_each(Obstacle::finish);
         spec.notes.extend(notes);
         validate::check_unknowns(&bodies)?;
         Ok(Scene {

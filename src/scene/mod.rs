@@ -47,6 +47,7 @@ pub use model::map::{BodyShape, Map, Round};
 pub use model::profile::{Limit, Limits, Profile};
 pub use model::ramp::{Ramp, StepsSpec};
 pub use model::rigid::Rigid;
+pub use model::rigid_surface::RigidSurface;
 pub use model::spec::{
     free_all_round, held_all_round, lee, BodySpec, ByDefault, Cut, Faces, Force, GridSpec, Load,
     ProbeSpec, SceneSpec, Sides, SurfaceLoad, SIDES,
@@ -57,4 +58,4 @@ pub use plan::{BodyPlan, InterfacePlan, Plan};
 pub use rows::equations::Equation;
 pub use rows::obstacles::Obstacle;
 pub use rows::points::{Inequality, Point, PointRow};
-pub use side_pair::SidePair;
+pub use side_pair::{SidePair, SurfaceObstacle};

@@ -123,10 +123,15 @@ impl Scene {
                 + self
                     .mortar
                     .iter()
-                    .filter(|m| m.inequality.is_some())
+                    .filter(|m| m.inequality.is_some() && !m.is_beside_obstacle())
                     .count(),
             obstacles: self.obstacles.len(),
-            obstacle_rows: self.rows_that(PointRow::is_beside_obstacle),
+            obstacle_rows: self.rows_that(PointRow::is_beside_obstacle)
+                + self
+                    .mortar
+                    .iter()
+                    .filter(|m| m.is_beside_obstacle())
+                    .count(),
             steps: self.steps.as_ref().map(|s| s.times.len()),
             bodies,
         }

@@ -3,7 +3,9 @@
 use super::checked::Scene;
 use super::geometry::interface::{Link, Shape};
 use super::geometry::normals::of_side;
+use super::model::steps::Factors;
 use crate::linalg::vec3::dot;
+use crate::substructures::RowSource;
 use std::collections::HashSet;
 
 /// The sides of two bodies that touch or face each other.
@@ -18,7 +20,45 @@ pub struct SidePair {
     pub angle: f64,
 }
 
+/// A rigid surface beside a side of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceObstacle {
+    /// Its name in reports.
+    pub name: String,
+    /// The number of nodes that carry multipliers.
+    pub nodes: usize,
+    /// The area (in the plane the length) of the side that lies opposite the surface.
+    pub area: f64,
+    /// The smallest and the largest gap at the last load step, with the gap of the obstacle and its motion.
+    pub gap: [f64; 2],
+}
+
 impl Scene {
+    /// The rigid surfaces among the obstacles.
+    pub fn surface_obstacles(&self) -> Vec<SurfaceObstacle> {
+        let last = Factors::last(&self.steps);
+        let obstacles = self.obstacles.iter().enumerate();
+        let found = obstacles.filter_map(|(k, o)| {
+            let rows = self.mortar.iter();
+            let rows = rows.filter(|r| r.source == RowSource::Obstacle(k));
+            let gaps = rows.filter_map(|r| {
+                let inequality = r.inequality.as_ref()?;
+                Some(inequality.distance + last.bound(&inequality.limits).0)
+            });
+            let gaps: Vec<f64> = gaps.collect();
+            let ends = [f64::INFINITY, f64::NEG_INFINITY];
+            Some(SurfaceObstacle {
+                name: o.name.clone(),
+                nodes: gaps.len(),
+                area: o.surface.as_ref()?.area,
+                gap: gaps
+                    .iter()
+                    .fold(ends, |[low, high], g| [low.min(*g), high.max(*g)]),
+            })
+        });
+        found.collect()
+    }
+
     /// The sides of interface `k`; at corners everything is zero.
     pub fn side_pair(&self, k: usize) -> SidePair {
         let interface = &self.interfaces[k];

@@ -5,7 +5,8 @@ use crate::support::mpi::{as_rank, Scratch};
 use fetifeti::scene::Scene;
 
 /// A strip on a stiff one, with a curved gap, with a block of many rows on the stiff or the soft side; two tied plates;
-/// a plate on another one, with a gap that opens to one side; two blocks, of which one is bulged.
+/// a plate on another one, with a gap that opens to one side; two blocks, of which one is bulged; two plates on a rigid
+/// surface.
 fn scenes() -> Vec<(&'static str, String)> {
     let plates = |joint: &str| {
         format!(
@@ -28,7 +29,14 @@ fn scenes() -> Vec<(&'static str, String)> {
         origin = [0, 0.4]\nsize = [6, 0.4]\nelements = [70, 6]\n\
         subdomains = [5, 1]\nyoung = 1\npoisson = 0.3\ndirichlet = { left = { x = 0 } }\n\
         traction = { top = [0, -0.01] }\n[[contact]]\nbodies = [\"low\", \"up\"]\ngap = \"0.001*(x - 2)^2\"\n";
+    let die = "physics = \"elasticity\"\n[[body]]\nname = \"low\"\norigin = [0, 0.03]\nsize = [2, 0.5]\n\
+        elements = [32, 8]\nsubdomains = [4, 2]\nyoung = 10\npoisson = 0.4\ndirichlet = { left = { x = 0 } }\n\
+        [[body]]\nname = \"up\"\norigin = [0, 0.53]\nsize = [2, 0.5]\nelements = [20, 5]\nsubdomains = [2, 1]\n\
+        young = 30\npoisson = 0.3\ndirichlet = { left = { x = 0 } }\ntraction = { top = [0.05, -0.5] }\n\
+        [[contact]]\nbodies = [\"low\", \"up\"]\n[[obstacle]]\nbody = \"low\"\nside = \"bottom\"\n\
+        surface = \"die\"\nmesh = \"examples/scenes/die.msh\"\n";
     vec![
+        ("die", die.into()),
         ("long", long.into()),
         ("soft", format!("{long}multipliers = \"up\"\n")),
         ("tied", plates("[[tie]]\nbodies = [\"low\", \"up\"]\n")),

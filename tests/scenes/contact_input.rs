@@ -354,6 +354,10 @@ fn scenes_that_a_program_builds_are_checked_too() {
     let mut obstacle = spec();
     obstacle.obstacles.push(ObstacleSpec {
         rigid: None,
+        surface: None,
+        motion: [0.0; 3],
+        distance: None,
+        adjust: 0.0,
         gap: Profile::constant(0.0),
         body: None,
         sides: vec![0],

@@ -21,6 +21,7 @@ mod meshes;
 mod mortar;
 mod mortar_rings;
 mod mortar_second_order;
+mod obstacle_surfaces;
 mod scaling;
 mod solution;
 mod springs;

@@ -21,5 +21,6 @@ pub mod rng;
 pub mod scene_message;
 pub mod session;
 pub mod solid;
+pub mod surface_mesh;
 pub mod vtu;
 pub mod wall;

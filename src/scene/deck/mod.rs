@@ -83,7 +83,7 @@ impl DeckScenes {
         };
         let ignored = deck.ignored.iter().map(|note| line("is ignored", note));
         let replaced = deck.replaced.iter().map(|note| line("is replaced", note));
-        let unused = deck.mesh.unused(deck.dim());
+        let unused = deck.mesh.unused(deck.dim(), &[]);
         let torn = self.torn.iter().cloned();
         let all = ignored.chain(replaced).chain(unused);
         all.chain(torn).collect()

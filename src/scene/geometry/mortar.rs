@@ -1,6 +1,7 @@
 //! Sides whose nodes do not match: one of them carries the multipliers, and mortar integrals join it to the other.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use super::interface::{Interface, Shape};
 use super::matching::FAR;
@@ -36,12 +37,7 @@ pub(crate) fn interface(
         true => reach,
         false => FAR * own.0.longest().max(other.0.longest()),
     };
-    let samples = mortar::samples(&own.0, &other.0, reach);
-    let surfaces = Surfaces {
-        sides: [own.0, other.0],
-        nodes: [own.1, other.1],
-        samples,
-    };
+    let surfaces = Surfaces::new([own, other], reach);
     let rows = surfaces.rows(form, &|_| false);
     if rows.is_empty() {
         return None;
@@ -60,7 +56,7 @@ pub(crate) fn interface(
     let out = of_side(specs[0], sides[multipliers], &nodes);
     let distances = rows.iter().zip(&out);
     let distances = distances
-        .map(|(row, n)| row.distance(specs[0], specs[1], *n))
+        .map(|(row, n)| row.distance(specs[0], &|k| specs[1].position(k), *n))
         .collect();
     let pairs = nodes.iter().map(|&node| [node, partner(node)]).collect();
     let mut shared = share(specs[0], sides[multipliers], pairs);
@@ -105,7 +101,7 @@ pub(crate) fn is_for_contact(bodies: &[Body], interface: &Interface) -> bool {
 }
 
 /// A side of a body, and the node of the body for each of its nodes.
-fn surface(spec: &BodySpec, side: usize) -> (Side, Vec<usize>) {
+pub(crate) fn surface(spec: &BodySpec, side: usize) -> (Arc<Side>, Vec<usize>) {
     let nodes = spec.mesh.side_nodes(side);
     let place: HashMap<usize, u32> = nodes.iter().copied().zip(0..).collect();
     let points = nodes.iter().map(|&k| spec.position(k)).collect();
@@ -117,7 +113,7 @@ fn surface(spec: &BodySpec, side: usize) -> (Side, Vec<usize>) {
         }
     });
     let faces = faces.collect();
-    (Side::new(spec.mesh.dim(), points, faces), nodes)
+    (Arc::new(Side::new(spec.mesh.dim(), points, faces)), nodes)
 }
 
 /// The kind of a face and its nodes, in the order in which the normal points out of the body.

@@ -1,5 +1,7 @@
 //! Two sides that mortar integrals join, and the rows that follow, with nodes of bodies.
 
+use std::sync::Arc;
+
 use crate::fem::Form;
 use crate::linalg::vec3::{dot, minus};
 use crate::mortar::{self, Row, Sample, Side};
@@ -16,16 +18,25 @@ pub struct Mortar {
     pub(crate) surfaces: Option<Box<Surfaces>>,
 }
 
-/// Two sides that face each other, the one with the multipliers first.
+/// Two sides that face each other, the one with the multipliers first. The other one may be a rigid surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Surfaces {
-    pub(super) sides: [Side; 2],
+    sides: [Arc<Side>; 2],
     /// The node of its body for each node of a side.
     pub(super) nodes: [Vec<usize>; 2],
-    pub(super) samples: Vec<Sample>,
+    samples: Vec<Sample>,
 }
 
 impl Surfaces {
+    /// Sides with the node of the body for each of their nodes. They may be `reach` apart.
+    pub fn new([own, other]: [(Arc<Side>, Vec<usize>); 2], reach: f64) -> Surfaces {
+        Surfaces {
+            samples: mortar::samples(&own.0, &other.0, reach),
+            sides: [own.0, other.0],
+            nodes: [own.1, other.1],
+        }
+    }
+
     /// The rows of the nodes of the multiplier side for which `excluded` (called with the node of the body) does not
     /// hold. Nodes in rows are those of the bodies.
     pub fn rows(&self, form: &Form, excluded: &dyn Fn(usize) -> bool) -> Vec<BodyRow> {
@@ -62,17 +73,18 @@ pub(crate) struct BodyRow {
 }
 
 impl BodyRow {
-    /// The gap: how far the other side is along the normal `n` out of the multiplier side, in the sense of the row.
-    pub fn distance(&self, own: &BodySpec, other: &BodySpec, n: [f64; 3]) -> f64 {
+    /// The gap: how far the other side, whose nodes are at `theirs`, is along the normal `n` out of the multiplier
+    /// side, in the sense of the row.
+    pub fn distance(&self, own: &BodySpec, theirs: &dyn Fn(usize) -> [f64; 3], n: [f64; 3]) -> f64 {
         // Positions from the row's node, so that large coordinates cost no digits.
         let origin = own.position(self.node);
-        let along = |spec: &BodySpec, list: &[(usize, f64)]| {
+        let along = |place: &dyn Fn(usize) -> [f64; 3], list: &[(usize, f64)]| {
             let each = list
                 .iter()
-                .map(|&(k, v)| v * dot(minus(spec.position(k), origin), n));
+                .map(|&(k, v)| v * dot(minus(place(k), origin), n));
             each.sum::<f64>()
         };
-        let distance = along(other, &self.other) - along(own, &self.own);
+        let distance = along(theirs, &self.other) - along(&|k| own.position(k), &self.own);
         let size = origin.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
         match distance.abs() <= 1e-13 * size {
             true => 0.0,

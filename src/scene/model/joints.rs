@@ -3,6 +3,7 @@
 use super::profile::Profile;
 use super::ramp::Ramp;
 use super::rigid::Rigid;
+use super::rigid_surface::RigidSurface;
 use crate::substructures::BodyNode;
 
 /// The pairs of bodies to which an entry applies.
@@ -93,9 +94,17 @@ pub struct ObstacleSpec {
     pub above: Option<Profile>,
     /// In elasticity, the rigid body that the sides cannot enter.
     pub rigid: Option<Rigid>,
+    /// … or its surface, as faces of a mesh.
+    pub surface: Option<RigidSurface>,
     /// The gap that is added to the distance from the rigid body.
     pub gap: Profile,
-    /// Factor of the bounds over the load steps; `None`: the factor of all gaps.
+    /// The way that the rigid body moves.
+    pub motion: [f64; 3],
+    /// The largest distance from the rigid body at which nodes may touch it; `None`: any.
+    pub distance: Option<f64>,
+    /// Initial distances and overclosures up to this length count as touching.
+    pub adjust: f64,
+    /// Factor of the bounds, of the gap and of the motion over the load steps; `None`: the factor of all gaps.
     pub ramp: Option<Ramp>,
     /// Where it was written, or empty.
     pub written: String,

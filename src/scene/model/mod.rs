@@ -8,5 +8,6 @@ pub mod map;
 pub mod profile;
 pub mod ramp;
 pub mod rigid;
+pub mod rigid_surface;
 pub mod spec;
 pub mod steps;

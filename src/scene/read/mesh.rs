@@ -6,6 +6,7 @@ use super::Reader;
 use crate::error::{Error, Result};
 use crate::mesh::{deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
 use crate::scene::model::field::Field;
+use crate::scene::model::rigid_surface::RigidSurface;
 use crate::scene::model::spec::{held, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, POISSON};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -17,6 +18,8 @@ pub(super) struct Source {
     groups: HashMap<String, usize>,
     /// The factor of all lengths.
     scale: f64,
+    /// The names of groups that are rigid surfaces.
+    rigid: Vec<String>,
 }
 
 /// The keys that only boxes have.
@@ -36,13 +39,7 @@ impl Source {
         let file = section.need("file", "the name of a file")?;
         let scale = section.read("scale", |item| reader.positive(item))?;
         section.finish()?;
-        let path = PathBuf::from(file.text("the name of a file")?);
-        let directory = Path::new(item.file).parent();
-        let path = directory.map_or(path.clone(), |directory| directory.join(path));
-        let mesh = load(&path).or_else(|e| match e {
-            Error::Input(message) => file.error(message),
-            other => Err(other),
-        })?;
+        let mesh = load_beside(file)?;
         let mut groups = HashMap::new();
         for (k, group) in mesh.groups.iter().enumerate() {
             if matches!(group.members, Members::Cells { dim, .. } if dim == reader.dim) {
@@ -53,12 +50,21 @@ impl Source {
             mesh: Extractor::new(mesh, reader.dim),
             groups,
             scale: scale.unwrap_or(1.0),
+            rigid: Vec::new(),
         })
     }
 
     /// A sentence on nodes that are left out.
     pub fn note(&self) -> Option<String> {
-        self.mesh.file().unused(self.mesh.dim())
+        self.mesh.file().unused(self.mesh.dim(), &self.rigid)
+    }
+
+    /// The group of faces `name` as a rigid surface.
+    pub fn surface(&mut self, name: &str, reverse: bool) -> Result<RigidSurface> {
+        let (file, dim) = (self.mesh.file(), self.mesh.dim());
+        let surface = RigidSurface::of_file(file, dim, name, self.scale, reverse)?;
+        self.rigid.push(name.into());
+        Ok(surface)
     }
 
     /// Whether a body is a group of this mesh, not a box.
@@ -142,6 +148,17 @@ impl Source {
 fn some(names: &[String]) -> String {
     let more = if names.len() > 12 { ", …" } else { "" };
     format!("{}{more}", names[..names.len().min(12)].join(", "))
+}
+
+/// Reads the mesh that an item names, beside the scene.
+pub(super) fn load_beside(file: &Item) -> Result<MeshFile> {
+    let path = PathBuf::from(file.text("the name of a file")?);
+    let directory = Path::new(file.file).parent();
+    let path = directory.map_or(path.clone(), |directory| directory.join(path));
+    load(&path).or_else(|e| match e {
+        Error::Input(message) => file.error(message),
+        other => Err(other),
+    })
 }
 
 /// Reads a mesh, by the ending of its name.

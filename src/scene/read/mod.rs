@@ -5,6 +5,7 @@ mod document;
 mod fields;
 mod form;
 mod mesh;
+mod obstacles;
 mod probes;
 mod shape;
 mod sides;
@@ -46,7 +47,9 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
     let ties = scene.each("tie", |item| reader.tie(item, &bodies))?;
     let (auto, contacts) = reader.contacts(&mut scene, &bodies)?;
     let obstacles = scene
-        .each("obstacle", |item| reader.obstacle(item, &bodies))?
+        .each("obstacle", |item| {
+            reader.obstacle(item, &bodies, source.as_mut())
+        })?
         .concat();
     let probes = scene.each("probe", |item| reader.probe(item, &bodies))?;
     let steps = scene.read("steps", |item| reader.steps(item))?;

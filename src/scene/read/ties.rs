@@ -1,9 +1,9 @@
-//! [interface], [[tie]], [[contact]] and [[obstacle]].
+//! [interface], [[tie]] and [[contact]].
 
 use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
-use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, ObstacleSpec, Pair, TieSpec};
+use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{BodySpec, ByDefault};
 
@@ -152,109 +152,6 @@ impl Reader {
         }
     }
 
-    /// An obstacle; one for each of all bodies where some of them are meshes, whose sides have numbers of their own.
-    pub(super) fn obstacle(&self, item: &Item, bodies: &[BodySpec]) -> Result<Vec<ObstacleSpec>> {
-        let mut section = item.section("[[obstacle]]")?;
-        let wanted = "\"all\" or the name of a body";
-        let named = section.need("body", wanted)?;
-        let body = match named.is("all") {
-            true => None,
-            false => Some(body_name(named, bodies, wanted)?),
-        };
-        let meant: Vec<&BodySpec> = match &body {
-            Some(name) => bodies.iter().filter(|b| b.name == *name).collect(),
-            None => bodies.iter().collect(),
-        };
-        let of_cells = meant.iter().any(|b| b.mesh.cells().is_some());
-        let written = section.need("side", "a side, a list of them or \"all\"")?;
-        let sides = match of_cells {
-            false => vec![(body.clone(), self.obstacle_sides(written)?)],
-            true => self.obstacle_groups(written, &meant)?,
-        };
-        let extent = self.extent(&mut section, item, "[[obstacle]]")?;
-        let mut bound = |key| section.read(key, |item| self.profile(item));
-        let elastic = self.form.is_elastic();
-        let (below, above, gap, rigid) = if elastic {
-            (None, None, bound("gap")?, self.rigid(&mut section, item)?)
-        } else {
-            (bound("below")?, bound("above")?, None, None)
-        };
-        let ramp = self.ramp(&mut section)?;
-        section.finish()?;
-        if below.is_none() && above.is_none() && rigid.is_none() {
-            return item.error(match elastic {
-                true => "[[obstacle]] without a rigid body (`plane`, `cylinder` or `sphere` was expected)",
-                false => "[[obstacle]] without a bound (`below`, `above` or both were expected)",
-            });
-        }
-        let gap = gap.unwrap_or_else(|| Profile::constant(0.0));
-        let one = |(body, sides)| ObstacleSpec {
-            body,
-            sides,
-            extent: extent.clone(),
-            below: below.clone(),
-            above: above.clone(),
-            rigid,
-            gap: gap.clone(),
-            ramp: ramp.clone(),
-            written: item.written(),
-        };
-        Ok(sides.into_iter().map(one).collect())
-    }
-
-    /// The sides of each body that has some of the named groups.
-    fn obstacle_groups(
-        &self,
-        item: &Item,
-        bodies: &[&BodySpec],
-    ) -> Result<Vec<(Option<String>, Vec<usize>)>> {
-        let names: Vec<String> = match &item.value {
-            Value::List(items) => {
-                let name = |item: &Item| item.text("the name of a side or boundary group");
-                items.iter().map(name).collect::<Result<_>>()?
-            }
-            _ => vec![item.text("a side or boundary group, a list of them or \"all\"")?],
-        };
-        let mut out = Vec::new();
-        for body in bodies {
-            let sides: Vec<usize> = match names.iter().any(|n| n == "all") {
-                true => body.mesh.outer_sides().collect(),
-                false => names
-                    .iter()
-                    .filter_map(|n| body.mesh.side_of_name(n))
-                    .collect(),
-            };
-            if !sides.is_empty() {
-                out.push((Some(body.name.clone()), sides));
-            }
-        }
-        match out.is_empty() {
-            true => item.error(format!(
-                "the side `{}`, which no such body has",
-                names.join("`, `")
-            )),
-            false => Ok(out),
-        }
-    }
-
-    fn obstacle_sides(&self, item: &Item) -> Result<Vec<usize>> {
-        let names = self.sides_list().replace(" or ", ", ");
-        let side = |item: &Item| {
-            let wanted = format!("{names}, a list of them or \"all\"");
-            self.side(item).or_else(|_| item.expected(wanted))
-        };
-        match &item.value {
-            _ if item.is("all") => Ok((0..2 * self.dim).collect()),
-            Value::List(items) if !items.is_empty() => {
-                let mut sides = items.iter().map(side).collect::<Result<Vec<usize>>>()?;
-                sides.sort_unstable();
-                sides.dedup();
-                Ok(sides)
-            }
-            _ => Ok(vec![side(item)?]),
-        }
-    }
-
     /// `bodies`: "all" or a pair.
     fn bodies(&self, section: &mut Section, bodies: &[BodySpec]) -> Result<Pair> {
         let wanted = "\"all\" or a pair of names";
@@ -290,7 +187,7 @@ impl Reader {
     }
 
     /// `where`, `range`, `points` or `nodes`.
-    fn extent(&self, section: &mut Section, entry: &Item, what: &str) -> Result<Extent> {
+    pub(super) fn extent(&self, section: &mut Section, entry: &Item, what: &str) -> Result<Extent> {
         let mut extents = Vec::new();
         extents.extend(section.read("where", |item| match &item.value {
             _ if item.is("all") => Ok(Extent::All),

@@ -1,6 +1,6 @@
 //! Inequalities at points: adds the rows of obstacles; checks and drops inequalities that given values or ties decide.
 
-use super::mortar::MortarRow;
+use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
 use super::points::{Inequality, Point, PointRow};
 use crate::error::{Error, Result};
@@ -101,16 +101,24 @@ impl<'a> Checks<'a> {
 
     /// Whether given values decide a row between sides whose nodes do not match.
     pub fn is_decided_mortar(&self, row: &MortarRow) -> Result<bool> {
+        let first = row.members[0].expect("every row has a first member");
         if !row.terms.is_empty() {
             if let Some(inequality) = &row.inequality {
                 for factors in &self.factors {
-                    self.finite(factors, &inequality.limits, row.members[0])?;
+                    self.finite(factors, &inequality.limits, first)?;
                 }
             }
             return Ok(false);
         }
-        let [a, b] = row.members.map(|m| &self.bodies[m.body].spec.name);
-        let at = row.members[0].spot(self.bodies);
+        let named = row.members.iter().flatten();
+        let named: Vec<String> = named
+            .map(|m| format!("`{}`", self.bodies[m.body].spec.name))
+            .collect();
+        let who = match named.len() {
+            1 => format!("body {} contradict its obstacle", named[0]),
+            _ => format!("bodies {} contradict their joint", named.join(" and ")),
+        };
+        let at = first.spot(self.bodies);
         for factors in &self.factors {
             let c = row.right_hand_side(factors);
             let wrong = match row.inequality {
@@ -119,8 +127,8 @@ impl<'a> Checks<'a> {
             };
             if wrong {
                 return Err(Error::Input(format!(
-                    "{}the given values of bodies `{a}` and `{b}` contradict their joint at {at}{} by {}",
-                    self.bodies[row.members[0].body].spec.written,
+                    "{}the given values of {who} at {at}{} by {}",
+                    self.bodies[first.body].spec.written,
                     factors.when(),
                     c.abs()
                 )));
@@ -174,6 +182,9 @@ impl<'a> Checks<'a> {
                 let side = member.along(self.bodies, direction);
                 if side.terms.is_empty() {
                     self.check_given(obstacle, member, side.given, distance)?;
+                    continue;
+                }
+                if obstacle.surface.is_some() {
                     continue;
                 }
                 let &mut (p, m) = index.entry(member).or_insert_with(|| {
@@ -248,7 +259,7 @@ impl<'a> Checks<'a> {
                 } else {
                     ("≥", 0.0 - bound)
                 };
-                let what = if obstacle.rigid.is_some() {
+                let what = if obstacle.rigid.is_some() || obstacle.surface.is_some() {
                     "n·u"
                 } else {
                     "u"

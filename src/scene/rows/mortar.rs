@@ -3,49 +3,15 @@
 use std::collections::{HashMap, HashSet};
 
 use super::bounds::Checks;
+use super::mortar_row::MortarRow;
 use super::points::{Inequality, Point};
 use crate::error::Result;
 use crate::fem::Form;
+use crate::linalg::vec3::dot;
 use crate::scene::body::Body;
 use crate::scene::geometry::interface::{Interface, Link};
 use crate::scene::geometry::mortar_sides::{BodyRow, Surfaces};
-use crate::scene::model::steps::Factors;
-use crate::substructures::BodyNode;
-
-/// A row between two sides: Σ coefficient · u = 0 (tie) or ≤ g (contact), along a direction.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MortarRow {
-    /// The interface.
-    pub interface: usize,
-    /// Index into its `shared`.
-    pub node: usize,
-    /// The node with the multiplier and the nearest one of the other side, in the order of the inequality.
-    pub members: [BodyNode; 2],
-    /// The unit vector along which u is taken: a component, or the normal out of the first body of the inequality.
-    pub direction: [f64; 3],
-    /// (body dof, coefficient) of the free degrees of freedom.
-    pub terms: Vec<(u64, f64)>,
-    /// Σ coefficient · u of the given values, without the factors of load steps.
-    pub given: f64,
-    /// The data of an inequality; `None`: an equality.
-    pub inequality: Option<Box<Inequality>>,
-    /// D_p: a multiplier divided by it is a pressure.
-    pub area: f64,
-    /// Its block: rows with a degree of freedom in common have the same.
-    pub block: u64,
-    /// The subdomain of lowest index that has a degree of freedom of the block.
-    pub subdomain: usize,
-}
-
-impl MortarRow {
-    /// The right-hand side c at a load step.
-    pub(crate) fn right_hand_side(&self, factors: &Factors<'_>) -> f64 {
-        match &self.inequality {
-            None => 0.0 - self.given * factors.dirichlet(),
-            Some(inequality) => inequality.right_hand_side(factors, true),
-        }
-    }
-}
+use crate::substructures::{BodyNode, RowSource};
 
 /// The rows of all interfaces that have surfaces, which are freed, and sentences on nodes that are left out. A node
 /// that is tied carries no multiplier of another tie or of a contact.
@@ -89,6 +55,25 @@ pub(crate) fn collect(
             }
         }
     }
+    let mut known: HashMap<(Option<usize>, BodyNode), Vec<[f64; 3]>> = HashMap::new();
+    for (k, obstacle) in checks.obstacles.iter().enumerate() {
+        // Sides of one body that go on smoothly share a row at their common nodes.
+        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
+        let taken = |node: BodyNode, direction: [f64; 3]| {
+            let before = known.get(&(entry, node)).into_iter().flatten();
+            tied.contains(&node) || before.into_iter().any(|d| dot(*d, direction) > SMOOTH)
+        };
+        let rows = obstacle.mortar_rows(bodies, form, k, &taken);
+        for row in rows {
+            if let Some(member) = row.members[0] {
+                let list = known.entry((entry, member)).or_default();
+                list.push(row.direction);
+            }
+            if !checks.is_decided_mortar(&row)? {
+                out.push(row);
+            }
+        }
+    }
     for interface in interfaces {
         if let Some(mortar) = &mut interface.mortar {
             mortar.surfaces = None;
@@ -107,6 +92,9 @@ fn tied_at(points: &[Point]) -> HashSet<BodyNode> {
     }
     out
 }
+
+/// Sides of a body go on smoothly at a node if the cosine of the angle between their normals is above this.
+const SMOOTH: f64 = 0.8;
 
 /// A row, the node that carries its multiplier, and the distance of the sides there.
 struct Carried {
@@ -212,7 +200,7 @@ impl<'a> Pairing<'a> {
             let closed = self.interface.distances[i] == 0.0;
             let distance = match closed {
                 true => 0.0,
-                false => row.distance(own, other, out),
+                false => row.distance(own, &|k| other.position(k), out),
             };
             self.carried(row, self.along(i), Some(distance))
         };
@@ -271,9 +259,9 @@ impl<'a> Pairing<'a> {
             carrier: self.carrier(row.node),
             distance: distance.unwrap_or(self.interface.distances[i]),
             row: MortarRow {
-                interface: self.number,
+                source: RowSource::Interface(self.number),
                 node: i,
-                members,
+                members: members.map(Some),
                 direction,
                 block: dofs.min().unwrap_or_default(),
                 subdomain: owners[0].min(owners[1]),

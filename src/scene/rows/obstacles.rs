@@ -1,8 +1,11 @@
 //! Rigid obstacles: one-sided bounds on u at the boundary of a body.
 
 use super::entry::some_names;
+use super::facing_surfaces::{self, Opposite};
 use super::select::pick;
 use crate::error::{Error, Result};
+use crate::fem::Form;
+use crate::linalg::vec3::dot;
 use crate::scene::body::Body;
 use crate::scene::geometry::normals::parameters;
 use crate::scene::model::joints::{Extent, ObstacleSpec};
@@ -25,6 +28,10 @@ pub struct Obstacle {
     pub limits: Limits,
     /// In elasticity, the rigid body: the rows are n·u ≤ distance + gap, and `limits` has the gaps.
     pub rigid: Option<Rigid>,
+    /// … or the part of its surface that lies opposite the side: the rows are those of [`Scene::mortar`].
+    ///
+    /// [`Scene::mortar`]: crate::scene::Scene::mortar
+    pub surface: Option<Opposite>,
     /// The distance of each of these nodes from the rigid body, and the unit vector away from it.
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
     /// The parameters of each of these nodes along the side.
@@ -51,6 +58,7 @@ impl Obstacle {
 pub(crate) fn find(
     bodies: &[Body],
     entries: &[ObstacleSpec],
+    form: &Form,
     first: usize,
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
@@ -58,9 +66,10 @@ pub(crate) fn find(
     for (k, entry) in entries.iter().enumerate() {
         let fail = |message: String| Err(Error::Input(format!("{}{message}", entry.written)));
         let (below, above) = (entry.below.as_ref(), entry.above.as_ref());
-        let bounds = match entry.rigid {
-            None => [("below", false, below), ("above", true, above)],
-            Some(_) => [("", false, None), ("gap", true, Some(&entry.gap))],
+        let elastic = entry.rigid.is_some() || entry.surface.is_some();
+        let bounds = match elastic {
+            false => [("below", false, below), ("above", true, above)],
+            true => [("", false, None), ("gap", true, Some(&entry.gap))],
         };
         if bounds.iter().all(|(_, _, bound)| bound.is_none()) {
             return fail(
@@ -79,15 +88,30 @@ pub(crate) fn find(
                 }
             },
         };
-        let number = if entry.rigid.is_some() { k + 1 } else { 0 };
+        let number = if elastic { k + 1 } else { 0 };
+        let mut missed = None;
+        let before = found.len();
         for (b, &side) in chosen.flat_map(|b| entry.sides.iter().map(move |side| (b, side))) {
-            let (selected, spec) = (select(&bodies[b], side, entry)?, &bodies[b].spec);
+            let (mut selected, spec) = (select(&bodies[b], side, entry)?, &bodies[b].spec);
+            let mut near = BTreeMap::new();
+            if let Some(rigid) = &entry.surface {
+                let nodes = selected.iter().map(|s| s.0);
+                let Some(opposite) =
+                    facing_surfaces::find(spec, form, side, rigid, entry.distance, nodes)
+                else {
+                    missed.get_or_insert((b, side));
+                    continue;
+                };
+                near.clone_from(&opposite.nearest);
+                selected.retain(|(node, _)| near.contains_key(node));
+                let of_side = found.entry((b, side, number, true)).or_default();
+                of_side.surface = Some(opposite);
+            }
             for (key, upper, bound) in bounds {
                 let Some(bound) = bound else { continue };
                 let of_side = found.entry((b, side, number, upper)).or_default();
                 for &(node, t) in &selected {
                     let (at, spot, name) = (spec.variables(node), || spec.spot(node), &spec.name);
-                    of_side.parameters.insert(node, t);
                     if let Some(rigid) = &entry.rigid {
                         let Some(nearest) = rigid.distance(at.point) else {
                             return fail(format!(
@@ -96,9 +120,20 @@ pub(crate) fn find(
                                 spot()
                             ));
                         };
-                        of_side.nearest.insert(node, nearest);
+                        near.insert(node, nearest);
                     }
-                    let value = bound.eval(t[0], &at);
+                    let mut value = bound.eval(t[0], &at);
+                    if let Some(&(distance, normal)) = near.get(&node) {
+                        if entry.distance.is_some_and(|most| distance > most) {
+                            continue;
+                        }
+                        let closed = distance.abs() <= entry.adjust;
+                        let distance = if closed { 0.0 } else { distance };
+                        of_side.nearest.insert(node, (distance, normal));
+                        // An obstacle that moves towards the body takes from the gap.
+                        value -= dot(entry.motion, normal);
+                    }
+                    of_side.parameters.insert(node, t);
                     if !value.is_finite() {
                         return fail(format!(
                             "the bound `{key}` of body `{name}` is {value} at {} \
@@ -114,13 +149,20 @@ pub(crate) fn find(
                 }
             }
         }
+        if let (Some((b, side)), Some(rigid), true) =
+            (missed, &entry.surface, found.len() == before)
+        {
+            let why = facing_surfaces::apart(&bodies[b].spec, form, side, rigid, entry.distance);
+            return fail(why);
+        }
     }
     let named = |(key, of_side): ((usize, usize, usize, bool), Found)| {
+        let surface = of_side.surface.as_ref().map(|s| &s.name);
         let (body, side, number, upper) = key;
         let what = match (number, upper) {
             (0, false) => "below".to_string(),
             (0, true) => "above".to_string(),
-            (k, _) => format!("obstacle {k}"),
+            (k, _) => surface.map_or_else(|| format!("obstacle {k}"), |name| name.clone()),
         };
         Obstacle {
             body,
@@ -133,6 +175,7 @@ pub(crate) fn find(
             ),
             limits: Limits::new(of_side.limits),
             rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
+            surface: of_side.surface,
             nearest: of_side.nearest,
             parameters: of_side.parameters,
         }
@@ -143,6 +186,7 @@ pub(crate) fn find(
 /// What the entries say about the nodes of one side.
 #[derive(Default)]
 struct Found {
+    surface: Option<Opposite>,
     limits: Vec<Limit>,
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
     parameters: BTreeMap<usize, [f64; 2]>,

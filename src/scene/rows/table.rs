@@ -2,7 +2,7 @@
 
 use super::areas::Areas;
 use super::equations::Equation;
-use super::mortar::MortarRow;
+use super::mortar_row::MortarRow;
 use super::points::{Point, PointRow};
 use crate::error::Result;
 use crate::scene::checked::Scene;
@@ -107,16 +107,26 @@ impl Scene {
     }
 
     fn mortar_label(&self, row: &MortarRow) -> RowLabel {
+        let first = row.members[0].expect("every row has a first member");
         RowLabel {
-            source: RowSource::Interface(row.interface),
-            members: row.members.map(Some),
-            point: row.members[0].position(&self.bodies),
-            t: self.interfaces[row.interface].shared[row.node].t,
+            source: row.source,
+            members: row.members,
+            point: first.position(&self.bodies),
+            t: self.t(row.source, row.node),
             normal: row.direction,
             area: match row.inequality.is_some() && self.has_pressure() {
                 true => row.area,
                 false => 0.0,
             },
+        }
+    }
+
+    /// The parameters of a node of the interface or obstacle of a row.
+    fn t(&self, source: RowSource, node: usize) -> [f64; 2] {
+        match source {
+            RowSource::Interface(k) => self.interfaces[k].shared[node].t,
+            RowSource::Obstacle(k) => self.obstacles[k].t(node),
+            RowSource::Equation(_) => [0.0; 2],
         }
     }
 
@@ -127,11 +137,7 @@ impl Scene {
             source: row.source,
             members,
             point: first.position(&self.bodies),
-            t: match row.source {
-                RowSource::Interface(k) => self.interfaces[k].shared[row.node].t,
-                RowSource::Obstacle(k) => self.obstacles[k].t(row.node),
-                RowSource::Equation(_) => [0.0; 2],
-            },
+            t: self.t(row.source, row.node),
             normal: row.direction,
             area: areas.at(row.source, first),
         }

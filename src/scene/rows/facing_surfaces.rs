@@ -1,0 +1,178 @@
+//! Rigid surfaces beside bodies: the part that lies opposite a side, and the rows that follow.
+
+use std::collections::{BTreeMap, HashSet};
+
+use super::mortar_row::MortarRow;
+use super::obstacles::Obstacle;
+use super::points::Inequality;
+use crate::fem::Form;
+use crate::linalg::vec3::{minus, norm};
+use crate::mortar::Face;
+use crate::scene::body::Body;
+use crate::scene::geometry::mortar::surface;
+use crate::scene::geometry::mortar_sides::{BodyRow, Surfaces};
+use crate::scene::geometry::normals::of_side;
+use crate::scene::model::rigid_surface::RigidSurface;
+use crate::scene::model::spec::BodySpec;
+use crate::substructures::{BodyNode, RowSource};
+
+/// The part of a rigid surface that lies opposite a side of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Opposite {
+    /// The name of the surface.
+    pub name: String,
+    /// The area (in the plane the length) of the side that lies opposite it.
+    pub area: f64,
+    /// The faces of the surface, as polygons of their corners.
+    pub polygons: Vec<Vec<[f64; 3]>>,
+    /// The distance of each node that carries a multiplier, and the unit vector into the body.
+    pub(super) nearest: BTreeMap<usize, (f64, [f64; 3])>,
+    /// The pairing, until rows are made of it.
+    surfaces: Option<Box<Surfaces>>,
+    /// The points of the surface.
+    points: Vec<[f64; 3]>,
+}
+
+/// The part of a surface, at a distance of `reach` at most, that lies opposite some nodes of a side; `None` if there is
+/// none.
+pub(super) fn find(
+    spec: &BodySpec,
+    form: &Form,
+    side: usize,
+    rigid: &RigidSurface,
+    reach: Option<f64>,
+    nodes: impl Iterator<Item = usize>,
+) -> Option<Opposite> {
+    let own = surface(spec, side);
+    let reach = reach.unwrap_or_else(|| {
+        // Any distance.
+        let [low, high] = rigid.bounds();
+        let far = own.0.points().iter().fold(0.0_f64, |far, x| {
+            far.max(norm(minus(*x, low))).max(norm(minus(*x, high)))
+        });
+        far + rigid.size()
+    });
+    let points = rigid.side.points().to_vec();
+    let all = (0..points.len()).collect();
+    let surfaces = Surfaces::new([own, (rigid.side.clone(), all)], reach);
+    let meant: HashSet<usize> = nodes.collect();
+    let rows = surfaces.rows(form, &|node| !meant.contains(&node));
+    let nodes: Vec<usize> = rows.iter().map(|r| r.node).collect();
+    let out = of_side(spec, side, &nodes);
+    let nearest = rows.iter().zip(out).map(|(row, n)| {
+        let distance = row.distance(spec, &|k| points[k], n);
+        (row.node, (distance, n.map(|v| 0.0 - v)))
+    });
+    let nearest: BTreeMap<usize, (f64, [f64; 3])> = nearest.collect();
+    let polygon = |face: &Face| {
+        let corners = &face.nodes[..face.kind.corners()];
+        let at = |&k: &u32| rigid.side.points()[k as usize];
+        corners.iter().map(at).collect()
+    };
+    (!rows.is_empty()).then(|| Opposite {
+        name: rigid.name.clone(),
+        area: rows.iter().map(|r| r.area).sum(),
+        polygons: rigid.side.faces().iter().map(polygon).collect(),
+        nearest,
+        surfaces: Some(Box::new(surfaces)),
+        points,
+    })
+}
+
+/// Why a side and a rigid surface have no rows.
+pub(super) fn apart(
+    spec: &BodySpec,
+    form: &Form,
+    side: usize,
+    rigid: &RigidSurface,
+    reach: Option<f64>,
+) -> String {
+    let nodes = || spec.mesh.side_nodes(side).into_iter();
+    let names = format!(
+        "side `{}` of body `{}` and the rigid surface `{}`",
+        spec.mesh.side_name(side),
+        spec.name,
+        rigid.name
+    );
+    if find(spec, form, side, &rigid.reversed(), reach, nodes()).is_some() {
+        return format!(
+            "{names} do not face each other: the normals of the surface point away from the body (`reverse = true`, or \
+             faces with normals to the free side, were expected)"
+        );
+    }
+    let within = reach.map(|r| format!(" within `distance` = {r}"));
+    format!(
+        "{names} do not face each other{}: no normal of the side meets the surface, with the opposite normal and an \
+         overlap of an edge at most",
+        within.unwrap_or_default()
+    )
+}
+
+impl Obstacle {
+    /// Frees what only the making of rows needs.
+    pub(crate) fn finish(&mut self) {
+        if let Some(opposite) = &mut self.surface {
+            opposite.surfaces = None;
+            opposite.points = Vec::new();
+        }
+    }
+
+    /// The rows beside a rigid surface; `number` is that of the obstacle. Nodes of which `taken`, called with their
+    /// direction, holds carry none.
+    pub(super) fn mortar_rows(
+        &self,
+        bodies: &[Body],
+        form: &Form,
+        number: usize,
+        taken: &dyn Fn(BodyNode, [f64; 3]) -> bool,
+    ) -> Vec<MortarRow> {
+        let Some(opposite) = &self.surface else {
+            return Vec::new();
+        };
+        let Some(surfaces) = &opposite.surfaces else {
+            return Vec::new();
+        };
+        let body = self.body;
+        let node_of = |node: usize| BodyNode { body, node };
+        let held = |node: usize| {
+            if self.limits.at(node).is_empty() {
+                return true;
+            }
+            let direction = self.ahead(node).1;
+            let along = node_of(node).along(bodies, direction);
+            along.terms.is_empty() || taken(node_of(node), direction)
+        };
+        let row = |row: BodyRow| {
+            let node = row.node;
+            let (known, direction) = self.ahead(node);
+            // What counts as touching does.
+            let distance = match known == 0.0 {
+                true => 0.0,
+                false => row.distance(&bodies[body].spec, &|k| opposite.points[k], direction),
+            };
+            let (mut terms, mut given) = (Vec::new(), 0.0);
+            for &(k, v) in &row.own {
+                let along = node_of(k).along(bodies, direction);
+                terms.extend(along.terms.into_iter().map(|(dof, n)| (dof, v * n)));
+                given += v * along.given;
+            }
+            MortarRow {
+                source: RowSource::Obstacle(number),
+                node,
+                members: [Some(node_of(node)), None],
+                direction,
+                block: terms.iter().map(|t| t.0).min().unwrap_or_default(),
+                subdomain: bodies[body].first_subdomain + bodies[body].mesh().owner(node),
+                terms,
+                given,
+                inequality: Some(Box::new(Inequality {
+                    limits: self.limits.at(node).to_vec(),
+                    distance,
+                    given: [given, 0.0],
+                })),
+                area: row.area,
+            }
+        };
+        surfaces.rows(form, &held).into_iter().map(row).collect()
+    }
+}
