@@ -25,4 +25,4 @@ mod tree;
 
 pub use dual::{has_positive_integrals, positive, rows, Row};
 pub use sample::{samples, Sample};
-pub use side::{across, Face, Side};
+pub use side::{across, reversed, Face, Side};

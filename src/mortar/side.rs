@@ -101,6 +101,16 @@ impl Side {
         &self.faces
     }
 
+    /// The same side with normals to the other side.
+    pub fn reversed(&self) -> Side {
+        let turned = |face: &Face| Face {
+            kind: face.kind,
+            nodes: reversed(face.kind, &face.nodes),
+        };
+        let faces = self.faces.iter().map(turned).collect();
+        Side::new(self.dim, self.points.clone(), faces)
+    }
+
     /// The longest edge of a piece.
     pub fn longest(&self) -> f64 {
         self.pieces.iter().map(|p| self.size(p)).fold(0.0, f64::max)
@@ -187,4 +197,18 @@ pub fn across(x: &[[f64; 3]]) -> [f64; 3] {
         [a, b, c] => cross(minus(b, a), minus(c, a)),
         _ => cross(minus(x[2], x[0]), minus(x[3], x[1])),
     }
+}
+
+/// The nodes of a face in the order in which its normal points to the other side.
+pub fn reversed(kind: CellKind, nodes: &[u32]) -> Vec<u32> {
+    let order: &[usize] = match kind {
+        CellKind::Line2 => &[1, 0],
+        CellKind::Line3 => &[1, 0, 2],
+        CellKind::Triangle3 => &[0, 2, 1],
+        CellKind::Triangle6 => &[0, 2, 1, 5, 4, 3],
+        CellKind::Quad4 => &[0, 3, 2, 1],
+        CellKind::Quad8 => &[0, 3, 2, 1, 7, 6, 5, 4],
+        _ => &[0, 3, 2, 1, 7, 6, 5, 4, 8],
+    };
+    order.iter().map(|&k| nodes[k]).collect()
 }

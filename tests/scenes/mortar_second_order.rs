@@ -211,3 +211,26 @@ fn quadrilaterals_of_8_nodes_pass_a_constant_pressure() {
         presses_evenly(&scene, &format!("hexahedra of 20 nodes, {upper:?}"));
     }
 }
+
+#[test]
+fn a_rigid_plane_presses_evenly_on_triangles_of_6_nodes() {
+    let text = "dimension = 3\nphysics = \"elasticity\"\norder = 2\nelement = \"p1\"\n\
+        [[body]]\nname = \"block\"\norigin = [0, 0.01, 0]\nsize = [2, 1, 1]\nelements = [4, 2, 3]\n\
+        subdomains = [2, 1, 1]\nyoung = 10\npoisson = 0.3\n\
+        dirichlet = { left = { x = 0 }, back = { z = 0 } }\npressure = { right = 1, front = 1, top = 1 }\n\
+        [[obstacle]]\nbody = \"block\"\nside = \"bottom\"\nplane = { point = [0, 0], normal = [0, 1] }\n";
+    let scene = Scene::parse(
+        "s.toml",
+        &text
+            .replace("[0, 0]", "[0, 0, 0]")
+            .replace("[0, 1] }", "[0, 1, 0] }"),
+    );
+    let scene = scene.expect("a scene");
+    presses_evenly(&scene, "plane");
+    let gaps = scene.obstacles[0].limits.all().len();
+    assert_eq!((gaps, scene.mortar.len()), (9 * 7, 9 * 7));
+    for row in &scene.mortar {
+        let inequality = row.inequality.as_ref().expect("an inequality");
+        assert!((inequality.distance - 0.01).abs() < 1e-15, "{row:?}");
+    }
+}

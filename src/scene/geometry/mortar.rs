@@ -83,21 +83,25 @@ pub(crate) fn interface(
     })
 }
 
-/// Whether contact between sides whose nodes match takes mortar rows all the same: on triangles of 6 and quadrilaterals
-/// of 8 nodes functions of corners have integrals that are not positive, and the force at a corner says nothing of the
-/// pressure there.
+/// Whether contact between sides whose nodes match takes mortar rows all the same.
 pub(crate) fn is_for_contact(bodies: &[Body], interface: &Interface) -> bool {
-    if interface.shape != Shape::Face || bodies[0].components == 1 {
+    interface.shape == Shape::Face
+        && [0, 1].into_iter().any(|k| {
+            let nodes = interface.shared.iter().map(|s| s.nodes[k]);
+            lacks_signs(&bodies[interface.bodies[k]], interface.sides[k], nodes)
+        })
+}
+
+/// Whether forces at nodes of a side say nothing of the sign of pressures: on triangles of 6 and quadrilaterals of 8
+/// nodes functions of corners have integrals that are not positive. Faces count that have all their nodes among these.
+pub(crate) fn lacks_signs(body: &Body, side: usize, nodes: impl Iterator<Item = usize>) -> bool {
+    if body.components == 1 {
         return false;
     }
-    [0, 1].into_iter().any(|k| {
-        let spec = &bodies[interface.bodies[k]].spec;
-        let shared: HashSet<usize> = interface.shared.iter().map(|s| s.nodes[k]).collect();
-        let of_interface = |face: &BodyFace| face.nodes.iter().all(|n| shared.contains(n));
-        let signs = |face: &BodyFace| face.kind.is_none_or(mortar::has_positive_integrals);
-        let mut faces = spec.faces(interface.sides[k]).into_iter();
-        faces.any(|face| !signs(&face) && of_interface(&face))
-    })
+    let meant: HashSet<usize> = nodes.collect();
+    let signs = |face: &BodyFace| face.kind.is_none_or(mortar::has_positive_integrals);
+    let mut faces = body.spec.faces(side).into_iter();
+    faces.any(|face| !signs(&face) && face.nodes.iter().all(|n| meant.contains(n)))
 }
 
 /// A side of a body, and the node of the body for each of its nodes.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::linalg::vec3::{minus, norm};
 use crate::mesh::{CellKind, Members, MeshFile};
-use crate::mortar::{Face, Side};
+use crate::mortar::{self, Face, Side};
 
 /// A rigid surface. The normals of its faces point to the side that is free.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +37,7 @@ impl RigidSurface {
         check_normals(file, name, &faces)?;
         if reverse {
             for (_, kind, nodes) in &mut faces {
-                *nodes = reversed(*kind, nodes);
+                *nodes = mortar::reversed(*kind, nodes);
             }
         }
         let mut places: HashMap<u32, u32> = HashMap::new();
@@ -67,15 +67,9 @@ impl RigidSurface {
 
     /// The same surface with normals to the other side.
     pub(crate) fn reversed(&self) -> RigidSurface {
-        let turned = |face: &Face| Face {
-            kind: face.kind,
-            nodes: reversed(face.kind, &face.nodes),
-        };
-        let faces = self.side.faces().iter().map(turned).collect();
-        let side = Side::new(self.side.dim(), self.side.points().to_vec(), faces);
         RigidSurface {
             name: self.name.clone(),
-            side: Arc::new(side),
+            side: Arc::new(self.side.reversed()),
         }
     }
 
@@ -186,18 +180,4 @@ fn check_normals(file: &MeshFile, name: &str, faces: &[FileFace]) -> Result<()> 
         }
     }
     Ok(())
-}
-
-/// The nodes of a face in the order in which its normal points to the other side.
-fn reversed(kind: CellKind, nodes: &[u32]) -> Vec<u32> {
-    let order: &[usize] = match kind {
-        CellKind::Line2 => &[1, 0],
-        CellKind::Line3 => &[1, 0, 2],
-        CellKind::Triangle3 => &[0, 2, 1],
-        CellKind::Triangle6 => &[0, 2, 1, 5, 4, 3],
-        CellKind::Quad4 => &[0, 3, 2, 1],
-        CellKind::Quad8 => &[0, 3, 2, 1, 7, 6, 5, 4],
-        _ => &[0, 3, 2, 1, 7, 6, 5, 4, 8],
-    };
-    order.iter().map(|&k| nodes[k]).collect()
 }

@@ -1,6 +1,7 @@
 //! Rigid surfaces beside bodies: the part that lies opposite a side, and the rows that follow.
 
 use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
@@ -12,6 +13,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::mortar::surface;
 use crate::scene::geometry::mortar_sides::{BodyRow, Surfaces};
 use crate::scene::geometry::normals::of_side;
+use crate::scene::model::rigid::Rigid;
 use crate::scene::model::rigid_surface::RigidSurface;
 use crate::scene::model::spec::BodySpec;
 use crate::substructures::{BodyNode, RowSource};
@@ -19,8 +21,8 @@ use crate::substructures::{BodyNode, RowSource};
 /// The part of a rigid surface that lies opposite a side of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Opposite {
-    /// The name of the surface.
-    pub name: String,
+    /// The name of the surface; `None`: a plane, a cylinder or a sphere.
+    pub name: Option<String>,
     /// The area (in the plane the length) of the side that lies opposite it.
     pub area: f64,
     /// The faces of the surface, as polygons of their corners.
@@ -70,9 +72,49 @@ pub(super) fn find(
         corners.iter().map(at).collect()
     };
     (!rows.is_empty()).then(|| Opposite {
-        name: rigid.name.clone(),
+        name: Some(rigid.name.clone()),
         area: rows.iter().map(|r| r.area).sum(),
         polygons: rigid.side.faces().iter().map(polygon).collect(),
+        nearest,
+        surfaces: Some(Box::new(surfaces)),
+        points,
+    })
+}
+
+/// The part of a plane, a cylinder or a sphere that lies opposite some nodes of a side, for sides at which rows at
+/// single nodes say nothing of pressures: the faces of the side, every node moved to the nearest point of the obstacle.
+pub(super) fn beneath(
+    spec: &BodySpec,
+    form: &Form,
+    side: usize,
+    rigid: &Rigid,
+    nodes: impl Iterator<Item = usize>,
+) -> Option<Opposite> {
+    let (own, list) = surface(spec, side);
+    let copy = own.reversed();
+    // A node at which no point is the nearest is refused if a row is asked for it.
+    let foot = |x: &[f64; 3]| match rigid.distance(*x) {
+        Some((distance, normal)) => [0, 1, 2].map(|d| x[d] - distance * normal[d]),
+        None => *x,
+    };
+    let points: Vec<[f64; 3]> = own.points().iter().map(foot).collect();
+    let all = (0..points.len()).collect();
+    // The side and its copy lie at one place.
+    let reach = 0.01 * own.longest();
+    let surfaces = Surfaces::new([(own, list), (Arc::new(copy), all)], reach);
+    let meant: HashSet<usize> = nodes.collect();
+    let rows = surfaces.rows(form, &|node| !meant.contains(&node));
+    let nearest = rows.iter().filter_map(|row| {
+        let (_, normal) = rigid.distance(spec.position(row.node))?;
+        let out = normal.map(|v| 0.0 - v);
+        let distance = row.distance(spec, &|k| points[k], out);
+        Some((row.node, (distance, normal)))
+    });
+    let nearest: BTreeMap<usize, (f64, [f64; 3])> = nearest.collect();
+    (!rows.is_empty()).then(|| Opposite {
+        name: None,
+        area: rows.iter().map(|r| r.area).sum(),
+        polygons: Vec::new(),
         nearest,
         surfaces: Some(Box::new(surfaces)),
         points,

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::fem::Form;
 use crate::linalg::vec3::dot;
 use crate::scene::body::Body;
+use crate::scene::geometry::mortar::lacks_signs;
 use crate::scene::geometry::normals::parameters;
 use crate::scene::model::joints::{Extent, ObstacleSpec};
 use crate::scene::model::profile::{Limit, Limits};
@@ -107,6 +108,18 @@ pub(crate) fn find(
                 let of_side = found.entry((b, side, number, true)).or_default();
                 of_side.surface = Some(opposite);
             }
+            if let Some(rigid) = &entry.rigid {
+                let nodes = || selected.iter().map(|s| s.0);
+                let opposite = match lacks_signs(&bodies[b], side, nodes()) {
+                    true => facing_surfaces::beneath(spec, form, side, rigid, nodes()),
+                    false => None,
+                };
+                if let Some(opposite) = opposite {
+                    near.clone_from(&opposite.nearest);
+                    let of_side = found.entry((b, side, number, true)).or_default();
+                    of_side.surface = Some(opposite);
+                }
+            }
             for (key, upper, bound) in bounds {
                 let Some(bound) = bound else { continue };
                 let of_side = found.entry((b, side, number, upper)).or_default();
@@ -120,7 +133,7 @@ pub(crate) fn find(
                                 spot()
                             ));
                         };
-                        near.insert(node, nearest);
+                        near.entry(node).or_insert(nearest);
                     }
                     let mut value = bound.eval(t[0], &at);
                     if let Some(&(distance, normal)) = near.get(&node) {
@@ -157,7 +170,7 @@ pub(crate) fn find(
         }
     }
     let named = |(key, of_side): ((usize, usize, usize, bool), Found)| {
-        let surface = of_side.surface.as_ref().map(|s| &s.name);
+        let surface = of_side.surface.as_ref().and_then(|s| s.name.as_ref());
         let (body, side, number, upper) = key;
         let what = match (number, upper) {
             (0, false) => "below".to_string(),
