@@ -1,5 +1,7 @@
 //! The cases, in the format of scene files.
 
+use super::trackers::{trackers, KnownForce};
+
 /// One case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HardCase {
@@ -9,6 +11,8 @@ pub struct HardCase {
     pub title: String,
     /// The scene.
     pub text: String,
+    /// A force that is known beforehand.
+    pub force: Option<KnownForce>,
 }
 
 /// The keys of a scene before its bodies.
@@ -46,13 +50,18 @@ fn blocks(head: &str, upper: &str, rest: &str) -> String {
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut out = Vec::new();
     let mut add = |name, title: &str, text| {
-        let title = title.to_string();
-        out.push(HardCase { name, title, text });
+        out.push(HardCase {
+            name,
+            title: title.to_string(),
+            text,
+            force: None,
+        });
     };
     coefficients(&mut add);
     shapes(quick, &mut add);
     contacts(&mut add);
     walls(&mut add);
+    out.extend(trackers());
     out
 }
 

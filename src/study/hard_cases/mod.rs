@@ -1,12 +1,14 @@
 //! `study hard-cases`: problems that are hard for the method, each compared with a direct solution that shares only
-//! matrices with it.
+//! matrices with it, and where a force is known beforehand with that, too.
 //!
 //! The purpose is to show that no wrong answer is called a solution. A case ends as `solved`; as `not converged` or
 //! `refused`, where the program says so itself; or as `WRONG`.
 
 mod cases;
+mod trackers;
 
 pub use cases::{cases, HardCase};
+pub use trackers::{trackers, KnownForce};
 
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +20,7 @@ use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::json;
 use crate::report::tables::table::{condition, count, fixed, scientific, Table};
+use crate::substructures::SolvedRow;
 use crate::{Error, Result};
 
 /// Relative residual that is asked of the method.
@@ -89,6 +92,10 @@ pub struct Record {
     pub iterations: usize,
     /// κ with the active rows at the end.
     pub condition: json::Condition,
+    /// A force that is known beforehand: found, and known.
+    pub force: Option<[f64; 2]>,
+    /// Why there is no direct solution, where the assembled problem has no form for one. The certificate decides then.
+    pub undecided: Option<String>,
     /// The certificate of the method.
     pub kkt: Option<json::Kkt>,
     /// Distance from the direct solution in the energy norm, relative.
@@ -171,10 +178,17 @@ pub fn one(session: &Session, case: &HardCase, spectrum: usize) -> Result<Record
         Err(e) => return Err(e),
     };
     fill(session, &solved, spectrum, &mut record)?;
+    if let Some(known) = &case.force {
+        let along = |r: &SolvedRow| r.multiplier * r.normal()[known.axis];
+        let found = solved.rows(session).iter().map(along).sum();
+        record.force = Some([found, known.value]);
+    }
+    compare(session, &solved, &mut record)?;
+    judge(&solved, case.force, &mut record);
     Ok(record)
 }
 
-/// Fills the record: first with the method's own report, then with the comparison.
+/// Fills the record with the method's own report.
 fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -> Result<()> {
     let (solver, solution) = (&solved.solver, &solved.solution);
     let facts = solver.facts();
@@ -193,9 +207,18 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         .iter()
         .filter(|r| r.is_inequality() && r.holds())
         .count();
-    let inequalities = facts.inequalities > 0;
-    record.active[0] = inequalities.then_some(active);
+    record.active[0] = (facts.inequalities > 0).then_some(active);
+    Ok(())
+}
+
+/// Compares with the direct solution.
+fn compare(session: &Session, solved: &Solved, record: &mut Record) -> Result<()> {
+    let (solver, solution) = (&solved.solver, &solved.solution);
     let layout = Layout::new(&solved.scene);
+    if let Some(trouble) = &layout.trouble {
+        record.undecided = Some(trouble.clone());
+        return Ok(());
+    }
     match Reference::certified(session, &solved.scene, &layout) {
         Ok(direct) => {
             let local = &solver.problem().local;
@@ -205,7 +228,7 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
             record.reference = Some(direct.found.certificate.largest());
             let groups = direct.problem.groups(&mut direct.found.active.clone());
             let active = groups.holds.iter().filter(|holds| **holds).count();
-            record.active[1] = inequalities.then_some(active);
+            record.active[1] = record.active[0].map(|_| active);
         }
         Err(e @ Error::NotConverged(_)) if session.rank() == 0 => {
             eprintln!("{}: {e}", solved.scene.title);
@@ -213,19 +236,32 @@ fn fill(session: &Session, solved: &Solved, exact: usize, record: &mut Record) -
         Err(Error::NotConverged(_)) => {}
         Err(e) => return Err(e),
     }
-    let near = |e: Option<f64>| e.is_some_and(|e| e <= LIMIT);
-    record.verdict = match solution.converged() {
-        false => Verdict::NotConverged,
-        true if near(record.error_energy) && near(record.error_max) => Verdict::Solved,
-        true => Verdict::Wrong,
-    };
-    if !solution.converged() {
-        record.message = Some(solution.status.to_string());
-    }
     if record.reference.is_none() {
         record.message = Some("the direct solver finds no solution".into());
     }
     Ok(())
+}
+
+/// The verdict, when all comparisons are made.
+fn judge(solved: &Solved, force: Option<KnownForce>, record: &mut Record) {
+    let near = |e: Option<f64>| e.is_some_and(|e| e <= LIMIT);
+    let right = match record.undecided {
+        None => near(record.error_energy) && near(record.error_max),
+        // The problem is convex: what satisfies the conditions of optimality is the solution.
+        Some(_) => near(record.kkt.map(|kkt| kkt.largest())),
+    };
+    let balanced = match (force, record.force) {
+        (Some(known), Some([found, value])) => (found - value).abs() <= known.within,
+        _ => true,
+    };
+    record.verdict = match (solved.solution.converged(), right && balanced) {
+        (false, _) => Verdict::NotConverged,
+        (true, true) => Verdict::Solved,
+        (true, false) => Verdict::Wrong,
+    };
+    if record.verdict == Verdict::NotConverged {
+        record.message = Some(solved.solution.status.to_string());
+    }
 }
 
 /// All cases.
@@ -252,6 +288,7 @@ pub fn table(report: &HardCasesReport) -> Table {
         .numbers("kkt", |c| scientific(c.kkt.map(|kkt| kkt.largest())))
         .numbers("error energy", |c| scientific(c.error_energy))
         .numbers("error max", |c| scientific(c.error_max))
+        .numbers("force", |c| scientific(c.force.map(|f| f[0])))
         .numbers("set", |c| set(c))
         .numbers("direct", |c| scientific(c.reference))
         .numbers("s", |c| fixed(Some(c.seconds), 2))
@@ -262,14 +299,21 @@ pub fn table(report: &HardCasesReport) -> Table {
 /// The table for terminals, with descriptions of the cases and messages of the program.
 pub fn text(report: &HardCasesReport) -> String {
     let mut out = format!(
-        "Hard cases: rtol {:e}; errors against a direct solution; set: rows that hold, ours/direct\n{}\n",
+        "Hard cases: rtol {:e}; errors against a direct solution; force: where it is known beforehand; \
+         set: rows that hold, ours/direct\n{}\n",
         report.rtol,
         table(report)
     );
     for c in &report.cases {
         out += &format!("{}: {}", c.case, c.title);
+        if let Some([found, known]) = c.force {
+            out += &format!(". Force {found:.7e}, known {known:.7e}");
+        }
         if let Some(message) = &c.message {
             out += &format!(". Said: {message}");
+        }
+        if let Some(why) = &c.undecided {
+            out += &format!(". No direct solution, the certificate decides: {why}");
         }
         out += "\n";
     }
