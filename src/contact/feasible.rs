@@ -4,6 +4,7 @@
 //! therefore has a solution if and only if every block has one. By Farkas' lemma a block has a solution unless some λ
 //! with λ_I ≥ 0 has Bᵀλ = 0 and cᵀλ < 0.
 
+use crate::feti::jump::blocks::Block;
 use crate::feti::operators::dual::Dual;
 use crate::linalg::dense::Dense;
 use crate::linalg::nnls::nnls;
@@ -23,57 +24,59 @@ fn check_mine(problem: &Substructures, dual: &Dual) -> Result<()> {
     let jump = &dual.stiffness.jump;
     for block in &jump.blocks {
         let candidate = |r: &usize| jump.is_candidate(block.rows.start + r);
-        let mut rows: Vec<usize> = (0..block.rows.len()).filter(candidate).collect();
+        let rows = || (0..block.rows.len()).filter(candidate);
         let gap = |r: usize| jump.gap[block.rows.start + r];
         let equation = |r: usize| !jump.inequality[block.rows.start + r];
         // Rows without interference are satisfied by u = 0.
-        if rows
-            .iter()
-            .all(|&r| gap(r) >= 0.0 && (gap(r) == 0.0 || !equation(r)))
-        {
+        if rows().all(|r| gap(r) >= 0.0 && (gap(r) == 0.0 || !equation(r))) {
             continue;
         }
         // Independent rows can be satisfied whatever their gaps are.
         let on: Vec<bool> = (0..block.rows.len()).map(|r| candidate(&r)).collect();
-        let Some((members, b)) = block.dependent(&on) else {
-            continue;
-        };
-        let at: Vec<usize> = (0..members.len()).filter(|&i| on[members[i]]).collect();
-        rows = at.iter().map(|&i| members[i]).collect();
-        let n = b.cols;
-        let largest = rows.iter().fold(0.0f64, |a, &r| a.max(gap(r).abs()));
-        if largest == 0.0 {
-            continue;
-        }
-        let mut a = Dense::zeros(n + 1, rows.len());
-        for (k, &r) in rows.iter().enumerate() {
-            (0..n).for_each(|j| a.set(j, k, b.get(at[k], j)));
-            a.set(n, k, gap(r) / largest);
-        }
-        let mut wanted = vec![0.0; n + 1];
-        wanted[n] = -1.0;
-        let free: Vec<bool> = rows.iter().map(|&r| equation(r)).collect();
-        let (_, rest) = nnls(&a, &wanted, &free);
-        if rest.iter().all(|v| v.abs() < CONTRADICTION) {
-            let name = |&b: &u32| format!("\"{}\"", problem.body_names[b as usize]);
-            let bodies = distinct(block.bodies.iter().map(name));
-            let place = block
-                .place(problem, &rows)
-                .map_or(String::new(), |[x, y, z]| {
-                    if z == 0.0 {
-                        format!(" at ({x}, {y})")
-                    } else {
-                        format!(" at ({x}, {y}, {z})")
-                    }
-                });
-            return Err(Error::input(format!(
-                "the gaps of {} {}{place} contradict each other: \
-                 no displacement satisfies all {} conditions there, expected gaps that leave room",
-                if bodies.len() == 1 { "body" } else { "bodies" },
-                bodies.join(", "),
-                rows.len()
-            )));
+        for (members, b) in block.dependent_sets(&on) {
+            let at: Vec<usize> = (0..members.len()).filter(|&i| on[members[i]]).collect();
+            let gaps: Vec<f64> = at.iter().map(|&i| gap(members[i])).collect();
+            let free: Vec<bool> = at.iter().map(|&i| equation(members[i])).collect();
+            let column = |j: usize, k: usize| b.get(at[k], j);
+            if contradicts(b.cols, column, &gaps, &free) {
+                let rows: Vec<usize> = at.iter().map(|&i| members[i]).collect();
+                return Err(contradiction(problem, block, &rows));
+            }
         }
     }
     Ok(())
+}
+
+/// Whether some λ ≥ 0, free on equations, has Bᵀλ = 0 and cᵀλ < 0. `bt` gives the entries of Bᵀ, which has `n` rows.
+fn contradicts(n: usize, bt: impl Fn(usize, usize) -> f64, c: &[f64], free: &[bool]) -> bool {
+    let largest = c.iter().fold(0.0f64, |a, c| a.max(c.abs()));
+    if largest == 0.0 {
+        return false;
+    }
+    let a = Dense::from_fn(n + 1, c.len(), |j, k| match j {
+        j if j == n => c[k] / largest,
+        j => bt(j, k),
+    });
+    let mut wanted = vec![0.0; n + 1];
+    wanted[n] = -1.0;
+    let (_, rest) = nnls(&a, &wanted, free);
+    rest.iter().all(|v| v.abs() < CONTRADICTION)
+}
+
+/// The sentence about these rows of a block.
+fn contradiction(problem: &Substructures, block: &Block, rows: &[usize]) -> Error {
+    let name = |&b: &u32| format!("\"{}\"", problem.body_names[b as usize]);
+    let bodies = distinct(block.bodies.iter().map(name));
+    let place = match block.place(problem, rows) {
+        None => String::new(),
+        Some([x, y, 0.0]) => format!(" at ({x}, {y})"),
+        Some([x, y, z]) => format!(" at ({x}, {y}, {z})"),
+    };
+    Error::input(format!(
+        "the gaps of {} {}{place} contradict each other: \
+         no displacement satisfies all {} conditions there, expected gaps that leave room",
+        if bodies.len() == 1 { "body" } else { "bodies" },
+        bodies.join(", "),
+        rows.len()
+    ))
 }

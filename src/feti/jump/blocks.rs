@@ -144,6 +144,21 @@ impl Block {
         }
     }
 
+    /// [`dependent`](Self::dependent) as one set; of a coupled block with too many dependent rows those of each
+    /// dependency by itself.
+    pub fn dependent_sets(&self, on: &[bool]) -> Vec<(Vec<usize>, Cow<'_, Dense>)> {
+        match &self.form {
+            Form::Dense(_) => self.dependent(on).into_iter().collect(),
+            Form::Coupled(coupled) => {
+                let part = |rows: &Vec<usize>| Cow::Owned(coupled.part(rows));
+                let sets = coupled.dependent_sets(on);
+                sets.into_iter()
+                    .map(|rows| (rows.clone(), part(&rows)))
+                    .collect()
+            }
+        }
+    }
+
     /// The copies of each dof.
     pub(super) fn copies(&self) -> &[Vec<Copy>] {
         &self.copies
@@ -195,11 +210,15 @@ impl Block {
         if c.iter().zip(active).all(|(c, on)| !on || *c == 0.0) {
             return out;
         }
-        if let Some((rows, b)) = self.dependent(active) {
-            let near = dependent::consistent(&b, &pick(active, &rows), &pick(c, &rows));
-            rows.iter().zip(near).for_each(|(&r, c)| out[r] = c);
+        match &self.form {
+            Form::Dense(b) => dependent::consistent(b, active, c),
+            Form::Coupled(coupled) => {
+                if coupled.reconcile(active, &mut out) {
+                    dependent::keep(active, c, &mut out);
+                }
+                out
+            }
         }
-        out
     }
 
     /// Rows that follow from the active ones: they depend on them, and their right-hand side `c` is the same

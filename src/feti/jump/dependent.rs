@@ -23,13 +23,20 @@ pub fn consistent(b: &Dense, active: &[bool], c: &[f64]) -> Vec<f64> {
             .enumerate()
             .for_each(|(i, n)| *n += along * range[(i, l)]);
     }
-    for (&r, n) in rows.iter().zip(&near) {
-        // A difference of the size of rounding means that both values are the same.
-        if (n - c[r]).abs() > 1e-12 * largest {
-            out[r] = *n;
+    rows.iter().zip(&near).for_each(|(&r, n)| out[r] = *n);
+    keep(active, c, &mut out);
+    out
+}
+
+/// Puts back `c` where `near` differs by rounding, which means that both are the same.
+pub fn keep(active: &[bool], c: &[f64], near: &mut [f64]) {
+    let active = || (0..c.len()).filter(|&r| active[r]);
+    let largest = active().fold(0.0f64, |a, r| a.max(c[r].abs()));
+    for r in active() {
+        if (near[r] - c[r]).abs() <= 1e-12 * largest {
+            near[r] = c[r];
         }
     }
-    out
 }
 
 /// Rows of B that follow from the active ones: they depend on them, and their right-hand side `c` is the same

@@ -61,7 +61,7 @@ impl Dependencies {
         Some((Dependencies { columns, gram }, left))
     }
 
-    /// λ ← Π λ.
+    /// λ ← Π λ. Of right-hand sides it is the nearest one that the rows can satisfy together.
     pub fn project(&self, lambda: &mut [f64]) {
         let of = |c: &Vec<(u32, f64)>| c.iter().map(|&(r, v)| v * lambda[r as usize]).sum();
         let mut along: Vec<f64> = self.columns.iter().map(of).collect();
@@ -71,6 +71,12 @@ impl Dependencies {
                 .iter()
                 .for_each(|&(r, v)| lambda[r as usize] -= a * v);
         }
+    }
+
+    /// The rows of each dependency by itself.
+    pub fn parts(&self) -> impl Iterator<Item = Vec<usize>> + '_ {
+        let rows = |c: &Vec<(u32, f64)>| distinct(c.iter().map(|e| e.0 as usize));
+        self.columns.iter().map(rows)
     }
 
     /// The rows that are not zero in N.

@@ -26,8 +26,8 @@ pub const MANY: usize = 48;
 /// ratio has.
 const STEEP: f64 = 1e4;
 
-/// Sets of dependent rows with more members than this are not looked into: what is asked about them costs the fourth
-/// power of their number.
+/// Sets of dependent rows with more members than this are not looked into as a whole: what is asked about them costs
+/// the fourth power of their number. B B⁺ c is known for all of them, from N.
 const DEPENDENT: usize = 200;
 
 /// The rows of a coupled block.
@@ -144,6 +144,34 @@ impl Coupled {
             ..=DEPENDENT => support,
             _ => Vec::new(),
         }
+    }
+
+    /// [`dependent`](Self::dependent) as one set, or if there are too many the rows of every dependency that has not.
+    pub fn dependent_sets(&self, on: &[bool]) -> Vec<Vec<usize>> {
+        let Some((dependencies, _)) = Dependencies::new(&self.b, on) else {
+            return Vec::new();
+        };
+        let support = dependencies.support();
+        match support.len() {
+            ..=DEPENDENT => vec![support],
+            _ => dependencies
+                .parts()
+                .filter(|rows| rows.len() <= DEPENDENT)
+                .collect(),
+        }
+    }
+
+    /// B B⁺ c over the rows in `active`, in place. Returns whether that is another c.
+    pub fn reconcile(&self, active: &[bool], c: &mut [f64]) -> bool {
+        let own;
+        let dependencies = match active == self.active {
+            true => self.dependencies.as_ref(),
+            false => {
+                own = Dependencies::new(&self.b, active);
+                own.as_ref().map(|(dependencies, _)| dependencies)
+            }
+        };
+        dependencies.inspect(|d| d.project(c)).is_some()
     }
 
     /// B on these rows and the dofs that they have.

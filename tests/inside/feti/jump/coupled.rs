@@ -208,6 +208,41 @@ fn rows_that_follow_from_others_are_found_and_do_no_harm() {
     assert_eq!(ranks, [6, 60]);
 }
 
+/// Every row twice, with right-hand sides that differ: both get the mean, however many there are.
+#[test]
+fn right_hand_sides_of_many_rows_are_reconciled() {
+    let (mut rows, weights) = between_sides(150, 100, [1.0, 10.0]);
+    let n = rows.len();
+    rows.extend_from_within(..);
+    let mut active = vec![true; 2 * n];
+    active[7] = false;
+    let mut coupled = Coupled::new(&rows, &weights);
+    coupled.hold(&active);
+    let c = random(2 * n, 4);
+    let mut near = c.clone();
+    assert!(coupled.reconcile(&active, &mut near));
+    for r in 0..n {
+        let mean = (c[r] + c[n + r]) / 2.0;
+        let wanted = if r == 7 { [c[r], c[n + r]] } else { [mean; 2] };
+        assert!(distance(&[near[r], near[n + r]], &wanted) < 1e-12, "{r}");
+    }
+    // The same for other rows than those that hold.
+    active[7] = true;
+    let mut other = c.clone();
+    assert!(coupled.reconcile(&active, &mut other));
+    assert!((other[7] - (c[7] + c[n + 7]) / 2.0).abs() < 1e-12);
+    active[..n].fill(false);
+    assert!(!coupled.reconcile(&active, &mut other));
+    // As a whole they are too many to look into; every pair by itself is not.
+    let all = vec![true; 2 * n];
+    assert!(coupled.dependent(&all).is_empty());
+    let sets = coupled.dependent_sets(&all);
+    assert_eq!(sets.len(), n);
+    assert!(sets
+        .iter()
+        .all(|rows| rows.len() == 2 && rows[1] == rows[0] + n));
+}
+
 #[test]
 fn a_row_without_a_dof_of_its_own_may_be_independent() {
     // Differences along a chain: the last row closes it and has no dof of its own, but a coefficient of its own.
