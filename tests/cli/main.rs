@@ -10,5 +10,6 @@ mod deck;
 mod elastic;
 mod energy;
 mod input;
+mod mortar;
 mod solve;
 mod table;
