@@ -166,6 +166,20 @@ fn bodies_around_a_point_go_on() {
     );
 }
 
+/// Sides whose nodes do not match: rows of many terms, on other ranks than before.
+#[test]
+fn mortar_rows_go_on() {
+    let scratch = Scratch::new("resume-mortar");
+    for case in fetifeti::study::hard_cases::trackers() {
+        if case.name == "moose-10950-facets" || case.name == "flow123d-1381-crossing" {
+            let tight = "[options]\nfetifeti_ksp_rtol = 1e-11\n";
+            let scene = scratch.file("mortar.toml", &format!("{}{tight}", case.text));
+            let resume = [(4, "active_set"), (7, "active_set"), (2, "smalbe")];
+            goes_on(&scratch, &scene, "active_set", "2", &resume);
+        }
+    }
+}
+
 /// The checkpoint does not depend on the number of ranks. A permuted λ would not be a solution.
 #[test]
 fn a_solved_run_is_confirmed_on_any_ranks() {

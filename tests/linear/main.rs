@@ -10,4 +10,5 @@ mod forms;
 mod lifting;
 mod local_solvers;
 mod mortar;
+mod mortar_operators;
 mod spectra;

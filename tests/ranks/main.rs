@@ -9,4 +9,5 @@ mod copies;
 mod direct;
 mod equations;
 mod mortar;
+mod mortar_program;
 mod pairs;
