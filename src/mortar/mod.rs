@@ -16,6 +16,7 @@
 //!     Side, Side ── plane, space: samples ──> [Sample] ── dual: rows ──> [Row]
 //! ```
 
+mod distance;
 mod dual;
 mod plane;
 mod sample;
@@ -23,6 +24,7 @@ mod side;
 mod space;
 mod tree;
 
+pub use distance::{distance, reach};
 pub use dual::{has_positive_integrals, positive, rows, Row};
 pub use sample::{samples, Sample};
 pub use side::{across, reversed, Face, Side};

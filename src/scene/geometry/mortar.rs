@@ -4,7 +4,6 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::interface::{Interface, Shape};
-use super::matching::FAR;
 use super::mortar_sides::{Mortar, Surfaces};
 use super::nearest::Nearest;
 use super::normals::of_side;
@@ -33,10 +32,7 @@ pub(crate) fn interface(
     let order = [multipliers, 1 - multipliers];
     let specs = order.map(|k| &bodies[pair[k]].spec);
     let [own, other] = [0, 1].map(|k| surface(specs[k], sides[order[k]]));
-    let reach = match reach.is_finite() {
-        true => reach,
-        false => FAR * own.0.longest().max(other.0.longest()),
-    };
+    let reach = mortar::reach(&own.0, &other.0, reach);
     let surfaces = Surfaces::new([own, other], reach);
     let rows = surfaces.rows(form, &|_| false);
     if rows.is_empty() {

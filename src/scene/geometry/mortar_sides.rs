@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::fem::Form;
-use crate::linalg::vec3::{dot, minus};
 use crate::mortar::{self, Row, Sample, Side};
 use crate::scene::model::spec::BodySpec;
 
@@ -76,19 +75,8 @@ impl BodyRow {
     /// The gap: how far the other side, whose nodes are at `theirs`, is along the normal `n` out of the multiplier
     /// side, in the sense of the row.
     pub fn distance(&self, own: &BodySpec, theirs: &dyn Fn(usize) -> [f64; 3], n: [f64; 3]) -> f64 {
-        // Positions from the row's node, so that large coordinates cost no digits.
+        let places: [&dyn Fn(usize) -> [f64; 3]; 2] = [&|k| own.position(k), theirs];
         let origin = own.position(self.node);
-        let along = |place: &dyn Fn(usize) -> [f64; 3], list: &[(usize, f64)]| {
-            let each = list
-                .iter()
-                .map(|&(k, v)| v * dot(minus(place(k), origin), n));
-            each.sum::<f64>()
-        };
-        let distance = along(theirs, &self.other) - along(&|k| own.position(k), &self.own);
-        let size = origin.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-        match distance.abs() <= 1e-13 * size {
-            true => 0.0,
-            false => distance,
-        }
+        mortar::distance([&self.own, &self.other], places, origin, n)
     }
 }
