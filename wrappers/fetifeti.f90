@@ -128,6 +128,41 @@ module fetifeti
       real(c_double), intent(in), optional :: gap(*)
       integer(c_int) :: ierr
     end function
+    function FetiFetiAddSurface(ff, matrix, dim, components, n, dofs, coords, nfaces, start, nodes, surface) &
+        bind(C, name="FetiFetiAddSurface") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: matrix, dim, components, n, nfaces
+      integer(c_int), intent(in) :: dofs(*), start(*), nodes(*)
+      real(c_double), intent(in) :: coords(*)
+      integer(c_int), intent(out) :: surface
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiAddMortar(ff, first, second, kind, reach, adjust, gap, gaps, without, mortar) &
+        bind(C, name="FetiFetiAddMortar") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: first, second, kind
+      real(c_double), value :: reach, adjust, gap
+      real(c_double), intent(in), optional :: gaps(*)
+      integer(c_int), intent(in), optional :: without(*)
+      integer(c_int), intent(out) :: mortar
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiGetMortar(ff, mortar, n, lambda, pressure, gap, state) &
+        bind(C, name="FetiFetiGetMortar") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: mortar, n
+      real(c_double), optional :: lambda(*), pressure(*), gap(*)
+      integer(c_int), optional :: state(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiResetMortar(ff) bind(C, name="FetiFetiResetMortar") result(ierr)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: ff
+      integer(c_int) :: ierr
+    end function
     function FetiFetiSetUp(ff) bind(C, name="FetiFetiSetUp") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff

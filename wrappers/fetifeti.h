@@ -23,7 +23,7 @@
    Matrices that were assembled body by body need no common numbers: see FetiFetiAddMatIS().
 
 .seealso: `FetiFetiCreate()`, `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactPairs()`,
-          `FetiFetiSetContactRows()`, `FetiFetiSolve()`
+          `FetiFetiSetContactRows()`, `FetiFetiAddMortar()`, `FetiFetiSolve()`
 S*/
 typedef struct _p_FetiFeti *FetiFeti;
 
@@ -480,6 +480,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetPrimalDofs(FetiFeti ff, IS dofs);
    second: coefficients n at the first one, -n at the second one, and the distance as gap. A multiplier is then the
    force with which the second one is pressed away.
 
+   A row may have as many terms as it likes. FetiFetiAddMortar() makes the rows of two surfaces.
+
    Terms at held unknowns go to the right-hand side. A row all of whose unknowns are held has no effect, and a
    multiplier of zero.
 
@@ -525,6 +527,144 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, cons
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetContactPairs(FetiFeti ff, PetscInt a, IS first, PetscInt b, IS second,
                                                     const PetscReal gap[], PetscInt kind);
+
+/*@
+   FetiFetiAddSurface - Gives a surface of a body by nodes and faces, for FetiFetiAddMortar()
+
+   Collective
+
+   Input Parameters:
++  ff         - the solver
+.  matrix     - the matrix whose unknowns `dofs` lists, 0 for the first one of FetiFetiAddMatIS(); PETSC_DECIDE: numbers
+                among the unknowns of all bodies
+.  dim        - 2 or 3
+.  components - unknowns of a node: dim for displacements, 1 for scalars
+.  n          - nodes that this rank gives
+.  dofs       - the unknowns of each node, node by node, length n * components; a negative one is no unknown, its
+                displacement is zero
+.  coords     - the places of the nodes, node by node, length n * dim
+.  nfaces     - faces that this rank gives
+.  start      - start of each face in nodes, length nfaces + 1, from 0
+-  nodes      - the nodes of each face, as places in the list of this rank's nodes, from 0
+
+   Output Parameter:
+.  surface - number of the surface, from 0; or NULL
+
+   Level: beginner
+
+   Notes:
+   Each rank gives the faces that it has, or none. What ranks give is put together: nodes are the same if their unknowns
+   are, and a face that several ranks give counts once. A node that is in none of its rank's faces does not count: all
+   nodes of a subdomain may be given.
+
+   The number of its nodes says what a face is: in the plane a segment of 2 or 3 nodes (both ends, the middle), in space
+   a triangle of 3 or 6 or a quadrilateral of 4, 8 or 9 (the corners around, the middles of the edges from the first
+   corner on, the centre). The normal points out of the body: in the plane to the right on the way from the first node
+   to the second one, in space towards whoever sees the corners go around anticlockwise. Neighbouring faces that go
+   around in opposite ways are an error.
+
+   Arrays are copied.
+
+.seealso: `FetiFetiAddMortar()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiAddSurface(FetiFeti ff, PetscInt matrix, PetscInt dim, PetscInt components,
+                                               PetscInt n, const PetscInt dofs[], const PetscReal coords[],
+                                               PetscInt nfaces, const PetscInt start[], const PetscInt nodes[],
+                                               PetscInt *surface);
+
+/*@
+   FetiFetiAddMortar - Ties two surfaces whose meshes need not match, or puts them in contact, by mortar rows
+
+   Collective
+
+   Input Parameters:
++  ff      - the solver
+.  first   - the surface that carries the multipliers, the finer or the softer one by preference
+.  second  - the other surface
+.  kind    - FETIFETI_EQUALITY: a tie, the displacements of both are equal; FETIFETI_INEQUALITY: contact, no friction
+.  reach   - how far along the normals of the first surface the second one may be; 0: a few edges
+.  adjust  - initial distances and overlaps up to this one count as none; nodes are not moved
+.  gap     - a clearance in addition to the distance of the places, negative for an interference
+.  gaps    - more of it at each node that this rank gave of the first surface; NULL: none
+-  without - for each of these nodes, other than 0 where it is to carry no multiplier; NULL: found alone
+
+   Output Parameter:
+.  mortar - number of the mortar, from 0; or NULL
+
+   Level: beginner
+
+   Notes:
+   All but the arrays is the same on all ranks. May be called several times, also for surfaces of other mortars; rows of
+   FetiFetiSetContactRows() and FetiFetiSetContactPairs() stay.
+
+   The row of node p is sum_k D_pk/D_p n.u_k - sum_q M_pq/D_p n.u_q <= g_p with the dual basis of the first surface and
+   its normal n, the mean over the faces around the node. A tie has a row for each component, a scalar has no normal.
+   g_p is the distance along n as the row sees it, plus the clearance; for scalars and ties the clearance alone, and a
+   tie of vectors has none.
+
+   A node carries no multiplier if it does not lie opposite the second surface, if its unknowns (in contact those along
+   n) are held, if it carries multipliers of a mortar that is a tie, or if FetiFetiSetContactPairs() ties it; the
+   functions of its neighbours reach over it. Ties come before contacts, in the order in which they were added. A side
+   with given values, or with ties of its own, had better be the second one. -fetifeti_view shows how many nodes carry
+   multipliers.
+
+   Surfaces that do not face each other are an error, which says if they would with one of them the other way round.
+   That the faces of both are the wrong way round cannot be seen where they touch.
+
+   Rows are those of the places at this call: for large sliding call FetiFetiResetMortar() and add surfaces with new
+   places.
+
+.seealso: `FetiFetiAddSurface()`, `FetiFetiGetMortar()`, `FetiFetiResetMortar()`, `FetiFetiSetContactRows()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiAddMortar(FetiFeti ff, PetscInt first, PetscInt second, PetscInt kind,
+                                              PetscReal reach, PetscReal adjust, PetscReal gap, const PetscReal gaps[],
+                                              const PetscInt without[], PetscInt *mortar);
+
+/*@
+   FetiFetiGetMortar - Gets the result of a mortar at the nodes of its first surface
+
+   Not Collective
+
+   Input Parameters:
++  ff     - the solver
+.  mortar - number of the mortar
+-  n      - nodes that this rank gave of the first surface
+
+   Output Parameters:
++  lambda   - multipliers, forces of the first surface on the second one along n in contact, else by component; NULL:
+              not wanted
+.  pressure - lambda over the area of the node's function: a pressure (a traction in ties)
+.  gap      - what remains of the gap; PETSC_INFINITY at a node without a multiplier
+-  state    - 1 where the row holds, 0 where the sides are apart, -1 at a node without a multiplier
+
+   Level: beginner
+
+   Note:
+   One number for each node, in the order of FetiFetiAddSurface(); lambda and pressure of a tie have one for each
+   component. Nodes without multipliers have 0. Every rank that gave a node gets its result. In the plane areas are
+   lengths: lambda is a force per unit of thickness.
+
+.seealso: `FetiFetiAddMortar()`, `FetiFetiGetMultipliers()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiGetMortar(FetiFeti ff, PetscInt mortar, PetscInt n, PetscReal lambda[],
+                                              PetscReal pressure[], PetscReal gap[], PetscInt state[]);
+
+/*@
+   FetiFetiResetMortar - Forgets surfaces and mortars; everything else stays
+
+   Collective
+
+   Input Parameter:
+.  ff - the solver
+
+   Level: intermediate
+
+   Note:
+   For surfaces with new places. Results of the last solve are gone, too.
+
+.seealso: `FetiFetiAddMortar()`, `FetiFetiReset()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiResetMortar(FetiFeti ff);
 
 /*@
    FetiFetiSetUp - Finds bodies, interfaces and constraints, and factors
@@ -667,14 +807,15 @@ PETSC_EXTERN PetscErrorCode FetiFetiGetKKT(FetiFeti ff, PetscReal kkt[4]);
 
    Input Parameters:
 +  ff - the solver
--  n  - how many rows this rank gave, by FetiFetiSetContactRows() and FetiFetiSetContactPairs()
+-  n  - how many rows this rank gave, by FetiFetiSetContactRows() and FetiFetiSetContactPairs(); those of mortars do not
+        count
 
    Output Parameter:
 .  lambda - the multipliers, in the order in which the rows were given: K u + B'lambda = f
 
    Level: beginner
 
-.seealso: `FetiFetiSetContactRows()`, `FetiFetiSetContactPairs()`
+.seealso: `FetiFetiSetContactRows()`, `FetiFetiSetContactPairs()`, `FetiFetiGetMortar()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiGetMultipliers(FetiFeti ff, PetscInt n, PetscReal lambda[]);
 

@@ -2,8 +2,9 @@
 //! are there.
 
 use super::handle::{alone, array, list, not_null, starts, together, Handle};
+use super::numbering::Numbering;
 use super::object::Object;
-use super::rows::{pairs, row_kind, Numbering, Origin, Row, Side};
+use super::rows::{pairs, row_kind, Origin, Row, Side};
 use crate::error::Fault;
 use crate::petsc::{raw, Vec as PetscVec};
 use crate::Result;

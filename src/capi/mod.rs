@@ -1,5 +1,5 @@
 //! The C interface: the registration of the plug-in, the functions behind KSPFETIFETI, and the functions of
-//! `wrappers/fetifeti.h` ([`life`], [`bodies`], [`conditions`], [`results`]).
+//! `wrappers/fetifeti.h` ([`life`], [`bodies`], [`conditions`], [`surfaces`], [`results`]).
 //!
 //! No panic unwinds into C. An error is one sentence: [`plugin`] stores it for the C side, which passes it to the
 //! host's error handler.
@@ -10,13 +10,18 @@ mod coordinates;
 mod error;
 mod handle;
 mod life;
+mod mortar;
+mod mortar_rows;
 mod nested;
+mod numbering;
 mod object;
 mod plugin;
 mod results;
 mod rows;
 mod solving;
 mod stack;
+mod surface;
+mod surfaces;
 
 use crate::petsc::raw;
 use std::ffi::{c_char, c_int};

@@ -1,9 +1,12 @@
 //! The object behind `FetiFeti` of fetifeti.h: the host's input, and the solver made from it.
 
 use super::coordinates::{rigid, Coordinates};
+use super::mortar::Mortar;
+use super::mortar_rows::{AtNodes, MortarRows};
 use super::nested::Given as GivenVector;
 use super::rows::Row;
 use super::stack::{fits, Given, LocalMatrix, Stack, Told};
+use super::surface::Surface;
 use crate::embed::torn::spanned;
 use crate::embed::{Embedded, Outcome, Torn};
 use crate::error::Fault;
@@ -36,6 +39,13 @@ pub struct Object {
     pub primal: Vec<i32>,
     /// The rows that this rank gives, in their order.
     pub rows: Vec<Row>,
+    pub surfaces: Vec<Surface>,
+    /// The pairs of surfaces that mortar rows join.
+    pub mortars: Vec<Mortar>,
+    /// Their rows, in the present solver.
+    pub mortar_rows: MortarRows,
+    /// Their results, of the last solve.
+    pub at_nodes: AtNodes,
     pub bodies: usize,
     pub view: bool,
     /// Whether something has changed on this rank since the last set-up.
@@ -63,6 +73,10 @@ impl Object {
             held_values: None,
             primal: Vec::new(),
             rows: Vec::new(),
+            surfaces: Vec::new(),
+            mortars: Vec::new(),
+            mortar_rows: MortarRows::default(),
+            at_nodes: AtNodes::default(),
             bodies: 0,
             view: false,
             stale: true,
@@ -171,7 +185,8 @@ impl Object {
         self.solver = None;
         self.outcome = None;
         self.work = [None, None, None];
-        let torn = self.torn()?;
+        let mut torn = self.torn()?;
+        self.mortar_rows = self.add_mortar_rows(&mut torn)?;
         let settings = MethodSettings {
             prefix: format!("{}fetifeti_", self.prefix),
             ..MethodSettings::default()

@@ -60,7 +60,9 @@ pub unsafe extern "C" fn FetiFetiGetKKT(ff: Handle, kkt: *mut f64) -> c_int {
 pub unsafe extern "C" fn FetiFetiGetMultipliers(ff: Handle, n: c_int, lambda: *mut f64) -> c_int {
     alone(ff, c"FetiFetiGetMultipliers", |o| {
         o.outcome()?;
-        let found = o.solver()?.multipliers().unwrap_or_default();
+        let mut found = o.solver()?.given().unwrap_or_default().multipliers;
+        // Those of mortars come last.
+        found.truncate(found.len() - o.mortar_rows.placed.len());
         if n as usize != found.len() || (lambda.is_null() && n > 0) {
             return Err(Fault::Sizes.error(format!(
                 "there is room for {n} multipliers, expected {}: as many as this rank gave rows",

@@ -1,5 +1,6 @@
 //! The rows that a rank gives: their terms refer to unknowns of all bodies, or to unknowns of one matrix.
 
+use super::numbering::Numbering;
 use super::object::Object;
 use crate::embed::GivenRow;
 use crate::error::Fault;
@@ -13,15 +14,6 @@ pub enum Origin {
     Rows,
     /// FetiFetiSetContactPairs.
     Pairs,
-}
-
-/// The numbering that a number belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Numbering {
-    /// The numbering of all unknowns.
-    All,
-    /// The numbering of one matrix; the index counts the matrices in the order in which they were added.
-    Matrix(usize),
 }
 
 /// A row as the host gave it.
@@ -58,7 +50,10 @@ impl Side {
     pub fn new(o: &Object, matrix: i32, dofs: Vec<i32>) -> Result<Side> {
         let (numbering, n) = match usize::try_from(matrix) {
             Err(_) => (Numbering::All, None),
-            Ok(k) => (Numbering::Matrix(k), Some(o.size_of(k)?)),
+            Ok(k) => (
+                Numbering::Matrix(k),
+                Some(o.size_of(k, "contact pairs name")?),
+            ),
         };
         let wrong = |d: &&i32| **d < 0 || n.is_some_and(|n| **d as usize >= n);
         if let Some((r, dof)) = dofs.iter().enumerate().find(|(_, d)| wrong(d)) {
@@ -125,21 +120,7 @@ impl Object {
     /// # Errors Rows of matrices that no longer exist.
     pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
         let number = |&(whose, dof, c): &(Numbering, u32, f64)| {
-            let Numbering::Matrix(k) = whose else {
-                return Ok((dof, c));
-            };
-            let n = self.size_of(k)?;
-            if dof as usize >= n {
-                return Err(Fault::OutOfRange.error(format!(
-                    "a contact pair of rank {} has unknown {dof} of matrix {k}, \
-                     which has {n} by now, expected pairs of the present matrices",
-                    self.session.rank()
-                )));
-            }
-            match self.stack.is_empty() {
-                true => Ok((dof, c)),
-                false => Ok((self.stack.number(k, dof), c)),
-            }
+            Ok((self.number(whose, dof, "a contact pair")?, c))
         };
         let row = |row: &Row| {
             let terms: Result<Vec<(u32, f64)>> = row.terms.iter().map(number).collect();
@@ -153,7 +134,7 @@ impl Object {
     }
 
     /// Number of unknowns of a matrix, stacked or from FetiFetiSetMatIS.
-    fn size_of(&self, k: usize) -> Result<usize> {
+    pub fn size_of(&self, k: usize, what: &str) -> Result<usize> {
         let there = match (&self.matis, self.stack.len()) {
             (Some(matis), 0) if k == 0 => return Ok(matis.layout.global_len()),
             (matis, 0) => usize::from(matis.is_some()),
@@ -161,7 +142,7 @@ impl Object {
             (_, n) => n,
         };
         Err(Fault::OutOfRange.error(format!(
-            "contact pairs name matrix {k} but {there} have been added without numbers so far, \
+            "{what} matrix {k} but {there} have been added without numbers so far, \
              expected one of these (from 0)"
         )))
     }

@@ -25,6 +25,8 @@ impl Object {
         let solver = self.solver.as_ref().expect("set-up has made it");
         let outcome = solver.solve_with_rows(&plain[0], plain.get(2), &plain[1])?;
         checked[1].take(&plain[1])?;
+        let given = solver.given().unwrap_or_default();
+        self.at_nodes = self.at_nodes(&self.mortar_rows.placed, &given);
         self.outcome = Some(outcome);
         Ok(())
     }
@@ -81,6 +83,9 @@ impl Object {
             known.primal,
             known.scaling.name()
         );
+        for (m, counts) in self.mortar_rows.counts.iter().enumerate() {
+            text += &self.mortar_text(m, counts);
+        }
         if let Some(o) = &self.outcome {
             text += &format!(
                 "  last solve: {} after {} iterations, {} steps of the contact loop\n",

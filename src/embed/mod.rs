@@ -28,5 +28,5 @@ pub(crate) mod subdomains;
 pub(crate) mod torn;
 
 pub use pieces::Piece;
-pub use solver::{Embedded, Outcome};
+pub use solver::{Embedded, GivenResults, Outcome};
 pub use torn::{GivenRow, Torn};

@@ -24,7 +24,7 @@ use crate::parallel::exchange::{gather_all, total};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::status::Status;
-use crate::substructures::Substructures;
+use crate::substructures::{RowState, SolvedRow, Substructures};
 use crate::{Error, FetiFeti, Result, Solution};
 
 /// The result of a solve.
@@ -42,6 +42,17 @@ pub struct Outcome {
     pub steps: usize,
 }
 
+/// The results of the rows that a rank gave, in their order; 0 for rows without unknowns.
+#[derive(Debug, Clone, Default)]
+pub struct GivenResults {
+    /// Multipliers.
+    pub multipliers: Vec<f64>,
+    /// c − B u, what remains of the gaps.
+    pub gaps: Vec<f64>,
+    /// Whether they hold.
+    pub holds: Vec<bool>,
+}
+
 /// FETI-FETI for a torn operator.
 pub struct Embedded {
     session: Session,
@@ -55,8 +66,8 @@ pub struct Embedded {
     contact: Contact,
     /// Number of rows that tie bodies; the host's rows come after them.
     n_ties: usize,
-    /// Start of the next contact loop, and the multipliers of the rows that this rank gave.
-    reached: RefCell<Option<(ContactState, Vec<f64>)>>,
+    /// Start of the next contact loop, and the results of the rows that this rank gave.
+    reached: RefCell<Option<(ContactState, GivenResults)>>,
 }
 
 impl Embedded {
@@ -208,9 +219,8 @@ impl Embedded {
             .solver()
             .solve_from(start.as_ref(), &mut |_, _| Ok(()))?;
         self.put_together(&solution.u, x)?;
-        let multipliers = self.of_given_rows(&solution);
-        self.reached
-            .replace(Some((solution.warm_start(), multipliers)));
+        let given = self.of_given_rows(&solution);
+        self.reached.replace(Some((solution.warm_start(), given)));
         Ok(outcome(&solution))
     }
 
@@ -219,16 +229,25 @@ impl Embedded {
         self.contact.n_global
     }
 
-    /// After [`Embedded::solve_with_rows`]: the multipliers of the rows that this rank gave, in their order.
-    pub fn multipliers(&self) -> Option<Vec<f64>> {
-        self.reached.borrow().as_ref().map(|(_, l)| l.clone())
+    /// After [`Embedded::solve_with_rows`]: the results of the rows that this rank gave.
+    pub fn given(&self) -> Option<GivenResults> {
+        self.reached
+            .borrow()
+            .as_ref()
+            .map(|(_, given)| given.clone())
     }
 
-    /// The multipliers of the host's rows, on the ranks that gave them. Collective.
-    fn of_given_rows(&self, solution: &Solution) -> Vec<f64> {
-        let rows = solution.rows();
-        let given = rows[self.n_ties..].iter().map(|r| r.multiplier);
-        self.contact.back(&self.session, given)
+    /// The results of the host's rows, on the ranks that gave them. Collective.
+    fn of_given_rows(&self, solution: &Solution) -> GivenResults {
+        let rows = &solution.rows()[self.n_ties..];
+        let back =
+            |value: fn(&SolvedRow) -> f64| self.contact.back(&self.session, rows.iter().map(value));
+        let holds = back(|r| f64::from(r.state != RowState::Open));
+        GivenResults {
+            multipliers: back(|r| r.multiplier),
+            gaps: back(|r| r.gap),
+            holds: holds.into_iter().map(|v| v > 0.0).collect(),
+        }
     }
 
     /// Passes loads and gaps to the solver. Collective.

@@ -18,6 +18,7 @@
 
 mod distance;
 mod dual;
+mod orientation;
 mod plane;
 mod sample;
 mod side;
@@ -26,5 +27,6 @@ mod tree;
 
 pub use distance::{distance, reach};
 pub use dual::{has_positive_integrals, positive, rows, Row};
+pub use orientation::one_way;
 pub use sample::{samples, Sample};
 pub use side::{across, reversed, Face, Side};

@@ -1,7 +1,7 @@
 //! A side of a body: its nodes, its faces, and the flat pieces that the faces consist of.
 
 use super::tree::{bounds, Bounds, Tree};
-use crate::fem::element::{face_values, FaceValues};
+use crate::fem::element::{face_values, side_weights, FaceValues};
 use crate::linalg::vec3::{cross, dot, minus, norm, unit};
 use crate::mesh::CellKind;
 
@@ -15,6 +15,22 @@ pub struct Face {
     pub kind: CellKind,
     /// Its nodes, as places in the list of points, in the order of the kind: the normal points out of the body.
     pub nodes: Vec<u32>,
+}
+
+impl Face {
+    /// The kind of the faces of so many nodes in dimension `dim`; `None` if there is none.
+    pub fn kind_of(dim: usize, nodes: usize) -> Option<CellKind> {
+        Some(match (dim, nodes) {
+            (2, 2) => CellKind::Line2,
+            (2, 3) => CellKind::Line3,
+            (3, 3) => CellKind::Triangle3,
+            (3, 4) => CellKind::Quad4,
+            (3, 6) => CellKind::Triangle6,
+            (3, 8) => CellKind::Quad8,
+            (3, 9) => CellKind::Quad9,
+            _ => return None,
+        })
+    }
 }
 
 /// A flat piece of a face: a segment, a triangle, or a quadrilateral that is flat but for its warping.
@@ -160,6 +176,31 @@ impl Side {
             }
         }
         unit(sum).unwrap_or(piece.normal)
+    }
+
+    /// The unit normals at the nodes: the means over the faces around a node, weighted by area. They are 0 at nodes
+    /// without faces.
+    pub fn normals(&self) -> Vec<[f64; 3]> {
+        let mut sums = vec![[0.0; 3]; self.points.len()];
+        for (f, face) in (0..).zip(&self.faces) {
+            let x: Vec<[f64; 3]> = face
+                .nodes
+                .iter()
+                .map(|&k| self.points[k as usize])
+                .collect();
+            let area: f64 = side_weights(face.kind, self.dim, &x).area.iter().sum();
+            for (&k, at) in face.nodes.iter().zip(face_values::nodes(face.kind)) {
+                let [s, t] = self.values(f, at).tangents;
+                let vector = match self.dim {
+                    2 => [s[1], -s[0], 0.0],
+                    _ => cross(s, t),
+                };
+                let normal = unit(vector).unwrap_or_default();
+                (0..3).for_each(|d| sums[k as usize][d] += area * normal[d]);
+            }
+        }
+        let normal = |sum: [f64; 3]| unit(sum).unwrap_or_default();
+        sums.into_iter().map(normal).collect()
     }
 
     /// Shape functions, position and tangents at a point of a face.

@@ -9,6 +9,7 @@ mod capi_languages;
 mod examples;
 mod ksp;
 mod languages;
+mod mortar;
 mod partitions;
 mod petsc_examples;
 mod wrong_petsc;

@@ -1,0 +1,188 @@
+//! Pairs of surfaces that mortar rows join, and what the host gives for them.
+
+use std::collections::BTreeMap;
+
+use super::surface::Surface;
+use crate::error::Fault;
+use crate::mortar::{self, reach, Sample, Side};
+use crate::parallel::exchange::gather_all;
+use crate::petsc::Session;
+use crate::substructures::RowKind;
+use crate::Result;
+
+/// What one rank gives for a pair of surfaces.
+pub struct GivenMortar<'a> {
+    /// Numbers of the surfaces; the first one carries the multipliers.
+    pub surfaces: [i32; 2],
+    pub kind: RowKind,
+    /// How far apart they may be; 0 or less: a few edges.
+    pub reach: f64,
+    /// Distances up to this one count as none.
+    pub adjust: f64,
+    /// A clearance everywhere.
+    pub gap: f64,
+    /// More of it at the nodes that this rank gave of the first surface; or empty.
+    pub gaps: &'a [f64],
+    /// Which of these nodes are to carry no multiplier; or empty.
+    pub without: &'a [i32],
+}
+
+/// A pair of surfaces, on all ranks.
+pub struct Mortar {
+    pub surfaces: [usize; 2],
+    pub kind: RowKind,
+    pub adjust: f64,
+    /// The clearance at each node of the first surface.
+    pub gaps: Vec<f64>,
+    /// Whether a node of the first surface must not carry a multiplier.
+    pub without: Vec<bool>,
+    pub samples: Vec<Sample>,
+}
+
+/// The surfaces that have been added, on a rank.
+pub struct Surfaces<'a> {
+    pub session: &'a Session,
+    pub list: &'a [Surface],
+}
+
+impl Surfaces<'_> {
+    /// One of them.
+    ///
+    /// # Errors
+    /// A number that there is not.
+    fn surface(&self, number: i32) -> Result<&Surface> {
+        let found = usize::try_from(number).ok().and_then(|k| self.list.get(k));
+        found.ok_or_else(|| {
+            Fault::OutOfRange.error(format!(
+                "a mortar names surface {number} but {} have been added so far, expected one of these (from 0)",
+                self.list.len()
+            ))
+        })
+    }
+
+    /// The mortar of two surfaces. Collective.
+    ///
+    /// # Errors
+    /// Surfaces that do not face each other, and numbers that are not admissible; the same on all ranks.
+    pub fn mortar(&self, given: &GivenMortar<'_>) -> Result<Mortar> {
+        self.session.agree(self.check(given))?;
+        let words = self.words(given);
+        let all = gather_all(self.session.comm(), &words);
+        if all.iter().any(|w| w[..6] != all[0][..6]) {
+            return Err(Fault::Wrong.error(
+                "ranks give a mortar different surfaces, kinds, reaches, values of adjust or gaps, \
+                 expected the same (gaps by node go into the array)",
+            ));
+        }
+        let pair = given.surfaces.map(|k| k as usize);
+        let [first, second] = pair.map(|k| &self.list[k]);
+        let n = first.dofs.len();
+        let mut at: BTreeMap<u64, (u64, u64)> = BTreeMap::new();
+        for node in all.iter().flat_map(|w| w[6..].chunks_exact(3)) {
+            let known = *at.entry(node[0]).or_insert((node[1], node[2]));
+            if known != (node[1], node[2]) {
+                let x = first.side.points()[node[0] as usize];
+                return Err(Fault::Wrong.error(format!(
+                    "ranks give the node at {:?} of surface {} different gaps, or only one of them leaves it \
+                     without a multiplier, expected the same",
+                    &x[..first.side.dim()],
+                    pair[0]
+                )));
+            }
+        }
+        let of = |k: usize| at.get(&(k as u64)).copied().unwrap_or_default();
+        Ok(Mortar {
+            surfaces: pair,
+            kind: given.kind,
+            adjust: given.adjust.max(0.0),
+            gaps: (0..n)
+                .map(|k| given.gap + f64::from_bits(of(k).0))
+                .collect(),
+            without: (0..n).map(|k| of(k).1 != 0).collect(),
+            samples: samples(pair, &first.side, &second.side, given.reach)?,
+        })
+    }
+
+    fn check(&self, given: &GivenMortar<'_>) -> Result<()> {
+        let [a, b] = given.surfaces;
+        let (first, second) = (self.surface(a)?, self.surface(b)?);
+        if a == b {
+            return Err(Fault::Wrong.error(format!(
+                "a mortar joins surface {a} with itself, expected two surfaces"
+            )));
+        }
+        let facts = [first, second].map(|s| (s.side.dim(), s.components));
+        if facts[0] != facts[1] {
+            return Err(Fault::Wrong.error(format!(
+                "surface {a} is of dimension {} with {} unknowns in a node and surface {b} of dimension {} with {}, \
+                 expected the same",
+                facts[0].0, facts[0].1, facts[1].0, facts[1].1
+            )));
+        }
+        let finite = [given.gap, given.adjust]
+            .into_iter()
+            .chain(given.gaps.iter().copied());
+        let finite = finite.clone().all(f64::is_finite) && !given.reach.is_nan();
+        if !finite {
+            return Err(Fault::Wrong.error(format!(
+                "a mortar of surfaces {a} and {b} has a gap, reach or adjust that is not finite, \
+                 expected finite numbers"
+            )));
+        }
+        let clear = given.gap != 0.0 || given.gaps.iter().any(|g| *g != 0.0);
+        if given.kind == RowKind::Equality && first.components > 1 && clear {
+            return Err(Fault::Wrong.error(format!(
+                "the tie of surfaces {a} and {b} has a gap, expected none where a node has several unknowns"
+            )));
+        }
+        Ok(())
+    }
+
+    /// What must be the same on all ranks, then (node, gap, without) of this rank's nodes.
+    fn words(&self, given: &GivenMortar<'_>) -> Vec<u64> {
+        let [a, b] = given.surfaces.map(|k| k as u64);
+        let kind = u64::from(given.kind == RowKind::Inequality);
+        let mut out = vec![a, b, kind];
+        out.extend([given.reach, given.adjust, given.gap].map(f64::to_bits));
+        for (i, node) in self.list[a as usize].mine.iter().enumerate() {
+            let Some(node) = *node else {
+                continue;
+            };
+            let gap = given.gaps.get(i).copied().unwrap_or_default() + 0.0;
+            let without = given.without.get(i).is_some_and(|&w| w != 0);
+            out.extend([u64::from(node), gap.to_bits(), u64::from(without)]);
+        }
+        out
+    }
+}
+
+/// The points of quadrature.
+///
+/// # Errors
+/// Sides that do not face each other; if they would with the faces of one of them the other way round, it is said.
+fn samples(numbers: [usize; 2], first: &Side, second: &Side, wanted: f64) -> Result<Vec<Sample>> {
+    let reach = match wanted > 0.0 {
+        true => reach(first, second, wanted),
+        false => reach(first, second, f64::INFINITY),
+    };
+    let found = mortar::samples(first, second, reach);
+    if !found.is_empty() {
+        return Ok(found);
+    }
+    let [a, b] = numbers;
+    let back = first.reversed();
+    let tries = [
+        (second, "one of them"),
+        (&second.reversed(), "both of them"),
+    ];
+    let why = tries
+        .iter()
+        .find(|(other, _)| !mortar::samples(&back, other, reach).is_empty())
+        .map(|(_, which)| format!("they would if {which} went around the other way"));
+    let why = why.unwrap_or_else(|| {
+        "expected sides with normals towards each other, within reach along the normals of the first".into()
+    });
+    Err(Fault::Wrong.error(format!(
+        "the faces of surface {a} and surface {b} do not face each other within {reach:.6}: {why}"
+    )))
+}

@@ -1,0 +1,385 @@
+//! The rows of all mortars, and their results at the nodes of surfaces.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use super::mortar::Mortar;
+use super::numbering::Numbering;
+use super::object::Object;
+use super::rows::Origin;
+use super::surface::Surface;
+use crate::embed::states::states;
+use crate::embed::{GivenResults, GivenRow, Torn};
+use crate::error::Fault;
+use crate::linalg::sorted::distinct;
+use crate::mortar::{distance, rows, Row};
+use crate::parallel::exchange::gather_all;
+use crate::substructures::RowKind;
+use crate::Result;
+
+/// Where a row belongs, on the rank that gives it.
+#[derive(Debug, Clone, Copy)]
+pub struct Placed {
+    mortar: usize,
+    /// The node of its first surface.
+    node: u32,
+    /// The component that a tie is about; 0 in contact.
+    component: usize,
+    area: f64,
+}
+
+/// How many nodes of a mortar carry multipliers, and why others do not.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Counts {
+    pub carry: usize,
+    pub held: usize,
+    pub tied: usize,
+}
+
+/// The rows of all mortars.
+#[derive(Default)]
+pub struct MortarRows {
+    /// Those that this rank gives, in the order in which it gives them.
+    pub placed: Vec<Placed>,
+    pub counts: Vec<Counts>,
+}
+
+/// The result at a node, one component.
+#[derive(Debug, Clone, Copy)]
+pub struct AtNode {
+    pub multiplier: f64,
+    pub area: f64,
+    pub gap: f64,
+    pub active: bool,
+}
+
+/// Results by mortar, node of the first surface and component, on all ranks.
+pub type AtNodes = BTreeMap<(usize, u32, usize), AtNode>;
+
+/// Unknowns by their global numbers: whether they are held, and which are tied so far.
+struct Known {
+    held: HashMap<u32, bool>,
+    tied: HashSet<u32>,
+}
+
+impl Known {
+    fn is_held(&self, dof: Option<u32>) -> bool {
+        dof.is_none_or(|d| self.held[&d])
+    }
+
+    fn is_tied(&self, dof: Option<u32>) -> bool {
+        dof.is_some_and(|d| self.tied.contains(&d))
+    }
+}
+
+/// The numbers among all unknowns of each node of a surface; `None` where there is no unknown.
+type Numbers = Vec<Vec<Option<u32>>>;
+
+/// Components of a normal below this one do not count.
+const ALONG: f64 = 1e-12;
+
+impl Object {
+    /// Appends the rows of all mortars to the rows of `torn`. Collective.
+    ///
+    /// # Errors
+    /// A surface with an unknown that no subdomain has, a mortar without rows; the same on all ranks.
+    pub fn add_mortar_rows(&self, torn: &mut Torn) -> Result<MortarRows> {
+        let mut out = MortarRows::default();
+        if self.mortars.is_empty() {
+            return Ok(out);
+        }
+        let numbers: Result<Vec<Numbers>> = self.surfaces.iter().map(|s| self.numbers(s)).collect();
+        let numbers = self.session.agree(numbers)?;
+        let mut known = self.known(torn, &numbers)?;
+        out.counts = vec![Counts::default(); self.mortars.len()];
+        // Ties come first: nodes that they hold are not in contact.
+        for kind in [RowKind::Equality, RowKind::Inequality] {
+            for (m, mortar) in self
+                .mortars
+                .iter()
+                .enumerate()
+                .filter(|(_, m)| m.kind == kind)
+            {
+                let pair = Pair {
+                    mortar,
+                    sides: mortar.surfaces.map(|s| &self.surfaces[s]),
+                    numbers: mortar.surfaces.map(|s| &numbers[s]),
+                };
+                let made = match kind {
+                    RowKind::Equality => pair.ties(&known),
+                    RowKind::Inequality => pair.contacts(&known),
+                };
+                out.counts[m] = pair.counts(&known, &made);
+                if made.is_empty() {
+                    return Err(Fault::Wrong.error(format!(
+                        "no node of surface {} can carry a multiplier of mortar {m}: {} are held and {} tied \
+                         elsewhere, expected free ones opposite surface {}",
+                        mortar.surfaces[0], out.counts[m].held, out.counts[m].tied, mortar.surfaces[1]
+                    )));
+                }
+                for (row, component, area, node) in made {
+                    if kind == RowKind::Equality {
+                        known.tied.extend(pair.numbers[0][node as usize][component]);
+                    }
+                    if pair.sides[0].giver[node as usize] == self.session.rank() {
+                        torn.rows.push(row);
+                        out.placed.push(Placed {
+                            mortar: m,
+                            node,
+                            component,
+                            area,
+                        });
+                    }
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// The numbers among all unknowns of the nodes of a surface.
+    fn numbers(&self, surface: &Surface) -> Result<Numbers> {
+        let number = |&dof: &i32| {
+            let Ok(dof) = u32::try_from(dof) else {
+                return Ok(None);
+            };
+            self.number(surface.numbering, dof, "a surface").map(Some)
+        };
+        let node = |dofs: &Vec<i32>| dofs.iter().map(number).collect();
+        surface.dofs.iter().map(node).collect()
+    }
+
+    /// What is known of the unknowns of surfaces. Collective.
+    fn known(&self, torn: &Torn, numbers: &[Numbers]) -> Result<Known> {
+        let all = distinct(numbers.iter().flatten().flatten().filter_map(|d| *d));
+        let states = states(&self.session, torn);
+        let mut words = Vec::new();
+        for &dof in &all {
+            if let Some(state) = states.get(&dof) {
+                words.push(u64::from(dof) << 1 | u64::from(!state.is_free()));
+            }
+        }
+        let gathered = gather_all(self.session.comm(), &words).concat();
+        let held: HashMap<u32, bool> = gathered
+            .iter()
+            .map(|w| ((w >> 1) as u32, w & 1 == 1))
+            .collect();
+        if let Some(dof) = all.iter().find(|d| !held.contains_key(d)) {
+            let nodes = numbers.iter().zip(&self.surfaces).enumerate();
+            let mut found = nodes.filter_map(|(s, (list, surface))| {
+                let k = list.iter().position(|node| node.contains(&Some(*dof)))?;
+                Some((s, surface.side.points()[k], surface.side.dim()))
+            });
+            let (s, x, dim) = found.next().expect("a surface has it");
+            return Err(Fault::Wrong.error(format!(
+                "the node at {:?} of surface {s} has unknown {dof} of all, which no subdomain has, \
+                 expected unknowns of subdomains",
+                &x[..dim]
+            )));
+        }
+        // Pairs of the host that are tied.
+        let mut mine = Vec::new();
+        let pairs = self.rows.iter().filter(|r| r.origin == Origin::Pairs);
+        for row in pairs.filter(|r| r.kind == RowKind::Equality) {
+            for &(whose, dof, _) in &row.terms {
+                mine.push(u64::from(self.number(whose, dof, "a contact pair")?));
+            }
+        }
+        let tied = gather_all(self.session.comm(), &mine).concat();
+        Ok(Known {
+            held,
+            tied: tied.into_iter().map(|d| d as u32).collect(),
+        })
+    }
+
+    /// Results of all mortars, on all ranks. Collective.
+    pub fn at_nodes(&self, placed: &[Placed], given: &GivenResults) -> AtNodes {
+        let first = given.multipliers.len() - placed.len();
+        let mut words = Vec::new();
+        for (i, at) in placed.iter().enumerate() {
+            let k = first + i;
+            words.extend([at.mortar as u64, u64::from(at.node), at.component as u64]);
+            words.extend([given.multipliers[k], at.area, given.gaps[k]].map(f64::to_bits));
+            words.push(u64::from(given.holds[k]));
+        }
+        let all = gather_all(self.session.comm(), &words).concat();
+        let one = |w: &[u64]| {
+            let [multiplier, area, gap] = [w[3], w[4], w[5]].map(f64::from_bits);
+            let at = AtNode {
+                multiplier,
+                area,
+                gap,
+                active: w[6] == 1,
+            };
+            ((w[0] as usize, w[1] as u32, w[2] as usize), at)
+        };
+        all.chunks_exact(7).map(one).collect()
+    }
+}
+
+impl Object {
+    /// A line on a mortar: how many nodes carry multipliers and why others do not.
+    pub fn mortar_text(&self, m: usize, counts: &Counts) -> String {
+        let Some(mortar) = self.mortars.get(m) else {
+            return String::new();
+        };
+        let what = match mortar.kind {
+            RowKind::Equality => "tie",
+            RowKind::Inequality => "contact",
+        };
+        let ([a, b], n) = (mortar.surfaces, mortar.gaps.len());
+        let Counts { carry, held, tied } = counts;
+        format!(
+            "  mortar {m}: {what} of surfaces {a} and {b}, {carry} of {n} nodes carry multipliers \
+             ({held} are held, {tied} tied elsewhere)\n"
+        )
+    }
+
+    /// The number of an unknown among all.
+    ///
+    /// # Errors
+    /// One that its matrix does not have.
+    pub fn number(&self, whose: Numbering, dof: u32, what: &str) -> Result<u32> {
+        let Numbering::Matrix(k) = whose else {
+            return Ok(dof);
+        };
+        let n = self.size_of(k, &format!("{what} names"))?;
+        if dof as usize >= n {
+            return Err(Fault::OutOfRange.error(format!(
+                "{what} of rank {} has unknown {dof} of matrix {k}, \
+                 which has {n} by now, expected those of the present matrices",
+                self.session.rank()
+            )));
+        }
+        match self.stack.is_empty() {
+            true => Ok(dof),
+            false => Ok(self.stack.number(k, dof)),
+        }
+    }
+}
+
+/// A mortar with its surfaces, the one with the multipliers first.
+struct Pair<'a> {
+    mortar: &'a Mortar,
+    sides: [&'a Surface; 2],
+    numbers: [&'a Numbers; 2],
+}
+
+/// A row, its component, D_p, and its node.
+type Made = (GivenRow, usize, f64, u32);
+
+impl Pair<'_> {
+    fn rows(&self, excluded: &dyn Fn(u32) -> bool) -> Vec<Row> {
+        let [own, other] = self.sides.map(|s| &s.side);
+        let left_out = |k: u32| self.mortar.without[k as usize] || excluded(k);
+        rows(own, other, &self.mortar.samples, &left_out, &|_| 1.0)
+    }
+
+    fn dof(&self, node: u32, component: usize) -> Option<u32> {
+        self.numbers[0][node as usize][component]
+    }
+
+    /// The rows u = u° by component, with a gap where there is one component.
+    fn ties(&self, known: &Known) -> Vec<Made> {
+        let mut out = Vec::new();
+        let mut before: Vec<(Vec<bool>, Vec<Row>)> = Vec::new();
+        for c in 0..self.sides[0].components {
+            let left_out = |k: u32| {
+                let dof = self.dof(k, c);
+                known.is_held(dof) || known.is_tied(dof)
+            };
+            let list: Vec<bool> = (0..self.mortar.gaps.len() as u32).map(left_out).collect();
+            let same = before.iter().position(|b| b.0 == list);
+            let which = same.unwrap_or_else(|| {
+                let made = self.rows(&|k| list[k as usize]);
+                before.push((list, made));
+                before.len() - 1
+            });
+            let mut along = [0.0; 3];
+            along[c] = 1.0;
+            for row in &before[which].1 {
+                let gap = self.mortar.gaps[row.node as usize];
+                out.push((self.given(row, along, gap), c, row.area, row.node));
+            }
+        }
+        out
+    }
+
+    /// The rows n · (u − u°) ≤ g; for scalars u − u° ≤ g.
+    fn contacts(&self, known: &Known) -> Vec<Made> {
+        let [own, other] = self.sides.map(|s| &s.side);
+        let components = self.sides[0].components;
+        let normals = own.normals();
+        let along = |k: u32| match components {
+            1 => [1.0, 0.0, 0.0],
+            _ => normals[k as usize],
+        };
+        let excluded = |k: u32| {
+            let n = along(k);
+            let mut moved = (0..components).filter(|&c| n[c].abs() > ALONG);
+            let tied = (0..components).any(|c| known.is_tied(self.dof(k, c)));
+            tied || moved.all(|c| known.is_held(self.dof(k, c)))
+        };
+        let one = |row: Row| {
+            let n = along(row.node);
+            let apart = match components {
+                // A distance says nothing about a difference of values.
+                1 => 0.0,
+                _ => {
+                    let places: [&dyn Fn(u32) -> [f64; 3]; 2] =
+                        [&|k| own.points()[k as usize], &|k| {
+                            other.points()[k as usize]
+                        }];
+                    let origin = own.points()[row.node as usize];
+                    distance([&row.own, &row.other], places, origin, n)
+                }
+            };
+            let apart = if apart.abs() <= self.mortar.adjust {
+                0.0
+            } else {
+                apart
+            };
+            let gap = apart + self.mortar.gaps[row.node as usize];
+            (self.given(&row, n, gap), 0, row.area, row.node)
+        };
+        self.rows(&excluded).into_iter().map(one).collect()
+    }
+
+    /// The row along a direction.
+    fn given(&self, row: &Row, along: [f64; 3], gap: f64) -> GivenRow {
+        let mut terms = Vec::new();
+        let lists = [(&row.own, 1.0), (&row.other, -1.0)];
+        for ((list, sign), numbers) in lists.into_iter().zip(self.numbers) {
+            for &(node, v) in list {
+                for (dof, n) in numbers[node as usize].iter().zip(along) {
+                    if let (Some(dof), true) = (dof, n != 0.0) {
+                        terms.push((*dof, sign * v * n));
+                    }
+                }
+            }
+        }
+        GivenRow {
+            terms,
+            gap,
+            kind: self.mortar.kind,
+        }
+    }
+
+    /// How many nodes carry multipliers; of the others those that are held or tied.
+    fn counts(&self, known: &Known, made: &[Made]) -> Counts {
+        let carry: HashSet<u32> = made.iter().map(|m| m.3).collect();
+        let mut out = Counts {
+            carry: carry.len(),
+            ..Counts::default()
+        };
+        for (k, node) in (0..).zip(self.numbers[0]) {
+            if carry.contains(&k) {
+                continue;
+            }
+            match node.iter().any(|&d| known.is_tied(d)) {
+                true => out.tied += 1,
+                false if node.iter().all(|&d| known.is_held(d)) => out.held += 1,
+                false => {}
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,302 @@
+//! Surfaces of bodies that the host gives by the places of their nodes and by faces, each rank the faces that it has.
+//!
+//! All ranks see the whole surface, with nodes and faces in an order that depends on places alone: so the rows that
+//! follow are the same at any number of ranks.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::numbering::Numbering;
+use crate::error::Fault;
+use crate::linalg::sorted::distinct;
+use crate::linalg::vec3::{minus, norm};
+use crate::mortar::{one_way, Face, Side};
+use crate::parallel::exchange::gather_all;
+use crate::petsc::Session;
+use crate::Result;
+
+/// Places of one node that differ by more than this part of the coordinates are different places.
+const SAME: f64 = 1e-9;
+
+/// What one rank gives of a surface.
+pub struct GivenSurface<'a> {
+    /// The matrix whose unknowns `dofs` lists; negative: numbers among all unknowns.
+    pub matrix: i32,
+    pub dim: i32,
+    /// Unknowns of a node.
+    pub components: i32,
+    /// The unknowns of each node; a negative one is no unknown but a displacement of zero.
+    pub dofs: &'a [i32],
+    pub coords: &'a [f64],
+    /// The start of each face in `nodes`.
+    pub start: &'a [i32],
+    /// Nodes of the faces, as places in the list of this rank's nodes.
+    pub nodes: &'a [i32],
+}
+
+/// The number of unknowns of a matrix.
+pub type SizeOf<'a> = &'a dyn Fn(usize) -> Result<usize>;
+
+/// A surface, on all ranks.
+pub struct Surface {
+    pub numbering: Numbering,
+    pub components: usize,
+    pub side: Side,
+    /// The unknowns of each node of `side`.
+    pub dofs: Vec<Vec<i32>>,
+    /// The node of `side` for each node that this rank gave; `None` for one in none of its faces.
+    pub mine: Vec<Option<u32>>,
+    /// The lowest rank that gave each node.
+    pub giver: Vec<usize>,
+}
+
+impl GivenSurface<'_> {
+    /// # Errors
+    /// What makes no surface.
+    fn check(&self, rank: usize, number: usize, size: SizeOf<'_>) -> Result<Numbering> {
+        let whose = || format!("surface {number}, as rank {rank} gives it,");
+        let dim = self.dim as usize;
+        if self.dim != 2 && self.dim != 3 {
+            return Err(Fault::OutOfRange.error(format!(
+                "surface {number} is of dimension {}, expected 2 or 3",
+                self.dim
+            )));
+        }
+        if self.components != 1 && self.components != self.dim {
+            return Err(Fault::OutOfRange.error(format!(
+                "surface {number} has {} unknowns in a node, expected 1 or the dimension {dim}",
+                self.components
+            )));
+        }
+        let (numbering, known) = match usize::try_from(self.matrix) {
+            Err(_) => (Numbering::All, None),
+            Ok(k) => (Numbering::Matrix(k), Some(size(k)?)),
+        };
+        let beyond = |d: &&i32| **d >= 0 && known.is_some_and(|n| **d as usize >= n);
+        if let (Some(dof), Some(n)) = (self.dofs.iter().find(beyond), known) {
+            return Err(Fault::OutOfRange.error(format!(
+                "{} has unknown {dof}, expected numbers below {n}, those of matrix {}",
+                whose(),
+                self.matrix
+            )));
+        }
+        if let Some(x) = self.coords.iter().find(|x| !x.is_finite()) {
+            return Err(Fault::Wrong.error(format!(
+                "{} has a node with the coordinate {x}, expected a finite number",
+                whose()
+            )));
+        }
+        let n = self.coords.len() / dim;
+        for (f, range) in self.start.windows(2).enumerate() {
+            let list = &self.nodes[range[0] as usize..range[1] as usize];
+            let Some(kind) = Face::kind_of(dim, list.len()) else {
+                let expected = if dim == 2 {
+                    "2 or 3"
+                } else {
+                    "3, 4, 6, 8 or 9"
+                };
+                return Err(Fault::Wrong.error(format!(
+                    "face {f} of {} has {} nodes, expected {expected} in dimension {dim}",
+                    whose(),
+                    list.len()
+                )));
+            };
+            if let Some(k) = list.iter().find(|k| !(0..n as i32).contains(*k)) {
+                return Err(Fault::OutOfRange.error(format!(
+                    "face {f} of {} names node {k}, expected numbers from 0 to below {n}",
+                    whose()
+                )));
+            }
+            let different: BTreeSet<_> = list.iter().collect();
+            if different.len() != list.len() {
+                return Err(Fault::Wrong.error(format!(
+                    "face {f} of {} names a node twice, expected the different nodes of a {}",
+                    whose(),
+                    kind.name()
+                )));
+            }
+        }
+        Ok(numbering)
+    }
+
+    /// The nodes that are in faces, increasing.
+    fn used(&self) -> Vec<usize> {
+        distinct(self.nodes.iter().map(|&k| k as usize))
+    }
+
+    /// This rank's part as words: nodes in faces only, so that a host may give all its nodes.
+    fn pack(&self) -> Vec<u64> {
+        let used = self.used();
+        let faces = self.start.len().saturating_sub(1);
+        let mut out = vec![used.len() as u64, faces as u64];
+        let (dim, components) = (self.dim as usize, self.components as usize);
+        for &k in &used {
+            let dofs = &self.dofs[k * components..][..components];
+            out.extend(dofs.iter().map(|&d| i64::from(d.max(-1)) as u64));
+        }
+        for &k in &used {
+            // 0 and -0 are one place.
+            let x = &self.coords[k * dim..][..dim];
+            out.extend(x.iter().map(|x| (x + 0.0).to_bits()));
+        }
+        for range in self.start.windows(2) {
+            let list = &self.nodes[range[0] as usize..range[1] as usize];
+            out.push(list.len() as u64);
+            let place = |&k: &i32| used.binary_search(&(k as usize)).expect("it is in a face");
+            out.extend(list.iter().map(|k| place(k) as u64));
+        }
+        out
+    }
+}
+
+/// A node as a rank gives it.
+struct Node {
+    x: [f64; 3],
+    dofs: Vec<i32>,
+}
+
+/// What tells nodes apart: their unknowns, or their places where they have none.
+type Key = (Vec<i32>, [u64; 3]);
+
+impl Node {
+    fn key(&self) -> Key {
+        match self.dofs.iter().any(|&d| d >= 0) {
+            true => (self.dofs.clone(), [0; 3]),
+            false => (Vec::new(), self.x.map(f64::to_bits)),
+        }
+    }
+}
+
+impl Surface {
+    /// Puts the parts of all ranks together; `number` is that of the surface, `size` has the number of unknowns of a
+    /// matrix. Collective.
+    ///
+    /// # Errors
+    /// What makes no surface; the same on all ranks.
+    pub fn new(
+        session: &Session,
+        given: &GivenSurface<'_>,
+        number: usize,
+        size: SizeOf<'_>,
+    ) -> Result<Surface> {
+        let numbering = session.agree(given.check(session.rank(), number, size))?;
+        let (dim, components) = (given.dim as usize, given.components as usize);
+        let facts = [given.matrix.max(-1), given.dim, given.components].map(|v| v as u64);
+        let all = gather_all(session.comm(), &[&facts[..], &given.pack()].concat());
+        if all.iter().any(|words| words[..3] != all[0][..3]) {
+            return Err(Fault::Wrong.error(format!(
+                "ranks give surface {number} different matrices, dimensions or numbers of unknowns in a node, \
+                 expected the same"
+            )));
+        }
+        let parts: Vec<Part> = all
+            .iter()
+            .map(|words| Part::new(&words[3..], dim, components))
+            .collect();
+        let mut first: BTreeMap<Key, (usize, &Node)> = BTreeMap::new();
+        for (rank, part) in parts.iter().enumerate() {
+            for node in &part.nodes {
+                let (_, known) = *first.entry(node.key()).or_insert((rank, node));
+                let size = node.x.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+                if norm(minus(known.x, node.x)) > SAME * size {
+                    return Err(Fault::Wrong.error(format!(
+                        "the node with unknowns {:?} of surface {number} has two places, {:?} and {:?}, \
+                         expected one",
+                        node.dofs,
+                        &known.x[..dim],
+                        &node.x[..dim]
+                    )));
+                }
+            }
+        }
+        let mut nodes: Vec<(&Key, &(usize, &Node))> = first.iter().collect();
+        nodes.sort_by(|(k, (_, a)), (l, (_, b))| {
+            let places = a.x.iter().zip(&b.x).map(|(x, y)| x.total_cmp(y));
+            places
+                .fold(std::cmp::Ordering::Equal, |o, p| o.then(p))
+                .then(k.cmp(l))
+        });
+        let place: BTreeMap<&Key, u32> = nodes.iter().map(|n| n.0).zip(0..).collect();
+        let places_of =
+            |part: &Part| -> Vec<u32> { part.nodes.iter().map(|n| place[&n.key()]).collect() };
+        // A face that several ranks give counts once.
+        let mut faces: BTreeMap<Vec<u32>, Face> = BTreeMap::new();
+        for part in &parts {
+            let here = places_of(part);
+            for list in &part.faces {
+                let nodes: Vec<u32> = list.iter().map(|&k| here[k]).collect();
+                let mut sorted = nodes.clone();
+                sorted.sort_unstable();
+                let kind =
+                    Face::kind_of(dim, nodes.len()).expect("checked on the rank that gave it");
+                faces.entry(sorted).or_insert(Face { kind, nodes });
+            }
+        }
+        let faces: Vec<Face> = faces.into_values().collect();
+        if faces.is_empty() {
+            return Err(Fault::Wrong.error(format!(
+                "surface {number} has no faces on any rank, expected some"
+            )));
+        }
+        let points: Vec<[f64; 3]> = nodes.iter().map(|n| n.1 .1.x).collect();
+        if let Some(pair) = one_way(&faces) {
+            let [a, b] = pair.map(|f| {
+                let list = &faces[f].nodes;
+                let mean = |d: usize| {
+                    list.iter().map(|&k| points[k as usize][d]).sum::<f64>() / list.len() as f64
+                };
+                (0..dim).map(mean).collect::<Vec<_>>()
+            });
+            return Err(Fault::Wrong.error(format!(
+                "the neighbouring faces around {a:?} and {b:?} of surface {number} go around in opposite ways, \
+                 expected normals out of the body for all"
+            )));
+        }
+        let mut mine = vec![None; given.coords.len() / dim];
+        for (&k, node) in given.used().iter().zip(places_of(&parts[session.rank()])) {
+            mine[k] = Some(node);
+        }
+        Ok(Surface {
+            numbering,
+            components,
+            dofs: nodes.iter().map(|n| n.1 .1.dofs.clone()).collect(),
+            mine,
+            giver: nodes.iter().map(|n| n.1 .0).collect(),
+            side: Side::new(dim, points, faces),
+        })
+    }
+}
+
+/// One rank's part, as all ranks see it.
+struct Part {
+    nodes: Vec<Node>,
+    faces: Vec<Vec<usize>>,
+}
+
+impl Part {
+    fn new(words: &[u64], dim: usize, components: usize) -> Part {
+        let n = words[0] as usize;
+        let (dofs, rest) = words[2..].split_at(n * components);
+        let (coords, mut rest) = rest.split_at(n * dim);
+        let node = |(dofs, x): (&[u64], &[u64])| {
+            let mut place = [0.0; 3];
+            for (to, &word) in place.iter_mut().zip(x) {
+                *to = f64::from_bits(word);
+            }
+            Node {
+                x: place,
+                dofs: dofs.iter().map(|&d| d as i64 as i32).collect(),
+            }
+        };
+        let pairs = dofs.chunks_exact(components).zip(coords.chunks_exact(dim));
+        let mut faces = Vec::new();
+        while let [length, tail @ ..] = rest {
+            let (list, tail) = tail.split_at(*length as usize);
+            faces.push(list.iter().map(|&k| k as usize).collect());
+            rest = tail;
+        }
+        Part {
+            nodes: pairs.map(node).collect(),
+            faces,
+        }
+    }
+}

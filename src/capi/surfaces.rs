@@ -1,0 +1,181 @@
+//! The functions of `wrappers/fetifeti.h` for surfaces that mortar rows join; their manual pages are there.
+
+use super::handle::{alone, array, put, starts, together, Handle};
+use super::mortar::{GivenMortar, Surfaces};
+use super::rows::row_kind;
+use super::surface::{GivenSurface, Surface};
+use crate::error::Fault;
+use crate::substructures::RowKind;
+use std::ffi::c_int;
+
+/// PETSC_INFINITY.
+const INFINITY: f64 = f64::MAX / 4.0;
+
+#[allow(clippy::too_many_arguments)]
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiAddSurface(
+    ff: Handle,
+    matrix: c_int,
+    dim: c_int,
+    components: c_int,
+    n: c_int,
+    dofs: *const c_int,
+    coords: *const f64,
+    faces: c_int,
+    start: *const c_int,
+    nodes: *const c_int,
+    surface: *mut c_int,
+) -> c_int {
+    together(ff, c"FetiFetiAddSurface", |o| {
+        let arrays = || {
+            let per_node = |k: c_int| n.saturating_mul(k.max(1));
+            let (start, nodes) = match faces {
+                0 => (&[][..], &[][..]),
+                _ => {
+                    let start = array(start, faces.saturating_add(1), "start")?;
+                    (start, array(nodes, starts(start)? as c_int, "nodes")?)
+                }
+            };
+            Ok(GivenSurface {
+                matrix,
+                dim,
+                components,
+                dofs: array(dofs, per_node(components), "dofs")?,
+                coords: array(coords, per_node(dim), "coords")?,
+                start,
+                nodes,
+            })
+        };
+        let given = o.session.agree(arrays())?;
+        let number = o.surfaces.len();
+        let made = Surface::new(&o.session, &given, number, &|k| {
+            o.size_of(k, "a surface names")
+        })?;
+        o.surfaces.push(made);
+        put(surface, number as c_int);
+        Ok(())
+    })
+}
+
+#[allow(clippy::too_many_arguments)]
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiAddMortar(
+    ff: Handle,
+    first: c_int,
+    second: c_int,
+    kind: c_int,
+    reach: f64,
+    adjust: f64,
+    gap: f64,
+    gaps: *const f64,
+    without: *const c_int,
+    mortar: *mut c_int,
+) -> c_int {
+    together(ff, c"FetiFetiAddMortar", |o| {
+        let n = usize::try_from(first).ok().and_then(|k| o.surfaces.get(k));
+        let n = n.map_or(0, |s| s.mine.len()) as c_int;
+        let kind = row_kind(kind, || "a mortar is".into());
+        let given = GivenMortar {
+            surfaces: [first, second],
+            kind: o.session.agree(kind)?,
+            reach,
+            adjust,
+            gap,
+            gaps: if gaps.is_null() {
+                &[]
+            } else {
+                array(gaps, n, "gaps")?
+            },
+            without: if without.is_null() {
+                &[]
+            } else {
+                array(without, n, "without")?
+            },
+        };
+        let all = Surfaces {
+            session: &o.session,
+            list: &o.surfaces,
+        };
+        let made = all.mortar(&given)?;
+        put(mortar, o.mortars.len() as c_int);
+        o.mortars.push(made);
+        o.stale = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiResetMortar(ff: Handle) -> c_int {
+    together(ff, c"FetiFetiResetMortar", |o| {
+        o.surfaces.clear();
+        o.mortars.clear();
+        o.outcome = None;
+        o.stale = true;
+        Ok(())
+    })
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiGetMortar(
+    ff: Handle,
+    mortar: c_int,
+    n: c_int,
+    lambda: *mut f64,
+    pressure: *mut f64,
+    gap: *mut f64,
+    state: *mut c_int,
+) -> c_int {
+    alone(ff, c"FetiFetiGetMortar", |o| {
+        o.outcome()?;
+        let found = usize::try_from(mortar)
+            .ok()
+            .filter(|&m| m < o.mortar_rows.counts.len());
+        let Some(m) = found else {
+            return Err(Fault::OutOfRange.error(format!(
+                "there is no mortar {mortar} in what was solved, expected one of {} (from 0)",
+                o.mortar_rows.counts.len()
+            )));
+        };
+        let given = &o.mortars[m];
+        let surface = &o.surfaces[given.surfaces[0]];
+        if n as usize != surface.mine.len() {
+            return Err(Fault::Sizes.error(format!(
+                "there is room for {n} nodes, expected {}: as many as this rank gave of surface {}",
+                surface.mine.len(),
+                given.surfaces[0]
+            )));
+        }
+        let each = match given.kind {
+            RowKind::Equality => surface.components,
+            RowKind::Inequality => 1,
+        };
+        for (i, node) in surface.mine.iter().enumerate() {
+            let component = |c| node.and_then(|node| o.at_nodes.get(&(m, node, c)));
+            let at: Vec<_> = (0..each).map(component).collect();
+            let carried = || at.iter().flatten();
+            let remaining = carried().map(|a| a.gap);
+            let remaining = remaining.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            let holds = carried().map(|a| c_int::from(a.active)).max();
+            for (c, at) in at.iter().enumerate() {
+                let multiplier = at.map_or(0.0, |a| a.multiplier);
+                at_place(lambda, i * each + c, multiplier);
+                at_place(
+                    pressure,
+                    i * each + c,
+                    at.map_or(0.0, |a| multiplier / a.area),
+                );
+            }
+            at_place(gap, i, remaining.unwrap_or(INFINITY));
+            at_place(state, i, holds.unwrap_or(-1));
+        }
+        Ok(())
+    })
+}
+
+/// Puts a number into an array of results; `place` is within what the header asks for.
+fn at_place<T>(to: *mut T, place: usize, value: T) {
+    if !to.is_null() {
+        // SAFETY: the header asks for room for so many numbers of each node.
+        put(unsafe { to.add(place) }, value);
+    }
+}
