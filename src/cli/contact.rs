@@ -7,6 +7,8 @@ use crate::petsc::Session;
 use crate::report::interfaces::InterfaceNodes;
 use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::plots::profile::Profile;
+use crate::scene::displaced::Displaced;
+use crate::scene::sliding::{Sliders, Sliding};
 use crate::scene::{Scene, Shape};
 use crate::substructures::{RowSource, SolvedRow};
 use crate::Solution;
@@ -48,8 +50,9 @@ pub(super) fn name(scene: &Scene, source: RowSource) -> String {
     format!("{}|{}", body(a), body(b))
 }
 
-/// Forces per interface and obstacle.
-pub fn forces(scene: &Scene, rows: &[SolvedRow]) -> Vec<InterfaceForce> {
+/// Forces per interface and obstacle; with the displacements since the pairing was made, the sliding too.
+pub fn forces(scene: &Scene, rows: &[SolvedRow], moved: Option<&Displaced>) -> Vec<InterfaceForce> {
+    let sliders = moved.map(|_| Sliders::new(scene));
     by_source(rows)
         .map(|rows| {
             let some = rows.iter().any(|r| r.is_inequality());
@@ -57,6 +60,8 @@ pub fn forces(scene: &Scene, rows: &[SolvedRow]) -> Vec<InterfaceForce> {
             let least = |f: fn(&SolvedRow) -> f64| rows.iter().map(f).fold(f64::INFINITY, f64::min);
             let most =
                 |f: fn(&SolvedRow) -> f64| rows.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
+            let slid = moved.zip(sliders.as_ref()).filter(|_| some);
+            let slid = slid.map(|(u, sliders)| sliders.of(rows, u));
             InterfaceForce {
                 name: name(scene, rows[0].label.source),
                 kind: match (rows[0].label.source, some, all) {
@@ -78,9 +83,22 @@ pub fn forces(scene: &Scene, rows: &[SolvedRow]) -> Vec<InterfaceForce> {
                     let touching = rows.iter().filter(|r| r.is_inequality() && r.holds());
                     touching.map(|r| r.label.area).sum()
                 }),
+                largest_sliding: slid.map(|s| s.largest),
+                sliding_over_face: slid.map(|s| s.over_face),
+                largest_turn: slid.map(|s| s.turned),
             }
         })
         .collect()
+}
+
+/// The largest sliding of all interfaces and obstacles; `rows` are all rows on rank 0.
+pub fn sliding(scene: &Scene, rows: &[SolvedRow], moved: &Displaced) -> Sliding {
+    if rows.is_empty() {
+        return Sliding::default();
+    }
+    let sliders = Sliders::new(scene);
+    let each = with_inequalities(rows).map(|rows| sliders.of(rows, moved));
+    each.fold(Sliding::default(), Sliding::max)
 }
 
 /// Σ λ n: the force of the first body, or the only one, on the opposite body or obstacle.

@@ -12,6 +12,7 @@ use crate::report::destination::Destination;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
+use crate::scene::displaced::Displaced;
 use crate::scene::{distribution, Scene, Stepping};
 use crate::substructures::SolvedRow;
 use crate::{FetiFeti, Result, Solution};
@@ -32,6 +33,8 @@ pub(super) struct Course {
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
+    /// In elasticity with contact, the displacements of the sides that may touch, since the pairing was made.
+    pub moved: Option<Displaced>,
     /// The fields of this solution, where load steps are written.
     pub fields: Option<Gathered>,
 }
@@ -90,6 +93,11 @@ pub(super) fn follow(
         let given = session.agree(scene.given_energy(mine, step))?;
         let given = total(session.comm(), given);
         let rows = contact::rows(session, &solution);
+        let slides = scene.form.is_elastic() && solver.facts().inequalities > 0;
+        let moved = slides.then(|| {
+            let local = &solver.problem().local;
+            Displaced::gather(session, scene, local, &solution.u, step)
+        });
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
         let mut now = Course {
@@ -106,10 +114,12 @@ pub(super) fn follow(
             recover_seconds: seconds[1],
             solution,
             rows,
+            moved,
             fields: None,
         };
         if let Some(times) = &times {
-            now.load_steps.push(load_step_record(times[step], &now));
+            now.load_steps
+                .push(load_step_record(scene, times[step], &now));
         }
         if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
             let fields = match &mut fields {
@@ -171,8 +181,10 @@ fn step_name(step: usize) -> String {
 }
 
 /// The record of a load step; forces are known on rank 0.
-fn load_step_record(t: f64, course: &Course) -> LoadStep {
+fn load_step_record(scene: &Scene, t: f64, course: &Course) -> LoadStep {
     let inequalities = || course.rows.iter().filter(|r| r.is_inequality());
+    let moved = course.moved.as_ref();
+    let slid = moved.map(|u| contact::sliding(scene, &course.rows, u));
     LoadStep {
         t,
         outer_iterations: course.iterations.len(),
@@ -180,5 +192,8 @@ fn load_step_record(t: f64, course: &Course) -> LoadStep {
         active: inequalities().filter(|r| r.holds()).count(),
         energy: course.energy,
         contact_force: inequalities().map(|r| r.multiplier).sum(),
+        largest_sliding: slid.map(|s| s.largest),
+        sliding_over_face: slid.map(|s| s.over_face),
+        largest_turn: slid.map(|s| s.turned),
     }
 }

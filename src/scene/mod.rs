@@ -18,6 +18,7 @@ mod coefficient;
 mod cut;
 pub(crate) mod deck;
 #[cfg(feature = "cli")]
+pub(crate) mod displaced;
 pub(crate) mod distribution;
 pub(crate) mod geometry;
 mod joint;
@@ -29,6 +30,7 @@ mod plan;
 mod read;
 pub(crate) mod rows;
 mod side_pair;
+pub(crate) mod sliding;
 mod validate;
 
 pub use body::Body;

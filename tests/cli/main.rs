@@ -11,5 +11,6 @@ mod elastic;
 mod energy;
 mod input;
 mod mortar;
+mod sliding;
 mod solve;
 mod table;

@@ -404,6 +404,7 @@ fn a_time_series_reads_back() {
             active: profiles[0].nodes.active.iter().filter(|a| **a).count(),
             energy: -t * t,
             contact_force: profiles[0].nodes.force(),
+            ..LoadStep::default()
         });
 
         // After every step the collection exists and lists every file so far.

@@ -32,7 +32,18 @@ pub struct ContactReport {
     /// One record per load step; empty without load steps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load_steps: Vec<LoadStep>,
+    /// Whether normals, pairing and gaps are renewed at each load step.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub updated: bool,
 }
+
+/// Sliding by more than this part of a face is not small: a node is then nearer to a neighbour of the node that it is
+/// paired with.
+pub const SLIDING: f64 = 0.5;
+
+/// Faces that turn by more than this, in degrees, differ from those of the undeformed bodies: pressures point 9 % to
+/// the side, and linear strains are wrong by half the square of the angle, 0.4 %.
+pub const TURN: f64 = 5.0;
 
 /// One step of the outer iteration.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -130,6 +141,16 @@ pub struct InterfaceForce {
     /// Elasticity and solids, where sides may touch: sum of the nodal areas of the rows that hold.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
+    /// Elasticity, where sides may touch: the largest displacement of the two sides along each other at nodes that
+    /// touch, at the end and since the pairing was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_sliding: Option<f64>,
+    /// The largest such displacement over the size of the faces at its node.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sliding_over_face: Option<f64>,
+    /// The largest angle in degrees by which a face with a node that touches has turned since the pairing was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_turn: Option<f64>,
 }
 
 /// A force: a number in scalar problems, a list of components in elasticity.
@@ -212,6 +233,15 @@ pub struct LoadStep {
     /// Sum of the multipliers of all inequalities.
     #[serde(with = "number")]
     pub contact_force: f64,
+    /// Elasticity: as in [`InterfaceForce`], the largest of all interfaces at the end of the step.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_sliding: Option<f64>,
+    /// As in [`InterfaceForce`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sliding_over_face: Option<f64>,
+    /// As in [`InterfaceForce`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_turn: Option<f64>,
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! The output of `solve` about contact: outer steps, certificate, forces per interface, equilibrium per body.
 
 use super::table::{fixed, scientific, value, Table};
-use crate::report::json::contact::{BodyBalance, ContactReport, InterfaceForce, OuterStep};
+use crate::report::json::contact::{
+    BodyBalance, ContactReport, InterfaceForce, LoadStep, OuterStep, SLIDING, TURN,
+};
 use crate::report::json::Kkt;
 
 /// Number of interfaces that are listed.
@@ -21,7 +23,7 @@ pub fn contact(r: &ContactReport) -> String {
         plural(r.factorisations, "factorisation"),
         plural(r.distinct_subdomains, "distinct subdomain")
     );
-    for part in [outer(r), load_steps(r), forces(r), balance(r)] {
+    for part in [outer(r), load_steps(r), forces(r), sliding(r), balance(r)] {
         if !part.is_empty() {
             text += &format!("\n{part}");
         }
@@ -112,6 +114,10 @@ fn load_steps(r: &ContactReport) -> String {
         .numbers("it", |s| s.iterations)
         .numbers("active", |s| s.active)
         .numbers("contact force", |s| value(s.contact_force))
+        .when(
+            r.load_steps.iter().any(|s| s.sliding_over_face.is_some()),
+            |t| t.numbers("sliding/face", |s| fixed(s.sliding_over_face, 3)),
+        )
         .numbers("energy", |s| value(s.energy))
         .table();
     let more = if hidden > 0 {
@@ -170,6 +176,63 @@ fn forces(r: &ContactReport) -> String {
         ),
     };
     format!("{table}{more}")
+}
+
+/// How far sides slide along each other, and a sentence where that is not small.
+fn sliding(r: &ContactReport) -> String {
+    let most = |of: fn(&InterfaceForce) -> Option<f64>| {
+        let known = r.interfaces.iter().filter_map(|f| Some((of(f)?, f)));
+        known.max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let over = most(|f| f.sliding_over_face);
+    let (Some((over, at)), Some((turn, turned))) = (over, most(|f| f.largest_turn)) else {
+        return String::new();
+    };
+    // Contact may have been farther in an earlier load step.
+    let of_steps = |of: fn(&LoadStep) -> Option<f64>| {
+        let steps = r.load_steps.iter().filter_map(of);
+        steps.fold(0.0, f64::max)
+    };
+    let (all, all_turn) = (
+        of_steps(|s| s.sliding_over_face).max(over),
+        of_steps(|s| s.largest_turn).max(turn),
+    );
+    let mut text = format!(
+        "largest sliding {} of the size of a face ({}), largest turn of a face {} degrees ({})",
+        value(over),
+        at.name,
+        value(turn),
+        turned.name
+    );
+    if all > over || all_turn > turn {
+        text += &format!(
+            "; over all load steps {} and {} degrees",
+            value(all),
+            value(all_turn)
+        );
+    }
+    text += "\n";
+    let mut far = Vec::new();
+    if all > SLIDING {
+        far.push(format!("sliding of more than {SLIDING} of a face"));
+    }
+    if all_turn > TURN {
+        far.push(format!("turns of more than {TURN} degrees"));
+    }
+    if !far.is_empty() {
+        let what = far.join(" and ");
+        text += &match r.updated {
+            false => format!(
+                "This is not small ({what}): normals, pairing and gaps are those of the undeformed bodies. \
+                 `[steps] update = true` renews them at each load step.\n"
+            ),
+            true => format!(
+                "Between two load steps this is not small ({what}): normals, pairing and gaps are those at the \
+                 start of a load step. More load steps make it smaller.\n"
+            ),
+        };
+    }
+    text
 }
 
 /// A number, or components in brackets; a component that is rounding compared with the others is printed as 0.

@@ -213,6 +213,7 @@ impl Obstacle {
                     given: [given, 0.0],
                 })),
                 area: row.area,
+                weights: [row.own, Vec::new()],
             }
         };
         surfaces.rows(form, &held).into_iter().map(row).collect()

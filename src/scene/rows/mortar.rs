@@ -229,9 +229,11 @@ impl<'a> Pairing<'a> {
     fn carried(&self, row: &BodyRow, direction: [f64; 3], distance: Option<f64>) -> Carried {
         let i = self.place[&row.node];
         let (mut terms, mut given) = (Vec::new(), [0.0; 2]);
+        let mut weights = [Vec::new(), Vec::new()];
         for (k, list) in [(self.own, &row.own), (1 - self.own, &row.other)] {
             let sign = if k == self.own { self.sign } else { -self.sign };
             let first = usize::from(k != self.interface.order[0]);
+            weights[first].clone_from(list);
             for &(node, v) in list {
                 let body = self.interface.bodies[k];
                 let along = BodyNode { body, node }.along(self.bodies, direction);
@@ -269,6 +271,7 @@ impl<'a> Pairing<'a> {
                 given: given[0] - given[1],
                 inequality,
                 area: row.area,
+                weights,
             },
         }
     }

@@ -25,6 +25,8 @@ pub struct MortarRow {
     pub inequality: Option<Box<Inequality>>,
     /// D_p: a multiplier divided by it is a pressure.
     pub area: f64,
+    /// The mean of u over nodes of each side that the row compares, in the order of `members`: node and weight.
+    pub weights: [Vec<(usize, f64)>; 2],
     /// Its block: rows with a degree of freedom in common have the same.
     pub block: u64,
     /// The subdomain of lowest index that has a degree of freedom of the block.

@@ -23,6 +23,7 @@ fn the_files_hold_the_steps() {
             active: 10 * k as usize,
             energy: if k == 2 { f64::NAN } else { -f64::from(k * k) },
             contact_force: 0.1 * f64::from(k),
+            ..LoadStep::default()
         })
         .collect();
     let panels = figure(&steps, "").panels;

@@ -1,0 +1,107 @@
+//! Displacements of the sides that may touch, known to every rank.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::checked::Scene;
+use crate::parallel::exchange::gather_all;
+use crate::petsc::Session;
+use crate::substructures::{BodyNode, RowSource, Subdomain};
+
+/// The displacements of all nodes of the sides that may touch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Displaced {
+    nodes: HashMap<BodyNode, [f64; 3]>,
+}
+
+/// Words per node: body, node, three components.
+const WORDS: usize = 5;
+
+impl Displaced {
+    /// Gathers them from the displacements `u` of each rank's subdomains at load step `step`. Collective.
+    ///
+    /// # Panics
+    /// For a step that the scene does not have.
+    pub fn gather(
+        session: &Session,
+        scene: &Scene,
+        local: &[Subdomain],
+        u: &[Vec<f64>],
+        step: usize,
+    ) -> Displaced {
+        let scale = scene.prescribed_factor(step);
+        let wanted = scene.nodes_that_may_touch();
+        let mut words = Vec::new();
+        for (sub, u) in local.iter().zip(u) {
+            let Some(wanted) = wanted.get(&sub.body) else {
+                continue;
+            };
+            let (body, inside) = scene.place(sub.index);
+            let c = body.components;
+            let mut free = u.iter();
+            for node in body.mesh().subdomain_nodes(inside) {
+                let mut at = [0.0; 3];
+                for (component, value) in at[..c].iter_mut().enumerate() {
+                    *value = match body.prescribed_at(node * c + component) {
+                        Some(given) => given * scale,
+                        None => *free.next().expect("a value for every free dof"),
+                    };
+                }
+                if wanted.contains(&node) && body.mesh().owner(node) == inside {
+                    words.extend([sub.body as u64, node as u64]);
+                    words.extend(at.map(f64::to_bits));
+                }
+            }
+        }
+        let received = gather_all(session.comm(), &words);
+        let each = received.iter().flat_map(|list| list.chunks_exact(WORDS));
+        let nodes = each.map(|w| {
+            let [body, node] = [w[0], w[1]].map(|k| k as usize);
+            (
+                BodyNode { body, node },
+                [2, 3, 4].map(|k| f64::from_bits(w[k])),
+            )
+        });
+        Displaced {
+            nodes: nodes.collect(),
+        }
+    }
+
+    /// The displacement of a node; zero where it is not known.
+    pub fn at(&self, node: BodyNode) -> [f64; 3] {
+        self.nodes.get(&node).copied().unwrap_or_default()
+    }
+}
+
+impl Scene {
+    /// The sides that may touch, as (body, side).
+    pub(crate) fn sides_that_may_touch(&self) -> BTreeSet<(usize, usize)> {
+        let mut out = BTreeSet::new();
+        for (k, interface) in self.interfaces.iter().enumerate() {
+            if interface.has_contact() {
+                let source = RowSource::Interface(k);
+                let sides = interface
+                    .bodies
+                    .map(|b| Some((b, self.side_of(source, b)?)));
+                out.extend(sides.into_iter().flatten());
+            }
+        }
+        out.extend(self.obstacles.iter().map(|o| (o.body, o.side)));
+        out
+    }
+
+    /// The nodes that may touch, by body.
+    fn nodes_that_may_touch(&self) -> HashMap<usize, BTreeSet<usize>> {
+        let mut out: HashMap<usize, BTreeSet<usize>> = HashMap::new();
+        for (body, side) in self.sides_that_may_touch() {
+            let nodes = self.bodies[body].mesh().side_nodes(side);
+            out.entry(body).or_default().extend(nodes);
+        }
+        for interface in self.interfaces.iter().filter(|i| i.has_contact()) {
+            for (k, &body) in interface.bodies.iter().enumerate() {
+                let nodes = interface.shared.iter().map(|s| s.nodes[k]);
+                out.entry(body).or_default().extend(nodes);
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,140 @@
+//! How far the sides of a contact slide along each other, against the size of their faces, and how far faces turn:
+//! both are small where the geometry of the undeformed bodies may stand for that of the deformed ones.
+
+use std::collections::{HashMap, HashSet};
+
+use super::checked::Scene;
+use super::displaced::Displaced;
+use super::rows::mortar_row::MortarRow;
+use crate::linalg::vec3::{cross, dot, minus, norm};
+use crate::mortar::across;
+use crate::substructures::{BodyNode, RowSource, SolvedRow};
+
+/// The motion of two sides along each other, at nodes that touch.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Sliding {
+    /// The largest difference of their displacements along the face.
+    pub largest: f64,
+    /// The largest such difference over the size of the faces at its node.
+    pub over_face: f64,
+    /// The largest angle by which a face with a node that touches turns, in degrees.
+    pub turned: f64,
+}
+
+impl Sliding {
+    /// The larger of both, value by value.
+    pub fn max(self, other: Sliding) -> Sliding {
+        Sliding {
+            largest: self.largest.max(other.largest),
+            over_face: self.over_face.max(other.over_face),
+            turned: self.turned.max(other.turned),
+        }
+    }
+}
+
+/// The search for the sliding of the contacts of a scene. It keeps what does not change with the displacements.
+pub(crate) struct Sliders<'a> {
+    scene: &'a Scene,
+    /// The faces of every side that may touch, by their corners in order.
+    faces: HashMap<(usize, usize), Vec<Vec<usize>>>,
+    /// The size of the faces at every node of these sides.
+    sizes: HashMap<BodyNode, f64>,
+    /// The weights of nodes in rows between sides whose nodes do not match.
+    mortar: HashMap<(RowSource, [Option<BodyNode>; 2]), &'a MortarRow>,
+}
+
+impl<'a> Sliders<'a> {
+    pub fn new(scene: &'a Scene) -> Sliders<'a> {
+        let (mut faces, mut sizes) = (HashMap::new(), HashMap::new());
+        for (body, side) in scene.sides_that_may_touch() {
+            let spec = &scene.bodies[body].spec;
+            let mut outlines = Vec::new();
+            for face in spec.faces(side) {
+                let outline = face.outline();
+                let x: Vec<[f64; 3]> = outline.iter().map(|&k| spec.position(k)).collect();
+                let edge = |k: usize| norm(minus(x[k], x[(k + 1) % x.len()]));
+                let size = (0..x.len()).map(edge).fold(0.0, f64::max);
+                for &node in &face.nodes {
+                    let at = sizes.entry(BodyNode { body, node }).or_insert(size);
+                    *at = size.min(*at);
+                }
+                outlines.push(outline);
+            }
+            faces.insert((body, side), outlines);
+        }
+        let mortar = scene.mortar.iter().filter(|m| m.inequality.is_some());
+        Sliders {
+            scene,
+            faces,
+            sizes,
+            mortar: mortar.map(|m| ((m.source, m.members), m)).collect(),
+        }
+    }
+
+    /// The motion since the displacements were zero, of rows that come from one interface or obstacle.
+    pub fn of(&self, rows: &[SolvedRow], u: &Displaced) -> Sliding {
+        let mut out = Sliding::default();
+        let mut touching: HashSet<BodyNode> = HashSet::new();
+        let Some(source) = rows.first().map(|r| r.label.source) else {
+            return out;
+        };
+        for row in rows.iter().filter(|r| r.is_inequality() && r.holds()) {
+            let members = row.label.members;
+            let n = row.normal();
+            let apart = self.apart(source, members, u);
+            let across = dot(apart, n);
+            let slid = norm(minus(apart, n.map(|v| across * v)));
+            let sizes = members.iter().flatten().filter_map(|m| self.sizes.get(m));
+            let size = sizes.copied().fold(f64::INFINITY, f64::min);
+            out.largest = out.largest.max(slid);
+            out.over_face = out.over_face.max(slid / size);
+            touching.extend(members.into_iter().flatten());
+        }
+        let bodies: HashSet<usize> = touching.iter().map(|m| m.body).collect();
+        for body in bodies {
+            let side = self.scene.side_of(source, body);
+            let faces = side.and_then(|side| self.faces.get(&(body, side)));
+            for face in faces.into_iter().flatten() {
+                let nodes = face.iter().map(|&node| BodyNode { body, node });
+                if nodes.clone().any(|node| touching.contains(&node)) {
+                    out.turned = out.turned.max(self.turned(nodes, u));
+                }
+            }
+        }
+        out
+    }
+
+    /// u of the first side less u of the second one at a row.
+    fn apart(&self, source: RowSource, members: [Option<BodyNode>; 2], u: &Displaced) -> [f64; 3] {
+        let row = self.mortar.get(&(source, members));
+        let mut out = [0.0; 3];
+        let mut add = |node: BodyNode, weight: f64| {
+            let at = u.at(node);
+            (0..3).for_each(|d| out[d] += weight * at[d]);
+        };
+        for ((k, sign), member) in [(0, 1.0), (1, -1.0)].into_iter().zip(members) {
+            let Some(member) = member else { continue };
+            match row {
+                None => add(member, sign),
+                Some(row) => {
+                    let body = member.body;
+                    let terms = row.weights[k].iter();
+                    terms.for_each(|&(node, w)| add(BodyNode { body, node }, sign * w));
+                }
+            }
+        }
+        out
+    }
+
+    /// The angle in degrees by which a face turns.
+    fn turned(&self, nodes: impl Iterator<Item = BodyNode> + Clone, u: &Displaced) -> f64 {
+        let bodies = &self.scene.bodies;
+        let before: Vec<[f64; 3]> = nodes.clone().map(|n| n.position(bodies)).collect();
+        let moved = nodes.zip(&before).map(|(node, x)| {
+            let u = u.at(node);
+            [0, 1, 2].map(|d| x[d] + u[d])
+        });
+        let (a, b) = (across(&before), across(&moved.collect::<Vec<_>>()));
+        norm(cross(a, b)).atan2(dot(a, b)).to_degrees()
+    }
+}
