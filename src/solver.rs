@@ -10,7 +10,7 @@ use crate::feti::{Communication, Facts, LinearMethod, LinearSolution, Spectrum};
 use crate::petsc::{cite, Ksp, Session, Stage};
 use crate::settings::Settings;
 use crate::solution::Solution;
-use crate::substructures::{SolvedRow, Substructures};
+use crate::substructures::{InterfaceRow, SolvedRow, Substructures};
 use crate::Result;
 
 const CITATION: &str = "@techreport{Lee2010,
@@ -43,6 +43,7 @@ const CITATION: &str = "@techreport{Lee2010,
 pub struct FetiFeti {
     pub(crate) method: LinearMethod,
     settings: Settings,
+    setup_stage: Stage,
     solve_stage: Stage,
 }
 
@@ -58,11 +59,14 @@ impl FetiFeti {
     ) -> Result<FetiFeti> {
         cite(session, CITATION)?;
         let stage = Stage::register(session, "FETI-FETI setup")?;
-        let _staged = stage.scope()?;
+        let staged = stage.scope()?;
         let settings = settings.into().with_options(session)?;
+        let method = LinearMethod::new(session, problem, settings.method.clone())?;
+        drop(staged);
         Ok(FetiFeti {
-            method: LinearMethod::new(session, problem, settings.method.clone())?,
+            method,
             settings,
+            setup_stage: stage,
             solve_stage: Stage::register(session, "FETI-FETI solve")?,
         })
     }
@@ -139,6 +143,39 @@ impl FetiFeti {
     /// If a length differs from the present one.
     pub fn set_loads(&mut self, loads: Vec<Vec<f64>>, gaps: &[f64]) {
         self.method.set_loads(loads, gaps);
+    }
+
+    /// Replaces the rows between bodies that this rank provides. Subdomains whose interface stays the same stay
+    /// factored; jump operator, coarse problems and preconditioner are set up anew. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::new`].
+    pub fn set_rows(&mut self, rows: Vec<InterfaceRow>) -> Result<()> {
+        let _staged = self.setup_stage.scope()?;
+        self.method.set_rows(rows)
+    }
+
+    /// The start of the contact loop with the multipliers inside bodies of an earlier solution, and a multiplier and a
+    /// state for each row that this rank provides.
+    #[cfg(feature = "cli")]
+    pub(crate) fn start(&self, before: &Solution, rows: &[(f64, bool)]) -> contact::State {
+        let dual = self.dual();
+        let jump = &dual.stiffness.jump;
+        let between = jump.rows_between_bodies();
+        let mut lambda = before.lambda[..before.lambda.len() - before.rows().len()].to_vec();
+        lambda.resize(between.start, 0.0);
+        let mut active = vec![true; between.start];
+        for i in between {
+            let (multiplier, holds) = rows[jump.given(i)];
+            let holds = if jump.inequality[i] {
+                holds
+            } else {
+                jump.initial[i]
+            };
+            lambda.push(if holds { multiplier } else { 0.0 });
+            active.push(holds);
+        }
+        contact::State::warm(lambda, &active)
     }
 
     /// Finds the eigenvectors above τ with all candidate rows and deflates them from now on, whatever the spectrum of

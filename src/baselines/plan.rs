@@ -85,13 +85,20 @@ impl Plan {
     /// The plan according to the options.
     ///
     /// # Errors
-    /// [`Error::Input`] for a value out of range.
+    /// [`Error::Input`] for a value out of range, and for a scene whose load steps renew its contacts.
     pub fn new(
         session: &Session,
         scene: &Scene,
         baselines: &[&'static Baseline],
         layouts: Layouts,
     ) -> Result<Plan> {
+        if scene.is_renewed() {
+            return Err(Error::input(format!(
+                "the scene \"{}\" has `update` in [steps]: its contacts follow from the load steps before, and methods \
+                 are compared on one step alone (a scene without `update` was expected)",
+                scene.title
+            )));
+        }
         let ours = Options::new(session, "fetifeti_");
         let rtol = ours.get_f64("ksp_rtol")?.unwrap_or(1e-6);
         if !(rtol > 0.0 && rtol < 1.0) {

@@ -137,15 +137,21 @@ impl Checkpoints {
 
     /// The part on rank 0: reads the checkpoint and compares it with the scene.
     fn read(&mut self, path: &Path, scene: &Scene) -> Result<()> {
+        let flag = match self.resume {
+            Some(_) => "--resume",
+            None => "--checkpoint",
+        };
         if !scene.has_contact() {
-            let flag = if self.resume.is_some() {
-                "--resume"
-            } else {
-                "--checkpoint"
-            };
             return Err(Error::input(format!(
                 "{flag}: {} has no contact and no obstacle, \
                  so that there is no outer loop, expected a scene with inequalities",
+                path.display()
+            )));
+        }
+        if scene.is_renewed() {
+            return Err(Error::input(format!(
+                "{flag}: {} has `update` in [steps], which makes new rows at each load step, and a checkpoint is for \
+                 the rows of one (a scene without `update` was expected)",
                 path.display()
             )));
         }

@@ -7,9 +7,8 @@ use crate::petsc::Session;
 use crate::report::interfaces::InterfaceNodes;
 use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
 use crate::report::plots::profile::Profile;
-use crate::scene::displaced::Displaced;
 use crate::scene::sliding::{Sliders, Sliding};
-use crate::scene::{Scene, Shape};
+use crate::scene::{Displaced, Scene, Shape};
 use crate::substructures::{RowSource, SolvedRow};
 use crate::Solution;
 
@@ -50,9 +49,14 @@ pub(super) fn name(scene: &Scene, source: RowSource) -> String {
     format!("{}|{}", body(a), body(b))
 }
 
-/// Forces per interface and obstacle; with the displacements since the pairing was made, the sliding too.
-pub fn forces(scene: &Scene, rows: &[SolvedRow], moved: Option<&Displaced>) -> Vec<InterfaceForce> {
-    let sliders = moved.map(|_| Sliders::new(scene));
+/// Forces per interface and obstacle; with the displacements since the pairing was made, and
+/// their load step, the sliding too.
+pub fn forces(
+    scene: &Scene,
+    rows: &[SolvedRow],
+    moved: Option<(&Displaced, usize)>,
+) -> Vec<InterfaceForce> {
+    let sliders = moved.map(|(_, step)| Sliders::new(scene, step));
     by_source(rows)
         .map(|rows| {
             let some = rows.iter().any(|r| r.is_inequality());
@@ -61,7 +65,7 @@ pub fn forces(scene: &Scene, rows: &[SolvedRow], moved: Option<&Displaced>) -> V
             let most =
                 |f: fn(&SolvedRow) -> f64| rows.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
             let slid = moved.zip(sliders.as_ref()).filter(|_| some);
-            let slid = slid.map(|(u, sliders)| sliders.of(rows, u));
+            let slid = slid.map(|((u, _), sliders)| sliders.of(rows, u));
             InterfaceForce {
                 name: name(scene, rows[0].label.source),
                 kind: match (rows[0].label.source, some, all) {
@@ -92,11 +96,11 @@ pub fn forces(scene: &Scene, rows: &[SolvedRow], moved: Option<&Displaced>) -> V
 }
 
 /// The largest sliding of all interfaces and obstacles; `rows` are all rows on rank 0.
-pub fn sliding(scene: &Scene, rows: &[SolvedRow], moved: &Displaced) -> Sliding {
+pub fn sliding(scene: &Scene, rows: &[SolvedRow], moved: &Displaced, step: usize) -> Sliding {
     if rows.is_empty() {
         return Sliding::default();
     }
-    let sliders = Sliders::new(scene);
+    let sliders = Sliders::new(scene, step);
     let each = with_inequalities(rows).map(|rows| sliders.of(rows, moved));
     each.fold(Sliding::default(), Sliding::max)
 }

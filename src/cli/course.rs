@@ -5,6 +5,7 @@ use std::path::Path;
 use super::contact;
 use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
+use super::renewed::Renewed;
 use crate::checkpoint::{Checkpoints, Resumed};
 use crate::parallel::exchange::total;
 use crate::petsc::Session;
@@ -12,8 +13,7 @@ use crate::report::destination::Destination;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
-use crate::scene::displaced::Displaced;
-use crate::scene::{distribution, Scene, Stepping};
+use crate::scene::{distribution, Displaced, Scene, Stepping};
 use crate::substructures::SolvedRow;
 use crate::{FetiFeti, Result, Solution};
 
@@ -33,6 +33,8 @@ pub(super) struct Course {
     pub recover_seconds: f64,
     /// Rows of B_gl on rank 0.
     pub rows: Vec<SolvedRow>,
+    /// The scene with the contacts of this solution, where load steps renew them.
+    pub scene: Option<Scene>,
     /// In elasticity with contact, the displacements of the sides that may touch, since the pairing was made.
     pub moved: Option<Displaced>,
     /// The fields of this solution, where load steps are written.
@@ -75,29 +77,43 @@ pub(super) fn follow(
     });
     let mut stepping = many.transpose()?;
     let mut fields: Option<Gathered> = None;
+    let mut renewed = Renewed::new(scene);
     for step in first..n {
+        let set_up = match &course {
+            Some(last) => renewed
+                .renew(session, &owns, solver, last, step)
+                .map_err(|e| renewed.at_step(step, e))?,
+            None => None,
+        };
+        let scene = renewed.scene();
+        if let Some((start, _)) = &set_up {
+            state.clone_from(start);
+        }
         if let Some(stepping) = &mut stepping {
             let loads = session.agree(stepping.loads(step))?;
             solver.set_loads(loads, &scene.gaps(&owns, step)?);
         }
         let load_step = if times.is_some() { step + 1 } else { 0 };
         let mut outer = records.take(load_step);
-        let solution = solver.solve_from(state.as_ref(), &mut |done, state| {
+        let solved = solver.solve_from(state.as_ref(), &mut |done, state| {
             outer.push(contact::outer_step(load_step, outer.len() + 1, done));
             progress.step(outer.len(), done.active);
             progress.residual(done.residual, done.tolerance, done.iterations);
             checkpoints.save(session, step, || records.followed_by(&outer), state)
-        })?;
+        });
+        let solution = solved.map_err(|e| renewed.at_step(step, e))?;
         progress.finish();
         let mine = solver.problem().local.iter().map(|s| s.index);
         let given = session.agree(scene.given_energy(mine, step))?;
         let given = total(session.comm(), given);
         let rows = contact::rows(session, &solution);
         let slides = scene.form.is_elastic() && solver.facts().inequalities > 0;
-        let moved = slides.then(|| {
+        let moved = (slides || scene.is_renewed()).then(|| {
             let local = &solver.problem().local;
             Displaced::gather(session, scene, local, &solution.u, step)
         });
+        let moved = moved.map(|u| renewed.since(u));
+        let scene = renewed.scene();
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
         let mut now = Course {
@@ -115,11 +131,16 @@ pub(super) fn follow(
             solution,
             rows,
             moved,
+            scene: None,
             fields: None,
         };
         if let Some(times) = &times {
-            now.load_steps
-                .push(load_step_record(scene, times[step], &now));
+            let (setup_seconds, factored) = set_up.map(|(_, cost)| cost).unzip();
+            now.load_steps.push(LoadStep {
+                setup_seconds,
+                factored,
+                ..load_step_record(scene, times[step], &now)
+            });
         }
         if let (Some(dir), Some(pvd), Some(times)) = (&destination.out, &mut pvd, &times) {
             let fields = match &mut fields {
@@ -151,6 +172,7 @@ pub(super) fn follow(
         load_steps: records.load_steps,
         iterations: records.iterations,
         fields,
+        scene: renewed.into_scene(),
         ..last
     })
 }
@@ -184,7 +206,7 @@ fn step_name(step: usize) -> String {
 fn load_step_record(scene: &Scene, t: f64, course: &Course) -> LoadStep {
     let inequalities = || course.rows.iter().filter(|r| r.is_inequality());
     let moved = course.moved.as_ref();
-    let slid = moved.map(|u| contact::sliding(scene, &course.rows, u));
+    let slid = moved.map(|u| contact::sliding(scene, &course.rows, u, course.step));
     LoadStep {
         t,
         outer_iterations: course.iterations.len(),
@@ -195,5 +217,6 @@ fn load_step_record(scene: &Scene, t: f64, course: &Course) -> LoadStep {
         largest_sliding: slid.map(|s| s.largest),
         sliding_over_face: slid.map(|s| s.over_face),
         largest_turn: slid.map(|s| s.turned),
+        ..LoadStep::default()
     }
 }

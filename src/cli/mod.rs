@@ -13,6 +13,7 @@ mod parse;
 mod physics;
 mod picture;
 mod plan;
+mod renewed;
 mod solve;
 mod study;
 mod table1;

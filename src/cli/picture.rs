@@ -184,7 +184,11 @@ impl Moved {
         let contact = rows.iter().any(|r| r.is_inequality());
         let from = if contact { VISIBLE_CONTACT } else { VISIBLE[0] };
         let most = apart(scene, all, rows, OVERLAP * size);
-        let factor = factor(largest, size, from, most);
+        // Sides touch where renewed contacts pair them, that is, in their own positions.
+        let factor = match scene.is_renewed() {
+            true => 1.0,
+            false => factor(largest, size, from, most),
+        };
         let moved = |(p, u): (&[f64; 3], [f64; 3])| [0, 1, 2].map(|d| p[d] + factor * u[d]);
         Moved {
             points: all.points.iter().zip(each()).map(moved).collect(),

@@ -259,6 +259,9 @@ fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {
             "load steps",
             format!("{steps}, each starts from the solution of the last"),
         );
+        if scene.is_renewed() {
+            line("renewed", renewed(scene, plan));
+        }
     }
     let floating = sizes.defect.iter().filter(|d| **d > 0).count();
     line(
@@ -360,6 +363,23 @@ fn constraints(scene: &Scene, plan: &Plan, primal: usize, largest: usize) -> Str
         "{primal} constraints, at most {largest} in a body; {} at vertices inside bodies{averages}",
         plan.primal
     )
+}
+
+/// A sentence on what load steps renew.
+fn renewed(scene: &Scene, plan: &Plan) -> String {
+    let [renewed, kept] = scene.renewed_pairs();
+    let mut out = format!(
+        "at each load step normals, pairing and gaps of {renewed} contact pairs and {} obstacles, where the last step \
+         left the bodies; ties and stiffness stay",
+        plan.obstacles
+    );
+    if kept > 0 {
+        let _ = write!(
+            out,
+            ", and so do {kept} pairs that are tied in part or meet in a corner"
+        );
+    }
+    out
 }
 
 /// A sentence on the inequalities.

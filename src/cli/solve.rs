@@ -141,6 +141,7 @@ fn solve(
         false => Place::FirstRank,
     };
     let course = follow(session, scene, &mut solver, destination, place, checkpoints)?;
+    let scene = course.scene.as_ref().unwrap_or(scene);
     let solution = &course.solution;
     let exact = match (solver.settings().method.spectrum, solution.steps.last()) {
         (false, _) => None,
@@ -465,9 +466,13 @@ fn contact_report(
         factorisations: counts[0] as usize,
         distinct_subdomains: counts[1] as usize,
         steps: course.outer.clone(),
-        interfaces: contact::forces(scene, &course.rows, course.moved.as_ref()),
+        interfaces: contact::forces(
+            scene,
+            &course.rows,
+            course.moved.as_ref().map(|u| (u, course.step)),
+        ),
         bodies: balance::bodies(session, scene, solver, &course.rows, course.step)?,
         load_steps: course.load_steps.clone(),
-        updated: false,
+        updated: scene.is_renewed(),
     }))
 }

@@ -9,8 +9,9 @@ use super::krylov::system::System;
 use super::krylov::tally::Communication;
 use super::operators::dual::Dual;
 use super::settings::MethodSettings;
+use super::subdomain::kept::Kept;
 use crate::petsc::{Ksp, Session};
-use crate::substructures::Substructures;
+use crate::substructures::{InterfaceRow, Substructures};
 use crate::Result;
 
 /// The operators, the Krylov method and facts about the problem.
@@ -46,6 +47,32 @@ impl LinearMethod {
             row.gap = gap;
         }
         self.system.set_gaps(gaps);
+    }
+
+    /// Replaces the rows between bodies that this rank provides. Subdomains whose interface stays the same stay
+    /// factored, all else is set up anew. Collective.
+    ///
+    /// # Errors
+    /// Bad rows, a body that nothing holds, PETSc's own errors; the same on all ranks.
+    pub fn set_rows(&mut self, rows: Vec<InterfaceRow>) -> Result<()> {
+        let adapted = self.facts.adaptive_constraints.iter().any(|n| *n > 0);
+        // Adaptive constraints have changed the operators of subdomains.
+        let kept = (!adapted).then(|| {
+            let dual = self.dual();
+            Kept::new(&dual.stiffness.jump, &dual.stiffness.locals)
+        });
+        let problem = Substructures {
+            local: std::mem::take(&mut self.problem.local),
+            body_names: std::mem::take(&mut self.problem.body_names),
+            rows,
+            ..self.problem
+        };
+        let (length, seconds) = (self.length.get(), self.facts.setup_seconds);
+        let settings = self.settings.clone();
+        *self = LinearMethod::keeping(&self.session.clone(), problem, settings, kept.as_ref())?;
+        self.length.set(length);
+        self.facts.setup_seconds += seconds;
+        Ok(())
     }
 
     /// Changes Z^k to `active` (one per owned row). Returns the number of rows that changed over all ranks. Collective.

@@ -27,6 +27,7 @@ use super::primal::space::PrimalSpace;
 use super::projector::natural::NaturalCoarse;
 use super::settings::{MethodSettings, PcType, Scaling};
 use super::subdomain::factor::{factor, no_factor};
+use super::subdomain::kept::Kept;
 use super::subdomain::scaled::Scaled;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::halo::Halo;
@@ -55,6 +56,20 @@ impl LinearMethod {
         problem: Substructures,
         settings: MethodSettings,
     ) -> Result<LinearMethod> {
+        LinearMethod::keeping(session, problem, settings, None)
+    }
+
+    /// The same for a problem of which only the rows differ from one that is set up: its subdomains stay factored where
+    /// their interface is the same. Collective.
+    ///
+    /// # Errors
+    /// As [`LinearMethod::new`].
+    pub(super) fn keeping(
+        session: &Session,
+        problem: Substructures,
+        settings: MethodSettings,
+        kept: Option<&Kept>,
+    ) -> Result<LinearMethod> {
         let clock = Instant::now();
         let comm = session.comm();
         session.agree(entities::check(&problem, settings.primal))?;
@@ -76,7 +91,7 @@ impl LinearMethod {
             &sharing,
             &mut jump,
             &team,
-            (kind, scaling, &settings),
+            (kind, scaling, &settings, kept),
         )?; /* S, T, Ψ */
         let varies = variation::varies(comm, &problem);
         team.set_load(locals.iter().map(|l| l.gamma().n_delta.pow(2)).sum());
@@ -138,11 +153,12 @@ fn subdomains(
     sharing: &Sharing,
     jump: &mut Jump,
     team: &Team,
-    (kind, scaling, settings): (PcType, Scaling, &MethodSettings),
+    (kind, scaling, settings, kept): (PcType, Scaling, &MethodSettings, Option<&Kept>),
 ) -> Result<(Vec<Scaled>, Added)> {
     let comm = session.comm();
+    let kept = kept.map_or(Vec::new(), |kept| kept.still(jump));
     let factored = clock::timed(Phase::LocalSetup, || {
-        factor(session, problem, jump, team, settings, kind)
+        factor(session, problem, jump, team, (settings, kind), &kept)
     });
     let mut locals = session.agree(factored)?;
     for (j, local) in locals.iter().enumerate() {

@@ -44,7 +44,7 @@ impl Body {
 
 /// Least and greatest coordinates of the nodes of a body.
 pub(super) fn bounds_of(body: &BodySpec) -> [[f64; 3]; 2] {
-    if let (Some(grid), None) = (body.mesh.grid(), &body.map) {
+    if let Some(grid) = body.unbent() {
         return [grid.origin, grid.end()];
     }
     let mut out = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];

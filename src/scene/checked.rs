@@ -7,7 +7,9 @@ use super::geometry::matching::Matching;
 use super::model::expr::Expr;
 use super::model::spec::{lee, Faces, GridSpec, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
-use super::rows::equations::{Chain, Equation};
+use super::renewal::Renewal;
+use super::rows::all::{Joined, Rows};
+use super::rows::equations::Equation;
 use super::rows::mortar_row::MortarRow;
 use super::rows::obstacles::Obstacle;
 use super::rows::points::Point;
@@ -15,6 +17,7 @@ use super::{axis, cut, read, rows, validate};
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A checked scene.
 ///
@@ -72,6 +75,8 @@ pub struct Scene {
     pub options: Vec<(String, String)>,
     /// What of the input is left out, ignored or replaced: a sentence each.
     pub notes: Vec<String>,
+    /// What load steps renew contacts from, if they do.
+    pub(super) renewal: Option<Arc<Renewal>>,
     /// Number of subdomains.
     n_subdomains: usize,
 }
@@ -128,6 +133,10 @@ impl Scene {
             first_subdomain += subdomains;
         }
         let mut matching = Matching::new(&bodies);
+        let written = match &steps {
+            Some(steps) if steps.update => Some(spec.clone()),
+            _ => None,
+        };
         rows::surfaces::expand(&bodies, &mut matching, &mut spec)?;
         if let Some(steps) = &mut steps {
             steps.renumber(&spec);
@@ -135,27 +144,22 @@ impl Scene {
         let mut interfaces = rows::entries::find(&bodies, matching, &spec, &steps)?;
         let mut obstacles =
             rows::obstacles::find(&bodies, &spec.obstacles, &spec.form, spec.contacts.len())?;
-        let mut points = rows::points::collect(&mut bodies, &interfaces)?;
-        let checks = rows::bounds::Checks::new(&bodies, &obstacles, &spec, &steps);
-        checks.apply(&mut points)?;
-        let form = &spec.form;
-        let (mut mortar, notes) =
-            rows::mortar::collect(&bodies, form, &mut interfaces, &points, &checks)?;
-        let mut equations = rows::equations::collect(&bodies, &spec.equations)?;
-        let of_equations = equations.iter_mut().map(|e| Chain {
-            terms: &e.terms,
-            block: &mut e.block,
-            subdomain: &mut e.subdomain,
-        });
-        let of_mortar = mortar.iter_mut().map(|m| Chain {
-            terms: &m.terms,
-            block: &mut m.block,
-            subdomain: &mut m.subdomain,
-        });
-        let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
-        rows::equations::join(&bodies, &mut points, &mut chains);
-        drop(chains);
+        let joined = Joined {
+            spec: &spec,
+            interfaces: &mut interfaces,
+            obstacles: &obstacles,
+            known: Vec::new(),
+        };
+        let Rows {
+            points,
+            mortar,
+            equations,
+            notes,
+        } = joined.rows(&mut bodies, &steps, None)?;
         obstacles.iter_mut().for_each(Obstacle::finish);
+        let renewal =
+            written.map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &mortar));
+        let renewal = renewal.transpose()?.map(Arc::new);
         spec.notes.extend(notes);
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
@@ -172,6 +176,7 @@ impl Scene {
             steps,
             exact: spec.exact,
             notes: spec.notes,
+            renewal,
             n_subdomains: first_subdomain,
         })
     }

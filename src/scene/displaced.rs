@@ -1,16 +1,18 @@
 //! Displacements of the sides that may touch, known to every rank.
 
 use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
 
 use super::checked::Scene;
 use crate::parallel::exchange::gather_all;
 use crate::petsc::Session;
 use crate::substructures::{BodyNode, RowSource, Subdomain};
 
-/// The displacements of all nodes of the sides that may touch.
+/// The displacements of all nodes of the sides that may touch: what [`Scene::renew`] needs.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Displaced {
-    nodes: HashMap<BodyNode, [f64; 3]>,
+pub struct Displaced {
+    /// By body.
+    nodes: HashMap<usize, Arc<HashMap<usize, [f64; 3]>>>,
 }
 
 /// Words per node: body, node, three components.
@@ -54,21 +56,44 @@ impl Displaced {
         }
         let received = gather_all(session.comm(), &words);
         let each = received.iter().flat_map(|list| list.chunks_exact(WORDS));
-        let nodes = each.map(|w| {
+        let mut nodes: HashMap<usize, HashMap<usize, [f64; 3]>> = HashMap::new();
+        for w in each {
             let [body, node] = [w[0], w[1]].map(|k| k as usize);
-            (
-                BodyNode { body, node },
-                [2, 3, 4].map(|k| f64::from_bits(w[k])),
-            )
-        });
+            let u = [2, 3, 4].map(|k| f64::from_bits(w[k]));
+            nodes.entry(body).or_default().insert(node, u);
+        }
+        Displaced::new(nodes)
+    }
+
+    fn new(nodes: HashMap<usize, HashMap<usize, [f64; 3]>>) -> Displaced {
+        let shared = nodes.into_iter().map(|(body, u)| (body, Arc::new(u)));
         Displaced {
-            nodes: nodes.collect(),
+            nodes: shared.collect(),
         }
     }
 
     /// The displacement of a node; zero where it is not known.
-    pub fn at(&self, node: BodyNode) -> [f64; 3] {
-        self.nodes.get(&node).copied().unwrap_or_default()
+    pub fn at(&self, at: BodyNode) -> [f64; 3] {
+        let of_body = self.nodes.get(&at.body);
+        let found = of_body.and_then(|u| u.get(&at.node));
+        found.copied().unwrap_or_default()
+    }
+
+    /// The displacements of a body by node.
+    pub fn of(&self, body: usize) -> Option<Arc<HashMap<usize, [f64; 3]>>> {
+        self.nodes.get(&body).cloned()
+    }
+
+    /// These displacements, counted from earlier ones.
+    pub fn since(&self, before: &Displaced) -> Displaced {
+        let of_body = |(&body, u): (&usize, &Arc<HashMap<usize, [f64; 3]>>)| {
+            let each = u.iter().map(|(&node, u)| {
+                let from = before.at(BodyNode { body, node });
+                (node, [0, 1, 2].map(|d| u[d] - from[d]))
+            });
+            (body, each.collect())
+        };
+        Displaced::new(self.nodes.iter().map(of_body).collect())
     }
 }
 
@@ -92,6 +117,13 @@ impl Scene {
     /// The nodes that may touch, by body.
     fn nodes_that_may_touch(&self) -> HashMap<usize, BTreeSet<usize>> {
         let mut out: HashMap<usize, BTreeSet<usize>> = HashMap::new();
+        if self.is_renewed() {
+            // Any of their sides may come to touch.
+            let all = self.bodies.iter().enumerate();
+            return all
+                .map(|(b, body)| (b, body.mesh().boundary().into_iter().collect()))
+                .collect();
+        }
         for (body, side) in self.sides_that_may_touch() {
             let nodes = self.bodies[body].mesh().side_nodes(side);
             out.entry(body).or_default().extend(nodes);

@@ -18,7 +18,7 @@ mod coefficient;
 mod cut;
 pub(crate) mod deck;
 #[cfg(feature = "cli")]
-pub(crate) mod displaced;
+mod displaced;
 pub(crate) mod distribution;
 pub(crate) mod geometry;
 mod joint;
@@ -28,14 +28,18 @@ pub(crate) mod model;
 mod numbering;
 mod plan;
 mod read;
+mod renew;
+mod renewal;
 pub(crate) mod rows;
 mod side_pair;
+#[cfg(feature = "cli")]
 pub(crate) mod sliding;
 mod validate;
 
 pub use body::Body;
 pub use checked::Scene;
 pub use deck::DeckScenes;
+pub use displaced::Displaced;
 pub use geometry::interface::{Interface, Link, Shape, SharedNode};
 pub use loads::{SteppedMesh, Stepping};
 pub use model::cells::{Cells, NumberFormat, Tone};

@@ -5,7 +5,9 @@ use std::collections::{HashMap, HashSet};
 
 use super::checked::Scene;
 use super::displaced::Displaced;
+use super::model::steps::Factors;
 use super::rows::mortar_row::MortarRow;
+use super::rows::obstacles::Obstacle;
 use crate::linalg::vec3::{cross, dot, minus, norm};
 use crate::mortar::across;
 use crate::substructures::{BodyNode, RowSource, SolvedRow};
@@ -39,12 +41,23 @@ pub(crate) struct Sliders<'a> {
     faces: HashMap<(usize, usize), Vec<Vec<usize>>>,
     /// The size of the faces at every node of these sides.
     sizes: HashMap<BodyNode, f64>,
+    /// How far every obstacle has moved.
+    motions: Vec<[f64; 3]>,
     /// The weights of nodes in rows between sides whose nodes do not match.
     mortar: HashMap<(RowSource, [Option<BodyNode>; 2]), &'a MortarRow>,
 }
 
 impl<'a> Sliders<'a> {
-    pub fn new(scene: &'a Scene) -> Sliders<'a> {
+    /// The search at load step `step`.
+    ///
+    /// # Panics
+    /// For a step that the scene does not have.
+    pub fn new(scene: &'a Scene, step: usize) -> Sliders<'a> {
+        let factors = Factors::of(&scene.steps, step).expect("the step exists");
+        let motion = |o: &Obstacle| {
+            let entry = o.limits.all().first().and_then(|l| l.entry);
+            o.motion.map(|m| m * factors.gap(entry))
+        };
         let (mut faces, mut sizes) = (HashMap::new(), HashMap::new());
         for (body, side) in scene.sides_that_may_touch() {
             let spec = &scene.bodies[body].spec;
@@ -67,6 +80,7 @@ impl<'a> Sliders<'a> {
             scene,
             faces,
             sizes,
+            motions: scene.obstacles.iter().map(motion).collect(),
             mortar: mortar.map(|m| ((m.source, m.members), m)).collect(),
         }
     }
@@ -107,7 +121,10 @@ impl<'a> Sliders<'a> {
     /// u of the first side less u of the second one at a row.
     fn apart(&self, source: RowSource, members: [Option<BodyNode>; 2], u: &Displaced) -> [f64; 3] {
         let row = self.mortar.get(&(source, members));
-        let mut out = [0.0; 3];
+        let mut out = match source {
+            RowSource::Obstacle(k) => self.motions[k].map(|m| 0.0 - m),
+            _ => [0.0; 3],
+        };
         let mut add = |node: BodyNode, weight: f64| {
             let at = u.at(node);
             (0..3).for_each(|d| out[d] += weight * at[d]);

@@ -11,6 +11,7 @@ mod elastic;
 mod energy;
 mod input;
 mod mortar;
+mod renewal;
 mod sliding;
 mod solve;
 mod table;

@@ -121,3 +121,20 @@ fn scalar_contact_says_nothing_about_sliding() {
     assert_eq!(out.code, 0, "{}", out.all());
     assert!(!out.stdout.contains("sliding"), "{}", out.stdout);
 }
+
+#[test]
+fn an_obstacle_that_moves_slides_along_a_body_at_rest() {
+    // The block is held where it is pushed along else; the plane moves up into it and along it.
+    let scene = on_a_plane(0.0) + "move = [0.2, 1e-3]\nramp = \"t\"\n[steps]\ncount = 2\n";
+    let (report, _) = solved("moving", &scene, 1);
+    near(
+        &report["contact"]["interfaces"][0]["largest_sliding"],
+        0.2,
+        1e-6,
+    );
+    near(
+        &report["contact"]["load_steps"][0]["largest_sliding"],
+        0.1,
+        1e-6,
+    );
+}

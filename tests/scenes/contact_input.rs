@@ -391,6 +391,7 @@ fn scenes_that_a_program_builds_are_checked_too() {
             load: Ramp::constant(1.0),
             gap: Ramp::parse("t").unwrap(),
             dirichlet: Ramp::constant(1.0),
+            update: false,
             written: String::new(),
         });
         assert_eq!(error(steps), message);

@@ -19,14 +19,14 @@ use crate::petsc::Session;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
-/// Factors one subdomain of each kind.
+/// Factors one subdomain of each kind, but for the subdomains that `kept` has already; it may be empty.
 pub(crate) fn factor(
     session: &Session,
     problem: &Substructures,
     jump: &Jump,
     team: &Team,
-    settings: &MethodSettings,
-    kind: PcType,
+    (settings, kind): (&MethodSettings, PcType),
+    kept: &[Option<Scaled>],
 ) -> Result<Vec<Scaled>> {
     // A matrix S is needed by every user that multiplies with it or reads its entries before the iteration begins.
     let wants_s = kind == PcType::CoarseCorrected
@@ -57,7 +57,13 @@ pub(crate) fn factor(
             .map_or(forms::usual_memory(session.size()), |mb| 1e6 * mb as f64),
         wants_s,
     );
-    let analyses = analyses(&kinds, &forms, team, settings.local);
+    let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
+    let known = |j: usize| kept.get(j).and_then(Option::as_ref);
+    let mut needed = vec![false; kinds.len()];
+    for (j, like) in first.iter().enumerate() {
+        needed[place(like.first)] |= known(j).is_none();
+    }
+    let analyses = analyses(&kinds, (&forms, &needed), team, settings.local);
     let make = |k: usize, j: usize| {
         let (kind, sub) = (&kinds[k], &problem.local[j]);
         let condenser = Condenser {
@@ -78,25 +84,30 @@ pub(crate) fn factor(
             })
             .map_err(|e| no_factor(problem, sub, e))
     };
-    let factored = team.map(kinds.len(), |k| make(k, kinds[k].j));
+    let factored = team.map(kinds.len(), |k| {
+        needed[k].then(|| make(k, kinds[k].j)).transpose()
+    });
     let factored = factored.into_iter().collect::<Result<Vec<_>>>()?;
-    let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
     // Copies that are turned alike have Ψ in common.
     let mut turned: Vec<(usize, Scaled)> = Vec::new();
     let of = |(j, like): (usize, &Likeness)| {
+        if let Some(known) = known(j) {
+            return Ok(known.clone());
+        }
         let k = place(like.first);
+        let problem = factored[k].as_ref().expect("a kind that is needed");
         let Some(turn) = like.turn else {
-            return Ok(Scaled::new(factored[k].clone(), like.factor));
+            return Ok(Scaled::new(problem.clone(), like.factor));
         };
         // Free dofs of the interior that joined Γ tear nodes apart.
-        if factored[k].gamma.n_gamma() > kinds[k].delta.len() + kinds[k].primal.len() {
+        if problem.gamma.n_gamma() > kinds[k].delta.len() + kinds[k].primal.len() {
             return Ok(Scaled::new(make(k, j)?, 1.0));
         }
         let same = |(first, s): &&(usize, Scaled)| *first == like.first && s.turn() == Some(&turn);
         if let Some((_, known)) = turned.iter().find(same) {
             return Ok(known.with_factor(like.factor));
         }
-        let new = Scaled::turned(factored[k].clone(), like.factor, turn);
+        let new = Scaled::turned(problem.clone(), like.factor, turn);
         turned.push((like.first, new.clone()));
         Ok(new)
     };
@@ -112,11 +123,16 @@ struct Analyses {
 
 /// One symbolic analysis for all kinds with dense operators that have the same pattern and interface. Different
 /// coefficients and moved nodes change values only.
-fn analyses(kinds: &[Kind], forms: &[OperatorForm], team: &Team, solver: LocalSolver) -> Analyses {
+fn analyses(
+    kinds: &[Kind],
+    (forms, needed): (&[OperatorForm], &[bool]),
+    team: &Team,
+    solver: LocalSolver,
+) -> Analyses {
     let mut found: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
     let hashes = team.map(kinds.len(), |k| pattern_hash(&kinds[k]));
     for (k, hash) in hashes.iter().enumerate() {
-        if forms[k] == OperatorForm::Explicit {
+        if needed[k] && forms[k] == OperatorForm::Explicit {
             let groups = found.entry(*hash).or_default();
             match groups
                 .iter_mut()

@@ -6,6 +6,7 @@ mod congruent;
 pub mod equal;
 pub mod factor;
 pub mod implicit;
+pub mod kept;
 pub mod loads;
 pub mod operators;
 pub mod problem;

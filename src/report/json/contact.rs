@@ -233,6 +233,12 @@ pub struct LoadStep {
     /// Sum of the multipliers of all inequalities.
     #[serde(with = "number")]
     pub contact_force: f64,
+    /// Where contacts are renewed: the seconds of set-up for the new rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub setup_seconds: Option<f64>,
+    /// Where contacts are renewed: number of subdomains that were factored for the new rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factored: Option<usize>,
     /// Elasticity: as in [`InterfaceForce`], the largest of all interfaces at the end of the step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_sliding: Option<f64>,

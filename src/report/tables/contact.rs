@@ -119,6 +119,12 @@ fn load_steps(r: &ContactReport) -> String {
             |t| t.numbers("sliding/face", |s| fixed(s.sliding_over_face, 3)),
         )
         .numbers("energy", |s| value(s.energy))
+        .when(r.updated, |t| {
+            t.numbers("set-up", |s| fixed(s.setup_seconds, 3))
+                .numbers("factored", |s| {
+                    s.factored.map_or("–".into(), |n| n.to_string())
+                })
+        })
         .table();
     let more = if hidden > 0 {
         format!("and {} before\n", plural(hidden, "load step"))

@@ -157,7 +157,8 @@ pub(crate) fn interface(
         .iter()
         .zip(&normals)
         .map(|(s, n)| {
-            let [x, y] = [0, 1].map(|k| bodies[pair[k]].spec.position(s.nodes[k]));
+            // Rows are about displacements from the undeformed bodies.
+            let [x, y] = [0, 1].map(|k| bodies[pair[k]].spec.undeformed(s.nodes[k]));
             let distance = dot(minus(y, x), *n);
             let size = x.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             if distance.abs() <= 1e-14 * size {

@@ -52,7 +52,7 @@ pub(crate) fn interface(
     let out = of_side(specs[0], sides[multipliers], &nodes);
     let distances = rows.iter().zip(&out);
     let distances = distances
-        .map(|(row, n)| row.distance(specs[0], &|k| specs[1].position(k), *n))
+        .map(|(row, n)| row.distance(specs[0], &|k| specs[1].undeformed(k), *n))
         .collect();
     let pairs = nodes.iter().map(|&node| [node, partner(node)]).collect();
     let mut shared = share(specs[0], sides[multipliers], pairs);

@@ -72,11 +72,11 @@ pub(crate) struct BodyRow {
 }
 
 impl BodyRow {
-    /// The gap: how far the other side, whose nodes are at `theirs`, is along the normal `n` out of the multiplier
-    /// side, in the sense of the row.
+    /// The gap of the undeformed bodies: how far the other side, whose nodes are at `theirs`, is along the normal `n`
+    /// out of the multiplier side, in the sense of the row.
     pub fn distance(&self, own: &BodySpec, theirs: &dyn Fn(usize) -> [f64; 3], n: [f64; 3]) -> f64 {
-        let places: [&dyn Fn(usize) -> [f64; 3]; 2] = [&|k| own.position(k), theirs];
-        let origin = own.position(self.node);
+        let places: [&dyn Fn(usize) -> [f64; 3]; 2] = [&|k| own.undeformed(k), theirs];
+        let origin = own.undeformed(self.node);
         mortar::distance([&self.own, &self.other], places, origin, n)
     }
 }

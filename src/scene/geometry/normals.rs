@@ -13,7 +13,7 @@ use crate::scene::model::spec::BodySpec;
 /// normals of the elements around the node are averaged, weighted by area. On meshes of cells only the faces count that
 /// have all their nodes among these.
 pub(crate) fn of_side(body: &BodySpec, side: usize, nodes: &[usize]) -> Vec<[f64; 3]> {
-    if body.mesh.grid().is_some() && body.map.is_none() {
+    if body.unbent().is_some() {
         let mut normal = [0.0; 3];
         normal[side / 2] = if side % 2 == 0 { -1.0 } else { 1.0 };
         return nodes.iter().map(|_| normal).collect();

@@ -48,6 +48,8 @@ pub struct StepsSpec {
     pub gap: Ramp,
     /// Factor of all given values.
     pub dirichlet: Ramp,
+    /// Whether each load step renews normals, pairing and gaps of contacts where the last one left the bodies.
+    pub update: bool,
     /// Where it was written, or empty.
     pub written: String,
 }

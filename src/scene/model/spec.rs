@@ -1,6 +1,9 @@
 //! A scene as plain data: what a file says, or what a program builds. Nothing here has been checked yet;
 //! [`Scene::new`](crate::scene::Scene::new) does that.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use super::expr::{Expr, Variables};
 use super::field::{Field, Region};
 use super::joints::{AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec};
@@ -119,6 +122,8 @@ pub struct BodySpec {
     pub dirichlet: Sides,
     /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
     pub place: [usize; 3],
+    /// The displacements of nodes at which the body is looked at, while contacts are renewed; `None`: undeformed.
+    pub(crate) moved: Option<Arc<HashMap<usize, [f64; 3]>>>,
     /// Where it was written ("scene.toml:12: "), or empty.
     pub written: String,
 }
@@ -143,14 +148,37 @@ impl BodySpec {
             given: Vec::new(),
             dirichlet: free_all_round(),
             place: [0; 3],
+            moved: None,
             written: String::new(),
         }
     }
 
     /// Position of a node.
     pub fn position(&self, node: usize) -> [f64; 3] {
+        let u = self.displacement(node);
+        let x = self.undeformed(node);
+        match &self.moved {
+            None => x,
+            Some(_) => [0, 1, 2].map(|d| x[d] + u[d]),
+        }
+    }
+
+    /// Position of a node of the undeformed body.
+    pub(crate) fn undeformed(&self, node: usize) -> [f64; 3] {
         let point = self.mesh.position(node);
         self.map.as_ref().map_or(point, |map| map.apply(point))
+    }
+
+    /// The displacement of a node from [`BodySpec::undeformed`] to [`BodySpec::position`].
+    pub(crate) fn displacement(&self, node: usize) -> [f64; 3] {
+        let moved = self.moved.as_ref().and_then(|m| m.get(&node));
+        moved.copied().unwrap_or_default()
+    }
+
+    /// The grid of the body, if its cells are equal boxes.
+    pub(crate) fn unbent(&self) -> Option<&BoxMesh> {
+        let grid = self.mesh.grid();
+        grid.filter(|_| self.map.is_none() && self.moved.is_none())
     }
 
     /// The given value of a component on a side, if there is one.
@@ -167,7 +195,7 @@ impl BodySpec {
     /// The variables of expressions at a node.
     pub(crate) fn variables(&self, node: usize) -> Variables {
         Variables {
-            point: self.position(node),
+            point: self.undeformed(node),
             body: self.place,
             subdomain: [0; 3],
         }

@@ -10,6 +10,8 @@ use crate::error::{Error, Result};
 pub struct Steps {
     /// The times, increasing; at least one.
     pub times: Vec<f64>,
+    /// Whether each step renews normals, pairing and gaps of contacts.
+    pub update: bool,
     load: Ramp,
     gap: Ramp,
     dirichlet: Ramp,
@@ -76,6 +78,7 @@ impl Steps {
         }
         Ok(Some(Steps {
             times: steps.times.clone(),
+            update: steps.update,
             load: steps.load.clone(),
             gap: steps.gap.clone(),
             dirichlet: steps.dirichlet.clone(),
@@ -156,7 +159,8 @@ impl<'a> Factors<'a> {
             .expect("a row of an inequality has a bound")
     }
 
-    fn gap(&self, entry: Option<usize>) -> f64 {
+    /// The factor of the gaps of an entry.
+    pub fn gap(&self, entry: Option<usize>) -> f64 {
         self.at.map_or(1.0, |(s, t)| {
             let own = entry.and_then(|e| s.entries.get(e)?.as_ref());
             own.unwrap_or(&s.gap).at(t)

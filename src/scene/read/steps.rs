@@ -33,12 +33,17 @@ impl Reader {
             Ok(read?.unwrap_or_else(|| Ramp::constant(1.0)))
         };
         let (load, gap, dirichlet) = (factor("load")?, factor("gap")?, factor("dirichlet")?);
+        let update = section.read("update", |item| match item.value {
+            Value::Truth(v) => Ok(v),
+            _ => item.expected("true or false"),
+        })?;
         section.finish()?;
         Ok(StepsSpec {
             times,
             load,
             gap,
             dirichlet,
+            update: update.unwrap_or(false),
             written: item.written(),
         })
     }

@@ -30,17 +30,7 @@ pub(crate) fn find(
     let (ties, contacts) = (&spec.ties, &spec.contacts);
     let mut entries = Entries::new(bodies, ties, contacts)?;
     let zero = Profile::constant(0.0);
-    let default = Entry {
-        pair: &Pair::All,
-        extent: &Extent::All,
-        written: "",
-        contact: (spec.default == ByDefault::Contact).then_some(Contact {
-            gap: &zero,
-            number: None,
-        }),
-        own: None,
-    };
-    let default = (spec.default != ByDefault::Free).then_some(default);
+    let default = default(spec, &zero);
     let mut weak = Vec::new();
     for (k, interface) in interfaces.iter_mut().enumerate() {
         entries.apply(bodies, interface, default.as_ref(), Factors::last(steps))?;
@@ -242,6 +232,39 @@ fn facing(
     Ok(())
 }
 
+/// Joins interfaces of bodies that have moved as the contacts of `spec` say. A contact that selects none of their nodes
+/// any more has none.
+pub(crate) fn rejoin(
+    bodies: &[Body],
+    interfaces: &mut [Interface],
+    spec: &SceneSpec,
+    steps: &Option<Steps>,
+) -> Result<()> {
+    let mut entries = Entries::new(bodies, &spec.ties, &spec.contacts)?;
+    entries.moved = true;
+    let zero = Profile::constant(0.0);
+    let default = default(spec, &zero);
+    for interface in interfaces {
+        entries.apply(bodies, interface, default.as_ref(), Factors::last(steps))?;
+    }
+    Ok(())
+}
+
+/// The joint of bodies of which no entry speaks, with the gap 0.
+fn default<'a>(spec: &SceneSpec, zero: &'a Profile) -> Option<Entry<'a>> {
+    let default = Entry {
+        pair: &Pair::All,
+        extent: &Extent::All,
+        written: "",
+        contact: (spec.default == ByDefault::Contact).then_some(Contact {
+            gap: zero,
+            number: None,
+        }),
+        own: None,
+    };
+    (spec.default != ByDefault::Free).then_some(default)
+}
+
 /// Removes unwanted corner ties. The corner pairs in `weak` are tied only because an entry ties all pairs. If one of
 /// the two nodes is in contact elsewhere, the tie would close that contact and is removed.
 fn release_corners(interfaces: &mut [Interface], weak: &[usize]) {
@@ -270,6 +293,8 @@ struct Entries<'a> {
     all: Vec<(Entry<'a>, bool)>,
     /// Entries for single pairs, each with the pair's order in the file.
     named: HashMap<[usize; 2], Vec<(Entry<'a>, [usize; 2])>>,
+    /// Whether bodies have moved, so that entries may select nothing.
+    moved: bool,
 }
 
 impl<'a> Entries<'a> {
@@ -286,6 +311,7 @@ impl<'a> Entries<'a> {
         let mut entries = Entries {
             all: Vec::new(),
             named: HashMap::new(),
+            moved: false,
         };
         let contacts = contacts.iter().enumerate();
         let contacts = contacts.map(|(number, spec)| Entry::contact(ties.len(), number, spec));
@@ -360,7 +386,7 @@ impl<'a> Entries<'a> {
             for (entry, order) in &named {
                 if entry.contact.is_some() == contact {
                     let selected = links.add(*entry, Some(*order))?;
-                    if selected == 0 && *entry.extent != Extent::None {
+                    if selected == 0 && *entry.extent != Extent::None && !self.moved {
                         let [a, b] = links.names();
                         return Err(Error::Input(format!(
                             "{}the {} of bodies `{a}` and `{b}` selects no node of their common face",

@@ -18,6 +18,7 @@
 //! label; reports, studies and C read them in the solved row. A load step evaluates only the right-hand sides of the
 //! third form ([`points::PointRow::right_hand_side`]).
 
+pub mod all;
 pub mod areas;
 pub mod bounds;
 pub mod entries;

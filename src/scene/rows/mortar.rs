@@ -13,17 +13,26 @@ use crate::scene::geometry::interface::{Interface, Link};
 use crate::scene::geometry::mortar_sides::{BodyRow, Surfaces};
 use crate::substructures::{BodyNode, RowSource};
 
-/// The rows of all interfaces that have surfaces, which are freed, and sentences on nodes that are left out. A node
-/// that is tied carries no multiplier of another tie or of a contact.
+/// The rows of all interfaces that have surfaces, which are freed, after those that are known already, and sentences on
+/// nodes that are left out. A node that is tied carries no multiplier of another tie or of a contact.
 pub(crate) fn collect(
     bodies: &[Body],
     form: &Form,
     interfaces: &mut [Interface],
     points: &[Point],
     checks: &Checks<'_>,
+    known: Vec<MortarRow>,
 ) -> Result<(Vec<MortarRow>, Vec<String>)> {
     let mut tied = tied_at(points);
-    let (mut out, mut notes) = (Vec::new(), Vec::new());
+    let equations = known.iter().filter(|row| row.inequality.is_none());
+    tied.extend(equations.filter_map(|row| {
+        let RowSource::Interface(k) = row.source else {
+            return None;
+        };
+        let own = interfaces[k].mortar.as_ref().map_or(0, |m| m.multipliers);
+        row.members[usize::from(interfaces[k].order[0] != own)]
+    }));
+    let (mut out, mut notes) = (known, Vec::new());
     // Ties come first: nodes that they hold are not in contact.
     for contact in [false, true] {
         for (k, interface) in interfaces.iter_mut().enumerate() {
@@ -200,7 +209,7 @@ impl<'a> Pairing<'a> {
             let closed = self.interface.distances[i] == 0.0;
             let distance = match closed {
                 true => 0.0,
-                false => row.distance(own, &|k| other.position(k), out),
+                false => row.distance(own, &|k| other.undeformed(k), out),
             };
             self.carried(row, self.along(i), Some(distance))
         };

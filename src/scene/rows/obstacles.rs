@@ -33,6 +33,8 @@ pub struct Obstacle {
     ///
     /// [`Scene::mortar`]: crate::scene::Scene::mortar
     pub surface: Option<Opposite>,
+    /// The way that the rigid body moves, without the factors of load steps.
+    pub motion: [f64; 3],
     /// The distance of each of these nodes from the rigid body, and the unit vector away from it.
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
     /// The parameters of each of these nodes along the side.
@@ -64,6 +66,8 @@ pub(crate) fn find(
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
     let mut found: BTreeMap<(usize, usize, usize, bool), Found> = BTreeMap::new();
+    // Bodies that have moved may have left an obstacle.
+    let moved = bodies.iter().any(|b| b.spec.moved.is_some());
     for (k, entry) in entries.iter().enumerate() {
         let fail = |message: String| Err(Error::Input(format!("{}{message}", entry.written)));
         let (below, above) = (entry.below.as_ref(), entry.above.as_ref());
@@ -126,18 +130,21 @@ pub(crate) fn find(
                 for &(node, t) in &selected {
                     let (at, spot, name) = (spec.variables(node), || spec.spot(node), &spec.name);
                     if let Some(rigid) = &entry.rigid {
-                        let Some(nearest) = rigid.distance(at.point) else {
+                        let Some((ahead, normal)) = rigid.distance(spec.position(node)) else {
                             return fail(format!(
                                 "no point of the obstacle is nearest to the node {} of body `{name}` \
                                  (on its axis or in its centre)",
                                 spot()
                             ));
                         };
-                        near.entry(node).or_insert(nearest);
+                        // The row is about displacements from the undeformed body.
+                        let distance = ahead - dot(normal, spec.displacement(node));
+                        near.entry(node).or_insert((distance, normal));
                     }
                     let mut value = bound.eval(t[0], &at);
                     if let Some(&(distance, normal)) = near.get(&node) {
-                        if entry.distance.is_some_and(|most| distance > most) {
+                        let ahead = distance + dot(normal, spec.displacement(node));
+                        if entry.distance.is_some_and(|most| ahead > most) {
                             continue;
                         }
                         let closed = distance.abs() <= entry.adjust;
@@ -163,7 +170,7 @@ pub(crate) fn find(
             }
         }
         if let (Some((b, side)), Some(rigid), true) =
-            (missed, &entry.surface, found.len() == before)
+            (missed, &entry.surface, found.len() == before && !moved)
         {
             let why = facing_surfaces::apart(&bodies[b].spec, form, side, rigid, entry.distance);
             return fail(why);
@@ -189,6 +196,9 @@ pub(crate) fn find(
             limits: Limits::new(of_side.limits),
             rigid: number.checked_sub(1).and_then(|k| entries[k].rigid),
             surface: of_side.surface,
+            motion: number
+                .checked_sub(1)
+                .map_or([0.0; 3], |k| entries[k].motion),
             nearest: of_side.nearest,
             parameters: of_side.parameters,
         }

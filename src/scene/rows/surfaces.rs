@@ -72,6 +72,42 @@ pub(crate) fn expand(
     Ok(())
 }
 
+/// Does the same for the contacts alone, on bodies that have moved. Surfaces that do not meet any more are left out.
+pub(crate) fn expand_contacts(bodies: &[Body], matching: &mut Matching<'_>, spec: &mut SceneSpec) {
+    let mut contacts = Vec::with_capacity(spec.contacts.len());
+    for contact in std::mem::take(&mut spec.contacts) {
+        let Pair::Surfaces(a, b) = &contact.pair else {
+            contacts.push(contact);
+            continue;
+        };
+        let reach = contact.distance.unwrap_or(f64::INFINITY);
+        let wanted = (contact.multipliers, reach);
+        let found = pairs(
+            bodies,
+            matching,
+            &spec.form,
+            [a, b],
+            wanted,
+            &contact.written,
+        );
+        contacts.extend(
+            found
+                .into_iter()
+                .flatten()
+                .map(|(pair, sides)| ContactSpec {
+                    pair,
+                    sides: Some(sides),
+                    ..contact.clone()
+                }),
+        );
+    }
+    if let Some(auto) = &spec.auto {
+        let found = found(bodies, matching, &spec.form, auto);
+        contacts.extend(found.into_iter().flatten());
+    }
+    spec.contacts = contacts;
+}
+
 type Found = (Pair, [usize; 2]);
 
 /// The pairs of bodies that have the surfaces, and whose nodes there face each other.

@@ -52,6 +52,7 @@ fn sample(steps: usize, n: usize) -> ContactReport {
             })
             .collect(),
         load_steps: Vec::new(),
+        updated: false,
     }
 }
 
@@ -159,4 +160,39 @@ fn a_number_that_is_missing_comes_first() {
     assert!(interface < text.find("b19|b20").unwrap());
     let balance = &text[text.find("imbalance").unwrap()..];
     assert!(balance.find("b0 ").unwrap() < balance.find("b20 ").unwrap());
+}
+
+#[test]
+fn sliding_that_is_not_small_is_said() {
+    let mut report = sample(2, 2);
+    assert!(!contact(&report).contains("sliding"), "scalars have none");
+    for (k, f) in report.interfaces.iter_mut().enumerate() {
+        f.largest_sliding = Some(0.01 * (k + 1) as f64);
+        f.sliding_over_face = Some(0.2 * (k + 1) as f64);
+        f.largest_turn = Some(1.0);
+    }
+    let text = contact(&report);
+    assert!(
+        text.contains("largest sliding 0.4000 of the size of a face (b1|b2)"),
+        "{text}"
+    );
+    assert!(!text.contains("not small"), "{text}");
+    report.load_steps = vec![LoadStep {
+        sliding_over_face: Some(0.6),
+        largest_turn: Some(0.5),
+        ..LoadStep::default()
+    }];
+    let text = contact(&report);
+    assert!(text.contains("over all load steps 0.6000"), "{text}");
+    assert!(
+        text.contains("sliding of more than 0.5 of a face")
+            && text.contains("[steps] update = true"),
+        "{text}"
+    );
+    report.updated = true;
+    let text = contact(&report);
+    assert!(
+        text.contains("Between two load steps this is not small"),
+        "{text}"
+    );
 }

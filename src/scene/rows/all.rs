@@ -1,0 +1,78 @@
+//! All rows of a scene: what its interfaces, obstacles and equations come to.
+
+use super::bounds::Checks;
+use super::equations::{self, Chain, Equation};
+use super::mortar;
+use super::mortar_row::MortarRow;
+use super::obstacles::Obstacle;
+use super::points::{self, Point};
+use crate::error::Result;
+use crate::scene::body::Body;
+use crate::scene::geometry::interface::Interface;
+use crate::scene::model::spec::SceneSpec;
+use crate::scene::model::steps::{Factors, Steps};
+
+/// The rows, and sentences about them.
+pub(crate) struct Rows {
+    pub points: Vec<Point>,
+    pub mortar: Vec<MortarRow>,
+    pub equations: Vec<Equation>,
+    pub notes: Vec<String>,
+}
+
+/// What rows are made of.
+pub(crate) struct Joined<'a> {
+    pub spec: &'a SceneSpec,
+    pub interfaces: &'a mut [Interface],
+    pub obstacles: &'a [Obstacle],
+    /// Rows between sides whose nodes do not match that are known already.
+    pub known: Vec<MortarRow>,
+}
+
+impl Joined<'_> {
+    /// Makes the rows; given values are checked against those of load step `step`, or of all steps.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::Error::Input) where given values contradict rows.
+    pub fn rows(
+        self,
+        bodies: &mut [Body],
+        steps: &Option<Steps>,
+        step: Option<usize>,
+    ) -> Result<Rows> {
+        let spec = self.spec;
+        let mut points = points::collect(bodies, self.interfaces)?;
+        let mut checks = Checks::new(bodies, self.obstacles, spec, steps);
+        if let Some(step) = step {
+            checks.factors = vec![Factors::of(steps, step)?];
+        }
+        checks.apply(&mut points)?;
+        let (mut mortar, notes) = mortar::collect(
+            bodies,
+            &spec.form,
+            self.interfaces,
+            &points,
+            &checks,
+            self.known,
+        )?;
+        let mut equations = equations::collect(bodies, &spec.equations)?;
+        let of_equations = equations.iter_mut().map(|e| Chain {
+            terms: &e.terms,
+            block: &mut e.block,
+            subdomain: &mut e.subdomain,
+        });
+        let of_mortar = mortar.iter_mut().map(|m| Chain {
+            terms: &m.terms,
+            block: &mut m.block,
+            subdomain: &mut m.subdomain,
+        });
+        let mut chains: Vec<Chain<'_>> = of_equations.chain(of_mortar).collect();
+        equations::join(bodies, &mut points, &mut chains);
+        Ok(Rows {
+            points,
+            mortar,
+            equations,
+            notes,
+        })
+    }
+}
