@@ -141,7 +141,7 @@ impl Object {
             let Ok(dof) = u32::try_from(dof) else {
                 return Ok(None);
             };
-            self.number(surface.numbering, dof, "a surface").map(Some)
+            self.number(surface.numbering, dof, "surface").map(Some)
         };
         let node = |dofs: &Vec<i32>| dofs.iter().map(number).collect();
         surface.dofs.iter().map(node).collect()
@@ -180,7 +180,7 @@ impl Object {
         let pairs = self.rows.iter().filter(|r| r.origin == Origin::Pairs);
         for row in pairs.filter(|r| r.kind == RowKind::Equality) {
             for &(whose, dof, _) in &row.terms {
-                mine.push(u64::from(self.number(whose, dof, "a contact pair")?));
+                mine.push(u64::from(self.number(whose, dof, "contact pair")?));
             }
         }
         let tied = gather_all(self.session.comm(), &mine).concat();
@@ -241,10 +241,10 @@ impl Object {
         let Numbering::Matrix(k) = whose else {
             return Ok(dof);
         };
-        let n = self.size_of(k, &format!("{what} names"))?;
+        let n = self.size_of(k, &format!("{what}s name"))?;
         if dof as usize >= n {
             return Err(Fault::OutOfRange.error(format!(
-                "{what} of rank {} has unknown {dof} of matrix {k}, \
+                "a {what} of rank {} has unknown {dof} of matrix {k}, \
                  which has {n} by now, expected those of the present matrices",
                 self.session.rank()
             )));

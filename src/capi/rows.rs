@@ -120,7 +120,7 @@ impl Object {
     /// # Errors Rows of matrices that no longer exist.
     pub fn given_rows(&self) -> Result<Vec<GivenRow>> {
         let number = |&(whose, dof, c): &(Numbering, u32, f64)| {
-            Ok((self.number(whose, dof, "a contact pair")?, c))
+            Ok((self.number(whose, dof, "contact pair")?, c))
         };
         let row = |row: &Row| {
             let terms: Result<Vec<(u32, f64)>> = row.terms.iter().map(number).collect();
