@@ -32,22 +32,25 @@ pub enum Trouble {
 pub struct Eliminated {
     /// Each in terms of unknowns that are not dependent, and the offset.
     of: BTreeMap<u64, (Terms, f64)>,
+    /// The dependent unknowns in the order of their equations.
+    order: Vec<u64>,
 }
 
 impl Eliminated {
-    /// Solves the equations, each given as terms and right-hand side. Unknowns for which `kept` holds stay.
+    /// Solves the equations, each given as terms and right-hand side. Of its unknowns an equation gives up the one with
+    /// the largest product of coefficient and `weight`; unknowns of weight 0 stay.
     ///
     /// # Errors
     /// The first equation for which that cannot be done.
     pub fn new(
         equations: impl IntoIterator<Item = (Vec<(u64, f64)>, f64)>,
-        kept: &dyn Fn(u64) -> bool,
+        weight: &dyn Fn(u64) -> f64,
     ) -> Result<Eliminated, Trouble> {
         let mut out = Eliminated::default();
         // The dependent unknowns in whose terms an unknown is.
         let mut users: HashMap<u64, HashSet<u64>> = HashMap::new();
         for (terms, rhs) in equations {
-            let Some((pivot, terms, offset)) = out.solved(&terms, rhs, kept)? else {
+            let Some((pivot, terms, offset)) = out.solved(&terms, rhs, weight)? else {
                 continue;
             };
             // Earlier dependent unknowns lose the new one.
@@ -65,6 +68,7 @@ impl Eliminated {
                 users.entry(place).or_default().insert(pivot);
             }
             out.of.insert(pivot, (terms, offset));
+            out.order.push(pivot);
         }
         for (terms, _) in out.of.values_mut() {
             terms.retain(|_, t| *t != 0.0);
@@ -77,7 +81,7 @@ impl Eliminated {
         &self,
         equation: &[(u64, f64)],
         rhs: f64,
-        kept: &dyn Fn(u64) -> bool,
+        weight: &dyn Fn(u64) -> f64,
     ) -> Result<Option<(u64, Terms, f64)>, Trouble> {
         let largest = |m: f64, v: f64| m.max(v.abs());
         let size = equation.iter().map(|t| t.1).fold(0.0, largest);
@@ -106,9 +110,10 @@ impl Eliminated {
         rest.retain(|_, b| b.abs() > 1e-14 * size);
         let fit = rest
             .iter()
-            .filter(|(place, b)| !kept(**place) && b.abs() >= PIVOT * left);
+            .filter(|(place, b)| weight(**place) > 0.0 && b.abs() >= PIVOT * left);
+        let size = |t: &(&u64, &f64)| weight(*t.0) * t.1.abs();
         let by_size =
-            |a: &(&u64, &f64), b: &(&u64, &f64)| a.1.abs().total_cmp(&b.1.abs()).then(b.0.cmp(a.0));
+            |a: &(&u64, &f64), b: &(&u64, &f64)| size(a).total_cmp(&size(b)).then(b.0.cmp(a.0));
         let Some((&pivot, &b)) = fit.max_by(by_size) else {
             let first = rest.keys().next().copied();
             return Err(Trouble::Kept(first.unwrap_or_default()));
@@ -121,6 +126,11 @@ impl Eliminated {
     /// The dependent unknowns, increasing.
     pub fn places(&self) -> impl Iterator<Item = u64> + '_ {
         self.of.keys().copied()
+    }
+
+    /// The dependent unknowns in the order of the equations that gave them up.
+    pub fn order(&self) -> &[u64] {
+        &self.order
     }
 
     /// Whether there are none.

@@ -70,6 +70,16 @@ impl Frame {
         *self == Frame::IDENTITY
     }
 
+    /// The component of w along a direction; where none is, the one that has most of it.
+    pub fn along(&self, direction: [f64; 3]) -> usize {
+        let cosine = |row: &[f64; 3]| dot(*row, direction).abs() / norm(*row);
+        let by_cosine = |a: &usize, b: &usize| {
+            let [a_is, b_is] = [a, b].map(|k| cosine(&self.to[*k]));
+            a_is.total_cmp(&b_is).then(b.cmp(a))
+        };
+        (0..3).max_by(by_cosine).unwrap_or_default()
+    }
+
     /// The component of w that a direction is, with the sign 1, or −1 where it is the opposite of that component's
     /// direction.
     pub fn place(&self, direction: [f64; 3]) -> Option<(usize, f64)> {

@@ -2,8 +2,8 @@
 //!
 //! Every row bounds a difference, w_p − w_m ≤ g, where p or m may be *ground*, at which w = 0. Rows of contact pairs
 //! have two nodes, rows beside an obstacle or a prescribed value one. Along normals that are not parallel to an axis, w
-//! are the coordinates of u in a frame (see [`Frame`](super::frame::Frame)). There are few rows, and every rank has all
-//! of them.
+//! are the coordinates of u in a frame (see [`Frame`](super::frame::Frame)). Mortar rows have more nodes, and each has
+//! an unknown w of its own ([`Layout`]). There are few rows, and every rank has all of them.
 
 use std::collections::BTreeMap;
 
@@ -49,7 +49,9 @@ impl Inequalities {
         let subdomains = scene
             .points
             .iter()
-            .flat_map(|point| std::iter::repeat_n(point.subdomain, point.rows.len()));
+            .flat_map(|point| std::iter::repeat_n(point.subdomain, point.rows.len()))
+            .chain(scene.equations.iter().map(|e| e.subdomain))
+            .chain(scene.mortar.iter().map(|m| m.subdomain));
         let mut out = Inequalities {
             held: layout.held.clone(),
             forms: layout.forms.clone(),
@@ -63,7 +65,8 @@ impl Inequalities {
             if !inequality {
                 continue;
             }
-            let (places, scale) = layout.bound(row).unwrap_or(([None; 2], 1.0));
+            let bound = layout.bound_of(ends.len(), row);
+            let (places, scale) = bound.unwrap_or(([None; 2], 1.0));
             ends.push(places);
             out.initial.push(row.holds);
             out.rows.push(Row {

@@ -7,4 +7,5 @@ mod bench;
 mod contact;
 mod elastic;
 mod equations;
+mod mortar;
 mod scalar;

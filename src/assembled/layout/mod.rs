@@ -10,6 +10,7 @@
 //! prescribed values and inequalities together leave rigid motions free, as many dofs are set to zero. Under a balanced
 //! load these supports bear no force.
 
+mod combined;
 mod rows;
 
 use std::collections::BTreeMap;
@@ -25,7 +26,11 @@ use crate::substructures::{InterfaceRow, RowKind};
 use crate::Result;
 use std::ops::Range;
 
+use combined::Combined;
 use rows::Bounded;
+
+/// Σ coefficient · w and an offset.
+pub type Terms = (Vec<(u64, f64)>, f64);
 
 /// The layout of w.
 pub struct Layout<'a> {
@@ -45,6 +50,8 @@ pub struct Layout<'a> {
     supports: Vec<(u64, Functional)>,
     /// The frames of nodes at which w is not u.
     frames: BTreeMap<u64, Frame>,
+    /// The inequalities between more than two unknowns.
+    combined: Combined,
     /// The rigid motions of the bodies.
     pub motions: Motions,
     /// The equations in the rigid motions that ties, equations, springs and prescribed values give.
@@ -73,6 +80,7 @@ impl<'a> Layout<'a> {
             eliminated: Eliminated::default(),
             supports: Vec::new(),
             frames: BTreeMap::new(),
+            combined: Combined::default(),
             all_held: held.clone(),
             motions,
             held,
@@ -93,6 +101,7 @@ impl<'a> Layout<'a> {
         let bounded = layout.bounded(&inequalities);
         layout.eliminate(&rows, &bounded);
         layout.turn(&inequalities, &bounded);
+        layout.combine(&inequalities);
         layout.support(&bounded);
         layout
     }
@@ -159,7 +168,9 @@ impl<'a> Layout<'a> {
                         continue;
                     }
                     let at = self.index(body.first_dof + inside as u64);
-                    if bounded.contains_key(&(at / c)) || self.eliminated.get(at).is_some() {
+                    let taken =
+                        self.eliminated.get(at).is_some() || self.combined.get(at).is_some();
+                    if bounded.contains_key(&(at / c)) || taken {
                         continue;
                     }
                     candidates.push((at, self.motions.form(b, body.spec.position(node), k)));
@@ -254,8 +265,8 @@ impl<'a> Layout<'a> {
     }
 
     /// u at place `index` as Σ coefficient · w and an offset.
-    pub fn terms(&self, index: u64) -> (Vec<(u64, f64)>, f64) {
-        match self.eliminated.get(index) {
+    pub fn terms(&self, index: u64) -> Terms {
+        let (turned, mut offset) = match self.eliminated.get(index) {
             None => (self.turned(index), 0.0),
             Some((terms, offset)) => {
                 let turned = |(&place, t): (&u64, &f64)| {
@@ -264,12 +275,27 @@ impl<'a> Layout<'a> {
                 };
                 (terms.iter().flat_map(turned).collect(), offset)
             }
+        };
+        if turned.iter().all(|t| self.combined.get(t.0).is_none()) {
+            return (turned, offset);
         }
+        let mut out: BTreeMap<u64, f64> = BTreeMap::new();
+        for (place, t) in turned {
+            match self.combined.get(place) {
+                None => *out.entry(place).or_default() += t,
+                Some((terms, its)) => {
+                    offset += t * its;
+                    let each = terms.iter();
+                    each.for_each(|&(w, v)| *out.entry(w).or_default() += t * v);
+                }
+            }
+        }
+        (out.into_iter().collect(), offset)
     }
 
-    /// Whether equations determine some unknowns.
+    /// Whether u at some node is a combination of w at others.
     pub fn has_dependent(&self) -> bool {
-        !self.eliminated.is_empty()
+        !self.eliminated.is_empty() || !self.combined.is_empty()
     }
 
     /// u at a place that is not dependent as Σ coefficient · w.
@@ -303,10 +329,22 @@ impl<'a> Layout<'a> {
     /// `rigid_motions`.
     pub fn motions_at(&self, index: u64, centre: [f64; 3], scale: f64) -> [f64; 6] {
         let c = self.components as u64;
-        let x = self.position(index / c);
-        let motions = crate::fem::cell::rigid_motions(self.scene.dim(), centre, scale, x);
+        let at = |block: u64| {
+            let x = self.position(block);
+            crate::fem::cell::rigid_motions(self.scene.dim(), centre, scale, x)
+        };
+        if let Some(row) = self.combined.row_at(index) {
+            let mut sum = [0.0; 6];
+            for &(place, b) in row {
+                let motions = at(place / c);
+                sum.iter_mut()
+                    .zip(motions)
+                    .for_each(|(s, m)| *s += b * m[(place % c) as usize]);
+            }
+            return sum;
+        }
         let row = self.frame(index / c).to[(index % c) as usize];
-        motions.map(|m| (0..3).map(|k| row[k] * m[k]).sum())
+        at(index / c).map(|m| (0..3).map(|k| row[k] * m[k]).sum())
     }
 
     /// Converts u, found by a method without supports and frames, to w: subtracts the rigid motions that the supports
@@ -344,6 +382,7 @@ impl<'a> Layout<'a> {
                 u[i - range.start] -= form.iter().map(|&(k, v)| v * alpha[k]).sum::<f64>();
             }
         }
+        let bounded = self.jumps(session, u)?;
         let mut u = u.array_mut()?;
         for place in self.eliminated.places() {
             let place = place as usize;
@@ -359,6 +398,12 @@ impl<'a> Layout<'a> {
                 for k in 0..c {
                     u[at + k] = (0..c).map(|j| frame.to[k][j] * old[j]).sum();
                 }
+            }
+        }
+        for (place, w) in bounded {
+            let place = place as usize;
+            if range.contains(&place) {
+                u[place - range.start] = w;
             }
         }
         Ok(())

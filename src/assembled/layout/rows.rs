@@ -5,21 +5,41 @@ use std::collections::BTreeMap;
 use super::Layout;
 use crate::assembled::eliminated::{Eliminated, Trouble};
 use crate::assembled::frame::{parallel, Frame};
-use crate::linalg::vec3::norm;
+use crate::linalg::vec3::{norm, unit};
 use crate::substructures::{InterfaceRow, RowKind, RowSource};
 
-/// Nodes, and the directions along which inequalities bound them.
-pub(super) type Bounded = BTreeMap<u64, Vec<[f64; 3]>>;
+/// The directions along which inequalities bound a node.
+#[derive(Debug, Default)]
+pub(super) struct Directions {
+    list: Vec<[f64; 3]>,
+    /// Number of the first ones that must be unknowns: differences of two nodes are taken along them.
+    firm: usize,
+}
+
+/// Nodes whose unknowns inequalities take.
+pub(super) type Bounded = BTreeMap<u64, Directions>;
 
 impl Layout<'_> {
-    /// The nodes in inequalities with their directions.
+    /// The nodes in inequalities with their directions. Where inequalities have more than two unknowns, these are the
+    /// nodes that carry multipliers.
     pub(super) fn bounded(&self, rows: &[&InterfaceRow]) -> Bounded {
         let mut directions = Bounded::new();
-        for row in rows {
+        let mut add = |block: u64, direction: [f64; 3], firm: bool| {
+            let of = directions.entry(block).or_default();
+            if !of.list.iter().any(|d| parallel(*d, direction)) {
+                of.list.push(upright(direction));
+                of.firm += usize::from(firm);
+            }
+        };
+        for row in rows.iter().filter(|row| !self.is_combined(row)) {
             for (block, direction) in self.ends(row).0 {
-                let list = directions.entry(block).or_default();
-                if !list.iter().any(|d| parallel(*d, direction)) {
-                    list.push(upright(direction));
+                add(block, direction, true);
+            }
+        }
+        for row in rows.iter().filter(|row| self.is_combined(row)) {
+            if let Some((block, direction)) = self.carrier(row) {
+                if let Some(n) = unit(direction) {
+                    add(block, n, false);
                 }
             }
         }
@@ -36,11 +56,12 @@ impl Layout<'_> {
             (terms.collect(), row.gap)
         });
         let c = self.components as u64;
-        let kept = |place: u64| {
-            let list = bounded.get(&(place / c));
-            list.is_some_and(|list| list.iter().any(|d| d[(place % c) as usize].abs() > 1e-12))
+        let weight = |place: u64| {
+            let taken = |d: &[f64; 3]| d[(place % c) as usize].abs() > 1e-12;
+            let kept = bounded.get(&(place / c));
+            f64::from(kept.is_none_or(|of| !of.list.iter().any(taken)))
         };
-        match Eliminated::new(placed, &kept) {
+        match Eliminated::new(placed, &weight) {
             Ok(eliminated) => {
                 self.void.extend(eliminated.places());
                 self.void.sort_unstable();
@@ -74,11 +95,13 @@ impl Layout<'_> {
 
     /// Computes the frames of the nodes in inequalities.
     pub(super) fn turn(&mut self, rows: &[&InterfaceRow], bounded: &Bounded) {
-        for (&block, list) in bounded {
+        for (&block, Directions { list, firm }) in bounded {
             let c = self.components as u64;
             let free =
                 [0, 1, 2].map(|k| k < c && self.void.binary_search(&(block * c + k)).is_err());
-            match Frame::new(list, free) {
+            // What need not be an unknown is none where it depends on the others.
+            let fits = (*firm..=list.len()).rev();
+            match fits.into_iter().find_map(|n| Frame::new(&list[..n], free)) {
                 Some(frame) if frame.is_identity() => {}
                 Some(frame) => {
                     self.frames.insert(block, frame);
@@ -89,17 +112,14 @@ impl Layout<'_> {
                         format!(
                             "at ({}, {}, {}) the node is in inequalities along {} directions that \
                              are not independent, so that they are no bounds of single unknowns",
-                            x[0],
-                            x[1],
-                            x[2],
-                            list.len()
+                            x[0], x[1], x[2], firm
                         )
                     });
                 }
             }
         }
         for row in rows {
-            if self.trouble.is_none() && self.bound(row).is_none() {
+            if self.trouble.is_none() && !self.is_combined(row) && self.bound(row).is_none() {
                 let x = self
                     .ends(row)
                     .0
@@ -135,6 +155,14 @@ impl Layout<'_> {
         let scale = ends.first().map_or(1.0, |e| norm(e.1));
         ends.iter_mut().for_each(|e| e.1 = e.1.map(|v| v / scale));
         (ends, scale)
+    }
+
+    /// As [`Layout::bound`], for inequality number `k` of the scene, which may have more unknowns.
+    pub fn bound_of(&self, k: usize, row: &InterfaceRow) -> Option<([Option<u64>; 2], f64)> {
+        match self.combined.place(k) {
+            Some(place) => Some(([Some(place), None], 1.0)),
+            None => self.bound(row),
+        }
     }
 
     /// A row as w_plus − w_minus ≤ gap / scale: (plus, minus, scale). `None` if it does not have this form.

@@ -2,8 +2,13 @@
 
 use super::*;
 
-fn free(_: u64) -> bool {
-    false
+fn free(_: u64) -> f64 {
+    1.0
+}
+
+/// All but one unknown may be given up.
+fn but(kept: u64) -> impl Fn(u64) -> f64 {
+    move |place| f64::from(place != kept)
 }
 
 /// The value of every unknown below `n`: dependent ones from the values `v` of the others.
@@ -45,14 +50,17 @@ fn whatever_the_others_are_the_equations_hold() {
 #[test]
 fn what_is_kept_is_not_given_up() {
     let equations = vec![(vec![(0, 1.0), (1, 0.5)], 0.0)];
-    let out = Eliminated::new(equations.clone(), &|p| p == 0).expect("solved");
+    let out = Eliminated::new(equations.clone(), &but(0)).expect("solved");
     assert_eq!(out.places().collect::<Vec<_>>(), [1]);
     let out = Eliminated::new(equations.clone(), &free).expect("solved");
     assert_eq!(out.places().collect::<Vec<_>>(), [0]);
-    let kept = Eliminated::new(equations, &|_| true);
+    let rather = |p: u64| if p == 1 { 1.0 } else { 0.1 };
+    let out = Eliminated::new(equations.clone(), &rather).expect("solved");
+    assert_eq!(out.places().collect::<Vec<_>>(), [1]);
+    let kept = Eliminated::new(equations, &|_| 0.0);
     assert_eq!(kept.err(), Some(Trouble::Kept(0)));
     // A coefficient beside which the others would become huge is none to divide by.
-    let small = Eliminated::new(vec![(vec![(0, 1.0), (1, 1e-3)], 0.0)], &|p| p == 0);
+    let small = Eliminated::new(vec![(vec![(0, 1.0), (1, 1e-3)], 0.0)], &but(0));
     assert_eq!(small.err(), Some(Trouble::Kept(0)));
 }
 
