@@ -49,7 +49,7 @@ impl Named {
 }
 
 /// All cases, in the order in which they are run.
-pub const CASES: [Named; 12] = [
+pub const CASES: [Named; 14] = [
     Named {
         name: "poisson-1024",
         description: "tied Poisson problem in the plane, 1024 x 1024 elements, equal subdomains (quick: 128 x 128)",
@@ -123,6 +123,19 @@ pub const CASES: [Named; 12] = [
         description: "the same of tetrahedra of 10 nodes",
         scene: |_| unstructured::rod(true, true),
         mesh: Some(|quick| unstructured::rod_mesh(quick, true)),
+    },
+    Named {
+        name: "blocks-contact-4",
+        description: "two blocks in contact, meshes that match, tetrahedra of 4 nodes, 300,000 unknowns \
+                      (quick: 20,000)",
+        scene: |_| unstructured::blocks(false),
+        mesh: Some(|quick| unstructured::blocks_mesh(quick, false)),
+    },
+    Named {
+        name: "blocks-contact-4-mortar",
+        description: "the same with edges in the ratio 2:3 across the contact: mortar rows",
+        scene: |_| unstructured::blocks(true),
+        mesh: Some(|quick| unstructured::blocks_mesh(quick, true)),
     },
 ];
 

@@ -85,3 +85,35 @@ pub(super) fn rod_mesh(quick: bool, quadratic: bool) -> MeshFile {
     };
     shapes::rod(edge, quadratic)
 }
+
+/// A block that is pressed on another one, with a gap that opens towards the far corner. About 300,000 unknowns, or
+/// 20,000.
+pub(super) fn blocks(mortar: bool) -> String {
+    let title = match mortar {
+        false => "meshes that match",
+        true => "edges in the ratio 2:3",
+    };
+    let body = |name: &str, young: usize, rest: &str| {
+        format!("\n[[body]]\nname = \"{name}\"\nyoung = {young}\npoisson = 0.3\n{rest}\n")
+    };
+    format!(
+        "title = \"Blocks in contact, {title}\"\ndimension = 3\nphysics = \"elasticity\"\n\n\
+         [mesh]\nfile = \"blocks.msh\"\n{}{}\n\
+         [[contact]]\nsurfaces = [\"low_face\", \"high_face\"]\ngap = \"0.02*(x^2 + y^2)\"\n",
+        body("low", 100, "dirichlet = { bottom = 0 }"),
+        body(
+            "high",
+            200,
+            "dirichlet = { left = { x = 0 }, front = { y = 0 } }\ntraction = { top = [0, 0, -2] }"
+        ),
+    )
+}
+
+/// Their mesh. With edges in the ratio 2:3 there are about as many unknowns as with equal ones.
+pub(super) fn blocks_mesh(quick: bool, mortar: bool) -> MeshFile {
+    let edge = if quick { 1.0 / 18.0 } else { 1.0 / 43.0 };
+    shapes::blocks(match mortar {
+        false => [edge; 2],
+        true => [1.3 * edge, 1.3 * edge / 1.5],
+    })
+}

@@ -40,9 +40,17 @@ fn cases_have_the_size_that_they_are_named_after() {
         ("plate", 18e3),
         ("rod-4", 22e3),
         ("rod-10", 25e3),
+        ("blocks-contact-4", 20e3),
+        ("blocks-contact-4-mortar", 20e3),
     ] {
         let n = dofs(name, true) as f64;
         assert!((0.7..1.4).contains(&(n / about)), "{name}: {n} unknowns");
+    }
+    for (name, mortar) in [
+        ("blocks-contact-4", false),
+        ("blocks-contact-4-mortar", true),
+    ] {
+        assert_eq!(!load(name, true).mortar.is_empty(), mortar, "{name}");
     }
 }
 
