@@ -300,7 +300,7 @@ fn steps() {
     );
     check(
         &with("count = 2\nforce = 1"),
-        "s.toml:13: unknown key `force` in [steps] (known keys are count, times, load, gap, dirichlet)",
+        "s.toml:13: unknown key `force` in [steps] (known keys are count, times, load, gap, dirichlet, update)",
     );
     check(
         &with("count = 2\ngap = \"1/(t - 0.5)\""),
