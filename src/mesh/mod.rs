@@ -7,6 +7,8 @@ mod cells;
 mod congruent;
 pub mod deck;
 mod defects;
+#[cfg(feature = "cli")]
+pub(crate) mod delaunay;
 mod extract;
 mod file;
 pub mod gmsh;

@@ -1,8 +1,8 @@
 //! Two blocks, one on the other, of tetrahedra: the meshes match on the common face, or do not.
 
-use super::build::{build, Groups};
-use super::planform::{polyline, Planform};
-use super::solid::Solid;
+use crate::mesh::delaunay::Solid;
+use crate::mesh::delaunay::{build, Groups};
+use crate::mesh::delaunay::{polyline, Planform};
 use crate::mesh::{CellKind, MeshFile};
 
 const LOW: usize = 1;

@@ -2,11 +2,8 @@
 //! tetrahedra over them.
 
 mod blocks;
-mod build;
-mod planform;
 mod plate;
 mod rod;
-mod solid;
 
 pub(super) use blocks::blocks;
 pub(super) use plate::plate;

@@ -1,7 +1,6 @@
 //! A square plate with 25 round holes of different sizes.
 
-use super::build::{build, Groups};
-use super::planform::{circle, polyline, Planform};
+use crate::mesh::delaunay::{build, circle, polyline, Groups, Planform};
 use crate::mesh::{CellKind, MeshFile};
 
 /// Triangles with about `across` nodes along each side of the unit square. Groups: `plate`; `left`, `right`, `bottom`,

@@ -2,9 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::build::{build, Groups};
-use super::planform::{arc, circle, polyline, Planform};
-use super::solid::Solid;
+use crate::mesh::delaunay::{arc, build, circle, polyline, Groups, Planform, Solid};
 use crate::mesh::{CellKind, MeshFile};
 
 /// Distance of the axes of journal and pin, in metres.

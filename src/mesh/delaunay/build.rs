@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::mesh::{CellKind, Cells, Group, Members, MeshFile};
 
 /// Names of cells and sides as the numbers of their groups; 0: in no group.
-pub(super) struct Groups<'a> {
+pub(crate) struct Groups<'a> {
     /// All names, number 1 first.
     pub names: &'a [&'a str],
     /// The group of each cell.
@@ -14,7 +14,7 @@ pub(super) struct Groups<'a> {
 
 /// Makes the mesh. `side` says in which group a side is that lies on the surface or between two cells of different
 /// groups, by the middle of its corners and the groups of the cells beside it (0: none).
-pub(super) fn build(
+pub(crate) fn build(
     name: &str,
     points: Vec<[f64; 3]>,
     kind: CellKind,

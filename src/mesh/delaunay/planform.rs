@@ -8,7 +8,7 @@ use spade::{
 
 /// Triangles in the plane.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Planform {
+pub(crate) struct Planform {
     /// Points.
     pub points: Vec<[f64; 2]>,
     /// Corners of each triangle, counterclockwise.
@@ -72,12 +72,12 @@ impl Planform {
 }
 
 /// A closed circle of `n` segments; a point lies at angle 0.
-pub(super) fn circle(centre: [f64; 2], radius: f64, n: usize) -> Vec<[f64; 2]> {
+pub(crate) fn circle(centre: [f64; 2], radius: f64, n: usize) -> Vec<[f64; 2]> {
     arc(centre, radius, [0.0, TAU], n)
 }
 
 /// Points on an arc between two angles; on a whole circle the last point is the first to the last bit.
-pub(super) fn arc(centre: [f64; 2], radius: f64, [from, to]: [f64; 2], n: usize) -> Vec<[f64; 2]> {
+pub(crate) fn arc(centre: [f64; 2], radius: f64, [from, to]: [f64; 2], n: usize) -> Vec<[f64; 2]> {
     let whole = to - from == TAU;
     let at = |k: usize| {
         let k = if whole { k % n } else { k };
@@ -93,7 +93,7 @@ pub(super) fn arc(centre: [f64; 2], radius: f64, [from, to]: [f64; 2], n: usize)
 }
 
 /// `n` segments from one point to another.
-pub(super) fn polyline(a: [f64; 2], b: [f64; 2], n: usize) -> Vec<[f64; 2]> {
+pub(crate) fn polyline(a: [f64; 2], b: [f64; 2], n: usize) -> Vec<[f64; 2]> {
     let at = |k: usize| match k {
         0 => a,
         _ if k == n => b,

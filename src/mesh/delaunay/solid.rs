@@ -10,7 +10,7 @@ const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
 /// Tetrahedra of 4 or 10 nodes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Solid {
+pub(crate) struct Solid {
     /// Positions of the nodes.
     pub points: Vec<[f64; 3]>,
     /// The nodes of each cell, corners first.
