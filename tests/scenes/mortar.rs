@@ -9,6 +9,11 @@ use fetifeti::{FetiFeti, Solution};
 /// Two blocks, one on the other, under a pressure of 1 on all sides: −1 is the stress everywhere, also on an inclined
 /// common face. `more` are the keys of the joint.
 fn blocks(dim: usize, order: usize, slope: f64, joint: &str) -> String {
+    blocks_of("q1", dim, order, slope, joint)
+}
+
+/// As [`blocks`], of these elements.
+fn blocks_of(element: &str, dim: usize, order: usize, slope: f64, joint: &str) -> String {
     let map = match dim {
         2 => format!("shape = {{ y = \"y + {slope}*x*y*(2 - y)\" }}"),
         _ => format!("shape = {{ y = \"y + {slope}*(x + 0.5*z)*y*(2 - y)\" }}"),
@@ -30,7 +35,9 @@ fn blocks(dim: usize, order: usize, slope: f64, joint: &str) -> String {
     };
     let low = body("low", 0, [4, 2, 3], ", bottom = { y = 0 }", pressed);
     let up = body("up", 1, [6, 3, 2], "", &format!(", top = 1{pressed}"));
-    format!("dimension = {dim}\nphysics = \"elasticity\"\norder = {order}\n{low}{up}{joint}")
+    format!(
+        "dimension = {dim}\nphysics = \"elasticity\"\nelement = \"{element}\"\norder = {order}\n{low}{up}{joint}"
+    )
 }
 
 /// The scene's solution, to rounding, and its scene.
@@ -54,14 +61,15 @@ fn solve(text: &str) -> (Scene, Solution) {
 fn a_constant_pressure_passes() {
     for dim in [2, 3] {
         for order in [1, 2] {
-            for slope in [0.0, 0.1] {
+            for (element, slope) in [("q1", 0.0), ("q1", 0.1), ("p1", 0.0), ("p1", 0.1)] {
                 for multipliers in ["low", "up"] {
                     let joint = format!(
                         "[[contact]]\nbodies = [\"low\", \"up\"]\n\
                          multipliers = \"{multipliers}\"\n"
                     );
-                    let what = format!("{dim}D, order {order}, slope {slope}, {multipliers}");
-                    let (scene, solution) = solve(&blocks(dim, order, slope, &joint));
+                    let what =
+                        format!("{dim}D, {element}, order {order}, slope {slope}, {multipliers}");
+                    let (scene, solution) = solve(&blocks_of(element, dim, order, slope, &joint));
                     assert_eq!(
                         scene.interfaces[0].shared.len(),
                         scene.mortar.len(),

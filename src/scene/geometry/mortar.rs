@@ -31,7 +31,7 @@ pub(crate) fn interface(
 ) -> Option<Interface> {
     let order = [multipliers, 1 - multipliers];
     let specs = order.map(|k| &bodies[pair[k]].spec);
-    let [own, other] = [0, 1].map(|k| surface(specs[k], sides[order[k]]));
+    let [own, other] = [0, 1].map(|k| surface(specs[k], sides[order[k]], form.element));
     let reach = mortar::reach(&own.0, &other.0, reach);
     let surfaces = Surfaces::new([own, other], reach);
     let rows = surfaces.rows(form, &|_| false);
@@ -100,38 +100,54 @@ pub(crate) fn lacks_signs(body: &Body, side: usize, nodes: impl Iterator<Item = 
     faces.any(|face| !signs(&face) && face.nodes.iter().all(|n| meant.contains(n)))
 }
 
-/// A side of a body, and the node of the body for each of its nodes.
-pub(crate) fn surface(spec: &BodySpec, side: usize) -> (Arc<Side>, Vec<usize>) {
+/// A side of a body with its faces as the elements see them, and the node of the body for each of its nodes.
+pub(crate) fn surface(spec: &BodySpec, side: usize, element: Element) -> (Arc<Side>, Vec<usize>) {
     let nodes = spec.mesh.side_nodes(side);
     let place: HashMap<usize, u32> = nodes.iter().copied().zip(0..).collect();
     let points = nodes.iter().map(|&k| spec.position(k)).collect();
-    let faces = spec.faces(side).into_iter().map(|face| {
-        let (kind, list) = oriented(spec, side, &face);
-        Face {
+    let faces = spec.faces(side).into_iter().flat_map(|face| {
+        let pieces = oriented(spec, side, &face, element).into_iter();
+        pieces.map(|(kind, list)| Face {
             kind,
             nodes: list.iter().map(|k| place[k]).collect(),
-        }
+        })
     });
     let faces = faces.collect();
     (Arc::new(Side::new(spec.mesh.dim(), points, faces)), nodes)
 }
 
-/// The kind of a face and its nodes, in the order in which the normal points out of the body.
-fn oriented(spec: &BodySpec, side: usize, face: &BodyFace) -> (CellKind, Vec<usize>) {
+/// The faces of elements that a face consists of: their kinds and their nodes, in the order in which the normal points
+/// out of the body.
+fn oriented(
+    spec: &BodySpec,
+    side: usize,
+    face: &BodyFace,
+    element: Element,
+) -> Vec<(CellKind, Vec<usize>)> {
     if let Some(kind) = face.kind {
-        return (kind, face.nodes.clone());
+        return vec![(kind, face.nodes.clone())];
     }
-    let mut nodes = face.outline();
     let weights = spec.face_weights(side, face, Element::Q1);
     let outward = weights
         .iter()
         .fold([0.0; 3], |s, w| [0, 1, 2].map(|d| s[d] + w.1[d]));
-    let x: Vec<[f64; 3]> = nodes.iter().map(|&k| spec.position(k)).collect();
-    if dot(mortar::across(&x), outward) < 0.0 {
-        nodes.reverse();
-    }
-    match nodes.len() {
-        2 => (CellKind::Line2, nodes),
-        _ => (CellKind::Quad4, nodes),
-    }
+    let outline = face.outline();
+    let pieces = match (&outline[..], element) {
+        // The tetrahedra of a box walk from its first to its last corner, and cut its faces along that diagonal.
+        (&[a, b, c, d], Element::P1) => vec![vec![a, b, c], vec![a, c, d]],
+        _ => vec![outline],
+    };
+    let upright = |mut nodes: Vec<usize>| {
+        let x: Vec<[f64; 3]> = nodes.iter().map(|&k| spec.position(k)).collect();
+        if dot(mortar::across(&x), outward) < 0.0 {
+            nodes.reverse();
+        }
+        let kind = match nodes.len() {
+            2 => CellKind::Line2,
+            3 => CellKind::Triangle3,
+            _ => CellKind::Quad4,
+        };
+        (kind, nodes)
+    };
+    pieces.into_iter().map(upright).collect()
 }

@@ -45,7 +45,7 @@ pub(super) fn find(
     reach: Option<f64>,
     nodes: impl Iterator<Item = usize>,
 ) -> Option<Opposite> {
-    let own = surface(spec, side);
+    let own = surface(spec, side, form.element);
     let reach = reach.unwrap_or_else(|| {
         // Any distance.
         let [low, high] = rigid.bounds();
@@ -90,7 +90,7 @@ pub(super) fn beneath(
     rigid: &Rigid,
     nodes: impl Iterator<Item = usize>,
 ) -> Option<Opposite> {
-    let (own, list) = surface(spec, side);
+    let (own, list) = surface(spec, side, form.element);
     let copy = own.reversed();
     // A node at which no point is the nearest is refused if a row is asked for it.
     let foot = |x: &[f64; 3]| match rigid.distance(*x) {
