@@ -229,6 +229,8 @@ impl Bench {
 pub enum StudyName {
     /// Condition numbers that the user chooses, where coefficients jump inside bodies
     Adaptive,
+    /// Answers beside closed forms, equilibrium and other programs; exit code 1 where a tolerance is missed
+    Benchmarks,
     /// Contact half-width and peak pressure against Hertz's theory
     Hertz,
     /// Problems that are hard for the method against direct solutions; exit code 1 where an answer is wrong

@@ -10,8 +10,11 @@ use crate::baselines::launch::Workspace;
 use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::destination::Destination;
+use crate::report::output;
 use crate::report::tables::table::Table;
-use crate::study::{adaptive, hard_cases, hertz, kappa, kernels, scaling, speed_error, walls};
+use crate::study::{
+    adaptive, benchmarks, hard_cases, hertz, kappa, kernels, scaling, speed_error, walls,
+};
 use crate::{Error, Result};
 
 /// Runs a study and writes the results that the arguments ask for.
@@ -27,6 +30,7 @@ pub fn run(session: &Session, args: Study, petsc: &[String]) -> Result<()> {
     on_first_rank(session, || task.destination.prepare())?;
     match args.name {
         StudyName::Adaptive => task.adaptive(),
+        StudyName::Benchmarks => task.benchmarks(),
         StudyName::Hertz => task.hertz(),
         StudyName::HardCases => task.hard_cases(),
         StudyName::Kappa => task.kappa(),
@@ -113,6 +117,41 @@ impl Task<'_> {
         Err(Error::NotConverged(format!(
             "adaptive: a bound is missed in {}",
             names.join(", ")
+        )))
+    }
+
+    fn benchmarks(&self) -> Result<()> {
+        let run = |dir: &Path| {
+            let mut progress = self.progress();
+            benchmarks::run(self.session, self.quick, self.case(), dir, &mut progress)
+        };
+        let report = match &self.destination.out {
+            Some(dir) => run(dir)?,
+            // The user has not asked for the scenes: they go into a temporary directory, on every rank its own.
+            None => run(self.session.agree(Workspace::new())?.dir())?,
+        };
+        self.finish(&report, &benchmarks::text(&report), |dir| {
+            let mut files = vec!["benchmarks.md".to_string()];
+            output::write_text(&dir.join(&files[0]), &benchmarks::markdown(&report))?;
+            for case in &report.cases {
+                let stem = format!("benchmarks_{}", case.case);
+                benchmarks::table(case).write_csv(&dir.join(format!("{stem}.csv")))?;
+                files.push(format!("{stem}.csv"));
+                if let Some(figure) = benchmarks::figure(case) {
+                    figure.save(&dir.join(&stem))?;
+                    files.extend(["png", "svg"].map(|end| format!("{stem}.{end}")));
+                }
+                files.extend(case.meshes().map(|m| m.scene.clone()));
+            }
+            Ok(files)
+        })?;
+        let missed = report.missed();
+        if missed.is_empty() {
+            return Ok(());
+        }
+        Err(Error::NotConverged(format!(
+            "benchmarks: tolerances are missed: {}",
+            missed.join("; ")
         )))
     }
 

@@ -4,6 +4,7 @@
 //! text in the format of scene files.
 
 pub mod adaptive;
+pub mod benchmarks;
 pub mod hard_cases;
 pub mod hertz;
 pub mod kappa;

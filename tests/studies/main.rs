@@ -4,6 +4,7 @@
 mod support;
 
 mod adaptive;
+mod benchmarks;
 mod hard_cases;
 mod hertz;
 mod kappa;

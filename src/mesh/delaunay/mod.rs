@@ -2,9 +2,11 @@
 //! refinement, and tetrahedra over them.
 
 mod build;
+mod graded;
 mod planform;
 mod solid;
 
 pub(crate) use build::{build, Groups};
+pub(crate) use graded::{along, graded, graded_arc, graded_line, quadratic};
 pub(crate) use planform::{arc, circle, polyline, Planform};
 pub(crate) use solid::Solid;

@@ -24,6 +24,17 @@ impl Planform {
         edge: f64,
         within: impl Fn([f64; 2]) -> bool,
     ) -> Planform {
+        Planform::over(curves, &[], Some(edge), within)
+    }
+
+    /// As [`Planform::fill`], with further points inside; without `edge`, triangles are only cut where their angles
+    /// are small.
+    pub(super) fn over(
+        curves: &[Vec<[f64; 2]>],
+        seeds: &[[f64; 2]],
+        edge: Option<f64>,
+        within: impl Fn([f64; 2]) -> bool,
+    ) -> Planform {
         let mut cdt = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
         for curve in curves {
             for pair in curve.windows(2) {
@@ -31,13 +42,18 @@ impl Planform {
                 cdt.add_constraint_edge(a, b).expect("finite points");
             }
         }
+        for &[x, y] in seeds {
+            cdt.insert(Point2::new(x, y)).expect("a finite point");
+        }
         // An equilateral triangle has area 0.43 edge²; refinement stops at sizes between a half and the whole of the
         // largest area.
-        let parameters = RefinementParameters::new()
+        let mut parameters = RefinementParameters::new()
             .with_angle_limit(AngleLimit::from_deg(28.0))
-            .with_max_allowed_area(0.65 * edge * edge)
             .with_max_additional_vertices(usize::MAX >> 1)
             .keep_constraint_edges();
+        if let Some(edge) = edge {
+            parameters = parameters.with_max_allowed_area(0.65 * edge * edge);
+        }
         cdt.refine(parameters);
         let mut number = vec![usize::MAX; cdt.num_vertices()];
         let mut out = Planform {

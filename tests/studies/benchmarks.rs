@@ -1,0 +1,146 @@
+//! `study benchmarks --quick`: its values against their references, and their independence of ranks.
+
+use crate::support::keys::{self, Keys};
+use crate::support::{mpi, program};
+use fetifeti::study::benchmarks::{BenchmarksReport, CaseReport};
+use mpi::Scratch;
+use program::run_fetifeti;
+
+/// Required keys of the report.
+const KEYS: Keys = &[
+    ("", "study cases"),
+    ("cases[]", "case title reference skipped series"),
+    ("cases[].series[]", "name order meshes"),
+    (
+        "cases[].series[].meshes[]",
+        "mesh size scene dofs values curve outer_iterations iterations condition kkt converged seconds",
+    ),
+    (
+        "cases[].series[].meshes[].values[]",
+        "quantity ours reference error limit",
+    ),
+];
+
+/// The small form of a case; its tolerances are kept.
+fn quick(case: &str, ranks: usize, dir: &Scratch) -> CaseReport {
+    let file = dir.path(&format!("{case}-{ranks}.json"));
+    let out = dir.path(&format!("{case}-{ranks}"));
+    let args = [
+        "study",
+        "benchmarks",
+        case,
+        "--quick",
+        "--quiet",
+        "--json",
+        &file,
+        "--out",
+        &out,
+    ];
+    let run = run_fetifeti(ranks, &args);
+    assert_eq!(run.code, 0, "{case}: {}", run.all());
+    let text = std::fs::read_to_string(&file).expect("a report");
+    let mut report: BenchmarksReport = keys::read(&text, KEYS);
+    assert_eq!(report.cases.len(), 1);
+    let case = report.cases.remove(0);
+    for mesh in case.meshes() {
+        let scene = std::path::Path::new(&out).join(&mesh.scene);
+        assert!(scene.is_file(), "{}", scene.display());
+    }
+    case
+}
+
+/// The errors of a quantity, mesh by mesh, of all series.
+fn errors(case: &CaseReport, quantity: &str) -> Vec<f64> {
+    let values = case.meshes().flat_map(|m| &m.values);
+    let found: Vec<f64> = values
+        .filter(|v| v.quantity == quantity)
+        .map(|v| v.error.abs())
+        .collect();
+    assert!(!found.is_empty(), "{}: no {quantity}", case.case);
+    found
+}
+
+#[test]
+fn constant_pressures_pass() {
+    let dir = Scratch::new("benchmarks-patch");
+    let patch = quick("patch", 1, &dir);
+    // Both dimensions, two faces, two orders, two kinds of elements, two sides.
+    assert_eq!(patch.meshes().count(), 32);
+    assert!(errors(&patch, "pressure").iter().all(|e| *e < 1e-10));
+    let three = quick("three", 2, &dir);
+    assert!(errors(&three, "pressure from above")
+        .iter()
+        .all(|e| *e < 1e-9));
+    assert!(errors(&three, "pressure from the side")
+        .iter()
+        .all(|e| *e < 1e-9));
+}
+
+#[test]
+fn a_stack_carries_its_weight() {
+    let dir = Scratch::new("benchmarks-stack");
+    for ranks in [1, 3] {
+        let stack = quick("stack", ranks, &dir);
+        assert!(errors(&stack, "force at a joint / weight")
+            .iter()
+            .all(|e| *e < 1e-8));
+    }
+}
+
+#[test]
+fn rings_come_near_their_closed_form() {
+    let dir = Scratch::new("benchmarks-rings");
+    for name in ["rings", "shrink-fit"] {
+        let rings = quick(name, 1, &dir);
+        for series in &rings.series {
+            let order = series.order.expect("an order");
+            assert!(order > 1.3, "{}: {order}", series.name);
+        }
+        assert!(errors(&rings, "mean p").iter().all(|e| *e < 2e-3));
+    }
+}
+
+#[test]
+fn units_do_not_matter() {
+    let dir = Scratch::new("benchmarks-units");
+    let units = quick("units", 1, &dir);
+    for quantity in ["pressures", "energy"] {
+        assert!(errors(&units, quantity).iter().all(|e| *e < 1e-11));
+    }
+}
+
+#[test]
+fn round_bodies_have_the_pressures_of_half_spaces() {
+    let dir = Scratch::new("benchmarks-round");
+    for (name, ranks) in [("hertz-cylinder", 1), ("roller", 2), ("punch", 1)] {
+        let case = quick(name, ranks, &dir);
+        for series in &case.series {
+            let finest = series.meshes.last().expect("a mesh");
+            let of = |quantity: &str| {
+                let mut values = finest.values.iter();
+                let found = values.find(|v| v.quantity == quantity);
+                found.expect("a value").error.abs()
+            };
+            assert!(
+                of("a") < 0.02 && of("force") < 1e-6,
+                "{name}, {}",
+                series.name
+            );
+            assert!(of("rms of p") < 0.05, "{name}, {}", series.name);
+        }
+        let picture = dir.path(&format!("{name}-{ranks}/benchmarks_{name}.png"));
+        let size = std::fs::metadata(picture).expect("a picture").len();
+        assert!(size > 1000 && size < 150_000, "{name}: {size}");
+    }
+}
+
+#[test]
+fn unknown_cases_are_refused() {
+    let run = run_fetifeti(1, &["study", "benchmarks", "nonsense"]);
+    assert_eq!(run.code, 2);
+    assert!(
+        run.all().contains("expected one of patch, rings"),
+        "{}",
+        run.all()
+    );
+}
