@@ -130,7 +130,7 @@ fn round_bodies_have_the_pressures_of_half_spaces() {
         }
         let picture = dir.path(&format!("{name}-{ranks}/benchmarks_{name}.png"));
         let size = std::fs::metadata(picture).expect("a picture").len();
-        assert!(size > 1000 && size < 150_000, "{name}: {size}");
+        assert!(size > 1000, "{name}: {size}");
     }
 }
 
