@@ -5,6 +5,7 @@ mod support;
 
 mod answers;
 mod communication;
+mod constraints;
 mod copies;
 mod direct;
 mod equations;

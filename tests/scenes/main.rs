@@ -19,6 +19,8 @@ mod input_bodies;
 mod mesh_mistakes;
 mod meshes;
 mod mortar;
+mod mortar_gaps;
+mod mortar_mistakes;
 mod mortar_rings;
 mod mortar_second_order;
 mod obstacle_surfaces;

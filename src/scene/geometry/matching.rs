@@ -22,7 +22,7 @@ pub(crate) enum Mismatch {
     /// They do not face each other.
     Apart(String),
     /// A node of one of them lies opposite the inside of a face of the other.
-    Lonely(String),
+    Lonely,
 }
 
 /// Two bodies, a side of each, and the bits of the reach.
@@ -105,38 +105,29 @@ fn join(
     // Far apart the nearest nodes say nothing about the faces opposite.
     let near = |surface: &Surface, i: usize| reach.min(FAR * surface.edges[i]);
     let mut pairs = Vec::new();
-    let mut lonely = None;
+    let mut lonely = false;
     for (i, &node) in a.nodes.iter().enumerate() {
         let (point, normals) = (a.points[i], &a.normals[i]);
         match b.opposite(point, normals, MATCH * a.edges[i], reach) {
             Some(other) => pairs.push([node, b.nodes[other]]),
             None if b.covers(point, normals, near(a, i), 2.0 * MATCH) => {
-                lonely.get_or_insert((0, node));
+                lonely = true;
             }
             None => {}
         }
     }
     let mut taken = HashSet::new();
-    if let Some(&[_, node]) = pairs.iter().find(|p| !taken.insert(p[1])) {
-        lonely.get_or_insert((1, node));
-    }
+    lonely |= pairs.iter().any(|p| !taken.insert(p[1]));
     for (j, &node) in b.nodes.iter().enumerate() {
         let normals = &b.normals[j];
         if !taken.contains(&node) && a.covers(b.points[j], normals, near(b, j), 2.0 * MATCH) {
-            lonely.get_or_insert((1, node));
+            lonely = true;
         }
     }
     match lonely {
-        Some((k, node)) => Err(Mismatch::Lonely(format!(
-            "node {} of `{}` at {} lies opposite no node of `{}`, or opposite one that has another partner (matching \
-             nodes were expected on sides that are tied or in contact: equal to {MATCH} of an edge)",
-            specs[k].mesh.node_id(node),
-            specs[k].name,
-            specs[k].spot(node),
-            specs[1 - k].name
-        ))),
-        None if pairs.is_empty() => Err(Mismatch::Apart(apart(bodies, pair, sides))),
-        None => {
+        true => Err(Mismatch::Lonely),
+        false if pairs.is_empty() => Err(Mismatch::Apart(apart(bodies, pair, sides))),
+        false => {
             let shared = share(specs[0], sides[0], pairs);
             Ok(interface(bodies, pair, sides, Shape::Face, shared))
         }
@@ -147,7 +138,8 @@ fn join(
 pub(crate) fn apart(bodies: &[Body], pair: [usize; 2], sides: [usize; 2]) -> String {
     let [a, b] = pair.map(|k| &bodies[k].spec);
     format!(
-        "no node of side `{}` of `{}` lies opposite a node of side `{}` of `{}`",
+        "side `{}` of `{}` and side `{}` of `{}` do not face each other: no node of one lies opposite the other, \
+         with the opposite normal",
         a.mesh.side_name(sides[0]),
         a.name,
         b.mesh.side_name(sides[1]),

@@ -8,6 +8,7 @@ pub mod mortar;
 pub mod mortar_sides;
 pub mod nearest;
 pub mod normals;
+pub mod overlap;
 pub mod sides;
 pub mod surface;
 pub mod sweep;

@@ -3,6 +3,7 @@
 use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
+use crate::mesh::SideGroup;
 use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{BodySpec, ByDefault};
@@ -111,17 +112,31 @@ impl Reader {
                     .cells()
                     .is_some_and(|_| b.mesh.side_of_name(&name).is_some())
             };
-            match bodies.iter().any(|b| has(&b)) {
-                true => Ok(name),
-                false => item.error(format!(
+            if !bodies.iter().any(|b| has(&b)) {
+                return item.error(format!(
                     "the boundary group `{name}`, which no body of the mesh has"
-                )),
+                ));
+            }
+            match bodies.iter().any(|b| has_faces(b, &name)) {
+                true => Ok(name),
+                false => item.error(self.no_faces(&name)),
             }
         };
         match item.list("a pair of boundary groups")? {
             [a, b] => Ok(Pair::Surfaces(name(a)?, name(b)?)),
             _ => item.expected("a pair of boundary groups"),
         }
+    }
+
+    /// A sentence on a boundary group that is no surface.
+    fn no_faces(&self, name: &str) -> String {
+        let (faces, others) = match self.dim {
+            2 => ("edges", "points"),
+            _ => ("faces", "points or edges"),
+        };
+        format!(
+            "the boundary group `{name}` of {others} alone where {faces} of a body were expected"
+        )
     }
 
     /// The sides of two named bodies.
@@ -135,14 +150,13 @@ impl Reader {
                 None => self.side(item),
                 Some(body) => {
                     let side = item.text("the name of a boundary group")?;
-                    body.mesh.side_of_name(&side).map_or_else(
-                        || {
-                            item.error(format!(
-                                "the boundary group `{side}`, which body `{name}` does not have"
-                            ))
-                        },
-                        Ok,
-                    )
+                    match body.mesh.side_of_name(&side) {
+                        Some(found) if has_faces(body, &side) => Ok(found),
+                        Some(_) => item.error(self.no_faces(&side)),
+                        None => item.error(format!(
+                            "the boundary group `{side}`, which body `{name}` does not have"
+                        )),
+                    }
                 }
             }
         };
@@ -219,6 +233,14 @@ impl Reader {
             )),
         }
     }
+}
+
+/// Whether the boundary group of a body has faces.
+fn has_faces(body: &BodySpec, name: &str) -> bool {
+    let of_name = |s: &&SideGroup| s.name == name;
+    let mesh = body.mesh.cells();
+    let group = mesh.and_then(|mesh| mesh.sides.iter().find(of_name));
+    group.is_some_and(|group| !group.faces.is_empty())
 }
 
 /// `multipliers`: the one of two bodies or surfaces that carries them.

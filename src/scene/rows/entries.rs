@@ -7,9 +7,9 @@ use crate::error::{Error, Result};
 use crate::scene::body::Body;
 use crate::scene::geometry::facing::opposite;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
-use crate::scene::geometry::matching::{Matching, Mismatch};
-use crate::scene::geometry::mortar;
+use crate::scene::geometry::matching::{apart, Matching, Mismatch};
 use crate::scene::geometry::touching::touching;
+use crate::scene::geometry::{mortar, overlap};
 use crate::scene::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{ByDefault, SceneSpec};
@@ -116,7 +116,7 @@ fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) ->
     // cell has all nodes in common with the other body.
     let reach = near(matching, interface);
     let found = matching.find(pair, sides, reach);
-    matches!(found, Err(Mismatch::Lonely(_))).then_some(reach)
+    matches!(found, Err(Mismatch::Lonely)).then_some(reach)
 }
 
 /// How far apart sides may be that touch: a part of their shortest edge.
@@ -189,7 +189,9 @@ fn facing(
             },
             _ => match matching.find(pair, sides, reach) {
                 Ok(found) => Ok(found.clone()),
-                Err(Mismatch::Apart(why) | Mismatch::Lonely(why)) => Err(why),
+                Err(Mismatch::Apart(why)) => Err(why),
+                // Whether nodes match does not matter to mortar rows: without those the sides do not meet.
+                Err(Mismatch::Lonely) => Err(apart(bodies, pair, sides)),
             },
         };
         let is_contact = number >= spec.ties.len();
@@ -203,9 +205,10 @@ fn facing(
             other => {
                 let which = which.unwrap_or(0);
                 let which = if a < b { which } else { 1 - which };
+                // Several entries may have the same sides.
                 let found = matching
                     .mortar(&spec.form, (pair, sides), which, reach)
-                    .take();
+                    .clone();
                 // Without a common part of faces, nodes that match stay what they are.
                 found
                     .map_or(other, Ok)
@@ -221,6 +224,9 @@ fn facing(
             if distance.abs() <= within || adjusted.contains(&BodyNode { body: a, node }) {
                 *distance = 0.0;
             }
+        }
+        if let Some(why) = overlap::too_large(bodies, &interface) {
+            return Err(Error::Input(format!("{written}{why}")));
         }
         interface.entry = Some(number);
         interfaces.push(interface);

@@ -13,6 +13,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::mortar::surface;
 use crate::scene::geometry::mortar_sides::{BodyRow, Surfaces};
 use crate::scene::geometry::normals::of_side;
+use crate::scene::geometry::overlap;
 use crate::scene::model::rigid::Rigid;
 use crate::scene::model::rigid_surface::RigidSurface;
 use crate::scene::model::spec::BodySpec;
@@ -33,6 +34,23 @@ pub struct Opposite {
     surfaces: Option<Box<Surfaces>>,
     /// The points of the surface.
     points: Vec<[f64; 3]>,
+}
+
+impl Opposite {
+    /// A sentence if a side of a body lies too far inside; overlaps up to `adjust` do not count.
+    pub(super) fn overlap(&self, body: &Body, side: usize, adjust: f64) -> Option<String> {
+        let deepest = self.nearest.values().min_by(|a, b| a.0.total_cmp(&b.0));
+        let &(distance, normal) = deepest.filter(|n| n.0 < -adjust)?;
+        let (name, side) = (&body.spec.name, body.spec.mesh.side_name(side));
+        let names = [
+            format!("side `{side}` of `{name}`"),
+            format!(
+                "the rigid surface `{}`",
+                self.name.as_deref().unwrap_or_default()
+            ),
+        ];
+        overlap::sentence(names, -distance, body, normal)
+    }
 }
 
 /// The part of a surface, at a distance of `reach` at most, that lies opposite some nodes of a side; `None` if there is

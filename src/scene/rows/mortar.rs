@@ -24,6 +24,7 @@ pub(crate) fn collect(
     known: Vec<MortarRow>,
 ) -> Result<(Vec<MortarRow>, Vec<String>)> {
     let mut tied = tied_at(points);
+    let mut masters = Masters::default();
     let equations = known.iter().filter(|row| row.inequality.is_none());
     tied.extend(equations.filter_map(|row| {
         let RowSource::Interface(k) = row.source else {
@@ -44,13 +45,25 @@ pub(crate) fn collect(
                 continue;
             };
             let mut pair = Pairing::new(bodies, form, k, interface, surfaces);
-            let rows = match contact {
-                false => pair.ties(&tied),
-                true => pair.contacts(&tied),
+            let rows = |pair: &mut Pairing<'_>, held: &HashSet<BodyNode>| match contact {
+                false => pair.ties(held),
+                true => pair.contacts(held),
             };
+            let mut found = rows(&mut pair, &tied);
             notes.extend(pair.note(contact, &tied));
+            let back: HashSet<BodyNode> = found
+                .iter()
+                .filter(|r| masters.lead_back(r))
+                .map(|r| r.carrier)
+                .collect();
+            if !back.is_empty() {
+                notes.push(pair.note_of_cycle(contact, back.len()));
+                found = rows(&mut pair, &tied.union(&back).copied().collect());
+            }
+            let rows = found;
             if !contact {
                 tied.extend(rows.iter().map(|r| r.carrier));
+                rows.iter().for_each(|r| masters.add(r));
             }
             let mut distances = Vec::new();
             for Carried { row, distance, .. } in rows {
@@ -105,11 +118,39 @@ fn tied_at(points: &[Point]) -> HashSet<BodyNode> {
 /// Sides of a body go on smoothly at a node if the cosine of the angle between their normals is above this.
 const SMOOTH: f64 = 0.8;
 
-/// A row, the node that carries its multiplier, and the distance of the sides there.
+/// A row, the node that carries its multiplier, the nodes opposite it, and the distance of the sides there.
 struct Carried {
     row: MortarRow,
     carrier: BodyNode,
+    opposite: Vec<BodyNode>,
     distance: f64,
+}
+
+/// The nodes opposite each node that carries the multiplier of a tie: those determine it.
+#[derive(Default)]
+struct Masters(HashMap<BodyNode, Vec<BodyNode>>);
+
+impl Masters {
+    fn add(&mut self, row: &Carried) {
+        let list = self.0.entry(row.carrier).or_default();
+        list.extend(&row.opposite);
+    }
+
+    /// Whether the nodes opposite a row are determined by its own node, through the ties so far. Around a point at
+    /// which bodies meet each of them may carry multipliers towards the next: the last row says nothing new there.
+    fn lead_back(&self, row: &Carried) -> bool {
+        let mut seen: HashSet<BodyNode> = HashSet::new();
+        let mut next = row.opposite.clone();
+        while let Some(node) = next.pop() {
+            if node == row.carrier {
+                return true;
+            }
+            if let Some(more) = self.0.get(&node).filter(|_| seen.insert(node)) {
+                next.extend(more);
+            }
+        }
+        false
+    }
 }
 
 /// One interface.
@@ -266,8 +307,14 @@ impl<'a> Pairing<'a> {
                 given,
             })
         });
+        let other = self.interface.bodies[1 - self.own];
         Carried {
             carrier: self.carrier(row.node),
+            opposite: row
+                .other
+                .iter()
+                .map(|&(node, _)| BodyNode { body: other, node })
+                .collect(),
             distance: distance.unwrap_or(self.interface.distances[i]),
             row: MortarRow {
                 source: RowSource::Interface(self.number),
@@ -285,19 +332,52 @@ impl<'a> Pairing<'a> {
         }
     }
 
-    /// A sentence on the nodes that carry no multiplier because they are tied elsewhere.
-    fn note(&self, contact: bool, tied: &HashSet<BodyNode>) -> Option<String> {
+    /// Sentences on the nodes that carry no multiplier because they are tied elsewhere, or have given values.
+    fn note(&self, contact: bool, tied: &HashSet<BodyNode>) -> Vec<String> {
         let meant = |node: &usize| match contact {
             true => self.link(*node).is_contact(),
             false => self.link(*node) == Link::Tied,
         };
-        let nodes = self.place.keys().filter(|n| meant(n));
-        let n = nodes.filter(|n| tied.contains(&self.carrier(**n))).count();
+        let nodes = self.place.keys().copied().filter(meant);
+        let (elsewhere, free): (Vec<usize>, Vec<usize>) =
+            nodes.partition(|n| tied.contains(&self.carrier(*n)));
+        let given = free.iter().filter(|&&n| match contact {
+            true => self.is_given(n),
+            false => {
+                let given = |c| self.carrier(n).given(self.bodies, c).is_some();
+                (0..self.bodies[0].components).any(given)
+            }
+        });
+        let (n, given) = (elsewhere.len(), given.count());
+        let (a, rest) = self.names(contact);
+        let mut out = Vec::new();
+        if n > 0 {
+            out.push(format!("Another tie holds nodes of `{a}` ({n}): {rest}."));
+        }
+        if given > 0 {
+            out.push(format!(
+                "Nodes of `{a}` ({given}) have given values: along these {rest}."
+            ));
+        }
+        out
+    }
+
+    /// A sentence on nodes whose rows lead back to themselves.
+    fn note_of_cycle(&self, contact: bool, n: usize) -> String {
+        let (a, rest) = self.names(contact);
+        format!(
+            "Nodes of `{a}` ({n}) already determine the nodes opposite through other ties: {rest}."
+        )
+    }
+
+    /// The body with the multipliers, and the end of a sentence on some of its nodes.
+    fn names(&self, contact: bool) -> (&str, String) {
         let [a, b] =
             [self.own, 1 - self.own].map(|k| &self.bodies[self.interface.bodies[k]].spec.name);
         let what = if contact { "contact" } else { "tie" };
-        (n > 0).then(|| {
-            format!("Another tie holds nodes of `{a}` ({n}): they carry no multipliers of the {what} with `{b}`.")
-        })
+        (
+            a,
+            format!("they carry no multipliers of the {what} with `{b}`"),
+        )
     }
 }

@@ -108,6 +108,9 @@ pub(crate) fn find(
                     continue;
                 };
                 near.clone_from(&opposite.nearest);
+                if let Some(why) = opposite.overlap(&bodies[b], side, entry.adjust) {
+                    return fail(why);
+                }
                 selected.retain(|(node, _)| near.contains_key(node));
                 let of_side = found.entry((b, side, number, true)).or_default();
                 of_side.surface = Some(opposite);

@@ -140,10 +140,20 @@ fn pairs(
         second.map(|second| (*first, *second))
     });
     let Some(last) = last else {
-        return Err(Error::Input(format!(
-            "{written}the surfaces `{}` and `{}` do not meet: no two bodies have them",
-            names[0], names[1]
-        )));
+        let body = lists[0].first().or(lists[1].first());
+        let body = body.map_or("", |b| bodies[b.0].spec.name.as_str());
+        return Err(Error::Input(match same {
+            true => format!(
+                "{written}the surface `{}` is named twice, and only body `{body}` has it (sides of two bodies were \
+                 expected)",
+                names[0]
+            ),
+            false => format!(
+                "{written}the surfaces `{}` and `{}` do not meet: only body `{body}` has them (sides of two bodies \
+                 were expected)",
+                names[0], names[1]
+            ),
+        }));
     };
     let found = |first: (usize, usize), second: (usize, usize)| {
         let [a, b] = [first, second].map(|(body, _)| bodies[body].spec.name.clone());
@@ -172,7 +182,7 @@ fn pairs(
         }
         match matching.find([first.0, second.0], [first.1, second.1], reach) {
             Ok(_) => out.push(found(first, second)),
-            Err(Mismatch::Lonely(_)) => {
+            Err(Mismatch::Lonely) => {
                 let both = ([first.0, second.0], [first.1, second.1]);
                 let which = multipliers.unwrap_or(0);
                 if matching.mortar(form, both, which, reach).is_some() {
@@ -227,7 +237,7 @@ fn found(
             let which = usize::from(edges[b] < edges[a]);
             let interface = match matching.find([a, b], sides, reach) {
                 Err(Mismatch::Apart(_)) => None,
-                Err(Mismatch::Lonely(_)) => {
+                Err(Mismatch::Lonely) => {
                     matching.mortar(form, ([a, b], sides), which, reach).clone()
                 }
                 Ok(interface) => Some(interface.clone()),

@@ -1,0 +1,117 @@
+//! Surfaces that cannot be joined, and the one sentence for each.
+
+use super::meshes::Model;
+use crate::support::surface_mesh::gmsh;
+
+/// Two plates of squares, `a` on [0, 2] × [0, 1] and `b`, whose lower left corner is `at`, with groups at their sides.
+fn plates(at: [f64; 2]) -> String {
+    let mut points = Vec::new();
+    let mut add = |n: usize, [x, y]: [f64; 2]| {
+        let first = points.len();
+        for k in 0..=n {
+            let right = x + 2.0 * k as f64 / n as f64;
+            points.extend([[right, y, 0.0], [right, y + 1.0, 0.0]]);
+        }
+        let of = |k: usize| first + 2 * k;
+        let cells: Vec<_> = (0..n)
+            .map(|k| vec![of(k), of(k + 1), of(k + 1) + 1, of(k) + 1])
+            .collect();
+        let bottom: Vec<_> = (0..n).map(|k| vec![of(k), of(k + 1)]).collect();
+        let top: Vec<_> = (0..n).map(|k| vec![of(k) + 1, of(k + 1) + 1]).collect();
+        (cells, bottom, top)
+    };
+    let (a, a_bottom, a_top) = add(2, [0.0, 0.0]);
+    let (b, b_bottom, b_top) = add(3, at);
+    let one = vec![a_top[0].clone()];
+    let dot = vec![vec![a_top[0][0]]];
+    gmsh(
+        &points,
+        &[
+            ("a", a),
+            ("b", b),
+            ("a_bottom", a_bottom),
+            ("a_top", a_top),
+            ("b_bottom", b_bottom),
+            ("b_top", b_top),
+            ("a_one", one),
+            ("a_dot", dot),
+        ],
+    )
+}
+
+/// The scene of both plates with a joint of the surfaces.
+fn scene(surfaces: [&str; 2], more: &str) -> String {
+    format!(
+        "physics = \"elasticity\"\n[mesh]\nfile = \"m.msh\"\n[[body]]\nname = \"a\"\ndirichlet = {{ a_bottom = 0 }}\n\
+         [[body]]\nname = \"b\"\n[[contact]]\nsurfaces = {surfaces:?}\n{more}\n"
+    )
+}
+
+#[test]
+fn surfaces_that_cannot_meet_are_refused() {
+    let above = Model::new("above", &plates([0.0, 1.0]));
+    let refuses = |surfaces: [&str; 2], part: &str| above.refuses(&scene(surfaces, ""), part);
+    refuses(
+        ["a_top", "no"],
+        "the boundary group `no`, which no body of the mesh has",
+    );
+    refuses(
+        ["a_dot", "b_bottom"],
+        "the boundary group `a_dot` of points alone where edges of a body were expected",
+    );
+    refuses(
+        ["a_top", "a_top"],
+        "the surface `a_top` is named twice, and only body `a` has it",
+    );
+    refuses(
+        ["a_top", "a_bottom"],
+        "the surfaces `a_top` and `a_bottom` do not meet: only body `a` has them",
+    );
+    refuses(
+        ["a_bottom", "b_top"],
+        "side `a_bottom` of `a` and side `b_top` of `b` do not face each other",
+    );
+    refuses(["a_top", "b_top"], "do not face each other");
+    // One face is enough if something lies opposite.
+    assert_eq!(
+        above.scene(&scene(["a_one", "b_bottom"], "")).mortar.len(),
+        2
+    );
+    let beside = Model::new("beside", &plates([5.0, 1.0]));
+    beside.refuses(&scene(["a_one", "b_bottom"], ""), "do not face each other");
+    beside.refuses(&scene(["a_top", "b_bottom"], ""), "do not face each other");
+}
+
+#[test]
+fn bodies_that_overlap_by_half_are_refused() {
+    let half = Model::new("half", &plates([0.0, 0.5]));
+    let told = "overlap by 0.5, where `a` is 1 thick (sides that face each other, with an overlap of a quarter of that";
+    half.refuses(&scene(["a_top", "b_bottom"], ""), told);
+    half.refuses(&scene(["b_bottom", "a_top"], ""), "overlap by 0.5");
+    // Small overlaps are interference, larger ones may be declared to be none.
+    assert_eq!(
+        half.scene(&scene(["a_top", "b_bottom"], "adjust = 0.51"))
+            .mortar
+            .len(),
+        3
+    );
+    let little = Model::new("little", &plates([0.0, 0.9]));
+    assert_eq!(
+        little.scene(&scene(["a_top", "b_bottom"], "")).mortar.len(),
+        3
+    );
+}
+
+/// Two entries may name the same surfaces: what is tied is not in contact.
+#[test]
+fn the_same_surfaces_may_be_tied_and_in_contact() {
+    let above = Model::new("twice", &plates([0.0, 1.0]));
+    let text = scene(["a_top", "b_bottom"], "") + "[[tie]]\nsurfaces = [\"a_top\", \"b_bottom\"]\n";
+    let scene = above.scene(&text);
+    assert!(scene.mortar.iter().all(|row| row.inequality.is_none()));
+    assert_eq!(scene.mortar.len(), 2 * 3);
+    assert_eq!(
+        scene.notes,
+        ["Another tie holds nodes of `a` (3): they carry no multipliers of the contact with `b`."]
+    );
+}
