@@ -17,8 +17,8 @@ mod checked;
 mod coefficient;
 mod cut;
 pub(crate) mod deck;
-#[cfg(feature = "cli")]
 mod displaced;
+#[cfg(feature = "cli")]
 pub(crate) mod distribution;
 pub(crate) mod geometry;
 mod joint;

@@ -25,7 +25,7 @@ impl Scene {
     /// [`FetiFeti::set_rows`](crate::FetiFeti::set_rows) takes them.
     ///
     /// # Errors
-    /// [`Error::Input`] where given values contradict an inequality.
+    /// [`Error::Input`](crate::Error::Input) where given values contradict an inequality.
     pub fn renew(&mut self, at: &Displaced, step: usize) -> Result<()> {
         let Some(renewal) = self.renewal.clone() else {
             return Ok(());

@@ -123,7 +123,7 @@ pub struct BodySpec {
     /// Place in its grid, (0, 0, 0) outside a grid: the variables `bi`, `bj`, `bk`.
     pub place: [usize; 3],
     /// The displacements of nodes at which the body is looked at, while contacts are renewed; `None`: undeformed.
-    pub(crate) moved: Option<Arc<HashMap<usize, [f64; 3]>>>,
+    pub moved: Option<Arc<HashMap<usize, [f64; 3]>>>,
     /// Where it was written ("scene.toml:12: "), or empty.
     pub written: String,
 }
