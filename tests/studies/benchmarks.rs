@@ -121,8 +121,10 @@ fn round_bodies_have_the_pressures_of_half_spaces() {
                 let found = values.find(|v| v.quantity == quantity);
                 found.expect("a value").error.abs()
             };
+            // The end of the punch's contact is known to about half an edge, of a/16.
+            let width = if name == "punch" { 0.04 } else { 0.02 };
             assert!(
-                of("a") < 0.02 && of("force") < 1e-6,
+                of("a") < width && of("force") < 1e-6,
                 "{name}, {}",
                 series.name
             );
