@@ -7,15 +7,17 @@
 //! On A_k the gap B u − c vanishes and off it λ vanishes, so that ρ plays no part. The loop starts from all candidates,
 //! because a smaller set is singular if only contact holds a body. While the set changes, the inner problem is solved
 //! loosely, starting from the last λ. A set that stays is solved to the end; it is the solution if it stays then, too.
+//! A row whose multiplier turns out to pull ends that solve early.
 //! Nothing makes the sets converge. Where the number of wrong rows does not fall for some steps, the loop hands over to
 //! the augmented Lagrangian.
 
 use std::time::Instant;
 
+use super::pulling::Pulling;
 use super::settings::{ContactSettings, ContactType};
 use super::state::{changes, Observer, State, Step};
 use super::{judge, motion};
-use crate::feti::krylov::iterate::{IterationControl, Run};
+use crate::feti::krylov::iterate::{IterationControl, Look, Run};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::{Iterate, Residual, ROUNDING};
 use crate::feti::krylov::target::{target, to_the_end};
@@ -23,6 +25,7 @@ use crate::feti::operators::dual::Dual;
 use crate::feti::projector::rows::Rows;
 use crate::feti::{LinearMethod, LinearSolution, Spectrum};
 use crate::parallel::exchange::any;
+use crate::petsc::{Stopped, Vec as PetscVec};
 use crate::status::Status;
 use crate::Result;
 
@@ -82,6 +85,9 @@ const MANY: usize = 8;
 /// Factor by which inner problems are then solved more exactly.
 const EXACT: f64 = 1e-2;
 
+/// A step is solved to the end if its residual has to fall by no more than this.
+const NEAR: f64 = 3e-3;
+
 /// Largest jump on the rows that hold, relative to the residual in V. That residual does not contain the part of the
 /// jump that rigid motions close.
 const CLOSED: f64 = 1e3;
@@ -109,6 +115,8 @@ pub(super) struct ActiveSet<'a> {
     pub exact: bool,
     /// Whether the next step is solved to the end.
     pub tight: bool,
+    /// Whether rows that pull end that solve early.
+    watched: bool,
     /// A row that does not hold is violated only if its gap is above this, relative to the largest displacement.
     pub open: f64,
     /// B R with all candidate rows.
@@ -149,6 +157,7 @@ impl<'a> ActiveSet<'a> {
             settings,
             fresh: false,
             tight: false,
+            watched: true,
             exact: false,
             open: judge::ROUNDING,
             length: 0.0,
@@ -237,7 +246,9 @@ impl<'a> ActiveSet<'a> {
         let first = self.at.residual.r.norm2()?;
         let target = self.target()?;
         let reduced = self.reduction() * first;
-        let tolerance = match (self.tight, self.exact) {
+        // A last reduction is taken in one go: to begin anew in its middle costs more than it may save.
+        let tight = self.tight || target >= NEAR * first;
+        let tolerance = match (tight, self.exact) {
             (true, false) => target,
             // Multipliers of springs are those of the rows only up to the compliance. Between stiff bodies the
             // difference is a large force and a small residual.
@@ -245,7 +256,16 @@ impl<'a> ActiveSet<'a> {
             (false, _) => target.max(reduced),
         };
         let control = IterationControl::to(tolerance, self.at.residual.size);
-        let inner = method.reach(&mut self.at, control)?;
+        let mut pulling = Pulling::new(session.comm(), &method.dual().stiffness.jump, &self.at)?;
+        let mut look = |lambda: &PetscVec| pulling.lasts(lambda);
+        let watched = tight && !self.exact && self.watched;
+        let look: Option<&mut Look> = if watched { Some(&mut look) } else { None };
+        let inner = method.reach(&mut self.at, control, look)?;
+        let ended_early = inner.stopped == Stopped::Look;
+        let tolerance = match inner.residuals.last() {
+            Some(&reached) if ended_early => reached.max(tolerance),
+            _ => tolerance,
+        };
         let dual = method.dual();
         self.at.evaluate(&dual)?;
         let next = self.next(&dual)?;
@@ -284,6 +304,8 @@ impl<'a> ActiveSet<'a> {
         let to_the_end = to_the_end(tolerance, target);
         let closed = next.jump_left <= CLOSED * target + 1e3 * judge::ROUNDING * self.length;
         let verdict = self.advance(next, to_the_end, closed)?;
+        // The same set once more: the rows that pull cannot be spared.
+        self.watched = !(ended_early && self.tight);
         Ok((step, inner.status, verdict))
     }
 
@@ -304,7 +326,7 @@ impl<'a> ActiveSet<'a> {
             status,
             residuals,
             estimate,
-            broken_off: false,
+            stopped: Stopped::No,
         };
         method.recover(self.at, run, solve_seconds)
     }

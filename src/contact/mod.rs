@@ -21,6 +21,7 @@ mod lagrangian;
 mod motion;
 mod mprgp;
 mod newton;
+mod pulling;
 mod rejudge;
 mod settings;
 mod smalbe;

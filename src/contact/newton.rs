@@ -22,6 +22,7 @@ use crate::feti::krylov::target::target;
 use crate::feti::projector::rows::Rows;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::parallel::exchange::{highest, total};
+use crate::petsc::Stopped;
 use crate::status::Status;
 use crate::Result;
 
@@ -233,7 +234,7 @@ impl<'a> Search<'a> {
             let least = state.accuracy * least;
             tolerance = (reduction * first).max(MORE * least).max(self.least);
             let control = IterationControl::to(tolerance, self.at.residual.size);
-            let more = method.reach(&mut self.at, control)?;
+            let more = method.reach(&mut self.at, control, None)?;
             run = Some(match run.take() {
                 Some(before) => before.followed_by(more),
                 None => more,
@@ -356,7 +357,7 @@ impl<'a> Search<'a> {
             status,
             residuals: last.as_ref().map_or(Vec::new(), |r| r.residuals.clone()),
             estimate: last.and_then(|r| r.estimate),
-            broken_off: false,
+            stopped: Stopped::No,
         };
         let mut at = self.at;
         at.loads.jumps = None;

@@ -202,32 +202,6 @@ impl Ksp {
         petsc!(KSPSolve(self.raw(), b, x))
     }
 
-    /// Solves A x = b by CG, and may stop early: from iteration `first` on, if the largest eigenvalue estimate is above
-    /// `limit` while the residual is above `rest`. Returns whether it stopped early. Collective.
-    pub fn solve_watched(
-        &self,
-        b: &Vec,
-        x: &Vec,
-        first: usize,
-        limit: f64,
-        rest: f64,
-    ) -> Result<bool> {
-        let (b, x) = (b.read()?, x.write()?);
-        let first = first as i32;
-        let tripped = got(|tripped| {
-            petsc!(ff_ksp_solve_watched(
-                self.raw(),
-                b,
-                x,
-                first,
-                limit,
-                rest,
-                tripped
-            ))
-        })?;
-        Ok(tripped != 0)
-    }
-
     /// x ← A⁻ᵀ b. Collective.
     pub fn solve_transpose(&self, b: &Vec, x: &Vec) -> Result<()> {
         let (b, x) = (b.read()?, x.write()?);

@@ -29,6 +29,7 @@ mod session;
 mod shell;
 mod spectrum;
 mod vec;
+mod watch;
 
 pub use citations::cite;
 pub use eps::{End, Eps, ProblemType, Settled, Which};
@@ -48,6 +49,7 @@ pub use session::{max_memory, Comm, Session};
 pub use shell::{ShellMat, ShellOp, ShellPc};
 pub use spectrum::extreme_eigenvalues;
 pub use vec::{Array, ArrayMut, Vec};
+pub use watch::{LargeEigenvalue, Look, Stopped};
 
 /// PETSc's own types and the guard against unwinding, for `capi`, which takes objects from C.
 pub(crate) mod raw {

@@ -5,7 +5,7 @@ use crate::testing::with_session;
 use fetifeti::linalg::csr::Csr;
 use fetifeti::petsc::{
     cite, max_memory, Comm, Event, Is, Ksp, Mat, MatFlag, NormType, Options, Scatter, Session,
-    ShellMat, ShellPc, Stage, Vec as PVec,
+    ShellMat, ShellPc, Stage, Stopped, Vec as PVec,
 };
 use fetifeti::{Error, Result};
 use std::cell::Cell;
@@ -480,4 +480,40 @@ fn a_missing_options_file_is_one_sentence() {
         );
         assert!(!out.all().contains("PETSC ERROR"), "{}", out.all());
     }
+}
+
+#[test]
+fn looks_at_an_iteration() {
+    with_session(|session| {
+        let (n, b) = (40, PVec::with_global_len(session, 40).unwrap());
+        b.set(1.0).unwrap();
+        let (a, x) = (laplacian(session, n), b.duplicate().unwrap());
+        let ksp = Ksp::new(session, Comm::World).unwrap();
+        ksp.set_operators(&a, &a).unwrap();
+        ksp.set_type("cg").unwrap();
+        ksp.pc().unwrap().set_type("none").unwrap();
+        // The look sees the iterate that belongs to its residual: a multiple of b after one iteration.
+        let (mut looks, now) = (0, b.duplicate().unwrap());
+        let at_most = |most: usize, looks: &mut usize| {
+            let mut look = |residual: f64| {
+                *looks += 1;
+                ksp.current_solution(&now)?;
+                let image = b.duplicate()?;
+                a.mult(&now, &image)?;
+                image.aypx(-1.0, &b)?;
+                assert!((image.norm2()? - residual).abs() < 1e-12);
+                Ok(*looks > most)
+            };
+            ksp.solve_watched(&b, &x, None, Some(&mut look))
+        };
+        assert_eq!(at_most(3, &mut looks).unwrap(), Stopped::Look);
+        assert_eq!((looks, ksp.iterations().unwrap()), (4, 3));
+        assert!(ksp.converged_reason().unwrap().converged());
+        looks = 0;
+        assert_eq!(at_most(1000, &mut looks).unwrap(), Stopped::No);
+        assert!(looks > 4 && ksp.iterations().unwrap() == looks);
+        let mut fail = |_| Err(Error::input("seen enough"));
+        let error = ksp.solve_watched(&b, &x, None, Some(&mut fail));
+        assert!(error.unwrap_err().to_string().contains("seen enough"));
+    });
 }

@@ -148,36 +148,44 @@ typedef PetscErrorCode (*ff_test)(KSP, PetscInt, PetscReal, KSPConvergedReason *
 typedef struct {
   ff_test  test; /* the test that decides about convergence */
   void    *context;
-  int      first, tripped;
+  int      first, stopped;
   double   limit, rest;
+  ff_look  look;
+  void    *looker;
 } ff_watch;
 
 static PetscErrorCode ff_watched(KSP ksp, PetscInt it, PetscReal rnorm, KSPConvergedReason *reason, void *data)
 {
   ff_watch *watch = (ff_watch *)data;
   PetscReal large = 0.0, small = 0.0;
+  int       stop = 0;
 
   PetscCall((*watch->test)(ksp, it, rnorm, reason, watch->context));
-  if (*reason || it < watch->first || (it - watch->first) % 3 || !(rnorm > watch->rest)) return 0;
-  PetscCall(KSPComputeExtremeSingularValues(ksp, &large, &small));
-  if (large > watch->limit) {
-    watch->tripped = 1;
-    *reason        = KSP_CONVERGED_ITS;
+  if (*reason) return 0;
+  if (watch->first >= 0 && it >= watch->first && (it - watch->first) % 3 == 0 && rnorm > watch->rest) {
+    PetscCall(KSPComputeExtremeSingularValues(ksp, &large, &small));
+    if (large > watch->limit) watch->stopped = FF_EIGENVALUE;
   }
+  if (!watch->stopped && watch->look) {
+    PetscCall((PetscErrorCode)(*watch->look)(watch->looker, (double)rnorm, &stop));
+    if (stop) watch->stopped = FF_LOOK;
+  }
+  if (watch->stopped) *reason = KSP_CONVERGED_ITS;
   return 0;
 }
 
-int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, int *tripped)
+int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, ff_look look, void *looker,
+                         int *stopped)
 {
   PetscErrorCode (*drop)(void *) = NULL;
-  ff_watch       watch           = {NULL, NULL, first, 0, limit, rest};
+  ff_watch       watch           = {NULL, NULL, first, 0, limit, rest, look, looker};
   PetscErrorCode code;
 
   PetscCall(KSPGetAndClearConvergenceTest(ksp, &watch.test, &watch.context, &drop));
   PetscCall(KSPSetConvergenceTest(ksp, ff_watched, &watch, NULL));
   code = KSPSolve(ksp, b, x);
   PetscCall(KSPSetConvergenceTest(ksp, watch.test, watch.context, drop));
-  *tripped = watch.tripped;
+  *stopped = watch.stopped;
   return (int)code;
 }
 

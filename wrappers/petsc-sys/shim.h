@@ -30,10 +30,15 @@ int ff_pc_shell_set_apply_transpose(PC pc, int (*f)(PC, Vec, Vec));
 int ff_pc_shell_set_view(PC pc, int (*f)(PC, PetscViewer));
 int ff_st_shell_set_apply(ST st, int (*f)(ST, Vec, Vec));
 
-/* KSPSolve() that may stop early: from iteration `first` on, in every third one, if the largest singular value estimate
-   is above `limit` while the residual is above `rest`. `tripped` says whether it did; the reason is KSP_CONVERGED_ITS
-   then. */
-int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, int *tripped);
+/* KSPSolve() that may stop early. From iteration `first` on, in every third one, it stops if the largest singular value
+   estimate is above `limit` while the residual is above `rest`; a negative `first` means never. After every iteration
+   it calls `look`, unless that is NULL, with `looker` and the residual, and stops if `stop` is set. `stopped` says why;
+   the reason is KSP_CONVERGED_ITS then. */
+#define FF_EIGENVALUE 1
+#define FF_LOOK       2
+typedef int (*ff_look)(void *looker, double residual, int *stop);
+int ff_ksp_solve_watched(KSP ksp, Vec b, Vec x, int first, double limit, double rest, ff_look look, void *looker,
+                         int *stopped);
 
 /* EPSSolve() for one eigenvalue with the relative tolerance tol of the solver. It also ends
    1. where the value, which the smallest eigenvalue does not exceed, is above `floor` by tol at most (NaN: no floor),

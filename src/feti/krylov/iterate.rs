@@ -5,12 +5,18 @@ use super::system::System;
 use super::tally::Start;
 use crate::feti::method::LinearMethod;
 use crate::feti::spectrum::Spectrum;
-use crate::petsc::{ConvergedReason, Ksp, Vec as PetscVec};
+use crate::petsc::{ConvergedReason, Ksp, LargeEigenvalue, Stopped, Vec as PetscVec};
 use crate::status::Status;
 use crate::Result;
 
 /// An iteration is no longer broken off if its residual is less than this many times its tolerance.
 const NEARLY: f64 = 30.0;
+
+/// A run is looked at whenever its residual has fallen by this factor since the last look.
+const LOOK: f64 = 0.1;
+
+/// Called during a run with the present λ; `true` ends the run. All ranks give the same answer.
+pub type Look<'a> = dyn FnMut(&PetscVec) -> Result<bool> + 'a;
 
 /// Parameters of a run.
 #[derive(Debug, Clone, Copy)]
@@ -65,8 +71,8 @@ pub struct Run {
     pub residuals: Vec<f64>,
     /// The method's own estimate of the spectrum.
     pub estimate: Option<Spectrum>,
-    /// Whether the run was broken off to deflate large eigenvalues.
-    pub broken_off: bool,
+    /// Who ended the run early.
+    pub stopped: Stopped,
 }
 
 impl Run {
@@ -76,7 +82,7 @@ impl Run {
             status: Status::NothingToDo,
             residuals: vec![residual],
             estimate: None,
-            broken_off: false,
+            stopped: Stopped::No,
         }
     }
 
@@ -113,12 +119,14 @@ impl Run {
     }
 }
 
-/// Adds the Krylov method's correction to `lambda`. `residual` is Pᵀ r on entry. Collective.
+/// Adds the Krylov method's correction to `lambda`. `residual` is Pᵀ r on entry. `look` may end the run early.
+/// Collective.
 pub fn iterate(
     method: &LinearMethod,
     residual: &PetscVec,
     lambda: &PetscVec,
     control: &IterationControl,
+    look: Option<&mut Look>,
 ) -> Result<Run> {
     let (system, ksp) = (&method.system, &method.ksp);
     // Project a second time. The first projection of a large jump leaves a part outside the range of Pᵀ by rounding.
@@ -146,7 +154,7 @@ pub fn iterate(
             status: Status::Krylov(ConvergedReason::its()),
             residuals: vec![start],
             estimate: None,
-            broken_off: false,
+            stopped: Stopped::No,
         });
     }
     let x = system.dual().multipliers()?;
@@ -156,16 +164,35 @@ pub fn iterate(
     let counted = Start::now();
     let solved = {
         let _running = system.run(control.observed.then_some(lambda));
-        match control.watch {
-            Some(watch) if ksp.type_name()? == "cg" => {
-                let rest = NEARLY * control.tolerance;
-                ksp.solve_watched(residual, &x, watch.from, watch.limit, rest)
+        let is_cg = ksp.type_name()? == "cg";
+        let eigenvalue = control.watch.filter(|_| is_cg).map(|w| LargeEigenvalue {
+            first: w.from,
+            limit: w.limit,
+            rest: NEARLY * control.tolerance,
+        });
+        // Other methods do not have their iterate at hand.
+        match look.filter(|_| is_cg) {
+            Some(look) => {
+                let now = lambda.duplicate()?;
+                let mut next = LOOK * start;
+                let mut look_at = |residual: f64| {
+                    if residual > next {
+                        return Ok(false);
+                    }
+                    next = LOOK * residual;
+                    ksp.current_solution(&now)?;
+                    system.p2(&now)?;
+                    now.axpy(1.0, lambda)?;
+                    look(&now)
+                };
+                ksp.solve_watched(residual, &x, eigenvalue, Some(&mut look_at))
             }
-            _ => ksp.solve(residual, &x).map(|()| false),
+            None if eigenvalue.is_some() => ksp.solve_watched(residual, &x, eigenvalue, None),
+            None => ksp.solve(residual, &x).map(|()| Stopped::No),
         }
     };
     rtol_of(rtol)?;
-    let broken_off = solved?;
+    let stopped = solved?;
     let iterations = ksp.iterations()?;
     system.count(&counted.since(iterations));
     system.dual().p(&x)?;
@@ -176,7 +203,7 @@ pub fn iterate(
         status: Status::Krylov(ksp.converged_reason()?),
         residuals: ksp.residual_history()?,
         estimate: estimate(ksp, iterations)?,
-        broken_off,
+        stopped,
     })
 }
 

@@ -97,7 +97,7 @@ impl LinearMethod {
         at.balance(dual)?;
         let first = at.evaluate_projected(dual)?;
         let control = IterationControl::to(reduction * first, at.residual.size);
-        let run = iterate(self, &at.residual.r, &at.lambda, &control)?;
+        let run = iterate(self, &at.residual.r, &at.lambda, &control, None)?;
         at.place(dual)?;
         let du = displacements(dual, &at.loads, &mut at.residual)?;
         let size = self.energy_norm(&du);

@@ -11,7 +11,7 @@
 
 use std::time::Instant;
 
-use super::iterate::{iterate, IterationControl, Run};
+use super::iterate::{iterate, IterationControl, Look as LookAt, Run};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
 use super::refinement::STEPS;
@@ -19,6 +19,7 @@ use super::residual::{Iterate, ROUNDING};
 use super::target::{to_the_end, Target};
 use crate::feti::method::LinearMethod;
 use crate::parallel::exchange::highest;
+use crate::petsc::Stopped;
 use crate::status::Status;
 use crate::Result;
 
@@ -66,7 +67,7 @@ impl LinearMethod {
             None => {
                 let target = Target::new(self, r)?;
                 let control = IterationControl::to(target.at_first(), at.residual.size).observed();
-                let run = self.reach(&mut at, control)?; /*     Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x         */
+                let run = self.reach(&mut at, control, None)?; /*     Pᵀ F P x = Pᵀ r, P_2, λ ← λ + P x         */
                 self.meet(&mut at, run, control, &target, enough)? /* y ← S̃⁺(g − Bᵀ λ) + R α             */
             }
         };
@@ -96,7 +97,7 @@ impl LinearMethod {
                 status: Status::NothingToDo,
                 residuals: vec![r],
                 estimate: None,
-                broken_off: false,
+                stopped: Stopped::No,
             }));
         }
         at.evaluate_projected(&self.dual())?;
@@ -104,9 +105,14 @@ impl LinearMethod {
     }
 
     /// Iterates from λ to `control.tolerance`; the residual holds Pᵀ r on entry. Looks at the spectrum, deflates large
-    /// eigenvalues and starts anew where rounding has ended a run. On return the residual belongs to an earlier λ.
+    /// eigenvalues and starts anew where rounding has ended a run. `look` may end it early. On return the residual belongs to an earlier λ.
     /// Collective.
-    pub(crate) fn reach(&self, at: &mut Iterate, control: IterationControl) -> Result<Run> {
+    pub(crate) fn reach(
+        &self,
+        at: &mut Iterate,
+        control: IterationControl,
+        mut look: Option<&mut LookAt>,
+    ) -> Result<Run> {
         if self.is_blind()? {
             self.search(None)?;
         }
@@ -117,15 +123,16 @@ impl LinearMethod {
                 watch: self.watch(),
                 ..control
             };
-            let run = iterate(self, &at.residual.r, &at.lambda, &control)?; /* λ ← λ + P x, Pᵀ F P x = Pᵀ r  */
-            let (broken_off, seen) = (run.broken_off, run.estimate);
+            let look = look.as_deref_mut();
+            let run = iterate(self, &at.residual.r, &at.lambda, &control, look)?; /* λ ← λ + P x, Pᵀ F P x = Pᵀ r  */
+            let (stopped, seen) = (run.stopped, run.estimate);
             let converged = run.status.converged();
             let again = run.broke_down(PROGRESS) && starts < STARTS;
             let all = match so_far.take() {
                 Some(before) => before.followed_by(run),
                 None => run,
             };
-            if broken_off {
+            if stopped == Stopped::Eigenvalue {
                 self.search(seen)?; /*                        P_2 = I − W (Wᵀ F W)⁺ Wᵀ F                 */
             } else if converged {
                 return Ok(all);
@@ -187,7 +194,7 @@ impl LinearMethod {
             // The remaining iterations are few, and no look at the spectrum may end them.
             self.dual().p_transpose(&at.residual.r)?;
             let control = IterationControl::to(tolerance, size).observed();
-            let more = iterate(self, &at.residual.r, &at.lambda, &control)?;
+            let more = iterate(self, &at.residual.r, &at.lambda, &control, None)?;
             if more.iterations == 0 {
                 // The target was reached already. The next pass is the last one, unless `enough` asks for more.
                 if std::mem::replace(&mut idle, true) {
