@@ -30,3 +30,4 @@ pub use dual::{has_positive_integrals, positive, rows, Row};
 pub use orientation::one_way;
 pub use sample::{samples, Sample};
 pub use side::{across, reversed, Face, Side};
+pub use tree::Tree;

@@ -1,14 +1,14 @@
 //! A tree of boxes: which of many pieces of a surface are near a place.
 
 /// The lowest and the highest corner of a box.
-pub(super) type Bounds = [[f64; 3]; 2];
+pub type Bounds = [[f64; 3]; 2];
 
 /// Most boxes in a leaf.
 const LEAF: usize = 4;
 
 /// Boxes in a balanced binary tree.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Tree {
+pub struct Tree {
     /// The numbers of the boxes, in the order of the leaves.
     order: Vec<u32>,
     boxes: Vec<Bounds>,
@@ -17,6 +17,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
+    /// The tree of some boxes.
     pub fn new(boxes: Vec<Bounds>) -> Tree {
         let mut tree = Tree {
             order: (0..boxes.len() as u32).collect(),

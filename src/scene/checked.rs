@@ -3,9 +3,11 @@
 use super::body::{bounds_of, Body};
 use super::deck::DeckScenes;
 use super::geometry::interface::Interface;
+use super::geometry::loose;
 use super::geometry::matching::Matching;
 use super::model::expr::Expr;
-use super::model::spec::{lee, Faces, GridSpec, ProbeSpec, SceneSpec};
+use super::model::joints::Pair;
+use super::model::spec::{lee, ByDefault, Faces, GridSpec, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
 use super::renewal::Renewal;
 use super::rows::all::{Joined, Rows};
@@ -161,6 +163,14 @@ impl Scene {
             written.map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &mortar));
         let renewal = renewal.transpose()?.map(Arc::new);
         spec.notes.extend(notes);
+        let all = spec.ties.iter().map(|t| &t.pair);
+        let mut all = all.chain(spec.contacts.iter().map(|c| &c.pair));
+        // Who writes "free" and names pairs wants no others.
+        if spec.default != ByDefault::Free || all.any(|pair| *pair == Pair::All) {
+            let language = loose::Language::Scene;
+            let loose = loose::sentences(&bodies, &interfaces, &equations, &spec.form, language);
+            spec.notes.extend(loose);
+        }
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             options: spec.options,

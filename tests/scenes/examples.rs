@@ -20,6 +20,7 @@ fn every_example_is_valid_and_says_what_it_shows() {
         assert!(text.starts_with("# "), "{path:?}");
         let scene = Scene::load(&path).unwrap();
         assert!(!scene.title.is_empty());
+        assert!(scene.notes.is_empty(), "{path:?}: {:?}", scene.notes);
         scene.check_values().unwrap();
         seen += 1;
     }

@@ -16,6 +16,7 @@ mod gallery;
 mod guided;
 mod input;
 mod input_bodies;
+mod loose;
 mod mesh_mistakes;
 mod meshes;
 mod mortar;

@@ -11,6 +11,7 @@ mod torn;
 use std::path::Path;
 
 use super::checked::Scene;
+use super::geometry::loose;
 use super::model::spec::{ByDefault, SceneSpec};
 use crate::error::{Error, Result};
 use crate::fem::cell::{Cure, Plane};
@@ -134,7 +135,17 @@ impl DeckScenes {
             notes: self.notes(),
             ..SceneSpec::tied(title, bodies)
         };
-        Scene::new(spec)
+        let mut scene = Scene::new(spec)?;
+        // In a deck nothing is joined that no keyword joins.
+        let loose = loose::sentences(
+            &scene.bodies,
+            &scene.interfaces,
+            &scene.equations,
+            &scene.form,
+            loose::Language::Deck,
+        );
+        scene.notes.extend(loose);
+        Ok(scene)
     }
 
     /// Whether step `step` asks for tables, and whether for forces among them.

@@ -3,6 +3,7 @@
 pub mod curves;
 pub mod facing;
 pub mod interface;
+pub mod loose;
 pub mod matching;
 pub mod mortar;
 pub mod mortar_sides;
