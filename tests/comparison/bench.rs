@@ -308,7 +308,9 @@ fn named_cases_are_listed_and_run_small() {
             "rod-contact-4",
             "rod-contact-10",
             "blocks-contact-4",
-            "blocks-contact-4-mortar"
+            "blocks-contact-4-mortar",
+            "bodies-contact-512",
+            "bodies-contact-4096"
         ]
     );
     let dir = Scratch::new("bench-named");

@@ -49,7 +49,7 @@ impl Named {
 }
 
 /// All cases, in the order in which they are run.
-pub const CASES: [Named; 14] = [
+pub const CASES: [Named; 16] = [
     Named {
         name: "poisson-1024",
         description: "tied Poisson problem in the plane, 1024 x 1024 elements, equal subdomains (quick: 128 x 128)",
@@ -136,6 +136,19 @@ pub const CASES: [Named; 14] = [
         description: "the same with edges in the ratio 2:3 across the contact: mortar rows",
         scene: |_| unstructured::blocks(true),
         mesh: Some(|quick| unstructured::blocks_mesh(quick, true)),
+    },
+    Named {
+        name: "bodies-contact-512",
+        description: "8 x 8 x 8 elastic blocks, all faces in contact, 33,000 candidates, 192,000 unknowns \
+                      (quick: 3 x 3 x 3)",
+        scene: |quick| bodies(if quick { 3 } else { 8 }),
+        mesh: None,
+    },
+    Named {
+        name: "bodies-contact-4096",
+        description: "16 x 16 x 16 of them, 287,000 candidates, 1.5 million unknowns (quick: 4 x 4 x 4)",
+        scene: |quick| bodies(if quick { 4 } else { 16 }),
+        mesh: None,
     },
 ];
 
@@ -233,6 +246,20 @@ fn cube_contact(quick: bool) -> String {
             200,
             "dirichlet = { left = { x = 0 }, back = { z = 0 } }\ntraction = { top = [0, -2, 0] }\n"
         )
+    )
+}
+
+/// n³ elastic blocks of 4³ elements, all faces in contact. The box stands on its bottom between smooth walls, is loaded
+/// in places at its top, and every block has a load of its own.
+fn bodies(n: usize) -> String {
+    let walls = "dirichlet = { bottom = 0, left = { x = 0 }, right = { x = 0 }, front = { z = 0 }, back = { z = 0 } }";
+    format!(
+        "title = \"{n} x {n} x {n} blocks in contact\"\ndimension = 3\nphysics = \"elasticity\"\n\n\
+         [grid]\nbodies = [{n}, {n}, {n}]\nsize = [{n}, {n}, {n}]\nsubdomains = [1, 1, 1]\n\
+         elements_per_subdomain = 4\nyoung = 1000\npoisson = 0.3\n\
+         traction = {{ top = [0, \"-max(0, sin(2*x)*cos(1.5*z))\", 0] }}\n\
+         load = [\"0.5*sin(1 + 1.7*bi + 2.3*bj + 3.1*bk)\", -0.05, \"0.5*cos(1 + 2.7*bi + 1.3*bj + 2.1*bk)\"]\n\
+         {walls}\n\n[interface]\ndefault = \"contact\"\n"
     )
 }
 
