@@ -157,7 +157,7 @@ pub fn profiles(scene: &Scene, rows: &[SolvedRow]) -> Vec<Profile> {
         };
         // Along a curved side no coordinate increases monotonically.
         let body = rows[0].body();
-        let curved = body.is_some_and(|b| scene.bodies[b].spec.map.is_some());
+        let curved = body.is_some_and(|b| !scene.bodies[b].spec.is_straight());
         Profile {
             nodes: nodes(scene, rows, scene.has_pressure()),
             label: if curved { "t" } else { ["x", "y"][along] }.into(),

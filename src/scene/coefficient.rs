@@ -57,10 +57,10 @@ pub(super) fn by_element(
     }
     if field.is_constant_by_subdomain() {
         let point = middles.next().unwrap_or_default();
-        let value = check(evaluate(body, inside, field, point), point)?;
+        let value = check(evaluate(body, inside, field, body.spec.own(point)), point)?;
         return Ok(vec![value; mesh.n_elements()]);
     }
-    let value = |point| check(evaluate(body, inside, field, point), point);
+    let value = |point| check(evaluate(body, inside, field, body.spec.own(point)), point);
     middles.map(value).collect()
 }
 

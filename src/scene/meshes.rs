@@ -101,7 +101,7 @@ fn elements(body: &Body, inside: usize, nodes: &[usize]) -> Elements {
     match body.mesh() {
         Mesh::Grid(grid) => Elements::Grid(Grid {
             elements: grid.block_elements(),
-            step: body.spec.map.is_none().then(|| grid.step()),
+            step: body.spec.is_straight().then(|| grid.step()),
         }),
         Mesh::Cells(mesh) => {
             let mut cells = Cells::default();

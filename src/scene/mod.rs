@@ -50,6 +50,7 @@ pub use model::joints::{
     AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec,
 };
 pub use model::map::{BodyShape, Map, Round};
+pub use model::motion::Motion;
 pub use model::profile::{Limit, Limits, Profile};
 pub use model::ramp::{Ramp, StepsSpec};
 pub use model::rigid::Rigid;

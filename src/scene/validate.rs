@@ -38,6 +38,7 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
         }
         check_mesh(body)?;
         check_values(body, &spec.form)?;
+        check_frame(body, &spec.form)?;
         check_shape(body, &spec.form)?;
         if names.insert(&body.name, body).is_some() {
             return body.error("a second body of this name (names must be unique)");
@@ -160,6 +161,15 @@ fn check_values(body: &BodySpec, form: &Form) -> Result<()> {
     fields
         .into_iter()
         .try_for_each(|field| LOAD.check(body, field))
+}
+
+/// Whether the place of a copy suits the form: a ring only moves along its axis.
+fn check_frame(body: &BodySpec, form: &Form) -> Result<()> {
+    match &body.frame {
+        Some(frame) if form.is_axial() && !(frame.is_shift() && frame.shift[0] == 0.0) => body
+            .error("a ring at another radius or turned (shifts along the axis were expected in an axisymmetric scene)"),
+        _ => Ok(()),
+    }
 }
 
 /// Whether a bent body has positive elements everywhere.

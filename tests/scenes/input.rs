@@ -42,7 +42,7 @@ fn keys_and_types() {
     check(
         &body("a", "[0, 0]", "elements = 4\nrhoo = 2"),
         "s.toml:6: unknown key `rhoo` in [[body]] (known keys are name, origin, shape, size, subdomains, elements, \
-         elements_per_subdomain, rho, load, flux, spring, dirichlet, order, ramp)",
+         elements_per_subdomain, rho, load, ramp, flux, spring, dirichlet, order, instances, only)",
     );
     let e = message(&format!("colour = 1\n{}", pair("")));
     assert!(

@@ -16,6 +16,8 @@ mod gallery;
 mod guided;
 mod input;
 mod input_bodies;
+mod instances;
+mod instances_input;
 mod loose;
 mod mesh_mistakes;
 mod meshes;

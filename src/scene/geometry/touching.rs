@@ -19,10 +19,11 @@ pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
                 Mesh::Cells(_) => high[0] - low[0],
             }
     };
+    let bent = |k: usize| (&bodies[k].spec.map, &bodies[k].spec.motion);
     let mut out = Vec::new();
     for [a, b] in near_in_x(bodies, slack) {
         match [a, b].map(|k| bodies[k].mesh().grid()) {
-            [Some(x), Some(y)] if bodies[a].spec.map == bodies[b].spec.map => {
+            [Some(x), Some(y)] if bent(a) == bent(b) => {
                 out.extend(common(bodies, [x, y], [a, b])?);
             }
             _ => out.extend(coinciding(bodies, [a, b])),

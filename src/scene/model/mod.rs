@@ -5,6 +5,7 @@ pub mod expr;
 pub mod field;
 pub mod joints;
 pub mod map;
+pub mod motion;
 pub mod profile;
 pub mod ramp;
 pub mod rigid;

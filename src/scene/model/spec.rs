@@ -8,6 +8,7 @@ use super::expr::{Expr, Variables};
 use super::field::{Field, Region};
 use super::joints::{AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec};
 use super::map::Map;
+use super::motion::Motion;
 use super::ramp::{Ramp, StepsSpec};
 use crate::fem::element::Integration;
 use crate::fem::Form;
@@ -100,6 +101,10 @@ pub struct BodySpec {
     pub cut: Cut,
     /// How the box is bent into shape; `None`: not at all.
     pub map: Option<Map>,
+    /// How the nodes of the mesh, bent into shape, come to their places; `None`: they are there.
+    pub motion: Option<Motion>,
+    /// How the coordinates of its coefficients lie in space: a copy takes them along. `None`: as those of space.
+    pub frame: Option<Motion>,
     /// Coefficient ρ, in elasticity Young's modulus, > 0; taken at element midpoints.
     pub rho: Field,
     /// Poisson's ratio, between −1 and ½; ignored in scalar problems.
@@ -137,6 +142,8 @@ impl BodySpec {
             order: 1,
             cut: Cut::AsItIs,
             map: None,
+            motion: None,
+            frame: None,
             rho: Field::constant(1.0),
             poisson: Field::constant(POISSON),
             load: Load::constant(0.0),
@@ -153,6 +160,35 @@ impl BodySpec {
         }
     }
 
+    /// A copy of this body at another place. Mesh and coefficients go with it, and share memory where they can.
+    /// Components of loads and given values, and the places at which their expressions are evaluated, are those of
+    /// space.
+    #[must_use]
+    pub fn placed(&self, name: impl Into<String>, motion: &Motion) -> BodySpec {
+        let mut copy = self.clone();
+        copy.name = name.into();
+        let after = |own: &Option<Motion>| Some(own.map_or(*motion, |own| motion.after(&own)));
+        copy.frame = after(&self.frame);
+        match &mut copy.mesh {
+            // A box that is only shifted stays one along the axes.
+            Mesh::Grid(grid) if self.is_straight() && self.order == 1 && motion.is_shift() => {
+                grid.origin = motion.apply(grid.origin);
+            }
+            _ => copy.motion = after(&self.motion),
+        }
+        copy
+    }
+
+    /// A point of space in the coordinates of the coefficients.
+    pub(crate) fn own(&self, point: [f64; 3]) -> [f64; 3] {
+        self.frame.map_or(point, |frame| frame.invert(point))
+    }
+
+    /// Whether the nodes are where the mesh has them: a box has its sides along the axes.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.map.is_none() && self.motion.is_none()
+    }
+
     /// Position of a node.
     pub fn position(&self, node: usize) -> [f64; 3] {
         let u = self.displacement(node);
@@ -166,7 +202,8 @@ impl BodySpec {
     /// Position of a node of the undeformed body.
     pub(crate) fn undeformed(&self, node: usize) -> [f64; 3] {
         let point = self.mesh.position(node);
-        self.map.as_ref().map_or(point, |map| map.apply(point))
+        let point = self.map.as_ref().map_or(point, |map| map.apply(point));
+        self.motion.map_or(point, |motion| motion.apply(point))
     }
 
     /// The displacement of a node from [`BodySpec::undeformed`] to [`BodySpec::position`].
@@ -178,7 +215,7 @@ impl BodySpec {
     /// The grid of the body, if its cells are equal boxes.
     pub(crate) fn unbent(&self) -> Option<&BoxMesh> {
         let grid = self.mesh.grid();
-        grid.filter(|_| self.map.is_none() && self.moved.is_none())
+        grid.filter(|_| self.is_straight() && self.moved.is_none())
     }
 
     /// The given value of a component on a side, if there is one.

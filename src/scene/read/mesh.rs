@@ -2,12 +2,13 @@
 
 use super::document::{Item, Section, Value};
 use super::fields::Shape;
+use super::instances::none_to_select;
 use super::Reader;
 use crate::error::{Error, Result};
 use crate::mesh::{deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
 use crate::scene::model::field::Field;
 use crate::scene::model::rigid_surface::RigidSurface;
-use crate::scene::model::spec::{held, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, POISSON};
+use crate::scene::model::spec::{held, BodySpec, Cut, Force, SurfaceLoad};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -144,6 +145,48 @@ impl Source {
     }
 }
 
+/// Given values by boundary group.
+type Held = Vec<(String, [Option<Field>; 3])>;
+
+/// What a body has at boundary groups. What is not there leaves a body as it is.
+#[derive(Default)]
+struct OfGroups {
+    /// Loads, each list with whether it is one of pressures.
+    forces: Vec<(bool, Vec<(String, Force)>)>,
+    springs: Option<Vec<(String, Field)>>,
+    dirichlet: Option<Held>,
+}
+
+impl OfGroups {
+    /// Gives a body what belongs to its groups, in the place of what it has.
+    fn apply(&self, body: &mut BodySpec) {
+        let mesh = &body.mesh;
+        for (is_pressure, list) in &self.forces {
+            let own = |load: &SurfaceLoad| matches!(load.force, Force::Pressure(_)) == *is_pressure;
+            body.surface.retain(|load| !own(load));
+            let at_sides = list.iter().filter_map(|(name, force)| {
+                let (side, force) = (mesh.side_of_name(name)?, force.clone());
+                Some(SurfaceLoad { side, force })
+            });
+            body.surface.extend(at_sides);
+        }
+        if let Some(list) = &self.springs {
+            let at_sides = list.iter();
+            let at_sides =
+                at_sides.filter_map(|(name, k)| Some((mesh.side_of_name(name)?, k.clone())));
+            body.springs = at_sides.collect();
+        }
+        if let Some(list) = &self.dirichlet {
+            body.dirichlet = vec![[const { None }; 3]; mesh.n_sides()];
+            for (name, given) in list {
+                if let Some(side) = mesh.side_of_name(name) {
+                    body.dirichlet[side] = given.clone();
+                }
+            }
+        }
+    }
+}
+
 /// The first few of some names.
 fn some(names: &[String]) -> String {
     let more = if names.len() > 12 { ", …" } else { "" };
@@ -205,47 +248,19 @@ impl Reader {
             of_cells: true,
         };
         let mut common = BodySpec::new(name.clone(), shape.mesh);
-        let elastic = self.form.is_elastic();
-        if let Some(item) = section.take(if elastic { "young" } else { "rho" }) {
-            common.rho = self.coefficient(item, &shape, 1.0)?;
-        }
-        if let Some(item) = elastic.then(|| section.take("poisson")).flatten() {
-            common.poisson = self.coefficient(item, &shape, POISSON)?;
-        }
-        if let Some(item) = section.take("load") {
-            let (fields, quadrature) = self.vector_field(item, &shape)?;
-            let quadrature = quadrature.unwrap_or_default();
-            common.load = Load { fields, quadrature };
-        }
-        let keys: &[&'static str] = match elastic {
-            true => &["traction", "pressure"],
-            false => &["flux"],
-        };
-        let mut forces = Vec::new();
-        for &key in keys {
-            for (name, item) in self.by_group(&mut section, key, &names)? {
-                let force = match key {
-                    "pressure" => Force::Pressure(self.formula(item)?),
-                    _ => {
-                        let list = self.components(item)?.into_iter();
-                        Force::Traction(list.map(Field::Expression).collect())
-                    }
-                };
-                forces.push((name, force));
-            }
-        }
-        let mut springs = Vec::new();
-        for (name, item) in self.by_group(&mut section, "spring", &names)? {
-            springs.push((name, self.formula(item)?));
-        }
-        let dirichlet = self.held_groups(&mut section, &names)?;
-        common.ramp = self.ramp(&mut section)?;
+        self.material_and_load(&mut section, &shape, &mut common)?;
+        let conditions = self.conditions_of_mesh(&mut section, &names)?;
         common.written = item.written();
         common.cut = cut.unwrap_or(Cut::Auto);
+        let placements = section.read("instances", |item| self.placements(item))?;
+        let only = section.tables("only")?;
         section.finish()?;
+        if placements.is_none() && !only.is_empty() {
+            return none_to_select(only);
+        }
 
-        let body = |(k, mesh): (usize, CellMesh)| {
-            let side = |name: &str| mesh.sides.iter().position(|s| s.name == name);
+        let mut out = Vec::new();
+        for (k, mesh) in parts.into_iter().enumerate() {
             let mut body = common.clone();
             if several {
                 body.name = format!("{name}.{}", k + 1);
@@ -254,26 +269,67 @@ impl Reader {
                 let (name, first, expected) = (&body.name, &defect.first, defect.expected);
                 return item.error(format!("body `{name}`: {first} ({expected})"));
             }
-            for (name, force) in &forces {
-                let force = force.clone();
-                body.surface
-                    .extend(side(name).map(|side| SurfaceLoad { side, force }));
-            }
-            for (name, stiffness) in &springs {
-                body.springs
-                    .extend(side(name).map(|side| (side, stiffness.clone())));
-            }
-            let mut sides: Sides = vec![[const { None }; 3]; mesh.sides.len()];
-            for (name, given) in &dirichlet {
-                if let Some(side) = side(name) {
-                    sides[side] = given.clone();
-                }
-            }
-            body.dirichlet = sides;
             body.mesh = mesh.into();
-            Ok(body)
+            body.dirichlet = vec![[const { None }; 3]; body.mesh.n_sides()];
+            conditions.apply(&mut body);
+            let Some(placements) = &placements else {
+                out.push(body);
+                continue;
+            };
+            let copies = self.copies(&body, placements, only, |section, body| {
+                self.material_and_load(section, &shape, body)?;
+                self.conditions_of_mesh(section, &names)?.apply(body);
+                Ok(())
+            })?;
+            out.extend(
+                copies
+                    .into_iter()
+                    .zip(placements)
+                    .map(|(mut copy, placement)| {
+                        if let (true, Some(name)) = (several, &placement.name) {
+                            copy.name = format!("{name}.{}", k + 1);
+                        }
+                        copy
+                    }),
+            );
+        }
+        Ok(out)
+    }
+
+    /// Loads and given values of boundary groups.
+    fn conditions_of_mesh(
+        &self,
+        section: &mut Section,
+        names: &BTreeSet<String>,
+    ) -> Result<OfGroups> {
+        let mut out = OfGroups::default();
+        let keys: &[(&'static str, bool)] = match self.form.is_elastic() {
+            true => &[("traction", false), ("pressure", true)],
+            false => &[("flux", false)],
         };
-        parts.into_iter().enumerate().map(body).collect()
+        for &(key, is_pressure) in keys {
+            let Some(list) = self.by_group(section, key, names)? else {
+                continue;
+            };
+            let force = |(name, item): (&str, &Item)| {
+                let force = match is_pressure {
+                    true => Force::Pressure(self.formula(item)?),
+                    false => {
+                        let list = self.components(item)?.into_iter();
+                        Force::Traction(list.map(Field::Expression).collect())
+                    }
+                };
+                Ok((name.to_string(), force))
+            };
+            let list: Result<_> = list.into_iter().map(force).collect();
+            out.forces.push((is_pressure, list?));
+        }
+        if let Some(list) = self.by_group(section, "spring", names)? {
+            let spring = |(name, item): (&str, &Item)| Ok((name.to_string(), self.formula(item)?));
+            out.springs = Some(list.into_iter().map(spring).collect::<Result<_>>()?);
+        }
+        out.dirichlet = self.held_groups(section, names)?;
+        Ok(out)
     }
 
     /// The entries of a table whose keys are boundary groups.
@@ -282,41 +338,32 @@ impl Reader {
         section: &mut Section<'a>,
         key: &'static str,
         names: &BTreeSet<String>,
-    ) -> Result<Vec<(&'a str, &'a Item<'a>)>> {
+    ) -> Result<Option<Vec<(&'a str, &'a Item<'a>)>>> {
         let Some(item) = section.take(key) else {
-            return Ok(Vec::new());
+            return Ok(None);
         };
         let table = item.section(key)?;
         let entry = |(name, _, item): &'a (String, usize, Item<'a>)| {
             known(item, name, names)?;
             Ok((name.as_str(), item))
         };
-        table.entries.iter().map(entry).collect()
+        let entries: Result<_> = table.entries.iter().map(entry).collect();
+        entries.map(Some)
     }
 
     /// `dirichlet`: "all", "none", a list of groups held at zero, or a table of values.
-    fn held_groups(
-        &self,
-        section: &mut Section,
-        names: &BTreeSet<String>,
-    ) -> Result<Vec<(String, [Option<Field>; 3])>> {
-        let Some(item) = section.entry("dirichlet") else {
-            section.take("dirichlet");
-            return Ok(Vec::new());
+    fn held_groups(&self, section: &mut Section, names: &BTreeSet<String>) -> Result<Option<Held>> {
+        let Some(item) = section.take("dirichlet") else {
+            return Ok(None);
         };
-        match &item.value {
-            Value::Text(text) if text == "none" => {
-                section.take("dirichlet");
-                Ok(Vec::new())
-            }
+        let list: Result<Held> = match &item.value {
+            Value::Text(text) if text == "none" => Ok(Vec::new()),
             Value::Text(_) => {
-                section.take("dirichlet");
                 let name = item.text("a boundary group")?;
                 known(item, &name, names)?;
                 Ok(vec![(name, held())])
             }
             Value::List(items) => {
-                section.take("dirichlet");
                 let one = |item: &Item| {
                     let name = item.text("a boundary group")?;
                     known(item, &name, names)?;
@@ -327,9 +374,10 @@ impl Reader {
             _ => {
                 let list = self.by_group(section, "dirichlet", names)?;
                 let one = |(name, item): (&str, &Item)| Ok((name.to_string(), self.given(item)?));
-                list.into_iter().map(one).collect()
+                list.into_iter().flatten().map(one).collect()
             }
-        }
+        };
+        list.map(Some)
     }
 }
 

@@ -4,8 +4,10 @@ mod cells;
 mod document;
 mod fields;
 mod form;
+mod instances;
 mod mesh;
 mod obstacles;
+mod placements;
 mod probes;
 mod shape;
 mod sides;
@@ -40,7 +42,7 @@ pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
             Some(source) if mesh::Source::has(item) => {
                 bodies.extend(reader.mesh_bodies(item, source)?)
             }
-            _ => bodies.push(reader.body(item, bodies.len())?),
+            _ => bodies.extend(reader.bodies_of(item, bodies.len())?),
         }
     }
     let default = scene.read("interface", |item| reader.interface(item))?;
@@ -119,14 +121,22 @@ struct Reader {
 }
 
 impl Reader {
-    /// A body; without a name it is called by its number.
-    fn body(&self, item: &Item, number: usize) -> Result<BodySpec> {
+    /// A body or its copies; without a name it is called by its number.
+    fn bodies_of(&self, item: &Item, number: usize) -> Result<Vec<BodySpec>> {
         let mut section = item.section("[[body]]")?;
         let name = section.read("name", |item| item.text("a name"))?;
         let name = name.unwrap_or_else(|| format!("body{number}"));
-        let body = self.box_of_elements(&mut section, item, name, None)?;
+        let (body, shape) = self.box_of_elements(&mut section, item, name, None)?;
+        let placements = section.read("instances", |item| self.placements(item))?;
+        let only = section.tables("only")?;
         section.finish()?;
-        Ok(body)
+        match placements {
+            Some(list) => self.copies(&body, &list, only, |section, body| {
+                self.conditions_of_box(section, &shape, body)
+            }),
+            None if only.is_empty() => Ok(vec![body]),
+            None => instances::none_to_select(only),
+        }
     }
 
     fn grid(&self, item: &Item) -> Result<GridSpec> {
@@ -141,7 +151,7 @@ impl Reader {
             ));
         }
         let name = name.unwrap_or_else(|| "b".into());
-        let whole = self.box_of_elements(&mut section, item, name, Some(bodies))?;
+        let (whole, _) = self.box_of_elements(&mut section, item, name, Some(bodies))?;
         section.finish()?;
         Ok(GridSpec { bodies, whole })
     }
@@ -153,7 +163,7 @@ impl Reader {
         item: &Item,
         name: String,
         bodies: Option<[usize; 3]>,
-    ) -> Result<BodySpec> {
+    ) -> Result<(BodySpec, Shape)> {
         let wanted = ["a point [x, y]", "a point [x, y, z]"][self.dim - 2];
         let origin = section.read("origin", |item| self.vector(item, wanted))?;
         let bent = section.take("shape");
@@ -177,27 +187,53 @@ impl Reader {
             of_cells: false,
         };
         let mut body = BodySpec::new(name, mesh);
-        let elastic = self.form.is_elastic();
-        if let Some(item) = section.take(if elastic { "young" } else { "rho" }) {
-            body.rho = self.coefficient(item, &shape, 1.0)?;
+        self.conditions_of_box(section, &shape, &mut body)?;
+        body.order = section.read("order", order)?.unwrap_or(self.order);
+        (body.map, body.written) = (map, item.written());
+        Ok((body, shape))
+    }
+
+    /// Material, loads and given values of a box: each key that is there replaces what the body has.
+    fn conditions_of_box(
+        &self,
+        section: &mut Section,
+        shape: &Shape,
+        body: &mut BodySpec,
+    ) -> Result<()> {
+        self.material_and_load(section, shape, body)?;
+        self.surface_loads(section, &mut body.surface)?;
+        if let Some(springs) = self.springs(section)? {
+            body.springs = springs;
         }
-        if let Some(item) = elastic.then(|| section.take("poisson")).flatten() {
-            body.poisson = self.coefficient(item, &shape, POISSON)?;
-        }
-        if let Some(item) = section.take("load") {
-            let (fields, quadrature) = self.vector_field(item, &shape)?;
-            let quadrature = quadrature.unwrap_or_default();
-            body.load = Load { fields, quadrature };
-        }
-        body.surface = self.surface_loads(section)?;
-        body.springs = self.springs(section)?;
         if let Some(item) = section.take("dirichlet") {
             body.dirichlet = self.sides(item)?;
         }
-        body.order = section.read("order", order)?.unwrap_or(self.order);
-        body.ramp = self.ramp(section)?;
-        (body.map, body.written) = (map, item.written());
-        Ok(body)
+        Ok(())
+    }
+
+    /// Material, load and ramp of a body: each key that is there replaces what the body has.
+    fn material_and_load(
+        &self,
+        section: &mut Section,
+        shape: &Shape,
+        body: &mut BodySpec,
+    ) -> Result<()> {
+        let elastic = self.form.is_elastic();
+        if let Some(item) = section.take(if elastic { "young" } else { "rho" }) {
+            body.rho = self.coefficient(item, shape, 1.0)?;
+        }
+        if let Some(item) = elastic.then(|| section.take("poisson")).flatten() {
+            body.poisson = self.coefficient(item, shape, POISSON)?;
+        }
+        if let Some(item) = section.take("load") {
+            let (fields, quadrature) = self.vector_field(item, shape)?;
+            let quadrature = quadrature.unwrap_or_default();
+            body.load = Load { fields, quadrature };
+        }
+        if let Some(ramp) = self.ramp(section)? {
+            body.ramp = Some(ramp);
+        }
+        Ok(())
     }
 
     /// `elements` or `elements_per_subdomain`, and `subdomains`.

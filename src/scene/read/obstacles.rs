@@ -1,6 +1,7 @@
 //! [[obstacle]].
 
 use super::document::{Item, Section, Value};
+use super::instances::fits;
 use super::mesh::{load_beside, Source};
 use super::ties::body_name;
 use super::Reader;
@@ -37,12 +38,21 @@ impl Reader {
             false => Some(body_name(named, bodies, wanted)?),
         };
         let meant: Vec<&BodySpec> = match &body {
-            Some(name) => bodies.iter().filter(|b| b.name == *name).collect(),
+            Some(name) => bodies.iter().filter(|b| fits(name, &b.name)).collect(),
             None => bodies.iter().collect(),
         };
+        let several = body.as_ref().is_some_and(|name| name.contains('*'));
+        if several && meant.is_empty() {
+            return named.error(format!("{} fits no body", named.value.kind()));
+        }
         let of_cells = meant.iter().any(|b| b.mesh.cells().is_some());
         let written = section.need("side", "a side, a list of them or \"all\"")?;
         let sides = match of_cells {
+            false if several => {
+                let sides = self.obstacle_sides(written)?;
+                let each = meant.iter().map(|b| (Some(b.name.clone()), sides.clone()));
+                each.collect()
+            }
             false => vec![(body.clone(), self.obstacle_sides(written)?)],
             true => self.obstacle_groups(written, &meant)?,
         };

@@ -63,8 +63,13 @@ impl Reader {
         Ok(out)
     }
 
-    /// Loads on sides: `flux` of a scalar, `traction` and `pressure` in elasticity.
-    pub(super) fn surface_loads(&self, section: &mut Section) -> Result<Vec<SurfaceLoad>> {
+    /// Loads on sides: `flux` of a scalar, `traction` and `pressure` in elasticity. A key that is there replaces what
+    /// `loads` has of its kind.
+    pub(super) fn surface_loads(
+        &self,
+        section: &mut Section,
+        loads: &mut Vec<SurfaceLoad>,
+    ) -> Result<()> {
         let traction = |item: &Item| {
             let list = self.components(item)?;
             let fields = list.into_iter().map(Field::Expression);
@@ -78,16 +83,20 @@ impl Reader {
                 section.read("pressure", |i| self.by_side(i, "pressure", pressure))?,
             ],
         };
-        let loads = found.into_iter().flatten().flatten();
-        Ok(loads
-            .map(|(side, force)| SurfaceLoad { side, force })
-            .collect())
+        for (kind, found) in found.into_iter().enumerate() {
+            let Some(found) = found else { continue };
+            let is_pressure = |load: &SurfaceLoad| matches!(load.force, Force::Pressure(_));
+            loads.retain(|load| is_pressure(load) != (kind == 1));
+            let each = found.into_iter();
+            loads.extend(each.map(|(side, force)| SurfaceLoad { side, force }));
+        }
+        Ok(())
     }
 
     /// Elastic foundations on sides.
-    pub(super) fn springs(&self, section: &mut Section) -> Result<Vec<(usize, Field)>> {
+    pub(super) fn springs(&self, section: &mut Section) -> Result<Option<Vec<(usize, Field)>>> {
         let read = |item| self.by_side(item, "`spring`", |i| self.formula(i));
-        Ok(section.read("spring", read)?.unwrap_or_default())
+        section.read("spring", read)
     }
 
     /// A number or an expression as a field.

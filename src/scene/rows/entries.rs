@@ -108,7 +108,7 @@ fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) ->
         return (interface.shape == Shape::Face).then_some(f64::INFINITY);
     }
     let (pair, sides) = (interface.bodies, interface.sides);
-    let unbent = |k: usize| bodies[k].mesh().grid().is_some() && bodies[k].spec.map.is_none();
+    let unbent = |k: usize| bodies[k].mesh().grid().is_some() && bodies[k].spec.is_straight();
     if pair.iter().all(|&k| unbent(k)) {
         return None;
     }
