@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup build run test test-newer fmt lint docs clean
+.PHONY: help setup build run install uninstall test test-newer fmt lint docs clean
 
 OUT ?= out
 TARGET := $(if $(CARGO_TARGET_DIR),$(CARGO_TARGET_DIR),target)
@@ -55,6 +55,16 @@ run: build ## Solve the model problems with contact and without, compare with PE
 	@echo "Solution of the 2x2 scene (report, picture, ParaView):  $(abspath $(OUT))/poisson"
 	@echo "Comparison with PETSc's solvers:                        $(abspath $(OUT))/compare.json"
 	@echo "Table 1 and Figure 3 (CSV, JSON, PNG, SVG):             $(abspath $(OUT))/table1"
+
+# Where things go. DESTDIR is put in front of all paths, for packagers; LIBDIR is PREFIX/lib.
+PREFIX ?= /usr/local
+
+install: build ## Install program, library, header, manual pages and examples below PREFIX (make install PREFIX=...)
+	scripts/install.sh "$(TARGET)/release" "$(PREFIX)" "$(DESTDIR)"
+
+uninstall: ## Remove what was installed below PREFIX
+	@cd "$(DESTDIR)$(PREFIX)" && xargs -d '\n' rm -f <share/fetifeti/installed && \
+	find share/fetifeti share/doc/fetifeti lib*/cmake/FetiFeti -depth -type d -empty -delete 2>/dev/null; true
 
 test: setup ## Check format, lints and documentation, then run every test
 	cargo fmt --all -- --check

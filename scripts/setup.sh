@@ -26,8 +26,8 @@ stop() {
 
 # The packages that the build and the tests need. A PETSc or SLEPc named by the user replaces Debian's.
 packages=(build-essential ca-certificates pkg-config libopenmpi-dev openmpi-bin libclang-dev libopenblas0-serial)
-# PETSc's own examples, a Fortran compiler and petsc4py are for the tests of the plug-in.
-packages+=(gfortran)
+# PETSc's own examples, a Fortran compiler, petsc4py and CMake are for the tests of the plug-in.
+packages+=(gfortran cmake)
 [ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev libpetsc3.18-dev-examples python3-petsc4py-real)
 # The orderings METIS (through CHOLMOD of SuiteSparse) and Scotch; the build goes without what is missing.
 [ -n "${PETSC_DIR:-}" ] || packages+=(libsuitesparse-dev libscotch-dev)

@@ -10,6 +10,16 @@
 
 #include <petscksp.h>
 
+#define FETIFETI_VERSION_MAJOR    0
+#define FETIFETI_VERSION_MINOR    1
+#define FETIFETI_VERSION_SUBMINOR 0
+/* Whether the library is at least this version */
+#define FETIFETI_VERSION_GE(major, minor, subminor) \
+  (FETIFETI_VERSION_MAJOR > (major) || \
+   (FETIFETI_VERSION_MAJOR == (major) && \
+    (FETIFETI_VERSION_MINOR > (minor) || \
+     (FETIFETI_VERSION_MINOR == (minor) && FETIFETI_VERSION_SUBMINOR >= (subminor)))))
+
 /*S
    FetiFeti - A solver for several bodies that are tied or in contact: min 1/2 u'Ku - f'u subject to B u = c, B u <= c
 

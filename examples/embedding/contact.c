@@ -3,8 +3,8 @@
    above, solved by any KSP. With -contact: a second block with a curved lower side lies on the first one, and the press
    is on that. What contact adds to the program stands between "contact" and "end of contact".
 
-     lib=$PWD/../../target/release
-     mpicc contact.c -o contact $(pkg-config --cflags --libs PETSc) -I../../wrappers -L$lib -lfetifeti -Wl,-rpath,$lib
+     mpicc contact.c -o contact $(pkg-config --cflags --libs fetifeti) \
+         -Wl,-rpath,$(pkg-config --variable=libdir fetifeti)
      mpirun -n 4 ./contact -contact -m 17
 */
 static const char help[] = "An elastic block under a press, or two of them in contact.\n";

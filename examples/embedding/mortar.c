@@ -1,8 +1,8 @@
 /*
    Two blocks of plane elasticity with different meshes in contact: FetiFetiAddMortar() joins them. The upper one is
    pressed on the lower one by a constant load, so the pressure between them is that load everywhere.
-     lib=$PWD/../../target/release
-     mpicc mortar.c -o mortar $(pkg-config --cflags --libs PETSc) -I../../wrappers -L$lib -lfetifeti -Wl,-rpath,$lib
+     mpicc mortar.c -o mortar $(pkg-config --cflags --libs fetifeti) \
+         -Wl,-rpath,$(pkg-config --variable=libdir fetifeti)
      mpirun -n 4 ./mortar -fetifeti_ksp_rtol 1e-12
 */
 #include <petscdmda.h>

@@ -7,6 +7,7 @@ mod bodies;
 mod capi_c;
 mod capi_languages;
 mod examples;
+mod installed;
 mod ksp;
 mod languages;
 mod mortar;
