@@ -474,5 +474,6 @@ fn contact_report(
         bodies: balance::bodies(session, scene, solver, &course.rows, course.step)?,
         load_steps: course.load_steps.clone(),
         updated: scene.is_renewed(),
+        renewable: !scene.is_renewed() && scene.may_be_renewed(),
     }))
 }

@@ -127,6 +127,12 @@ impl Side {
         Side::new(self.dim, self.points.clone(), faces)
     }
 
+    /// The same side at another place, `way` from here.
+    pub fn moved(&self, way: [f64; 3]) -> Side {
+        let points = self.points.iter().map(|x| [0, 1, 2].map(|d| x[d] + way[d]));
+        Side::new(self.dim, points.collect(), self.faces.clone())
+    }
+
     /// The longest edge of a piece.
     pub fn longest(&self) -> f64 {
         self.pieces.iter().map(|p| self.size(p)).fold(0.0, f64::max)

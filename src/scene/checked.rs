@@ -9,11 +9,11 @@ use super::model::expr::Expr;
 use super::model::joints::Pair;
 use super::model::spec::{lee, ByDefault, Faces, GridSpec, ProbeSpec, SceneSpec};
 use super::model::steps::Steps;
-use super::renewal::Renewal;
+use super::renewal::{may_renew, Renewal};
 use super::rows::all::{Joined, Rows};
 use super::rows::equations::Equation;
 use super::rows::mortar_row::MortarRow;
-use super::rows::obstacles::Obstacle;
+use super::rows::obstacles::{Obstacle, Standing};
 use super::rows::points::Point;
 use super::{axis, cut, read, rows, validate};
 use crate::error::{Error, Result};
@@ -77,6 +77,8 @@ pub struct Scene {
     pub options: Vec<(String, String)>,
     /// What of the input is left out, ignored or replaced: a sentence each.
     pub notes: Vec<String>,
+    /// Whether load steps could renew its contacts.
+    pub(crate) renewable: bool,
     /// What load steps renew contacts from, if they do.
     pub(super) renewal: Option<Arc<Renewal>>,
     /// Number of subdomains.
@@ -144,8 +146,13 @@ impl Scene {
             steps.renumber(&spec);
         }
         let mut interfaces = rows::entries::find(&bodies, matching, &spec, &steps)?;
-        let mut obstacles =
-            rows::obstacles::find(&bodies, &spec.obstacles, &spec.form, spec.contacts.len())?;
+        let mut obstacles = rows::obstacles::find(
+            &bodies,
+            &spec.obstacles,
+            &spec.form,
+            spec.contacts.len(),
+            Standing::START,
+        )?;
         let joined = Joined {
             spec: &spec,
             interfaces: &mut interfaces,
@@ -159,8 +166,8 @@ impl Scene {
             notes,
         } = joined.rows(&mut bodies, &steps, None)?;
         obstacles.iter_mut().for_each(Obstacle::finish);
-        let renewal =
-            written.map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &mortar));
+        let renewal = written
+            .map(|written| Renewal::new(written, &spec, &bodies, &interfaces, &obstacles, &mortar));
         let renewal = renewal.transpose()?.map(Arc::new);
         spec.notes.extend(notes);
         let all = spec.ties.iter().map(|t| &t.pair);
@@ -186,6 +193,7 @@ impl Scene {
             steps,
             exact: spec.exact,
             notes: spec.notes,
+            renewable: may_renew(&spec.form, &spec.contacts),
             renewal,
             n_subdomains: first_subdomain,
         })

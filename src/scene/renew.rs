@@ -12,6 +12,11 @@ impl Scene {
         self.renewal.is_some()
     }
 
+    /// Whether `[steps] update = true` would be accepted.
+    pub fn may_be_renewed(&self) -> bool {
+        self.renewable
+    }
+
     /// The number of pairs of bodies whose contact is renewed, and of those whose contact stays as it is because they
     /// are tied in part or meet in a corner.
     pub fn renewed_pairs(&self) -> [usize; 2] {

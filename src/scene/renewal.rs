@@ -8,21 +8,27 @@
 //!     n·(u_1 − u_2) ≤ d + n·(u₀_1 − u₀_2) = n·(X_2 − X_1)
 //! ```
 //!
-//! with the undeformed positions X. Ties keep the pairing that they have.
+//! with the undeformed positions X. Ties keep the pairing that they have. An obstacle that moves by m f(t) is looked at
+//! where the last step has left it; its rows have X_2 where it was given, and m f at the end of the step besides. What
+//! `adjust` closes at the start is kept as a way of the node: it adds the part along the present normal to the gap.
+
+use std::collections::HashMap;
 
 use super::body::Body;
 use super::geometry::interface::{Interface, Link, Shape};
 use super::geometry::matching::Matching;
 use super::geometry::mortar::is_for_contact;
-use super::model::joints::{ContactSpec, Extent, ObstacleSpec, Pair};
+use super::model::joints::{ContactSpec, Extent, Pair};
 use super::model::profile::Profile;
 use super::model::spec::SceneSpec;
-use super::model::steps::Steps;
+use super::model::steps::{Factors, Steps};
 use super::rows::all::{Joined, Rows};
 use super::rows::mortar_row::MortarRow;
-use super::rows::obstacles::Obstacle;
+use super::rows::obstacles::{Adjusted, Obstacle, Standing};
 use super::rows::{entries, obstacles, surfaces};
 use crate::error::{Error, Result};
+use crate::fem::Form;
+use crate::linalg::vec3::dot;
 use crate::substructures::{BodyNode, RowSource};
 
 /// What contacts are renewed from.
@@ -36,6 +42,10 @@ pub(crate) struct Renewal {
     rows: Vec<MortarRow>,
     /// The sides of bodies that touched to begin with, and which of them carries multipliers.
     touching: Vec<([usize; 2], [usize; 2], usize)>,
+    /// What `adjust` did to begin with: the way from a node that carries a multiplier, by the other body and the node,
+    /// to the place at which it would touch; and the same beside obstacles.
+    adjusted: HashMap<(usize, BodyNode), [f64; 3]>,
+    beside: Adjusted,
 }
 
 impl Renewal {
@@ -48,6 +58,7 @@ impl Renewal {
         spec: &SceneSpec,
         bodies: &[Body],
         interfaces: &[Interface],
+        obstacles: &[Obstacle],
         mortar: &[MortarRow],
     ) -> Result<Renewal> {
         check(spec)?;
@@ -56,6 +67,8 @@ impl Renewal {
             kept: Vec::new(),
             rows: Vec::new(),
             touching: Vec::new(),
+            adjusted: HashMap::new(),
+            beside: obstacles::adjusted(obstacles, spec.contacts.len()),
         };
         let mut place = vec![None; interfaces.len()];
         for (k, interface) in interfaces.iter().enumerate() {
@@ -67,6 +80,18 @@ impl Renewal {
                 let which = mortar.or_else(|| carrier(spec, bodies, interface.bodies));
                 let both = (interface.bodies, interface.sides);
                 out.touching.push((both.0, both.1, which.unwrap_or(0)));
+            } else if let Some(own) = of_entry(spec, bodies, interface) {
+                let other = interface.bodies[1 - own];
+                out.adjusted
+                    .extend(interface.adjusted.iter().map(|(&i, &by)| {
+                        let carrier = BodyNode {
+                            body: interface.bodies[own],
+                            node: interface.shared[i].nodes[own],
+                        };
+                        // Adding to the distance is going away from the other body.
+                        let normal = outward(interface, i, own);
+                        ((other, carrier), normal.map(|n| 0.0 - n * by))
+                    }));
             }
         }
         for row in mortar {
@@ -98,6 +123,32 @@ pub(super) fn is_renewed(interface: &Interface) -> bool {
     face && !interface.shared.iter().any(|s| tied(s.link))
 }
 
+/// The body with the multipliers of an interface that an entry names, 0 or 1: where nodes match, that of the entry.
+fn of_entry(spec: &SceneSpec, bodies: &[Body], interface: &Interface) -> Option<usize> {
+    if let Some(mortar) = &interface.mortar {
+        return Some(mortar.multipliers);
+    }
+    let number = interface.entry?.checked_sub(spec.ties.len())?;
+    let contact = &spec.contacts[number];
+    let Pair::Named(first, _) = &contact.pair else {
+        return None;
+    };
+    let which = contact.multipliers.unwrap_or(0);
+    match bodies[interface.bodies[0]].spec.name == *first {
+        true => Some(which),
+        false => Some(1 - which),
+    }
+}
+
+/// The normal at a shared node, out of one of the bodies.
+fn outward(interface: &Interface, shared: usize, body: usize) -> [f64; 3] {
+    let normal = interface.normals[shared];
+    match body {
+        0 => normal,
+        _ => normal.map(|n| 0.0 - n),
+    }
+}
+
 /// The body of a pair that a contact says to carry multipliers, 0 or 1.
 fn carrier(spec: &SceneSpec, bodies: &[Body], pair: [usize; 2]) -> Option<usize> {
     let [a, b] = pair.map(|k| &bodies[k].spec.name);
@@ -108,6 +159,17 @@ fn carrier(spec: &SceneSpec, bodies: &[Body], pair: [usize; 2]) -> Option<usize>
     })
 }
 
+/// Whether contacts go on having a meaning once bodies have moved.
+pub(super) fn may_renew(form: &Form, contacts: &[ContactSpec]) -> bool {
+    form.is_elastic() && !contacts.iter().any(is_of_common_face)
+}
+
+/// Whether a contact is about places along the common face of two bodies.
+fn is_of_common_face(contact: &ContactSpec) -> bool {
+    let whole = matches!(contact.extent, Extent::All | Extent::None);
+    contact.sides.is_none() && (!whole || matches!(contact.gap, Profile::Table(_)))
+}
+
 /// Refuses what has no meaning once bodies have moved.
 fn check(spec: &SceneSpec) -> Result<()> {
     let steps = spec.steps.as_ref().map_or("", |s| s.written.as_str());
@@ -116,33 +178,14 @@ fn check(spec: &SceneSpec) -> Result<()> {
             "{steps}`update` in [steps] of a scalar scene, in which nothing moves (elasticity was expected)"
         )));
     }
-    let adjusts = |c: &&ContactSpec| c.adjust != 0.0 || !c.adjusted.is_empty();
-    if let Some(contact) = spec.contacts.iter().find(adjusts) {
-        return Err(Error::Input(format!(
-            "{}`adjust` of a contact that `update` in [steps] renews, where gaps are those of the moved bodies (no \
-             `adjust` was expected; a `gap` adds to the distance of the sides)",
+    match spec.contacts.iter().find(|c| is_of_common_face(c)) {
+        Some(contact) => Err(Error::Input(format!(
+            "{}a part of a common face, or a gap along it, for a contact that `update` in [steps] renews: the common \
+             face changes when bodies slide (`sides` were expected: places are then those along a side)",
             contact.written
-        )));
+        ))),
+        None => Ok(()),
     }
-    let adjusts = |o: &&ObstacleSpec| o.adjust != 0.0 || o.motion != [0.0; 3];
-    if let Some(obstacle) = spec.obstacles.iter().find(adjusts) {
-        return Err(Error::Input(format!(
-            "{}`adjust` or `move` of an obstacle that `update` in [steps] renews, for which neither is possible (none \
-             was expected; a body that `dirichlet` moves may take the place of an obstacle that moves)",
-            obstacle.written
-        )));
-    }
-    for contact in spec.contacts.iter().filter(|c| c.sides.is_none()) {
-        let whole = matches!(contact.extent, Extent::All | Extent::None);
-        if !whole || matches!(contact.gap, Profile::Table(_)) {
-            return Err(Error::Input(format!(
-                "{}a part of a common face, or a gap along it, for a contact that `update` in [steps] renews: the \
-                 common face changes when bodies slide (`sides` were expected: places are then those along a side)",
-                contact.written
-            )));
-        }
-    }
-    Ok(())
 }
 
 impl Renewal {
@@ -165,10 +208,18 @@ impl Renewal {
             steps.renumber(&spec);
         }
         entries::rejoin(bodies, &mut found, &spec, steps)?;
+        // The obstacles stand where the last step has left them.
+        let factors = Factors::of(steps, step.saturating_sub(1))?;
+        let standing = Standing::after(factors, &self.beside);
         let mut interfaces = self.kept.clone();
         interfaces.extend(found);
-        let mut obstacles =
-            obstacles::find(bodies, &spec.obstacles, &spec.form, spec.contacts.len())?;
+        let mut obstacles = obstacles::find(
+            bodies,
+            &spec.obstacles,
+            &spec.form,
+            spec.contacts.len(),
+            standing,
+        )?;
         let joined = Joined {
             spec: &spec,
             interfaces: &mut interfaces,
@@ -178,6 +229,26 @@ impl Renewal {
         let rows = joined.rows(bodies, steps, Some(step))?;
         obstacles.iter_mut().for_each(Obstacle::finish);
         Ok((interfaces, obstacles, rows))
+    }
+}
+
+impl Renewal {
+    /// Nodes that were adjusted at the start stay so; body number `which` of the pair carries the multipliers.
+    fn adjust(&self, interface: &mut Interface, which: usize) {
+        if self.adjusted.is_empty() {
+            return;
+        }
+        let other = interface.bodies[1 - which];
+        let body = interface.bodies[which];
+        for i in 0..interface.shared.len() {
+            let node = interface.shared[i].nodes[which];
+            let Some(way) = self.adjusted.get(&(other, BodyNode { body, node })) else {
+                continue;
+            };
+            let by = 0.0 - dot(*way, outward(interface, i, which));
+            interface.distances[i] += by;
+            interface.adjusted.insert(i, by);
+        }
     }
 }
 
@@ -201,6 +272,7 @@ fn sides(
         };
         if let Some(mut found) = found {
             found.entry = entry;
+            renewal.adjust(&mut found, which);
             out.push(found);
         }
     };

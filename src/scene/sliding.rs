@@ -47,16 +47,31 @@ pub(crate) struct Sliders<'a> {
     mortar: HashMap<(RowSource, [Option<BodyNode>; 2]), &'a MortarRow>,
 }
 
+impl Scene {
+    /// How far an obstacle has moved at load step `step`.
+    ///
+    /// # Panics
+    /// For a step that the scene does not have.
+    pub(crate) fn way_of(&self, obstacle: &Obstacle, step: usize) -> [f64; 3] {
+        let factors = Factors::of(&self.steps, step).expect("the step exists");
+        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
+        obstacle.motion.map(|m| m * factors.gap(entry))
+    }
+}
+
 impl<'a> Sliders<'a> {
     /// The search at load step `step`.
     ///
     /// # Panics
     /// For a step that the scene does not have.
     pub fn new(scene: &'a Scene, step: usize) -> Sliders<'a> {
-        let factors = Factors::of(&scene.steps, step).expect("the step exists");
         let motion = |o: &Obstacle| {
-            let entry = o.limits.all().first().and_then(|l| l.entry);
-            o.motion.map(|m| m * factors.gap(entry))
+            let way = scene.way_of(o, step);
+            // Where contacts are renewed, displacements are those since the last step.
+            match scene.is_renewed() && step > 0 {
+                true => minus(way, scene.way_of(o, step - 1)),
+                false => way,
+            }
         };
         let (mut faces, mut sizes) = (HashMap::new(), HashMap::new());
         for (body, side) in scene.sides_that_may_touch() {

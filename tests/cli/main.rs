@@ -12,6 +12,7 @@ mod energy;
 mod input;
 mod mortar;
 mod renewal;
+mod renewal_obstacles;
 mod sliding;
 mod solve;
 mod table;

@@ -8,7 +8,7 @@ use mpi::{Output, Scratch};
 use program::{fetifeti, run_fetifeti};
 use serde_json::Value;
 
-fn run(name: &str, scene: &str, ranks: usize, more: &[&str]) -> (Output, Option<Value>) {
+pub(super) fn run(name: &str, scene: &str, ranks: usize, more: &[&str]) -> (Output, Option<Value>) {
     let scratch = Scratch::new(&format!("renewal-{name}-{ranks}"));
     let file = scratch.path("s.toml");
     fs::write(&file, scene).expect("a scene is written");
@@ -38,17 +38,17 @@ fn solved(name: &str, scene: &str, ranks: usize) -> Value {
     report.expect("a report")
 }
 
-fn interface(report: &Value, k: usize, key: &str) -> f64 {
+pub(super) fn interface(report: &Value, k: usize, key: &str) -> f64 {
     number(&report["contact"]["interfaces"][k][key])
 }
 
 /// u of a probe.
-fn probe(report: &Value, k: usize) -> Vec<f64> {
+pub(super) fn probe(report: &Value, k: usize) -> Vec<f64> {
     let u = report["probes"][k]["u"].as_array().expect("a displacement");
     u.iter().map(number).collect()
 }
 
-fn near(what: &str, found: f64, expected: f64, tolerance: f64) {
+pub(super) fn near(what: &str, found: f64, expected: f64, tolerance: f64) {
     let near = (found - expected).abs() <= tolerance * expected.abs().max(1e-300);
     assert!(near, "{what}: {found} and not {expected}");
 }
@@ -243,13 +243,6 @@ fn every_rank_may_write_its_own_pieces() {
 fn what_cannot_be_renewed_is_refused() {
     let scene = blocks(1.1, 3.15, 6, true, UPDATE);
     let cases = [
-        (
-            scene.replace(
-                "sides = [\"bottom\", \"top\"]\n",
-                "sides = [\"bottom\", \"top\"]\nadjust = 0.1\n",
-            ),
-            "`adjust` of a contact that `update` in [steps] renews",
-        ),
         (
             blocks(1.0, 3.15, 4, true, UPDATE)
                 .replace("sides = [\"bottom\", \"top\"]", "range = [0, 0.5]"),

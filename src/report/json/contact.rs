@@ -35,6 +35,9 @@ pub struct ContactReport {
     /// Whether normals, pairing and gaps are renewed at each load step.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub updated: bool,
+    /// Whether they are not, but could be.
+    #[serde(skip)]
+    pub renewable: bool,
 }
 
 /// Sliding by more than this part of a face is not small: a node is then nearer to a neighbour of the node that it is

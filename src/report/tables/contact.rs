@@ -229,8 +229,12 @@ fn sliding(r: &ContactReport) -> String {
         let what = far.join(" and ");
         text += &match r.updated {
             false => format!(
-                "This is not small ({what}): normals, pairing and gaps are those of the undeformed bodies. \
-                 `[steps] update = true` renews them at each load step.\n"
+                "This is not small ({what}): normals, pairing and gaps are those of the undeformed bodies{}.\n",
+                match r.renewable {
+                    true => ". `[steps] update = true` renews them at each load step",
+                    // A deck has no such key, and neither has a contact on a part of a common face.
+                    false => ", and the answer holds for these",
+                }
             ),
             true => format!(
                 "Between two load steps this is not small ({what}): normals, pairing and gaps are those at the \

@@ -145,6 +145,8 @@ impl DeckScenes {
             loose::Language::Deck,
         );
         scene.notes.extend(loose);
+        // A deck cannot ask for it.
+        scene.renewable = false;
         Ok(scene)
     }
 

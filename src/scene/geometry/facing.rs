@@ -179,6 +179,7 @@ pub(crate) fn interface(
         entry: None,
         distances,
         limits: Limits::default(),
+        adjusted: Default::default(),
         mortar: None,
     }
 }

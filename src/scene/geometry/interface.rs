@@ -1,5 +1,7 @@
 //! The interface of two bodies: pairs of nodes, and how each pair is joined.
 
+use std::collections::BTreeMap;
+
 use super::mortar_sides::Mortar;
 use crate::scene::model::profile::Limits;
 
@@ -73,6 +75,8 @@ pub struct Interface {
     pub entry: Option<usize>,
     /// The distance of the two nodes along the normal; zero where they coincide.
     pub distances: Vec<f64>,
+    /// What `adjust` adds to the distances at nodes of `shared` that count as touching, with the nodes' numbers there.
+    pub adjusted: BTreeMap<usize, f64>,
     /// The gaps at the nodes in contact.
     pub limits: Limits,
     /// Where nodes do not match: `shared` then has the nodes that carry multipliers, each with the nearest node of the

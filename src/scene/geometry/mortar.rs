@@ -71,6 +71,7 @@ pub(crate) fn interface(
         entry: None,
         distances,
         limits: Limits::default(),
+        adjusted: Default::default(),
         mortar: Some(Mortar {
             multipliers,
             area: rows.iter().map(|r| r.area).sum(),

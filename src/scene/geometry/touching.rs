@@ -124,6 +124,7 @@ fn common(bodies: &[Body], meshes: [&BoxMesh; 2], [a, b]: [usize; 2]) -> Result<
         distances: vec![0.0; shared.len()],
         shared,
         limits: Limits::default(),
+        adjusted: Default::default(),
         mortar: None,
     }))
 }

@@ -220,8 +220,9 @@ fn facing(
         // The first body of the entry is the second of the pair if its number is higher.
         let first = usize::from(pair[0] != a);
         let shared = interface.shared.iter().map(|s| s.nodes[first]);
-        for (distance, node) in interface.distances.iter_mut().zip(shared) {
+        for (i, (distance, node)) in interface.distances.iter_mut().zip(shared).enumerate() {
             if distance.abs() <= within || adjusted.contains(&BodyNode { body: a, node }) {
+                interface.adjusted.insert(i, 0.0 - *distance);
                 *distance = 0.0;
             }
         }

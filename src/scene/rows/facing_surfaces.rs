@@ -7,7 +7,7 @@ use super::mortar_row::MortarRow;
 use super::obstacles::Obstacle;
 use super::points::Inequality;
 use crate::fem::Form;
-use crate::linalg::vec3::{minus, norm};
+use crate::linalg::vec3::{dot, minus, norm};
 use crate::mortar::Face;
 use crate::scene::body::Body;
 use crate::scene::geometry::mortar::surface;
@@ -53,28 +53,32 @@ impl Opposite {
     }
 }
 
-/// The part of a surface, at a distance of `reach` at most, that lies opposite some nodes of a side; `None` if there is
-/// none.
+/// The part of a surface, which has moved by `way`, at a distance of `reach` at most, that lies opposite some nodes of a
+/// side; `None` if there is none. Distances are those from the surface as it is given.
 pub(super) fn find(
     spec: &BodySpec,
     form: &Form,
     side: usize,
-    rigid: &RigidSurface,
+    (rigid, way): (&RigidSurface, [f64; 3]),
     reach: Option<f64>,
     nodes: impl Iterator<Item = usize>,
 ) -> Option<Opposite> {
     let own = surface(spec, side, form.element);
+    let moved = match way == [0.0; 3] {
+        true => rigid.side.clone(),
+        false => Arc::new(rigid.side.moved(way)),
+    };
     let reach = reach.unwrap_or_else(|| {
         // Any distance.
         let [low, high] = rigid.bounds();
         let far = own.0.points().iter().fold(0.0_f64, |far, x| {
             far.max(norm(minus(*x, low))).max(norm(minus(*x, high)))
         });
-        far + rigid.size()
+        far + rigid.size() + norm(way)
     });
     let points = rigid.side.points().to_vec();
     let all = (0..points.len()).collect();
-    let surfaces = Surfaces::new([own, (rigid.side.clone(), all)], reach);
+    let surfaces = Surfaces::new([own, (moved, all)], reach);
     let meant: HashSet<usize> = nodes.collect();
     let rows = surfaces.rows(form, &|node| !meant.contains(&node));
     let nodes: Vec<usize> = rows.iter().map(|r| r.node).collect();
@@ -100,20 +104,24 @@ pub(super) fn find(
 }
 
 /// The part of a plane, a cylinder or a sphere that lies opposite some nodes of a side, for sides at which rows at
-/// single nodes say nothing of pressures: the faces of the side, every node moved to the nearest point of the obstacle.
+/// single nodes say nothing of pressures: the faces of the side, every node moved to the nearest point of the obstacle,
+/// which has moved by `way`. Distances are those from the obstacle as it is given.
 pub(super) fn beneath(
     spec: &BodySpec,
     form: &Form,
     side: usize,
-    rigid: &Rigid,
+    (rigid, way): (&Rigid, [f64; 3]),
     nodes: impl Iterator<Item = usize>,
 ) -> Option<Opposite> {
     let (own, list) = surface(spec, side, form.element);
     let copy = own.reversed();
     // A node at which no point is the nearest is refused if a row is asked for it.
-    let foot = |x: &[f64; 3]| match rigid.distance(*x) {
-        Some((distance, normal)) => [0, 1, 2].map(|d| x[d] - distance * normal[d]),
-        None => *x,
+    let foot = |x: &[f64; 3]| {
+        let from = minus(*x, way);
+        match rigid.distance(from) {
+            Some((distance, normal)) => [0, 1, 2].map(|d| from[d] - distance * normal[d]),
+            None => from,
+        }
     };
     let points: Vec<[f64; 3]> = own.points().iter().map(foot).collect();
     let all = (0..points.len()).collect();
@@ -123,7 +131,7 @@ pub(super) fn beneath(
     let meant: HashSet<usize> = nodes.collect();
     let rows = surfaces.rows(form, &|node| !meant.contains(&node));
     let nearest = rows.iter().filter_map(|row| {
-        let (_, normal) = rigid.distance(spec.position(row.node))?;
+        let (_, normal) = rigid.distance(minus(spec.position(row.node), way))?;
         let out = normal.map(|v| 0.0 - v);
         let distance = row.distance(spec, &|k| points[k], out);
         Some((row.node, (distance, normal)))
@@ -154,7 +162,8 @@ pub(super) fn apart(
         spec.name,
         rigid.name
     );
-    if find(spec, form, side, &rigid.reversed(), reach, nodes()).is_some() {
+    let reversed = rigid.reversed();
+    if find(spec, form, side, (&reversed, [0.0; 3]), reach, nodes()).is_some() {
         return format!(
             "{names} do not face each other: the normals of the surface point away from the body (`reverse = true`, or \
              faces with normals to the free side, were expected)"
@@ -206,9 +215,13 @@ impl Obstacle {
             let node = row.node;
             let (known, direction) = self.ahead(node);
             // What counts as touching does.
+            let adjusted = self.adjusted.get(&node).copied().unwrap_or_default();
             let distance = match known == 0.0 {
                 true => 0.0,
-                false => row.distance(&bodies[body].spec, &|k| opposite.points[k], direction),
+                false => {
+                    let far = row.distance(&bodies[body].spec, &|k| opposite.points[k], direction);
+                    far - dot(adjusted, direction)
+                }
             };
             let (mut terms, mut given) = (Vec::new(), 0.0);
             for &(k, v) in &row.own {

@@ -248,9 +248,10 @@ impl<'a> Pairing<'a> {
             let [own, other] =
                 [self.own, 1 - self.own].map(|k| &self.bodies[self.interface.bodies[k]].spec);
             let closed = self.interface.distances[i] == 0.0;
+            let adjusted = self.interface.adjusted.get(&i).copied().unwrap_or(0.0);
             let distance = match closed {
                 true => 0.0,
-                false => row.distance(own, &|k| other.undeformed(k), out),
+                false => row.distance(own, &|k| other.undeformed(k), out) + adjusted,
             };
             self.carried(row, self.along(i), Some(distance))
         };

@@ -5,14 +5,15 @@ use super::facing_surfaces::{self, Opposite};
 use super::select::pick;
 use crate::error::{Error, Result};
 use crate::fem::Form;
-use crate::linalg::vec3::dot;
+use crate::linalg::vec3::{dot, minus};
 use crate::scene::body::Body;
 use crate::scene::geometry::mortar::lacks_signs;
 use crate::scene::geometry::normals::parameters;
 use crate::scene::model::joints::{Extent, ObstacleSpec};
 use crate::scene::model::profile::{Limit, Limits};
 use crate::scene::model::rigid::Rigid;
-use std::collections::BTreeMap;
+use crate::scene::model::steps::Factors;
+use std::collections::{BTreeMap, HashMap};
 
 /// One bound on one side of a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,8 +38,56 @@ pub struct Obstacle {
     pub motion: [f64; 3],
     /// The distance of each of these nodes from the rigid body, and the unit vector away from it.
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
+    /// The way from each node that `adjust` counts as touching to the place at which it would touch.
+    pub(super) adjusted: BTreeMap<usize, [f64; 3]>,
     /// The parameters of each of these nodes along the side.
     parameters: BTreeMap<usize, [f64; 2]>,
+}
+
+/// Where obstacles are looked at: where they are to begin with, or where they stand at the end of a load step.
+#[derive(Clone, Copy)]
+pub(crate) struct Standing<'a> {
+    factors: Option<Factors<'a>>,
+    adjusted: Option<&'a Adjusted>,
+}
+
+impl<'a> Standing<'a> {
+    /// To begin with: distances up to `adjust` count as touching.
+    pub const START: Standing<'static> = Standing {
+        factors: None,
+        adjusted: None,
+    };
+
+    /// At the end of the load step of the factors; nodes that were adjusted at the start stay so.
+    pub fn after(factors: Factors<'a>, adjusted: &'a Adjusted) -> Standing<'a> {
+        Standing {
+            factors: Some(factors),
+            adjusted: Some(adjusted),
+        }
+    }
+
+    /// How far the obstacle of entry number `entry` has moved.
+    fn way(&self, spec: &ObstacleSpec, entry: usize) -> [f64; 3] {
+        let factor = self.factors.map_or(0.0, |f| f.gap(Some(entry)));
+        spec.motion.map(|m| m * factor)
+    }
+}
+
+/// The ways of nodes that count as touching, by number of the entry among the obstacles, body, side and node.
+pub(crate) type Adjusted = HashMap<(usize, usize, usize, usize), [f64; 3]>;
+
+/// Those of the obstacles of a scene; `first` is the number of the first obstacle entry.
+pub(crate) fn adjusted(obstacles: &[Obstacle], first: usize) -> Adjusted {
+    let mut out = Adjusted::new();
+    for obstacle in obstacles {
+        let entry = obstacle.limits.all().first().and_then(|l| l.entry);
+        let Some(k) = entry.and_then(|e| e.checked_sub(first)) else {
+            continue;
+        };
+        let nodes = obstacle.adjusted.iter();
+        out.extend(nodes.map(|(&node, &way)| ((k, obstacle.body, obstacle.side, node), way)));
+    }
+    out
 }
 
 impl Obstacle {
@@ -57,12 +106,14 @@ impl Obstacle {
     }
 }
 
-/// The obstacles of a scene, by body, side and bound; `first` is the number of the first obstacle entry.
+/// The obstacles of a scene, by body, side and bound, where they stand; `first` is the number of the first obstacle
+/// entry.
 pub(crate) fn find(
     bodies: &[Body],
     entries: &[ObstacleSpec],
     form: &Form,
     first: usize,
+    standing: Standing<'_>,
 ) -> Result<Vec<Obstacle>> {
     // Bounds on u from several entries are combined; every rigid body is an obstacle of its own.
     let mut found: BTreeMap<(usize, usize, usize, bool), Found> = BTreeMap::new();
@@ -96,19 +147,21 @@ pub(crate) fn find(
         let number = if elastic { k + 1 } else { 0 };
         let mut missed = None;
         let before = found.len();
+        let way = standing.way(entry, first + k);
         for (b, &side) in chosen.flat_map(|b| entry.sides.iter().map(move |side| (b, side))) {
             let (mut selected, spec) = (select(&bodies[b], side, entry)?, &bodies[b].spec);
             let mut near = BTreeMap::new();
             if let Some(rigid) = &entry.surface {
                 let nodes = selected.iter().map(|s| s.0);
                 let Some(opposite) =
-                    facing_surfaces::find(spec, form, side, rigid, entry.distance, nodes)
+                    facing_surfaces::find(spec, form, side, (rigid, way), entry.distance, nodes)
                 else {
                     missed.get_or_insert((b, side));
                     continue;
                 };
                 near.clone_from(&opposite.nearest);
-                if let Some(why) = opposite.overlap(&bodies[b], side, entry.adjust) {
+                let overlap = opposite.overlap(&bodies[b], side, entry.adjust);
+                if let Some(why) = overlap.filter(|_| !moved) {
                     return fail(why);
                 }
                 selected.retain(|(node, _)| near.contains_key(node));
@@ -118,7 +171,7 @@ pub(crate) fn find(
             if let Some(rigid) = &entry.rigid {
                 let nodes = || selected.iter().map(|s| s.0);
                 let opposite = match lacks_signs(&bodies[b], side, nodes()) {
-                    true => facing_surfaces::beneath(spec, form, side, rigid, nodes()),
+                    true => facing_surfaces::beneath(spec, form, side, (rigid, way), nodes()),
                     false => None,
                 };
                 if let Some(opposite) = opposite {
@@ -133,26 +186,41 @@ pub(crate) fn find(
                 for &(node, t) in &selected {
                     let (at, spot, name) = (spec.variables(node), || spec.spot(node), &spec.name);
                     if let Some(rigid) = &entry.rigid {
-                        let Some((ahead, normal)) = rigid.distance(spec.position(node)) else {
+                        let from = minus(spec.position(node), way);
+                        let Some((ahead, normal)) = rigid.distance(from) else {
                             return fail(format!(
                                 "no point of the obstacle is nearest to the node {} of body `{name}` \
                                  (on its axis or in its centre)",
                                 spot()
                             ));
                         };
-                        // The row is about displacements from the undeformed body.
-                        let distance = ahead - dot(normal, spec.displacement(node));
+                        // The row is about displacements from the undeformed body, and of the obstacle as given.
+                        let since = minus(spec.displacement(node), way);
+                        let distance = ahead - dot(normal, since);
                         near.entry(node).or_insert((distance, normal));
                     }
                     let mut value = bound.eval(t[0], &at);
                     if let Some(&(distance, normal)) = near.get(&node) {
-                        let ahead = distance + dot(normal, spec.displacement(node));
+                        let ahead = distance + dot(normal, minus(spec.displacement(node), way));
                         if entry.distance.is_some_and(|most| ahead > most) {
                             continue;
                         }
-                        let closed = distance.abs() <= entry.adjust;
-                        let distance = if closed { 0.0 } else { distance };
-                        of_side.nearest.insert(node, (distance, normal));
+                        let adjusted = match standing.adjusted {
+                            Some(known) => known.get(&(k, b, side, node)).copied(),
+                            None if distance.abs() <= entry.adjust => {
+                                Some(normal.map(|n| 0.0 - n * distance))
+                            }
+                            None => None,
+                        };
+                        let mut near = distance;
+                        if let Some(way) = adjusted {
+                            of_side.adjusted.insert(node, way);
+                            near += dot(way, normal);
+                        }
+                        if standing.adjusted.is_none() && adjusted.is_some() {
+                            near = 0.0;
+                        }
+                        of_side.nearest.insert(node, (near, normal));
                         // An obstacle that moves towards the body takes from the gap.
                         value -= dot(entry.motion, normal);
                     }
@@ -203,6 +271,7 @@ pub(crate) fn find(
                 .checked_sub(1)
                 .map_or([0.0; 3], |k| entries[k].motion),
             nearest: of_side.nearest,
+            adjusted: of_side.adjusted,
             parameters: of_side.parameters,
         }
     };
@@ -215,6 +284,7 @@ struct Found {
     surface: Option<Opposite>,
     limits: Vec<Limit>,
     nearest: BTreeMap<usize, (f64, [f64; 3])>,
+    adjusted: BTreeMap<usize, [f64; 3]>,
     parameters: BTreeMap<usize, [f64; 2]>,
 }
 

@@ -53,6 +53,7 @@ fn sample(steps: usize, n: usize) -> ContactReport {
             .collect(),
         load_steps: Vec::new(),
         updated: false,
+        renewable: true,
     }
 }
 
@@ -187,6 +188,14 @@ fn sliding_that_is_not_small_is_said() {
     assert!(
         text.contains("sliding of more than 0.5 of a face")
             && text.contains("[steps] update = true"),
+        "{text}"
+    );
+    // Where `update` is refused it is not advised.
+    report.renewable = false;
+    let text = contact(&report);
+    assert!(
+        text.contains("of the undeformed bodies, and the answer holds for these.")
+            && !text.contains("update"),
         "{text}"
     );
     report.updated = true;
