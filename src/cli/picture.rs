@@ -13,6 +13,7 @@ use crate::report::pictures::field::{self, ContactMark, Field, Mesh};
 use crate::report::pictures::mesh::bounds;
 use crate::report::pictures::obstacles::Obstacle;
 use crate::report::pictures::pieces::pieces;
+use crate::report::pictures::rigid_faces::{Beside, Polygon};
 use crate::report::pictures::solid::{self, FaceMark, Solid};
 use crate::report::pictures::values::Values;
 use crate::scene::Scene;
@@ -28,8 +29,14 @@ const VISIBLE: [f64; 2] = [0.03, 0.3];
 /// Beside contact, the lower bound of [`VISIBLE`]: magnified, bodies that touch overlap.
 const VISIBLE_CONTACT: f64 = 0.01;
 
-/// Writes `solution.png` into `dir`.
-pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Path) -> Result<()> {
+/// Writes `solution.png` of load step `step` into `dir`.
+pub(super) fn write(
+    scene: &Scene,
+    all: &Gathered,
+    rows: &[SolvedRow],
+    step: usize,
+    dir: &Path,
+) -> Result<()> {
     let path = dir.join("solution.png");
     let elastic = scene.form.is_elastic();
     let moved = Moved::new(scene, all, rows);
@@ -61,7 +68,10 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         true => format!("{} (displacements {} ×)", scene.title, number(moved.factor)),
         false => scene.title.clone(),
     };
-    let obstacles = obstacles(scene, all, rows);
+    let beside = Beside {
+        obstacles: &obstacles(scene, all, rows),
+        faces: &faces(scene, step),
+    };
     if scene.dim() == 3 {
         let solid = Solid {
             points: &all.points,
@@ -71,7 +81,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
             subdomain: &all.subdomain,
         };
         let marks = face_marks(scene, rows);
-        return solid::write_solution(&solid, &fields, &marks, &obstacles, &title, &path);
+        return solid::write_solution(&solid, &fields, &marks, &beside, &title, &path);
     }
     let flat =
         |points: &[[f64; 3]]| -> Vec<[f64; 2]> { points.iter().map(|p| [p[0], p[1]]).collect() };
@@ -100,7 +110,7 @@ pub(super) fn write(scene: &Scene, all: &Gathered, rows: &[SolvedRow], dir: &Pat
         [point[0], point[1]]
     };
     let marks = line_marks(scene, rows, &at);
-    field::write(&obstacles, &mesh, &fields, &marks, elastic, &title, &path)
+    field::write(&beside, &mesh, &fields, &marks, elastic, &title, &path)
 }
 
 /// The rigid bodies of the scene, each once, with the gap of the row that is nearest to contact: rows say
@@ -125,6 +135,29 @@ fn obstacles(scene: &Scene, all: &Gathered, rows: &[SolvedRow]) -> Vec<Obstacle>
         }
     }
     out
+}
+
+/// The faces of rigid surfaces, each once, where they stand at load step `step`.
+fn faces(scene: &Scene, step: usize) -> Vec<Polygon> {
+    let mut shown: Vec<(&str, [f64; 3], &[Polygon])> = Vec::new();
+    for obstacle in &scene.obstacles {
+        let Some(surface) = &obstacle.surface else {
+            continue;
+        };
+        let Some(name) = surface.name.as_deref() else {
+            continue;
+        };
+        let this = (name, scene.way_of(obstacle, step), &surface.polygons[..]);
+        if !shown.contains(&this) {
+            shown.push(this);
+        }
+    }
+    let moved = |(_, way, polygons): (&str, [f64; 3], &[Polygon])| -> Vec<Polygon> {
+        let at = |x: &[f64; 3]| [0, 1, 2].map(|d| x[d] + way[d]);
+        let polygon = |p: &Polygon| p.iter().map(at).collect();
+        polygons.iter().map(polygon).collect()
+    };
+    shown.into_iter().flat_map(moved).collect()
 }
 
 /// The cells of plane bodies, cut into pieces.

@@ -412,7 +412,7 @@ fn write_fields(
         Place::EachRank => whole.insert(gathered(Place::FirstRank)?),
     };
     on_first_rank(session, || {
-        picture::write(scene, fields, &course.rows, dir)?;
+        picture::write(scene, fields, &course.rows, course.step, dir)?;
         if solver.facts().inequalities > 0 {
             match scene.dim() {
                 2 => profile::write(&contact::profiles(scene, &course.rows), &scene.title, dir)?,

@@ -187,7 +187,7 @@ fn two_interfaces() {
     });
     let path = dir.join("solution.png");
     field::write(
-        &[],
+        &field::Beside::default(),
         &bodies.mesh(),
         &[
             Field::nodal("solution u", &u),
@@ -202,7 +202,7 @@ fn two_interfaces() {
     let with = png(&path);
     let plain = dir.join("plain.png");
     field::write(
-        &[],
+        &field::Beside::default(),
         &bodies.mesh(),
         &[
             Field::nodal("solution u", &u),
@@ -239,7 +239,7 @@ fn one_hundred_and_eighty_interfaces() {
     let marks = bodies.marks(&profiles);
     let path = dir.join("solution.png");
     field::write(
-        &[],
+        &field::Beside::default(),
         &bodies.mesh(),
         &[
             Field::nodal("solution u", &u),

@@ -7,6 +7,7 @@ use super::marks;
 use super::mesh::bounds;
 use super::obstacles::BEYOND;
 use super::paint::{axes, colour_bar, paint, sheet, View, BAR, LABELS, TEXT};
+use super::rigid_faces;
 use crate::report::drawing::canvas::{Canvas, Colour, TextStyle};
 use crate::report::drawing::raster::Raster;
 use crate::Result;
@@ -14,7 +15,7 @@ use std::path::Path;
 
 pub use super::marks::ContactMark;
 pub use super::mesh::Mesh;
-pub use super::obstacles::Obstacle;
+pub use super::rigid_faces::Beside;
 pub use super::values::Field;
 
 /// Writes fields of one mesh as PNG: side by side, or one below the other where the mesh is wide. `contact` lists the
@@ -24,7 +25,7 @@ pub use super::values::Field;
 /// # Errors
 /// [`crate::Error::Input`] when an array does not fit the mesh; [`crate::Error::Environment`] with the path.
 pub fn write(
-    obstacles: &[Obstacle],
+    beside: &Beside,
     mesh: &Mesh,
     fields: &[Field],
     contact: &[ContactMark],
@@ -35,7 +36,7 @@ pub fn write(
     mesh.check()?;
     let (points, cells) = (mesh.points.len(), mesh.corners.len());
     fields.iter().try_for_each(|f| f.check(points, cells))?;
-    draw(obstacles, mesh, fields, contact, displaced, title).write_png(path)
+    draw(beside, mesh, fields, contact, displaced, title).write_png(path)
 }
 
 const LEFT: f64 = 52.0;
@@ -44,7 +45,7 @@ const BAR_GAP: f64 = 12.0;
 const BEFORE: Colour = Colour(0x9a, 0x9a, 0x9a);
 
 fn draw(
-    obstacles: &[Obstacle],
+    beside: &Beside,
     mesh: &Mesh,
     fields: &[Field],
     contact: &[ContactMark],
@@ -59,7 +60,7 @@ fn draw(
     };
     let ends = before.iter().flatten();
     let [mut low, mut high] = bounds(mesh.shown.iter().chain(ends).copied());
-    if !obstacles.is_empty() {
+    if !beside.is_empty() {
         let margin = BEYOND * (high[0] - low[0]).max(high[1] - low[1]);
         low = low.map(|x| x - margin);
         high = high.map(|x| x + margin);
@@ -100,9 +101,10 @@ fn draw(
         let middle = (view.origin.0 + 0.5 * w.max(60.0), at.1 + 1.2 * TEXT);
         raster.text(middle, field.title, &TextStyle::title(TEXT));
         let range = field.range();
-        for obstacle in obstacles {
+        for obstacle in beside.obstacles {
             obstacle.paint(&mut raster, &view, [low, high]);
         }
+        rigid_faces::paint(beside.faces, &mut raster, &view, [low, high]);
         for line in &before {
             view.line(&mut raster, line, 0.7, BEFORE);
         }

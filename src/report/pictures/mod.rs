@@ -9,6 +9,7 @@ pub mod obstacles;
 mod outline;
 mod paint;
 pub(crate) mod pieces;
+pub mod rigid_faces;
 pub mod solid;
 mod space;
 mod stage;

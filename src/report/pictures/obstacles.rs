@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 /// Colour of an obstacle.
 pub(super) const GREY: Colour = Colour(0xc4, 0xc4, 0xc4);
 /// Colour of its outline in the plane.
-const EDGE: Colour = Colour(0x80, 0x80, 0x80);
+pub(super) const EDGE: Colour = Colour(0x80, 0x80, 0x80);
 /// Beyond the bodies, obstacles are shown on this part of their size.
 pub(super) const BEYOND: f64 = 0.06;
 /// Steps around a round obstacle, and from its pole to its rim.

@@ -19,7 +19,7 @@ use crate::Result;
 use std::path::Path;
 
 pub use super::mesh::Solid;
-pub use super::obstacles::Obstacle;
+pub use super::rigid_faces::Beside;
 pub use super::surface::FaceMark;
 
 const SMALL_TEXT: f64 = 11.5;
@@ -39,18 +39,18 @@ pub fn write_solution(
     solid: &Solid,
     fields: &[Field],
     marks: &[FaceMark],
-    obstacles: &[Obstacle],
+    beside: &Beside,
     title: &str,
     path: &Path,
 ) -> Result<()> {
-    draw(solid, fields, marks, obstacles, title)?.write_png(path)
+    draw(solid, fields, marks, beside, title)?.write_png(path)
 }
 
 fn draw(
     solid: &Solid,
     fields: &[Field],
     marks: &[FaceMark],
-    obstacles: &[Obstacle],
+    beside: &Beside,
     title: &str,
 ) -> Result<Raster> {
     solid.check()?;
@@ -62,7 +62,7 @@ fn draw(
     let none = vec![[0.0; 3]; shifts.len()];
     let second = second_camera(solid, &surface, several);
     let stage = |k: usize| match k {
-        0 => Stage::new(solid, &surface, Camera::new(false, false), &none).beside(obstacles),
+        0 => Stage::new(solid, &surface, Camera::new(false, false), &none).beside(beside),
         _ => Stage::new(solid, &surface, second, &shifts),
     };
     let scenes: Vec<Stage> = (0..fields.len()).map(stage).collect();

@@ -2,7 +2,8 @@
 //! subdomains.
 
 use super::mesh::{bounds, Solid};
-use super::obstacles::{Obstacle, GREY};
+use super::obstacles::GREY;
+use super::rigid_faces::{triangles, Beside};
 use super::space::{Buffer, Camera};
 use super::surface::{diagonals, unit_cross, Surface};
 use super::values::Field;
@@ -55,10 +56,11 @@ impl<'a> Stage<'a> {
     }
 
     /// The same with obstacles.
-    pub fn beside(mut self, obstacles: &[Obstacle]) -> Self {
+    pub fn beside(mut self, beside: &Beside) -> Self {
         let bodies = bounds(self.solid.shown.iter().copied());
-        let all = obstacles.iter().flat_map(|o| o.triangles(bodies));
+        let all = beside.obstacles.iter().flat_map(|o| o.triangles(bodies));
         self.beside = all.collect();
+        self.beside.extend(triangles(beside.faces, bodies));
         self.fit();
         self
     }

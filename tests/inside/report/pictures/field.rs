@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::report::drawing::colormap::viridis;
+use crate::report::pictures::obstacles::Obstacle;
 use crate::report::pictures::outline::tests::grid;
 
 #[test]
@@ -9,7 +10,14 @@ fn colours_stand_for_values() {
     // u = x on the unit square: the left end is dark violet, the right end yellow, the middle teal.
     let mesh = grid(2, 2, 4, false);
     let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
-    let picture = draw(&[], &mesh.view(), &[Field::nodal("u", &u)], &[], false, "");
+    let picture = draw(
+        &Beside::default(),
+        &mesh.view(),
+        &[Field::nodal("u", &u)],
+        &[],
+        false,
+        "",
+    );
     let (_, origin) = (0, (LEFT, 6.0 + 2.4 * TEXT + 400.0));
     let at = |x: f64, y: f64| {
         let p = ((origin.0 + 400.0 * x) * 2.0, (origin.1 - 400.0 * y) * 2.0);
@@ -45,8 +53,8 @@ fn the_contact_zone_is_marked_on_u() {
             closed: k < 8,
         })
         .collect();
-    let plain = draw(&[], &mesh.view(), &field, &[], false, "");
-    let marked = draw(&[], &mesh.view(), &field, &marks, false, "");
+    let plain = draw(&Beside::default(), &mesh.view(), &field, &[], false, "");
+    let marked = draw(&Beside::default(), &mesh.view(), &field, &marks, false, "");
     let (w, h) = plain.size();
     assert_eq!(marked.size().0, w);
     assert!(marked.size().1 > h, "room for the legend");
@@ -83,7 +91,7 @@ fn arrays_of_the_wrong_length_are_refused() {
         vec![1.0; mesh.quads.len() + 1],
     );
     let message = write(
-        &[],
+        &Beside::default(),
         &mesh.view(),
         &both(&u, &rho),
         &[],
@@ -106,7 +114,7 @@ fn a_million_cells_are_painted() {
     let rho = vec![1.0; mesh.quads.len()];
     let dir = crate::report::output::tests::Scratch::new("field");
     write(
-        &[],
+        &Beside::default(),
         &mesh.view(),
         &both(&u, &rho),
         &[],
@@ -130,7 +138,10 @@ fn obstacles_stand_beside_bodies() {
         gap: 0.0,
     };
     let picture = draw(
-        &[ground],
+        &Beside {
+            obstacles: &[ground],
+            faces: &[],
+        },
         &mesh.view(),
         &[Field::nodal("u", &u)],
         &[],
@@ -147,4 +158,36 @@ fn obstacles_stand_beside_bodies() {
     assert_eq!(at(0.5, 1.04), Colour::WHITE);
     assert_eq!(at(-0.04, 0.5), Colour::WHITE);
     assert_ne!(at(0.3, 0.3), Colour::WHITE);
+}
+
+/// A rigid surface at the same place: a band below it, and none where the surface ends.
+#[test]
+fn rigid_surfaces_stand_beside_bodies() {
+    let mesh = grid(1, 1, 2, false);
+    let u: Vec<f64> = mesh.points.iter().map(|p| p[0]).collect();
+    // From right to left: the normals point up.
+    let faces = [vec![[0.8, 0.0, 0.0], [-3.0, 0.0, 0.0]]];
+    let beside = Beside {
+        obstacles: &[],
+        faces: &faces,
+    };
+    let picture = draw(
+        &beside,
+        &mesh.view(),
+        &[Field::nodal("u", &u)],
+        &[],
+        true,
+        "",
+    );
+    let size = 1.0 + 2.0 * BEYOND;
+    let (unit, bottom) = (400.0 / size, 6.0 + 2.4 * TEXT + 400.0);
+    let at = |x: f64, y: f64| {
+        let p = (LEFT + unit * (x + BEYOND), bottom - unit * (y + BEYOND));
+        picture.get((2.0 * p.0) as usize, (2.0 * p.1) as usize)
+    };
+    let grey = crate::report::pictures::obstacles::GREY;
+    assert_eq!([at(0.5, -0.01), at(-0.04, -0.01)], [grey; 2]);
+    for white in [at(0.5, -0.04), at(0.9, -0.01), at(0.5, 1.04)] {
+        assert_eq!(white, Colour::WHITE);
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::report::drawing::ticks::Scale;
+use crate::report::pictures::obstacles::Obstacle;
 use crate::report::pictures::surface::tests::Blocks;
 use crate::report::pictures::values::Values;
 
@@ -37,9 +38,16 @@ fn a_contact_zone_between_bodies_is_seen_where_they_are_moved_apart() {
         })
         .collect();
     let red = |c: Colour| c.0 > 150 && c.1 < 40 && c.2 < 90;
-    let plain = draw(&blocks.view(), &[field; 2], &[], &[], "two").unwrap();
+    let plain = draw(&blocks.view(), &[field; 2], &[], &Beside::default(), "two").unwrap();
     assert_eq!(count(&plain, red), [0, 0]);
-    let marked = draw(&blocks.view(), &[field; 2], &marks, &[], "two").unwrap();
+    let marked = draw(
+        &blocks.view(),
+        &[field; 2],
+        &marks,
+        &Beside::default(),
+        "two",
+    )
+    .unwrap();
     let [left, right] = count(&marked, red);
     // The sample in the legend may lie in the left half.
     assert!(left < 1200 && right > 8000, "{left} {right}");
@@ -70,7 +78,7 @@ fn fields_of_the_wrong_length_are_refused() {
         values: Values::Cell(&[1.0; 5]),
         scale: Scale::Linear,
     };
-    let error = draw(&blocks.view(), &[field; 2], &[], &[], "")
+    let error = draw(&blocks.view(), &[field; 2], &[], &Beside::default(), "")
         .err()
         .unwrap();
     assert!(error.to_string().contains("'u' has 5 numbers"), "{error}");
@@ -93,7 +101,17 @@ fn obstacles_are_shown_where_bodies_are_in_their_places() {
     let fields = [Field::nodal("u", &u); 2];
     let grey = |c: Colour| c.0 == c.1 && c.1 == c.2 && (0x80..0xd8).contains(&c.0);
     let grey = |obstacles: &[Obstacle]| {
-        let picture = draw(&blocks.view(), &fields, &[], obstacles, "").unwrap();
+        let picture = draw(
+            &blocks.view(),
+            &fields,
+            &[],
+            &Beside {
+                obstacles,
+                faces: &[],
+            },
+            "",
+        )
+        .unwrap();
         count(&picture, grey)
     };
     let ([before, other], [left, right]) = (grey(&[]), grey(&[ball]));
