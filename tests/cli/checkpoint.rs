@@ -180,6 +180,21 @@ fn mortar_rows_go_on() {
     }
 }
 
+#[test]
+fn rows_beside_a_rigid_surface_go_on() {
+    let scratch = Scratch::new("resume-die");
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes/die.msh");
+    let die = std::fs::read_to_string("examples/scenes/die.toml").expect("the example");
+    let once = die
+        .replace("[steps]\ncount = 5\n", "")
+        .replace("die.msh", mesh);
+    let once = once.replace("ramp = \"t\"\n", "");
+    let tight = "[options]\nfetifeti_ksp_rtol = 1e-11\n";
+    let scene = scratch.file("die.toml", &format!("{once}{tight}"));
+    let resume = [(4, "active_set"), (7, "active_set"), (2, "smalbe")];
+    goes_on(&scratch, &scene, "active_set", "2", &resume);
+}
+
 /// The checkpoint does not depend on the number of ranks. A permuted λ would not be a solution.
 #[test]
 fn a_solved_run_is_confirmed_on_any_ranks() {

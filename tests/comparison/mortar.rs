@@ -3,6 +3,8 @@
 
 use crate::support::assembled::Assembled;
 use crate::support::compared::{solved, SceneFile};
+use crate::support::mpi::Scratch;
+use crate::support::surface_mesh;
 use fetifeti::scene::Scene;
 
 const RTOL: f64 = 1e-8;
@@ -51,12 +53,38 @@ fn blocks() -> String {
            [[contact]]\nbodies = [\"up\", \"low\"]\nsides = [\"bottom\", \"top\"]\n"
 }
 
+/// A block that a rigid die of a mesh is pressed into.
+fn die() -> String {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/scenes/die.msh");
+    format!(
+        "physics = \"elasticity\"\n[[body]]\nname = \"block\"\norigin = [0, 0.06]\nsize = [2, 1]\n\
+         elements = [20, 10]\nsubdomains = [4, 2]\nyoung = 10\npoisson = 0.4\ndirichlet = {{ top = 0 }}\n\
+         [[obstacle]]\nbody = \"block\"\nside = \"bottom\"\nsurface = \"die\"\nmesh = \"{mesh}\"\n\
+         move = [0, 0.12]\n"
+    )
+}
+
+/// A block in space on a rigid floor of triangles and quadrilaterals, in the file `mesh`.
+fn floored(mesh: &str) -> String {
+    format!(
+        "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"block\"\norigin = [0, 0.02, 0]\n\
+         size = [2, 1, 2]\nelements = [6, 3, 4]\nsubdomains = [2, 1, 1]\nyoung = 10\n\
+         dirichlet = {{ left = {{ x = 0 }}, back = {{ z = 0 }} }}\ntraction = {{ top = [0.1, \"-1.5 + x\", 0] }}\n\
+         [[obstacle]]\nbody = \"block\"\nside = \"bottom\"\ngap = \"0.01*x^2\"\nsurface = \"floor\"\n\
+         mesh = \"{mesh}\"\n"
+    )
+}
+
 #[test]
 fn all_methods_agree_where_nodes_do_not_match() {
+    let scratch = Scratch::new("compare-floor");
+    let floor = scratch.file("floor.msh", &surface_mesh::floor("floor"));
     for (name, text) in [
         ("plates", plates(1)),
         ("plates-2", plates(2)),
         ("blocks", blocks()),
+        ("die", die()),
+        ("floor", floored(&floor)),
     ] {
         let file = SceneFile::new(name, &text);
         // PCBDDC and KSPFETIDP start a rank for each subdomain, which takes seconds.

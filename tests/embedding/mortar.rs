@@ -119,6 +119,28 @@ fn constant_pressures_of_both_orders() {
     }
 }
 
+/// Tetrahedra have faces of 3 and 6 nodes, serendipity elements faces of 8.
+#[test]
+fn constant_pressures_of_faces_of_3_6_and_8_nodes() {
+    for (cells, order) in [("simplex", 1), ("simplex", 2), ("serendipity", 2)] {
+        for kind in [1, 0] {
+            for ranks in [1, 2, 4] {
+                let options = format!(
+                    "-by mortar -patch -spread -dim 3 -components 3 -cells {cells} -order {order} -kind {kind} \
+                     -fetifeti_ksp_rtol 1e-13"
+                );
+                let out = python("tests/plugin/mortar.py", ranks, &options);
+                assert_eq!(
+                    out.stdout.matches("pressure within").count(),
+                    ranks,
+                    "{options}: {}",
+                    out.all()
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn examples_with_exact_pressures() {
     let scratch = Scratch::new("capi-mortar");

@@ -1,8 +1,8 @@
 """Rows with many terms, and mortars, against a direct solution of the dense optimality system.
 
-    mortar.py -dim 2 -order 1 -components 2 -kind 1 -by rows|mortar [-spread] [-patch]
+    mortar.py -dim 2 -order 1 -components 2 -kind 1 -by rows|mortar [-spread] [-patch [-cells simplex|serendipity]]
 
-Two blocks [0, 1]^dim of tensor-product elements lie on each other, turned in space, 0.01 apart; the far sides are held
+Two blocks [0, 1]^dim of tensor-product elements, or of simplices or serendipity elements, lie on each other, turned in space, 0.01 apart; the far sides are held
 at given displacements. The rows of -by rows are made here: dual mortar rows for elements of first order, as products
 of rows in one dimension, else collocation in the nodes. -by mortar leaves them to FetiFetiAddMortar. -spread: faces
 are given by the ranks that have them, with some by several ranks. -patch: without loads, and lambda = 0, the pressure
@@ -23,7 +23,8 @@ dim, order = options.getInt("dim", 2), options.getInt("order", 1)
 c, kind = options.getInt("components", dim), options.getInt("kind", 1)
 by, spread = options.getString("by", "rows"), options.getBool("spread", False)
 patch, lame = options.getBool("patch", False), 0.0 if options.getBool("patch", False) else 1.0
-scale = options.getReal("scale", 1.0)
+scale, cells = options.getReal("scale", 1.0), options.getString("cells", "tensor")
+assert patch or cells == "tensor", "only pressures are known of other elements"
 lib = ctypes.CDLL("libfetifeti.so")
 
 
@@ -51,23 +52,57 @@ def line(t):
             np.array([4 * t - 3, 4 - 8 * t, 4 * t - 1]))
 
 
+def pieces():
+    """The elements of a cell: the places of their nodes in it, from 0 to order, and how many corners they have."""
+    everywhere = list(itertools.product(range(order + 1), repeat=dim))
+    if cells == "serendipity":
+        everywhere = [a for a in everywhere if a.count(1) <= 1]
+    if cells != "simplex":
+        return [(np.array(everywhere), 0)]
+    out = []
+    for way in itertools.permutations(range(dim)):
+        corners = np.cumsum([np.zeros(dim, int)] + [np.eye(dim, dtype=int)[d] for d in way], axis=0)
+        middles = [a + b for a, b in itertools.combinations(corners, 2)] if order == 2 else []
+        out.append((np.array([order * a for a in corners] + middles), dim + 1))
+    return out
+
+
+def quadrature(corners):
+    """Points and weights on the unit cube, or on a simplex of volume 1 / dim! with these corners."""
+    points, weights = np.polynomial.legendre.leggauss(order + 2)
+    for q in itertools.product(range(order + 2), repeat=dim):
+        t, w = (1 + points[list(q)]) / 2, np.prod(weights[list(q)] / 2)
+        if len(corners):  # a cube that is pressed onto the simplex
+            left, share = 1.0, []
+            for d in range(dim):
+                share.append(left * t[d])
+                w *= left ** (d < dim - 1) if d == 0 else left
+                left -= share[-1]
+            t = corners[0] * left + np.array(share) @ corners[1:]
+        yield t, w
+
+
 def stiffness(h):
-    """Of a box with edges h: -div grad, or elasticity with lambda = lame and mu = 1."""
-    points, weights = np.polynomial.legendre.leggauss(order + 1)
-    n = (order + 1) ** dim
-    k = np.zeros((n, c, n, c))
-    for q in itertools.product(range(order + 1), repeat=dim):
-        values = [line((1 + points[i]) / 2) for i in q]
-        g = np.array([[np.prod([values[d][d == e][a[d]] for d in range(dim)]) / h[e] for e in range(dim)]
-                      for a in itertools.product(range(order + 1), repeat=dim)])
-        w = np.prod([weights[i] / 2 for i in q]) * np.prod(h)
-        both = g @ g.T
-        if c == 1:
-            k[:, 0, :, 0] += w * both
-            continue
-        for i, j in itertools.product(range(c), repeat=2):
-            k[:, i, :, j] += w * (lame * np.outer(g[:, i], g[:, j]) + np.outer(g[:, j], g[:, i]) + (i == j) * both)
-    return k.reshape(n * c, n * c)
+    """Of the elements of a box with edges h: -div grad, or elasticity with lambda = lame and mu = 1."""
+    degree = sum if cells == "simplex" else max if cells == "tensor" else lambda a: max(max(a), 1 + a.count(2))
+    powers = [a for a in itertools.product(range(order + 1), repeat=dim) if degree(a) <= order]
+    for places, n_corners in pieces():
+        at = places / order
+        # the functions of the nodes as sums of monomials
+        function = np.linalg.inv(np.array([[np.prod(x ** np.array(a)) for a in powers] for x in at]))
+        n = len(places)
+        k = np.zeros((n, c, n, c))
+        for t, w in quadrature(at[:n_corners]):
+            slopes = np.array([[a[e] * t[e] ** max(a[e] - 1, 0) * np.prod([t[d] ** a[d] for d in range(dim) if d != e])
+                                / h[e] for e in range(dim)] for a in powers])
+            g, w = function.T @ slopes, w * np.prod(h)
+            both = g @ g.T
+            if c == 1:
+                k[:, 0, :, 0] += w * both
+                continue
+            for i, j in itertools.product(range(c), repeat=2):
+                k[:, i, :, j] += w * (lame * np.outer(g[:, i], g[:, j]) + np.outer(g[:, j], g[:, i]) + (i == j) * both)
+        yield places, k.reshape(n * c, n * c)
 
 
 # a rotation, of vectors too
@@ -84,16 +119,25 @@ class Block:
     def __init__(self, counts, low, first):
         self.counts, self.shape = counts, [order * n + 1 for n in counts]
         grid = np.array(list(itertools.product(*[range(m) for m in self.shape])))
+        # serendipity elements have no nodes inside faces
+        used = (grid % 2).sum(axis=1) <= 1 if cells == "serendipity" else np.ones(len(grid), bool)
+        self.number, grid = np.cumsum(used) - 1, grid[used]
         self.flat = grid / (np.array(self.shape) - 1.0) + low * np.eye(dim)[-1]
         self.first, self.n, self.grid = first, len(grid) * c, grid
         self.places = scale * self.flat @ turn.T
 
     def node(self, place):
-        return np.ravel_multi_index(tuple(place), self.shape)
+        return self.number[np.ravel_multi_index(tuple(place), self.shape)]
 
-    def cells(self):
+    def elements(self):
+        """Cells with their elements: nodes and stiffness, components along the axes of space."""
+        each = list(stiffness([1.0 / m for m in self.counts]))
+        if c > 1:
+            turned = [np.kron(np.eye(len(places)), turn) for places, _ in each]
+            each = [(places, r @ k @ r.T) for r, (places, k) in zip(turned, each)]
         for cell in itertools.product(*[range(n) for n in self.counts]):
-            yield cell, [self.node(order * np.array(cell) + a) for a in itertools.product(range(order + 1), repeat=dim)]
+            for places, k in each:
+                yield cell, [self.node(order * np.array(cell) + a) for a in places], k
 
     def dofs(self, nodes):
         return self.first + (c * np.asarray(nodes)[:, None] + np.arange(c)).ravel()
@@ -109,8 +153,11 @@ class Block:
                 continue
             around = [(0, 0), (1, 0), (1, 1), (0, 1)] if level else [(0, 0), (0, 1), (1, 1), (1, 0)]
             corners = [np.array(p) * order for p in around]
-            middles = [(corners[k] + corners[(k + 1) % 4]) // 2 for k in range(4)] + [np.array([1, 1])]
-            yield cell, [at(*p) for p in corners + middles * (order == 2)]
+            for face in [corners[:3], corners[:1] + corners[2:]] if cells == "simplex" else [corners]:
+                m = len(face)
+                middles = [(face[k] + face[(k + 1) % m]) // 2 for k in range(m)]
+                middles += [np.array([1, 1])] * (cells == "tensor")
+                yield cell, [at(*p) for p in face + middles * (order == 2)]
 
 
 lower = Block([3, 2, 2] if dim == 3 else [5, 3], 0.0, 0)
@@ -122,21 +169,17 @@ call("FetiFetiSetFromOptions", ff)
 call("FetiFetiSetSizes", ff, -1, n)
 call("FetiFetiSetBlockSize", ff, c)
 for b, block in enumerate(blocks):
-    ke = stiffness([1.0 / m for m in block.counts])
-    if c > 1:  # components along the axes of space
-        r = np.kron(np.eye((order + 1) ** dim), turn)
-        ke = r @ ke @ r.T
     parts = {0: [], 1: []}
-    for cell, nodes in block.cells():
+    for cell, nodes, ke in block.elements():
         dofs = block.dofs(nodes)
         k_all[np.ix_(dofs, dofs)] += ke
-        parts[2 * cell[0] // block.counts[0]].append(dofs)
+        parts[2 * cell[0] // block.counts[0]].append((dofs, ke))
     for p, list_of in parts.items():
         if (2 * b + p) % comm.size != comm.rank:
             continue
-        mine = np.unique(np.concatenate(list_of))
+        mine = np.unique(np.concatenate([dofs for dofs, _ in list_of]))
         k = np.zeros((len(mine), len(mine)))
-        for dofs in list_of:
+        for dofs, ke in list_of:
             at = np.searchsorted(mine, dofs)
             k[np.ix_(at, at)] += ke
         ia = (len(mine) * np.arange(len(mine) + 1)).astype("i4")
@@ -174,14 +217,14 @@ def rows_1d(own, other):
 
 top = np.flatnonzero(lower.grid[:, -1] == lower.shape[-1] - 1)
 bottom = np.flatnonzero(upper.grid[:, -1] == 0)
-if order == 1:
+if order == 1 and cells == "tensor":
     each = [rows_1d(a, b) for a, b in zip(lower.counts[:-1], upper.counts[:-1])]
     weights, area = np.eye(1), np.ones(1)
     for m, d in each:
         weights, area = np.kron(weights, m), np.kron(area, d)
 else:
     weights, area = np.zeros((len(top), len(bottom))), np.ones(len(top))
-    for i, node in enumerate(top):
+    for i, node in enumerate(top if cells == "tensor" else []):
         at = lower.flat[node][:-1] * upper.counts[:-1]
         cell = np.minimum(at.astype(int), np.array(upper.counts[:-1]) - 1)
         for a in itertools.product(range(order + 1), repeat=dim - 1):

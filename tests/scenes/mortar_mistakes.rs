@@ -115,3 +115,39 @@ fn the_same_surfaces_may_be_tied_and_in_contact() {
         ["Another tie holds nodes of `a` (3): they carry no multipliers of the contact with `b`."]
     );
 }
+
+/// Two tetrahedra with a face in common, and a line on one of them.
+#[test]
+fn an_edge_in_space_is_no_surface() {
+    let nodes = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [0, 1, 0],
+        [0, 0, -1],
+        [0, 0, 0],
+        [1, 0, 0],
+        [0, 1, 0],
+        [0, 0, 1],
+    ];
+    let nodes = nodes.iter().zip(1..);
+    let nodes: String = nodes
+        .map(|([x, y, z], k)| format!("{k} {x} {y} {z}\n"))
+        .collect();
+    let mesh = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n3 1 \"a\"\n3 2 \"b\"\n2 3 \"top\"\n2 4 \"under\"\n\
+         1 5 \"rim\"\n$EndPhysicalNames\n$Nodes\n8\n{nodes}$EndNodes\n$Elements\n5\n1 4 2 1 1 1 3 2 4\n\
+         2 4 2 2 2 5 6 7 8\n3 2 2 3 3 1 2 3\n4 2 2 4 4 5 7 6\n5 1 2 5 5 1 2\n$EndElements\n"
+    );
+    let model = Model::new("edge", &mesh);
+    let scene = |surfaces: [&str; 2]| {
+        format!(
+            "dimension = 3\nphysics = \"elasticity\"\n[mesh]\nfile = \"m.msh\"\n[[body]]\nname = \"a\"\n\
+             dirichlet = {{ top = 0 }}\n[[body]]\nname = \"b\"\n[[contact]]\nsurfaces = {surfaces:?}\n"
+        )
+    };
+    model.scene(&scene(["top", "under"]));
+    model.refuses(
+        &scene(["rim", "under"]),
+        "the boundary group `rim` of points or edges alone where faces of a body were expected",
+    );
+}

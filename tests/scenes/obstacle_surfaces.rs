@@ -343,3 +343,16 @@ fn mistakes_get_a_sentence() {
         .replace("dirichlet = {", "dirichlet = { bottom = { y = 0.01 }, ");
     die.refuses(&held, "beyond its obstacle (n·u ≤");
 }
+
+/// A surface that lies deep inside the body is taken for a mistake, one that `adjust` closes is not.
+#[test]
+fn a_surface_inside_the_body_is_refused() {
+    let at = |y: f64| line("die", &[[4.0, y], [1.3, y], [-1.0, y]]);
+    let deep = Model::new("deep", &at(0.42));
+    deep.refuses(
+        &block(2, 1, MESH),
+        "side `bottom` of `block` and the rigid surface `die` overlap by 0.4",
+    );
+    deep.scene(&block(2, 1, &format!("{MESH}\nadjust = 0.41")));
+    Model::new("shallow", &at(0.26)).scene(&block(2, 1, MESH));
+}
