@@ -1,0 +1,67 @@
+"""FETI-FETI for bodies in contact: FETI-DP inside bodies, one-level FETI between them, contact by active sets.
+
+Two ways in, which need different things:
+
+- `Solver` and `register` work inside a program on petsc4py, with its matrices and vectors. They load
+  ``libfetifeti.so``.
+- `solve` and `Scene` run the program ``fetifeti`` on a scene file and read what it writes. They need NumPy only, and
+  start no MPI in this process.
+
+Nothing of petsc4py is imported before it is used, so that ``petsc4py.init(sys.argv)`` may follow ``import fetifeti``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._version import VERSION as __version__
+from .library import NotFoundError, find_library, find_program
+from .scene import InputError, NotConvergedError, ProgramError, Result, Scene, SceneError, solve
+from .vtu import Fields, read_vtu
+
+if TYPE_CHECKING:
+    from .ksp import inner_ksp, register, set_body, set_body_is, set_body_label
+    from .calls import Error
+    from .solver import MortarResult, RowKind, Solver
+
+_PLACES = {
+    "register": "ksp",
+    "set_body": "ksp",
+    "set_body_is": "ksp",
+    "set_body_label": "ksp",
+    "inner_ksp": "ksp",
+    "Error": "calls",
+    "Solver": "solver",
+    "RowKind": "solver",
+    "MortarResult": "solver",
+}
+
+__all__ = [
+    "__version__",
+    "Fields",
+    "InputError",
+    "NotConvergedError",
+    "NotFoundError",
+    "ProgramError",
+    "Result",
+    "Scene",
+    "SceneError",
+    "find_library",
+    "find_program",
+    "read_vtu",
+    "solve",
+    *_PLACES,
+]
+
+
+def __getattr__(name: str) -> Any:
+    """What needs petsc4py is imported when it is first asked for."""
+    if name not in _PLACES:
+        raise AttributeError(f"module 'fetifeti' has no attribute '{name}'")
+    from importlib import import_module
+
+    return getattr(import_module(f"{__name__}.{_PLACES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

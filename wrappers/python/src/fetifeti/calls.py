@@ -1,0 +1,126 @@
+"""Calls of the functions of fetifeti.h: their arguments, and errors as exceptions."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from petsc4py import PETSc
+
+from .library import load
+
+DECIDE = -1
+"""PETSC_DECIDE."""
+
+_I, _D, _P, _S = ctypes.c_int, ctypes.c_double, ctypes.c_void_p, ctypes.c_char_p
+
+# Types of the arguments, in their order; handles, arrays and places for results are pointers.
+SIGNATURES: dict[str, list[Any]] = {
+    "FetiFetiInitializePackage": [],
+    "KSPFETIFETISetBody": [_P, _I],
+    "KSPFETIFETISetBodyIS": [_P, _P],
+    "KSPFETIFETISetBodyLabel": [_P, _S],
+    "KSPFETIFETIGetInnerKSP": [_P, _P],
+    "FetiFetiCreateFortran": [_I, _P],
+    "FetiFetiDestroy": [_P],
+    "FetiFetiReset": [_P],
+    "FetiFetiSetOptionsPrefix": [_P, _S],
+    "FetiFetiSetFromOptions": [_P],
+    "FetiFetiView": [_P, _P],
+    "FetiFetiSetSizes": [_P, _I, _I],
+    "FetiFetiSetBlockSize": [_P, _I],
+    "FetiFetiAddSubdomain": [_P, _I, _I, _P, _P, _P, _P],
+    "FetiFetiSetMatIS": [_P, _P, _I],
+    "FetiFetiAddMatIS": [_P, _P, _P, _I],
+    "FetiFetiSetNearNullSpace": [_P, _P],
+    "FetiFetiSetCoordinates": [_P, _I, _I, _P],
+    "FetiFetiSetDirichletBoundaries": [_P, _P, _P],
+    "FetiFetiSetNeumannBoundaries": [_P, _P],
+    "FetiFetiSetPrimalDofs": [_P, _P],
+    "FetiFetiSetContactRows": [_P, _I, _P, _P, _P, _P, _P],
+    "FetiFetiSetContactPairs": [_P, _I, _P, _I, _P, _P, _I],
+    "FetiFetiAddSurface": [_P, _I, _I, _I, _I, _P, _P, _I, _P, _P, _P],
+    "FetiFetiAddMortar": [_P, _I, _I, _I, _D, _D, _D, _P, _P, _P],
+    "FetiFetiGetMortar": [_P, _I, _I, _P, _P, _P, _P],
+    "FetiFetiResetMortar": [_P],
+    "FetiFetiSetUp": [_P],
+    "FetiFetiSolve": [_P, _P, _P],
+    "FetiFetiGetIterations": [_P, _P],
+    "FetiFetiGetContactSteps": [_P, _P],
+    "FetiFetiGetConvergedReason": [_P, _P],
+    "FetiFetiGetSpectrum": [_P, _P, _P],
+    "FetiFetiGetKKT": [_P, _P],
+    "FetiFetiGetMultipliers": [_P, _I, _P],
+    "FetiFetiGetInnerKSP": [_P, _P],
+}
+
+
+class Error(PETSc.Error):
+    """An error of the library or of PETSc under it.
+
+    Attributes
+    ----------
+    ierr : int
+        PETSc's error code.
+    sentence : str
+        What is wrong; the same on all ranks after a collective call.
+    """
+
+    def __init__(self, function: str, ierr: int, sentence: str) -> None:
+        super().__init__(ierr)
+        self.function = function
+        self.sentence = sentence
+
+    def __str__(self) -> str:
+        return f"{self.function}: {self.sentence} (PETSc error {self.ierr})"
+
+
+@lru_cache(maxsize=None)
+def _library() -> ctypes.PyDLL:
+    if np.dtype(PETSc.IntType) != np.int32 or np.dtype(PETSc.ScalarType) != np.float64:
+        raise ImportError(
+            f"petsc4py has {np.dtype(PETSc.ScalarType)} numbers and {np.dtype(PETSc.IntType)} indices, "
+            "expected float64 and int32, with which fetifeti is built"
+        )
+    library = load()
+    for name, arguments in SIGNATURES.items():
+        function = getattr(library, name)
+        function.argtypes, function.restype = arguments, _I
+    return library
+
+
+def call(name: str, *arguments: Any) -> None:
+    """Calls a function: PETSc objects and None for handles, NumPy arrays for arrays and places of results.
+
+    Raises
+    ------
+    Error
+        The function returned an error code.
+    """
+    function = getattr(_library(), name)
+    trace = PETSc.Error._traceback_
+    del trace[:]
+    code = function(*[_argument(a) for a in arguments])
+    if code:
+        # petsc4py keeps what PETSc's error handler was given, the sentence last.
+        text = trace[-1].split("] ", 1)[-1] if trace else PETSc.Error(code).args[-1]
+        raise Error(name, code, str(text))
+
+
+def _argument(a: Any) -> Any:
+    if isinstance(a, PETSc.Object):
+        return a.handle
+    if isinstance(a, np.ndarray):
+        return a.ctypes.data
+    return a.encode() if isinstance(a, str) else a
+
+
+def ksp_at(address: int) -> PETSc.KSP:
+    """The petsc4py object of a KSP in C, which it refers to (petsc4py's C function PyPetscKSP_New)."""
+    python, capsule = ctypes.pythonapi, PETSc.__pyx_capi__["PyPetscKSP_New"]
+    python.PyCapsule_GetName.restype, python.PyCapsule_GetName.argtypes = _S, [ctypes.py_object]
+    python.PyCapsule_GetPointer.restype, python.PyCapsule_GetPointer.argtypes = _P, [ctypes.py_object, _S]
+    new = python.PyCapsule_GetPointer(capsule, python.PyCapsule_GetName(capsule))
+    return ctypes.PYFUNCTYPE(ctypes.py_object, _P)(new)(address)
