@@ -1,12 +1,14 @@
 //! Meshes of bodies before anything is counted: elements of second order on boxes, and subdomains of meshes of cells.
 
+use super::model::map::Map;
 use super::model::spec::{BodySpec, Cut};
 use crate::error::{Error, Result};
 use crate::fem::cell::{Element, Material};
 use crate::fem::element::{self, Integration};
 use crate::fem::Form;
 use crate::mesh::partition::{subdomains_for, Interface, Partition, Sharing};
-use crate::mesh::{congruent, second_order, CellMesh, Mesh, Outline, Parts};
+use crate::mesh::{congruent, second_order, BoxMesh, CellMesh, Mesh, Outline, Parts};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Gives a body its final mesh. A copy of a mesh in `before`, also a turned or mirrored one, is cut as that is, so that
@@ -17,9 +19,17 @@ use std::sync::Arc;
 pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Result<()> {
     if let (Mesh::Grid(grid), 2) = (&body.mesh, body.order) {
         let simplices = form.element == Element::P1;
-        let place = |point| body.map.as_ref().map_or(point, |map| map.apply(point));
-        let mesh = second_order(grid, simplices, place);
-        body.mesh = mesh.into();
+        let mesh = match &before.of_box {
+            // Copies of a body come one after the other.
+            Some((like, map, mesh)) if like == grid && *map == body.map => mesh.clone(),
+            _ => {
+                let place = |point| body.map.as_ref().map_or(point, |map| map.apply(point));
+                let mesh = Arc::new(second_order(grid, simplices, place));
+                before.of_box = Some((*grid, body.map.clone(), mesh.clone()));
+                mesh
+            }
+        };
+        body.mesh = Mesh::Cells(mesh);
         // The nodes have been mapped.
         body.map = None;
         body.cut = Cut::AsItIs;
@@ -27,23 +37,43 @@ pub(super) fn prepare(body: &mut BodySpec, form: &Form, before: &mut Cuts) -> Re
     let Mesh::Cells(mesh) = &mut body.mesh else {
         return Ok(());
     };
+    let components = form.components(mesh.dim);
+    let n = match body.cut {
+        Cut::AsItIs => 0,
+        Cut::Auto => subdomains_for(mesh.points.len() * components, mesh.dim),
+        Cut::Into(n) => n,
+    };
+    let whole = body.integration.is_empty();
+    let key = (Arc::as_ptr(mesh) as usize, n);
+    if let (true, Some((_, done))) = (whole, before.copies.get(&key)) {
+        *mesh = done.clone();
+        return Ok(());
+    }
     if let Err(message) = check(mesh, form, &body.integration) {
         let (written, name) = (&body.written, &body.name);
         return Err(Error::Input(format!("{written}body `{name}`: {message}")));
     }
-    let components = form.components(mesh.dim);
-    let n = match body.cut {
-        Cut::AsItIs => return Ok(()),
-        Cut::Auto => subdomains_for(mesh.points.len() * components, mesh.dim),
-        Cut::Into(n) => n,
-    };
-    before.cut(mesh, n);
+    let written = mesh.clone();
+    if n > 0 {
+        before.cut(mesh, n);
+    }
+    if whole {
+        before.copies.insert(key, (written, mesh.clone()));
+    }
     Ok(())
 }
 
-/// The meshes that have been cut so far, each with the number of subdomains that it was to have.
+/// The meshes that are known so far.
 #[derive(Default)]
-pub(super) struct Cuts(Vec<(usize, Outline, Arc<CellMesh>)>);
+pub(super) struct Cuts {
+    /// Those that have been cut, each with the number of subdomains that it was to have.
+    cut: Vec<(usize, Outline, Arc<CellMesh>)>,
+    /// Meshes that copies share, by where they are in memory: as they were, and what has become of them. The number is
+    /// 0 for those that stay as they are.
+    copies: HashMap<(usize, usize), (Arc<CellMesh>, Arc<CellMesh>)>,
+    /// The last box that has got elements of second order.
+    of_box: Option<(BoxMesh, Option<Map>, Arc<CellMesh>)>,
+}
 
 impl Cuts {
     /// Cuts a mesh as the first of its copies was cut.
@@ -52,14 +82,14 @@ impl Cuts {
         let like = |(of, outlined, known): &&(usize, Outline, Arc<CellMesh>)| {
             *of == n && outlined.may_be(&outline) && congruent(known, mesh)
         };
-        if let Some((_, _, known)) = self.0.iter().find(like) {
+        if let Some((_, _, known)) = self.cut.iter().find(like) {
             let mesh = Arc::make_mut(mesh);
             mesh.parts = known.parts.clone();
             mesh.forget_adjacency();
             return;
         }
         cut(Arc::make_mut(mesh), n);
-        self.0.push((n, outline, mesh.clone()));
+        self.cut.push((n, outline, mesh.clone()));
     }
 }
 

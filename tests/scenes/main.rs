@@ -19,6 +19,7 @@ mod input_bodies;
 mod instances;
 mod instances_input;
 mod loose;
+mod many_bodies;
 mod mesh_mistakes;
 mod meshes;
 mod mortar;

@@ -1,6 +1,7 @@
 //! A side of a body as a surface in space: what the search for the nodes opposite needs.
 
 use super::nearest::Nearest;
+use super::sweep::{bounds_of, SAME};
 use crate::linalg::vec3::{cross, dot, minus, norm, unit};
 use crate::scene::model::spec::BodySpec;
 
@@ -28,6 +29,10 @@ pub(crate) struct Surface {
     pub facets: Vec<Facet>,
     /// The faces around each node.
     pub around: Vec<Vec<u32>>,
+    /// The lowest and the highest corner of its box.
+    pub bounds: [[f64; 3]; 2],
+    /// The normal of all its faces, if they have one.
+    pub flat: Option<[f64; 3]>,
     nearest: Nearest,
 }
 
@@ -61,7 +66,11 @@ impl Surface {
             });
         }
         let normals = around.iter().map(|list| smooth(&facets, list)).collect();
+        let first = facets.first().map_or([0.0; 3], |f: &Facet| f.normal);
+        let same = |f: &Facet| norm(minus(f.normal, first)) < SAME;
         Surface {
+            bounds: bounds_of(&points),
+            flat: facets.iter().all(same).then_some(first),
             nearest: Nearest::new(&points),
             nodes,
             points,

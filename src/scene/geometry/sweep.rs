@@ -3,31 +3,49 @@
 use std::rc::Rc;
 
 use super::matching::{FAR, MATCH};
-use super::surface::Surface;
-use crate::linalg::vec3::{minus, norm};
+use super::surface::{Surface, OPPOSITE};
+use crate::linalg::vec3::{dot, minus, norm};
+use crate::mortar::Tree;
 use crate::scene::body::Body;
 
 /// A box along the axes: its lowest and its highest corner.
 type Bounds = [[f64; 3]; 2];
 
-/// The pairs of bodies whose bounds are at most `slack` apart in x, where `slack` is that of the body further left.
-/// Each pair is in increasing order; the pairs are in the order of the sweep.
-pub(crate) fn near_in_x(bodies: &[Body], slack: impl Fn(usize) -> f64) -> Vec<[usize; 2]> {
-    let left = |b: usize| bodies[b].bounds[0][0];
-    let mut order: Vec<usize> = (0..bodies.len()).collect();
-    order.sort_by(|&a, &b| left(a).total_cmp(&left(b)).then(a.cmp(&b)));
+/// Normals of a flat surface differ by less.
+pub(super) const SAME: f64 = 1e-6;
+
+/// The pairs of bodies whose bounds are at most `slack` apart along every axis, where `slack` is that of one of them.
+/// Each pair is in increasing order, and so are the pairs. A tree of boxes finds them in n log n steps.
+pub(crate) fn near(bodies: &[Body], slack: impl Fn(usize) -> f64) -> Vec<[usize; 2]> {
+    let boxes: Vec<Bounds> = bodies.iter().map(|b| b.bounds).collect();
+    let tree = Tree::new(boxes.clone());
     let mut out = Vec::new();
-    for (k, &a) in order.iter().enumerate() {
-        let end = bodies[a].bounds[1][0] + slack(a);
-        let behind = order[k + 1..].iter().take_while(|&&b| left(b) <= end);
-        out.extend(behind.map(|&b| [a.min(b), a.max(b)]));
+    for (a, [low, high]) in boxes.iter().enumerate() {
+        let slack = slack(a);
+        let around = [low.map(|x| x - slack), high.map(|x| x + slack)];
+        let found = tree.meet(&around).into_iter().map(|b| b as usize);
+        out.extend(found.filter(|&b| b != a).map(|b| [a.min(b), a.max(b)]));
     }
+    out.sort_unstable();
+    out.dedup();
     out
 }
 
 /// Whether the bounds of two bodies are more than `reach` apart along an axis.
 pub(crate) fn are_apart([a, b]: [&Body; 2], reach: f64) -> bool {
     are_disjoint(&a.bounds, &b.bounds, reach)
+}
+
+/// Whether two surfaces may have nodes opposite each other at a distance of `reach` at most, or a node of one opposite
+/// the inside of a face of the other. If not, they are [`Apart`](super::matching::Mismatch::Apart).
+pub(crate) fn may_meet(a: &Surface, b: &Surface, reach: f64) -> bool {
+    let same_way = match (a.flat, b.flat) {
+        (Some(m), Some(n)) => dot(m, n) >= OPPOSITE + SAME,
+        _ => false,
+    };
+    // Nodes have partners a little beside their normals, and faces count as a little larger than they are.
+    let slack = reach + 0.1 * size(a.bounds).max(size(b.bounds));
+    !same_way && !are_disjoint(&a.bounds, &b.bounds, slack)
 }
 
 /// The pairs of a surface of the first list and one of the second that may have nodes opposite each other at a distance
@@ -76,8 +94,7 @@ struct Outline<'a> {
 
 impl Outline<'_> {
     fn new(surface: &Surface, reach: f64) -> Outline<'_> {
-        let points = surface.points.iter();
-        let bounds = points.fold(NOTHING, |b, p| union(b, [*p, *p]));
+        let bounds = surface.bounds;
         let edge = surface.edges.iter().copied().fold(0.0, f64::max);
         Outline {
             surface,
@@ -96,6 +113,11 @@ impl Outline<'_> {
         });
         ends.fold(self.bounds, |b, end| union(b, [end, end]))
     }
+}
+
+/// The bounds of points.
+pub(super) fn bounds_of(points: &[[f64; 3]]) -> Bounds {
+    points.iter().fold(NOTHING, |b, p| union(b, [*p, *p]))
 }
 
 fn union(a: Bounds, b: Bounds) -> Bounds {

@@ -3,7 +3,7 @@
 use super::facing::coinciding;
 use super::interface::{Interface, Link, Shape, SharedNode, TOLERANCE};
 use super::normals;
-use super::sweep::near_in_x;
+use super::sweep::near;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, Mesh};
 use crate::scene::body::Body;
@@ -21,7 +21,7 @@ pub(crate) fn touching(bodies: &[Body]) -> Result<Vec<Interface>> {
     };
     let bent = |k: usize| (&bodies[k].spec.map, &bodies[k].spec.motion);
     let mut out = Vec::new();
-    for [a, b] in near_in_x(bodies, slack) {
+    for [a, b] in near(bodies, slack) {
         match [a, b].map(|k| bodies[k].mesh().grid()) {
             [Some(x), Some(y)] if bent(a) == bent(b) => {
                 out.extend(common(bodies, [x, y], [a, b])?);

@@ -52,6 +52,22 @@ fn unmatched(
     interfaces: &mut [Interface],
 ) {
     let whole = |e: &Extent| matches!(e, Extent::All | Extent::Range(_));
+    let ties = spec.ties.iter();
+    let ties = ties.map(|t| (&t.pair, t.multipliers, &t.extent, t.sides));
+    let contacts = spec.contacts.iter();
+    let contacts = contacts.map(|c| (&c.pair, c.multipliers, &c.extent, c.sides));
+    // The entries that name no sides, by number: those of all pairs, and those of each pair of names.
+    let mut of_all = Vec::new();
+    let mut of_names: HashMap<[&str; 2], Vec<_>> = HashMap::new();
+    for (number, (pair, which, extent, sides)) in ties.chain(contacts).enumerate() {
+        let entry = (number, pair, which, extent);
+        match pair {
+            _ if sides.is_some() => {}
+            Pair::All => of_all.push(entry),
+            Pair::Named(a, b) => of_names.entry(in_order(a, b)).or_default().push(entry),
+            Pair::Surfaces(..) => {}
+        }
+    }
     for interface in interfaces {
         let names = interface.bodies.map(|k| &bodies[k].spec.name);
         let [a, b] = names;
@@ -62,19 +78,13 @@ fn unmatched(
             Pair::Named(x, y) if x == b && y == a => Some(1 - which.unwrap_or(0)),
             _ => None,
         };
-        let ties = spec
-            .ties
-            .iter()
-            .map(|t| (&t.pair, t.multipliers, &t.extent, t.sides));
-        let contacts = spec
-            .contacts
-            .iter()
-            .map(|c| (&c.pair, c.multipliers, &c.extent, c.sides));
         let mut which = None;
         let (mut single, mut contact) = (false, false);
-        let numbered = ties.chain(contacts).enumerate();
-        for (number, (pair, of_entry, extent, sides)) in numbered {
-            let Some(found) = meant(pair, of_entry).filter(|_| sides.is_none()) else {
+        let named = of_names.get(&in_order(a, b)).into_iter().flatten();
+        let mut entries: Vec<_> = of_all.iter().chain(named).collect();
+        entries.sort_by_key(|entry| entry.0);
+        for &&(number, pair, of_entry, extent) in &entries {
+            let Some(found) = meant(pair, of_entry) else {
                 continue;
             };
             single |= !whole(extent) && *extent != Extent::None;
@@ -100,6 +110,11 @@ fn unmatched(
             *interface = found;
         }
     }
+}
+
+/// Two names in their order.
+fn in_order<'a>(a: &'a str, b: &'a str) -> [&'a str; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// How far apart the sides of a common face with nodes that do not match may be; `None` for other interfaces.

@@ -7,7 +7,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::facing::is_face;
 use crate::scene::geometry::interface::Interface;
 use crate::scene::geometry::matching::{apart, Matching, Mismatch};
-use crate::scene::geometry::sweep::{are_apart, may_face, near_in_x};
+use crate::scene::geometry::sweep::{are_apart, may_face, may_meet, near};
 use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::SceneSpec;
@@ -219,10 +219,8 @@ fn found(
     let edges: Vec<f64> = (0..bodies.len()).map(&mut edge).collect();
     let reach_of = |edge: &f64| auto.distance.unwrap_or(NEAR * edge);
     let reaches: Vec<f64> = edges.iter().map(reach_of).collect();
-    let mut near = near_in_x(bodies, |k| reaches[k]);
-    near.sort_unstable();
     let mut out = Vec::new();
-    for [a, b] in near {
+    for [a, b] in near(bodies, |k| reaches[k]) {
         let reach = reaches[a].min(reaches[b]);
         if are_apart([&bodies[a], &bodies[b]], reach) {
             continue;
@@ -235,6 +233,10 @@ fn found(
         for sides in sides {
             // The finer side carries the multipliers where nodes do not match.
             let which = usize::from(edges[b] < edges[a]);
+            let both = [0, 1].map(|k| matching.surface([a, b][k], sides[k]));
+            if !may_meet(&both[0], &both[1], reach) {
+                continue;
+            }
             let interface = match matching.find([a, b], sides, reach) {
                 Err(Mismatch::Apart(_)) => None,
                 Err(Mismatch::Lonely) => {
