@@ -144,7 +144,8 @@ fn a_deck_in_space_says_it_in_its_own_words() {
     text += "*ELEMENT, TYPE=C3D8, ELSET=E\n1, 1, 2, 3, 4, 5, 6, 7, 8\n2, 11, 12, 13, 14, 15, 16, 17, 18\n";
     text += "*MATERIAL, NAME=M\n*ELASTIC\n210, 0.3\n*SOLID SECTION, ELSET=E, MATERIAL=M\n";
     text += "*SURFACE, NAME=UNDER\n1, S2\n*SURFACE, NAME=OVER\n2, S1\n";
-    let step = "*STEP\n*STATIC\n*BOUNDARY\n1, 1, 3\n2, 1, 3\n3, 1, 3\n4, 1, 3\n11, 1, 3\n12, 1, 3\n13, 1, 3\n*END STEP\n";
+    let step = "*STEP\n*STATIC\n*BOUNDARY\n1, 1, 3\n2, 1, 3\n3, 1, 3\n4, 1, 3\n11, 1, 3\n12, 1, 3\n13, 1, 3\n\
+                *END STEP\n";
     let scratch = Scratch::new("loose-deck");
     let load = |name: &str, more: &str| {
         Scene::load(scratch.file(name, &format!("{text}{more}{step}"))).expect("a deck")

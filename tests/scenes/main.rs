@@ -32,3 +32,4 @@ mod scaling;
 mod solution;
 mod springs;
 mod steps;
+mod stiff_and_soft;

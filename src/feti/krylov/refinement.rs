@@ -18,13 +18,13 @@ use super::iterate::{iterate, IterationControl};
 use super::loads::Loads;
 use super::recovery::{displacements, LinearSolution};
 use super::residual::{Iterate, ROUNDING};
+use super::strained::strained;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
-use crate::linalg::csr::Csr;
 use crate::parallel::exchange::total;
 use crate::petsc::Vec as PetscVec;
 use crate::status::Status;
-use crate::substructures::Substructures;
+use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
 /// Tolerances below this may be beyond the accuracy of the operators.
@@ -182,7 +182,7 @@ pub(super) fn remainder(
         for (&i, v) in interface.iter().zip(&w.v) {
             f[i as usize] -= v;
         }
-        forces.push(less_product(&sub.k, &solution.u[j], f));
+        forces.push(less_product(sub, &solution.u[j], f));
         for (y, &i) in w.y.iter_mut().zip(interface) {
             *y = solution.u[j][i as usize];
         }
@@ -196,7 +196,14 @@ pub(super) fn remainder(
 }
 
 /// f − K u, with products and sums in twice the working precision.
-fn less_product(k: &Csr, u: &[f64], mut f: Vec<f64>) -> Vec<f64> {
+fn less_product(sub: &Subdomain, u: &[f64], mut f: Vec<f64>) -> Vec<f64> {
+    let k = &sub.k;
+    let mut force = vec![0.0; k.n()];
+    k.mul(u, &mut force);
+    let energy = u.iter().zip(&force).map(|(u, f)| u * f).sum();
+    let columns = sub.near_kernel.as_deref();
+    let without = strained(k, columns, &k.diagonal(), u, energy);
+    let u = without.as_deref().unwrap_or(u);
     for (i, f) in f.iter_mut().enumerate() {
         let (col, val) = k.row(i);
         let (mut sum, mut rest) = (*f, 0.0);

@@ -105,8 +105,8 @@ impl LinearMethod {
     }
 
     /// Iterates from λ to `control.tolerance`; the residual holds Pᵀ r on entry. Looks at the spectrum, deflates large
-    /// eigenvalues and starts anew where rounding has ended a run. `look` may end it early. On return the residual belongs to an earlier λ.
-    /// Collective.
+    /// eigenvalues and starts anew where rounding has ended a run. `look` may end it early. On return the residual
+    /// belongs to an earlier λ. Collective.
     pub(crate) fn reach(
         &self,
         at: &mut Iterate,

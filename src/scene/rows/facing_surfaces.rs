@@ -53,8 +53,8 @@ impl Opposite {
     }
 }
 
-/// The part of a surface, which has moved by `way`, at a distance of `reach` at most, that lies opposite some nodes of a
-/// side; `None` if there is none. Distances are those from the surface as it is given.
+/// The part of a surface, which has moved by `way`, at a distance of `reach` at most, that lies opposite some nodes of
+/// a side; `None` if there is none. Distances are those from the surface as it is given.
 pub(super) fn find(
     spec: &BodySpec,
     form: &Form,
