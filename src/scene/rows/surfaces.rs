@@ -15,6 +15,9 @@ use crate::scene::model::spec::SceneSpec;
 /// Where nothing is said, sides of bodies are in contact if their distance is at most this fraction of their edges.
 pub(super) const NEAR: f64 = 0.1;
 
+/// Up to this ratio of the edges the coarser side carries multipliers.
+const COARSER: f64 = 4.0;
+
 /// Replaces the surfaces in the entries by bodies and sides, and adds the contacts that `auto` finds.
 pub(crate) fn expand(
     bodies: &[Body],
@@ -231,8 +234,7 @@ fn found(
             others.map(move |second| [first, second])
         });
         for sides in sides {
-            // The finer side carries the multipliers where nodes do not match.
-            let which = usize::from(edges[b] < edges[a]);
+            let which = carrier([edges[a], edges[b]]);
             let both = [0, 1].map(|k| matching.surface([a, b][k], sides[k]));
             if !may_meet(&both[0], &both[1], reach) {
                 continue;
@@ -267,6 +269,17 @@ fn found(
             auto.written
         ))),
         false => Ok(out),
+    }
+}
+
+/// The side that carries the multipliers where nodes do not match, from the shortest edges of both bodies: the coarser
+/// one, whose pressures are smoother (docs/benchmarks.md). If it is coarser by far, one of its faces may reach beyond
+/// the other side, and the finer one takes them.
+fn carrier([a, b]: [f64; 2]) -> usize {
+    let coarser = usize::from(b > a);
+    match a.max(b) <= COARSER * a.min(b) {
+        true => coarser,
+        false => 1 - coarser,
     }
 }
 
