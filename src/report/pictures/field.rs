@@ -119,7 +119,8 @@ fn draw(
                 view.line(&mut raster, line, width, Colour::WHITE);
             }
         }
-        let body_line = (0.02 * spacing(mesh.count(mesh.body))).clamp(0.4, 1.5);
+        let between_bodies = spacing(mesh.count(mesh.body));
+        let body_line = (0.02 * between_bodies).clamp(f64::min(0.4, 0.06 * between_bodies), 1.5);
         for line in &lines.bodies {
             view.line(&mut raster, line, body_line, Colour(0, 0, 0));
         }

@@ -18,6 +18,8 @@ pub struct ContactMark {
 }
 
 const CLOSED: Colour = Colour(0xe8, 0x10, 0x3c);
+/// Widths of the white border on both sides of a line, together.
+const BORDER: f64 = 1.4;
 const SAMPLE: f64 = 34.0;
 const DASH: [f64; 2] = [4.0, 3.0];
 const LABELS: [(bool, &str); 2] = [(true, "in contact"), (false, "may touch, open")];
@@ -33,19 +35,21 @@ pub(super) fn legend_height(marks: &[ContactMark]) -> f64 {
 
 /// Draws the marks; `spacing` is the width of a typical body in logical pixels.
 pub(super) fn draw(raster: &mut Raster, marks: &[ContactMark], view: &View, spacing: f64) {
-    let strong = (0.012 * spacing).clamp(1.8, 3.4);
+    // Where bodies are only a few pixels wide the marks must leave some of the field.
+    let strong = (0.012 * spacing).clamp(1.8, 3.4).min(0.15 * spacing);
+    let border = f64::min(BORDER, 0.08 * spacing);
     // Open marks are drawn first: closed ones must not be hidden where both meet.
     for closed in [false, true] {
         let these = || marks.iter().filter(move |m| m.closed == closed);
         let lines = these().filter(|m| m.from != m.to).map(|m| (m.from, m.to));
         for line in outline::joined(lines) {
             let line: Vec<_> = line.into_iter().map(|p| view.place(p)).collect();
-            stroke(raster, &line, closed, strong);
+            stroke(raster, &line, closed, [strong, border]);
         }
         for node in these().filter(|m| m.from == m.to) {
             let at = view.place(node.from);
             let radius = 1.2 * strong;
-            raster.polygon(&canvas::circle(at, radius + 0.7), Colour::WHITE);
+            raster.polygon(&canvas::circle(at, radius + 0.5 * border), Colour::WHITE);
             let ink = if closed { CLOSED } else { Colour(0, 0, 0) };
             raster.polygon(&canvas::circle(at, radius), ink);
             if !closed {
@@ -60,17 +64,18 @@ pub(super) fn legend(raster: &mut Raster, marks: &[ContactMark], middle: (f64, f
     let mut shown = LABELS.to_vec();
     shown.retain(|l| marks.iter().any(|m| m.closed == l.0));
     paint::legend(raster, &shown, SAMPLE, middle, |raster, (x, y), closed| {
-        stroke(raster, &[(x, y), (x + SAMPLE, y)], *closed, 3.4);
+        stroke(raster, &[(x, y), (x + SAMPLE, y)], *closed, [3.4, BORDER]);
     });
 }
 
 /// Draws a line with a white border, which is visible on every colour of a field and on the outline of a body.
-fn stroke(raster: &mut Raster, line: &[(f64, f64)], closed: bool, strong: f64) {
+fn stroke(raster: &mut Raster, line: &[(f64, f64)], closed: bool, [strong, border]: [f64; 2]) {
     if closed {
-        raster.line(line, strong + 1.4, Colour::WHITE, &[]);
+        raster.line(line, strong + border, Colour::WHITE, &[]);
         raster.line(line, strong, CLOSED, &[]);
     } else {
-        raster.line(line, 0.3 * strong + 1.4, Colour::WHITE, &[]);
-        raster.line(line, 0.3 * strong + 0.5, Colour(0, 0, 0), &DASH);
+        raster.line(line, 0.3 * strong + border, Colour::WHITE, &[]);
+        let thin = 0.3 * strong + 0.5 * border / BORDER;
+        raster.line(line, thin, Colour(0, 0, 0), &DASH);
     }
 }
