@@ -3,10 +3,10 @@
     mortar.py -dim 2 -order 1 -components 2 -kind 1 -by rows|mortar [-spread] [-patch [-cells simplex|serendipity]]
 
 Two blocks [0, 1]^dim of tensor-product elements, or of simplices or serendipity elements, lie on each other, turned in
-space, 0.01 apart; the far sides are held at given displacements. The rows of -by rows are made here: dual mortar rows for elements of first order, as products
-of rows in one dimension, else collocation in the nodes. -by mortar leaves them to FetiFetiAddMortar. -spread: faces
-are given by the ranks that have them, with some by several ranks. -patch: without loads, and lambda = 0, the pressure
-is the same everywhere.
+space, 0.01 apart; the far sides are held at given displacements. The rows of -by rows are made here: dual mortar rows
+for elements of first order, as products of rows in one dimension, else collocation in the nodes. -by mortar leaves them
+to FetiFetiAddMortar. -spread: faces are given by the ranks that have them, with some by several ranks. -patch: without
+loads, and lambda = 0, the pressure is the same everywhere.
 """
 import ctypes
 import itertools
