@@ -1,14 +1,14 @@
-"""Plane elasticity on DMDAs from petsc4py, and two blocks in contact: fetifeti.h by ctypes.
+"""Plane elasticity on DMDAs from petsc4py, and two blocks in contact: the package of wrappers/python.
 
-    LD_LIBRARY_PATH=target/release mpirun -n 2 python3 examples/embedding/contact.py [-contact] [-m 17]
+    mpirun -n 2 python3 examples/embedding/contact.py [-contact] [-m 17]
 
 The same problems as in contact.c. Without -contact: one block, held at its left (in x) and at its bottom (in y),
 pressed from above, solved by any KSP. With it a second block with a curved lower side lies on the first one, and the
 press is on that.
 """
-import ctypes
 import sys
 
+import fetifeti
 import numpy as np
 import petsc4py
 
@@ -59,7 +59,7 @@ def block(hold, press):
 
 if not contact:
     da, A, b, *_ = block(hold=True, press=True)
-    ctypes.CDLL("libfetifeti.so").FetiFetiInitializePackage()  # for -ksp_type fetifeti
+    fetifeti.register()  # for -ksp_type fetifeti
     ksp, u = PETSc.KSP().create(comm), b.duplicate()
     ksp.setOperators(A)
     ksp.setFromOptions()
@@ -67,48 +67,19 @@ if not contact:
     PETSc.Sys.Print(f"{ksp.getIterationNumber()} iterations, energy {-b.dot(u) / 2:.9f}")
     sys.exit()
 
-# the recipe: how functions of fetifeti.h are called, for any program
-lib = ctypes.CDLL("libfetifeti.so")
-DECIDE, EQUALITY, INEQUALITY = -1, 0, 1
-
-
-def call(name, *args):
-    """Calls a function: PETSc objects (None is NULL), integers, NumPy arrays of float64 and int32, ctypes.byref of a
-    handle. An error is PETSc's."""
-    code = getattr(lib, name)(*[argument(a) for a in args])
-    if code:
-        raise PETSc.Error(code)
-
-
-def argument(a):
-    """What ctypes can pass; an array is passed by its place, so that results can be written to it."""
-    if isinstance(a, PETSc.Object):
-        return ctypes.c_void_p(a.handle)
-    if isinstance(a, np.ndarray):
-        assert a.dtype in ("f8", "i4") and a.flags.c_contiguous, "expected float64 or int32 without gaps"
-        return ctypes.c_void_p(a.ctypes.data)
-    return ctypes.c_int(a) if isinstance(a, int) else a
-
-
 # contact
 lower = block(hold=True, press=False)
 upper = block(hold=False, press=True)
 load = PETSc.Vec().createNest([lower[2], upper[2]], comm=comm)
-u = load.duplicate()
 n = 0 if comm.rank else m  # the first rank gives the rows
-gap, force = 0.05 + 0.4 * (np.arange(n) / (m - 1)) ** 2, np.zeros(n)
-ff = ctypes.c_void_p()
-call("FetiFetiCreateFortran", comm.fortran, ctypes.byref(ff))
-call("FetiFetiSetFromOptions", ff)
-call("FetiFetiAddMatIS", ff, lower[1], None, 0)
-call("FetiFetiAddMatIS", ff, upper[1], None, 1)
-call("FetiFetiSetContactPairs", ff, 0, lower[4], 1, upper[3], gap, INEQUALITY)  # top of the one, bottom of the other
-call("FetiFetiSolve", ff, load, u)
-call("FetiFetiGetMultipliers", ff, n, force)
-reason = np.zeros(1, "i4")
-call("FetiFetiGetConvergedReason", ff, reason)
-call("FetiFetiDestroy", ctypes.byref(ff))
+gap = 0.05 + 0.4 * (np.arange(n) / (m - 1)) ** 2
+with fetifeti.Solver(comm) as solver:
+    solver.add_mat_is(lower[1], body=0)
+    solver.add_mat_is(upper[1], body=1)
+    solver.add_contact_pairs(lower[4], upper[3], gap, matrices=(0, 1))  # top of the one, bottom of the other
+    u = solver.solve(load)
+    force, reason = solver.multipliers, solver.reason
 # end of contact
 
-PETSc.Sys.Print(f"reason {reason[0]}, work {-load.dot(u):.9f}")
+PETSc.Sys.Print(f"reason {reason}, work {-load.dot(u):.9f}")
 PETSc.Sys.Print(f"{np.sum(force > 1e-10)} of {m} nodes touch, force {force.sum():.9f}")

@@ -1,10 +1,10 @@
 //! The functions of wrappers/fetifeti.h from Fortran (wrappers/fetifeti.f90) on bars with known solutions, and from
-//! Python by ctypes on blocks, compared with the same program in C.
+//! Python by the package of wrappers/python on blocks, compared with the same program in C.
 
+use crate::python::script;
 use crate::support::{mpi, plugin};
-use mpi::{mpirun, Scratch};
-use plugin::{library, number_after, Program};
-use std::path::Path;
+use mpi::Scratch;
+use plugin::{number_after, Program};
 
 #[test]
 fn bars_in_fortran() {
@@ -23,25 +23,7 @@ fn bars_in_fortran() {
 
 #[test]
 fn contact_from_petsc4py() {
-    // Debian stores petsc4py next to the PETSc that it was built for.
-    let modules = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
-    let path = std::env::var("PYTHONPATH").unwrap_or_default();
-    let path = format!("{modules}:{path}");
-    let library = library();
-    let dir = Path::new(&library)
-        .parent()
-        .expect("it lies in a directory");
-    let others = std::env::var("LD_LIBRARY_PATH").unwrap_or_default();
-    let places = format!("{}:{others}", dir.display());
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/embedding/contact.py");
-    let script = script.to_str().expect("the path is UTF-8");
-    let python = |ranks: usize, options: &str| {
-        let args: Vec<&str> = [script].into_iter().chain(options.split(' ')).collect();
-        let env = [("PYTHONPATH", &path[..]), ("LD_LIBRARY_PATH", &places)];
-        let out = mpirun(ranks, "/usr/bin/python3", &args, &env);
-        assert_eq!(out.code, 0, "{}", out.all());
-        out
-    };
+    let python = |ranks, options: &str| script("examples/embedding/contact.py", ranks, options);
     let scratch = Scratch::new("capi-python");
     let program = Program::linked("mpicc", &scratch, "examples/embedding/contact.c");
     let options = "-contact -m 13 -fetifeti_ksp_rtol 1e-10";

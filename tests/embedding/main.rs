@@ -13,4 +13,5 @@ mod languages;
 mod mortar;
 mod partitions;
 mod petsc_examples;
+mod python;
 mod wrong_petsc;

@@ -1,38 +1,17 @@
 //! Rows with many terms and FetiFetiAddMortar, from C, Fortran and Python: against dense solutions, against exact
 //! pressures, and mistakes.
 
+use crate::python::script;
 use crate::support::{mpi, plugin};
-use mpi::{mpirun, Output, Scratch};
-use plugin::{library, number_after, Program};
-use std::path::Path;
-
-/// Runs a script with petsc4py and the library.
-fn python(script: &str, ranks: usize, options: &str) -> Output {
-    // Debian stores petsc4py next to the PETSc that it was built for.
-    let modules = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages";
-    let path = std::env::var("PYTHONPATH").unwrap_or_default();
-    let path = format!("{modules}:{path}");
-    let library = library();
-    let dir = Path::new(&library)
-        .parent()
-        .expect("it lies in a directory");
-    let others = std::env::var("LD_LIBRARY_PATH").unwrap_or_default();
-    let places = format!("{}:{others}", dir.display());
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join(script);
-    let script = script.to_str().expect("the path is UTF-8");
-    let args: Vec<&str> = [script].into_iter().chain(options.split(' ')).collect();
-    let env = [("PYTHONPATH", &path[..]), ("LD_LIBRARY_PATH", &places)];
-    let out = mpirun(ranks, "/usr/bin/python3", &args, &env);
-    assert_eq!(out.code, 0, "{options}, {ranks} ranks: {}", out.all());
-    out
-}
+use mpi::Scratch;
+use plugin::{number_after, Program};
 
 /// tests/plugin/mortar.py: the solution is that of the dense optimality system, and the same at any number of ranks.
 fn against_dense(options: &str, most_terms: f64) {
     let mut sums = Vec::new();
     for ranks in [1, 2, 4] {
         let always = "-fetifeti_ksp_rtol 1e-13 -fetifeti_contact_rtol 1e-12";
-        let out = python(
+        let out = script(
             "tests/plugin/mortar.py",
             ranks,
             &format!("{options} {always}"),
@@ -110,7 +89,7 @@ fn constant_pressures_of_both_orders() {
     ] {
         let options = format!("-by mortar -patch -spread {options} -fetifeti_ksp_rtol 1e-13");
         // The script fails where a pressure is off by 1e-10.
-        let out = python("tests/plugin/mortar.py", 2, &options);
+        let out = script("tests/plugin/mortar.py", 2, &options);
         assert!(
             out.stdout.contains("pressure within"),
             "{options}: {}",
@@ -129,7 +108,7 @@ fn constant_pressures_of_faces_of_3_6_and_8_nodes() {
                     "-by mortar -patch -spread -dim 3 -components 3 -cells {cells} -order {order} -kind {kind} \
                      -fetifeti_ksp_rtol 1e-13"
                 );
-                let out = python("tests/plugin/mortar.py", ranks, &options);
+                let out = script("tests/plugin/mortar.py", ranks, &options);
                 assert_eq!(
                     out.stdout.matches("pressure within").count(),
                     ranks,
@@ -154,7 +133,7 @@ fn examples_with_exact_pressures() {
             "{}",
             out.all()
         );
-        let out = python("examples/embedding/mortar.py", ranks, options);
+        let out = script("examples/embedding/mortar.py", ranks, options);
         assert!(
             number_after(&out, "pressure 0.1 but for") < 1e-10,
             "{}",

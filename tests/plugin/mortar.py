@@ -25,7 +25,7 @@ by, spread = options.getString("by", "rows"), options.getBool("spread", False)
 patch, lame = options.getBool("patch", False), 0.0 if options.getBool("patch", False) else 1.0
 scale, cells = options.getReal("scale", 1.0), options.getString("cells", "tensor")
 assert patch or cells == "tensor", "only pressures are known of other elements"
-lib = ctypes.CDLL("libfetifeti.so")
+lib = ctypes.PyDLL("libfetifeti.so")
 
 
 def call(name, *args):

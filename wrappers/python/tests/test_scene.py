@@ -66,7 +66,7 @@ def test_a_callback_can_stop_the_program():
         fetifeti.solve(SCENES / "press_ramp.toml", on_step=stop)
 
 
-def test_the_program_speaks_in_exceptions(tmp_path):
+def test_the_program_speaks_in_exceptions(tmp_path, monkeypatch):
     with pytest.raises(fetifeti.InputError, match="nothing.toml: the scene cannot be read") as caught:
         fetifeti.solve("nothing.toml")
     assert caught.value.code == 2 and isinstance(caught.value, ValueError)
@@ -81,6 +81,12 @@ def test_the_program_speaks_in_exceptions(tmp_path):
     assert caught.value.code == 3
     with pytest.raises(fetifeti.InputError, match="no contact and no obstacle"):
         fetifeti.solve(SCENES / "poisson_2x2.toml", on_step=print)
+    mpirun = tmp_path / "mpirun"
+    mpirun.write_text("#!/bin/sh\necho no room >&2\nexit 1\n")
+    mpirun.chmod(0o755)
+    monkeypatch.setenv("FETIFETI_MPIRUN", str(mpirun))
+    with pytest.raises(fetifeti.ProgramError, match="no room"):
+        fetifeti.solve(SCENES / "poisson_2x2.toml", ranks=2)
     with pytest.raises(ValueError, match="ranks is 0"):
         fetifeti.solve(SCENES / "poisson_2x2.toml", ranks=0)
 
@@ -111,10 +117,15 @@ def test_the_reader_agrees_with_meshio():
         assert np.array_equal(np.concatenate(values), ours.cell_data[name])
 
 
-def test_to_pyvista():
-    pytest.importorskip("pyvista")
-    grid = fetifeti.solve(SCENES / "poisson_2x2.toml").to_pyvista()
-    assert grid.n_points == grid.point_data["u"].size
+@pytest.mark.parametrize("scene", ["scenes/blocks_3d", "scenes/poisson_2x2", "gallery/pin_lug"])
+def test_pyvista_gets_what_vtk_reads(scene):
+    pyvista = pytest.importorskip("pyvista")
+    result = fetifeti.solve(SOURCES / "examples" / f"{scene}.toml")
+    theirs, ours = pyvista.read(result.directory / "solution.vtu"), result.to_pyvista()
+    assert np.array_equal(theirs.points, ours.points)
+    assert np.array_equal(theirs.cells, ours.cells) and np.array_equal(theirs.celltypes, ours.celltypes)
+    assert set(theirs.array_names) == set(ours.array_names)
+    assert all(np.array_equal(theirs[name], ours[name]) for name in theirs.array_names)
 
 
 def test_no_mpi_in_this_process(tmp_path):

@@ -80,7 +80,8 @@ def contact_reference(parts, spring, f, gap):
     raise AssertionError("the reference does not converge")
 
 
-def test_registered_ksp_agrees_with_lu(world):
+@pytest.mark.parametrize("bodies", ["one", "by rank", "by row"])
+def test_registered_ksp_agrees_with_lu(world, bodies):
     fetifeti.register()
     fetifeti.register()
     A = matis(world, spring=2.0)
@@ -90,7 +91,10 @@ def test_registered_ksp_agrees_with_lu(world):
     ksp, x = PETSc.KSP().create(world), b.duplicate()
     ksp.setOperators(A)
     ksp.setType("fetifeti")
-    fetifeti.set_body(ksp, 0)
+    if bodies == "by row":
+        fetifeti.set_body_is(ksp, np.full(high - low, 2))
+    else:
+        fetifeti.set_body(ksp, 0 if bodies == "one" else world.rank)
     ksp.setTolerances(rtol=1e-12)
     ksp.solve(b, x)
     assert ksp.getConvergedReason() > 0
@@ -106,6 +110,19 @@ def test_registered_ksp_agrees_with_lu(world):
     right.setArray(gathered(b))
     lu.solve(right, y)
     assert np.abs(gathered(x) - y.getArray()).max() < 1e-9 * np.abs(y.getArray()).max()
+
+
+def test_mistakes_with_a_ksp_are_exceptions(world):
+    ksp = PETSc.KSP().create(world)
+    with pytest.raises(fetifeti.Error) as caught:
+        fetifeti.inner_ksp(ksp)
+    assert caught.value.ierr > 0
+    ksp.setOperators(PETSc.Mat().createAIJ([4, 4], nnz=1, comm=world))
+    fetifeti.register()
+    ksp.setType("fetifeti")
+    fetifeti.set_body_label(ksp, "no label of any mesh")
+    with pytest.raises(PETSc.Error):
+        ksp.setUp()
 
 
 @pytest.mark.parametrize("way", ["pairs", "rows"])

@@ -197,3 +197,67 @@ def test_prefixes_and_options(world):
         assert solver.inner_ksp.getOptionsPrefix().startswith("mine_fetifeti_")
         viewer = PETSc.Viewer().createASCII("/dev/null", comm=world)
         solver.view(viewer)
+
+
+def test_vectors_and_sets_of_petsc(world):
+    """What set_mat_is, numbers, motions, coordinates and index sets take."""
+    n = 4 * world.size + 1
+    at = 4 * world.rank + np.arange(5, dtype="i4")
+    map = PETSc.LGMap().create(at, comm=world)
+    A = PETSc.Mat().createIS([n, n], lgmapr=map, lgmapc=map, comm=world)
+    k = 2.0 * np.eye(5) - np.eye(5, k=1) - np.eye(5, k=-1)
+    k[0, 0] = k[4, 4] = 1.0
+    rows, columns = np.arange(0, 26, 5, dtype="i4"), np.tile(np.arange(5, dtype="i4"), 5)
+    A.setISLocalMat(PETSc.Mat().createAIJ([5, 5], csr=(rows, columns, k.ravel()), comm=PETSc.COMM_SELF))
+    A.assemble()
+    low, high = A.getOwnershipRange()
+    b = A.createVecLeft()
+    b.setArray((np.arange(low, high) == n - 1) * 1.0)
+    for way in ("whole", "numbers", "reversed"):
+        with fetifeti.Solver(world, options=OPTIONS) as solver:
+            held = 0
+            if way == "whole":
+                solver.set_mat_is(A, body=3)
+                solver.set_coordinates(np.arange(low, high)[:, None])
+                solver.set_near_null_space(PETSc.NullSpace().create(constant=True, comm=world))
+            elif way == "numbers":
+                solver.add_mat_is(A, numbers=np.arange(low, high), body=0)
+                solver.set_neumann([n - 1] if world.rank == 0 else [])
+            else:
+                solver.set_sizes(high - low, n)
+                solver.add_mat_is(A, numbers=PETSc.IS().createStride(high - low, n - 1 - low, -1, comm=world), body=0)
+                held = n - 1
+            solver.set_dirichlet(PETSc.IS().createGeneral([held] if world.rank == 0 else [], comm=world))
+            solver.set_primal_dofs([4] if world.rank == 0 else [])
+            load = b.duplicate()
+            if way == "reversed":
+                load.setArray((np.arange(low, high) == 0) * 1.0)
+            else:
+                b.copy(load)
+            x = b.duplicate()
+            assert solver.solve(load, x) is x
+            u = everywhere(x.getArray(), world)
+        exact = np.arange(n)[::-1] if way == "reversed" else np.arange(n)
+        assert np.allclose(u, exact, atol=1e-9), way
+
+
+def test_pairs_tie_and_are_forgotten(world):
+    """Two bars side by side on one rank, tied at their ends by a pair; then apart."""
+    spring = scipy.sparse.csr_matrix([[1.0, -1.0], [-1.0, 1.0]])
+    low, high = part_of(4, world)
+    load = (np.arange(low, high) == 3) * 1.0
+    last = world.rank == world.size - 1
+    with fetifeti.Solver(world, options=OPTIONS) as solver:
+        solver.set_sizes(high - low, 4)
+        if last:
+            solver.add_subdomain(spring, [0, 1], body=0)
+            solver.add_subdomain(spring, [2, 3], body=1)
+        solver.set_dirichlet([0, 2] if last else [])
+        solver.add_contact_pairs([1] if last else [], [3] if last else [], kind="equality")
+        u = everywhere(solver.solve(load), world)
+        force = solver.multipliers
+        assert np.allclose(u, [0, 0.5, 0, 0.5], atol=1e-10)
+        assert np.allclose(force, [-0.5] if last else [], atol=1e-10)
+        solver.clear_contact_pairs()
+        assert np.allclose(everywhere(solver.solve(load), world), [0, 0, 0, 1], atol=1e-10)
+        assert solver.multipliers.shape == (0,)

@@ -259,7 +259,9 @@ def solve(
             steps.rest((result.report.get("contact") or {}).get("steps") or [])
         if code == 0:
             return result
-    error = _ERRORS.get(code, ProgramError)(_sentence(said.read_text(errors="replace"), code), code)
+    ours, sentence = _sentence(said.read_text(errors="replace"), code)
+    # mpirun, too, ends with 1 where it cannot start the program.
+    error = (_ERRORS.get(code, ProgramError) if ours else ProgramError)(sentence, code)
     if isinstance(error, NotConvergedError) and (directory / "report.json").is_file():
         error.result = result
     raise error
@@ -279,16 +281,7 @@ def _options(options: Mapping[str, Any]) -> Iterator[str]:
 
 def _run(command: list[str], errors: Any, steps: Steps | None) -> int:
     """The exit code of a command that has a group of its own, which ends with this call whatever happens."""
-    # Whoever has started MPI, or was started by it, has variables that mislead another MPI program.
-    theirs = ("PMIX_", "PMI_", "ORTE_", "OMPI_MCA_orte", "OMPI_MCA_ess", "OMPI_MCA_pmix", "OMPI_MCA_initial")
-    settings = ("OMPI_ALLOW_", "OMPI_MCA_")
-    env = {
-        name: value
-        for name, value in os.environ.items()
-        if not name.startswith(theirs) and (name.startswith(settings) or not name.startswith("OMPI_"))
-    }
-    env.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
-    env.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
+    env = environment()
     if not shutil.which(command[0]):
         raise ProgramError(f"'{command[0]}' is not on PATH, expected MPI's program for several ranks", 3)
     process = subprocess.Popen(
@@ -311,10 +304,25 @@ def _run(command: list[str], errors: Any, steps: Steps | None) -> int:
                 process.wait()
 
 
-def _sentence(text: str, code: int) -> str:
-    """The program's own sentence among what was said on standard error."""
+def environment() -> dict[str, str]:
+    """The variables for a program with MPI of its own: those of a running MPI would mislead it."""
+    theirs = ("PMIX_", "PMI_", "ORTE_", "OMPI_MCA_orte", "OMPI_MCA_ess", "OMPI_MCA_pmix", "OMPI_MCA_initial")
+    settings = ("OMPI_ALLOW_", "OMPI_MCA_")
+    env = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(theirs) and (name.startswith(settings) or not name.startswith("OMPI_"))
+    }
+    # More ranks than processors are wanted where the machine is small; idle ranks yield then.
+    env.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
+    env.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
+    return env
+
+
+def _sentence(text: str, code: int) -> tuple[bool, str]:
+    """What was said on standard error: whether the program said it, and its sentence, or the last lines."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     ours = [line[len("Error: ") :] for line in lines if line.startswith("Error: ")]
     if ours:
-        return ours[-1]
-    return "\n".join(lines[-10:]) or f"the program ended with exit code {code} and said nothing"
+        return True, ours[-1]
+    return False, "\n".join(lines[-10:]) or f"the program ended with exit code {code} and said nothing"
