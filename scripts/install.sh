@@ -87,7 +87,9 @@ for file in examples/embedding/*; do [ -f "$file" ] && put 644 "$file" "share/fe
 (cd examples/scenes && find . -type f) | while read -r file; do
     put 644 "examples/scenes/$file" "share/fetifeti/examples/scenes/$file"
 done
-for file in Makefile CMakeLists.txt; do put 644 "packaging/examples/$file" "share/fetifeti/examples/embedding/$file"; done
+for file in Makefile CMakeLists.txt; do
+    put 644 "packaging/examples/$file" "share/fetifeti/examples/embedding/$file"
+done
 
 mkdir -p "$root/share/fetifeti"
 (cd "$stage$prefix" && find . \( -type f -o -type l \) | sed 's|^\./||' | sort; echo share/fetifeti/installed) \

@@ -232,7 +232,11 @@ const FUNCTIONS: &[&str] = &[
     "STGetKSP",
 ];
 
-const VARIABLES: &[&str] = &["FF_(ABSENT|NO_MEMORY|FAILED|EIGENVALUE|LOOK)", "PETSC_VERSION_(MAJOR|MINOR)", "EPSConvergedReasons"];
+const VARIABLES: &[&str] = &[
+    "FF_(ABSENT|NO_MEMORY|FAILED|EIGENVALUE|LOOK)",
+    "PETSC_VERSION_(MAJOR|MINOR)",
+    "EPSConvergedReasons",
+];
 
 const TYPES: &[&str] = &[
     "PetscObject",
