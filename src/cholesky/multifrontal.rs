@@ -168,14 +168,9 @@ fn factor(
                 })?;
             }
             Pivots::Above(least, left) => {
-                let mut start = panel.clone();
-                while let Err(j) =
-                    factor_front(&mut panel, &mut update, &diagonal, *least, &mut scratch)
-                {
-                    left.push(sym.interior[front.start + j]);
-                    start.set(j, j, OUT);
-                    panel.clone_from(&start);
-                }
+                let weak =
+                    factor_semidefinite(&mut panel, &mut update, &diagonal, *least, &mut scratch);
+                left.extend(weak.iter().map(|&j| sym.interior[front.start + j]));
             }
         }
         let into = &kept.fronts[f];
@@ -272,6 +267,67 @@ fn factor_front(
     dense::solve_right_transpose(pivot.as_ref(), below.as_mut());
     dense::rank_k_update(update.view_mut(), -1.0, below.as_ref());
     Ok(())
+}
+
+/// Number of columns that are factored together where pivots may vanish.
+const TOGETHER: usize = 48;
+
+/// The same, but replaces pivots below `least`. Returns their columns, increasing.
+fn factor_semidefinite(
+    panel: &mut Dense,
+    update: &mut Dense,
+    diagonal: &[f64],
+    least: f64,
+    scratch: &mut Scratch,
+) -> Vec<usize> {
+    let (width, size) = (panel.cols, panel.rows);
+    let mut weak = Vec::new();
+    for start in (0..width).step_by(TOGETHER) {
+        let end = (start + TOGETHER).min(width);
+        // The columns of the group, from its first row down.
+        let mut group = Dense::from_fn(size - start, end - start, |i, j| match i < j {
+            true => 0.0,
+            false => panel.get(start + i, start + j),
+        });
+        let begin = group.clone();
+        let mut held: Vec<usize> = Vec::new();
+        let mut none = Dense::zeros(0, 0);
+        loop {
+            let mut square = Dense::from_fn(end - start, end - start, |i, j| group.get(i, j));
+            let own = &diagonal[start..end];
+            match factor_front(&mut square, &mut none, own, least, scratch) {
+                Ok(()) => {
+                    (0..end - start).for_each(|j| {
+                        group.col_mut(j)[..end - start].copy_from_slice(square.col(j));
+                    });
+                    break;
+                }
+                Err(j) => {
+                    held.push(j);
+                    group.clone_from(&begin);
+                    held.iter().for_each(|&j| group.set(j, j, OUT));
+                }
+            }
+        }
+        held.sort_unstable();
+        weak.extend(held.into_iter().map(|j| start + j));
+        let (square, mut below) = group.view_mut().split_at_row_mut(end - start);
+        dense::solve_right_transpose(square.as_ref(), below.as_mut());
+        for j in start..end {
+            panel.col_mut(j)[start..].copy_from_slice(group.col(j - start));
+        }
+        let below = group.view().subrows(end - start, size - end);
+        if end < width {
+            let across = below.subrows(0, width - end).transpose();
+            let rest = panel
+                .view_mut()
+                .submatrix_mut(end, end, size - end, width - end);
+            dense::multiply(rest, true, -1.0, below, across);
+        }
+        let far = below.subrows(width - end, size - width);
+        dense::rank_k_update(update.view_mut(), -1.0, far);
+    }
+    weak
 }
 
 #[cfg(test)]

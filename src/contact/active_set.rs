@@ -14,7 +14,9 @@
 use std::time::Instant;
 
 use super::pulling::Pulling;
+use super::restore::restore;
 use super::settings::{ContactSettings, ContactType};
+use super::settle::settle;
 use super::state::{changes, Observer, State, Step};
 use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Look, Run};
@@ -22,7 +24,6 @@ use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::{Iterate, Residual, ROUNDING};
 use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::operators::dual::Dual;
-use crate::feti::projector::rows::Rows;
 use crate::feti::{LinearMethod, LinearSolution, Spectrum};
 use crate::parallel::exchange::any;
 use crate::petsc::{Stopped, Vec as PetscVec};
@@ -119,8 +120,6 @@ pub(super) struct ActiveSet<'a> {
     watched: bool,
     /// A row that does not hold is violated only if its gap is above this, relative to the largest displacement.
     pub open: f64,
-    /// B R with all candidate rows.
-    g: Rows,
     /// Whether `at` has the displacements that belong to its λ, rigid motions included.
     placed: bool,
     /// Number of rows over all ranks, m.
@@ -140,14 +139,13 @@ impl<'a> ActiveSet<'a> {
         settings: &'a ContactSettings,
         start: Option<&State>,
     ) -> Result<ActiveSet<'a>> {
-        let (session, problem, dual) = (&method.session, &method.problem, method.dual());
+        let (problem, dual) = (&method.problem, method.dual());
         let jump = &dual.stiffness.jump;
         let loads = Loads::new(problem, &dual);
-        let g = dual.natural.all_rows(&dual.stiffness);
         let state = start.cloned().unwrap_or_else(|| State::cold(jump));
         // Who gives a reference has asked for these loads before.
         if state.reference == 0.0 {
-            motion::check(problem, &dual, &g, &loads.kernel)?;
+            motion::check_few(problem, &dual, &loads.kernel)?;
         }
         let n_rows = jump.n_global;
         let at = Iterate::new(&dual, loads)?;
@@ -163,7 +161,6 @@ impl<'a> ActiveSet<'a> {
             length: 0.0,
             state,
             at,
-            g,
             n_rows,
             least: method.least_residual(),
             placed: false,
@@ -173,10 +170,9 @@ impl<'a> ActiveSet<'a> {
         };
         if start.is_some() {
             let dual = method.dual();
-            let jump = &dual.stiffness.jump;
             let (active, lambda) = (&mut run.state.active, &run.state.lambda);
             let load = &run.at.loads.kernel;
-            motion::restore(session.comm(), &run.g, jump, active, &|r| lambda[r], load);
+            restore(problem, &dual, active, &|r| lambda[r], load)?;
         }
         if run.state.reference == 0.0 {
             run.state.reference = run.reference()?;
@@ -338,9 +334,8 @@ impl<'a> ActiveSet<'a> {
         self.at.residual.add_rigid_motion(dual)?;
         self.placed = true;
         self.gaps = all_gaps(dual, &self.at.residual)?;
-        let unheld = dual.natural.unheld();
         // Bodies that nothing holds are moved to where no row is violated.
-        if let Some(alpha) = motion::settle(comm, &self.g, jump, &self.gaps, unheld) {
+        if let Some(alpha) = settle(dual, &self.gaps) {
             self.at.residual.shift(dual, &alpha);
             self.gaps = all_gaps(dual, &self.at.residual)?;
         }
@@ -353,7 +348,7 @@ impl<'a> ActiveSet<'a> {
         let load = &self.at.loads.kernel;
         let score = |r: usize| judged.score(lambda[r], gaps[r]);
         let mut active = judged.active.clone();
-        let restored = motion::restore(comm, &self.g, jump, &mut active, &score, load);
+        let restored = restore(&self.method.problem, dual, &mut active, &score, load)?;
         Ok(Next {
             active,
             wrong,

@@ -65,7 +65,7 @@ impl<'a> Augmented<'a> {
                 false => 0.0,
             })
             .collect();
-        let mut g = natural.all_rows(stiffness);
+        let mut g = natural.all.clone();
         g.scale_rows(&scale);
         let balance = Rc::new(Balance::new(comm, g.clone(), natural.r));
         let (lambda, image) = (dual.multipliers()?, dual.multipliers()?);

@@ -12,7 +12,6 @@
 mod active_set;
 mod augmented;
 mod balance;
-mod cone;
 mod damping;
 mod dependent;
 mod feasible;
@@ -23,13 +22,17 @@ mod mprgp;
 mod newton;
 mod pulling;
 mod rejudge;
+mod restore;
+mod rigid;
 mod settings;
+mod settle;
 mod smalbe;
 mod state;
 
 pub use settings::{ContactSettings, ContactType};
 pub use state::{Observer, Progress, State, Step};
 
+use crate::feti::krylov::loads::Loads;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::status::Status;
 use crate::Result;
@@ -90,21 +93,39 @@ fn outer(
     match kind {
         ContactType::ActiveSet => {
             match active_set::solve(method, settings, start.as_ref(), observe)? {
-                Ended::Found(found, steps) => Ok((found, steps)),
+                Ended::Found(found, steps) => {
+                    if !found.status.converged() {
+                        ask(method)?;
+                    }
+                    Ok((found, steps))
+                }
                 Ended::HandedOver {
                     state,
                     steps,
                     seconds,
-                } => lagrangian::solve(method, settings, state, steps, seconds, observe),
+                } => {
+                    ask(method)?;
+                    lagrangian::solve(method, settings, state, steps, seconds, observe)
+                }
             }
         }
         ContactType::AugmentedLagrangian => {
+            ask(method)?;
             let state = start.unwrap_or_else(cold);
             lagrangian::solve(method, settings, state, Vec::new(), 0.0, observe)
         }
         ContactType::Smalbe => {
+            ask(method)?;
             let state = start.unwrap_or_else(cold);
             smalbe::solve(method, settings, state, observe)
         }
     }
+}
+
+/// Returns an error that names bodies which the load pushes away for ever. Few rigid motions are asked about before the
+/// loop, many only here: by a loop that has failed, and by those that would go on for ever. Collective.
+fn ask(method: &LinearMethod) -> Result<()> {
+    let dual = method.dual();
+    let load = Loads::new(&method.problem, &dual).kernel;
+    motion::check_many(&method.problem, &dual, &load)
 }

@@ -13,13 +13,14 @@ use super::active_set;
 use super::damping::{Penalty, Point};
 use super::dependent;
 use super::motion;
+use super::restore::restore;
 use super::settings::ContactType;
+use super::settle::settle;
 use super::state::{changes, State, Step};
 use crate::feti::krylov::iterate::{IterationControl, Run};
 use crate::feti::krylov::loads::Loads;
 use crate::feti::krylov::residual::Iterate;
 use crate::feti::krylov::target::target;
-use crate::feti::projector::rows::Rows;
 use crate::feti::{LinearMethod, LinearSolution};
 use crate::parallel::exchange::{highest, total};
 use crate::petsc::Stopped;
@@ -65,8 +66,6 @@ pub enum Came {
 /// The data of the search.
 pub struct Search<'a> {
     method: &'a LinearMethod,
-    /// B R with all candidate rows.
-    g: Rows,
     at: Iterate,
     /// Whether each owned row is an inequality.
     counts: Vec<bool>,
@@ -99,16 +98,14 @@ impl<'a> Search<'a> {
         let mine = counts.iter().filter(|c| **c).count();
         let loads = Loads::new(&method.problem, &dual);
         let mut at = Iterate::new(&dual, loads)?;
-        let g = natural.all_rows(stiffness);
         if state.reference == 0.0 {
-            motion::check(&method.problem, &dual, &g, &at.loads.kernel)?;
+            motion::check_few(&method.problem, &dual, &at.loads.kernel)?;
             natural.check_held(&method.problem, stiffness, &at.loads.kernel)?;
             at.balance(&dual)?;
             state.reference = at.evaluate_projected(&dual)?;
         }
         at.lambda.array_mut()?.copy_from_slice(&state.lambda);
         let mut search = Search {
-            g,
             at,
             stiffness: STIFFNESS / STIFFER,
             compliance: Vec::new(),
@@ -176,15 +173,14 @@ impl<'a> Search<'a> {
     }
 
     /// Puts rows into the set so that the load drives no body away; returns their number. Collective.
-    fn hold(&self, active: &mut [bool]) -> usize {
-        let comm = self.method.session.comm();
+    fn hold(&self, active: &mut [bool]) -> Result<usize> {
         let dual = self.method.dual();
-        let jump = &dual.stiffness.jump;
         let score = |i: usize| match &self.point {
             Some(point) => point.gap[i],
             None => -self.compliance[i],
         };
-        motion::restore(comm, &self.g, jump, active, &score, &self.at.loads.kernel)
+        let load = &self.at.loads.kernel;
+        restore(&self.method.problem, &dual, active, &score, load)
     }
 
     /// The right-hand side of the rows: c − C μ. Rows that hold without a force of their own, s ≤ 0, are springs from
@@ -209,7 +205,7 @@ impl<'a> Search<'a> {
         let clock = Instant::now();
         let (method, comm) = (self.method, self.method.session.comm());
         let mut active = state.active.clone();
-        let restored = self.hold(&mut active);
+        let restored = self.hold(&mut active)?;
         method.set_active(&active)?;
         self.at.loads.jumps = Some(self.jumps(&active, false));
         let dual = method.dual();
@@ -313,8 +309,7 @@ impl<'a> Search<'a> {
         residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;
         residual.add_rigid_motion(&dual)?;
         let mut gap = active_set::all_gaps(&dual, residual)?;
-        let (unheld, jump) = (dual.natural.unheld(), &dual.stiffness.jump);
-        if let Some(alpha) = motion::settle(dual.comm(), &self.g, jump, &gap, unheld) {
+        if let Some(alpha) = settle(&dual, &gap) {
             residual.shift(&dual, &alpha);
             gap = active_set::all_gaps(&dual, residual)?;
         }

@@ -40,6 +40,13 @@ impl Csr {
         (0..self.n()).map(|i| self.get(i, i)).collect()
     }
 
+    /// Replaces a diagonal entry, which is stored.
+    pub(crate) fn set_diagonal(&mut self, i: usize, value: f64) {
+        let range = self.row_ptr[i]..self.row_ptr[i + 1];
+        let at = self.col[range.clone()].partition_point(|&j| (j as usize) < i);
+        self.val[range][at] = value;
+    }
+
     /// y ← A x.
     pub fn mul(&self, x: &[f64], y: &mut [f64]) {
         for (i, yi) in y.iter_mut().enumerate().take(self.n()) {

@@ -81,6 +81,11 @@ impl Semidefinite {
         })
     }
 
+    /// Number of columns.
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
     /// Rank of the matrix.
     pub fn rank(&self) -> usize {
         self.kept.len()

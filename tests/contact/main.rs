@@ -6,6 +6,7 @@ mod support;
 mod bodies;
 mod elastic;
 mod jumps;
+mod many;
 mod mortar;
 mod oracle;
 mod qp_reference;

@@ -23,7 +23,7 @@ fn coarse_solvers_may_be_exchanged() {
                     let solver = direct.solver(session, &tight());
                     let dual = solver.dual();
                     let gtg = dual.natural.gtg.as_ref();
-                    let gtg = gtg.map(|g| g.ksp.type_name().unwrap());
+                    let gtg = gtg.and_then(|g| g.ksp()).map(|k| k.type_name().unwrap());
                     drop(dual);
                     let solution = solver.solve().expect("solved");
                     let distance = direct.distance(&solution.u);

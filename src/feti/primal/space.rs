@@ -3,6 +3,7 @@
 //! All primal dofs of a body are owned by one rank: that of the body's lowest subdomain. S_Π is therefore block
 //! diagonal by rank as well as by body. Primal dofs are numbered rank after rank, body after body.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use mpi::topology::SimpleCommunicator;
@@ -13,7 +14,6 @@ use super::matrix::{Outgoing, PrimalMatrix};
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::Sharing;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange_words, offsets, sum_all};
@@ -202,12 +202,20 @@ impl PrimalSpace {
             }
         }
         let factors = exchange_words(comm, factors).concat();
+        let factors = self.by_body(&factors, |w| {
+            (w[0] as usize, 2 + 2 * (w[1] * w[1]) as usize)
+        });
         let values = exchange_words(comm, values).concat();
+        let values = self.by_body(&values, |w| (self.body_at(w[0]), 2 + w[1] as usize));
+        let stiffness = self.local_stiffness(problem, locals);
         let mut owned = std::mem::take(&mut self.owned);
         let mut defect = vec![0.0; problem.n_bodies];
         for body in &mut owned {
-            let stiffness = self.local_stiffness(problem, locals, body.body);
-            body.z = self.kernel_of(body, &factors, &values, stiffness);
+            let stiffness = stiffness[body.body];
+            let of = |messages: &BTreeMap<usize, Vec<u64>>| {
+                messages.get(&body.body).cloned().unwrap_or_default()
+            };
+            body.z = self.kernel_of(body, &of(&factors), &of(&values), stiffness);
             body.fixing = kernel::fixing_rows(&body.z);
             defect[body.body] = body.z.cols as f64;
             let n = body.range.len() as f64;
@@ -235,19 +243,39 @@ impl PrimalSpace {
         self.share_kernels(comm, asked);
     }
 
-    /// Largest diagonal entry of K on the interface among this rank's subdomains of a body.
-    fn local_stiffness(&self, problem: &Substructures, locals: &[Scaled], body: usize) -> f64 {
-        let of = |k: &Csr, interface: &[u32]| {
-            let diagonal = interface.iter().map(|&i| k.get(i as usize, i as usize));
-            diagonal.fold(0.0, f64::max)
-        };
-        problem
-            .local
-            .iter()
-            .zip(locals)
-            .filter(|(sub, _)| sub.body == body)
-            .map(|(sub, local)| of(&sub.k, &local.gamma().interface))
-            .fold(0.0, f64::max)
+    /// The messages of each body; `read` gives the body and the length of the message at the front.
+    fn by_body(
+        &self,
+        words: &[u64],
+        read: impl Fn(&[u64]) -> (usize, usize),
+    ) -> BTreeMap<usize, Vec<u64>> {
+        let mut out: BTreeMap<usize, Vec<u64>> = BTreeMap::new();
+        let mut rest = words;
+        while !rest.is_empty() {
+            let (body, length) = read(rest);
+            let (message, tail) = rest.split_at(length);
+            out.entry(body).or_default().extend(message);
+            rest = tail;
+        }
+        out
+    }
+
+    /// The owned body of an owned primal dof, given by its global number.
+    fn body_at(&self, number: u64) -> usize {
+        let i = number as usize - self.first;
+        let at = self.owned.partition_point(|b| b.range.end <= i);
+        self.owned[at].body
+    }
+
+    /// Largest diagonal entry of K on the interface among this rank's subdomains of each body.
+    fn local_stiffness(&self, problem: &Substructures, locals: &[Scaled]) -> Vec<f64> {
+        let mut out = vec![0.0f64; problem.n_bodies];
+        for (sub, local) in problem.local.iter().zip(locals) {
+            for &i in &local.gamma().interface {
+                out[sub.body] = out[sub.body].max(sub.k.get(i as usize, i as usize));
+            }
+        }
+        out
     }
 
     fn kernel_of(
@@ -261,17 +289,15 @@ impl PrimalSpace {
         let mut mine = Vec::new();
         let mut known = true;
         let mut rest = factors;
-        while let [index, k, tail @ ..] = rest {
+        while let [_, k, tail @ ..] = rest {
             let k = *k as usize;
             let (data, tail) = tail.split_at(2 * k * k);
-            if *index as usize == body.body {
-                known &= k > 0;
-                mine.push(Dense {
-                    rows: 2 * k,
-                    cols: k,
-                    data: data.iter().map(|&w| f64::from_bits(w)).collect(),
-                });
-            }
+            known &= k > 0;
+            mine.push(Dense {
+                rows: 2 * k,
+                cols: k,
+                data: data.iter().map(|&w| f64::from_bits(w)).collect(),
+            });
             rest = tail;
         }
         if !known {
@@ -299,8 +325,7 @@ impl PrimalSpace {
     fn share_kernels(&mut self, comm: &SimpleCommunicator, asked: &[Vec<u32>]) {
         let row_of = |g: &u32| -> Vec<u64> {
             let i = *g as usize - self.first;
-            let body = self.owned.iter().find(|b| b.range.contains(&i));
-            let body = body.expect("an owned primal dof belongs to an owned body");
+            let body = &self.owned[self.owned.partition_point(|b| b.range.end <= i)];
             let row = (0..body.z.cols).map(|c| body.z.get(i - body.range.start, c).to_bits());
             [u64::from(*g), body.z.cols as u64]
                 .into_iter()

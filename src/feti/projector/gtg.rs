@@ -1,15 +1,20 @@
-//! Gᵀ Q G behind a PETSc KSP (prefix `fetifeti_gtg_`), the same on every rank.
+//! Gᵀ Q G and its inverse, the same on every rank.
+//!
+//! With Q = I and many rigid motions the factor of GᵀG that tells what the rows hold ([`Gram`]) is the inverse, too. In
+//! all other cases the matrix stands behind a PETSc KSP (prefix `fetifeti_gtg_`), and so it does if an option with this
+//! prefix is set.
 
 use std::cell::RefCell;
+use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
+use super::gram::{scale_to_unit_diagonal, Gram};
 use super::rows::Rows;
-use crate::linalg::dense::Dense;
-use crate::linalg::semidefinite::Semidefinite;
+use crate::linalg::csr::Csr;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::sum_all;
-use crate::petsc::{Comm, Ksp, Mat, Session, Vec as PetscVec};
+use crate::petsc::{Comm, Ksp, Mat, Options, Session, Vec as PetscVec};
 use crate::{Error, Result};
 
 /// The inverse or its transpose.
@@ -21,96 +26,86 @@ pub enum Side {
     Transposed,
 }
 
+/// (Gᵀ Q G)⁻¹.
+pub struct Gtg {
+    solver: Solver,
+    /// GᵀG of the rows that hold: what they hold.
+    pub gram: Rc<Gram>,
+    scratch: RefCell<Vec<f64>>,
+}
+
+enum Solver {
+    /// The factor of GᵀG, where Q = I.
+    Own,
+    Petsc(Scaled),
+}
+
 /// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹; D² is the diagonal of Gᵀ Q G. The scaling is needed with Q = M⁻¹: the rows
 /// of stiff and soft bodies differ by the square of the jump in ρ.
-pub struct Gtg {
+struct Scaled {
     /// The solver, on this rank alone.
-    pub ksp: Ksp,
+    ksp: Ksp,
     /// 1/D.
     scale: Vec<f64>,
     rhs: PetscVec,
     solution: PetscVec,
-    /// Combinations of kernel vectors on which all rows vanish: rigid motions that nothing holds.
-    pub unheld: Vec<Vec<f64>>,
     /// The matrix, scaled.
     matrix: Mat,
-    scratch: RefCell<Vec<f64>>,
 }
 
 impl Gtg {
-    /// Assembles and factors the r × r matrix Gᵀ (Q G). Collective.
-    pub fn new(session: &Session, r: usize, g: &Rows, qg: &Rows, prefix: &str) -> Result<Gtg> {
-        let mut a = g.product(session.comm(), qg, r, |_| true);
-        let scale = a.scale_to_unit_diagonal();
-        // G alone decides which bodies are held. With Q = M⁻¹ two stiff bodies that soft ones hold would look unheld.
-        let gtg = g.product(session.comm(), g, r, |_| true);
-        let factor = Semidefinite::new(&gtg);
-        // One dependent column of each unheld motion is held. This makes the matrix regular and does not change the
-        // solution for right-hand sides in its range.
-        for i in factor.dropped() {
-            a.set(i, i, a.get(i, i) + 1.0);
-        }
-        let triplets: Vec<(i32, i32, f64)> = (0..r)
-            .flat_map(|i| (0..r).map(move |j| (i, j)))
-            .map(|(i, j)| (i as i32, j as i32, a.get(i, j)))
-            .filter(|&(i, j, v)| v != 0.0 || i == j)
-            .collect();
-        let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
-        let ksp = Ksp::new(session, Comm::Own)?;
-        ksp.set_operators(&matrix, &matrix)?;
-        ksp.set_options_prefix(prefix)?;
-        ksp.set_type("preonly")?;
-        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the
-        // same if this very matrix is inverted. That is why it is factored by LU and Pᵀ uses the transpose.
-        ksp.pc()?.set_type("lu")?;
-        // G alone has decided what is held. With Q = M⁻¹ pivots are as small as the square of a jump.
-        ksp.pc()?.set_zero_pivot(f64::MIN_POSITIVE)?;
-        ksp.set_from_options()?;
-        // The matrices of the ranks are equal, but their machines need not be.
-        session.agree(ksp.setup())?;
+    /// The inverse for the rows of `gram`. `product` makes GᵀQG where it differs from the matrix of `gram` or goes to
+    /// PETSc; `own` says whether it does not differ. Collective.
+    pub fn new(
+        session: &Session,
+        gram: Rc<Gram>,
+        own: bool,
+        product: impl FnOnce() -> Csr,
+        prefix: &str,
+    ) -> Result<Gtg> {
+        let own = own && gram.is_sparse() && !Options::new(session, prefix).any()?;
+        let (solver, r) = match own {
+            true => (Solver::Own, gram.n()),
+            false => {
+                let a = product();
+                let r = a.n();
+                (Solver::Petsc(Scaled::new(session, &gram, a, prefix)?), r)
+            }
+        };
         Ok(Gtg {
-            ksp,
-            scale,
-            rhs: PetscVec::seq(session, r)?,
-            solution: PetscVec::seq(session, r)?,
-            unheld: null_vectors(&gtg, &factor),
-            matrix,
+            solver,
+            gram,
             scratch: RefCell::new(vec![0.0; r]),
         })
+    }
+
+    /// PETSc's solver, if it is one.
+    pub fn ksp(&self) -> Option<&Ksp> {
+        match &self.solver {
+            Solver::Own => None,
+            Solver::Petsc(scaled) => Some(&scaled.ksp),
+        }
     }
 
     /// The relative error of a vector after multiplication with the scaled matrix and its inverse. It is about the
     /// condition number times rounding, and it is the accuracy that P loses.
     pub fn defect(&self) -> Result<f64> {
-        let x = self.rhs.duplicate()?;
-        // A test vector that is neither smooth nor orthogonal to anything in particular.
-        for (i, x) in x.array_mut()?.iter_mut().enumerate() {
-            *x = 1.0 + ((i * 7919) % 13) as f64 / 13.0;
+        match &self.solver {
+            // G alone has no jumps.
+            Solver::Own => Ok(0.0),
+            Solver::Petsc(scaled) => scaled.defect(),
         }
-        self.matrix.mult(&x, &self.rhs)?;
-        self.ksp.solve(&self.rhs, &self.solution)?;
-        self.solution.axpy(-1.0, &x)?;
-        Ok(self.solution.norm_inf()? / x.norm_inf()?)
     }
 
     /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank.
     pub fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
-        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-        self.rhs.array_mut()?.copy_from_slice(x);
-        match side {
-            Side::Plain => self.ksp.solve(&self.rhs, &self.solution)?,
-            Side::Transposed => self.ksp.solve_transpose(&self.rhs, &self.solution)?,
+        match &self.solver {
+            Solver::Own => {
+                self.gram.solve(x);
+                Ok(())
+            }
+            Solver::Petsc(scaled) => scaled.solve(x, side),
         }
-        let reason = self.ksp.converged_reason()?;
-        if reason.code < 0 {
-            return Err(Error::NotConverged(format!(
-                "the natural coarse problem was not solved ({}): change the -fetifeti_gtg_ options",
-                reason.name
-            )));
-        }
-        x.copy_from_slice(&self.solution.array()?);
-        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-        Ok(())
     }
 
     /// x ← x − along (Gᵀ Q G)⁻¹ fromᵀ x (or with the transposed inverse). Collective.
@@ -132,13 +127,74 @@ impl Gtg {
     }
 }
 
-/// Vectors v with A v = 0, one per dropped column.
-pub fn null_vectors(a: &Dense, factor: &Semidefinite) -> Vec<Vec<f64>> {
-    let column = |&k: &usize| {
-        let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
-        factor.solve(&mut v);
-        v[k] = 1.0;
-        v
-    };
-    factor.dropped().iter().map(column).collect()
+impl Scaled {
+    fn new(session: &Session, gram: &Gram, mut a: Csr, prefix: &str) -> Result<Scaled> {
+        let r = a.n();
+        let scale = scale_to_unit_diagonal(&mut a);
+        // G alone decides which bodies are held: with Q = M⁻¹ two stiff bodies that soft ones hold would look unheld.
+        // One dependent column of each unheld motion is held. This makes the matrix regular and does not change the
+        // solution for right-hand sides in its range.
+        let held = |i: usize, j: u32| i == j as usize && gram.dropped.binary_search(&j).is_ok();
+        let mut triplets: Vec<(i32, i32, f64)> = Vec::with_capacity(a.nnz());
+        for i in 0..r {
+            let (col, val) = a.row(i);
+            for (&j, &v) in col.iter().zip(val) {
+                let v = if held(i, j) { v + 1.0 } else { v };
+                if v != 0.0 || i == j as usize {
+                    triplets.push((i as i32, j as i32, v));
+                }
+            }
+        }
+        let matrix = Mat::from_triplets(session, Comm::Own, r, r, &triplets)?;
+        let ksp = Ksp::new(session, Comm::Own)?;
+        ksp.set_operators(&matrix, &matrix)?;
+        ksp.set_options_prefix(prefix)?;
+        ksp.set_type("preonly")?;
+        // With Q = M⁻¹ and extreme jumps, Q G carries rounding that makes Gᵀ Q G unsymmetric. P is a projection all the
+        // same if this very matrix is inverted. That is why it is factored by LU and Pᵀ uses the transpose.
+        ksp.pc()?.set_type("lu")?;
+        // G alone has decided what is held. With Q = M⁻¹ pivots are as small as the square of a jump.
+        ksp.pc()?.set_zero_pivot(f64::MIN_POSITIVE)?;
+        ksp.set_from_options()?;
+        // The matrices of the ranks are equal, but their machines need not be.
+        session.agree(ksp.setup())?;
+        Ok(Scaled {
+            ksp,
+            scale,
+            rhs: PetscVec::seq(session, r)?,
+            solution: PetscVec::seq(session, r)?,
+            matrix,
+        })
+    }
+
+    fn defect(&self) -> Result<f64> {
+        let x = self.rhs.duplicate()?;
+        // A test vector that is neither smooth nor orthogonal to anything in particular.
+        for (i, x) in x.array_mut()?.iter_mut().enumerate() {
+            *x = 1.0 + ((i * 7919) % 13) as f64 / 13.0;
+        }
+        self.matrix.mult(&x, &self.rhs)?;
+        self.ksp.solve(&self.rhs, &self.solution)?;
+        self.solution.axpy(-1.0, &x)?;
+        Ok(self.solution.norm_inf()? / x.norm_inf()?)
+    }
+
+    fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        self.rhs.array_mut()?.copy_from_slice(x);
+        match side {
+            Side::Plain => self.ksp.solve(&self.rhs, &self.solution)?,
+            Side::Transposed => self.ksp.solve_transpose(&self.rhs, &self.solution)?,
+        }
+        let reason = self.ksp.converged_reason()?;
+        if reason.code < 0 {
+            return Err(Error::NotConverged(format!(
+                "the natural coarse problem was not solved ({}): change the -fetifeti_gtg_ options",
+                reason.name
+            )));
+        }
+        x.copy_from_slice(&self.solution.array()?);
+        x.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        Ok(())
+    }
 }

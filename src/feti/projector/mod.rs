@@ -1,7 +1,9 @@
 //! The projector P of the floating bodies: G and Gᵀ Q G.
 
+pub mod gram;
 pub mod graph;
 pub mod gtg;
 pub mod natural;
+pub mod pattern;
 pub mod rows;
 pub mod sweep;

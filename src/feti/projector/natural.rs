@@ -5,13 +5,18 @@
 //! ```
 //!
 //! A row of G is sparse: it has entries for the bodies at its node. It lives on the rank that owns the row. Gᵀ Q G is
-//! small, and every rank solves it (prefix `fetifeti_gtg_`).
+//! sparse, too: bodies that touch have common entries. Every rank solves it (prefix `fetifeti_gtg_`).
+
+use std::cell::RefCell;
+use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::gram::{Gram, Motion, Shape};
 use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
+use super::pattern::Pattern;
 use super::rows::{RowEntry, Rows};
 use super::sweep;
 use crate::feti::cost::variation::JUMPS;
@@ -19,7 +24,7 @@ use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::{PcType, ProjectorKind};
 use crate::linalg::dense::Dense;
-use crate::parallel::exchange::{exchange, gather_all, max_all, sum_all};
+use crate::parallel::exchange::{any, exchange, gather_all, max_all, sum_all};
 use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::{Error, Result};
@@ -42,6 +47,13 @@ pub struct NaturalCoarse {
     pub kernels: Vec<Dense>,
     /// First column of R of each local subdomain's body.
     first_column: Vec<usize>,
+    /// B R with all rows of B_gl, including those that do not hold. Rows of B_loc are left out, because kernels are
+    /// continuous inside a body.
+    pub all: Rows,
+    /// Where GᵀG has entries.
+    pub shape: Option<Shape>,
+    /// The last choice of rows that was asked for, and their GᵀG.
+    last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
     /// G on the owned rows.
     pub g: Rows,
     /// Q G where it differs from G.
@@ -90,12 +102,17 @@ impl NaturalCoarse {
             projector: ProjectorKind::Identity,
             kernels,
             first_column,
+            all: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
+            shape: None,
+            last: RefCell::new(None),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
             gtg: None,
             prefix: prefix.into(),
         };
         if r > 0 {
+            natural.all = natural.all_rows(stiffness);
+            natural.shape = Some(Shape::new(comm, &natural.all, &space.kernel_start));
             natural.projector = choose(comm, problem, stiffness, preconditioner, wanted, varies);
             natural.renew(problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
@@ -133,14 +150,49 @@ impl NaturalCoarse {
             }
             _ => None,
         };
-        let session = &stiffness.session;
-        self.gtg = Some(Gtg::new(session, self.r, &self.g, self.qg(), &self.prefix)?);
+        let (session, comm) = (&stiffness.session, stiffness.comm());
+        let gram = self.gram(comm, &stiffness.jump.active);
+        let (g, qg, start) = (&self.g, self.qg(), &stiffness.space.kernel_start);
+        let shape = self.shape.as_ref().expect("a body floats");
+        let product = || match self.projector {
+            // Q reaches the rows of neighbours.
+            ProjectorKind::Preconditioner => {
+                Pattern::new(comm, g, qg, start).product(comm, g, qg, |_| true)
+            }
+            _ => shape.pattern.product(comm, g, qg, |_| true),
+        };
+        let gtg = Gtg::new(session, gram, self.qg.is_none(), product, &self.prefix)?;
+        self.gtg = Some(gtg);
         Ok(())
+    }
+
+    /// GᵀG of these rows, factored. Collective.
+    ///
+    /// # Panics
+    /// If no body floats.
+    pub fn gram(&self, comm: &SimpleCommunicator, chosen: &[bool]) -> Rc<Gram> {
+        let shape = self.shape.as_ref().expect("a body floats");
+        let mut last = self.last.borrow_mut();
+        let known = last.as_ref().is_some_and(|(rows, _)| rows == chosen);
+        if any(comm, !known) {
+            let all = &self.all;
+            let a = shape.pattern.product(comm, all, all, |i| chosen[i]);
+            *last = Some((chosen.to_vec(), Rc::new(Gram::new(shape, a))));
+        }
+        last.as_ref().expect("it was set").1.clone()
+    }
+
+    /// The body of each kernel vector.
+    ///
+    /// # Panics
+    /// If no body floats.
+    pub fn bodies(&self) -> &[u32] {
+        self.shape.as_ref().expect("a body floats").pattern.bodies()
     }
 
     /// G = Z B R for the rows that hold.
     fn assemble_g(&self, stiffness: &Stiffness) -> Rows {
-        let mut g = self.all_rows(stiffness);
+        let mut g = self.all.clone();
         let held = stiffness
             .jump
             .active
@@ -150,9 +202,8 @@ impl NaturalCoarse {
         g
     }
 
-    /// B R with all rows of B_gl, including those that do not hold. Rows of B_loc are left out, because kernels are
-    /// continuous inside a body. Collective.
-    pub fn all_rows(&self, stiffness: &Stiffness) -> Rows {
+    /// Assembles [`all`](Self::all). Collective.
+    fn all_rows(&self, stiffness: &Stiffness) -> Rows {
         let (comm, jump) = (stiffness.comm(), &stiffness.jump);
         let starts: Vec<u32> = gather_all(comm, &[jump.first as u64])
             .iter()
@@ -326,11 +377,11 @@ impl NaturalCoarse {
         load: &KernelLoad,
     ) -> Result<()> {
         for motion in self.unheld() {
-            let work: f64 = motion.iter().zip(&load.e).map(|(m, e)| m * e).sum();
-            let terms = motion.iter().zip(&load.size);
-            let scale: f64 = terms.map(|(m, s)| (m * s).abs()).sum();
+            let (work, scale) = (motion.dot(&load.e), motion.size(&load.size));
             if work.abs() > 1e-10 * scale {
-                let who = moving(problem, &stiffness.space.kernel_start, motion);
+                let mut alpha = vec![0.0; self.r];
+                motion.add(1.0, &mut alpha);
+                let who = moving(problem, &stiffness.space.kernel_start, &alpha);
                 return Err(Error::input(format!(
                     "{who} held by nothing (no Dirichlet side and no tie to a held body) \
                      and the load does not balance, expected a Dirichlet side or a tie"
@@ -341,8 +392,8 @@ impl NaturalCoarse {
     }
 
     /// Combinations of kernel vectors on which all rows vanish.
-    pub fn unheld(&self) -> &[Vec<f64>] {
-        self.gtg.as_ref().map_or(&[], |gtg| &gtg.unheld)
+    pub fn unheld(&self) -> &[Motion] {
+        self.gtg.as_ref().map_or(&[], |gtg| &gtg.gram.unheld)
     }
 
     /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.

@@ -69,6 +69,12 @@ impl Rows {
         range.map(|k| (self.col[k] as usize, self.val[k]))
     }
 
+    /// The columns and values of row `i`.
+    pub fn entries(&self, i: usize) -> (&[u32], &[f64]) {
+        let range = self.start[i]..self.start[i + 1];
+        (&self.col[range.clone()], &self.val[range])
+    }
+
     /// Number of rows.
     pub fn n(&self) -> usize {
         self.start.len() - 1

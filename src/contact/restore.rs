@@ -1,0 +1,313 @@
+//! Rows that must hold so that no body comes loose.
+//!
+//! The motions that the rows leave free are a null space of GᵀG. A row that is put back takes one motion out of it and
+//! changes the others of its group of bodies: nothing is factored again. Where no row opposes a motion that the load
+//! drives, the motion proves that there is no solution (Farkas).
+
+use mpi::traits::Communicator;
+
+use super::motion::{pushed_away, BALANCE, NEARLY};
+use crate::feti::operators::dual::Dual;
+use crate::feti::projector::gram::Motion;
+use crate::feti::projector::natural::KernelLoad;
+use crate::linalg::union_find::UnionFind;
+use crate::parallel::exchange::gather_all;
+use crate::substructures::Substructures;
+use crate::Result;
+
+/// Work of a row on a motion below this, relative to the largest that it could be, is none.
+const AGAINST: f64 = 1e-8;
+
+/// Puts rows back into `active` until the active rows hold all rigid motions that the load drives. For each
+/// driven motion it takes the row with the largest `score` among those that oppose it, those with the largest first.
+/// Returns the number of rows that were put back. Collective.
+///
+/// # Errors
+/// Bodies that the load pushes away for ever: no row opposes a driven motion.
+pub fn restore(
+    problem: &Substructures,
+    dual: &Dual,
+    active: &mut [bool],
+    score: &dyn Fn(usize) -> f64,
+    load: &KernelLoad,
+) -> Result<usize> {
+    let (comm, natural, jump) = (dual.comm(), &dual.natural, &dual.stiffness.jump);
+    if natural.r == 0 {
+        return Ok(0);
+    }
+    let gram = natural.gram(comm, active);
+    if gram.unheld.is_empty() {
+        return Ok(0);
+    }
+    let body = natural.bodies();
+    let mut free = Free::new(gram.unheld.clone(), body, problem.n_bodies);
+    drop(gram);
+    let g = &natural.all;
+    let (mut restored, mut rest) = (0, vec![0.0; natural.r]);
+    loop {
+        let driven = free.driven(load);
+        if driven.is_empty() {
+            break;
+        }
+        let by_column = ByColumn::new(natural.r, driven.iter().map(|d| &d.motion));
+        // For each motion the best row on this rank.
+        let mut best: Vec<Option<(f64, usize)>> = vec![None; driven.len()];
+        let candidates = jump.rows_between_bodies();
+        for i in candidates.filter(|&i| jump.is_candidate(i) && !active[i]) {
+            let (columns, values) = g.entries(i);
+            let size: f64 = values.iter().map(|x| x.abs()).sum();
+            for (d, work) in by_column.works(columns, values) {
+                let work = if jump.inequality[i] { work } else { work.abs() };
+                let against = work > AGAINST * size * driven[d].largest;
+                if against && best[d].is_none_or(|(least, _)| score(i) > least) {
+                    best[d] = Some((score(i), i));
+                }
+            }
+        }
+        let words = best.iter().enumerate().filter_map(|(d, best)| {
+            let (score, i) = (*best)?;
+            Some(Offer::pack(d, score, i, jump.inequality[i], g.entries(i)))
+        });
+        let words: Vec<u64> = words.flatten().collect();
+        let mut offers: Vec<Option<Offer>> = driven.iter().map(|_| None).collect();
+        for (rank, words) in gather_all(comm, &words).iter().enumerate() {
+            for offer in Offer::read(rank, words) {
+                let known = &mut offers[offer.motion];
+                if known.as_ref().is_none_or(|other| offer.score > other.score) {
+                    *known = Some(offer);
+                }
+            }
+        }
+        // A motion that no row opposes is the proof that there is no solution, unless it is rounding.
+        let mut unopposed = Vec::new();
+        for (d, _) in driven
+            .iter()
+            .zip(&offers)
+            .filter(|(_, offer)| offer.is_none())
+        {
+            let (work, square) = (d.motion.dot(&load.e), d.motion.square());
+            d.motion.add(work / square, &mut rest);
+            unopposed.push(d.number);
+        }
+        free.forget(&unopposed);
+        let mut offers: Vec<Offer> = offers.into_iter().flatten().collect();
+        offers.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.motion.cmp(&b.motion)));
+        for offer in offers {
+            // Rows before it may have taken its motion.
+            if free.hold(body, &offer, load) {
+                restored += 1;
+                if offer.rank == comm.rank() as usize {
+                    active[offer.row] = true;
+                }
+            }
+        }
+    }
+    let size = load.size.iter().fold(0.0f64, |a, s| a.max(*s));
+    pushed_away(problem, dual, &rest, NEARLY * size)?;
+    Ok(restored)
+}
+
+/// A row that a rank offers to put back against a driven motion.
+struct Offer {
+    motion: usize,
+    score: f64,
+    rank: usize,
+    row: usize,
+    inequality: bool,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl Offer {
+    fn pack(
+        motion: usize,
+        score: f64,
+        row: usize,
+        inequality: bool,
+        (columns, values): (&[u32], &[f64]),
+    ) -> Vec<u64> {
+        let kind = u64::from(inequality);
+        let mut words = vec![motion as u64, score.to_bits(), row as u64, kind];
+        words.push(columns.len() as u64);
+        words.extend(columns.iter().map(|&c| u64::from(c)));
+        words.extend(values.iter().map(|v| v.to_bits()));
+        words
+    }
+
+    fn read(rank: usize, words: &[u64]) -> Vec<Offer> {
+        let mut out = Vec::new();
+        let mut rest = words;
+        while let [motion, score, row, kind, n, tail @ ..] = rest {
+            let (columns, tail) = tail.split_at(*n as usize);
+            let (values, tail) = tail.split_at(*n as usize);
+            out.push(Offer {
+                motion: *motion as usize,
+                score: f64::from_bits(*score),
+                rank,
+                row: *row as usize,
+                inequality: *kind == 1,
+                columns: columns.iter().map(|&c| c as u32).collect(),
+                values: values.iter().map(|&w| f64::from_bits(w)).collect(),
+            });
+            rest = tail;
+        }
+        out
+    }
+}
+
+/// A motion on which the load does work, with the sign for which it gains energy.
+struct Driven {
+    number: usize,
+    motion: Motion,
+    largest: f64,
+}
+
+/// A basis of the motions that nothing holds, in groups of bodies that move together.
+struct Free {
+    motions: Vec<Motion>,
+    /// The largest coefficient of each motion.
+    largest: Vec<f64>,
+    /// The motions of each group, by the lowest of its bodies.
+    members: Vec<Vec<usize>>,
+    groups: UnionFind,
+}
+
+impl Free {
+    fn new(motions: Vec<Motion>, body: &[u32], n_bodies: usize) -> Free {
+        let mut groups = UnionFind::new(n_bodies);
+        for motion in &motions {
+            let mut bodies = motion.0.iter().map(|e| body[e.0 as usize] as usize);
+            if let Some(first) = bodies.next() {
+                bodies.for_each(|b| groups.join(first, b));
+            }
+        }
+        let mut members = vec![Vec::new(); n_bodies];
+        for (m, motion) in motions.iter().enumerate() {
+            if let Some(&(c, _)) = motion.0.first() {
+                members[groups.find(body[c as usize] as usize)].push(m);
+            }
+        }
+        Free {
+            largest: motions.iter().map(Motion::largest).collect(),
+            motions,
+            members,
+            groups,
+        }
+    }
+
+    /// The work of the load on a motion; `None` if it is rounding.
+    fn gain(&self, m: usize, load: &KernelLoad) -> Option<f64> {
+        let work = self.motions[m].dot(&load.e);
+        (work.abs() > BALANCE * self.motions[m].size(&load.size)).then_some(work)
+    }
+
+    fn driven(&self, load: &KernelLoad) -> Vec<Driven> {
+        let mut out = Vec::new();
+        for &number in self.members.iter().flatten() {
+            if let Some(work) = self.gain(number, load) {
+                out.push(Driven {
+                    number,
+                    motion: self.motions[number].times(work.signum()),
+                    largest: self.largest[number],
+                });
+            }
+        }
+        out
+    }
+
+    /// Leaves motions out.
+    fn forget(&mut self, which: &[usize]) {
+        if !which.is_empty() {
+            let members = self.members.iter_mut();
+            members.for_each(|list| list.retain(|m| !which.contains(m)));
+        }
+    }
+
+    /// Lets a row hold if it opposes a motion that is still driven. Returns whether it does.
+    fn hold(&mut self, body: &[u32], row: &Offer, load: &KernelLoad) -> bool {
+        let mut touched: Vec<usize> = row
+            .columns
+            .iter()
+            .map(|&c| self.groups.find(body[c as usize] as usize))
+            .collect();
+        touched.sort_unstable();
+        touched.dedup();
+        let of = touched.iter().flat_map(|&g| &self.members[g]);
+        let members: Vec<usize> = of.copied().collect();
+        let size: f64 = row.values.iter().map(|x| x.abs()).sum();
+        // The work on each motion, and relative to the largest that it could be.
+        let works: Vec<(usize, f64, f64)> = members
+            .iter()
+            .map(|&m| {
+                let work = self.motions[m].work(&row.columns, &row.values);
+                (m, work, work / (size * self.largest[m]))
+            })
+            .filter(|w| w.2.abs() > 1e-2 * AGAINST)
+            .collect();
+        let opposed = works.iter().any(|&(m, _, relative)| {
+            relative.abs() > AGAINST
+                && self
+                    .gain(m, load)
+                    .is_some_and(|gain| !row.inequality || gain * relative > 0.0)
+        });
+        if !opposed {
+            return false;
+        }
+        let strongest = works.iter().max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+        let &(pivot, of_pivot, _) = strongest.expect("one is opposed");
+        let out = std::mem::take(&mut self.motions[pivot]);
+        for &(m, work, _) in works.iter().filter(|w| w.0 != pivot) {
+            self.motions[m] = self.motions[m].plus(-work / of_pivot, &out);
+            self.largest[m] = self.motions[m].largest();
+        }
+        let mut left: Vec<usize> = members.into_iter().filter(|&m| m != pivot).collect();
+        left.sort_unstable();
+        // Groups that the row joins move together from now on.
+        for &group in &touched {
+            self.members[group].clear();
+            self.groups.join(touched[0], group);
+        }
+        self.members[touched[0]] = left;
+        true
+    }
+}
+
+/// Motions by the columns in which they have coefficients.
+pub struct ByColumn {
+    start: Vec<usize>,
+    entries: Vec<(u32, f64)>,
+}
+
+impl ByColumn {
+    /// Sorts the coefficients of motions with `r` columns.
+    pub fn new<'a>(r: usize, motions: impl Iterator<Item = &'a Motion>) -> ByColumn {
+        let mut all: Vec<(u32, u32, f64)> = Vec::new();
+        for (m, motion) in motions.enumerate() {
+            all.extend(motion.0.iter().map(|&(c, v)| (c, m as u32, v)));
+        }
+        all.sort_by_key(|e| (e.0, e.1));
+        let mut start = vec![0; r + 1];
+        all.iter().for_each(|e| start[e.0 as usize + 1] += 1);
+        for c in 0..r {
+            start[c + 1] += start[c];
+        }
+        ByColumn {
+            start,
+            entries: all.into_iter().map(|e| (e.1, e.2)).collect(),
+        }
+    }
+
+    /// The work of a row of G on each motion that it touches, by increasing number of the motion.
+    pub fn works(&self, columns: &[u32], values: &[f64]) -> Vec<(usize, f64)> {
+        let mut out: Vec<(usize, f64)> = Vec::new();
+        for (&c, g) in columns.iter().zip(values) {
+            for &(m, v) in &self.entries[self.start[c as usize]..self.start[c as usize + 1]] {
+                out.push((m as usize, g * v));
+            }
+        }
+        out.sort_by_key(|e| e.0);
+        out.chunk_by(|a, b| a.0 == b.0)
+            .map(|w| (w[0].0, w.iter().map(|e| e.1).sum()))
+            .collect()
+    }
+}

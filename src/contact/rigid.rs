@@ -1,0 +1,254 @@
+//! The balance of the load by rigid bodies on unilateral springs: whether the rows can carry the load at all, for many
+//! rigid motions.
+//!
+//! ```text
+//!     min_α  ½ Σ_I (g_iᵀα)₊² + ½ Σ_E (g_iᵀα)² + ½ ε ‖α − a‖²_D − eᵀα,        D = diag GᵀG
+//! ```
+//!
+//! At the minimum λ_i = (g_iᵀα)₊ is a force that the rows can exert, and e − Gᵀλ = ε D (α − a) is what they do not
+//! carry. The function is convex and piecewise quadratic: Newton's method with the sparse factor of G_AᵀG_A + ε D ends
+//! after some steps. Then a ← α, which takes the rest to zero if the rows can carry the load. If they cannot, α − a
+//! tends to a motion that all rows allow and the load drives.
+
+use mpi::topology::SimpleCommunicator;
+
+use crate::feti::jump::operator::Jump;
+use crate::feti::projector::gram::{Gram, Motion};
+use crate::feti::projector::natural::NaturalCoarse;
+use crate::parallel::exchange::{any, sum_all};
+
+/// ε. Rounding of the factor is 1e-16, the softest motions of a thousand bodies in a row are 1e-6.
+const WEAK: f64 = 1e-8;
+
+/// Largest number of times that a follows α.
+const ROUNDS: usize = 6;
+
+/// Largest number of Newton steps in each.
+const STEPS: usize = 60;
+
+/// A row stands against a motion if its work is above this, relative to the largest that it could be.
+const AGAINST: f64 = 1e-6;
+
+/// Largest number of evaluations of the slope along a step.
+const EVALUATIONS: usize = 50;
+
+/// The part of `e` that the rows cannot carry: none if it is below `enough` everywhere. `None` if this is not decided.
+/// The same on every rank. Collective.
+pub fn outside(
+    comm: &SimpleCommunicator,
+    natural: &NaturalCoarse,
+    jump: &Jump,
+    e: &[f64],
+    enough: f64,
+) -> Option<Vec<f64>> {
+    let springs = Springs::new(comm, natural, jump, e);
+    let r = natural.r;
+    let (mut alpha, mut anchor) = (vec![0.0; r], vec![0.0; r]);
+    for _ in 0..ROUNDS {
+        springs.minimise(&mut alpha, &anchor);
+        let rest: Vec<f64> = (0..r)
+            .map(|c| springs.weak[c] * (alpha[c] - anchor[c]))
+            .collect();
+        if rest.iter().all(|v| v.abs() <= enough) {
+            return Some(vec![0.0; r]);
+        }
+        let along: Vec<f64> = alpha.iter().zip(&anchor).map(|(a, b)| a - b).collect();
+        if let Some(away) = springs.allowed(&along) {
+            return Some(away);
+        }
+        anchor.clone_from(&alpha);
+    }
+    None
+}
+
+struct Springs<'a> {
+    comm: &'a SimpleCommunicator,
+    natural: &'a NaturalCoarse,
+    jump: &'a Jump,
+    /// The owned rows that may hold.
+    rows: Vec<usize>,
+    e: &'a [f64],
+    /// ε D.
+    weak: Vec<f64>,
+}
+
+impl<'a> Springs<'a> {
+    fn new(
+        comm: &'a SimpleCommunicator,
+        natural: &'a NaturalCoarse,
+        jump: &'a Jump,
+        e: &'a [f64],
+    ) -> Springs<'a> {
+        let between = jump.rows_between_bodies();
+        let rows: Vec<usize> = between.filter(|&i| jump.is_candidate(i)).collect();
+        let mut weak = vec![0.0; natural.r];
+        for &i in &rows {
+            let (columns, values) = natural.all.entries(i);
+            for (&c, g) in columns.iter().zip(values) {
+                weak[c as usize] += WEAK * g * g;
+            }
+        }
+        sum_all(comm, &mut weak);
+        let mean = weak.iter().sum::<f64>() / natural.r as f64;
+        // A motion that no row sees has a spring, too.
+        for w in weak.iter_mut().filter(|w| **w == 0.0) {
+            *w = if mean > 0.0 { mean } else { 1.0 };
+        }
+        Springs {
+            comm,
+            natural,
+            jump,
+            rows,
+            e,
+            weak,
+        }
+    }
+
+    /// g_iᵀα of the rows that may hold.
+    fn stretch(&self, alpha: &[f64]) -> Vec<f64> {
+        let of = |&i: &usize| {
+            let (columns, values) = self.natural.all.entries(i);
+            let terms = columns.iter().zip(values);
+            terms.map(|(&c, g)| g * alpha[c as usize]).sum()
+        };
+        self.rows.iter().map(of).collect()
+    }
+
+    /// Whether a spring that is stretched by `s` pulls.
+    fn pulls(&self, k: usize, s: f64) -> bool {
+        s > 0.0 || !self.jump.inequality[self.rows[k]]
+    }
+
+    /// Newton's method from `alpha`. Collective.
+    fn minimise(&self, alpha: &mut [f64], anchor: &[f64]) {
+        let shape = self.natural.shape.as_ref().expect("a body floats");
+        let all = &self.natural.all;
+        let mut stretch = self.stretch(alpha);
+        // The first step is that of all rows.
+        let mut on = vec![true; self.rows.len()];
+        let mut chosen = vec![false; all.n()];
+        for step in 0..STEPS {
+            if step > 0 || alpha.iter().any(|a| *a != 0.0) {
+                let now: Vec<bool> = (0..on.len()).map(|k| self.pulls(k, stretch[k])).collect();
+                // The minimum for the springs that pulled is that of those which pull now.
+                if !any(self.comm, now != on) && step > 0 {
+                    return;
+                }
+                on = now;
+            }
+            self.rows
+                .iter()
+                .zip(&on)
+                .for_each(|(&i, on)| chosen[i] = *on);
+            let mut a = shape.pattern.product(self.comm, all, all, |i| chosen[i]);
+            for c in 0..a.n() {
+                a.set_diagonal(c, a.get(c, c) + self.weak[c]);
+            }
+            let mut d = self.downhill(alpha, anchor, &stretch);
+            Gram::new(shape, a).solve(&mut d);
+            let along = self.stretch(&d);
+            let t = self.length(alpha, anchor, &d, (&stretch, &along));
+            alpha.iter_mut().zip(&d).for_each(|(a, d)| *a += t * d);
+            stretch
+                .iter_mut()
+                .zip(&along)
+                .for_each(|(s, d)| *s += t * d);
+            let moved = d.iter().fold(0.0f64, |m, d| m.max(d.abs())) * t;
+            let size = alpha.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+            if moved <= 1e-14 * size {
+                return;
+            }
+        }
+    }
+
+    /// e − Gᵀλ − ε D (α − a).
+    fn downhill(&self, alpha: &[f64], anchor: &[f64], stretch: &[f64]) -> Vec<f64> {
+        let mut force = vec![0.0; alpha.len()];
+        for (k, &i) in self.rows.iter().enumerate() {
+            if self.pulls(k, stretch[k]) {
+                let (columns, values) = self.natural.all.entries(i);
+                for (&c, g) in columns.iter().zip(values) {
+                    force[c as usize] += g * stretch[k];
+                }
+            }
+        }
+        sum_all(self.comm, &mut force);
+        (0..alpha.len())
+            .map(|c| self.e[c] - force[c] - self.weak[c] * (alpha[c] - anchor[c]))
+            .collect()
+    }
+
+    /// The t that minimises the function along α + t d: a zero of its slope, which is increasing and piecewise linear.
+    fn length(
+        &self,
+        alpha: &[f64],
+        anchor: &[f64],
+        d: &[f64],
+        (stretch, along): (&[f64], &[f64]),
+    ) -> f64 {
+        let mut constant = [0.0, 0.0];
+        for c in 0..d.len() {
+            constant[0] += d[c] * (self.weak[c] * (alpha[c] - anchor[c]) - self.e[c]);
+            constant[1] += d[c] * d[c] * self.weak[c];
+        }
+        let slope = |t: f64| {
+            let mut sums = [0.0, 0.0];
+            for k in 0..stretch.len() {
+                let s = stretch[k] + t * along[k];
+                if self.pulls(k, s) {
+                    sums[0] += s * along[k];
+                    sums[1] += along[k] * along[k];
+                }
+            }
+            sum_all(self.comm, &mut sums);
+            [
+                sums[0] + constant[0] + t * constant[1],
+                sums[1] + constant[1],
+            ]
+        };
+        let start = slope(0.0)[0].abs();
+        let (mut low, mut high, mut t) = (0.0, f64::INFINITY, 1.0);
+        for _ in 0..EVALUATIONS {
+            let [s, curvature] = slope(t);
+            if s.abs() <= 1e-12 * start {
+                break;
+            }
+            match s < 0.0 {
+                true => low = t,
+                false => high = t,
+            }
+            let newton = t - s / curvature;
+            t = match (low < newton && newton < high, high.is_finite()) {
+                (true, _) => newton,
+                (false, true) => 0.5 * (low + high),
+                (false, false) => 2.0 * t,
+            };
+        }
+        t
+    }
+
+    /// The part of the load along `motion`, if the load drives it and no row stands against it. Collective.
+    fn allowed(&self, motion: &[f64]) -> Option<Vec<f64>> {
+        let largest = motion.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+        let entries = (0..).zip(motion.iter().copied());
+        let cut = Motion(
+            entries
+                .filter(|e: &(u32, f64)| e.1.abs() > AGAINST * largest)
+                .collect(),
+        );
+        let mut alpha = vec![0.0; motion.len()];
+        cut.add(1.0, &mut alpha);
+        let stands = self.stretch(&alpha).iter().zip(&self.rows).any(|(s, &i)| {
+            let size: f64 = self.natural.all.entries(i).1.iter().map(|g| g.abs()).sum();
+            let work = if self.jump.inequality[i] { *s } else { s.abs() };
+            work > 10.0 * AGAINST * size * largest
+        });
+        let work = cut.dot(self.e);
+        if any(self.comm, stands) || work <= 0.0 {
+            return None;
+        }
+        alpha.fill(0.0);
+        cut.add(work / cut.square(), &mut alpha);
+        Some(alpha)
+    }
+}

@@ -1,0 +1,326 @@
+//! GᵀG for a choice of rows: which rigid motions the rows hold.
+//!
+//! It is sparse: two bodies have common entries if they meet in a row. Few columns are factored densely, where pivots
+//! may be chosen; many by the crate's sparse Cholesky factorisation, whose order of elimination is that of the graph of
+//! all candidate rows and is found once.
+
+use std::sync::Arc;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::pattern::Pattern;
+use super::rows::Rows;
+use crate::cholesky::dissection::nested_dissection;
+use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::symbolic::Symbolic;
+use crate::linalg::csr::Csr;
+use crate::linalg::dense::Dense;
+use crate::linalg::semidefinite::{Semidefinite, DEPENDENT};
+use crate::linalg::union_find::UnionFind;
+
+/// Largest number of rigid motions for dense algebra.
+pub const FEW: usize = 150;
+
+/// Entries of a motion below this, relative to its largest one, are rounding of sums of two motions, …
+const NOTHING: f64 = 1e-13;
+
+/// … and of solves with many columns.
+const NOTHING_SOLVED: f64 = 1e-10;
+
+/// The diagonal entry of a column that is left out: its root divides what other columns have in common with it.
+const OUT: f64 = 1e300;
+
+/// Number of solves at a time.
+const TOGETHER: usize = 8;
+
+/// A combination of kernel vectors: (column of R, coefficient), by increasing column.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Motion(pub Vec<(u32, f64)>);
+
+impl Motion {
+    /// The motion with these coefficients, without those below `least` relative to the largest.
+    fn above(least: f64, entries: impl Iterator<Item = (u32, f64)> + Clone) -> Motion {
+        let largest = entries.clone().fold(0.0f64, |a, e| a.max(e.1.abs()));
+        Motion(entries.filter(|e| e.1.abs() > least * largest).collect())
+    }
+
+    /// Σ of coefficients times entries of x.
+    pub fn dot(&self, x: &[f64]) -> f64 {
+        self.0.iter().map(|&(c, v)| v * x[c as usize]).sum()
+    }
+
+    /// Σ of the sizes of these products.
+    pub fn size(&self, x: &[f64]) -> f64 {
+        self.0.iter().map(|&(c, v)| (v * x[c as usize]).abs()).sum()
+    }
+
+    /// The largest coefficient.
+    pub fn largest(&self) -> f64 {
+        self.0.iter().fold(0.0, |a, e| a.max(e.1.abs()))
+    }
+
+    /// Σ of the squares of the coefficients.
+    pub fn square(&self) -> f64 {
+        self.0.iter().map(|e| e.1 * e.1).sum()
+    }
+
+    /// α times the motion.
+    pub fn times(&self, alpha: f64) -> Motion {
+        Motion(self.0.iter().map(|&(c, v)| (c, alpha * v)).collect())
+    }
+
+    /// The motion plus α times another one.
+    pub fn plus(&self, alpha: f64, other: &Motion) -> Motion {
+        let mut all: Vec<(u32, f64)> = self.0.clone();
+        all.extend(other.0.iter().map(|&(c, v)| (c, alpha * v)));
+        all.sort_by_key(|e| e.0);
+        let sums = all.chunk_by(|a, b| a.0 == b.0);
+        let sums = sums.map(|s| (s[0].0, s.iter().map(|e| e.1).sum()));
+        Motion::above(NOTHING, sums)
+    }
+
+    /// x ← x + α times the coefficients.
+    pub fn add(&self, alpha: f64, x: &mut [f64]) {
+        for &(c, v) in &self.0 {
+            x[c as usize] += alpha * v;
+        }
+    }
+
+    /// The work of a row of G on it.
+    pub fn work(&self, columns: &[u32], values: &[f64]) -> f64 {
+        let of = |&c: &u32| match self.0.binary_search_by_key(&c, |e| e.0) {
+            Ok(k) => self.0[k].1,
+            Err(_) => 0.0,
+        };
+        columns.iter().zip(values).map(|(c, g)| g * of(c)).sum()
+    }
+}
+
+/// Where GᵀG has entries, and in which order it is factored.
+pub struct Shape {
+    /// The entries for all candidate rows.
+    pub pattern: Pattern,
+    /// The order, if there are many columns.
+    order: Option<Arc<Symbolic>>,
+}
+
+impl Shape {
+    /// The shape for all rows `g`. Collective.
+    pub fn new(comm: &SimpleCommunicator, g: &Rows, start: &[usize]) -> Shape {
+        let pattern = Pattern::new(comm, g, g, start);
+        let r = pattern.bodies().len();
+        // Whole bodies are ordered: the columns of one are all coupled.
+        let order = (r > FEW).then(|| {
+            let graph = pattern.graph();
+            let floats = |b: &u32| !pattern.columns(*b as usize).is_empty();
+            let floating: Vec<u32> = (0..graph.n() as u32).filter(floats).collect();
+            let columns = |b: &u32| pattern.columns(*b as usize).map(|c| c as u32);
+            let sets = nested_dissection(&graph, &floating, None).into_iter();
+            let sets: Vec<Vec<u32>> = sets
+                .map(|set| set.iter().flat_map(columns).collect())
+                .collect();
+            Symbolic::with_supernodes(&pattern.zeros(), &[], &sets).into()
+        });
+        Shape { pattern, order }
+    }
+}
+
+/// A factor of A = GᵀG, scaled to a unit diagonal.
+enum Factor {
+    Dense(Semidefinite),
+    Sparse {
+        factor: PartialCholesky,
+        scale: Vec<f64>,
+    },
+}
+
+/// GᵀG, factored; dependent columns are left out. The same on every rank.
+pub struct Gram {
+    factor: Factor,
+    /// Columns that are left out, increasing.
+    pub dropped: Vec<u32>,
+    /// A basis of the motions on which the rows vanish: one for each column that is left out.
+    pub unheld: Vec<Motion>,
+}
+
+impl Gram {
+    /// Factors `a`, a GᵀG of this shape. Every rank does the same.
+    pub fn new(shape: &Shape, a: Csr) -> Gram {
+        match &shape.order {
+            None => Gram::few(&a),
+            Some(order) => Gram::many(&shape.pattern, order, a),
+        }
+    }
+
+    fn few(a: &Csr) -> Gram {
+        let mut dense = Dense::zeros(a.n(), a.n());
+        for i in 0..a.n() {
+            let (col, val) = a.row(i);
+            for (&j, &v) in col.iter().zip(val) {
+                dense.set(i, j as usize, v);
+            }
+        }
+        let factor = Semidefinite::new(&dense);
+        let dropped = factor.dropped();
+        let vector = |&k: &usize| {
+            let v = null_vector(&dense, &factor, k);
+            Motion::above(NOTHING, (0..).zip(v.iter().copied()))
+        };
+        Gram {
+            unheld: dropped.iter().map(vector).collect(),
+            dropped: dropped.iter().map(|&k| k as u32).collect(),
+            factor: Factor::Dense(factor),
+        }
+    }
+
+    fn many(pattern: &Pattern, order: &Arc<Symbolic>, mut a: Csr) -> Gram {
+        let scale = scale_to_unit_diagonal(&mut a);
+        // Most motions that nothing holds are of one body alone. They are found in its block.
+        let mut alone = alone(pattern, &a, &scale);
+        for &(k, _) in &alone {
+            a.set_diagonal(k as usize, OUT);
+        }
+        let (factor, together) = PartialCholesky::semidefinite(&a, order.clone(), DEPENDENT);
+        let mut dropped: Vec<u32> = alone.iter().map(|m| m.0).collect();
+        dropped.extend(&together);
+        dropped.sort_unstable();
+        let left = (&dropped[..], &together[..]);
+        alone.extend(null_vectors(pattern, &a, (&factor, &scale), left));
+        alone.sort_by_key(|m| m.0);
+        Gram {
+            factor: Factor::Sparse { factor, scale },
+            dropped,
+            unheld: alone.into_iter().map(|m| m.1).collect(),
+        }
+    }
+
+    /// x ← A⁺ x, zero in the columns that are left out.
+    pub fn solve(&self, x: &mut [f64]) {
+        match &self.factor {
+            Factor::Dense(factor) => factor.solve(x),
+            Factor::Sparse { factor, scale } => {
+                x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
+                self.dropped.iter().for_each(|&k| x[k as usize] = 0.0);
+                factor.solve(x);
+                x.iter_mut().zip(scale).for_each(|(x, s)| *x *= s);
+                self.dropped.iter().for_each(|&k| x[k as usize] = 0.0);
+            }
+        }
+    }
+
+    /// Number of columns, r.
+    pub fn n(&self) -> usize {
+        match &self.factor {
+            Factor::Dense(factor) => factor.n(),
+            Factor::Sparse { scale, .. } => scale.len(),
+        }
+    }
+
+    /// Whether the factor is a sparse one.
+    pub fn is_sparse(&self) -> bool {
+        matches!(self.factor, Factor::Sparse { .. })
+    }
+}
+
+/// One vector for each column of `together`, with zeros in the other ones of `dropped`. Groups of bodies without common
+/// rows share solves.
+fn null_vectors(
+    pattern: &Pattern,
+    a: &Csr,
+    (factor, scale): (&PartialCholesky, &[f64]),
+    (dropped, together): (&[u32], &[u32]),
+) -> Vec<(u32, Motion)> {
+    if together.is_empty() {
+        return Vec::new();
+    }
+    let body = pattern.bodies();
+    let mut sets = UnionFind::new(pattern.n_bodies());
+    for i in 0..a.n() {
+        let (col, val) = a.row(i);
+        for (&j, _) in col.iter().zip(val).filter(|e| *e.1 != 0.0) {
+            sets.join(body[i] as usize, body[j as usize] as usize);
+        }
+    }
+    // The columns of each group, and those of its columns that are left out.
+    let group: Vec<usize> = body.iter().map(|&b| sets.find(b as usize)).collect();
+    let mut left: Vec<Vec<u32>> = vec![Vec::new(); pattern.n_bodies()];
+    for &k in together {
+        left[group[k as usize]].push(k);
+    }
+    let mut columns: Vec<Vec<u32>> = vec![Vec::new(); pattern.n_bodies()];
+    for (c, &g) in group.iter().enumerate() {
+        if !left[g].is_empty() {
+            columns[g].push(c as u32);
+        }
+    }
+    let rounds: Vec<usize> = (0..left.iter().map(Vec::len).max().unwrap_or(0)).collect();
+    let mut out: Vec<(u32, Motion)> = Vec::new();
+    for rounds in rounds.chunks(TOGETHER) {
+        let of = |&round: &usize| left.iter().filter_map(move |l| l.get(round).copied());
+        let right_side = |round: &usize| {
+            let mut v = vec![0.0; a.n()];
+            for k in of(round) {
+                let (col, val) = a.row(k as usize);
+                col.iter().zip(val).for_each(|(&j, a)| v[j as usize] -= a);
+            }
+            dropped.iter().for_each(|&k| v[k as usize] = 0.0);
+            v
+        };
+        let mut vectors: Vec<Vec<f64>> = rounds.iter().map(right_side).collect();
+        factor.solve_many(&mut vectors);
+        for (round, v) in rounds.iter().zip(&mut vectors) {
+            dropped.iter().for_each(|&k| v[k as usize] = 0.0);
+            for k in of(round) {
+                v[k as usize] = 1.0;
+                let own = columns[group[k as usize]].iter();
+                let own = own.map(|&c| (c, v[c as usize] * scale[c as usize]));
+                out.push((k, Motion::above(NOTHING_SOLVED, own)));
+            }
+        }
+    }
+    out
+}
+
+/// The motions of single bodies that nothing holds, each with the column that is left out for it. `a` has a unit
+/// diagonal.
+fn alone(pattern: &Pattern, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
+    let mut out = Vec::new();
+    for body in 0..pattern.n_bodies() {
+        let columns = pattern.columns(body);
+        if columns.is_empty() {
+            continue;
+        }
+        let first = columns.start;
+        let block = Dense::from_fn(columns.len(), columns.len(), |i, j| {
+            a.get(first + i, first + j)
+        });
+        let factor = Semidefinite::new(&block);
+        for k in factor.dropped() {
+            let v = null_vector(&block, &factor, k);
+            let entries = (columns.clone()).zip(&v);
+            let entries = entries.map(|(c, v)| (c as u32, v * scale[c]));
+            out.push(((first + k) as u32, Motion::above(NOTHING_SOLVED, entries)));
+        }
+    }
+    out
+}
+
+/// The v with A v = 0 that belongs to the dropped column `k`.
+fn null_vector(a: &Dense, factor: &Semidefinite, k: usize) -> Vec<f64> {
+    let mut v: Vec<f64> = a.col(k).iter().map(|x| -x).collect();
+    factor.solve(&mut v);
+    v[k] = 1.0;
+    v
+}
+
+/// A ← D⁻¹ A D⁻¹ with D² the diagonal of A; returns 1/D, one where the diagonal vanishes.
+pub fn scale_to_unit_diagonal(a: &mut Csr) -> Vec<f64> {
+    let of = |d: f64| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 };
+    let scale: Vec<f64> = a.diagonal().into_iter().map(of).collect();
+    for i in 0..a.n() {
+        for k in a.row_ptr[i]..a.row_ptr[i + 1] {
+            a.val[k] *= scale[i] * scale[a.col[k] as usize];
+        }
+    }
+    scale
+}

@@ -1,0 +1,169 @@
+//! The sparsity of products AᵀB of rows between bodies: entries where two bodies meet in a row.
+
+use std::ops::Range;
+
+use mpi::topology::SimpleCommunicator;
+
+use super::rows::Rows;
+use crate::linalg::csr::Csr;
+use crate::linalg::sorted::distinct;
+use crate::parallel::exchange::{gather_all, sum_all};
+
+/// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. The same on every
+/// rank.
+#[derive(Debug)]
+pub struct Pattern {
+    /// First column of each body, and the end; length n_bodies + 1.
+    start: Vec<usize>,
+    /// The body of each column.
+    body: Vec<u32>,
+    /// For each body, the bodies in its rows of the matrix, increasing, and where the columns of each of these begin in
+    /// such a row.
+    near: Vec<Vec<(u32, u32)>>,
+    row_ptr: Vec<usize>,
+    col: Vec<u32>,
+}
+
+impl Pattern {
+    /// The pattern of AᵀB for rows that are distributed alike, and of the diagonal. `start` has the first column of
+    /// each body. Collective.
+    pub fn new(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -> Pattern {
+        let r = *start.last().expect("there is an end");
+        let n = start.len() - 1;
+        let mut body = vec![0u32; r];
+        for (k, columns) in start.windows(2).enumerate() {
+            body[columns[0]..columns[1]].fill(k as u32);
+        }
+        let mut pairs: Vec<u64> = Vec::new();
+        for i in 0..a.n() {
+            let (left, right) = (a.entries(i).0, b.entries(i).0);
+            for p in runs(&body, left) {
+                for q in runs(&body, right) {
+                    let (p, q) = (body[left[p.start] as usize], body[right[q.start] as usize]);
+                    pairs.push(u64::from(p) << 32 | u64::from(q));
+                }
+            }
+            // Rows of one face meet the same bodies.
+            if pairs.len() > 1 << 20 {
+                pairs = distinct(std::mem::take(&mut pairs));
+            }
+        }
+        let mut lists: Vec<Vec<u32>> = (0..n as u32).map(|k| vec![k]).collect();
+        for pair in gather_all(comm, &distinct(pairs)).concat() {
+            lists[(pair >> 32) as usize].push(pair as u32);
+        }
+        let mut pattern = Pattern {
+            start: start.to_vec(),
+            body,
+            near: Vec::with_capacity(n),
+            row_ptr: vec![0],
+            col: Vec::new(),
+        };
+        for (k, list) in lists.into_iter().enumerate() {
+            let mut length = 0;
+            let mut near = Vec::new();
+            let list = distinct(list);
+            for &other in &list {
+                near.push((other, length));
+                length += pattern.columns(other as usize).len() as u32;
+            }
+            for _ in pattern.columns(k) {
+                for &other in &list {
+                    let columns = pattern.columns(other as usize);
+                    pattern.col.extend(columns.map(|c| c as u32));
+                }
+                pattern.row_ptr.push(pattern.col.len());
+            }
+            pattern.near.push(near);
+        }
+        pattern
+    }
+
+    /// The columns of a body.
+    pub fn columns(&self, body: usize) -> Range<usize> {
+        self.start[body]..self.start[body + 1]
+    }
+
+    /// Number of bodies.
+    pub fn n_bodies(&self) -> usize {
+        self.near.len()
+    }
+
+    /// The body of each column.
+    pub fn bodies(&self) -> &[u32] {
+        &self.body
+    }
+
+    /// The graph of the bodies, without numbers.
+    pub fn graph(&self) -> Csr {
+        let mut out = Csr {
+            row_ptr: vec![0],
+            ..Csr::default()
+        };
+        for near in &self.near {
+            out.col.extend(near.iter().map(|n| n.0));
+            out.row_ptr.push(out.col.len());
+        }
+        out.val = vec![0.0; out.col.len()];
+        out
+    }
+
+    /// A matrix of zeros.
+    pub fn zeros(&self) -> Csr {
+        Csr {
+            row_ptr: self.row_ptr.clone(),
+            col: self.col.clone(),
+            val: vec![0.0; self.col.len()],
+        }
+    }
+
+    /// Where the columns of body `b` begin among the entries of a row of body `a`.
+    fn place(&self, a: u32, b: u32) -> usize {
+        let near = &self.near[a as usize];
+        let at = near.binary_search_by_key(&b, |n| n.0);
+        near[at.expect("the pattern has the rows")].1 as usize
+    }
+
+    /// AᵀB over the rows that `chosen` selects. Collective.
+    pub fn product(
+        &self,
+        comm: &SimpleCommunicator,
+        a: &Rows,
+        b: &Rows,
+        chosen: impl Fn(usize) -> bool,
+    ) -> Csr {
+        let mut product = self.zeros();
+        let val = &mut product.val;
+        for i in (0..a.n()).filter(|&i| chosen(i)) {
+            let ((left, x), (right, y)) = (a.entries(i), b.entries(i));
+            for p in runs(&self.body, left) {
+                for q in runs(&self.body, right) {
+                    let of = self.body[right[q.start] as usize];
+                    let place = self.place(self.body[left[p.start] as usize], of);
+                    let first = self.start[of as usize];
+                    for k in p.clone() {
+                        let row = self.row_ptr[left[k] as usize] + place;
+                        for l in q.clone() {
+                            val[row + right[l] as usize - first] += x[k] * y[l];
+                        }
+                    }
+                }
+            }
+        }
+        sum_all(comm, val);
+        product
+    }
+}
+
+/// The runs of columns that belong to one body.
+fn runs<'a>(body: &'a [u32], columns: &'a [u32]) -> impl Iterator<Item = Range<usize>> + 'a {
+    let mut end = 0;
+    std::iter::from_fn(move || {
+        let start = end;
+        let of = body[*columns.get(start)? as usize];
+        while columns.get(end).is_some_and(|&c| body[c as usize] == of) {
+            end += 1;
+        }
+        Some(start..end)
+    })
+}

@@ -1,0 +1,100 @@
+//! More rigid motions than dense algebra takes: answers of all loops against the assembled reference, and bodies that
+//! nothing stops, which are named by loops that had not asked before.
+
+use crate::support::session::with_session;
+use crate::support::{assembled, contact_judge, mpi};
+use assembled::{Assembled, Reference};
+use fetifeti::contact::ContactType;
+use fetifeti::petsc::Session;
+use fetifeti::scene::Scene;
+use fetifeti::{Error, FetiFeti, Result, Settings};
+
+const KINDS: [ContactType; 3] = [
+    ContactType::ActiveSet,
+    ContactType::AugmentedLagrangian,
+    ContactType::Smalbe,
+];
+
+/// 5 × 4 × 4 elastic blocks, held at the bottom and normally at the sides: 210 rigid motions.
+fn blocks(load: &str) -> String {
+    format!(
+        "dimension = 3\nphysics = \"elasticity\"\n[grid]\nbodies = [5, 4, 4]\nsize = [5, 4, 4]\n\
+         subdomains = 1\nelements_per_subdomain = 2\nyoung = 1000\npoisson = 0.3\n{load}\n\
+         dirichlet = {{ bottom = 0, left = {{ x = 0 }}, right = {{ x = 0 }}, front = {{ z = 0 }}, \
+         back = {{ z = 0 }} }}\n[interface]\ndefault = \"contact\"\n"
+    )
+}
+
+/// Blocks that are pushed to all sides, and heights that are pushed up and down: rows open, and others must hold bodies
+/// that have lost theirs.
+fn scenes() -> [(&'static str, String); 2] {
+    let pushed = "traction = { top = [0, \"-max(0, sin(2*x)*cos(1.5*z))\", 0] }\n\
+                  load = [\"0.5*sin(1 + 1.7*bi + 2.3*bj + 3.1*bk)\", -0.05, \
+                  \"0.5*cos(1 + 2.7*bi + 1.3*bj + 2.1*bk)\"]";
+    let wall =
+        "[grid]\nbodies = [14, 13]\nsize = [14, 13]\nsubdomains = 1\nelements_per_subdomain = 2\n\
+                dirichlet = [\"right\", \"top\"]\nload = \"0.1 + cos(pi*x)*sin(1 + bi + 2.3*bj)\"\n\
+                [interface]\ndefault = \"contact\"\n";
+    [("blocks", blocks(pushed)), ("wall", wall.into())]
+}
+
+/// Energies agree with the reference's to 1e-8, KKT residuals are below 1e-8.
+fn agree(session: &Session, kinds: &[ContactType]) -> Result<()> {
+    for (name, text) in scenes() {
+        let scene = Scene::parse(name, &text)?;
+        let problem = Assembled::of_scene(&scene);
+        let reference: Reference = problem.solve();
+        for &kind in kinds {
+            let what = (&scene, &problem, &reference);
+            let agreement = contact_judge::judge(session, what, false, kind)
+                .map_err(|why| Error::input(format!("{name}, {}: {why}", kind.name())))?;
+            if session.rank() == 0 {
+                println!("{name}, {}: {agreement:?}", kind.name());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Four blocks at a corner of the top are pushed up.
+fn refused(session: &Session) -> Result<()> {
+    let up = "load = [0, \"0.5*(bi > 2.5)*(bj > 2.5)*(bk > 1.5) - 0.01\", 0]";
+    let scene = Scene::parse("up", &blocks(up))?;
+    let share = fetifeti::share(session, scene.n_subdomains());
+    for kind in KINDS {
+        let mut settings = Settings::default();
+        settings.contact.kind = kind;
+        let rows = scene.substructures(&|s| share.contains(&s))?;
+        let said = match FetiFeti::new(session, rows, settings)?.solve() {
+            Ok(solution) => format!("solved, {}", solution.status),
+            Err(error) => error.to_string(),
+        };
+        let who = "bodies \"b3_3_2\", \"b4_3_2\", \"b3_3_3\", \"b4_3_3\" are pushed away for ever";
+        if !said.contains(who) {
+            return Err(Error::input(format!("{}: {said}", kind.name())));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn many_motions_on_one_rank() {
+    mpi::alone(|| {
+        with_session(|session| {
+            agree(session, &KINDS).unwrap();
+            refused(session).unwrap();
+        });
+    });
+}
+
+#[test]
+fn many_motions_on_two_and_four_ranks() {
+    let started = mpi::as_rank(|session, _| {
+        agree(session, &KINDS[..1])?;
+        refused(session)
+    });
+    for ranks in [2, 4] {
+        let out = started.run(ranks, "many");
+        assert_eq!(out.code, 0, "{ranks} ranks: {}", out.all());
+    }
+}
