@@ -14,6 +14,7 @@
 //! | [`panel`] | how the columns of a front lie in memory |
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
+//! | `null_vector` | what a semidefinite matrix maps to zero |
 //! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
 //!
 //! `docs/cholesky.md` has the theory, the data structures and the measurements.
@@ -23,6 +24,7 @@ pub mod dissection;
 pub mod interior;
 pub mod lanes;
 pub mod multifrontal;
+mod null_vector;
 pub mod panel;
 pub mod substitution;
 mod sweep;

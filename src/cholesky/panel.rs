@@ -37,6 +37,20 @@ pub fn diagonal(j: usize, width: usize, size: usize) -> usize {
     group(first, size) + (j - first) * (n + 1)
 }
 
+/// Where the entry of row `i` and column `j`, i ≥ j, is, in a panel of `width` columns and `size` rows.
+pub fn entry(i: usize, j: usize, width: usize, size: usize) -> usize {
+    let first = j / COLUMNS * COLUMNS;
+    let n = COLUMNS.min(width - first);
+    let (start, column) = (group(first, size), j - first);
+    if i < first + n {
+        return start + column * n + i - first;
+    }
+    let below = i - first - n;
+    let lot = below / LOT * LOT;
+    let rows = LOT.min(size - first - n - lot);
+    start + n * n + lot * n + column * rows + below % LOT
+}
+
 /// Stores the first `size` rows of `width` columns that lie `stride` apart.
 pub fn store(columns: &[f64], stride: usize, width: usize, size: usize, out: &mut [f64]) {
     let mut rest = &mut out[..length(width, size)];

@@ -8,7 +8,7 @@ use mpi::traits::Communicator;
 
 use super::motion::{pushed_away, BALANCE, NEARLY};
 use crate::feti::operators::dual::Dual;
-use crate::feti::projector::gram::Motion;
+use crate::feti::projector::gram::{Motion, FEW};
 use crate::feti::projector::natural::KernelLoad;
 use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::gather_all;
@@ -92,6 +92,10 @@ pub fn restore(
         free.forget(&unopposed);
         let mut offers: Vec<Offer> = offers.into_iter().flatten().collect();
         offers.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.motion.cmp(&b.motion)));
+        // Few motions: all rows are looked at again after each. Many would take as many passes.
+        if natural.r <= FEW {
+            offers.truncate(1);
+        }
         for offer in offers {
             // Rows before it may have taken its motion.
             if free.hold(body, &offer, load) {

@@ -16,7 +16,6 @@ use crate::cholesky::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::{Semidefinite, DEPENDENT};
-use crate::linalg::union_find::UnionFind;
 
 /// Largest number of rigid motions for dense algebra.
 pub const FEW: usize = 150;
@@ -29,9 +28,6 @@ const NOTHING_SOLVED: f64 = 1e-10;
 
 /// The diagonal entry of a column that is left out: its root divides what other columns have in common with it.
 const OUT: f64 = 1e300;
-
-/// Number of solves at a time.
-const TOGETHER: usize = 8;
 
 /// A combination of kernel vectors: (column of R, coefficient), by increasing column.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -184,8 +180,11 @@ impl Gram {
         let mut dropped: Vec<u32> = alone.iter().map(|m| m.0).collect();
         dropped.extend(&together);
         dropped.sort_unstable();
-        let left = (&dropped[..], &together[..]);
-        alone.extend(null_vectors(pattern, &a, (&factor, &scale), left));
+        alone.extend(together.iter().map(|&k| {
+            let v = factor.null_vector(k).into_iter();
+            let v: Vec<(u32, f64)> = v.map(|(c, v)| (c, v * scale[c as usize])).collect();
+            (k, Motion::above(NOTHING_SOLVED, v.iter().copied()))
+        }));
         alone.sort_by_key(|m| m.0);
         Gram {
             factor: Factor::Sparse { factor, scale },
@@ -220,65 +219,6 @@ impl Gram {
     pub fn is_sparse(&self) -> bool {
         matches!(self.factor, Factor::Sparse { .. })
     }
-}
-
-/// One vector for each column of `together`, with zeros in the other ones of `dropped`. Groups of bodies without common
-/// rows share solves.
-fn null_vectors(
-    pattern: &Pattern,
-    a: &Csr,
-    (factor, scale): (&PartialCholesky, &[f64]),
-    (dropped, together): (&[u32], &[u32]),
-) -> Vec<(u32, Motion)> {
-    if together.is_empty() {
-        return Vec::new();
-    }
-    let body = pattern.bodies();
-    let mut sets = UnionFind::new(pattern.n_bodies());
-    for i in 0..a.n() {
-        let (col, val) = a.row(i);
-        for (&j, _) in col.iter().zip(val).filter(|e| *e.1 != 0.0) {
-            sets.join(body[i] as usize, body[j as usize] as usize);
-        }
-    }
-    // The columns of each group, and those of its columns that are left out.
-    let group: Vec<usize> = body.iter().map(|&b| sets.find(b as usize)).collect();
-    let mut left: Vec<Vec<u32>> = vec![Vec::new(); pattern.n_bodies()];
-    for &k in together {
-        left[group[k as usize]].push(k);
-    }
-    let mut columns: Vec<Vec<u32>> = vec![Vec::new(); pattern.n_bodies()];
-    for (c, &g) in group.iter().enumerate() {
-        if !left[g].is_empty() {
-            columns[g].push(c as u32);
-        }
-    }
-    let rounds: Vec<usize> = (0..left.iter().map(Vec::len).max().unwrap_or(0)).collect();
-    let mut out: Vec<(u32, Motion)> = Vec::new();
-    for rounds in rounds.chunks(TOGETHER) {
-        let of = |&round: &usize| left.iter().filter_map(move |l| l.get(round).copied());
-        let right_side = |round: &usize| {
-            let mut v = vec![0.0; a.n()];
-            for k in of(round) {
-                let (col, val) = a.row(k as usize);
-                col.iter().zip(val).for_each(|(&j, a)| v[j as usize] -= a);
-            }
-            dropped.iter().for_each(|&k| v[k as usize] = 0.0);
-            v
-        };
-        let mut vectors: Vec<Vec<f64>> = rounds.iter().map(right_side).collect();
-        factor.solve_many(&mut vectors);
-        for (round, v) in rounds.iter().zip(&mut vectors) {
-            dropped.iter().for_each(|&k| v[k as usize] = 0.0);
-            for k in of(round) {
-                v[k as usize] = 1.0;
-                let own = columns[group[k as usize]].iter();
-                let own = own.map(|&c| (c, v[c as usize] * scale[c as usize]));
-                out.push((k, Motion::above(NOTHING_SOLVED, own)));
-            }
-        }
-    }
-    out
 }
 
 /// The motions of single bodies that nothing holds, each with the column that is left out for it. `a` has a unit
@@ -319,7 +259,7 @@ pub fn scale_to_unit_diagonal(a: &mut Csr) -> Vec<f64> {
     let scale: Vec<f64> = a.diagonal().into_iter().map(of).collect();
     for i in 0..a.n() {
         for k in a.row_ptr[i]..a.row_ptr[i + 1] {
-            a.val[k] *= scale[i] * scale[a.col[k] as usize];
+            a.val[k] = a.val[k] * scale[i] * scale[a.col[k] as usize];
         }
     }
     scale
