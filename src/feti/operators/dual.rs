@@ -143,8 +143,13 @@ impl Dual {
             }
             None => String::new(),
         };
+        let coarse = match natural.gtg.as_ref().map(|gtg| gtg.ksp().is_some()) {
+            None => "",
+            Some(true) => ", G^T Q G by PETSc",
+            Some(false) => ", G^T G by a sparse Cholesky factor",
+        };
         format!(
-            "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies)\
+            "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies{coarse})\
              \n  preconditioner: {}{lifted}\n",
             jump.n_local,
             jump.n_global - jump.n_local,
