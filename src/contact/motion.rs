@@ -31,7 +31,7 @@ pub const NEARLY: f64 = 1e-7;
 pub const BALANCE: f64 = 1e-9;
 
 /// Asks before the loop, where few motions make the question cheap. With many the loop itself finds the answer:
-/// multipliers of the right sign in equilibrium with the load, or a motion that nothing stops ([`restore`],
+/// multipliers of the right sign in equilibrium with the load, or a motion that nothing stops (`restore`,
 /// [`check`]). Collective.
 ///
 /// # Errors
