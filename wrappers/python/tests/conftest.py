@@ -2,6 +2,7 @@
 
 import os
 import sys
+import tempfile
 
 import numpy as np
 import pytest
@@ -13,6 +14,12 @@ def world():
     from petsc4py import PETSc
 
     return PETSc.COMM_WORLD
+
+
+def pytest_configure(config):
+    """Ranks have temporary directories of their own: pytest would tidy up those of the others."""
+    if int(os.environ.get("OMPI_COMM_WORLD_SIZE", 1)) > 1:
+        config.option.basetemp = tempfile.mkdtemp(prefix="fetifeti-test-")
 
 
 def pytest_exception_interact(report):
