@@ -21,7 +21,7 @@ use super::state::{changes, Observer, State, Step};
 use super::{judge, motion};
 use crate::feti::krylov::iterate::{IterationControl, Look, Run};
 use crate::feti::krylov::loads::Loads;
-use crate::feti::krylov::residual::{Iterate, Residual, ROUNDING};
+use crate::feti::krylov::residual::{Iterate, ROUNDING};
 use crate::feti::krylov::target::{target, to_the_end};
 use crate::feti::operators::dual::Dual;
 use crate::feti::{LinearMethod, LinearSolution, Spectrum};
@@ -333,11 +333,11 @@ impl<'a> ActiveSet<'a> {
         let jump = &dual.stiffness.jump;
         self.at.residual.add_rigid_motion(dual)?;
         self.placed = true;
-        self.gaps = all_gaps(dual, &self.at.residual)?;
+        self.gaps = judge::all_gaps(dual, &self.at.residual)?;
         // Bodies that nothing holds are moved to where no row is violated.
         if let Some(alpha) = settle(dual, &self.gaps) {
             self.at.residual.shift(dual, &alpha);
-            self.gaps = all_gaps(dual, &self.at.residual)?;
+            self.gaps = judge::all_gaps(dual, &self.at.residual)?;
         }
         self.held.clone_from(&jump.active);
         let (gaps, lambda) = (&self.gaps, self.at.lambda.array()?);
@@ -385,16 +385,6 @@ impl<'a> ActiveSet<'a> {
         state.safeguarded = state.progress.stalled(PATIENCE);
         Ok(Verdict::GoOn)
     }
-}
-
-/// B y − c on the owned rows, including those that do not hold. Collective.
-pub(super) fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
-    let gaps = dual.multipliers()?;
-    dual.stiffness.jump_of_all(&residual.work, &gaps)?;
-    let mut gaps = gaps.to_vec()?;
-    let c = &dual.stiffness.jump.gap;
-    gaps.iter_mut().zip(c).for_each(|(gap, c)| *gap -= c);
-    Ok(gaps)
 }
 
 /// The next set, and the observations that led to it.

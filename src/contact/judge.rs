@@ -3,7 +3,10 @@
 use mpi::topology::SimpleCommunicator;
 
 use crate::feti::jump::operator::Jump;
+use crate::feti::krylov::residual::Residual;
+use crate::feti::operators::dual::Dual;
 use crate::parallel::exchange::{max_all, total};
+use crate::Result;
 
 /// A gap counts as violated if it is above this many times the largest remaining jump on the rows that hold. A row that
 /// depends on three others inherits the sum of their jumps.
@@ -11,6 +14,16 @@ const NOISE: f64 = 3.0;
 
 /// Rounding of multipliers, relative to the largest one, and of gaps, relative to the largest displacement.
 pub const ROUNDING: f64 = 1e-14;
+
+/// B y − c on the owned rows, including those that do not hold. Collective.
+pub fn all_gaps(dual: &Dual, residual: &Residual) -> Result<Vec<f64>> {
+    let gaps = dual.multipliers()?;
+    dual.stiffness.jump_of_all(&residual.work, &gaps)?;
+    let mut gaps = gaps.to_vec()?;
+    let c = &dual.stiffness.jump.gap;
+    gaps.iter_mut().zip(c).for_each(|(gap, c)| *gap -= c);
+    Ok(gaps)
+}
 
 /// The next set, and the measures behind it.
 pub struct JudgedRows {

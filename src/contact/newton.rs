@@ -9,9 +9,9 @@
 
 use std::time::Instant;
 
-use super::active_set;
 use super::damping::{Penalty, Point};
 use super::dependent;
+use super::judge;
 use super::motion;
 use super::restore::restore;
 use super::settings::ContactType;
@@ -308,10 +308,10 @@ impl<'a> Search<'a> {
         let residual = &mut self.at.residual;
         residual.evaluate(&dual, &self.at.loads, &self.at.lambda)?;
         residual.add_rigid_motion(&dual)?;
-        let mut gap = active_set::all_gaps(&dual, residual)?;
+        let mut gap = judge::all_gaps(&dual, residual)?;
         if let Some(alpha) = settle(&dual, &gap) {
             residual.shift(&dual, &alpha);
-            gap = active_set::all_gaps(&dual, residual)?;
+            gap = judge::all_gaps(&dual, residual)?;
         }
         self.length = residual.length(&dual);
         Ok(Point {

@@ -7,3 +7,4 @@ pub mod natural;
 pub mod pattern;
 pub mod rows;
 pub mod sweep;
+mod weights;

@@ -14,15 +14,13 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::gram::{Gram, Motion, Shape};
-use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::pattern::Pattern;
 use super::rows::{RowEntry, Rows};
-use super::sweep;
-use crate::feti::cost::variation::JUMPS;
+use super::weights::choose;
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
-use crate::feti::settings::{PcType, ProjectorKind};
+use crate::feti::settings::ProjectorKind;
 use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{any, exchange, gather_all, max_all, sum_all};
 use crate::petsc::Vec as PetscVec;
@@ -253,71 +251,6 @@ impl NaturalCoarse {
         largest
     }
 
-    /// diag(B_D diag(K) B_Dᵀ) on the owned rows, with diag(G)⁻¹ in place of G⁻¹ in coupled blocks: any positive
-    /// diagonal gives a projector. Collective.
-    pub fn superlumped(&self, problem: &Substructures, stiffness: &Stiffness) -> Result<Vec<f64>> {
-        let jump = &stiffness.jump;
-        let mut ghost = vec![0.0; jump.ghosts.len()];
-        for (j, columns) in jump.columns.iter().enumerate() {
-            let k = &problem.local[j].k;
-            for ((&row, &at), bd) in columns.row.iter().zip(&columns.at).zip(&columns.bd) {
-                let dof = stiffness.locals[j].gamma().interface[at as usize] as usize;
-                ghost[row as usize] += bd * bd * k.get(dof, dof);
-            }
-        }
-        let q = PetscVec::mpi(&stiffness.session, jump.n_owned)?;
-        stiffness.dual_halo.sum(&ghost, &q)?;
-        let mut q = q.to_vec()?;
-        let entry = |j: usize, at: usize| {
-            let dof = stiffness.locals[j].gamma().interface[at] as usize;
-            problem.local[j].k.get(dof, dof)
-        };
-        stiffness.add_diagonal(entry, &mut q)?;
-        Ok(q)
-    }
-
-    /// The diagonal that is added to M⁻¹ in Q: the superlumped diagonal on rows of a single term, zero on the others. A
-    /// row of a single term has something rigid on its other side, which M⁻¹ does not contain. For a floating body that
-    /// touches nothing else, M⁻¹ G vanishes.
-    fn rigid_rows(&self, problem: &Substructures, stiffness: &Stiffness) -> Result<Vec<f64>> {
-        let mut out = self.superlumped(problem, stiffness)?;
-        let jump = &stiffness.jump;
-        out[..jump.n_owned_local].fill(0.0);
-        for (q, &r) in out[jump.n_owned_local..].iter_mut().zip(&jump.order) {
-            if problem.rows[r].terms.len() > 1 {
-                *q = 0.0;
-            }
-        }
-        Ok(out)
-    }
-
-    /// Q G with Q = M⁻¹ + diag(`rigid`). Columns of bodies that are far from each other share a product with M⁻¹.
-    fn probe(
-        &self,
-        problem: &Substructures,
-        stiffness: &Stiffness,
-        preconditioner: &Preconditioner,
-        rigid: &[f64],
-    ) -> Result<Rows> {
-        let n = stiffness.jump.n_owned;
-        let graph = BodyGraph::new(problem, stiffness);
-        let start = &stiffness.space.kernel_start;
-        let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
-        let like = PetscVec::mpi(&stiffness.session, n)?;
-        let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
-        let images = sweep::images(&like, &graph, &columns, apply)?;
-        let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
-            let entries = list.iter().enumerate().flat_map(|(c, column)| {
-                let entries = column.entries.iter();
-                entries.map(move |&(row, v)| (row, c as u32, v * weigh(row)))
-            });
-            entries.collect::<Vec<_>>()
-        };
-        let mut entries = of(&images, &|_| 1.0);
-        entries.extend(of(&columns, &|row| rigid[row as usize]));
-        Ok(Rows::from_triplets(n, entries))
-    }
-
     /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank.
     pub fn solve_gtg(&self, x: &mut [f64]) -> Result<()> {
         self.gtg
@@ -454,48 +387,5 @@ pub fn moving(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -
         1 => format!("body {} is", names[0]),
         n if n > 4 => format!("bodies {} and {} more are", names[..3].join(", "), n - 3),
         _ => format!("bodies {} are", names.join(", ")),
-    }
-}
-
-/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness, or coefficients jump inside them. It is called only if
-/// some body floats.
-fn choose(
-    comm: &SimpleCommunicator,
-    problem: &Substructures,
-    stiffness: &Stiffness,
-    preconditioner: &Preconditioner,
-    wanted: ProjectorKind,
-    varies: f64,
-) -> ProjectorKind {
-    if wanted != ProjectorKind::Auto {
-        return match (wanted, preconditioner.kind) {
-            // Without a preconditioner Q = M⁻¹ is the identity.
-            (ProjectorKind::Preconditioner, PcType::None) => ProjectorKind::Identity,
-            _ => wanted,
-        };
-    }
-    // Mean diagonal entry of K over the interface of each body. With Q = I the rows of stiff and soft bodies have the
-    // same weight.
-    let n = problem.n_bodies;
-    let mut sums = vec![0.0; 2 * n];
-    for (sub, local) in problem.local.iter().zip(&stiffness.locals) {
-        for &i in &local.gamma().interface {
-            sums[sub.body] += sub.k.get(i as usize, i as usize);
-            sums[n + sub.body] += 1.0;
-        }
-    }
-    sum_all(comm, &mut sums);
-    let means = (0..n)
-        .filter(|&b| sums[n + b] > 0.0)
-        .map(|b| sums[b] / sums[n + b]);
-    let (low, high) = means.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), m| {
-        (l.min(m), h.max(m))
-    });
-    // Corners and mesh sizes alone cause a factor of two.
-    let differ = high > 3.0 * low || varies > JUMPS;
-    match (differ, preconditioner.kind) {
-        (false, _) => ProjectorKind::Identity,
-        (true, PcType::None) => ProjectorKind::Diagonal,
-        (true, _) => ProjectorKind::Preconditioner,
     }
 }
