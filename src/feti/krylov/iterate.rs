@@ -13,7 +13,7 @@ use crate::Result;
 const NEARLY: f64 = 30.0;
 
 /// A run is looked at whenever its residual has fallen by this factor since the last look.
-const LOOK: f64 = 0.1;
+const LOOK: f64 = 0.3;
 
 /// Called during a run with the present λ; `true` ends the run. All ranks give the same answer.
 pub type Look<'a> = dyn FnMut(&PetscVec) -> Result<bool> + 'a;

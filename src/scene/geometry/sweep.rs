@@ -48,6 +48,11 @@ pub(crate) fn may_meet(a: &Surface, b: &Surface, reach: f64) -> bool {
     !same_way && !are_disjoint(&a.bounds, &b.bounds, slack)
 }
 
+/// The diagonal of the box around a surface.
+pub(crate) fn extent(surface: &Surface) -> f64 {
+    size(surface.bounds)
+}
+
 /// The pairs of a surface of the first list and one of the second that may have nodes opposite each other at a distance
 /// of `reach` at most, or a node of one opposite the inside of a face of the other: their places in the lists, in
 /// increasing order. All other pairs are [`Apart`](super::matching::Mismatch::Apart).

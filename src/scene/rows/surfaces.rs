@@ -7,7 +7,7 @@ use crate::scene::body::Body;
 use crate::scene::geometry::facing::is_face;
 use crate::scene::geometry::interface::Interface;
 use crate::scene::geometry::matching::{apart, Matching, Mismatch};
-use crate::scene::geometry::sweep::{are_apart, may_face, may_meet, near};
+use crate::scene::geometry::sweep::{are_apart, extent, may_face, may_meet, near};
 use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::SceneSpec;
@@ -17,6 +17,9 @@ pub(super) const NEAR: f64 = 0.1;
 
 /// Up to this ratio of the edges the coarser side carries multipliers.
 const COARSER: f64 = 4.0;
+
+/// Up to this ratio edges count as equal.
+const EQUAL: f64 = 1.05;
 
 /// Replaces the surfaces in the entries by bodies and sides, and adds the contacts that `auto` finds.
 pub(crate) fn expand(
@@ -234,11 +237,12 @@ fn found(
             others.map(move |second| [first, second])
         });
         for sides in sides {
-            let which = carrier([edges[a], edges[b]]);
             let both = [0, 1].map(|k| matching.surface([a, b][k], sides[k]));
             if !may_meet(&both[0], &both[1], reach) {
                 continue;
             }
+            let extents = [0, 1].map(|k| extent(&both[k]));
+            let which = carrier([edges[a], edges[b]], extents);
             let interface = match matching.find([a, b], sides, reach) {
                 Err(Mismatch::Apart(_)) => None,
                 Err(Mismatch::Lonely) => {
@@ -272,14 +276,19 @@ fn found(
     }
 }
 
-/// The side that carries the multipliers where nodes do not match, from the shortest edges of both bodies: the coarser
-/// one, whose pressures are smoother (docs/benchmarks.md). If it is coarser by far, one of its faces may reach beyond
-/// the other side, and the finer one takes them.
-fn carrier([a, b]: [f64; 2]) -> usize {
+/// The side that carries the multipliers where nodes do not match, from the shortest edges of both bodies and the extents
+/// of both sides: the coarser one, whose pressures are smoother (docs/benchmarks.md). If it is coarser by far, one of its
+/// faces may reach beyond the other side, and the finer one takes them. Between equal meshes it is the smaller side, all
+/// of whose nodes have something opposite.
+fn carrier([a, b]: [f64; 2], extents: [f64; 2]) -> usize {
     let coarser = usize::from(b > a);
-    match a.max(b) <= COARSER * a.min(b) {
-        true => coarser,
-        false => 1 - coarser,
+    let ratio = a.max(b) / a.min(b);
+    if ratio <= EQUAL {
+        usize::from(extents[1] < extents[0] / EQUAL)
+    } else if ratio <= COARSER {
+        coarser
+    } else {
+        1 - coarser
     }
 }
 
