@@ -276,10 +276,10 @@ fn found(
     }
 }
 
-/// The side that carries the multipliers where nodes do not match, from the shortest edges of both bodies and the extents
-/// of both sides: the coarser one, whose pressures are smoother (docs/benchmarks.md). If it is coarser by far, one of its
-/// faces may reach beyond the other side, and the finer one takes them. Between equal meshes it is the smaller side, all
-/// of whose nodes have something opposite.
+/// The side that carries the multipliers where nodes do not match, from the shortest edges of both bodies and the
+/// extents of both sides: the coarser one, whose pressures are smoother (docs/benchmarks.md). If it is coarser by far,
+/// one of its faces may reach beyond the other side, and the finer one takes them. Between equal meshes it is the
+/// smaller side, all of whose nodes have something opposite.
 fn carrier([a, b]: [f64; 2], extents: [f64; 2]) -> usize {
     let coarser = usize::from(b > a);
     let ratio = a.max(b) / a.min(b);
