@@ -98,7 +98,9 @@ put 644 "$stage/installed" share/fetifeti/installed
 
 mkdir -p "$destdir$prefix" 2>/dev/null && [ -w "$destdir$prefix" ] ||
     stop "$destdir$prefix cannot be written: choose another PREFIX, or run as its owner"
-cp -a --no-preserve=ownership "$root/." "$destdir$prefix/"
+# Files only: directories that are there keep their modes.
+tar -C "$root" -cf - -T "$stage/installed" | tar -C "$destdir$prefix" --no-same-owner -xf - ||
+    stop "the files could not be copied to $destdir$prefix"
 echo "install: fetifeti $version is in $destdir$prefix ($(wc -l <"$stage/installed") files)"
 case ":${LD_LIBRARY_PATH:-}:/usr/local/lib:/usr/lib:" in
     *":$libdir:"*) [ -n "$destdir" ] || ldconfig 2>/dev/null || true ;;
