@@ -1,20 +1,15 @@
-//! Blocks of B_gl. A block is a set of rows that share body dofs; its scaling (B D⁻¹ Bᵀ)⁺ is computed as a whole. A
-//! change of Z^k is applied block by block.
+//! Blocks of B_gl. A block is a set of rows that share body dofs; its scaling (B D⁻¹ Bᵀ)⁺ is computed as a whole.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use mpi::topology::SimpleCommunicator;
-use mpi::traits::Communicator;
-
 use super::coupled::Coupled;
-use super::operator::Jump;
 use super::{dependent, scaling};
 use crate::feti::interface::sharing::{Copy, Sharing};
 use crate::linalg::dense::Dense;
 use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{exchange, Record};
+use crate::parallel::exchange::Record;
 use crate::substructures::Substructures;
 
 /// B of a block.
@@ -164,10 +159,15 @@ impl Block {
         &self.copies
     }
 
+    /// The entries of all rows; those in `active` hold to begin with.
+    pub(crate) fn start(&mut self, first: usize, active: &[bool], send: &mut impl FnMut(Entry)) {
+        self.hold(first, |_| true, active, send);
+    }
+
     /// Prepares B_D for the rows in `active` (one per row of the block) and sends the entries that change with them:
     /// those of dense blocks, and of rows of coupled blocks that held before or now, but not both. `first` is the
     /// number of this rank's first row.
-    fn hold(
+    pub(super) fn hold(
         &mut self,
         first: usize,
         change: impl Fn(usize) -> bool,
@@ -205,7 +205,7 @@ impl Block {
 
     /// B B⁺ c over the active rows, the nearest right-hand side that they can satisfy together; `c` on the others.
     /// Where all candidates hold, gaps around a cross point contradict each other, and so do both sides of an obstacle.
-    fn consistent(&self, active: &[bool], c: &[f64]) -> Vec<f64> {
+    pub(super) fn consistent(&self, active: &[bool], c: &[f64]) -> Vec<f64> {
         let mut out = c.to_vec();
         if c.iter().zip(active).all(|(c, on)| !on || *c == 0.0) {
             return out;
@@ -223,7 +223,7 @@ impl Block {
 
     /// Rows that follow from the active ones: they depend on them, and their right-hand side `c` is the same
     /// combination.
-    fn implied(&self, active: &[bool], c: &[f64]) -> Vec<usize> {
+    pub(super) fn implied(&self, active: &[bool], c: &[f64]) -> Vec<usize> {
         let all = vec![true; active.len()];
         let Some((rows, b)) = self.dependent(&all) else {
             return Vec::new();
@@ -317,86 +317,4 @@ fn even(sums: &[f64], bodies: &[u32], copies: &[Vec<Copy>]) -> Vec<f64> {
         n => sum * n as f64 / list.len() as f64,
     };
     of_dof.map(weight).collect()
-}
-
-impl Block {
-    /// The entries of all rows; those in `active` hold to begin with.
-    pub(crate) fn start(&mut self, first: usize, active: &[bool], send: &mut impl FnMut(Entry)) {
-        self.hold(first, |_| true, active, send);
-    }
-}
-
-impl Jump {
-    /// Z^k, with the inequality rows that hold because they follow from others. Around a cross point several sets of
-    /// rows are equivalent.
-    pub fn implied(&self) -> Vec<bool> {
-        let mut out = self.active.clone();
-        for block in self.blocks.iter().filter(|b| b.rows.len() > 1) {
-            let (active, c) = (
-                &self.active[block.rows.clone()],
-                &self.gap[block.rows.clone()],
-            );
-            for r in block.implied(active, c) {
-                let r = block.rows.start + r;
-                out[r] |= self.inequality[r];
-            }
-        }
-        out
-    }
-
-    /// Computes right-hand sides that the rows that hold can satisfy together, from c and Z^k, for the blocks that
-    /// `which` selects.
-    pub(crate) fn reconcile(&mut self, which: impl Fn(&Block) -> bool) {
-        for block in self.blocks.iter().filter(|b| which(b)) {
-            let (active, c) = (
-                &self.active[block.rows.clone()],
-                &self.gap[block.rows.clone()],
-            );
-            self.held[block.rows.clone()].copy_from_slice(&block.consistent(active, c));
-        }
-    }
-
-    /// Changes Z^k. `active` says for each owned row whether it holds (rows of B_loc always do). Only blocks with a
-    /// changed row get a new B_D. Returns the number of rows that changed on this rank. Collective.
-    pub fn set_active(&mut self, comm: &SimpleCommunicator, active: &[bool]) -> usize {
-        debug_assert!(active[..self.n_owned_local].iter().all(|&on| on));
-        let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
-        let mut changed = 0;
-        for block in &mut self.blocks {
-            let (old, new) = (
-                &self.active[block.rows.clone()],
-                &active[block.rows.clone()],
-            );
-            let here = old.iter().zip(new).filter(|(a, b)| a != b).count();
-            if here > 0 {
-                block.hold(
-                    self.first,
-                    |r| old[r] != new[r],
-                    new,
-                    &mut |entry: Entry| {
-                        let to = self.rank_of[entry.subdomain as usize];
-                        outgoing[to as usize].push(entry);
-                    },
-                );
-            }
-            changed += here;
-        }
-        let old = std::mem::replace(&mut self.active, active.to_vec());
-        self.reconcile(|block| old[block.rows.clone()] != active[block.rows.clone()]);
-        for entry in exchange(comm, outgoing) {
-            let j = self.subdomains.binary_search(&entry.subdomain);
-            let j = j.expect("entries go to the rank of their subdomain");
-            let row = self.ghosts.binary_search(&(entry.row as u32));
-            let key = (
-                row.expect("rows of a block are ghosts of its subdomains") as u32,
-                j as u32,
-                entry.local,
-            );
-            let at = self.places.binary_search_by_key(&key, |p| (p.0, p.1, p.2));
-            let k = self.places[at.expect("the entry was there before")].3 as usize;
-            self.columns[j].b[k] = entry.b;
-            self.columns[j].bd[k] = entry.bd;
-        }
-        changed
-    }
 }

@@ -1,9 +1,12 @@
 //! The jump operator B and the scaled jump operator B_D.
 
 pub mod blocks;
+pub mod columns;
 pub mod coupled;
 pub mod deluxe;
 pub mod dependent;
+mod ghost_rows;
 pub mod operator;
 pub mod scaling;
+mod switch;
 pub mod weights;

@@ -2,7 +2,6 @@
 //!
 //! Rows (multipliers) are numbered rank after rank. A row of B_loc is owned by the rank of its dof's lowest subdomain,
 //! a contact row by the rank that provides it. A rank also sees *ghost* rows: all rows that touch its subdomains.
-//! Entries are stored per subdomain on interface positions, B and B_D side by side.
 
 use std::ops::Range;
 
@@ -10,135 +9,15 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
 use super::blocks::{self, Block, Entry};
-use super::coupled::slots::{Places, Slots};
+use super::columns::JumpColumns;
+use super::coupled::slots::Slots;
 use super::coupled::MANY;
+use super::ghost_rows::GhostRows;
 use super::scaling;
 use crate::feti::interface::entities::Average;
 use crate::feti::interface::sharing::{Copy, Sharing};
-use crate::linalg::sorted::distinct;
 use crate::parallel::exchange::{exchange, offsets, total};
 use crate::substructures::{RowKind, Substructures};
-
-/// The entries of B and B_D in the columns of one subdomain.
-#[derive(Debug, Clone, Default)]
-pub struct JumpColumns {
-    /// Ghost row of each entry.
-    pub row: Vec<u32>,
-    /// Interface position (index into Γ) of each entry; before [`Jump::place`], the local dof.
-    pub at: Vec<u32>,
-    /// Entry of Z B; zero where only B_D has one, and in rows that do not hold.
-    pub b: Vec<f64>,
-    /// Entry of Z B_D; zero in coupled blocks.
-    pub bd: Vec<f64>,
-    /// (Ghost, interface position) of each dof in a coupled block; before [`Jump::place`], (ghost, local dof).
-    pub coupled: Places,
-    /// Entries of B_gl: (place in the lists above, value in B whether or not the row holds).
-    pub contact: Vec<(u32, f64)>,
-}
-
-impl JumpColumns {
-    /// v ← Bᵀ λ on this subdomain's interface.
-    pub fn b_transpose(&self, ghost: &[f64], v: &mut [f64]) {
-        v.fill(0.0);
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.b) {
-            v[i as usize] += b * ghost[r as usize];
-        }
-    }
-
-    /// v ← Bᵀ λ with all rows of B_gl, including those that do not hold.
-    pub fn b_transpose_all(&self, ghost: &[f64], v: &mut [f64]) {
-        self.b_transpose(ghost, v);
-        for &(k, full) in &self.contact {
-            let k = k as usize;
-            v[self.at[k] as usize] += (full - self.b[k]) * ghost[self.row[k] as usize];
-        }
-    }
-
-    /// ghost ← ghost + B y on the rows of B_gl, including those that do not hold.
-    pub fn add_contact(&self, y: &[f64], ghost: &mut [f64]) {
-        for &(k, full) in &self.contact {
-            let k = k as usize;
-            ghost[self.row[k] as usize] += full * y[self.at[k] as usize];
-        }
-    }
-
-    /// The interface positions that may be in contact, of `n_gamma`: those with an entry of B_gl.
-    pub fn between_bodies(&self, n_gamma: usize) -> Vec<bool> {
-        let mut out = vec![false; n_gamma];
-        let at = self.contact.iter().map(|&(k, _)| self.at[k as usize]);
-        at.for_each(|at| out[at as usize] = true);
-        out
-    }
-
-    /// v ← B_Dᵀ λ on this subdomain's interface.
-    pub fn bd_transpose(&self, ghosts: &ScaledGhosts, v: &mut [f64]) {
-        self.bd_transpose_of(&ghosts.rows, v, |_| true);
-        self.add_coupled(ghosts, v);
-    }
-
-    /// v ← B_D,locᵀ λ on this subdomain's interface; `between` says of each ghost row whether it is a row of B_gl.
-    pub fn bd_transpose_inside(&self, ghosts: &ScaledGhosts, between: &[bool], v: &mut [f64]) {
-        self.bd_transpose_of(&ghosts.rows, v, |r| !between[r]);
-    }
-
-    /// v ← B_D,glᵀ λ on this subdomain's interface.
-    pub fn bd_transpose_between(&self, ghosts: &ScaledGhosts, between: &[bool], v: &mut [f64]) {
-        self.bd_transpose_of(&ghosts.rows, v, |r| between[r]);
-        self.add_coupled(ghosts, v);
-    }
-
-    fn add_coupled(&self, ghosts: &ScaledGhosts, v: &mut [f64]) {
-        for &(slot, at) in &self.coupled {
-            v[at as usize] += ghosts.dofs[slot as usize];
-        }
-    }
-
-    /// v ← B_Dᵀ λ with the ghost rows that `rows` selects.
-    fn bd_transpose_of(&self, ghost: &[f64], v: &mut [f64], rows: impl Fn(usize) -> bool) {
-        v.fill(0.0);
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
-            if rows(r as usize) {
-                v[i as usize] += b * ghost[r as usize];
-            }
-        }
-    }
-
-    /// ghost ← ghost + B y.
-    pub fn add_b(&self, y: &[f64], ghost: &mut [f64]) {
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.b) {
-            ghost[r as usize] += b * y[i as usize];
-        }
-    }
-
-    /// Adds this subdomain's part of B_D y to the ghosts.
-    pub fn add_bd(&self, y: &[f64], ghosts: &mut ScaledGhosts) {
-        let ghost = &mut ghosts.rows;
-        for ((&r, &i), &b) in self.row.iter().zip(&self.at).zip(&self.bd) {
-            ghost[r as usize] += b * y[i as usize];
-        }
-        for &(slot, at) in &self.coupled {
-            ghosts.dofs[slot as usize] += y[at as usize];
-        }
-    }
-}
-
-/// What the subdomains of a rank exchange with the owners of multipliers for B_Dᵀ λ and B_D y
-/// ([`Stiffness::fetch_scaled`](crate::feti::operators::stiffness::Stiffness::fetch_scaled) and `sum_scaled`).
-#[derive(Debug, Clone, Default)]
-pub struct ScaledGhosts {
-    /// By ghost row: λ, or sums of entries of B_D times y.
-    pub rows: Vec<f64>,
-    /// By ghost dof of coupled blocks: B_Dᵀ λ, or sums of y.
-    pub dofs: Vec<f64>,
-}
-
-impl ScaledGhosts {
-    /// Sets all to zero.
-    pub fn clear(&mut self) {
-        self.rows.fill(0.0);
-        self.dofs.fill(0.0);
-    }
-}
 
 /// The dual space and its operators.
 #[derive(Debug, Default)]
@@ -405,73 +284,6 @@ impl Jump {
             let found = position.binary_search_by_key(at, |p| p.0);
             *at = position[found.expect("a row's dof is an interface dof")].1;
         }
-    }
-}
-
-/// The rows that have entries, numbered upwards: a table for the rank's own rows, a list for the few others.
-struct GhostRows {
-    first: u32,
-    /// For each owned row, its place among the owned rows that are seen and whether it is a row of B_gl; `None` if it
-    /// has no entry.
-    own: Vec<Option<(u32, bool)>>,
-    n_own: u32,
-    /// The other rows, increasing, and the number of them before the owned ones.
-    others: Vec<(u32, bool)>,
-    before: u32,
-}
-
-impl GhostRows {
-    fn new(first: usize, n_owned: usize, entries: &[Entry]) -> GhostRows {
-        let first = first as u32;
-        let mut own = vec![None; n_owned];
-        let mut others = Vec::new();
-        for e in entries {
-            let row = e.row as u32;
-            match own.get_mut(row.wrapping_sub(first) as usize) {
-                Some(seen) => *seen = Some((0, e.contact)),
-                None => others.push((row, e.contact)),
-            }
-        }
-        let others = distinct(others);
-        let before = others.partition_point(|o| o.0 < first) as u32;
-        let mut n_own = 0;
-        for seen in own.iter_mut().flatten() {
-            seen.0 = n_own;
-            n_own += 1;
-        }
-        GhostRows {
-            first,
-            own,
-            n_own,
-            others,
-            before,
-        }
-    }
-
-    /// (row, whether it is a row of B_gl), increasing.
-    fn all(&self) -> impl Iterator<Item = (u32, bool)> + '_ {
-        let (below, above) = self.others.split_at(self.before as usize);
-        let own = (self.first..).zip(&self.own);
-        let own = own.filter_map(|(row, seen)| Some((row, (*seen)?.1)));
-        below
-            .iter()
-            .copied()
-            .chain(own)
-            .chain(above.iter().copied())
-    }
-
-    /// The place of a row among all of them.
-    ///
-    /// # Panics
-    /// If the row has no entry.
-    fn place(&self, row: u32) -> u32 {
-        let here = self.own.get(row.wrapping_sub(self.first) as usize);
-        if let Some(seen) = here {
-            return self.before + seen.expect("an entry is in the row").0;
-        }
-        let at = self.others.binary_search_by_key(&row, |o| o.0);
-        let at = at.expect("an entry is in the row") as u32;
-        at + if row < self.first { 0 } else { self.n_own }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::leftover::Leftover;
 use super::strained::strained;
-use crate::feti::jump::operator::JumpColumns;
+use crate::feti::jump::columns::JumpColumns;
 use crate::feti::operators::dual::Dual;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::parallel::exchange::{max_all, min_all, sum_all};

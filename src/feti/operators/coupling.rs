@@ -4,8 +4,9 @@ use std::cell::RefCell;
 
 use super::stiffness::Stiffness;
 use crate::feti::jump::blocks::Form;
+use crate::feti::jump::columns::ScaledGhosts;
 use crate::feti::jump::coupled::Coupled;
-use crate::feti::jump::operator::{Jump, ScaledGhosts};
+use crate::feti::jump::operator::Jump;
 use crate::parallel::halo::Halo;
 use crate::petsc::{Session, Vec as PetscVec};
 use crate::Result;

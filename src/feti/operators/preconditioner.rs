@@ -15,7 +15,7 @@ use mpi::topology::SimpleCommunicator;
 use super::products::Products;
 use super::stiffness::Stiffness;
 use super::work::{Columns, Work};
-use crate::feti::jump::operator::ScaledGhosts;
+use crate::feti::jump::columns::ScaledGhosts;
 use crate::feti::lifting::correction::Lifting;
 use crate::feti::settings::{PcType, Precision};
 use crate::feti::subdomain::problem::LocalProblem;

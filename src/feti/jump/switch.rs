@@ -1,0 +1,83 @@
+//! Which rows hold: a change of Z^k, block by block, and what follows from it.
+
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
+
+use super::blocks::{Block, Entry};
+use super::operator::Jump;
+use crate::parallel::exchange::exchange;
+
+impl Jump {
+    /// Z^k, with the inequality rows that hold because they follow from others. Around a cross point several sets of
+    /// rows are equivalent.
+    pub fn implied(&self) -> Vec<bool> {
+        let mut out = self.active.clone();
+        for block in self.blocks.iter().filter(|b| b.rows.len() > 1) {
+            let (active, c) = (
+                &self.active[block.rows.clone()],
+                &self.gap[block.rows.clone()],
+            );
+            for r in block.implied(active, c) {
+                let r = block.rows.start + r;
+                out[r] |= self.inequality[r];
+            }
+        }
+        out
+    }
+
+    /// Computes right-hand sides that the rows that hold can satisfy together, from c and Z^k, for the blocks that
+    /// `which` selects.
+    pub(crate) fn reconcile(&mut self, which: impl Fn(&Block) -> bool) {
+        for block in self.blocks.iter().filter(|b| which(b)) {
+            let (active, c) = (
+                &self.active[block.rows.clone()],
+                &self.gap[block.rows.clone()],
+            );
+            self.held[block.rows.clone()].copy_from_slice(&block.consistent(active, c));
+        }
+    }
+
+    /// Changes Z^k. `active` says for each owned row whether it holds (rows of B_loc always do). Only blocks with a
+    /// changed row get a new B_D. Returns the number of rows that changed on this rank. Collective.
+    pub fn set_active(&mut self, comm: &SimpleCommunicator, active: &[bool]) -> usize {
+        debug_assert!(active[..self.n_owned_local].iter().all(|&on| on));
+        let mut outgoing: Vec<Vec<Entry>> = (0..comm.size()).map(|_| Vec::new()).collect();
+        let mut changed = 0;
+        for block in &mut self.blocks {
+            let (old, new) = (
+                &self.active[block.rows.clone()],
+                &active[block.rows.clone()],
+            );
+            let here = old.iter().zip(new).filter(|(a, b)| a != b).count();
+            if here > 0 {
+                block.hold(
+                    self.first,
+                    |r| old[r] != new[r],
+                    new,
+                    &mut |entry: Entry| {
+                        let to = self.rank_of[entry.subdomain as usize];
+                        outgoing[to as usize].push(entry);
+                    },
+                );
+            }
+            changed += here;
+        }
+        let old = std::mem::replace(&mut self.active, active.to_vec());
+        self.reconcile(|block| old[block.rows.clone()] != active[block.rows.clone()]);
+        for entry in exchange(comm, outgoing) {
+            let j = self.subdomains.binary_search(&entry.subdomain);
+            let j = j.expect("entries go to the rank of their subdomain");
+            let row = self.ghosts.binary_search(&(entry.row as u32));
+            let key = (
+                row.expect("rows of a block are ghosts of its subdomains") as u32,
+                j as u32,
+                entry.local,
+            );
+            let at = self.places.binary_search_by_key(&key, |p| (p.0, p.1, p.2));
+            let k = self.places[at.expect("the entry was there before")].3 as usize;
+            self.columns[j].b[k] = entry.b;
+            self.columns[j].bd[k] = entry.bd;
+        }
+        changed
+    }
+}
