@@ -1,7 +1,7 @@
 //! Axisymmetric bodies: they lie to the right of the axis x = 0, and their nodes on it stay there.
 
 use super::body::bounds_of;
-use super::model::spec::BodySpec;
+use super::model::body::BodySpec;
 use crate::error::{Error, Result};
 use crate::fem::Form;
 use crate::mesh::Mesh;

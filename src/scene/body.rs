@@ -1,6 +1,6 @@
 //! A body of a checked scene.
 
-use super::model::spec::BodySpec;
+use super::model::body::BodySpec;
 use crate::linalg::vec3::ball;
 use crate::mesh::Mesh;
 

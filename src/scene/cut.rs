@@ -1,7 +1,7 @@
 //! Meshes of bodies before anything is counted: elements of second order on boxes, and subdomains of meshes of cells.
 
+use super::model::body::{BodySpec, Cut};
 use super::model::map::Map;
-use super::model::spec::{BodySpec, Cut};
 use crate::error::{Error, Result};
 use crate::fem::cell::{Element, Material};
 use crate::fem::element::{self, Integration};

@@ -3,8 +3,8 @@
 use super::checked::Scene;
 use super::coefficient::evaluate;
 use super::meshes::side_part;
+use super::model::body::Force;
 use super::model::field::Field;
-use super::model::spec::Force;
 use super::model::steps::Factors;
 use super::validate::LOAD;
 use crate::error::Result;

@@ -42,10 +42,14 @@ pub use deck::DeckScenes;
 pub use displaced::Displaced;
 pub use geometry::interface::{Interface, Link, Shape, SharedNode};
 pub use loads::{SteppedMesh, Stepping};
+pub use model::body::{
+    free_all_round, held_all_round, BodySpec, Cut, Force, Load, Sides, SurfaceLoad, SIDES,
+};
 pub use model::cells::{Cells, NumberFormat, Tone};
 pub use model::expr::gradient::WithGradient;
 pub use model::expr::{Expr, Variables};
 pub use model::field::{At, By, Field, Region};
+pub use model::grid::GridSpec;
 pub use model::joints::{
     AutoContact, ContactSpec, EquationSpec, Extent, ObstacleSpec, Pair, TieSpec,
 };
@@ -55,10 +59,7 @@ pub use model::profile::{Limit, Limits, Profile};
 pub use model::ramp::{Ramp, StepsSpec};
 pub use model::rigid::Rigid;
 pub use model::rigid_surface::RigidSurface;
-pub use model::spec::{
-    free_all_round, held_all_round, lee, BodySpec, ByDefault, Cut, Faces, Force, GridSpec, Load,
-    ProbeSpec, SceneSpec, Sides, SurfaceLoad, SIDES,
-};
+pub use model::spec::{lee, ByDefault, Faces, ProbeSpec, SceneSpec};
 pub use model::steps::Steps;
 pub use numbering::Numbering;
 pub use plan::{BodyPlan, InterfacePlan, Plan};

@@ -1,8 +1,9 @@
 //! Checks of a scene that look at one body at a time.
 
 use super::body::Body;
+use super::model::body::{BodySpec, Force};
 use super::model::field::{At, Field};
-use super::model::spec::{BodySpec, Force, SceneSpec};
+use super::model::spec::SceneSpec;
 use crate::error::{Error, Result};
 use crate::fem::cell::jacobian_is_positive;
 use crate::fem::Form;

@@ -9,10 +9,10 @@ use crate::fem::element::{deck_element, Integration};
 use crate::fem::Quadrature;
 use crate::mesh::deck::{self, BodyLoadKind, Deck, Place, Pressure};
 use crate::mesh::{CellMesh, Extractor, Mesh, SideGroup};
+use crate::scene::model::body::{BodySpec, Cut, Force, Load, SurfaceLoad};
 use crate::scene::model::expr::Expr;
 use crate::scene::model::field::Field;
 use crate::scene::model::joints::EquationSpec;
-use crate::scene::model::spec::{BodySpec, Cut, Force, Load, SurfaceLoad};
 
 /// An axis of a node's system is along a coordinate if the others are below this.
 const ALONG: f64 = 1e-12;

@@ -5,8 +5,8 @@ use super::normals::{of_side, parameters};
 use crate::linalg::vec3::{dot, minus, norm};
 use crate::mesh::{BoxMesh, Mesh, PointGrid};
 use crate::scene::body::Body;
+use crate::scene::model::body::BodySpec;
 use crate::scene::model::profile::Limits;
-use crate::scene::model::spec::BodySpec;
 use std::collections::HashSet;
 
 /// The interfaces of two bodies with different maps: the coinciding nodes, by pairs of sides. A single common node is a

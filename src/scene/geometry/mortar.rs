@@ -15,8 +15,8 @@ use crate::mesh::CellKind;
 use crate::mortar::{self, Face, Side};
 use crate::scene::body::Body;
 use crate::scene::geometry::facing::share;
+use crate::scene::model::body::BodySpec;
 use crate::scene::model::profile::Limits;
-use crate::scene::model::spec::BodySpec;
 
 /// The interface of two sides whose nodes do not match; body number `multipliers` of the pair (0 or 1) carries the
 /// multipliers. The sides may be `reach` apart, or, where that is infinite, a few edges. `None` if they do not face

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::fem::Form;
 use crate::mortar::{self, Row, Sample, Side};
-use crate::scene::model::spec::BodySpec;
+use crate::scene::model::body::BodySpec;
 
 /// What joins two sides whose nodes do not match.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use super::sides::Face;
 use crate::fem::cell::Element;
 use crate::linalg::vec3::unit;
 use crate::mesh::{BoxMesh, Mesh};
-use crate::scene::model::spec::BodySpec;
+use crate::scene::model::body::BodySpec;
 
 /// The unit normals at nodes of a side, out of the body. A flat side of a box has its exact normal; on other sides the
 /// normals of the elements around the node are averaged, weighted by area. On meshes of cells only the faces count that

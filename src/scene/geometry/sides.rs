@@ -8,7 +8,7 @@ use crate::fem::{element, Form};
 use crate::linalg::vec3::{cross, unit};
 use crate::mesh::{places, BoxMesh, CellKind, Mesh};
 use crate::mortar;
-use crate::scene::model::spec::BodySpec;
+use crate::scene::model::body::BodySpec;
 
 /// The face of an element on a side of a body.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use super::nearest::Nearest;
 use super::sweep::{bounds_of, SAME};
 use crate::linalg::vec3::{cross, dot, minus, norm, unit};
-use crate::scene::model::spec::BodySpec;
+use crate::scene::model::body::BodySpec;
 
 /// Faces around a node count as one smooth piece if the cosine of the angle between their normals is above this.
 const SMOOTH: f64 = 0.8;

@@ -1,8 +1,10 @@
 //! What the user writes, as plain data.
 
+pub mod body;
 pub mod cells;
 pub mod expr;
 pub mod field;
+pub mod grid;
 pub mod joints;
 pub mod map;
 pub mod motion;

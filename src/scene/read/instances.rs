@@ -4,7 +4,7 @@ use super::document::{Item, Section, Value};
 use super::placements::Placement;
 use super::Reader;
 use crate::error::Result;
-use crate::scene::model::spec::BodySpec;
+use crate::scene::model::body::BodySpec;
 use std::collections::HashMap;
 
 /// The copies that an entry [[body.only]] means.

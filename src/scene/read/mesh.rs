@@ -6,9 +6,9 @@ use super::instances::none_to_select;
 use super::Reader;
 use crate::error::{Error, Result};
 use crate::mesh::{deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
+use crate::scene::model::body::{held, BodySpec, Cut, Force, SurfaceLoad};
 use crate::scene::model::field::Field;
 use crate::scene::model::rigid_surface::RigidSurface;
-use crate::scene::model::spec::{held, BodySpec, Cut, Force, SurfaceLoad};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 

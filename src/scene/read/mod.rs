@@ -15,7 +15,9 @@ mod steps;
 mod ties;
 mod values;
 
-use super::model::spec::{BodySpec, GridSpec, Load, SceneSpec, POISSON};
+use super::model::body::{BodySpec, Load, POISSON};
+use super::model::grid::GridSpec;
+use super::model::spec::SceneSpec;
 use super::validate::MOST_BODIES;
 use crate::error::{Error, Result};
 use crate::fem::Form;

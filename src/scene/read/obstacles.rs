@@ -6,11 +6,11 @@ use super::mesh::{load_beside, Source};
 use super::ties::body_name;
 use super::Reader;
 use crate::error::{Error, Result};
+use crate::scene::model::body::BodySpec;
 use crate::scene::model::joints::{Extent, ObstacleSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::rigid::Rigid;
 use crate::scene::model::rigid_surface::RigidSurface;
-use crate::scene::model::spec::BodySpec;
 
 /// What an elastic body cannot enter, and how it is taken.
 #[derive(Default)]

@@ -4,7 +4,8 @@ use super::document::Item;
 use super::ties::body_name;
 use super::Reader;
 use crate::error::Result;
-use crate::scene::model::spec::{BodySpec, ProbeSpec};
+use crate::scene::model::body::BodySpec;
+use crate::scene::model::spec::ProbeSpec;
 
 impl Reader {
     pub(super) fn probe(&self, item: &Item, bodies: &[BodySpec]) -> Result<ProbeSpec> {

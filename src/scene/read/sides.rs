@@ -3,8 +3,8 @@
 use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
+use crate::scene::model::body::{free_all_round, held, held_all_round, Force, Sides, SurfaceLoad};
 use crate::scene::model::field::Field;
-use crate::scene::model::spec::{free_all_round, held, held_all_round, Force, Sides, SurfaceLoad};
 
 impl Reader {
     /// Dirichlet conditions: "all", "none", a list of sides held at zero, or a table of values.

@@ -4,9 +4,10 @@ use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
 use crate::mesh::SideGroup;
+use crate::scene::model::body::BodySpec;
 use crate::scene::model::joints::{AutoContact, ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
-use crate::scene::model::spec::{BodySpec, ByDefault};
+use crate::scene::model::spec::ByDefault;
 
 impl Reader {
     pub(super) fn interface(&self, item: &Item) -> Result<ByDefault> {

@@ -3,8 +3,8 @@
 use super::document::{Item, Section, Value};
 use super::Reader;
 use crate::error::Result;
+use crate::scene::model::body::SIDES;
 use crate::scene::model::expr::Expr;
-use crate::scene::model::spec::SIDES;
 
 /// Largest number of elements or subdomains along one side of a body: a typing error must not exhaust the memory before
 /// it can be reported.

@@ -14,9 +14,9 @@ use crate::scene::geometry::mortar::surface;
 use crate::scene::geometry::mortar_sides::{BodyRow, Surfaces};
 use crate::scene::geometry::normals::of_side;
 use crate::scene::geometry::overlap;
+use crate::scene::model::body::BodySpec;
 use crate::scene::model::rigid::Rigid;
 use crate::scene::model::rigid_surface::RigidSurface;
-use crate::scene::model::spec::BodySpec;
 use crate::substructures::{BodyNode, RowSource};
 
 /// The part of a rigid surface that lies opposite a side of a body.
