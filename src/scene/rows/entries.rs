@@ -1,20 +1,18 @@
 //! The joints between touching bodies: the default, and the entries of [[tie]] and [[contact]].
 
 use super::entry::{some_names, Contact, Entry};
+use super::facing::facing;
 use super::links::Links;
-use super::surfaces::{shortest, NEAR};
+use super::unmatched::unmatched;
 use crate::error::{Error, Result};
 use crate::scene::body::Body;
-use crate::scene::geometry::facing::opposite;
 use crate::scene::geometry::interface::{Interface, Link, Shape};
-use crate::scene::geometry::matching::{apart, Matching, Mismatch};
+use crate::scene::geometry::matching::Matching;
 use crate::scene::geometry::touching::touching;
-use crate::scene::geometry::{mortar, overlap};
 use crate::scene::model::joints::{ContactSpec, Extent, Pair, TieSpec};
 use crate::scene::model::profile::Profile;
 use crate::scene::model::spec::{ByDefault, SceneSpec};
 use crate::scene::model::steps::{Factors, Steps};
-use crate::substructures::BodyNode;
 use std::collections::{HashMap, HashSet};
 
 /// All pairs that touch, with their ties and contacts.
@@ -41,217 +39,6 @@ pub(crate) fn find(
     entries.check_used(&interfaces)?;
     release_corners(&mut interfaces, &weak);
     Ok(interfaces)
-}
-
-/// Common faces of boxes whose nodes do not match become interfaces with mortar rows where entries mean all of them or
-/// a range; single nodes have to match.
-fn unmatched(
-    bodies: &[Body],
-    matching: &mut Matching<'_>,
-    spec: &SceneSpec,
-    interfaces: &mut [Interface],
-) {
-    let whole = |e: &Extent| matches!(e, Extent::All | Extent::Range(_));
-    let ties = spec.ties.iter();
-    let ties = ties.map(|t| (&t.pair, t.multipliers, &t.extent, t.sides));
-    let contacts = spec.contacts.iter();
-    let contacts = contacts.map(|c| (&c.pair, c.multipliers, &c.extent, c.sides));
-    // The entries that name no sides, by number: those of all pairs, and those of each pair of names.
-    let mut of_all = Vec::new();
-    let mut of_names: HashMap<[&str; 2], Vec<_>> = HashMap::new();
-    for (number, (pair, which, extent, sides)) in ties.chain(contacts).enumerate() {
-        let entry = (number, pair, which, extent);
-        match pair {
-            _ if sides.is_some() => {}
-            Pair::All => of_all.push(entry),
-            Pair::Named(a, b) => of_names.entry(in_order(a, b)).or_default().push(entry),
-            Pair::Surfaces(..) => {}
-        }
-    }
-    for interface in interfaces {
-        let names = interface.bodies.map(|k| &bodies[k].spec.name);
-        let [a, b] = names;
-        // Which body the entry says, in the order of the pair; `None`: the entry is of another pair.
-        let meant = |pair: &Pair, which: Option<usize>| match pair {
-            Pair::All => Some(which.unwrap_or(0)),
-            Pair::Named(x, y) if x == a && y == b => Some(which.unwrap_or(0)),
-            Pair::Named(x, y) if x == b && y == a => Some(1 - which.unwrap_or(0)),
-            _ => None,
-        };
-        let mut which = None;
-        let (mut single, mut contact) = (false, false);
-        let named = of_names.get(&in_order(a, b)).into_iter().flatten();
-        let mut entries: Vec<_> = of_all.iter().chain(named).collect();
-        entries.sort_by_key(|entry| entry.0);
-        for &&(number, pair, of_entry, extent) in &entries {
-            let Some(found) = meant(pair, of_entry) else {
-                continue;
-            };
-            single |= !whole(extent) && *extent != Extent::None;
-            contact |= number >= spec.ties.len();
-            if which.is_none() || *pair != Pair::All {
-                which = Some(found);
-            }
-        }
-        if single || (which.is_none() && spec.default == ByDefault::Free) {
-            continue;
-        }
-        let (pair, sides) = (interface.bodies, interface.sides);
-        contact |= which.is_none() && spec.default == ByDefault::Contact;
-        let reach = match contact && mortar::is_for_contact(bodies, interface) {
-            true => Some(near(matching, interface)),
-            false => loose(bodies, matching, interface),
-        };
-        let Some(reach) = reach else {
-            continue;
-        };
-        let which = which.unwrap_or(0);
-        if let Some(found) = mortar::interface(bodies, &spec.form, pair, sides, which, reach) {
-            *interface = found;
-        }
-    }
-}
-
-/// Two names in their order.
-fn in_order<'a>(a: &'a str, b: &'a str) -> [&'a str; 2] {
-    [a.min(b), a.max(b)]
-}
-
-/// How far apart the sides of a common face with nodes that do not match may be; `None` for other interfaces.
-fn loose(bodies: &[Body], matching: &mut Matching<'_>, interface: &Interface) -> Option<f64> {
-    if !interface.unmatched.is_empty() {
-        return (interface.shape == Shape::Face).then_some(f64::INFINITY);
-    }
-    let (pair, sides) = (interface.bodies, interface.sides);
-    let unbent = |k: usize| bodies[k].mesh().grid().is_some() && bodies[k].spec.is_straight();
-    if pair.iter().all(|&k| unbent(k)) {
-        return None;
-    }
-    // Curved sides with different meshes are different polygons. What seems to be a corner may be a face of which no
-    // cell has all nodes in common with the other body.
-    let reach = near(matching, interface);
-    let found = matching.find(pair, sides, reach);
-    matches!(found, Err(Mismatch::Lonely)).then_some(reach)
-}
-
-/// How far apart sides may be that touch: a part of their shortest edge.
-fn near(matching: &mut Matching<'_>, interface: &Interface) -> f64 {
-    let mut edge = |k: usize| {
-        let surface = matching.surface(interface.bodies[k], interface.sides[k]);
-        shortest(&surface.edges)
-    };
-    NEAR * edge(0).min(edge(1))
-}
-
-/// Interfaces of facing sides that an entry names; they replace the interface of the touching pair.
-fn facing(
-    bodies: &[Body],
-    mut matching: Matching<'_>,
-    spec: &SceneSpec,
-    interfaces: &mut Vec<Interface>,
-) -> Result<()> {
-    let ties = spec.ties.iter();
-    let ties = ties.map(|t| {
-        (
-            t.sides,
-            &t.pair,
-            t.multipliers,
-            (t.adjust, &[][..]),
-            None,
-            &t.written,
-        )
-    });
-    let contacts = spec.contacts.iter();
-    let contacts = contacts.map(|c| {
-        let adjust = (c.adjust, &c.adjusted[..]);
-        (
-            c.sides,
-            &c.pair,
-            c.multipliers,
-            adjust,
-            c.distance,
-            &c.written,
-        )
-    });
-    let mut numbers = HashMap::new();
-    for (k, body) in bodies.iter().enumerate() {
-        numbers.entry(body.spec.name.as_str()).or_insert(k);
-    }
-    for (number, (sides, pair, which, adjust, distance, written)) in
-        ties.chain(contacts).enumerate()
-    {
-        let (Some(sides), Pair::Named(first, second)) = (sides, pair) else {
-            continue;
-        };
-        let find = |name: &String| numbers.get(name.as_str()).copied();
-        let (Some(a), Some(b)) = (find(first), find(second)) else {
-            // The check of entries that name bodies reports this error.
-            continue;
-        };
-        let (pair, sides) = match a < b {
-            true => ([a, b], sides),
-            false => ([b, a], [sides[1], sides[0]]),
-        };
-        // Sides of boxes that the user names meet as a whole; those that are found, as far as they are near.
-        let grids = pair.map(|k| bodies[k].mesh().grid());
-        let reach = distance.unwrap_or(f64::INFINITY);
-        let matched = match (grids, distance) {
-            ([Some(x), Some(y)], None) => match opposite(bodies, [x, y], pair, sides) {
-                Some(interface) => Ok(interface),
-                None => Err(format!(
-                    "the sides of bodies `{first}` and `{second}` do not face each other"
-                )),
-            },
-            _ => match matching.find(pair, sides, reach) {
-                Ok(found) => Ok(found.clone()),
-                Err(Mismatch::Apart(why)) => Err(why),
-                // Whether nodes match does not matter to mortar rows: without those the sides do not meet.
-                Err(Mismatch::Lonely) => Err(apart(bodies, pair, sides)),
-            },
-        };
-        let is_contact = number >= spec.ties.len();
-        let nodal = match &matched {
-            Ok(found) => !is_contact || !mortar::is_for_contact(bodies, found),
-            Err(_) => false,
-        };
-        let mut interface = match matched {
-            Ok(interface) if nodal => interface,
-            // The first body of the entry carries the multipliers, unless it says something else.
-            other => {
-                let which = which.unwrap_or(0);
-                let which = if a < b { which } else { 1 - which };
-                // Several entries may have the same sides.
-                let found = matching
-                    .mortar(&spec.form, (pair, sides), which, reach)
-                    .clone();
-                // Without a common part of faces, nodes that match stay what they are.
-                found
-                    .map_or(other, Ok)
-                    .map_err(|why| Error::Input(format!("{written}{why}")))?
-            }
-        };
-        let (within, adjusted) = adjust;
-        let adjusted: HashSet<&BodyNode> = adjusted.iter().collect();
-        // The first body of the entry is the second of the pair if its number is higher.
-        let first = usize::from(pair[0] != a);
-        let shared = interface.shared.iter().map(|s| s.nodes[first]);
-        for (i, (distance, node)) in interface.distances.iter_mut().zip(shared).enumerate() {
-            if distance.abs() <= within || adjusted.contains(&BodyNode { body: a, node }) {
-                interface.adjusted.insert(i, 0.0 - *distance);
-                *distance = 0.0;
-            }
-        }
-        if let Some(why) = overlap::too_large(bodies, &interface) {
-            return Err(Error::Input(format!("{written}{why}")));
-        }
-        interface.entry = Some(number);
-        interfaces.push(interface);
-    }
-    let of_entries = interfaces.iter().filter(|i| i.entry.is_some());
-    let named: HashSet<[usize; 2]> = of_entries.map(|i| i.bodies).collect();
-    interfaces.retain(|i| i.entry.is_some() || !named.contains(&i.bodies));
-    interfaces.sort_by_key(|i| i.bodies);
-    Ok(())
 }
 
 /// Joins interfaces of bodies that have moved as the contacts of `spec` say. A contact that selects none of their nodes

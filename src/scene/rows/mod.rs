@@ -13,7 +13,7 @@
 //! ```
 //!
 //! [`entries`] and [`links`] make the second form: an [`entry::Entry`] is a view of the first, and [`select`] finds the
-//! nodes that it means. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
+//! nodes that it means; sides of other forms are found in `facing` and `unmatched`. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
 //! [`table`] the fourth. Normals and distances are computed once, with the second form, and areas ([`areas`]) with the
 //! label; reports, studies and C read them in the solved row. A load step evaluates only the right-hand sides of the
 //! third form ([`points::PointRow::right_hand_side`]).
@@ -24,6 +24,7 @@ pub mod bounds;
 pub mod entries;
 pub mod entry;
 pub mod equations;
+mod facing;
 pub mod facing_surfaces;
 pub mod links;
 pub mod mortar;
@@ -33,3 +34,4 @@ pub mod points;
 pub mod select;
 pub mod surfaces;
 pub mod table;
+mod unmatched;
