@@ -28,6 +28,7 @@ mod scatter;
 mod session;
 mod shell;
 mod spectrum;
+mod together;
 mod vec;
 mod watch;
 

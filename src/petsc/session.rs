@@ -1,7 +1,7 @@
 //! An initialised PETSc: starting it, ending it, and failing on several ranks without a hang.
 
 use super::error::{c_string, collect_traces, panicked, settled};
-use crate::error::Fault;
+use super::together;
 use crate::{Error, Result};
 use mpi::raw::FromRaw;
 use mpi::topology::SimpleCommunicator;
@@ -10,12 +10,12 @@ use petsc_sys as sys;
 use petsc_sys::Flag;
 use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
-use std::ffi::{c_char, c_int, c_void};
+use std::ffi::{c_char, c_int};
 use std::mem::{ManuallyDrop, MaybeUninit};
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::ptr::{null, null_mut};
 use std::rc::Rc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The ranks that share a new object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -196,32 +196,7 @@ impl Session {
     /// # Errors
     /// The error of the lowest rank that passed one.
     pub fn agree<T>(&self, result: Result<T>) -> Result<T> {
-        use mpi::collective::{CommunicatorCollectives, Root, SystemOperation};
-        let comm = &*self.0.agreement;
-        let mine = if result.is_err() {
-            self.rank()
-        } else {
-            self.size()
-        } as i32;
-        let mut first = 0;
-        comm.all_reduce_into(&mine, &mut first, SystemOperation::min());
-        settled();
-        if first as usize == self.size() {
-            return result;
-        }
-        let mut packed = match &result {
-            Err(error) if first == mine => pack(error),
-            _ => Vec::new(),
-        };
-        let root = comm.process_at_rank(first);
-        let mut length = packed.len() as u64;
-        root.broadcast_into(&mut length);
-        packed.resize(length as usize, 0);
-        root.broadcast_into(&mut packed[..]);
-        match result {
-            Err(error) if first == mine => Err(error),
-            _ => Err(unpack(&packed)),
-        }
+        together::agree(&self.0.agreement, result)
     }
 
     /// Ends a piece of work of all ranks: returns the result, or the error and whether all ranks return it. If only
@@ -230,7 +205,10 @@ impl Session {
         if self.size() == 1 {
             return result.map_err(|error| (error, true));
         }
-        match (self.first_failure(result.is_err()), result) {
+        match (
+            together::first_failure(&self.0.ending, result.is_err()),
+            result,
+        ) {
             (Some(first), result) if first < self.size() => match self.agree(result) {
                 Err(error) => Err((error, true)),
                 Ok(_) => unreachable!("a rank failed"),
@@ -257,7 +235,7 @@ impl Session {
                 }
             };
         }
-        let first = self.first_failure(result.is_err());
+        let first = together::first_failure(&self.0.ending, result.is_err());
         match (first, result) {
             (Some(first), result) if first < self.size() => {
                 // All ranks have arrived; the lowest failing one reports.
@@ -281,54 +259,6 @@ impl Session {
     /// Ends all ranks.
     pub fn abort(&self, code: i32) -> ! {
         self.0.comm.abort(code)
-    }
-
-    /// The lowest failing rank (the number of ranks if none), or `None` if this rank failed and the others did not
-    /// arrive within the grace time.
-    fn first_failure(&self, failed: bool) -> Option<usize> {
-        use mpi::ffi;
-        use mpi::raw::AsRaw;
-        // Of several failing ranks the lowest gives up first: it reports, and ends the others.
-        let grace = Duration::from_millis(1000 + 200 * self.rank().min(20) as u64);
-        let mine = if failed { self.rank() } else { self.size() } as c_int;
-        // The buffers must outlive an operation that may never finish: then they are leaked.
-        let buffers = Box::into_raw(Box::new([mine, 0 as c_int]));
-        let mut request = MaybeUninit::uninit();
-        // SAFETY: the buffers live until the operation is complete; the communicator lives as long as the session.
-        let code = unsafe {
-            ffi::MPI_Iallreduce(
-                buffers.cast::<c_int>() as *const c_void,
-                buffers.cast::<c_int>().add(1) as *mut c_void,
-                1,
-                ffi::RSMPI_INT32_T,
-                ffi::RSMPI_MIN,
-                self.0.ending.as_raw(),
-                request.as_mut_ptr(),
-            )
-        };
-        if code != 0 {
-            return None;
-        }
-        let start = Instant::now();
-        loop {
-            let mut done = 0;
-            // SAFETY: the request was started above and is tested until it completes, no longer.
-            unsafe { ffi::MPI_Test(request.as_mut_ptr(), &mut done, ffi::RSMPI_STATUS_IGNORE) };
-            if done != 0 {
-                // SAFETY: from Box::into_raw above, and MPI is done with it.
-                let [_, first] = *unsafe { Box::from_raw(buffers) };
-                return Some(first as usize);
-            }
-            if failed && start.elapsed() > grace {
-                return None;
-            }
-            // The others have usually arrived, or are about to.
-            if start.elapsed() > Duration::from_millis(1) {
-                std::thread::sleep(Duration::from_millis(2));
-            } else {
-                std::thread::yield_now();
-            }
-        }
     }
 }
 
@@ -416,31 +346,4 @@ fn check_version() -> Result<()> {
         "fetifeti was compiled against PETSc {}.{} but runs with PETSc {major}.{minor}: rebuild it.",
         built.0, built.1
     )))
-}
-
-/// An error as bytes: a letter for its kind, then the text.
-fn pack(error: &Error) -> Vec<u8> {
-    let kind = match error {
-        Error::Input(_) => 'i',
-        // A code is below 128.
-        Error::Argument(fault, _) => char::from(*fault as u8),
-        Error::Unfit(_) => 'u',
-        Error::NotConverged(_) => 'n',
-        Error::Environment(_) | Error::Petsc { .. } => 'e',
-    };
-    format!("{kind}{error}").into_bytes()
-}
-
-fn unpack(bytes: &[u8]) -> Error {
-    let text = String::from_utf8_lossy(bytes.get(1..).unwrap_or_default()).into_owned();
-    match bytes.first() {
-        Some(b'i') => Error::Input(text),
-        Some(b'u') => Error::Unfit(text),
-        Some(b'n') => Error::NotConverged(text),
-        Some(&code) => match Fault::ALL.into_iter().find(|f| *f as u8 == code) {
-            Some(fault) => Error::Argument(fault, text),
-            None => Error::Environment(text),
-        },
-        None => Error::Environment(text),
-    }
 }
