@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use mpi::traits::Communicator;
 
-use super::adaptive::constraints;
+use super::adaptive::{constrain::constrain, constraints};
 use super::cost::{choice, variation};
 use super::facts::Facts;
 use super::interface::entities;
@@ -172,7 +172,7 @@ fn subdomains(
     let added = constraints::find(comm, problem, sharing, jump, &locals, team, adaptive);
     if added.iter().any(|&n| n > 0) {
         let fails = |sub: &Subdomain, e| no_factor(problem, sub, e);
-        let renewed = constraints::constrain(problem, jump, locals, team, fails);
+        let renewed = constrain(problem, jump, locals, team, fails);
         locals = session.agree(renewed)?;
     }
     let added = Added {

@@ -2,6 +2,7 @@
 
 pub mod coupling;
 pub mod dual;
+mod jumps;
 pub mod preconditioner;
 pub mod products;
 pub mod springs;

@@ -27,7 +27,6 @@ use crate::linalg::dense::Dense;
 use crate::parallel::halo::Halo;
 use crate::parallel::team::Team;
 use crate::petsc::{Session, Vec as PetscVec};
-use crate::substructures::Substructures;
 use crate::Result;
 
 /// S̃⁺, which depends on the matrices alone, and the jump operator.
@@ -307,23 +306,6 @@ impl Stiffness {
         self.jump_of_all(work, out) /*                    out ← B y      */
     }
 
-    /// diag(B diag(K)⁻¹ Bᵀ) on the owned rows of B_gl, whether or not they hold, and zero on the others: by how much a
-    /// row opens under a unit force if the nodes give way alone. Collective.
-    pub fn compliance_of_rows(&self, problem: &Substructures) -> Result<Vec<f64>> {
-        let mut ghost = vec![0.0; self.jump.ghosts.len()];
-        for (j, columns) in self.jump.columns.iter().enumerate() {
-            let (k, interface) = (&problem.local[j].k, &self.locals[j].gamma().interface);
-            for &(place, full) in &columns.contact {
-                let place = place as usize;
-                let dof = interface[columns.at[place] as usize] as usize;
-                ghost[columns.row[place] as usize] += full * full / k.get(dof, dof);
-            }
-        }
-        let out = PetscVec::mpi(&self.session, self.jump.n_owned)?;
-        self.dual_halo.sum(&ghost, &out)?;
-        out.to_vec()
-    }
-
     /// The orthogonal projection onto B W̃: out ← B N B_Dᵀ λ on the rows of B_loc, out ← B B_Dᵀ λ on those of B_gl. It
     /// removes redundant multipliers, and multipliers that do no work because functionals are continuous in W̃. N
     /// removes these functionals from the jumps inside bodies. It is not used for B_gl, which acts on weighted averages
@@ -347,30 +329,6 @@ impl Stiffness {
             *sum = if *contact { *other } else { *sum };
         }
         self.dual_halo.sum(&inside, out)
-    }
-
-    /// out ← B y, with the displacements y in `work`. Collective.
-    pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
-        let mut sum = vec![0.0; self.jump.ghosts.len()];
-        for (w, columns) in work.iter().zip(&self.jump.columns) {
-            columns.add_b(&w.y, &mut sum);
-        }
-        self.dual_halo.sum(&sum, out)
-    }
-
-    /// out ← B y with all rows of B_gl, including those that do not hold. Collective.
-    pub fn jump_of_all(&self, work: &[Work], out: &PetscVec) -> Result<()> {
-        let mut sum = vec![0.0; self.jump.ghosts.len()];
-        for (w, columns) in work.iter().zip(&self.jump.columns) {
-            columns.add_b(&w.y, &mut sum);
-        }
-        for (s, contact) in sum.iter_mut().zip(&self.jump.ghost_is_contact) {
-            *s = if *contact { 0.0 } else { *s };
-        }
-        for (w, columns) in work.iter().zip(&self.jump.columns) {
-            columns.add_contact(&w.y, &mut sum);
-        }
-        self.dual_halo.sum(&sum, out)
     }
 
     /// The subdomains of this rank in groups of at most `most` that share their operators.

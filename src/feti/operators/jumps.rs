@@ -1,0 +1,50 @@
+//! The jumps of displacements that the subdomains have, and how far rows give way.
+
+use super::stiffness::Stiffness;
+use super::work::Work;
+use crate::petsc::Vec as PetscVec;
+use crate::substructures::Substructures;
+use crate::Result;
+
+impl Stiffness {
+    /// out ← B y, with the displacements y in `work`. Collective.
+    pub fn jump_of(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+        let mut sum = vec![0.0; self.jump.ghosts.len()];
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_b(&w.y, &mut sum);
+        }
+        self.dual_halo.sum(&sum, out)
+    }
+
+    /// out ← B y with all rows of B_gl, including those that do not hold. Collective.
+    pub fn jump_of_all(&self, work: &[Work], out: &PetscVec) -> Result<()> {
+        let mut sum = vec![0.0; self.jump.ghosts.len()];
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_b(&w.y, &mut sum);
+        }
+        for (s, contact) in sum.iter_mut().zip(&self.jump.ghost_is_contact) {
+            *s = if *contact { 0.0 } else { *s };
+        }
+        for (w, columns) in work.iter().zip(&self.jump.columns) {
+            columns.add_contact(&w.y, &mut sum);
+        }
+        self.dual_halo.sum(&sum, out)
+    }
+
+    /// diag(B diag(K)⁻¹ Bᵀ) on the owned rows of B_gl, whether or not they hold, and zero on the others: by how much a
+    /// row opens under a unit force if the nodes give way alone. Collective.
+    pub fn compliance_of_rows(&self, problem: &Substructures) -> Result<Vec<f64>> {
+        let mut ghost = vec![0.0; self.jump.ghosts.len()];
+        for (j, columns) in self.jump.columns.iter().enumerate() {
+            let (k, interface) = (&problem.local[j].k, &self.locals[j].gamma().interface);
+            for &(place, full) in &columns.contact {
+                let place = place as usize;
+                let dof = interface[columns.at[place] as usize] as usize;
+                ghost[columns.row[place] as usize] += full * full / k.get(dof, dof);
+            }
+        }
+        let out = PetscVec::mpi(&self.session, self.jump.n_owned)?;
+        self.dual_halo.sum(&ghost, &out)?;
+        out.to_vec()
+    }
+}
