@@ -13,6 +13,8 @@ mod parse;
 mod physics;
 mod picture;
 mod plan;
+mod plan_tables;
+mod record;
 mod renewed;
 mod solve;
 mod study;
