@@ -9,7 +9,12 @@ fn main() {
     println!("cargo:rerun-if-changed=packaging/abi.rs");
     println!("cargo:rerun-if-env-changed=DEP_PETSC_RPATH");
     println!("cargo:rerun-if-env-changed=DEP_PETSC_INCLUDE");
-    for file in ["kspfetifeti.c", "kspbodies.c", "kspfetifeti.h"] {
+    for file in [
+        "kspfetifeti.c",
+        "kspbodies.c",
+        "kspregister.c",
+        "kspfetifeti.h",
+    ] {
         println!("cargo:rerun-if-changed=wrappers/{file}");
     }
     let rpath = std::env::var("DEP_PETSC_RPATH").unwrap_or_default();
@@ -20,6 +25,7 @@ fn main() {
     cc::Build::new()
         .file("wrappers/kspfetifeti.c")
         .file("wrappers/kspbodies.c")
+        .file("wrappers/kspregister.c")
         .includes(include.split(':').filter(|dir| !dir.is_empty()))
         .define("PETSC_SKIP_COMPLEX", None)
         .flag_if_supported("-Wno-unused-parameter")

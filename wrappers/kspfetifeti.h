@@ -69,6 +69,9 @@ int ff_plugin_set_body_is(KSP ksp, IS bodies);
 int ff_plugin_set_body_label(KSP ksp, const char *name);
 int ff_plugin_get_inner(KSP ksp, KSP *inner);
 
+/* Creates a KSP of this type (kspfetifeti.c). */
+PetscErrorCode KSPCreate_FETIFETI(KSP ksp);
+
 /* Bodies (kspbodies.c). */
 PetscErrorCode ff_label_body(KSP ksp, Mat A, const char *name, PetscInt *body);
 PetscErrorCode ff_compose_bodies(KSP ksp);

@@ -1,0 +1,39 @@
+/* Makes the KSP type known to PETSc, if this PETSc is the one that the library was built for. */
+#include "kspfetifeti.h"
+
+/* The PETSc that runs may be another one than this file was compiled against: nothing here may depend on its types. */
+static PetscErrorCode Suits(void)
+{
+  /* -1 in both halves: a PETSc with 64-bit indices overwrites both, one with 32-bit indices the first */
+  union
+  {
+    PetscInt64 both;
+    PetscInt   half[2];
+  } major = {-1}, minor = {-1};
+  PetscDataType scalar = PETSC_DATATYPE_UNKNOWN;
+  PetscBool     found;
+
+  PetscFunctionBegin;
+  PetscCall(PetscGetVersionNumber(major.half, minor.half, NULL, NULL));
+  PetscCheck(major.half[1] == -1, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "libfetifeti.so was built for a PETSc with 32-bit indices, this one has 64-bit indices: "
+             "load it into a PETSc with 32-bit indices");
+  PetscCheck(major.half[0] == PETSC_VERSION_MAJOR && minor.half[0] == PETSC_VERSION_MINOR, PETSC_COMM_SELF,
+             PETSC_ERR_SUP,
+             "libfetifeti.so was built for PETSc %d.%d, this is PETSc %d.%d: build it again for this one",
+             PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, (int)major.half[0], (int)minor.half[0]);
+  PetscCall(PetscDataTypeFromString("scalar", &scalar, &found));
+  PetscCheck(scalar == PETSC_SCALAR, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "libfetifeti.so was built for a PETSc with real double scalars, this one has %s: "
+             "load it into a PETSc with real scalars",
+             scalar == PETSC_COMPLEX ? "complex scalars" : "others");
+  PetscFunctionReturn(0);
+}
+
+int ff_plugin_register(void)
+{
+  PetscFunctionBegin;
+  PetscCall(Suits());
+  PetscCall(KSPRegister("fetifeti", KSPCreate_FETIFETI));
+  PetscFunctionReturn(0);
+}
