@@ -5,14 +5,17 @@ mod support;
 
 mod checkpoint;
 mod checkpoint_files;
+mod checkpoint_refused;
 mod contact;
 mod deck;
 mod elastic;
 mod energy;
 mod input;
 mod mortar;
+mod plan;
 mod renewal;
 mod renewal_obstacles;
 mod sliding;
 mod solve;
 mod table;
+mod unusual;

@@ -1,4 +1,4 @@
-//! `fetifeti solve` and `plan` as programs and people use them: report, files, exit codes, options.
+//! `fetifeti solve` as programs and people use it: report, files, exit codes, options.
 
 use crate::support::checks::number;
 use crate::support::{mpi, program};
@@ -324,22 +324,6 @@ fn a_coarse_solver_that_fails_is_said() {
 }
 
 #[test]
-fn the_plan_names_bodies_and_sizes() {
-    let out = fetifeti(&["plan", "examples/scenes/partly_tied.toml"]);
-    assert_eq!(out.code, 0, "{}", out.all());
-    for word in ["left", "middle", "right", "16", "multipliers"] {
-        assert!(out.stdout.contains(word), "{word}: {}", out.all());
-    }
-    for example in std::fs::read_dir("examples/scenes").expect("the examples") {
-        let path = example.expect("an entry").path();
-        if path.extension().is_some_and(|e| e == "toml") {
-            let out = fetifeti(&["plan", path.to_str().expect("UTF-8")]);
-            assert_eq!((out.code, out.stderr.as_str()), (0, ""), "{}", out.all());
-        }
-    }
-}
-
-#[test]
 fn help_lists_our_options() {
     let out = fetifeti(&["-help"]);
     assert_eq!(out.code, 0, "{}", out.all());
@@ -365,32 +349,6 @@ fn a_million_unknowns_are_solved() {
         ["setup", "solve", "recover"].map(|p| number(&report["seconds"][p]));
     println!("set-up {setup:.2} s, solve {solve:.2} s, recover {recover:.2} s");
     assert!(number(&report["kkt"]["stationarity"]) < 1e-4);
-}
-
-#[test]
-fn the_plan_counts_inequalities_and_load_steps() {
-    for (name, expected) in [
-        (
-            "model_contact",
-            "outer loop            active set: 33 inequalities (33 candidate nodes in 1 contact pair)",
-        ),
-        (
-            "obstacle",
-            "outer loop            active set: 79 inequalities \
-             (17 candidate nodes in 1 contact pair, 62 nodes beside 4 obstacles)",
-        ),
-        (
-            "press_ramp",
-            "load steps            10, each starts from the solution of the last",
-        ),
-        ("model_tied", "outer loop            none: no inequality"),
-    ] {
-        let out = fetifeti(&["plan", &format!("examples/scenes/{name}.toml")]);
-        assert_eq!(out.code, 0, "{}", out.all());
-        assert!(out.stdout.lines().any(|l| l == expected), "{}", out.stdout);
-        let steps = out.stdout.contains("load steps");
-        assert_eq!(steps, name == "press_ramp", "{}", out.stdout);
-    }
 }
 
 #[test]

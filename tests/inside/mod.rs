@@ -7,6 +7,8 @@ mod operators;
 mod petsc;
 mod petsc_eps;
 mod petsc_mpi;
+mod petsc_options;
+mod petsc_shells;
 mod report_contact;
 mod support;
 mod traffic;

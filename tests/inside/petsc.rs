@@ -1,17 +1,14 @@
 //! The PETSc layer on one rank, in one process.
 
-use crate::inside::support::mpi;
 use crate::testing::with_session;
 use fetifeti::linalg::csr::Csr;
 use fetifeti::petsc::{
-    cite, max_memory, Comm, Event, Is, Ksp, Mat, MatFlag, NormType, Options, Scatter, Session,
-    ShellMat, ShellPc, Stage, Stopped, Vec as PVec,
+    max_memory, Comm, Is, Ksp, Mat, MatFlag, NormType, Options, Scatter, Session, Stopped,
+    Vec as PVec,
 };
-use fetifeti::{Error, Result};
-use std::cell::Cell;
-use std::rc::Rc;
+use fetifeti::Error;
 
-fn laplacian(session: &Session, n: usize) -> Mat {
+pub fn laplacian(session: &Session, n: usize) -> Mat {
     let mut entries = vec![];
     for i in 0..n as u32 {
         entries.push((i, i, 2.0));
@@ -168,145 +165,6 @@ fn direct_and_iterative_solution() {
     });
 }
 
-/// y = factor · x; counts its live instances.
-struct Scaled {
-    factor: f64,
-    drops: Rc<Cell<usize>>,
-    error: Cell<u8>,
-}
-
-impl Scaled {
-    fn boxed(drops: &Rc<Cell<usize>>, error: u8) -> Box<Scaled> {
-        Box::new(Scaled {
-            factor: 2.0,
-            drops: drops.clone(),
-            error: Cell::new(error),
-        })
-    }
-
-    fn act(&self, x: &PVec, y: &PVec) -> Result<()> {
-        match self.error.get() {
-            1 => return Err(Error::input("The load of body 3 is not a number.")),
-            2 => panic!("the callback panics"),
-            _ => {}
-        }
-        y.copy_from(x)?;
-        y.scale(self.factor)
-    }
-}
-
-impl ShellMat for Scaled {
-    fn mult(&self, x: &PVec, y: &PVec) -> Result<()> {
-        self.act(x, y)
-    }
-    fn diagonal(&self, d: &PVec) -> Result<()> {
-        d.set(self.factor)
-    }
-}
-
-impl ShellPc for Scaled {
-    fn apply(&self, x: &PVec, y: &PVec) -> Result<()> {
-        self.act(x, y)
-    }
-}
-
-impl Drop for Scaled {
-    fn drop(&mut self) {
-        self.drops.set(self.drops.get() + 1);
-    }
-}
-
-#[test]
-fn shells_work_and_are_dropped_by_petsc() {
-    with_session(|session| {
-        let drops = Rc::new(Cell::new(0));
-        let mat = Mat::shell(session, 3, 3, Scaled::boxed(&drops, 0)).unwrap();
-        let (x, y) = (mat.right_vec().unwrap(), mat.left_vec().unwrap());
-        x.set(3.0).unwrap();
-        mat.mult(&x, &y).unwrap();
-        assert_eq!(y.to_vec().unwrap(), [6.0; 3]);
-        mat.diagonal(&y).unwrap();
-        assert_eq!(y.to_vec().unwrap(), [2.0; 3]);
-        let refused = mat.mult_transpose(&x, &y).unwrap_err();
-        assert!(refused.to_string().contains("transposed"), "{refused}");
-
-        let ksp = Ksp::new(session, Comm::World).unwrap();
-        ksp.set_operators(&mat, &mat).unwrap();
-        ksp.set_type("cg").unwrap();
-        let pc = ksp.pc().unwrap();
-        pc.set_shell("first", Scaled::boxed(&drops, 0)).unwrap();
-        pc.set_shell("second", Scaled::boxed(&drops, 0)).unwrap();
-        assert_eq!(drops.get(), 1, "a second shell replaces the first");
-        let u = x.duplicate().unwrap();
-        ksp.solve(&x, &u).unwrap();
-        assert!((u.sum().unwrap() - 4.5).abs() < 1e-12);
-        drop(mat);
-        assert_eq!(drops.get(), 1, "the solver still holds the matrix");
-        drop(pc);
-        drop(ksp);
-        assert_eq!(drops.get(), 3);
-    });
-}
-
-#[test]
-fn errors_and_panics_of_callbacks_come_back() {
-    with_session(|session| {
-        for (error, in_pc) in [(1, false), (2, false), (1, true), (2, true)] {
-            let drops = Rc::new(Cell::new(0));
-            let of = |here: bool| Scaled::boxed(&drops, if here { error } else { 0 });
-            let mat = Mat::shell(session, 3, 3, of(!in_pc)).unwrap();
-            let ksp = Ksp::new(session, Comm::World).unwrap();
-            ksp.set_operators(&mat, &mat).unwrap();
-            ksp.pc().unwrap().set_shell("shell", of(in_pc)).unwrap();
-            let (x, b) = (mat.right_vec().unwrap(), mat.left_vec().unwrap());
-            b.set(1.0).unwrap();
-            match (error, ksp.solve(&b, &x).unwrap_err()) {
-                (1, Error::Input(m)) => assert_eq!(m, "The load of body 3 is not a number."),
-                (2, Error::Environment(m)) => assert!(m.contains("the callback panics"), "{m}"),
-                (_, other) => panic!("{other:?}"),
-            }
-            drop((mat, ksp));
-            assert_eq!(drops.get(), 2);
-        }
-        // The stored error has been taken: PETSc's next error is its own.
-        let a = laplacian(session, 3);
-        let wrong = PVec::seq(session, 4).unwrap();
-        match a.mult(&wrong, &a.left_vec().unwrap()).unwrap_err() {
-            Error::Petsc { call, trace, .. } => {
-                assert_eq!(call, "MatMult");
-                assert!(
-                    trace.len() >= 2 && trace[1].starts_with("MatMult()"),
-                    "{trace:?}"
-                );
-            }
-            other => panic!("{other}"),
-        }
-    });
-}
-
-/// A failure two callbacks deep keeps its identity.
-#[test]
-fn nested_failures_come_back() {
-    struct Outer(Ksp);
-    impl ShellMat for Outer {
-        fn mult(&self, x: &PVec, y: &PVec) -> Result<()> {
-            self.0.solve(x, y)
-        }
-    }
-    with_session(|session| {
-        let drops = Rc::new(Cell::new(0));
-        let inner = Mat::shell(session, 2, 2, Scaled::boxed(&drops, 1)).unwrap();
-        let ksp = Ksp::new(session, Comm::World).unwrap();
-        ksp.set_operators(&inner, &inner).unwrap();
-        ksp.pc().unwrap().set_type("none").unwrap();
-        let outer = Mat::shell(session, 2, 2, Box::new(Outer(ksp))).unwrap();
-        let (x, y) = (outer.right_vec().unwrap(), outer.left_vec().unwrap());
-        x.set(1.0).unwrap();
-        let error = outer.mult(&x, &y).unwrap_err();
-        assert_eq!(error.to_string(), "The load of body 3 is not a number.");
-    });
-}
-
 #[test]
 fn options_are_read_set_and_checked() {
     with_session(|session| {
@@ -379,107 +237,6 @@ fn a_solver_takes_its_prefixed_options() {
 #[test]
 fn memory_is_plausible() {
     with_session(|_| assert!((1e6..1e12).contains(&max_memory())));
-}
-
-/// The work of a second process, started by the tests below with its own PETSc options; returns its exit code.
-fn with_options(options: &str, help: &str) -> i32 {
-    let args: Vec<String> = options.split(' ').map(String::from).collect();
-    let session = match Session::new(&args, help) {
-        Ok(session) => session,
-        Err(error) => {
-            println!("refused: {error}");
-            return error.exit_code();
-        }
-    };
-    session.run(|session| {
-        let event = Event::register(session, "OurEvent")?;
-        let stage = Stage::register(session, "Our stage")?;
-        {
-            let _stage = stage.scope()?;
-            let _event = event.scope()?;
-            let a = laplacian(session, 50);
-            let ksp = Ksp::new(session, Comm::Own)?;
-            ksp.set_operators(&a, &a)?;
-            ksp.set_from_options()?;
-            let (x, b) = (a.right_vec()?, a.left_vec()?);
-            b.set(1.0)?;
-            ksp.pc()?
-                .set_shell("our preconditioner", Box::new(Described))?;
-            ksp.solve(&b, &x)?;
-        }
-        let options = Options::new(session, "fetifeti_");
-        options.heading("FETI-FETI options")?;
-        options.f64(
-            "tau",
-            10.0,
-            "threshold of the eigenvalues that are deflated",
-        )?;
-        cite(session, "@article{ours, title={Ours}}\n")?;
-        for (name, value) in Options::new(session, "").left()? {
-            println!("unused {name} {value}");
-        }
-        Ok(())
-    })
-}
-
-struct Described;
-
-impl ShellPc for Described {
-    fn apply(&self, x: &PVec, y: &PVec) -> Result<()> {
-        y.copy_from(x)
-    }
-    fn view(&self) -> String {
-        "scaling: stiffness".into()
-    }
-}
-
-#[test]
-fn log_view_shows_our_event_and_stage() {
-    let started = mpi::as_process(|options| with_options(options, "Solves things.\n"));
-    let out = started.run(1, "-log_view -ksp_view");
-    assert_eq!(out.code, 0, "{}", out.all());
-    for text in [
-        "OurEvent",
-        "Our stage",
-        "our preconditioner",
-        "scaling: stiffness",
-    ] {
-        assert!(out.stdout.contains(text), "{text}: {}", out.all());
-    }
-}
-
-#[test]
-fn help_lists_our_options_and_left_finds_typos() {
-    let started = mpi::as_process(|options| with_options(options, "Solves things.\n"));
-    let out = started.run(1, "-help -ksp_tpye cg -citations");
-    assert_eq!(out.code, 0, "{}", out.all());
-    for text in [
-        "Solves things.",
-        "FETI-FETI options",
-        "-fetifeti_tau: <10> threshold",
-        "-ksp_rtol",
-        "unused -ksp_tpye cg",
-        "@article{ours",
-    ] {
-        assert!(out.stdout.contains(text), "{text}: {}", out.all());
-    }
-}
-
-#[test]
-fn a_missing_options_file_is_one_sentence() {
-    let started = mpi::as_process(|options| with_options(options, "Solves things.\n"));
-    let sentence = "PETSc does not start: Unable to open options file /does/not/exist.";
-    for (ranks, before) in [(1, "refused: "), (2, "Error on rank 0: ")] {
-        let out = started.run(ranks, "-options_file /does/not/exist");
-        assert_eq!(out.code, 3, "{}", out.all());
-        assert_eq!(
-            out.all().matches(&format!("{before}{sentence}")).count(),
-            1,
-            "{}",
-            out.all()
-        );
-        assert!(!out.all().contains("PETSC ERROR"), "{}", out.all());
-    }
 }
 
 #[test]
