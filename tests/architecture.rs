@@ -1,5 +1,5 @@
 //! The order of the rooms: each imports only from those before it, and inside a room no circle has more than three
-//! files.
+//! files. No file of the sources is longer than 400 lines.
 //!
 //! The imports are read from the sources: `use` statements and paths that begin with `crate` or `super`. A name that a
 //! module re-exports counts for the file that it comes from. What only tests import does not count. The map
@@ -54,7 +54,7 @@ impl Sources {
     fn of_this_crate() -> Sources {
         let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
         let mut files = Vec::new();
-        collect(&src, &mut files);
+        collect(&src, "rs", &mut files);
         let modules = files.into_iter().map(|file| {
             let inside = file
                 .strip_prefix(&src)
@@ -160,12 +160,13 @@ fn inside(module: &[String]) -> &[String] {
     }
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+/// All files below a folder with this ending.
+fn collect(folder: &Path, ending: &str, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder of sources") {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
-            collect(&path, files);
-        } else if path.extension().is_some_and(|e| e == "rs") {
+            collect(&path, ending, files);
+        } else if path.extension().is_some_and(|e| e == ending) {
             files.push(path);
         }
     }
@@ -337,6 +338,28 @@ fn no_circle_inside_a_room_has_more_than_three_files() {
         .map(|c| c.iter().map(|m| name(m)).collect::<Vec<_>>().join(", "))
         .collect();
     assert!(said.is_empty(), "circles:\n{}\n", said.join("\n"));
+}
+
+/// Lines that a file of `src` and `wrappers` may have.
+const MOST_LINES: usize = 400;
+
+#[test]
+fn no_source_is_longer_than_400_lines() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    for (folder, ending) in [("src", "rs"), ("wrappers", "rs"), ("wrappers", "c")] {
+        collect(&root.join(folder), ending, &mut files);
+    }
+    assert!(files.len() > 300, "only {} files were found", files.len());
+    let lines =
+        |file: &PathBuf| std::fs::read_to_string(file).map_or(0, |text| text.lines().count());
+    let long: Vec<String> = files
+        .iter()
+        .map(|file| (lines(file), file.display()))
+        .filter(|(n, _)| *n > MOST_LINES)
+        .map(|(n, file)| format!("{file} has {n} lines: split it by idea"))
+        .collect();
+    assert!(long.is_empty(), "\n{}\n", long.join("\n"));
 }
 
 /// A crate of a few lines, with an arrow back, a re-export in the way, and a circle.
