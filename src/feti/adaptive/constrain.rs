@@ -12,9 +12,9 @@ use crate::parallel::team::Team;
 use crate::substructures::{Subdomain, Substructures};
 use crate::Result;
 
-/// Gives the subdomains the constraints that [`find`](super::constraints::find) added. Subdomains that were equal stay equal, but a turned copy
-/// with a constraint gets operators of its own. The old operators are dropped one by one, so that two operators of
-/// every subdomain never exist at the same time.
+/// Gives the subdomains the constraints that [`find`](super::constraints::find) added. Subdomains that were equal stay
+/// equal, but a turned copy with a constraint gets operators of its own. The old operators are dropped one by one, so
+/// that two operators of every subdomain never exist at the same time.
 pub fn constrain(
     problem: &Substructures,
     jump: &Jump,
