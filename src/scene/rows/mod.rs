@@ -13,7 +13,8 @@
 //! ```
 //!
 //! [`entries`] and [`links`] make the second form: an [`entry::Entry`] is a view of the first, and [`select`] finds the
-//! nodes that it means; sides of other forms are found in `facing` and `unmatched`. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
+//! nodes that it means. Interfaces of sides that an entry names come from `facing`, those of faces whose nodes do not
+//! match from `unmatched`. [`obstacles`] makes the second form of obstacles. [`points`] and [`bounds`] make the third,
 //! [`table`] the fourth. Normals and distances are computed once, with the second form, and areas ([`areas`]) with the
 //! label; reports, studies and C read them in the solved row. A load step evaluates only the right-hand sides of the
 //! third form ([`points::PointRow::right_hand_side`]).
