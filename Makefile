@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup build run install uninstall test test-newer fmt lint docs clean
+.PHONY: help setup build run install uninstall dist deb test test-newer fmt lint docs clean
 
 OUT ?= out
 TARGET := $(if $(CARGO_TARGET_DIR),$(CARGO_TARGET_DIR),target)
@@ -66,7 +66,14 @@ uninstall: ## Remove what was installed below PREFIX
 	@cd "$(DESTDIR)$(PREFIX)" && xargs -d '\n' rm -f <share/fetifeti/installed && \
 	find share/fetifeti share/doc/fetifeti lib*/cmake/FetiFeti -depth -type d -empty -delete 2>/dev/null; true
 
-test: setup ## Check format, lints and documentation, then run every test
+dist: ## Write target/dist/fetifeti-VERSION.tar.xz, sources that build without a registry
+	scripts/dist.sh "$(TARGET)/dist"
+
+deb: setup ## Make a Debian source package and its binary packages in target/deb
+	scripts/deb.sh "$(TARGET)/deb"
+
+test: ## Check format, lints and documentation, then run every test
+	@scripts/setup.sh --clients
 	cargo fmt --all -- --check
 	scripts/test.sh
 

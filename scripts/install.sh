@@ -83,7 +83,7 @@ put 644 "$stage/fish" share/fish/vendor_completions.d/fetifeti.fish
 
 for file in README.md CHANGELOG.md LICENSE docs/*.md; do put 644 "$file" "share/doc/fetifeti/$file"; done
 for file in docs/images/*; do put 644 "$file" "share/doc/fetifeti/$file"; done
-for file in examples/embedding/*; do [ -f "$file" ] && put 644 "$file" "share/fetifeti/$file"; done
+for file in examples/embedding/* examples/clients/*; do [ -f "$file" ] && put 644 "$file" "share/fetifeti/$file"; done
 (cd examples/scenes && find . -type f) | while read -r file; do
     put 644 "examples/scenes/$file" "share/fetifeti/examples/scenes/$file"
 done

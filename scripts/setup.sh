@@ -3,20 +3,23 @@
 #
 #   scripts/setup.sh            install what is missing (as root, or through sudo without a password)
 #   scripts/setup.sh --check    only say what is missing
+#   scripts/setup.sh --clients  also what examples/clients need, for the tests: dolfinx (350 MB) and SciPy
 #
 # Exit code 0: everything is there; 3: something is missing and could not be installed.
 set -euo pipefail
 
 MIN_RUST=85 # minor version of Rust 1.x, as in Cargo.toml's rust-version
-CHECK_ONLY=false
-case "${1:-}" in
-    "") ;;
-    --check) CHECK_ONLY=true ;;
-    *)
-        echo "setup: unknown argument '$1', expected --check or nothing." >&2
-        exit 2
-        ;;
-esac
+CHECK_ONLY=false CLIENTS=false
+for argument; do
+    case $argument in
+        --check) CHECK_ONLY=true ;;
+        --clients) CLIENTS=true ;;
+        *)
+            echo "setup: unknown argument '$argument', expected --check, --clients or nothing." >&2
+            exit 2
+            ;;
+    esac
+done
 
 say() { echo "setup: $*"; }
 stop() {
@@ -36,6 +39,7 @@ packages+=(python3-pip python3-setuptools python3-wheel python3-numpy python3-py
 # Builds of PETSc that the plug-in must refuse.
 packages+=(libpetsc-complex3.18-dev libpetsc64-real3.18-dev)
 [ -n "${SLEPC_DIR:-}${PETSC_DIR:-}" ] || packages+=(slepc-dev)
+! $CLIENTS || packages+=(python3-dolfinx python3-scipy)
 
 # Rust: rustup's is taken where there is one; a machine without any gets Debian's current toolchain. Debian 12's package
 # "cargo" is Rust 1.63 and too old, its package "cargo-web" follows the current releases.

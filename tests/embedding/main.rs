@@ -6,6 +6,7 @@ mod support;
 mod bodies;
 mod capi_c;
 mod capi_languages;
+mod clients;
 mod examples;
 mod installed;
 mod ksp;

@@ -14,8 +14,19 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// Runs a script of the source tree, which finds petsc4py, the package and the library.
 pub fn script(script: &str, ranks: usize, options: &str) -> Output {
+    script_with(script, ranks, options, "", &[])
+}
+
+/// As `script`, with more places for Python's modules and more environment variables.
+pub fn script_with(
+    script: &str,
+    ranks: usize,
+    options: &str,
+    modules: &str,
+    env: &[(&str, &str)],
+) -> Output {
     let others = std::env::var("PYTHONPATH").unwrap_or_default();
-    let path = format!("{PETSC4PY}:{ROOT}/wrappers/python/src:{others}");
+    let path = format!("{PETSC4PY}:{ROOT}/wrappers/python/src:{modules}:{others}");
     let library = library();
     let dir = Path::new(&library)
         .parent()
@@ -27,13 +38,13 @@ pub fn script(script: &str, ranks: usize, options: &str) -> Output {
         .into_iter()
         .chain(options.split(' '))
         .collect();
-    let env = [
+    let own = [
         ("PYTHONPATH", &path[..]),
         ("LD_LIBRARY_PATH", &places),
         ("FETIFETI_LIBRARY", &library),
         ("PYTHONDONTWRITEBYTECODE", "1"),
     ];
-    let out = mpirun(ranks, "/usr/bin/python3", &args, &env);
+    let out = mpirun(ranks, "/usr/bin/python3", &args, &[&own, env].concat());
     assert_eq!(out.code, 0, "{options}, {ranks} ranks: {}", out.all());
     out
 }

@@ -99,6 +99,16 @@ impl Program {
 
     /// One of our sources, by its path in the repository. It uses wrappers/fetifeti.h and is linked with the library.
     pub fn linked(compiler: &str, scratch: &Scratch, path: &str) -> Program {
+        Program::linked_with(compiler, scratch, path, &[])
+    }
+
+    /// As `linked`, with more options of the compiler.
+    pub fn linked_with(
+        compiler: &str,
+        scratch: &Scratch,
+        path: &str,
+        options: &[String],
+    ) -> Program {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let (library, headers) = (library(), root.join("wrappers"));
         let dir = Path::new(&library)
@@ -109,7 +119,8 @@ impl Program {
             library.clone(),
             format!("-Wl,-rpath,{}", dir.display()),
         ];
-        Program::compile(compiler, scratch, &root.join(path), &more)
+        let all = [&more, options].concat();
+        Program::compile(compiler, scratch, &root.join(path), &all)
     }
 
     /// As `linked`, in Fortran with the module of wrappers/fetifeti.f90.
