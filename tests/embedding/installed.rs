@@ -8,6 +8,11 @@ use crate::support::plugin::{library, number_after};
 
 /// An installation below `prefix`, with DESTDIR if it is not empty.
 fn install(scratch: &Scratch, prefix: &str, destdir: &str) -> String {
+    install_to(scratch, prefix, destdir, "")
+}
+
+/// As `install`, with another LIBDIR if it is not empty.
+pub fn install_to(scratch: &Scratch, prefix: &str, destdir: &str, libdir: &str) -> String {
     let built = PathBuf::from(scratch.path("built"));
     std::fs::create_dir_all(&built).expect("a directory");
     for (file, name) in [
@@ -16,31 +21,38 @@ fn install(scratch: &Scratch, prefix: &str, destdir: &str) -> String {
     ] {
         let _ = std::os::unix::fs::symlink(file, built.join(name));
     }
-    let built = built.display().to_string();
-    run(
-        "scripts/install.sh",
-        &[&built, prefix, destdir],
-        Path::new(env!("CARGO_MANIFEST_DIR")),
-        "",
-    )
+    let mut command = Command::new("scripts/install.sh");
+    command
+        .arg(&built)
+        .args([prefix, destdir])
+        .current_dir(env!("CARGO_MANIFEST_DIR"));
+    if !libdir.is_empty() {
+        command.env("LIBDIR", libdir);
+    }
+    succeed(command)
 }
 
 /// What the command prints; it must succeed.
-fn run(program: &str, args: &[&str], dir: &Path, pkg_config: &str) -> String {
+pub fn run(program: &str, args: &[&str], dir: &Path, pkg_config: &str) -> String {
     let mut command = Command::new(program);
     command.args(args).current_dir(dir);
     if !pkg_config.is_empty() {
         command.env("PKG_CONFIG_PATH", pkg_config);
     }
+    succeed(command)
+}
+
+fn succeed(mut command: Command) -> String {
     let out = command
         .output()
-        .unwrap_or_else(|e| panic!("{program}: {e}"));
+        .unwrap_or_else(|e| panic!("{command:?}: {e}"));
     let said = String::from_utf8_lossy(&out.stderr);
-    assert!(out.status.success(), "{program} {args:?}: {said}");
+    assert!(out.status.success(), "{command:?}: {said}");
     String::from_utf8_lossy(&out.stdout).into_owned()
 }
 
-fn files(below: &Path) -> Vec<PathBuf> {
+/// All files and links below a directory.
+pub fn files(below: &Path) -> Vec<PathBuf> {
     let mut all = Vec::new();
     for entry in std::fs::read_dir(below).expect("a directory") {
         let path = entry.expect("an entry").path();

@@ -12,6 +12,7 @@ mod installed;
 mod ksp;
 mod languages;
 mod mortar;
+mod packages;
 mod partitions;
 mod petsc_examples;
 mod python;
