@@ -133,6 +133,9 @@ pub struct Solve {
     /// File for the state of the contact loop, written after every step
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub checkpoint: Option<PathBuf>,
+    /// File to which every step of the contact loop is appended when it ends, a line of JSON
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub events: Option<PathBuf>,
     /// Go on from such a file, on any number of ranks
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub resume: Option<PathBuf>,

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::contact;
+use super::events::Events;
 use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use super::renewed::Renewed;
@@ -49,7 +50,7 @@ pub(super) fn follow(
     solver: &mut FetiFeti,
     destination: &Destination,
     place: Place,
-    checkpoints: Checkpoints,
+    (checkpoints, events): (Checkpoints, &Events),
 ) -> Result<Course> {
     let n = scene.n_steps();
     let times = scene.steps.as_ref().map(|s| s.times.clone());
@@ -99,6 +100,9 @@ pub(super) fn follow(
             outer.push(contact::outer_step(load_step, outer.len() + 1, done));
             progress.step(outer.len(), done.active);
             progress.residual(done.residual, done.tolerance, done.iterations);
+            if let Some(last) = outer.last() {
+                events.step(session, last)?;
+            }
             checkpoints.save(session, step, || records.followed_by(&outer), state)
         });
         let solution = solved.map_err(|e| renewed.at_step(step, e))?;

@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::args::Solve;
 use super::contact;
 use super::course::{follow, Course};
+use super::events::Events;
 use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use super::record::{checks, report};
@@ -134,7 +135,9 @@ fn solve(
         true => Place::EachRank,
         false => Place::FirstRank,
     };
-    let course = follow(session, scene, &mut solver, destination, place, checkpoints)?;
+    let events = Events::new(session, args.events.as_deref())?;
+    let written = (checkpoints, &events);
+    let course = follow(session, scene, &mut solver, destination, place, written)?;
     let scene = course.scene.as_ref().unwrap_or(scene);
     let solution = &course.solution;
     let exact = match (solver.settings().method.spectrum, solution.steps.last()) {

@@ -79,8 +79,9 @@ def test_the_program_speaks_in_exceptions(tmp_path, monkeypatch):
     with pytest.raises(fetifeti.ProgramError) as caught:
         fetifeti.solve(SCENES / "model_contact.toml", out=tmp_path / "file" / "below")
     assert caught.value.code == 3
-    with pytest.raises(fetifeti.InputError, match="no contact and no obstacle"):
-        fetifeti.solve(SCENES / "poisson_2x2.toml", on_step=print)
+    seen = []
+    fetifeti.solve(SCENES / "poisson_2x2.toml", on_step=seen.append)
+    assert seen == []
     mpirun = tmp_path / "mpirun"
     mpirun.write_text("#!/bin/sh\necho no room >&2\nexit 1\n")
     mpirun.chmod(0o755)

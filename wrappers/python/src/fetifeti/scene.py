@@ -220,8 +220,8 @@ def solve(
         Processes, under ``mpirun`` (or what ``FETIFETI_MPIRUN`` names) if there are several.
     on_step : callable, optional
         Called for each step of the contact loop, in order, with its record. It is called while the program runs, a
-        tenth of a second late at most, by means of the program's checkpoints. The program must be able to write them:
-        the scene has contact or an obstacle, and no `update`. An exception in it ends the program.
+        tenth of a second late at most (the program's ``--events``); never for scenes without contact or obstacles. An
+        exception in it ends the program.
     out : str or Path, optional
         Where the program writes; left out: in a temporary directory that goes with the result.
 
@@ -243,20 +243,20 @@ def solve(
         raise ValueError(f"ranks is {ranks}, expected at least 1")
     files = tempfile.TemporaryDirectory(prefix="fetifeti-")
     directory = Path(files.name) / "out" if out is None else Path(out)
-    checkpoint, said = Path(files.name) / "checkpoint", Path(files.name) / "stderr"
+    events, said = Path(files.name) / "events", Path(files.name) / "stderr"
     command = [str(find_program()), "solve", str(scene), "--quiet", "--out", str(directory)]
     if on_step:
-        command += ["--checkpoint", str(checkpoint)]
+        command += ["--events", str(events)]
     command += list(_options(options or {}))
     if ranks > 1:
         command = [os.environ.get("FETIFETI_MPIRUN", "mpirun"), "-n", str(ranks), *command]
-    steps = Steps(checkpoint, on_step) if on_step else None
+    steps = Steps(events, on_step) if on_step else None
     with open(said, "wb") as errors:
         code = _run(command, errors, steps)
+    if steps:
+        steps.look()
     result = Result(directory, files)
     if code in (0, 1) and (directory / "report.json").is_file():
-        if steps:
-            steps.rest((result.report.get("contact") or {}).get("steps") or [])
         if code == 0:
             return result
     ours, sentence = _sentence(said.read_text(errors="replace"), code)
