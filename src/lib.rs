@@ -139,7 +139,7 @@ mod inside;
 mod testing;
 
 pub use error::{Error, Result};
-pub use feti::{MethodSettings, PcType, Primal, ProjectorKind, Scaling, Spectrum};
+pub use feti::{MethodSettings, Numbers, PcType, Primal, ProjectorKind, Scaling, Spectrum};
 pub use linalg::csr::Csr;
 pub use parallel::exchange::{gather_all, max_all, sum_all};
 pub use petsc::Session;

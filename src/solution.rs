@@ -63,6 +63,11 @@ impl Solution {
         State::warm(self.lambda.clone(), &self.active)
     }
 
+    /// The multipliers inside bodies, which come before those of the rows between bodies.
+    pub(crate) fn inside_bodies(&self) -> &[f64] {
+        &self.lambda[..self.lambda.len() - self.rows.len()]
+    }
+
     /// The rows between bodies that this rank provides, in its order: body, node, normal, gap, multiplier, pressure,
     /// state.
     pub fn rows(&self) -> &[SolvedRow] {

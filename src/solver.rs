@@ -6,7 +6,7 @@ use crate::contact::{self, Step};
 use crate::feti::deflation::Cost;
 use crate::feti::krylov::solve::Judge;
 use crate::feti::operators::dual::Dual;
-use crate::feti::{Communication, Facts, LinearMethod, LinearSolution, Spectrum};
+use crate::feti::{Communication, Facts, LinearMethod, LinearSolution, Numbers, Spectrum};
 use crate::petsc::{cite, Ksp, Session, Stage};
 use crate::settings::Settings;
 use crate::solution::Solution;
@@ -155,14 +155,45 @@ impl FetiFeti {
         self.method.set_rows(rows)
     }
 
+    /// The solver with other numbers in all matrices, one for each local subdomain, and with other rows between bodies
+    /// if there are some. Patterns are not analysed again if
+    /// [`MethodSettings::keeps_analyses`](crate::MethodSettings::keeps_analyses) was set. `None` if a subdomain has
+    /// motions without energy that it did not have: a new solver is to be made, with primal dofs for them. Collective.
+    ///
+    /// # Errors
+    /// As [`FetiFeti::new`].
+    ///
+    /// # Panics
+    /// If a length differs from the present one.
+    pub fn renewed(
+        self,
+        numbers: Vec<Numbers>,
+        rows: Option<Vec<InterfaceRow>>,
+    ) -> Result<Option<FetiFeti>> {
+        let FetiFeti {
+            method,
+            settings,
+            setup_stage,
+            solve_stage,
+        } = self;
+        let staged = setup_stage.scope()?;
+        let renewed = method.renewed(numbers, rows)?;
+        drop(staged);
+        Ok(renewed.map(|method| FetiFeti {
+            method,
+            settings,
+            setup_stage,
+            solve_stage,
+        }))
+    }
+
     /// The start of the contact loop with the multipliers inside bodies of an earlier solution, and a multiplier and a
     /// state for each row that this rank provides.
-    #[cfg(feature = "cli")]
-    pub(crate) fn start(&self, before: &Solution, rows: &[(f64, bool)]) -> contact::State {
+    pub(crate) fn start(&self, inside: &[f64], rows: &[(f64, bool)]) -> contact::State {
         let dual = self.dual();
         let jump = &dual.stiffness.jump;
         let between = jump.rows_between_bodies();
-        let mut lambda = before.lambda[..before.lambda.len() - before.rows().len()].to_vec();
+        let mut lambda = inside.to_vec();
         lambda.resize(between.start, 0.0);
         let mut active = vec![true; between.start];
         for i in between {

@@ -10,6 +10,11 @@ module fetifeti
 
   integer(c_int), parameter :: FETIFETI_EQUALITY = 0, FETIFETI_INEQUALITY = 1
 
+  type, bind(C) :: FetiFetiContactStep
+    integer(c_int) :: step, active, entered, left, wrong, iterations
+    real(c_double) :: residual, tolerance
+  end type
+
   interface
     function FetiFetiCreateFortran(comm, ff) bind(C, name="FetiFetiCreateFortran") result(ierr)
       import :: c_int, c_ptr
@@ -79,6 +84,21 @@ module fetifeti
       integer(c_int), value :: body
       integer(c_int) :: ierr
     end function
+    function FetiFetiUpdateMatrices(ff, n, mats) bind(C, name="FetiFetiUpdateMatrices") result(ierr)
+      import :: c_int, c_ptr, c_intptr_t
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n
+      integer(c_intptr_t), intent(in) :: mats(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiUpdateSubdomain(ff, s, n, ia, ja, a) bind(C, name="FetiFetiUpdateSubdomain") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: s, n
+      integer(c_int), intent(in) :: ia(*), ja(*)
+      real(c_double), intent(in) :: a(*)
+      integer(c_int) :: ierr
+    end function
     function FetiFetiSetNearNullSpace(ff, space) bind(C, name="FetiFetiSetNearNullSpace") result(ierr)
       import :: c_int, c_ptr, c_intptr_t
       type(c_ptr), value :: ff
@@ -117,6 +137,22 @@ module fetifeti
       integer(c_int), value :: n
       integer(c_int), intent(in) :: ia(*), ja(*), kind(*)
       real(c_double), intent(in) :: b(*), gap(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetContactRowsByMatrix(ff, n, ia, matrix, ja, b, gap, kind) &
+        bind(C, name="FetiFetiSetContactRowsByMatrix") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n
+      integer(c_int), intent(in) :: ia(*), matrix(*), ja(*), kind(*)
+      real(c_double), intent(in) :: b(*), gap(*)
+      integer(c_int) :: ierr
+    end function
+    function FetiFetiSetContactGaps(ff, n, gap) bind(C, name="FetiFetiSetContactGaps") result(ierr)
+      import :: c_int, c_ptr, c_double
+      type(c_ptr), value :: ff
+      integer(c_int), value :: n
+      real(c_double), intent(in) :: gap(*)
       integer(c_int) :: ierr
     end function
     function FetiFetiSetContactPairs(ff, a, first, b, second, gap, kind) &
@@ -161,6 +197,13 @@ module fetifeti
     function FetiFetiResetMortar(ff) bind(C, name="FetiFetiResetMortar") result(ierr)
       import :: c_int, c_ptr
       type(c_ptr), value :: ff
+      integer(c_int) :: ierr
+    end function
+    ! monitor is c_funloc of a function with bind(C) of a FetiFetiContactStep and a type(c_ptr), value.
+    function FetiFetiContactMonitorSet(ff, monitor, ctx) bind(C, name="FetiFetiContactMonitorSet") result(ierr)
+      import :: c_int, c_ptr, c_funptr
+      type(c_ptr), value :: ff, ctx
+      type(c_funptr), value :: monitor
       integer(c_int) :: ierr
     end function
     function FetiFetiSetUp(ff) bind(C, name="FetiFetiSetUp") result(ierr)

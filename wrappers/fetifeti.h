@@ -336,9 +336,9 @@ PETSC_EXTERN PetscErrorCode FetiFetiAddSubdomain(FetiFeti ff, PetscInt body, Pet
 
    Note:
    The layout of vectors, the block size and the motions (the near-null space, else the null space) come from the
-   matrix, too. Entries are copied: after a change of the matrix call this again.
+   matrix, too. Entries are copied: after a change of them call FetiFetiUpdateMatrices().
 
-.seealso: `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`
+.seealso: `FetiFetiAddMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiUpdateMatrices()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetMatIS(FetiFeti ff, Mat A, PetscInt body);
 
@@ -369,11 +369,61 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetMatIS(FetiFeti ff, Mat A, PetscInt body);
    All matrices of a solver are added in one of the two ways, and FetiFetiAddSubdomain() and FetiFetiSetMatIS() go
    together with numbers only.
 
-   Entries are copied: after a change of a matrix call FetiFetiReset() and add all again.
+   Entries are copied: after a change of them call FetiFetiUpdateMatrices().
 
-.seealso: `FetiFetiSetMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactPairs()`, `FetiFetiSolve()`
+.seealso: `FetiFetiSetMatIS()`, `FetiFetiAddSubdomain()`, `FetiFetiSetContactPairs()`, `FetiFetiUpdateMatrices()`,
+          `FetiFetiSolve()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiAddMatIS(FetiFeti ff, Mat A, IS numbers, PetscInt body);
+
+/*@
+   FetiFetiUpdateMatrices - Takes new entries of the matrices that were added: for Newton's method and load steps
+
+   Collective
+
+   Input Parameters:
++  ff - the solver
+.  n  - how many matrices FetiFetiAddMatIS() has added, or 1 after FetiFetiSetMatIS()
+-  A  - the matrices in the order in which they were added, the same ones or others with the same maps; NULL for one
+        that stays as it was
+
+   Level: intermediate
+
+   Notes:
+   The next FetiFetiSetUp() or FetiFetiSolve() keeps bodies, constraints, the interface and all analyses of patterns,
+   and factors again. It first looks whether the new entries fit: where an entry is not zero that was exactly zero
+   before, a row became a boundary condition or ceased to be one, a subdomain fell apart, or a rigid motion began or
+   ceased to cost energy, everything is set up anew. FetiFetiView() says what was done.
+
+   Rows and their multipliers stay: the contact loop starts from them. FetiFetiSetContactRows() and
+   FetiFetiSetContactGaps() may be called before the next set-up, too.
+
+.seealso: `FetiFetiAddMatIS()`, `FetiFetiSetMatIS()`, `FetiFetiUpdateSubdomain()`, `FetiFetiSetContactGaps()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiUpdateMatrices(FetiFeti ff, PetscInt n, const Mat A[]);
+
+/*@
+   FetiFetiUpdateSubdomain - Takes new entries of a subdomain of FetiFetiAddSubdomain()
+
+   Not Collective
+
+   Input Parameters:
++  ff - the solver
+.  s  - which of the subdomains that this rank has added, from 0
+.  n  - rows of the matrix, as many as before
+.  ia - start of each row in ja and a, length n + 1, from 0
+.  ja - columns, in any order; entries at the same place are added up
+-  a  - entries
+
+   Level: intermediate
+
+   Note:
+   Subdomains that are not updated stay. For what is kept see FetiFetiUpdateMatrices().
+
+.seealso: `FetiFetiAddSubdomain()`, `FetiFetiUpdateMatrices()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiUpdateSubdomain(FetiFeti ff, PetscInt s, PetscInt n, const PetscInt ia[],
+                                                    const PetscInt ja[], const PetscScalar a[]);
 
 /*@
    FetiFetiSetNearNullSpace - Gives vectors that span every kernel that a subdomain without boundary conditions may have
@@ -497,10 +547,61 @@ PETSC_EXTERN PetscErrorCode FetiFetiSetPrimalDofs(FetiFeti ff, IS dofs);
 
    Rows of FetiFetiSetContactPairs() stay.
 
-.seealso: `FetiFetiSetContactPairs()`, `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
+   Rows may be replaced after a solve. Subdomains that the change does not touch stay factored. A row whose first term
+   is at the same node as that of an earlier row of this rank starts from its multiplier.
+
+.seealso: `FetiFetiSetContactRowsByMatrix()`, `FetiFetiSetContactPairs()`, `FetiFetiSetContactGaps()`,
+          `FetiFetiGetMultipliers()`, `FetiFetiGetKKT()`
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiSetContactRows(FetiFeti ff, PetscInt n, const PetscInt ia[], const PetscInt ja[],
                                                    const PetscScalar b[], const PetscReal gap[], const PetscInt kind[]);
+
+/*@
+   FetiFetiSetContactRowsByMatrix - FetiFetiSetContactRows() with numbers of single matrices
+
+   Not Collective
+
+   Input Parameters:
++  ff     - the solver
+.  n      - rows that this rank gives, instead of those that it gave before by this function or FetiFetiSetContactRows()
+.  ia     - start of each row in matrix, ja and b, length n + 1, from 0
+.  matrix - for each term the matrix whose unknown it is, 0 for the first one of FetiFetiAddMatIS() or that of
+            FetiFetiSetMatIS(); PETSC_DECIDE: ja has its number among the unknowns of all bodies
+.  ja     - numbers of unknowns in their matrices, as the entries of vectors of each matrix are numbered
+.  b      - coefficients
+.  gap    - right-hand sides
+-  kind   - FETIFETI_EQUALITY or FETIFETI_INEQUALITY, for each row
+
+   Level: beginner
+
+   Note:
+   Matrices are those that were added without numbers so far. Any rank may name any unknown of any matrix.
+
+.seealso: `FetiFetiSetContactRows()`, `FetiFetiSetContactPairs()`, `FetiFetiSetContactGaps()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactRowsByMatrix(FetiFeti ff, PetscInt n, const PetscInt ia[],
+                                                           const PetscInt matrix[], const PetscInt ja[],
+                                                           const PetscScalar b[], const PetscReal gap[],
+                                                           const PetscInt kind[]);
+
+/*@
+   FetiFetiSetContactGaps - Gives new right-hand sides of the rows that this rank gave
+
+   Not Collective
+
+   Input Parameters:
++  ff  - the solver
+.  n   - how many rows this rank gave, as for FetiFetiGetMultipliers()
+-  gap - the right-hand sides, in the order in which the rows were given
+
+   Level: beginner
+
+   Note:
+   Nothing is set up again. Clearances of mortars stay.
+
+.seealso: `FetiFetiSetContactRows()`, `FetiFetiSetContactPairs()`, `FetiFetiUpdateMatrices()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiSetContactGaps(FetiFeti ff, PetscInt n, const PetscReal gap[]);
 
 /*@
    FetiFetiSetContactPairs - Gives rows u_first - u_second <= gap, or = gap, for pairs of unknowns that face each other
@@ -676,6 +777,50 @@ PETSC_EXTERN PetscErrorCode FetiFetiGetMortar(FetiFeti ff, PetscInt mortar, Pets
 @*/
 PETSC_EXTERN PetscErrorCode FetiFetiResetMortar(FetiFeti ff);
 
+/*S
+   FetiFetiContactStep - A step of the contact loop, as FetiFetiContactMonitorSet() shows it
+
+   Level: intermediate
+
+   Values:
++  step       - number of the step in this solve, from 0
+.  active     - rows that held, over all ranks: inequalities and equations
+.  entered    - inequalities that hold now and did not before
+.  left       - inequalities that held and do not now
+.  wrong      - inequalities that are violated at the end of the step, or hold with a multiplier that pulls
+.  iterations - Krylov iterations
+.  residual   - residual at the end of the step, relative to the reference
+-  tolerance  - tolerance of the step
+
+.seealso: `FetiFetiContactMonitorSet()`
+S*/
+typedef struct {
+  PetscInt  step, active, entered, left, wrong, iterations;
+  PetscReal residual, tolerance;
+} FetiFetiContactStep;
+
+/* A function that is called after each step, with what it was set with. */
+typedef PetscErrorCode (*FetiFetiContactMonitor)(const FetiFetiContactStep *step, void *ctx);
+
+/*@C
+   FetiFetiContactMonitorSet - Sets a function that is called after each step of the contact loop
+
+   Logically Collective
+
+   Input Parameters:
++  ff      - the solver
+.  monitor - the function, called on all ranks; NULL: none
+-  ctx     - what it is called with
+
+   Level: intermediate
+
+   Note:
+   The function must not call functions on ff. A code other than 0 ends the solve with this error.
+
+.seealso: `FetiFetiSolve()`, `FetiFetiGetContactSteps()`
+@*/
+PETSC_EXTERN PetscErrorCode FetiFetiContactMonitorSet(FetiFeti ff, FetiFetiContactMonitor monitor, void *ctx);
+
 /*@
    FetiFetiSetUp - Finds bodies, interfaces and constraints, and factors
 
@@ -687,7 +832,8 @@ PETSC_EXTERN PetscErrorCode FetiFetiResetMortar(FetiFeti ff);
    Level: intermediate
 
    Note:
-   FetiFetiSolve() does this if it has not been done since something was set on any rank.
+   FetiFetiSolve() does this if it has not been done since something was set on any rank. After new rows or new entries
+   of matrices only what they change is set up.
 
 .seealso: `FetiFetiSolve()`
 @*/

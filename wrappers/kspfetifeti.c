@@ -73,11 +73,25 @@ static PetscErrorCode Explain(KSP ksp, KSPConvergedReason reason)
   PetscFunctionReturn(0);
 }
 
+/* The identities of the spaces that are attached to the operator. */
+static PetscErrorCode Spaces(Mat A, PetscObjectId *near, PetscObjectId *null)
+{
+  MatNullSpace space;
+
+  PetscFunctionBegin;
+  *near = *null = 0;
+  PetscCall(MatGetNearNullSpace(A, &space));
+  if (space) PetscCall(PetscObjectGetId((PetscObject)space, near));
+  PetscCall(MatGetNullSpace(A, &space));
+  if (space) PetscCall(PetscObjectGetId((PetscObject)space, null));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
 {
   KSP_FETIFETI    *ff = (KSP_FETIFETI *)ksp->data;
   Mat              A;
-  PetscObjectId    id;
+  PetscObjectId    id, near, null;
   PetscObjectState state;
   FetiFetiWishes   wishes;
   KSP              inner;
@@ -88,7 +102,11 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
   PetscCall(PetscObjectGetId((PetscObject)A, &id));
   PetscCall(PetscObjectStateGet((PetscObject)A, &state));
   if ((ff->solver || ff->failed) && !ff->stale && id == ff->id && state == ff->state) PetscFunctionReturn(0);
-  PetscCall(KSPReset_FETIFETI(ksp));
+  PetscCall(Spaces(A, &near, &null));
+  /* Other entries of a matrix of the same structure: Rust looks whether it is the same. What follows from bodies,
+     options and motions would be another one. */
+  if (ff->stale || ff->whole || ff->failed || ff->label || near != ff->near || null != ff->null)
+    PetscCall(KSPReset_FETIFETI(ksp));
   PetscCall(Wishes(ksp, &wishes));
   if (ff->label) {
     PetscInt body;
@@ -100,7 +118,9 @@ static PetscErrorCode KSPSetUp_FETIFETI(KSP ksp)
   status = fetifeti_plugin_setup(PetscObjectComm((PetscObject)ksp), A, ((PetscObject)ksp)->prefix, &wishes,
                                  &ff->solver);
   ff->id    = id;
-  ff->stale = PETSC_FALSE;
+  ff->near  = near;
+  ff->null  = null;
+  ff->stale = ff->whole = PETSC_FALSE;
   if (status == FF_UNFIT && !ksp->errorifnotconverged) {
     PetscCall(Explain(ksp, KSP_DIVERGED_PC_FAILED));
     ff->failed = KSP_DIVERGED_PC_FAILED;
@@ -218,6 +238,7 @@ static PetscErrorCode KSPSetFromOptions_FETIFETI(KSP ksp, PetscOptionItems *Pets
                              "Go on until the residual of the assembled equations is below the tolerance", NULL,
                              ff->true_residual, &ff->true_residual, NULL));
   PetscOptionsHeadEnd();
+  ff->whole = PETSC_TRUE; /* the method reads its options at the next set-up of everything */
   PetscFunctionReturn(0);
 }
 
@@ -251,6 +272,7 @@ static PetscErrorCode KSPView_FETIFETI(KSP ksp, PetscViewer viewer)
                                      facts.local_rows, facts.global_rows));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  primal dofs: %d\n", facts.primal));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  scaling: %s\n", facts.scaling));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s\n", facts.work));
     PetscCall(PetscViewerASCIIPrintf(viewer, "Inner KSP solver details\n"));
   }
   PetscCall(PetscViewerASCIIPushTab(viewer));

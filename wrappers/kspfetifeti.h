@@ -14,6 +14,8 @@ typedef struct {
   char            *label;  /* label of the mesh's cells that names the bodies; NULL: none */
   PetscBool        true_residual; /* go on until the residual of the host's equations is below the tolerance */
   PetscBool        stale; /* set up again, even if the operator has not changed */
+  PetscBool        whole; /* the next set-up is one of everything: options may have changed */
+  PetscObjectId    near, null; /* the near-null space and the null space at the last set-up; 0: none */
   PetscInt         base;  /* iterations of earlier runs of the inner KSP in this solve */
   PetscInt         last;  /* last iteration that the monitors have seen; -1: none */
   PetscBool        running; /* the inner KSP is running */
@@ -31,6 +33,8 @@ typedef struct {
 
 /* Longest name of an option's value with its end. */
 #define FETIFETI_NAME 16
+/* Longest line of counts with its end. */
+#define FETIFETI_LINE 256
 
 typedef struct {
   int    body;     /* body of this rank, or -1 */
@@ -44,6 +48,7 @@ typedef struct {
   int    bodies, floating, kernel, subdomains, primal;
   double local_rows, global_rows;
   char   scaling[FETIFETI_NAME];
+  char   work[FETIFETI_LINE]; /* what set-ups have taken so far */
 } FetiFetiFacts;
 
 typedef struct {
@@ -53,6 +58,7 @@ typedef struct {
   int    explained; /* the last sentence explains the reason */
 } FetiFetiResult;
 
+/* *solver is NULL, or a solver that is brought up to date where the matrix has the same structure. */
 int  fetifeti_plugin_setup(MPI_Comm comm, Mat a, const char *prefix, const FetiFetiWishes *wishes, void **solver);
 int  fetifeti_plugin_solve(void *solver, Mat a, const FetiFetiWishes *wishes, Vec b, Vec x, FetiFetiResult *result);
 int  fetifeti_plugin_solution(void *solver, Vec x, int *there);
@@ -63,7 +69,9 @@ void fetifeti_plugin_free(void *solver);
 const char *fetifeti_plugin_message(int *code);
 
 /* Called by the symbols that the library exports. */
-int ff_plugin_register(void);
+int ff_plugin_register(int avx2);
+int ff_processor(int avx2);
+int ff_processor_suits(void);
 int ff_plugin_set_body(KSP ksp, PetscInt body);
 int ff_plugin_set_body_is(KSP ksp, IS bodies);
 int ff_plugin_set_body_label(KSP ksp, const char *name);

@@ -30,9 +30,31 @@ static PetscErrorCode Suits(void)
   PetscFunctionReturn(0);
 }
 
-int ff_plugin_register(void)
+/* This file is compiled for any processor. */
+int ff_processor_suits(void)
+{
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+         __builtin_cpu_supports("bmi2");
+#else
+  return 1;
+#endif
+}
+
+int ff_processor(int avx2)
 {
   PetscFunctionBegin;
+  PetscCheck(!avx2 || ff_processor_suits(), PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "libfetifeti.so was built for processors with AVX2 and FMA, which this one lacks: "
+             "build it again with RUSTFLAGS=\"-C target-cpu=x86-64\"");
+  PetscFunctionReturn(0);
+}
+
+int ff_plugin_register(int avx2)
+{
+  PetscFunctionBegin;
+  PetscCall((PetscErrorCode)ff_processor(avx2));
   PetscCall(Suits());
   PetscCall(KSPRegister("fetifeti", KSPCreate_FETIFETI));
   PetscFunctionReturn(0);

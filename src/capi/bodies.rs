@@ -7,6 +7,7 @@ use super::stack::Given;
 use crate::error::Fault;
 use crate::linalg::csr::Csr;
 use crate::petsc::{raw, Attached, Mat};
+use crate::Result;
 use std::ffi::c_int;
 
 #[no_mangle]
@@ -20,7 +21,7 @@ pub unsafe extern "C" fn FetiFetiSetSizes(ff: Handle, local: c_int, global: c_in
             ));
         }
         o.sizes = Some((size(local), size(global)));
-        o.stale = true;
+        o.changed.whole = true;
         Ok(())
     })
 }
@@ -34,7 +35,7 @@ pub unsafe extern "C" fn FetiFetiSetBlockSize(ff: Handle, bs: c_int) -> c_int {
             );
         }
         o.block_size = Some(bs as usize);
-        o.stale = true;
+        o.changed.whole = true;
         Ok(())
     })
 }
@@ -57,31 +58,74 @@ pub unsafe extern "C" fn FetiFetiAddSubdomain(
         let ia = array(ia, n.saturating_add(1), "ia")?;
         let nnz = starts(ia)? as c_int;
         let (ja, a) = (array(ja, nnz, "ja")?, array(a, nnz, "a")?);
-        let mut triplets = Vec::with_capacity(nnz as usize);
-        for (row, range) in ia.windows(2).enumerate() {
-            let range = range[0] as usize..range[1] as usize;
-            for (&j, &v) in ja[range.clone()].iter().zip(&a[range]) {
-                if !(0..n).contains(&j) {
-                    return Err(Fault::OutOfRange.error(format!(
-                        "row {row} of the subdomain has an entry in column {j}, expected columns from 0 to below {n}"
-                    )));
-                }
-                if !v.is_finite() {
-                    return Err(Fault::Wrong.error(format!(
-                        "row {row} of the subdomain has the entry {v}, expected a finite number"
-                    )));
-                }
-                triplets.push((row as u32, j as u32, v));
-            }
-        }
-        let k = Csr::from_triplets(n as usize, &triplets);
+        let k = matrix(n, ia, ja, a)?;
         o.push(Given {
             k,
             dofs,
             copies: None,
             body,
+            map: None,
         });
         Ok(())
+    })
+}
+
+/// A square matrix from compressed rows; entries at the same place are added up.
+fn matrix(n: c_int, ia: &[c_int], ja: &[c_int], a: &[f64]) -> Result<Csr> {
+    let mut triplets = Vec::with_capacity(ja.len());
+    for (row, range) in ia.windows(2).enumerate() {
+        let range = range[0] as usize..range[1] as usize;
+        for (&j, &v) in ja[range.clone()].iter().zip(&a[range]) {
+            if !(0..n).contains(&j) {
+                return Err(Fault::OutOfRange.error(format!(
+                    "row {row} of the subdomain has an entry in column {j}, expected columns from 0 to below {n}"
+                )));
+            }
+            if !v.is_finite() {
+                return Err(Fault::Wrong.error(format!(
+                    "row {row} of the subdomain has the entry {v}, expected a finite number"
+                )));
+            }
+            triplets.push((row as u32, j as u32, v));
+        }
+    }
+    Ok(Csr::from_triplets(n as usize, &triplets))
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiUpdateSubdomain(
+    ff: Handle,
+    s: c_int,
+    n: c_int,
+    ia: *const c_int,
+    ja: *const c_int,
+    a: *const f64,
+) -> c_int {
+    alone(ff, c"FetiFetiUpdateSubdomain", |o| {
+        let ia = array(ia, n.saturating_add(1), "ia")?;
+        let nnz = starts(ia)? as c_int;
+        let (ja, a) = (array(ja, nnz, "ja")?, array(a, nnz, "a")?);
+        let k = matrix(n, ia, ja, a)?;
+        o.update_subdomain(s, k)
+    })
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiUpdateMatrices(
+    ff: Handle,
+    n: c_int,
+    matrices: *const raw::Mat,
+) -> c_int {
+    together(ff, c"FetiFetiUpdateMatrices", |o| {
+        let list = o
+            .session
+            .agree(array(matrices, n, "the list of matrices"))?;
+        let one = |a: &raw::Mat| match a.is_null() {
+            true => Ok(None),
+            false => Mat::share(*a, &o.session).map(Some),
+        };
+        let list = list.iter().map(one).collect::<Result<Vec<_>>>()?;
+        o.update_matrices(&list)
     })
 }
 
@@ -112,7 +156,7 @@ pub unsafe extern "C" fn FetiFetiAddMatIS(
 pub unsafe extern "C" fn FetiFetiSetNearNullSpace(ff: Handle, space: raw::MatNullSpace) -> c_int {
     together(ff, c"FetiFetiSetNearNullSpace", |o| {
         o.near = Attached::of(space, &o.session)?;
-        o.stale = true;
+        o.changed.whole = true;
         Ok(())
     })
 }
@@ -135,7 +179,7 @@ pub unsafe extern "C" fn FetiFetiSetCoordinates(
             dim: dim as usize,
             of_node,
         });
-        o.stale = true;
+        o.changed.whole = true;
         Ok(())
     })
 }

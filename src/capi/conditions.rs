@@ -17,12 +17,14 @@ pub unsafe extern "C" fn FetiFetiSetDirichletBoundaries(
     values: raw::Vec,
 ) -> c_int {
     together(ff, c"FetiFetiSetDirichletBoundaries", |o| {
-        o.held = list(o, dofs)?;
+        let held = list(o, dofs)?;
+        // Values alone are read at each solve.
+        o.changed.whole |= held != o.held;
+        o.held = held;
         o.held_values = match values.is_null() {
             true => None,
             false => Some(PetscVec::share(values, &o.session)?),
         };
-        o.stale = true;
         Ok(())
     })
 }
@@ -36,7 +38,7 @@ pub unsafe extern "C" fn FetiFetiSetNeumannBoundaries(ff: Handle, _dofs: raw::IS
 pub unsafe extern "C" fn FetiFetiSetPrimalDofs(ff: Handle, dofs: raw::IS) -> c_int {
     together(ff, c"FetiFetiSetPrimalDofs", |o| {
         o.primal = list(o, dofs)?;
-        o.stale = true;
+        o.changed.whole = true;
         Ok(())
     })
 }
@@ -52,44 +54,114 @@ pub unsafe extern "C" fn FetiFetiSetContactRows(
     kind: *const c_int,
 ) -> c_int {
     alone(ff, c"FetiFetiSetContactRows", |o| {
-        let mut rows = Vec::new();
-        if n != 0 {
-            let (gap, kind) = (array(gap, n, "gap")?, array(kind, n, "kind")?);
-            let ia = array(ia, n.saturating_add(1), "ia")?;
-            let nnz = starts(ia)? as c_int;
-            let (ja, b) = (array(ja, nnz, "ja")?, array(b, nnz, "b")?);
-            for r in 0..n as usize {
-                rows.push(contact_row(r, ia, ja, b, gap[r], kind[r])?);
+        contact_rows(o, n, ia, (None, ja), b, gap, kind)
+    })
+}
+
+#[allow(clippy::too_many_arguments)]
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiSetContactRowsByMatrix(
+    ff: Handle,
+    n: c_int,
+    ia: *const c_int,
+    matrix: *const c_int,
+    ja: *const c_int,
+    b: *const f64,
+    gap: *const f64,
+    kind: *const c_int,
+) -> c_int {
+    alone(ff, c"FetiFetiSetContactRowsByMatrix", |o| {
+        contact_rows(o, n, ia, (Some(matrix), ja), b, gap, kind)
+    })
+}
+
+/// Replaces the rows of this rank. Columns are numbers of all unknowns, or those of a matrix for each term.
+fn contact_rows(
+    o: &mut Object,
+    n: c_int,
+    ia: *const c_int,
+    (matrix, ja): (Option<*const c_int>, *const c_int),
+    b: *const f64,
+    gap: *const f64,
+    kind: *const c_int,
+) -> Result<()> {
+    let mut rows = Vec::new();
+    if n != 0 {
+        let (gap, kind) = (array(gap, n, "gap")?, array(kind, n, "kind")?);
+        let ia = array(ia, n.saturating_add(1), "ia")?;
+        let nnz = starts(ia)? as c_int;
+        let (ja, b) = (array(ja, nnz, "ja")?, array(b, nnz, "b")?);
+        let matrix = matrix.map(|list| array(list, nnz, "matrix")).transpose()?;
+        for r in 0..n as usize {
+            let mut terms = Vec::new();
+            for e in ia[r] as usize..ia[r + 1] as usize {
+                let whose = matrix.map_or(-1, |list| list[e]);
+                let (numbering, dof) = column(o, r, whose, ja[e])?;
+                terms.push((numbering, dof, b[e]));
             }
+            rows.push(contact_row(r, terms, gap[r], kind[r])?);
         }
-        o.rows.retain(|row| row.origin != Origin::Rows);
-        o.rows.extend(rows);
-        o.stale = true;
+    }
+    o.rows.retain(|row| row.origin != Origin::Rows);
+    o.rows.extend(rows);
+    o.changed.rows = true;
+    Ok(())
+}
+
+/// The unknown of a term of row `r`: number `dof` of matrix `whose`, or of all unknowns where that is negative.
+fn column(o: &Object, r: usize, whose: c_int, dof: c_int) -> Result<(Numbering, u32)> {
+    let (numbering, n) = match usize::try_from(whose) {
+        Err(_) => (Numbering::All, None),
+        Ok(k) => (
+            Numbering::Matrix(k),
+            Some(o.size_of(k, &format!("contact row {r} names"))?),
+        ),
+    };
+    let number = u32::try_from(dof).ok();
+    let number = number.filter(|d| n.is_none_or(|n| (*d as usize) < n));
+    let number = number.ok_or_else(|| {
+        let expected = match n {
+            None => "at least 0".into(),
+            Some(n) => format!("numbers from 0 to below {n}, those of matrix {whose}"),
+        };
+        Fault::OutOfRange.error(format!(
+            "contact row {r} has a coefficient at unknown {dof}, expected {expected}"
+        ))
+    })?;
+    Ok((numbering, number))
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiSetContactGaps(ff: Handle, n: c_int, gap: *const f64) -> c_int {
+    alone(ff, c"FetiFetiSetContactGaps", |o| {
+        if n as usize != o.rows.len() {
+            return Err(Fault::Sizes.error(format!(
+                "there are {n} gaps, expected {}: as many as this rank gave rows",
+                o.rows.len()
+            )));
+        }
+        let gap = array(gap, n, "gap")?;
+        if let Some((r, g)) = gap.iter().enumerate().find(|(_, g)| !g.is_finite()) {
+            return Err(Fault::Wrong.error(format!(
+                "the new gap of row {r} of rank {} is {g}, expected a finite one",
+                o.session.rank()
+            )));
+        }
+        for (row, &gap) in o.rows.iter_mut().zip(gap) {
+            row.gap = gap;
+        }
+        o.changed.gaps = true;
         Ok(())
     })
 }
 
 fn contact_row(
     r: usize,
-    ia: &[c_int],
-    ja: &[c_int],
-    b: &[f64],
+    mut terms: Vec<(Numbering, u32, f64)>,
     gap: f64,
     number: c_int,
 ) -> Result<Row> {
-    let range = ia[r] as usize..ia[r + 1] as usize;
-    let mut terms = Vec::new();
-    for e in range {
-        let dof = u32::try_from(ja[e]).map_err(|_| {
-            Fault::OutOfRange.error(format!(
-                "contact row {r} has a coefficient at unknown {}, expected at least 0",
-                ja[e]
-            ))
-        })?;
-        if b[e] != 0.0 {
-            terms.push((Numbering::All, dof, b[e]));
-        }
-    }
+    terms.retain(|t| t.2 != 0.0);
     if terms.is_empty() || terms.iter().any(|t| !t.2.is_finite()) || !gap.is_finite() {
         return Err(Fault::Wrong.error(format!(
             "contact row {r} is empty or not finite (gap {gap}), expected coefficients other than zero and a finite gap"
@@ -123,7 +195,7 @@ pub unsafe extern "C" fn FetiFetiSetContactPairs(
                 .agree(contact_pairs(o, (a, first), (b, second), gap, kind))?;
             o.rows.extend(rows);
         }
-        o.stale = true;
+        o.changed.rows = true;
         Ok(())
     })
 }

@@ -2,14 +2,24 @@
 
 use super::error::{classified, raise};
 use super::handle::{alone, destroy, not_null, put, together, Handle, Held};
+use super::monitor::{Function, Monitor};
 use super::object::Object;
 use crate::error::Fault;
 use crate::petsc::{raw, Session, Vec as PetscVec};
 use crate::Result;
-use std::ffi::{c_char, c_int, CStr};
+use std::ffi::{c_char, c_int, c_void, CStr};
 
 #[no_mangle]
 pub unsafe extern "C" fn FetiFetiCreate(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
+    match super::processor() {
+        0 => create(comm, ff),
+        code => code,
+    }
+}
+
+/// Not inlined: whatever it needs stands behind the question for the processor.
+#[inline(never)]
+fn create(comm: raw::MPI_Comm, ff: *mut Handle) -> c_int {
     let code = classified("FetiFetiCreate", Fault::Wrong, |at_work| {
         // SAFETY: the header asks for a communicator that outlives what is made on it, and for PETSc between its begin
         // and end.
@@ -53,7 +63,7 @@ pub unsafe extern "C" fn FetiFetiReset(ff: Handle) -> c_int {
     together(ff, c"FetiFetiReset", |o| {
         let mut fresh = Object::new(o.session.clone());
         fresh.prefix = std::mem::take(&mut o.prefix);
-        (fresh.bodies, fresh.view) = (o.bodies, o.view);
+        (fresh.bodies, fresh.view, fresh.monitor) = (o.bodies, o.view, o.monitor);
         *o = fresh;
         Ok(())
     })
@@ -67,7 +77,7 @@ pub unsafe extern "C" fn FetiFetiSetOptionsPrefix(ff: Handle, prefix: *const c_c
             // SAFETY: a string.
             false => unsafe { CStr::from_ptr(prefix) }.to_string_lossy().into(),
         };
-        o.stale = true;
+        o.changed.whole = true;
         Ok(())
     })
 }
@@ -101,5 +111,17 @@ pub unsafe extern "C" fn FetiFetiSolve(ff: Handle, b: raw::Vec, x: raw::Vec) -> 
         let b = PetscVec::share(not_null(b, "right-hand side")?, &o.session)?;
         let x = PetscVec::share(not_null(x, "solution")?, &o.session)?;
         o.solve(&b, &x)
+    })
+}
+
+#[no_mangle]
+pub unsafe extern "C" fn FetiFetiContactMonitorSet(
+    ff: Handle,
+    function: Option<Function>,
+    context: *mut c_void,
+) -> c_int {
+    alone(ff, c"FetiFetiContactMonitorSet", |o| {
+        o.monitor = function.map(|function| Monitor::new(function, context));
+        Ok(())
     })
 }

@@ -5,11 +5,13 @@
 //! host's error handler.
 
 mod bodies;
+mod changed;
 mod conditions;
 mod coordinates;
 mod error;
 mod handle;
 mod life;
+mod monitor;
 mod mortar;
 mod mortar_rows;
 mod nested;
@@ -18,34 +20,56 @@ mod object;
 mod plugin;
 mod results;
 mod rows;
+mod set_up;
 mod solving;
 mod stack;
 mod surface;
 mod surfaces;
+mod update;
 
 use crate::petsc::raw;
 use std::ffi::{c_char, c_int};
 
 extern "C" {
-    fn ff_plugin_register() -> c_int;
+    fn ff_plugin_register(avx2: c_int) -> c_int;
+    fn ff_processor(avx2: c_int) -> c_int;
+    #[cfg(feature = "cli")]
+    fn ff_processor_suits() -> c_int;
     fn ff_plugin_set_body(ksp: raw::KSP, body: c_int) -> c_int;
     fn ff_plugin_set_body_is(ksp: raw::KSP, bodies: raw::IS) -> c_int;
     fn ff_plugin_set_body_label(ksp: raw::KSP, name: *const c_char) -> c_int;
     fn ff_plugin_get_inner(ksp: raw::KSP, inner: *mut raw::KSP) -> c_int;
 }
 
+/// Whether this build has instructions of processors with AVX2 and FMA (.cargo/config.toml). What runs before the
+/// processor is asked is C, or hands over to C at once.
+const AVX2: c_int = cfg!(target_feature = "avx2") as c_int;
+
+/// Raises an error of PETSc if this processor lacks instructions of this build.
+fn processor() -> c_int {
+    // SAFETY: it has no arguments to be wrong.
+    unsafe { ff_processor(AVX2) }
+}
+
+/// Whether this processor has all instructions of this build.
+#[cfg(feature = "cli")]
+pub(crate) fn suits() -> bool {
+    // SAFETY: without arguments.
+    AVX2 == 0 || unsafe { ff_processor_suits() } != 0
+}
+
 /// Called by PETSc when it loads the library (`-dll_append /path/libfetifeti.so`): registers the KSP type "fetifeti".
 #[no_mangle]
 pub extern "C" fn PetscDLLibraryRegister_fetifeti() -> c_int {
     // SAFETY: PETSc is initialised, or it would not load libraries.
-    unsafe { ff_plugin_register() }
+    unsafe { ff_plugin_register(AVX2) }
 }
 
 /// The same for programs that link with the library: they call it once after PetscInitialize.
 #[no_mangle]
 pub extern "C" fn FetiFetiInitializePackage() -> c_int {
     // SAFETY: the caller has initialised PETSc.
-    unsafe { ff_plugin_register() }
+    unsafe { ff_plugin_register(AVX2) }
 }
 
 /// Sets the body of this rank's subdomain: ranks with the same number form a body. The number takes effect at the next

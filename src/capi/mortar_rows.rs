@@ -7,8 +7,7 @@ use super::numbering::Numbering;
 use super::object::Object;
 use super::rows::Origin;
 use super::surface::Surface;
-use crate::embed::states::states;
-use crate::embed::{GivenResults, GivenRow, Torn};
+use crate::embed::{GivenResults, GivenRow};
 use crate::error::Fault;
 use crate::linalg::sorted::distinct;
 use crate::mortar::{distance, rows, Row};
@@ -74,22 +73,26 @@ impl Known {
 /// The numbers among all unknowns of each node of a surface; `None` where there is no unknown.
 type Numbers = Vec<Vec<Option<u32>>>;
 
+/// Whether an unknown is known; `None` if this rank's matrices do not have it.
+pub type IsHeld<'a> = &'a dyn Fn(u32) -> Option<bool>;
+
 /// Components of a normal below this one do not count.
 const ALONG: f64 = 1e-12;
 
 impl Object {
-    /// Appends the rows of all mortars to the rows of `torn`. Collective.
+    /// Appends the rows of all mortars to `rows`. `held` says which unknowns of this rank's matrices are known.
+    /// Collective.
     ///
     /// # Errors
     /// A surface with an unknown that no subdomain has, a mortar without rows; the same on all ranks.
-    pub fn add_mortar_rows(&self, torn: &mut Torn) -> Result<MortarRows> {
+    pub fn add_mortar_rows(&self, rows: &mut Vec<GivenRow>, held: IsHeld) -> Result<MortarRows> {
         let mut out = MortarRows::default();
         if self.mortars.is_empty() {
             return Ok(out);
         }
         let numbers: Result<Vec<Numbers>> = self.surfaces.iter().map(|s| self.numbers(s)).collect();
         let numbers = self.session.agree(numbers)?;
-        let mut known = self.known(torn, &numbers)?;
+        let mut known = self.known(held, &numbers)?;
         out.counts = vec![Counts::default(); self.mortars.len()];
         // Ties come first: nodes that they hold are not in contact.
         for kind in [RowKind::Equality, RowKind::Inequality] {
@@ -121,7 +124,7 @@ impl Object {
                         known.tied.extend(pair.numbers[0][node as usize][component]);
                     }
                     if pair.sides[0].giver[node as usize] == self.session.rank() {
-                        torn.rows.push(row);
+                        rows.push(row);
                         out.placed.push(Placed {
                             mortar: m,
                             node,
@@ -148,13 +151,12 @@ impl Object {
     }
 
     /// What is known of the unknowns of surfaces. Collective.
-    fn known(&self, torn: &Torn, numbers: &[Numbers]) -> Result<Known> {
+    fn known(&self, held: IsHeld, numbers: &[Numbers]) -> Result<Known> {
         let all = distinct(numbers.iter().flatten().flatten().filter_map(|d| *d));
-        let states = states(&self.session, torn);
         let mut words = Vec::new();
         for &dof in &all {
-            if let Some(state) = states.get(&dof) {
-                words.push(u64::from(dof) << 1 | u64::from(!state.is_free()));
+            if let Some(held) = held(dof) {
+                words.push(u64::from(dof) << 1 | u64::from(held));
             }
         }
         let gathered = gather_all(self.session.comm(), &words).concat();

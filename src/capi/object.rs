@@ -1,6 +1,8 @@
 //! The object behind `FetiFeti` of fetifeti.h: the host's input, and the solver made from it.
 
+use super::changed::Changed;
 use super::coordinates::{rigid, Coordinates};
+use super::monitor::Monitor;
 use super::mortar::Mortar;
 use super::mortar_rows::{AtNodes, MortarRows};
 use super::nested::Given as GivenVector;
@@ -8,12 +10,12 @@ use super::rows::Row;
 use super::stack::{fits, Given, LocalMatrix, Stack, Told};
 use super::surface::Surface;
 use crate::embed::torn::spanned;
-use crate::embed::{Embedded, Outcome, Torn};
+use crate::embed::{Embedded, Outcome, Torn, Work};
 use crate::error::Fault;
-use crate::parallel::exchange::{any, gather_all, highest};
+use crate::parallel::exchange::{gather_all, highest};
 use crate::parallel::halo::Halo;
 use crate::petsc::{Attached, Mat, Options, Session, Vec as PetscVec};
-use crate::{Error, MethodSettings, Result};
+use crate::{Error, Result};
 use std::collections::HashSet;
 
 /// The data of a `FetiFeti`.
@@ -48,8 +50,12 @@ pub struct Object {
     pub at_nodes: AtNodes,
     pub bodies: usize,
     pub view: bool,
-    /// Whether something has changed on this rank since the last set-up.
-    pub stale: bool,
+    /// What has changed on this rank since the last set-up.
+    pub changed: Changed,
+    /// What set-ups have taken so far.
+    pub work_done: Work,
+    /// Called after each step of the contact loop.
+    pub monitor: Option<Monitor>,
     pub solver: Option<Embedded>,
     pub outcome: Option<Outcome>,
     /// Plain copies of nested vectors: right-hand side, solution, held values.
@@ -79,7 +85,9 @@ impl Object {
             at_nodes: AtNodes::default(),
             bodies: 0,
             view: false,
-            stale: true,
+            changed: Changed::default(),
+            work_done: Work::default(),
+            monitor: None,
             solver: None,
             outcome: None,
             work: [None, None, None],
@@ -93,7 +101,7 @@ impl Object {
         self.bodies = options.usize("bodies", self.bodies, help)?;
         let help = "show the solver after set-up";
         self.view = options.bool("view", self.view, help)?;
-        self.stale = true;
+        self.changed.whole = true;
         Ok(())
     }
 
@@ -118,7 +126,7 @@ impl Object {
         self.session.agree(others)?;
         let local = LocalMatrix::of(&self.session, a, body)?;
         self.stack.push(&self.session, local);
-        self.stale = true;
+        self.changed.whole = true;
         Ok(())
     }
 
@@ -138,10 +146,8 @@ impl Object {
 
     /// Adds a subdomain in the numbering of all unknowns.
     pub fn push(&mut self, given: Given) {
-        if given.k.n() > 0 {
-            self.subdomains.push(given);
-        }
-        self.stale = true;
+        self.subdomains.push(given);
+        self.changed.whole = true;
     }
 
     /// The error if subdomains are numbered in two ways.
@@ -177,30 +183,8 @@ impl Object {
             .collect())
     }
 
-    /// Makes the solver if there is none, or if the input has changed. Collective.
-    pub fn set_up(&mut self) -> Result<()> {
-        if !any(self.session.comm(), self.stale || self.solver.is_none()) {
-            return Ok(());
-        }
-        self.solver = None;
-        self.outcome = None;
-        self.work = [None, None, None];
-        let mut torn = self.torn()?;
-        self.mortar_rows = self.add_mortar_rows(&mut torn)?;
-        let settings = MethodSettings {
-            prefix: format!("{}fetifeti_", self.prefix),
-            ..MethodSettings::default()
-        };
-        self.solver = Some(Embedded::new(&self.session, &torn, self.bodies, settings)?);
-        self.stale = false;
-        if self.view {
-            self.print();
-        }
-        Ok(())
-    }
-
     /// The whole input as a torn operator. Collective.
-    fn torn(&self) -> Result<Torn> {
+    pub(super) fn torn(&self) -> Result<Torn> {
         let session = &self.session;
         let layout = self.vector()?;
         let n_global = layout.global_len();
@@ -211,16 +195,17 @@ impl Object {
             )));
         }
         session.agree(self.in_range(n_global))?;
-        let numbered = self.subdomains.iter().flat_map(|s| s.pieces(&s.dofs));
+        let numbered = self.subdomains.iter();
+        let numbered = numbered.flat_map(|s| s.pieces(&s.dofs, bs));
         let mut torn = Torn {
             n_global,
             block_size: bs,
-            pieces: numbered.chain(self.stack.pieces()).collect(),
+            pieces: numbered.chain(self.stack.pieces(bs)).collect(),
             modes: self.modes(&layout)?,
             layout,
             held: HashSet::new(),
             primal: HashSet::new(),
-            rows: session.agree(self.given_rows())?,
+            rows: Vec::new(),
             named: None,
         };
         let (ghosts, halo) = torn.halo(session)?;
@@ -230,7 +215,7 @@ impl Object {
     }
 
     /// Number of unknowns of a node.
-    fn nodes(&self) -> usize {
+    pub(super) fn nodes(&self) -> usize {
         let of_matrices = match &self.matis {
             _ if !self.stack.is_empty() => self.stack.block_size(),
             Some(told) => told.block_size,

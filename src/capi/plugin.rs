@@ -1,11 +1,12 @@
 //! The functions behind KSPFETIFETI (wrappers/kspfetifeti.h).
 
 use super::error::{remark, status, UNFIT};
-use crate::embed::{Embedded, Torn};
+use crate::embed::{Embedded, Local, SetUp, Torn, Work};
 use crate::feti::krylov::solve::Look;
 use crate::petsc::{raw, Is, Mat, Options, Session, Vec as PetscVec};
 use crate::status::Status;
 use crate::{Error, MethodSettings, Result};
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::ffi::{c_char, c_int, c_void, CStr};
 
@@ -35,6 +36,16 @@ pub struct Facts {
     local_rows: f64,
     global_rows: f64,
     scaling: [c_char; NAME],
+    work: [c_char; LINE],
+}
+
+/// Longest line of counts with its end, FETIFETI_LINE in wrappers/kspfetifeti.h.
+const LINE: usize = 256;
+
+/// The solver behind a KSP.
+pub struct Solver {
+    embedded: Embedded,
+    work: Work,
 }
 
 /// The result of a solve.
@@ -53,11 +64,12 @@ pub struct Report {
 /// orders.
 const REACHED: f64 = 1.01;
 
-/// Makes a solver for a MATIS. Collective.
+/// Makes a solver for a MATIS. If there is one already, it is brought up to date where the matrix has the same
+/// structure, and replaced otherwise; NULL after an error. Collective.
 ///
 /// # Safety
 /// `comm` is the communicator of `a`, which is a matrix of the host; `prefix` is NULL or a string; `wishes` and
-/// `solver` are valid.
+/// `solver` are valid, and the latter has NULL or a solver of this function for the same communicator.
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_setup(
     comm: raw::MPI_Comm,
@@ -74,7 +86,11 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
         let a = Mat::share(a, &session)?;
         // SAFETY: by the caller.
         let (wishes, prefix) = unsafe { (&*wishes, text(prefix)) };
-        let made = setup(&session, &a, &prefix, wishes);
+        // SAFETY: by the caller; NULL takes its place.
+        let old = unsafe { std::mem::replace(&mut *solver, std::ptr::null_mut()) };
+        // SAFETY: by the caller.
+        let old = (!old.is_null()).then(|| unsafe { Box::from_raw(old.cast::<Solver>()) });
+        let made = setup(&session, &a, &prefix, wishes, old.map(|old| *old));
         // A wrong input stops the host with an error. A matrix that turns out to be no stiffness matrix is reported by
         // KSPGetConvergedReason.
         unfit = matches!(&made, Err(Error::Unfit(_)));
@@ -92,11 +108,42 @@ pub unsafe extern "C" fn fetifeti_plugin_setup(
 /// Number of search directions that a solve keeps for the next one with the same matrix.
 const DIRECTIONS: usize = 30;
 
-fn setup(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Embedded> {
+fn setup(
+    session: &Session,
+    a: &Mat,
+    prefix: &str,
+    wishes: &Wishes,
+    old: Option<Solver>,
+) -> Result<Solver> {
+    let (old, mut work) = old.map_or((None, Work::default()), |o| (Some(o.embedded), o.work));
+    let make = || match old.map(|old| renewed(old, a)).transpose()?.flatten() {
+        Some(embedded) => Ok((embedded, SetUp::Numbers)),
+        None => Ok((whole(session, a, prefix, wishes)?, SetUp::Whole)),
+    };
+    let (embedded, _) = work.count(session, make, |made| Some(made.1))?;
+    Ok(Solver { embedded, work })
+}
+
+/// The solver for other entries of its matrix, or another one of the same structure; `None` if the structure is
+/// another one. Collective.
+fn renewed(old: Embedded, a: &Mat) -> Result<Option<Embedded>> {
+    if !old.fits(a)? || a.is_repeated()? {
+        return Ok(None);
+    }
+    let (k, map) = old.session().agree(a.local_part())?;
+    let local = Local {
+        k: Cow::Owned(k),
+        dofs: Cow::Owned(map),
+    };
+    old.renewed(&[local], None)
+}
+
+fn whole(session: &Session, a: &Mat, prefix: &str, wishes: &Wishes) -> Result<Embedded> {
     let prefix = format!("{prefix}fetifeti_");
     let settings = MethodSettings {
         prefix: prefix.clone(),
         recycle: DIRECTIONS,
+        keeps_analyses: true,
         ..MethodSettings::default()
     };
     let options = Options::new(session, &prefix);
@@ -150,7 +197,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solve(
     status("KSPSolve_FETIFETI", |at_work| {
         // A monitor may ask for the present solution while this runs: hence no unique reference.
         // SAFETY: by the caller.
-        let (solver, wishes) = unsafe { (&*solver.cast::<Embedded>(), &*wishes) };
+        let (solver, wishes) = unsafe { (&(*solver.cast::<Solver>()).embedded, &*wishes) };
         *at_work = Some(solver.session().clone());
         let (b, x) = (
             PetscVec::share(b, solver.session())?,
@@ -241,7 +288,7 @@ pub unsafe extern "C" fn fetifeti_plugin_solution(
 ) -> c_int {
     status("KSPBuildSolution_FETIFETI", |_| {
         // SAFETY: by the caller.
-        let solver = unsafe { &*solver.cast::<Embedded>() };
+        let solver = unsafe { &(*solver.cast::<Solver>()).embedded };
         let x = PetscVec::share(x, solver.session())?;
         // SAFETY: by the caller.
         unsafe { *there = solver.current(&x)?.into() };
@@ -256,7 +303,10 @@ pub unsafe extern "C" fn fetifeti_plugin_solution(
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_inner(solver: *mut c_void) -> raw::KSP {
     // SAFETY: by the caller.
-    unsafe { &*solver.cast::<Embedded>() }.solver().ksp().raw()
+    unsafe { &(*solver.cast::<Solver>()).embedded }
+        .solver()
+        .ksp()
+        .raw()
 }
 
 /// The data that -ksp_view shows.
@@ -266,7 +316,8 @@ pub unsafe extern "C" fn fetifeti_plugin_inner(solver: *mut c_void) -> raw::KSP 
 #[no_mangle]
 pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut Facts) {
     // SAFETY: by the caller.
-    let solver = unsafe { &*solver.cast::<Embedded>() }.solver();
+    let Solver { embedded, work } = unsafe { &*solver.cast::<Solver>() };
+    let solver = embedded.solver();
     let (known, problem) = (solver.facts(), solver.problem());
     // SAFETY: by the caller.
     unsafe {
@@ -279,6 +330,7 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
             local_rows: known.multipliers_local as f64,
             global_rows: known.multipliers_global as f64,
             scaling: name(known.scaling.name()),
+            work: name(&work.line()),
         }
     };
 }
@@ -291,15 +343,15 @@ pub unsafe extern "C" fn fetifeti_plugin_facts(solver: *mut c_void, facts: *mut 
 pub unsafe extern "C" fn fetifeti_plugin_free(solver: *mut c_void) {
     status("KSPReset_FETIFETI", |_| {
         // SAFETY: by the caller.
-        drop(unsafe { Box::from_raw(solver.cast::<Embedded>()) });
+        drop(unsafe { Box::from_raw(solver.cast::<Solver>()) });
         Ok(())
     });
 }
 
 /// A name as a string of C. Names that are too long are cut.
-fn name(name: &str) -> [c_char; NAME] {
-    let mut out = [0; NAME];
-    for (to, from) in out[..NAME - 1].iter_mut().zip(name.bytes()) {
+fn name<const N: usize>(name: &str) -> [c_char; N] {
+    let mut out = [0; N];
+    for (to, from) in out[..N - 1].iter_mut().zip(name.bytes()) {
         *to = from as c_char;
     }
     out

@@ -2,6 +2,7 @@
 
 use super::nested::Given;
 use super::object::Object;
+use crate::contact::{State, Step};
 use crate::embed::{Embedded, Outcome};
 use crate::error::Fault;
 use crate::petsc::Vec as PetscVec;
@@ -23,7 +24,13 @@ impl Object {
         }
         self.outcome = None;
         let solver = self.solver.as_ref().expect("set-up has made it");
-        let outcome = solver.solve_with_rows(&plain[0], plain.get(2), &plain[1])?;
+        let (monitor, session) = (self.monitor, &self.session);
+        let mut count = 0;
+        let mut observe = |step: &Step, _: &State| {
+            count += 1;
+            monitor.map_or(Ok(()), |m| m.call(session, count - 1, step))
+        };
+        let outcome = solver.solve_with_rows(&plain[0], plain.get(2), &plain[1], &mut observe)?;
         checked[1].take(&plain[1])?;
         let given = solver.given().unwrap_or_default();
         self.at_nodes = self.at_nodes(&self.mortar_rows.placed, &given);
@@ -83,6 +90,7 @@ impl Object {
             known.primal,
             known.scaling.name()
         );
+        text += &format!("  {}\n", self.work_done.line());
         for (m, counts) in self.mortar_rows.counts.iter().enumerate() {
             text += &self.mortar_text(m, counts);
         }

@@ -3,9 +3,11 @@
 //! Each rank has its rows of the first matrix, then its rows of the second, and so on. This is the numbering of
 //! DMComposite and the layout of nested vectors.
 
+use std::borrow::Cow;
+
 use crate::embed::pieces::torn_from;
 use crate::embed::torn::{modes, unassembled};
-use crate::embed::Piece;
+use crate::embed::{Local, Piece};
 use crate::error::Fault;
 use crate::linalg::csr::Csr;
 use crate::parallel::exchange::gather_all;
@@ -22,12 +24,33 @@ pub struct Given {
     pub copies: Option<usize>,
     /// The body; negative: not given.
     pub body: i32,
+    /// The numbers of the rows in the matrix that they come from; `None` for arrays.
+    pub map: Option<Vec<i32>>,
 }
 
 impl Given {
+    /// The matrix as it is compared with what was set up, with these numbers of its rows.
+    pub fn locals<'a>(&'a self, dofs: Cow<'a, [i32]>, block_size: usize) -> Vec<Local<'a>> {
+        if self.copies.is_none() {
+            return vec![Local {
+                k: Cow::Borrowed(&self.k),
+                dofs,
+            }];
+        }
+        let local = |piece: Piece| Local {
+            dofs: piece.dofs.iter().map(|&d| d as i32).collect(),
+            k: Cow::Owned(piece.k),
+        };
+        self.pieces(&dofs, block_size)
+            .into_iter()
+            .map(local)
+            .collect()
+    }
+
     /// The pieces of the matrix, with these numbers of its rows.
-    pub fn pieces(&self, dofs: &[i32]) -> Vec<Piece> {
-        torn_from(&self.k, dofs, self.copies, u64::try_from(self.body).ok())
+    pub fn pieces(&self, dofs: &[i32], block_size: usize) -> Vec<Piece> {
+        let body = u64::try_from(self.body).ok();
+        torn_from(&self.k, dofs, block_size, self.copies, body)
     }
 }
 
@@ -83,6 +106,7 @@ impl LocalMatrix {
         Ok(LocalMatrix {
             given: Given {
                 k,
+                map: Some(dofs.clone()),
                 dofs,
                 copies: a.is_repeated()?.then_some(block_size),
                 body,
@@ -176,17 +200,34 @@ impl Stack {
         self.0.iter().map(|m| &m.told.layout)
     }
 
-    /// The local matrices cut into pieces, in the numbering of all unknowns.
-    pub fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
+    /// The local matrix of each.
+    pub fn given(&mut self) -> impl Iterator<Item = &mut Given> {
+        self.0.iter_mut().map(|m| &mut m.given)
+    }
+
+    /// The local matrices with the numbers of all unknowns.
+    fn numbered(&self) -> Vec<(&Given, Vec<i32>)> {
         let number = |k: usize, d: i32| match u32::try_from(d) {
             Ok(dof) => self.number(k, dof) as i32,
             Err(_) => d,
         };
-        let one = move |(k, m): (usize, &Member)| {
-            let dofs: Vec<i32> = m.given.dofs.iter().map(|&d| number(k, d)).collect();
-            m.given.pieces(&dofs)
-        };
-        self.0.iter().enumerate().flat_map(one)
+        let mut out = Vec::new();
+        for (k, Member { given, .. }) in self.0.iter().enumerate() {
+            out.push((given, given.dofs.iter().map(|&d| number(k, d)).collect()));
+        }
+        out
+    }
+
+    /// The local matrices cut into pieces, in the numbering of all unknowns.
+    pub fn pieces(&self, block_size: usize) -> impl Iterator<Item = Piece> + '_ {
+        let all = self.numbered().into_iter();
+        all.flat_map(move |(given, dofs)| given.pieces(&dofs, block_size))
+    }
+
+    /// The local matrices as they are compared with what was set up.
+    pub fn locals(&self, block_size: usize) -> impl Iterator<Item = Local<'_>> {
+        let all = self.numbered().into_iter();
+        all.flat_map(move |(given, dofs)| given.locals(Cow::Owned(dofs), block_size))
     }
 
     /// Vectors over all unknowns that combine the motions of the matrices; `None` if some matrix has none. Collective.

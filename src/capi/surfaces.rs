@@ -99,7 +99,7 @@ pub unsafe extern "C" fn FetiFetiAddMortar(
         let made = all.mortar(&given)?;
         put(mortar, o.mortars.len() as c_int);
         o.mortars.push(made);
-        o.stale = true;
+        o.changed.rows = true;
         Ok(())
     })
 }
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn FetiFetiResetMortar(ff: Handle) -> c_int {
         o.surfaces.clear();
         o.mortars.clear();
         o.outcome = None;
-        o.stale = true;
+        o.changed.rows = true;
         Ok(())
     })
 }

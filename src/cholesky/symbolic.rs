@@ -1,8 +1,23 @@
 //! The pattern of a partial factorisation: order of elimination, fronts, and where their entries go.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use super::dissection::nested_dissection;
 use super::panel;
 use crate::linalg::csr::Csr;
+
+/// Patterns that this process has analysed so far.
+static ANALYSES: AtomicUsize = AtomicUsize::new(0);
+
+/// Number of patterns that this process has analysed so far. Matrices with other numbers must not increase it.
+pub(crate) fn analyses() -> usize {
+    ANALYSES.load(Ordering::Relaxed)
+}
+
+/// Counts an analysis.
+pub(super) fn analysed() {
+    ANALYSES.fetch_add(1, Ordering::Relaxed);
+}
 
 /// The part of [L_II; L_ΓI] that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +76,7 @@ impl Symbolic {
 
     /// The same for a given order of the interior: each set of dofs becomes one front, in the order of elimination.
     pub fn with_supernodes(k: &Csr, interface: &[u32], supernodes: &[Vec<u32>]) -> Symbolic {
+        analysed();
         let n = k.n();
         let interior: Vec<u32> = supernodes.iter().flatten().copied().collect();
         let mut position = vec![0; n];

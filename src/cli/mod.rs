@@ -32,6 +32,19 @@ use crate::{baselines, Result, Settings};
 
 /// Runs the program with the process's arguments and returns its exit code.
 pub fn main() -> i32 {
+    if !crate::capi::suits() {
+        eprintln!(
+            "Error: fetifeti was built for processors with AVX2 and FMA, which this one lacks: \
+             build it again with RUSTFLAGS=\"-C target-cpu=x86-64\""
+        );
+        return 3;
+    }
+    start()
+}
+
+/// Not inlined: whatever it needs stands behind the question for the processor.
+#[inline(never)]
+fn start() -> i32 {
     petsc::let_threads_allocate();
     let parsed = parse::parse(std::env::args().skip(1).collect());
     let petsc = parsed.as_ref().map(|p| p.petsc.clone()).unwrap_or_default();

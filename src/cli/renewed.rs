@@ -98,7 +98,7 @@ impl<'a> Renewed<'a> {
         let new = |s: Option<(f64, bool)>| s.unwrap_or((0.0, true));
         let start: Vec<(f64, bool)> = start.into_iter().map(new).collect();
         let some = total(session.comm(), found as f64) > 0.0;
-        let state = some.then(|| solver.start(&last.solution, &start));
+        let state = some.then(|| solver.start(last.solution.inside_bodies(), &start));
         let factored = (factorisations() - before) as f64;
         let factored = total(session.comm(), factored) as usize;
         Ok(Some((state, (clock.elapsed().as_secs_f64(), factored))))

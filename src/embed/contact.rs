@@ -4,11 +4,10 @@
 //! rank. Therefore all ranks see all rows (there are few, as they belong to surfaces) and find the blocks of connected
 //! rows; the lowest dof of a block determines the rank that takes it.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::{body_dof, Part};
-use super::states::State;
-use super::torn::Torn;
+use super::torn::GivenRow;
 use crate::linalg::sorted::distinct;
 use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::{exchange_words, gather_all};
@@ -32,8 +31,8 @@ pub struct Contact {
     taken: Vec<Taken>,
     /// The block of every unknown that appears in a row, by global dof. A block is named by its lowest dof.
     block: HashMap<u32, u32>,
-    /// Rows that this rank gave.
-    n_given: usize,
+    /// The rank that takes each row that this rank gave; `None` for rows without unknowns.
+    homes: Vec<Option<usize>>,
     /// Whether a row on any rank has a term at a known dof.
     some_known: bool,
     /// Number of rows over all ranks.
@@ -54,20 +53,22 @@ struct Seen {
 const KNOWN: u64 = u64::MAX;
 
 impl Contact {
-    /// Distributes the rows; `body_of` has the body of every local part. Collective.
+    /// Distributes the rows `given` by this rank; `known` has the known dofs of this rank, `body_of` the body of every
+    /// local part. Collective.
     ///
     /// # Errors
     /// A row with a dof that no subdomain has; the same error on all ranks.
     pub fn new(
         session: &Session,
-        torn: &Torn,
+        n_dofs: usize,
+        given: &[GivenRow],
         parts: &[Part],
-        states: &HashMap<u32, State>,
+        known: &HashSet<u32>,
         body_of: &[usize],
     ) -> Result<Contact> {
-        let seen = everywhere(session, torn);
+        let seen = everywhere(session, given);
         let mut out = Contact {
-            n_given: torn.rows.len(),
+            homes: vec![None; given.len()],
             n_global: seen.len(),
             inequalities: seen.iter().any(|s| s.kind == RowKind::Inequality),
             ..Contact::default()
@@ -75,7 +76,7 @@ impl Contact {
         if seen.is_empty() {
             return Ok(out);
         }
-        let owner = lowest_bodies(session, &seen, parts, states, body_of);
+        let owner = lowest_bodies(session, &seen, parts, known, body_of);
         for row in &seen {
             if let Some((dof, _)) = row.terms.iter().find(|t| !owner.contains_key(&t.0)) {
                 return Err(Error::input(format!(
@@ -96,11 +97,14 @@ impl Contact {
                 continue;
             };
             let root = out.block[&first.0];
-            if root as usize % session.size() != session.rank() {
+            let home = root as usize % session.size();
+            if row.from.0 == session.rank() {
+                out.homes[row.from.1] = Some(home);
+            }
+            if home != session.rank() {
                 continue;
             }
-            let term =
-                |&(dof, c): &(u32, f64)| (body_dof(torn.n_global, owner[&dof] as usize, dof), c);
+            let term = |&(dof, c): &(u32, f64)| (body_dof(n_dofs, owner[&dof] as usize, dof), c);
             out.taken.push(Taken {
                 from: row.from,
                 row: InterfaceRow {
@@ -150,13 +154,40 @@ impl Contact {
         self.taken.iter().map(gap).collect()
     }
 
+    /// Passes what this rank knows of the rows that it gave, two words for each, to the ranks that take them; returned
+    /// is what is known of each row that this rank takes. Collective.
+    pub fn forth(&self, session: &Session, mine: &[[u64; 2]]) -> Vec<[u64; 2]> {
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
+        for (r, (home, words)) in self.homes.iter().zip(mine).enumerate() {
+            if let Some(home) = home {
+                outgoing[*home].extend([r as u64, words[0], words[1]]);
+            }
+        }
+        let mut known = HashMap::new();
+        let received = exchange_words(session.comm(), outgoing);
+        for (rank, words) in received.iter().enumerate() {
+            let triples = words.chunks_exact(3);
+            known.extend(triples.map(|w| ((rank, w[0] as usize), [w[1], w[2]])));
+        }
+        self.taken.iter().map(|t| known[&t.from]).collect()
+    }
+
+    /// Replaces the right-hand sides; `mine` has those of the rows that this rank gave. Collective.
+    pub fn set_gaps(&mut self, session: &Session, mine: &[f64]) {
+        let words: Vec<[u64; 2]> = mine.iter().map(|g| [g.to_bits(), 0]).collect();
+        let new = self.forth(session, &words);
+        for (taken, words) in self.taken.iter_mut().zip(new) {
+            taken.row.gap = f64::from_bits(words[0]);
+        }
+    }
+
     /// Returns one number per row, `mine`, to the ranks that gave the rows; zero for rows without unknowns. Collective.
     pub fn back(&self, session: &Session, mine: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); session.size()];
         for (t, v) in self.taken.iter().zip(mine) {
             outgoing[t.from.0].extend([t.from.1 as u64, v.to_bits()]);
         }
-        let mut out = vec![0.0; self.n_given];
+        let mut out = vec![0.0; self.homes.len()];
         for w in exchange_words(session.comm(), outgoing)
             .concat()
             .chunks_exact(2)
@@ -185,9 +216,9 @@ fn label(number: usize, unknown: &[(u32, f64)], owner: &HashMap<u32, u64>) -> Ro
 }
 
 /// All rows on all ranks.
-fn everywhere(session: &Session, torn: &Torn) -> Vec<Seen> {
+fn everywhere(session: &Session, given: &[GivenRow]) -> Vec<Seen> {
     let mut mine = Vec::new();
-    for (r, row) in torn.rows.iter().enumerate() {
+    for (r, row) in given.iter().enumerate() {
         let kind = u64::from(row.kind == RowKind::Inequality);
         // Terms at the same dof are added up.
         let mut terms: BTreeMap<u32, f64> = BTreeMap::new();
@@ -225,13 +256,13 @@ fn lowest_bodies(
     session: &Session,
     seen: &[Seen],
     parts: &[Part],
-    states: &HashMap<u32, State>,
+    known: &HashSet<u32>,
     body_of: &[usize],
 ) -> HashMap<u32, u64> {
     let touched = distinct(seen.iter().flat_map(|s| &s.terms).map(|t| t.0));
     let mut mine = Vec::new();
     for &dof in &touched {
-        if states.get(&dof).is_some_and(|s| !s.is_free()) {
+        if known.contains(&dof) {
             mine.extend([u64::from(dof), KNOWN]);
         }
         for (part, &body) in parts.iter().zip(body_of) {

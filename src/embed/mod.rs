@@ -8,10 +8,15 @@
 //! derived here from the matrices and the numbers: held dofs (`states`), shared dofs (`sharing`), bodies (`bodies`),
 //! the rows of B_gl that tie bodies (`rows`) and those of the host (`contact`), vertices, edges and faces (`classes`),
 //! and enough primal constraints that no subdomain floats in its body (`hold`).
+//!
+//! What follows from patterns and numbers alone stays in a `frame`: with other entries in the same matrices, other rows
+//! or other gaps (`again`) no more is done than they ask for, and `work` counts it.
 
+pub(crate) mod again;
 pub(crate) mod bodies;
 pub(crate) mod classes;
 pub(crate) mod contact;
+pub(crate) mod frame;
 pub(crate) mod hold;
 pub(crate) mod kernels;
 pub(crate) mod motions;
@@ -26,7 +31,10 @@ pub(crate) mod solver;
 pub(crate) mod states;
 pub(crate) mod subdomains;
 pub(crate) mod torn;
+pub(crate) mod work;
 
+pub use frame::Local;
 pub use pieces::Piece;
 pub use solver::{Embedded, GivenResults, Outcome};
 pub use torn::{GivenRow, Torn};
+pub use work::{SetUp, Work};

@@ -22,7 +22,7 @@ use crate::{Error, Result};
 
 /// A row annihilates a vector of the host if its terms cancel to less than this fraction: vectors have errors of their
 /// own, such as those of coordinates in single precision.
-const CANCELS: f64 = 1e-9;
+pub const CANCELS: f64 = 1e-9;
 
 /// A motion of the kernel is one of the known ones if this fraction of it at most is left of it beside them.
 const OUTSIDE: f64 = 1e-6;
@@ -104,6 +104,11 @@ impl Motions {
             pairs,
         };
         Ok((motions, modes.filter(|_| !own)))
+    }
+
+    /// The motions of every part.
+    pub fn bases(&self) -> &[Columns] {
+        &self.bases
     }
 
     /// The motions of part `j` and its neighbour `high` at the dofs `dofs` that they share: a row for each dof.

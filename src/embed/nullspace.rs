@@ -166,9 +166,15 @@ fn relative_energy(k: &Csr, v: &[f64]) -> f64 {
 
 /// Whether the terms of each row of K v cancel to less than `fraction` of their size.
 pub fn annihilates(k: &Csr, v: &[f64], fraction: f64) -> bool {
+    cancels(k, &k.val, v, fraction)
+}
+
+/// The same for a matrix with the pattern of `k` and other entries.
+pub fn cancels(k: &Csr, entries: &[f64], v: &[f64], fraction: f64) -> bool {
     let largest = v.iter().fold(0.0f64, |a, v| a.max(v.abs()));
     (0..k.n()).all(|i| {
-        let (col, val) = k.row(i);
+        let range = k.row_ptr[i]..k.row_ptr[i + 1];
+        let (col, val) = (&k.col[range.clone()], &entries[range]);
         let terms = col.iter().zip(val);
         let sum: f64 = terms.map(|(&j, a)| a * v[j as usize]).sum();
         let size: f64 = val.iter().map(|a| a.abs()).sum();

@@ -8,6 +8,15 @@ use super::hold::Bond;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{partition as by_petsc, Options, Session};
 use crate::Result;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Partitions that this process has looked for as the first rank of its communicator.
+static PARTITIONS: AtomicUsize = AtomicUsize::new(0);
+
+/// Number of partitions that this process has looked for so far, as the first rank of a communicator.
+pub fn partitions() -> usize {
+    PARTITIONS.load(Ordering::Relaxed)
+}
 
 /// `parts` groups of about equal size. If the option `-<prefix>mat_partitioning_type` is set, PETSc's MatPartitioning
 /// of this type makes them. Otherwise there are three candidates: PT-Scotch (where PETSc has it), and two that grow
@@ -23,6 +32,7 @@ pub fn partition(
     bonds: &[Bond],
     parts: usize,
 ) -> Result<Vec<u64>> {
+    PARTITIONS.fetch_add(usize::from(session.rank() == 0), Ordering::Relaxed);
     let chosen = Options::new(session, prefix).has("mat_partitioning_type")?;
     let found = if session.rank() == 0 && parts > 1 {
         let (row, col, weight) = graph(n, bonds);

@@ -9,7 +9,7 @@ use crate::linalg::csr::Csr;
 use crate::{Error, Result};
 
 /// Largest difference of entries (i, j) and (j, i), relative to the diagonal.
-const SYMMETRIC: f64 = 1e-9;
+pub const SYMMETRIC: f64 = 1e-9;
 
 /// The number of a global dof as one body sees it.
 pub fn body_dof(n_global: usize, body: usize, dof: u32) -> u64 {
@@ -29,12 +29,34 @@ pub struct Part {
     pub known: Vec<(u32, u32, f64)>,
 }
 
-/// The parts of this rank's pieces.
+/// Where a row of a piece went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// To this row of this part of the rank.
+    Unknown { part: u32, row: u32 },
+    /// Nowhere: its dof is known.
+    Known,
+    /// Nowhere: its dof is unknown, but the piece has no stiffness there.
+    Empty,
+}
+
+/// The rows of a piece.
+#[derive(Debug, Clone)]
+pub struct Rows {
+    /// Global dof of each, strictly increasing.
+    pub dofs: Vec<u32>,
+    /// Where each went.
+    pub place: Vec<Place>,
+    /// Whether each has more than its diagonal.
+    pub coupled: Vec<bool>,
+}
+
+/// The parts of this rank's pieces, and where the rows of each piece went.
 ///
 /// # Errors
 /// A matrix that is not symmetric, or whose diagonal is not that of a stiffness matrix.
-pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
-    let mut out = Vec::new();
+pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<(Vec<Part>, Vec<Rows>)> {
+    let (mut out, mut rows) = (Vec::new(), Vec::new());
     for piece in &torn.pieces {
         symmetric(piece, states)?;
         let label = components(torn, piece, states);
@@ -74,9 +96,23 @@ pub fn parts(torn: &Torn, states: &HashMap<u32, State>) -> Result<Vec<Part>> {
             }
             part.k.row_ptr.push(part.k.col.len());
         }
+        let first = out.len() as u32;
+        let place = |(i, l): (usize, &Option<u32>)| match l {
+            Some(l) => Place::Unknown {
+                part: first + l,
+                row: place[i],
+            },
+            None if states[&piece.dofs[i]].is_free() => Place::Empty,
+            None => Place::Known,
+        };
+        rows.push(Rows {
+            dofs: piece.dofs.clone(),
+            place: label.iter().enumerate().map(place).collect(),
+            coupled: (0..label.len()).map(|i| piece.couples(i)).collect(),
+        });
         out.append(&mut made);
     }
-    Ok(out)
+    Ok((out, rows))
 }
 
 /// The part of each dof of a piece; parts are numbered by lowest dof. `None` for known dofs and for dofs without

@@ -7,7 +7,8 @@ use std::collections::HashMap;
 /// One subdomain matrix of the host.
 #[derive(Debug, Clone)]
 pub struct Piece {
-    /// Its rows and columns, exact zeros left out.
+    /// Its rows and columns. Exact zeros are left out but for those in blocks of two nodes that are coupled: with other
+    /// coefficients they are none, and the pattern stays.
     pub k: Csr,
     /// Global number of each of its dofs, strictly increasing.
     pub dofs: Vec<u32>,
@@ -18,22 +19,33 @@ pub struct Piece {
 impl Piece {
     /// Whether some row has more than its diagonal.
     pub fn is_coupled(&self) -> bool {
-        (0..self.k.n()).any(|i| self.k.row(i).0.iter().any(|&j| j as usize != i))
+        (0..self.k.n()).any(|i| self.couples(i))
+    }
+
+    /// Whether row `i` has more than its diagonal.
+    pub fn couples(&self, i: usize) -> bool {
+        self.k.row(i).0.iter().any(|&j| j as usize != i)
     }
 }
 
-/// The pieces of a local matrix. `copies` is the block size if the map may list a dof several times, once for each
-/// subdomain that has it.
-pub fn torn_from(k: &Csr, map: &[i32], copies: Option<usize>, body: Option<u64>) -> Vec<Piece> {
+/// The pieces of a local matrix with `block_size` consecutive dofs in a node. `copies` is the same of its rows if the
+/// map may list a dof several times, once for each subdomain that has it.
+pub fn torn_from(
+    k: &Csr,
+    map: &[i32],
+    block_size: usize,
+    copies: Option<usize>,
+    body: Option<u64>,
+) -> Vec<Piece> {
     match copies {
-        Some(block_size) => pieces(k, map, block_size, body),
-        None => piece(k, map, body).into_iter().collect(),
+        Some(rows) => pieces(k, map, [block_size, rows], body),
+        None => piece(k, map, block_size, body).into_iter().collect(),
     }
 }
 
 /// A local matrix by increasing global dofs. Rows of the same dof are added (a periodic mesh on one rank has such
 /// rows), rows without a dof are left out. `None` if no row is left.
-fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
+fn piece(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Option<Piece> {
     let dofs = distinct(map.iter().filter(|&&g| g >= 0).map(|&g| g as u32));
     if dofs.is_empty() {
         return None;
@@ -45,21 +57,81 @@ fn piece(k: &Csr, map: &[i32], body: Option<u64>) -> Option<Piece> {
         let Ok(row) = place(i) else { continue };
         let (col, val) = k.row(i);
         for (&j, &v) in col.iter().zip(val) {
-            if let (Ok(at), true) = (place(j as usize), v != 0.0) {
+            if let Ok(at) = place(j as usize) {
                 triplets.push((row, at, v));
             }
         }
     }
     let k = Csr::from_triplets(dofs.len(), &triplets);
+    let node = |i: usize| dofs[i] as usize / block_size;
+    let k = without_zeros(&k, &node);
     Some(Piece { k, dofs, body })
 }
 
+/// The matrix without its exact zeros, but for those between rows that are coupled, in blocks of two nodes that have
+/// something else. Rows of a node stand side by side.
+fn without_zeros(k: &Csr, node: &dyn Fn(usize) -> usize) -> Csr {
+    if k.val.iter().all(|v| *v != 0.0) {
+        return k.clone();
+    }
+    let coupled = |i: usize| {
+        let (col, val) = k.row(i);
+        let mut entries = col.iter().zip(val);
+        entries.any(|(&j, &v)| v != 0.0 && j as usize != i)
+    };
+    let coupled: Vec<bool> = (0..k.n()).map(coupled).collect();
+    let mut out = Csr {
+        row_ptr: vec![0],
+        ..Csr::default()
+    };
+    // The first row of the node that had something last in the node of each column.
+    let mut seen = vec![usize::MAX; k.n()];
+    let firsts = first_rows(k.n(), node);
+    for i in 0..k.n() {
+        let own = firsts[i];
+        if own == i {
+            let rows = (i..k.n()).take_while(|&r| firsts[r] == i);
+            for (&j, _) in rows.flat_map(|r| {
+                let (col, val) = k.row(r);
+                col.iter().zip(val).filter(|(_, v)| **v != 0.0)
+            }) {
+                seen[firsts[j as usize]] = own;
+            }
+        }
+        let (col, val) = k.row(i);
+        for (&j, &v) in col.iter().zip(val) {
+            let both = coupled[i] && coupled[j as usize];
+            if v != 0.0 || (both && seen[firsts[j as usize]] == own) {
+                out.col.push(j);
+                out.val.push(v);
+            }
+        }
+        out.row_ptr.push(out.col.len());
+    }
+    out
+}
+
+/// The first row of the node of each row.
+fn first_rows(n: usize, node: &dyn Fn(usize) -> usize) -> Vec<usize> {
+    let mut out = Vec::with_capacity(n);
+    for i in 0..n {
+        let same = i > 0 && node(i - 1) == node(i);
+        out.push(if same { out[i - 1] } else { i });
+    }
+    out
+}
+
 /// Splits a local matrix whose map may list a dof several times, once for each subdomain that has it. The pieces are
-/// the connected parts of the matrix, where `block_size` consecutive rows belong together. Rows without off-diagonal
+/// the connected parts of the matrix, where `together` consecutive rows belong together. Rows without off-diagonal
 /// entries (boundary conditions) cannot be assigned to a subdomain and form a piece of their own.
-fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Piece> {
+fn pieces(
+    k: &Csr,
+    map: &[i32],
+    [block_size, together]: [usize; 2],
+    body: Option<u64>,
+) -> Vec<Piece> {
     let n = k.n();
-    let node = |i: usize| i / block_size;
+    let node = |i: usize| i / together;
     let alone = |i: usize| {
         let (col, val) = k.row(i);
         col.iter()
@@ -77,8 +149,8 @@ fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Pie
         while let Some(i) = stack.pop() {
             let (col, val) = k.row(i);
             let coupled = col.iter().zip(val).filter(|(_, v)| **v != 0.0);
-            let first = node(i) * block_size;
-            let siblings = (first..(first + block_size).min(n)).filter(|&j| !alone(j));
+            let first = node(i) * together;
+            let siblings = (first..(first + together).min(n)).filter(|&j| !alone(j));
             for j in coupled.map(|(&j, _)| j as usize).chain(siblings) {
                 if label[j].is_none() {
                     label[j] = Some(n_parts);
@@ -111,7 +183,7 @@ fn pieces(k: &Csr, map: &[i32], block_size: usize, body: Option<u64>) -> Vec<Pie
         }
         let part = Csr::from_triplets(rows.len(), &triplets);
         let dofs: Vec<i32> = rows.iter().map(|&i| map[i]).collect();
-        out.extend(piece(&part, &dofs, body));
+        out.extend(piece(&part, &dofs, block_size, body));
     }
     out
 }

@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::frame::Numbers;
 use super::parts::Part;
 use super::states::State;
 use super::torn::Torn;
 use crate::parallel::halo::Halo;
-use crate::petsc::Session;
+use crate::petsc::{Session, Vec as PetscVec};
 use crate::{Error, Result};
 
 /// A subdomain's share in global vectors.
@@ -29,8 +30,21 @@ struct Fixed {
     diagonal: f64,
     /// This rank's weight of the value.
     weight: f64,
+    /// The weight where the diagonal is zero: one over the number of ranks that have the dof.
+    equal: f64,
     /// Whether the host holds it; its row is then ignored.
     held: bool,
+}
+
+impl Fixed {
+    /// Takes the diagonal entry, and this rank's part of it.
+    fn weigh(&mut self, mine: f64, diagonal: f64) {
+        self.diagonal = diagonal;
+        self.weight = match diagonal == 0.0 {
+            true => self.equal,
+            false => mine / diagonal,
+        };
+    }
 }
 
 /// The shares of this rank's subdomains, and the known dofs of its pieces.
@@ -86,18 +100,17 @@ impl Shares {
         halo.sum(&ranks, &counted)?;
         halo.fetch(&counted, &mut ranks)?;
         let fixed = |(dof, mine): (u32, f64)| {
-            let (ghost, diagonal) = (place(&dof), states[&dof].diagonal());
-            Fixed {
+            let ghost = place(&dof);
+            let mut fixed = Fixed {
                 ghost,
                 dof,
-                diagonal,
-                weight: if diagonal == 0.0 {
-                    1.0 / ranks[ghost as usize]
-                } else {
-                    mine / diagonal
-                },
+                diagonal: 0.0,
+                weight: 0.0,
+                equal: 1.0 / ranks[ghost as usize],
                 held: torn.held.contains(&dof),
-            }
+            };
+            fixed.weigh(mine, states[&dof].diagonal());
+            fixed
         };
         let shares = Shares {
             n_ghosts: ghosts.len(),
@@ -105,6 +118,36 @@ impl Shares {
             fixed: found.into_iter().map(fixed).collect(),
         };
         session.agree(Ok(shares))
+    }
+
+    /// Takes the numbers of other matrices with the same rows. Collective.
+    ///
+    /// # Errors
+    /// PETSc's own.
+    pub fn renew(&mut self, halo: &Halo, layout: &PetscVec, new: &mut Numbers) -> Result<()> {
+        let own = |f: &Fixed, new: &Numbers| new.fixed.get(&f.dof).copied().unwrap_or(0.0);
+        let mut diagonal = vec![0.0; self.n_ghosts];
+        for (share, d) in self.shares.iter().zip(&new.diagonal) {
+            let terms = share.ghost.iter().zip(d);
+            terms.for_each(|(&g, d)| diagonal[g as usize] += d);
+        }
+        for fixed in &self.fixed {
+            diagonal[fixed.ghost as usize] += own(fixed, new);
+        }
+        let all = layout.duplicate()?;
+        halo.sum(&diagonal, &all)?;
+        halo.fetch(&all, &mut diagonal)?;
+        for fixed in &mut self.fixed {
+            fixed.weigh(own(fixed, new), diagonal[fixed.ghost as usize]);
+        }
+        let places: HashMap<u32, u32> = self.fixed.iter().map(|f| (f.dof, f.ghost)).collect();
+        for (j, share) in self.shares.iter_mut().enumerate() {
+            let terms = share.ghost.iter().zip(&new.diagonal[j]);
+            share.weight = terms.map(|(&g, d)| d / diagonal[g as usize]).collect();
+            let known = std::mem::take(&mut new.known[j]).into_iter();
+            share.known = known.map(|(i, dof, v)| (i, places[&dof], v)).collect();
+        }
+        Ok(())
     }
 
     /// Returns an error if a load, by ghost, is no number.

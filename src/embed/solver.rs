@@ -1,10 +1,12 @@
 //! The solver for a torn operator: makes the substructures, and maps global vectors to and from subdomains.
 
 use std::cell::{Ref, RefCell};
+use std::collections::HashSet;
 
 use super::bodies::{self, bodies, by_most_dofs, named_groups};
 use super::classes::{classes, in_space};
 use super::contact::Contact;
+use super::frame::Frame;
 use super::hold::Shape;
 use super::kernels;
 use super::motions::Motions;
@@ -15,8 +17,8 @@ use super::shares::{Shares, Values};
 use super::sharing::Sharers;
 use super::states::states;
 use super::subdomains::{subdomain, Known};
-use super::torn::Torn;
-use crate::contact::State as ContactState;
+use super::torn::{GivenRow, Torn};
+use crate::contact::{Observer, State as ContactState};
 use crate::feti::krylov::solve::Look;
 use crate::feti::Kkt;
 use crate::feti::MethodSettings;
@@ -55,19 +57,32 @@ pub struct GivenResults {
 
 /// FETI-FETI for a torn operator.
 pub struct Embedded {
-    session: Session,
-    halo: Halo,
-    n_ghosts: usize,
-    shares: Shares,
+    pub(super) session: Session,
+    pub(super) halo: Halo,
+    pub(super) frame: Frame,
+    pub(super) shares: Shares,
     /// The solver; monitors borrow it during a solve.
-    solver: RefCell<FetiFeti>,
+    pub(super) solver: RefCell<FetiFeti>,
     /// Known dofs of the present load, by ghost.
-    values: RefCell<Values>,
-    contact: Contact,
+    pub(super) values: RefCell<Values>,
+    pub(super) contact: Contact,
+    /// The rows that this rank gave.
+    pub(super) given: Vec<GivenRow>,
     /// Number of rows that tie bodies; the host's rows come after them.
-    n_ties: usize,
-    /// Start of the next contact loop, and the results of the rows that this rank gave.
-    reached: RefCell<Option<(ContactState, GivenResults)>>,
+    pub(super) n_ties: usize,
+    /// Where the last contact loop ended.
+    pub(super) reached: RefCell<Option<Reached>>,
+}
+
+/// The end of a contact loop, from which the next one starts.
+pub(super) struct Reached {
+    pub state: ContactState,
+    /// Multipliers inside bodies.
+    pub inside: Vec<f64>,
+    /// Multipliers of the rows that tie bodies.
+    pub ties: Vec<f64>,
+    /// Results of the rows that this rank gave.
+    pub given: GivenResults,
 }
 
 impl Embedded {
@@ -85,11 +100,10 @@ impl Embedded {
         let primal = settings.clone().with_options(session)?.primal;
         let (ghosts, halo) = torn.halo(session)?;
         let states = states(session, torn);
-        let mut parts = session.agree(parts(torn, &states))?;
+        let (mut parts, rows_of_pieces) = session.agree(parts(torn, &states))?;
         if let Some(numbers) = &torn.named {
             by_most_dofs(session, numbers, &halo, &ghosts, &mut parts)?;
         }
-        let parts = parts;
         let sharers = Sharers::new(session, &parts);
         let modes = torn.modes.as_deref();
         let modes = kernels::modes(modes, &halo, &ghosts, &parts)?;
@@ -138,8 +152,10 @@ impl Embedded {
             nodes.extend((0..part.dofs.len() as u32).filter(wanted));
         }
         let mine = &shape.body_of[sharers.first..sharers.first + parts.len()];
-        let contact = Contact::new(session, torn, &parts, &states, mine)?;
+        let known = states.iter().filter(|(_, s)| !s.is_free());
+        let known: HashSet<u32> = known.map(|(dof, _)| *dof).collect();
         let (n, body_of) = (torn.n_global, &shape.body_of);
+        let contact = Contact::new(session, n, &torn.rows, &parts, &known, mine)?;
         let mut rows = rows(session, n, &parts, &sharers, body_of, &contact);
         let n_ties = rows.len();
         rows.extend(contact.rows());
@@ -147,7 +163,13 @@ impl Embedded {
             let known = modes.as_ref().filter(|_| !motions.loose[sharers.first + j]);
             known.map(|m| m[j].clone())
         };
-        let local = parts.iter().enumerate().map(|(j, part)| {
+        let shares = Shares::new(session, torn, &parts, &states, (&ghosts, &halo))?;
+        let kernels = parts
+            .iter()
+            .zip(motions.bases())
+            .map(|(part, basis)| (basis.clone(), Frame::cancelled(&part.k, &part.k.val, basis)));
+        let kernels = kernels.collect();
+        let local = parts.iter_mut().enumerate().map(|(j, part)| {
             let known = Known {
                 index: sharers.first + j,
                 near_kernel: columns(j),
@@ -166,16 +188,29 @@ impl Embedded {
             local: local.collect(),
             rows,
         };
-        let shares = Shares::new(session, torn, &parts, &states, (&ghosts, &halo))?;
+        // The solver has their loads.
+        parts.iter_mut().for_each(|p| p.known = Vec::new());
         let solver = FetiFeti::new(session, problem, settings)?;
         Ok(Embedded {
             session: session.clone(),
             halo,
-            n_ghosts: ghosts.len(),
+            frame: Frame {
+                n_global: torn.n_global,
+                block_size: torn.block_size,
+                layout: torn.layout.clone(),
+                ghosts,
+                known,
+                rows: rows_of_pieces,
+                parts,
+                sharers,
+                body_of: shape.body_of,
+                motions: kernels,
+            },
             shares,
             solver: RefCell::new(solver),
             values: RefCell::default(),
             contact,
+            given: torn.rows.clone(),
             n_ties,
             reached: RefCell::default(),
         })
@@ -202,25 +237,30 @@ impl Embedded {
     }
 
     /// Solves for the right-hand side b with the rows that the host gave. `held` has the values of the dofs that the
-    /// host holds, and zero elsewhere. A contact loop starts from the result of the last one. Collective.
+    /// host holds, and zero elsewhere. A contact loop starts from the result of the last one; `observe` is called after
+    /// each of its steps. Collective.
     ///
     /// # Errors
-    /// As [`Embedded::solve`]; also rows that contradict each other.
+    /// As [`Embedded::solve`]; also rows that contradict each other, and those of `observe`.
     pub fn solve_with_rows(
         &self,
         b: &PetscVec,
         held: Option<&PetscVec>,
         x: &PetscVec,
+        observe: &mut Observer,
     ) -> Result<Outcome> {
         self.load(b, held)?;
-        let start = self.reached.take().map(|(state, _)| state);
+        let start = self.reached.take().map(|reached| reached.state);
         let start = start.filter(|_| self.contact.inequalities);
-        let solution = self
-            .solver()
-            .solve_from(start.as_ref(), &mut |_, _| Ok(()))?;
+        let solution = self.solver().solve_from(start.as_ref(), observe)?;
         self.put_together(&solution.u, x)?;
-        let given = self.of_given_rows(&solution);
-        self.reached.replace(Some((solution.warm_start(), given)));
+        let ties = solution.rows()[..self.n_ties].iter();
+        self.reached.replace(Some(Reached {
+            state: solution.warm_start(),
+            inside: solution.inside_bodies().to_vec(),
+            ties: ties.map(|row| row.multiplier).collect(),
+            given: self.of_given_rows(&solution),
+        }));
         Ok(outcome(&solution))
     }
 
@@ -234,7 +274,7 @@ impl Embedded {
         self.reached
             .borrow()
             .as_ref()
-            .map(|(_, given)| given.clone())
+            .map(|reached| reached.given.clone())
     }
 
     /// The results of the host's rows, on the ranks that gave them. Collective.
@@ -252,10 +292,10 @@ impl Embedded {
 
     /// Passes loads and gaps to the solver. Collective.
     fn load(&self, b: &PetscVec, held: Option<&PetscVec>) -> Result<()> {
-        let mut load = vec![0.0; self.n_ghosts];
+        let mut load = vec![0.0; self.frame.ghosts.len()];
         self.halo.fetch(b, &mut load)?;
         self.session.agree(self.shares.finite(&load))?;
-        let mut given = vec![0.0; self.n_ghosts];
+        let mut given = vec![0.0; self.frame.ghosts.len()];
         if let Some(held) = held {
             self.halo.fetch(held, &mut given)?;
         }

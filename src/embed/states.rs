@@ -40,9 +40,7 @@ pub fn states(session: &Session, torn: &Torn) -> HashMap<u32, State> {
     let mut reports: Vec<Vec<u64>> = vec![Vec::new(); size];
     for piece in &torn.pieces {
         for (i, &dof) in piece.dofs.iter().enumerate() {
-            let (col, _) = piece.k.row(i);
-            let coupled = col.iter().any(|&j| j as usize != i);
-            let full = coupled && !torn.held.contains(&dof);
+            let full = piece.couples(i) && !torn.held.contains(&dof);
             let word = u64::from(dof) << 1 | u64::from(full);
             reports[dof as usize % size].extend([word, piece.k.get(i, i).to_bits()]);
         }

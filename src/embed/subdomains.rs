@@ -21,8 +21,8 @@ pub struct Known<'a> {
     pub nodes: &'a BTreeSet<u32>,
 }
 
-/// The subdomain, without a load; `n_global` is the number of global dofs.
-pub fn subdomain(n_global: usize, part: &Part, shape: &Shape, known: Known) -> Subdomain {
+/// The subdomain, without a load; `n_global` is the number of global dofs. The matrix is taken out of the part.
+pub fn subdomain(n_global: usize, part: &mut Part, shape: &Shape, known: Known) -> Subdomain {
     let body = shape.body_of[known.index];
     let (vertices, others): (Vec<&Class>, Vec<&Class>) =
         known.classes.iter().partition(|c| c.is_vertex());
@@ -43,7 +43,7 @@ pub fn subdomain(n_global: usize, part: &Part, shape: &Shape, known: Known) -> S
         f: vec![0.0; part.dofs.len()],
         dofs: part.dofs.iter().map(number).collect(),
         rho: part.k.diagonal(),
-        k: part.k.clone(),
+        k: std::mem::take(&mut part.k),
         primal: primal.into_iter().collect(),
         entities: others.iter().map(entity).collect(),
         near_kernel: known.near_kernel,

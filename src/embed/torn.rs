@@ -58,7 +58,7 @@ impl Torn {
         let (k, map) = session.agree(a.local_part())?;
         let (layout, block_size) = (a.right_vec()?, a.block_size()?);
         let copies = a.is_repeated()?.then_some(block_size);
-        let pieces = torn_from(&k, &map, copies, body);
+        let pieces = torn_from(&k, &map, block_size, copies, body);
         Ok(Torn {
             n_global: rows,
             block_size,
@@ -95,6 +95,12 @@ pub fn unassembled(a: &Mat) -> Result<()> {
     let kind = a.type_name()?;
     if kind == "is" {
         return Ok(());
+    }
+    if kind == "nest" {
+        return Err(Error::input(
+            "the operator is of type nest (MATNEST), expected is (MATIS): a PCFIELDSPLIT gives each block to a KSP of \
+             its own, which for those with a MATIS may be of type fetifeti; several bodies are for FetiFetiAddMatIS",
+        ));
     }
     Err(Error::input(format!(
         "the operator is of type {kind}, expected is (MATIS): \

@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, Ref};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use super::facts::Facts;
 use super::krylov::check;
@@ -10,6 +11,8 @@ use super::krylov::tally::Communication;
 use super::operators::dual::Dual;
 use super::settings::MethodSettings;
 use super::subdomain::kept::Kept;
+use crate::cholesky::interior::Analysed;
+use crate::parallel::exchange::any;
 use crate::petsc::{Ksp, Session};
 use crate::substructures::{InterfaceRow, Substructures};
 use crate::Result;
@@ -28,6 +31,17 @@ pub struct LinearMethod {
     pub(crate) length: Cell<f64>,
     /// The largest ratio of coefficients inside a body.
     pub(crate) varies: f64,
+    /// What is kept of the pattern of each local subdomain.
+    pub(super) analysed: Vec<Option<Arc<Analysed>>>,
+}
+
+/// Other numbers for the matrix of a subdomain, whose pattern stays.
+#[derive(Debug, Clone)]
+pub struct Numbers {
+    /// The entries of K in their order.
+    pub k: Vec<f64>,
+    /// ρ of each dof ([`Subdomain::rho`](crate::Subdomain::rho)).
+    pub rho: Vec<f64>,
 }
 
 impl LinearMethod {
@@ -57,10 +71,8 @@ impl LinearMethod {
     pub fn set_rows(&mut self, rows: Vec<InterfaceRow>) -> Result<()> {
         let adapted = self.facts.adaptive_constraints.iter().any(|n| *n > 0);
         // Adaptive constraints have changed the operators of subdomains.
-        let kept = (!adapted).then(|| {
-            let dual = self.dual();
-            Kept::new(&dual.stiffness.jump, &dual.stiffness.locals)
-        });
+        let kept = self.kept();
+        let kept = if adapted { kept.patterns() } else { kept };
         let problem = Substructures {
             local: std::mem::take(&mut self.problem.local),
             body_names: std::mem::take(&mut self.problem.body_names),
@@ -69,10 +81,59 @@ impl LinearMethod {
         };
         let (length, seconds) = (self.length.get(), self.facts.setup_seconds);
         let settings = self.settings.clone();
-        *self = LinearMethod::keeping(&self.session.clone(), problem, settings, kept.as_ref())?;
+        *self = LinearMethod::keeping(&self.session.clone(), problem, settings, Some(&kept))?;
         self.length.set(length);
         self.facts.setup_seconds += seconds;
         Ok(())
+    }
+
+    /// The same problem with other numbers in all matrices, and with other rows if there are some. Patterns are not
+    /// analysed again. `None` if a subdomain turns out to have motions without energy that it did not have: whatever
+    /// follows from its motions is no longer right. Collective.
+    ///
+    /// # Errors
+    /// As [`LinearMethod::new`].
+    pub fn renewed(
+        self,
+        numbers: Vec<Numbers>,
+        rows: Option<Vec<InterfaceRow>>,
+    ) -> Result<Option<LinearMethod>> {
+        let session = self.session.clone();
+        let kept = self.kept().patterns();
+        let free = |method: &LinearMethod| -> Vec<usize> {
+            let dual = method.dual();
+            let fixing = dual.stiffness.locals.iter().map(|l| l.gamma().fixing.len());
+            fixing.collect()
+        };
+        let before = free(&self);
+        let (length, seconds) = (self.length.get(), self.facts.setup_seconds);
+        let LinearMethod {
+            mut problem,
+            settings,
+            ..
+        } = self;
+        for (sub, new) in problem.local.iter_mut().zip(numbers) {
+            assert_eq!(
+                (sub.k.val.len(), sub.rho.len()),
+                (new.k.len(), new.rho.len())
+            );
+            (sub.k.val, sub.rho) = (new.k, new.rho);
+        }
+        problem.rows = rows.unwrap_or(problem.rows);
+        let mut out = LinearMethod::keeping(&session, problem, settings, Some(&kept))?;
+        let more = free(&out).iter().zip(&before).any(|(now, then)| now > then);
+        if any(session.comm(), more) {
+            return Ok(None);
+        }
+        out.length.set(length);
+        out.facts.setup_seconds += seconds;
+        Ok(Some(out))
+    }
+
+    /// The subdomains as they are factored. The operators may have adaptive constraints that rows do not know.
+    fn kept(&self) -> Kept {
+        let dual = self.dual();
+        Kept::new(&dual.stiffness.jump, &dual.stiffness.locals, &self.analysed)
     }
 
     /// Changes Z^k to `active` (one per owned row). Returns the number of rows that changed over all ranks. Collective.

@@ -24,6 +24,7 @@ pub use krylov::certificate::Kkt;
 pub(crate) use krylov::recovery::LinearSolution;
 pub use krylov::tally::Communication;
 pub(crate) use method::LinearMethod;
+pub use method::Numbers;
 pub use settings::{
     Adaptive, CoarseFunctions, MethodSettings, Operators, PcType, Precision, Primal, ProjectorKind,
     Scaling,

@@ -241,6 +241,9 @@ pub struct MethodSettings {
     /// Blocks of rows between bodies that have more rows than this are scaled with a sparse factorisation. There is no
     /// option for it: both ways give the same operators after rounding.
     pub coupled: usize,
+    /// Whether analyses of the patterns of subdomains are kept for matrices with other numbers
+    /// ([`FetiFeti::renewed`](crate::FetiFeti::renewed)).
+    pub keeps_analyses: bool,
     /// `fetifeti_check`: print the identities of the theory with their defects.
     pub check: bool,
     /// `fetifeti_spectrum`: exact extreme eigenvalues of the preconditioned operator.
@@ -269,6 +272,7 @@ impl Default for MethodSettings {
             local: LocalSolver::default(),
             threads: None,
             coupled: MANY,
+            keeps_analyses: false,
             check: false,
             spectrum: false,
             rtol: 1e-6,

@@ -26,7 +26,7 @@ use super::primal::refinement::{self, Refinement};
 use super::primal::space::PrimalSpace;
 use super::projector::natural::NaturalCoarse;
 use super::settings::{MethodSettings, PcType, Scaling};
-use super::subdomain::factor::{factor, no_factor};
+use super::subdomain::factor::{factor, no_factor, Factored};
 use super::subdomain::kept::Kept;
 use super::subdomain::scaled::Scaled;
 use crate::parallel::clock::{self, Phase};
@@ -40,7 +40,6 @@ use crate::{Error, Result};
 const GROWTH: f64 = 1e12;
 
 /// Number of adaptive primal constraints of each body, and the seconds for finding them.
-#[derive(Default)]
 struct Added {
     constraints: Vec<usize>,
     seconds: f64,
@@ -59,8 +58,8 @@ impl LinearMethod {
         LinearMethod::keeping(session, problem, settings, None)
     }
 
-    /// The same for a problem of which only the rows differ from one that is set up: its subdomains stay factored where
-    /// their interface is the same. Collective.
+    /// The same for a problem of which only rows, or rows and the numbers of matrices differ from one that is set up:
+    /// where the interface of a subdomain is the same, its factors or its analysis are kept. Collective.
     ///
     /// # Errors
     /// As [`LinearMethod::new`].
@@ -85,7 +84,7 @@ impl LinearMethod {
         let kind = settings.pc_type.unwrap_or_else(|| {
             choice::preconditioner(comm, &problem, &sharing, &jump, settings.coarse_functions())
         });
-        let (locals, added) = subdomains(
+        let (Factored { locals, analysed }, added) = subdomains(
             session,
             &problem,
             &sharing,
@@ -142,6 +141,7 @@ impl LinearMethod {
             },
             length: Cell::new(0.0),
             varies,
+            analysed,
         })
     }
 }
@@ -154,13 +154,16 @@ fn subdomains(
     jump: &mut Jump,
     team: &Team,
     (kind, scaling, settings, kept): (PcType, Scaling, &MethodSettings, Option<&Kept>),
-) -> Result<(Vec<Scaled>, Added)> {
+) -> Result<(Factored, Added)> {
     let comm = session.comm();
     let kept = kept.map_or(Vec::new(), |kept| kept.still(jump));
     let factored = clock::timed(Phase::LocalSetup, || {
         factor(session, problem, jump, team, (settings, kind), &kept)
     });
-    let mut locals = session.agree(factored)?;
+    let Factored {
+        mut locals,
+        analysed,
+    } = session.agree(factored)?;
     for (j, local) in locals.iter().enumerate() {
         jump.place(j, &local.gamma().interface);
     }
@@ -179,7 +182,7 @@ fn subdomains(
         constraints: added,
         seconds: adapting.elapsed().as_secs_f64(),
     };
-    Ok((locals, added))
+    Ok((Factored { locals, analysed }, added))
 }
 
 /// S̃⁺: the subdomains and the primal problem of their bodies. Collective.

@@ -26,7 +26,7 @@ static void Stiffness(PetscScalar k[64])
 }
 
 /* m x m nodes, the bottom held where that is wanted; a load that is nowhere zero. */
-static PetscErrorCode Block(PetscInt m, PetscBool hold, PetscBool near, DM *da, Mat *A, Vec *b)
+static PetscErrorCode BlockOn(MPI_Comm comm, PetscInt m, PetscBool hold, PetscBool near, DM *da, Mat *A, Vec *b)
 {
   PetscScalar     ke[64];
   const PetscInt *e;
@@ -37,8 +37,8 @@ static PetscErrorCode Block(PetscInt m, PetscBool hold, PetscBool near, DM *da, 
   MatNullSpace    motions;
 
   PetscFunctionBeginUser;
-  PetscCall(DMDACreate2d(PETSC_COMM_WORLD, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_BOX, m, m, PETSC_DECIDE,
-                         PETSC_DECIDE, 2, 1, NULL, NULL, da));
+  PetscCall(DMDACreate2d(comm, DM_BOUNDARY_NONE, DM_BOUNDARY_NONE, DMDA_STENCIL_BOX, m, m, PETSC_DECIDE, PETSC_DECIDE,
+                         2, 1, NULL, NULL, da));
   PetscCall(DMSetMatType(*da, MATIS));
   PetscCall(DMSetUp(*da));
   PetscCall(DMDASetElementType(*da, DMDA_ELEMENT_Q1));
@@ -69,11 +69,16 @@ static PetscErrorCode Block(PetscInt m, PetscBool hold, PetscBool near, DM *da, 
   if (hold) {
     PetscCall(DMDAGetAO(*da, &ao));
     for (k = 0; k < 2; k++) {
-      PetscCall(ISCreateStride(PETSC_COMM_WORLD, first ? 0 : m, k, 2, &low));
+      PetscCall(ISCreateStride(comm, first ? 0 : m, k, 2, &low));
       PetscCall(AOApplicationToPetscIS(ao, low));
       PetscCall(MatZeroRowsColumnsIS(*A, low, 1.0, NULL, NULL));
       PetscCall(ISDestroy(&low));
     }
   }
   PetscFunctionReturn(0);
+}
+
+static inline PetscErrorCode Block(PetscInt m, PetscBool hold, PetscBool near, DM *da, Mat *A, Vec *b)
+{
+  return BlockOn(PETSC_COMM_WORLD, m, hold, near, da, A, b);
 }

@@ -170,6 +170,12 @@ impl Program {
         Program(program)
     }
 
+    /// The path of the program.
+    #[allow(dead_code)] // not every test program needs it
+    pub fn path(&self) -> &str {
+        &self.0
+    }
+
     /// Runs the program with these options, separated by blanks.
     pub fn run(&self, ranks: usize, options: &str) -> Output {
         let args: Vec<&str> = options.split_whitespace().collect();

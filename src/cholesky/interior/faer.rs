@@ -18,7 +18,7 @@ use super::factor::{Condensation, Factor, SparseCholesky};
 use super::order::Elimination;
 use super::triangle::Triangle;
 use crate::cholesky::multifrontal::SingularInterior;
-use crate::cholesky::symbolic::Keep;
+use crate::cholesky::symbolic::{analysed, Keep};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 
@@ -32,6 +32,7 @@ pub struct Faer {
 impl Faer {
     /// Chooses supernodes where the number of operations is worth it, or where S has to be read off the factor.
     pub fn new(k: &Csr, order: Elimination) -> Result<Faer, NoFactor> {
+        analysed();
         let triangle = Triangle::new(k, &order);
         let threshold = if order.interface.is_empty() {
             SupernodalThreshold::AUTO

@@ -14,6 +14,7 @@
 //!
 //! With both solvers, a pivot is an error if it is not positive, or is below 1e-13 of the diagonal entry it came from.
 
+mod analysed;
 mod analysis;
 mod boundary;
 mod factor;
@@ -27,15 +28,19 @@ mod triangle;
 #[path = "../../../tests/inside/cholesky/interior.rs"]
 mod tests;
 
+use std::sync::Arc;
+
 use super::symbolic::{Keep, Symbolic};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::petsc::{named, Options};
 use crate::{Error, Result};
 
+pub use analysed::Analysed;
 pub use analysis::{Analysis, NoFactor};
 pub use factor::Factor;
 pub use order::{Elimination, Ordering};
+pub use own::Own;
 
 /// The solver that factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -114,30 +119,30 @@ impl LocalSolver {
         k: &Csr,
         interface: &[u32],
         coordinates: Option<&[[f64; 3]]>,
-    ) -> std::result::Result<Box<dyn Analysis>, NoFactor> {
+    ) -> std::result::Result<Arc<dyn Analysis>, NoFactor> {
         let ordering = self.ordering.taken();
         if (self.kind, ordering) == (Solver::Multifrontal, Ordering::Nd) {
             // Nested dissection yields the fronts directly: no elimination tree is needed.
             let symbolic = Symbolic::new(k, interface, coordinates);
-            return Ok(Box::new(own::Own::new(symbolic)));
+            return Ok(Arc::new(Own::new(symbolic)));
         }
         let order =
             Elimination::new(k, interface, coordinates, ordering).map_err(NoFactor::Failed)?;
         Ok(match self.kind {
-            Solver::Faer if !order.interior.is_empty() => Box::new(faer::Faer::new(k, order)?),
+            Solver::Faer if !order.interior.is_empty() => Arc::new(faer::Faer::new(k, order)?),
             // This arm also serves an empty interior.
             _ => {
                 let symbolic = Symbolic::with_supernodes(k, interface, &order.supernodes);
-                Box::new(own::Own::new(symbolic))
+                Arc::new(Own::new(symbolic))
             }
         })
     }
 
-    /// A condenser that analyses each matrix anew.
+    /// A condenser that analyses each matrix anew and keeps nothing of it.
     pub(crate) fn condenser(self, keep: Keep) -> Condenser<'static> {
         Condenser {
             solver: self,
-            analysis: None,
+            analysed: None,
             keep,
         }
     }
@@ -148,14 +153,14 @@ impl LocalSolver {
 pub struct Condenser<'a> {
     /// The solver and the ordering.
     pub solver: LocalSolver,
-    /// The analysis of a matrix with the same pattern and interface, if there is one.
-    pub analysis: Option<&'a dyn Analysis>,
+    /// Where analyses of the same pattern and interface are found and left, if they are to be used again.
+    pub analysed: Option<&'a Analysed>,
     /// The part of the factor that is kept.
     pub keep: Keep,
 }
 
 impl Condenser<'_> {
-    /// Returns the factor and S of `k`; analyses `k` first where there is no analysis yet.
+    /// Returns the factor and S of `k`; analyses `k` first where that has not been done.
     ///
     /// # Errors
     /// [`NoFactor`].
@@ -165,12 +170,15 @@ impl Condenser<'_> {
         interface: &[u32],
         coordinates: Option<&[[f64; 3]]>,
     ) -> std::result::Result<(Factor, Dense), NoFactor> {
-        match self.analysis {
-            Some(analysis) => analysis.condense(k, self.keep),
-            None => {
-                let analysis = self.solver.analyse(k, interface, coordinates)?;
-                analysis.condense(k, self.keep)
-            }
+        if let Some(analysis) = self.analysed.and_then(|a| a.dense.get()) {
+            return analysis.condense(k, self.keep);
         }
+        let analysis = self.solver.analyse(k, interface, coordinates)?;
+        let made = analysis.condense(k, self.keep);
+        if let Some(analysed) = self.analysed {
+            // Another thread may have left one in the meantime, which is the same.
+            let _ = analysed.dense.set(analysis);
+        }
+        made
     }
 }

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::analysis::{Analysis, NoFactor};
 use super::factor::{Factor, SparseCholesky};
-use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use crate::cholesky::symbolic::{Keep, Symbolic};
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
@@ -25,6 +25,19 @@ impl Own {
             inside: OnceLock::new(),
         }
     }
+
+    /// Factors the interior of `k` for solves with it; returns S, too.
+    ///
+    /// # Errors
+    /// A pivot that vanishes.
+    pub fn solver(&self, k: &Csr) -> Result<(PartialCholesky, Dense), SingularInterior> {
+        PartialCholesky::inside(k, &self.symbolic, self.inside())
+    }
+
+    fn inside(&self) -> Arc<Symbolic> {
+        let inside = || Arc::new(self.symbolic.inside());
+        self.inside.get_or_init(inside).clone()
+    }
 }
 
 impl Analysis for Own {
@@ -37,11 +50,7 @@ impl Analysis for Own {
     fn condense(&self, k: &Csr, keep: Keep) -> Result<(Factor, Dense), NoFactor> {
         let (factor, s) = match keep {
             Keep::Boundary => PartialCholesky::new(k, self.symbolic.clone())?,
-            Keep::Interior => {
-                let inside = || Arc::new(self.symbolic.inside());
-                let inside = self.inside.get_or_init(inside).clone();
-                PartialCholesky::inside(k, &self.symbolic, inside)?
-            }
+            Keep::Interior => self.solver(k)?,
         };
         Ok((Factor::new(k, &self.symbolic.interface, factor, keep), s))
     }

@@ -133,9 +133,11 @@ pub fn kinds<'a>(problem: &'a Substructures, jump: &'a Jump, first: &[Likeness])
 }
 
 /// The form of each kind: the one asked for, or the cheaper one with `applications`. Dense operators take at most
-/// `memory` bytes where sparse solves are possible. They are preferred if S itself is needed (`wants_s`).
+/// `memory` bytes where sparse solves are possible. They are preferred if S itself is needed (`wants_s`). Kinds with a
+/// form `so_far` keep it if memory suffices: nothing is counted for them.
 pub fn choose(
     kinds: &[Kind],
+    so_far: &[Option<OperatorForm>],
     team: &Team,
     asked: Operators,
     applications: f64,
@@ -151,12 +153,22 @@ pub fn choose(
     if wants_s && bytes <= memory {
         return vec![OperatorForm::Explicit; kinds.len()];
     }
-    let costs = team.map(kinds.len(), |k| cost(&kinds[k], bytes > memory));
-    let form = |c: &Option<Cost>| match c {
-        Some(c) if c.gain(applications) < 0.0 && !wants_s => OperatorForm::Implicit,
+    let dense = |k: &usize| so_far[*k] != Some(OperatorForm::Implicit);
+    let least: f64 = (0..kinds.len())
+        .filter(dense)
+        .map(|k| dense_bytes(&kinds[k]))
+        .sum();
+    let keep = least <= memory;
+    let costs = team.map(kinds.len(), |k| match so_far[k] {
+        Some(_) if keep => None,
+        _ => cost(&kinds[k], least > memory),
+    });
+    let form = |(k, c): (usize, &Option<Cost>)| match (so_far[k], c) {
+        (Some(form), _) if keep => form,
+        (_, Some(c)) if c.gain(applications) < 0.0 && !wants_s => OperatorForm::Implicit,
         _ => OperatorForm::Explicit,
     };
-    let mut forms: Vec<OperatorForm> = costs.iter().map(form).collect();
+    let mut forms: Vec<OperatorForm> = costs.iter().enumerate().map(form).collect();
     let mut used: f64 = 0.0;
     let mut dense: Vec<usize> = (0..kinds.len())
         .filter(|&k| forms[k] == OperatorForm::Explicit)

@@ -67,6 +67,7 @@ impl Sizes {
         let contact = jump.inequality.iter().any(|i| *i);
         let forms = forms::choose(
             &kinds,
+            &vec![None; kinds.len()],
             team,
             Operators::Auto,
             forms::APPLICATIONS[usize::from(contact)],

@@ -6,10 +6,11 @@ use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use super::equal::{self, Likeness};
+use super::kept::Still;
 use super::problem::LocalProblem;
 use super::scaled::Scaled;
 use super::which::OperatorForm;
-use crate::cholesky::interior::{Analysis, Condenser, LocalSolver, NoFactor, Solver};
+use crate::cholesky::interior::{Analysed, Condenser, LocalSolver, NoFactor, Solver};
 use crate::cholesky::multifrontal::SingularInterior;
 use crate::feti::cost::forms::{self, Kind};
 use crate::feti::jump::operator::Jump;
@@ -19,15 +20,22 @@ use crate::petsc::Session;
 use crate::substructures::{Subdomain, Substructures};
 use crate::{Error, Result};
 
-/// Factors one subdomain of each kind, but for the subdomains that `kept` has already; it may be empty.
+/// The local subdomains, factored.
+pub(crate) struct Factored {
+    pub locals: Vec<Scaled>,
+    /// The analysis of each one's pattern, if the settings want it or it was there already.
+    pub analysed: Vec<Option<Arc<Analysed>>>,
+}
+
+/// Factors one subdomain of each kind. `kept` has what of them is known already; it may be empty.
 pub(crate) fn factor(
     session: &Session,
     problem: &Substructures,
     jump: &Jump,
     team: &Team,
     (settings, kind): (&MethodSettings, PcType),
-    kept: &[Option<Scaled>],
-) -> Result<Vec<Scaled>> {
+    kept: &[Still],
+) -> Result<Factored> {
     // A matrix S is needed by every user that multiplies with it or reads its entries before the iteration begins.
     let wants_s = kind == PcType::CoarseCorrected
         || settings.scaling == Some(Scaling::Deluxe)
@@ -43,8 +51,15 @@ pub(crate) fn factor(
     }
     let first = equal::representatives(problem, jump, team);
     let kinds = forms::kinds(problem, jump, &first);
+    let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
+    let known = |j: usize| kept.get(j).and_then(|k| k.whole.as_ref());
+    let forms_so_far: Vec<Option<OperatorForm>> = kinds
+        .iter()
+        .map(|k| kept.get(k.j).and_then(|k| k.form))
+        .collect();
     let forms = forms::choose(
         &kinds,
+        &forms_so_far,
         team,
         if ours {
             settings.operators
@@ -57,18 +72,24 @@ pub(crate) fn factor(
             .map_or(forms::usual_memory(session.size()), |mb| 1e6 * mb as f64),
         wants_s,
     );
-    let place = |j: usize| kinds.binary_search_by_key(&j, |k| k.j).expect("a kind");
-    let known = |j: usize| kept.get(j).and_then(Option::as_ref);
     let mut needed = vec![false; kinds.len()];
     for (j, like) in first.iter().enumerate() {
         needed[place(like.first)] |= known(j).is_none();
     }
-    let analyses = analyses(&kinds, (&forms, &needed), team, settings.local);
+    let found = |j: usize| kept.get(j).and_then(|k| k.analysed.clone());
+    let keeps = settings.keeps_analyses;
+    let analysed = analyses(
+        &kinds,
+        (&forms, &needed),
+        (&found, keeps),
+        team,
+        settings.local,
+    );
     let make = |k: usize, j: usize| {
         let (kind, sub) = (&kinds[k], &problem.local[j]);
         let condenser = Condenser {
             solver: settings.local,
-            analysis: analyses.of[k].map(|a| &*analyses.all[a]),
+            analysed: analysed[k].as_deref(),
             keep: kind.keep(),
         };
         let averages = jump.averages[j].iter();
@@ -111,63 +132,72 @@ pub(crate) fn factor(
         turned.push((like.first, new.clone()));
         Ok(new)
     };
-    first.iter().enumerate().map(of).collect()
+    let locals: Result<Vec<Scaled>> = first.iter().enumerate().map(of).collect();
+    let pattern = |(j, like): (usize, &Likeness)| {
+        if known(j).is_some() {
+            return found(j);
+        }
+        analysed[place(like.first)].clone().filter(|_| keeps)
+    };
+    Ok(Factored {
+        locals: locals?,
+        analysed: first.iter().enumerate().map(pattern).collect(),
+    })
 }
 
-/// Symbolic analyses of patterns that several kinds share.
-struct Analyses {
-    all: Vec<Box<dyn Analysis>>,
-    /// The one of each kind.
-    of: Vec<Option<usize>>,
-}
-
-/// One symbolic analysis for all kinds with dense operators that have the same pattern and interface. Different
-/// coefficients and moved nodes change values only.
+/// The analyses of each kind that has to be factored: those that are `found` already for its representative, one for
+/// all kinds with the same pattern and interface otherwise. Different coefficients and moved nodes change values only.
+/// A pattern of a single kind is analysed during its factorisation; its analysis is dropped then, unless it is to be
+/// kept (`keeps`).
 fn analyses(
     kinds: &[Kind],
     (forms, needed): (&[OperatorForm], &[bool]),
+    (found, keeps): (&dyn Fn(usize) -> Option<Arc<Analysed>>, bool),
     team: &Team,
     solver: LocalSolver,
-) -> Analyses {
-    let mut found: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
+) -> Vec<Option<Arc<Analysed>>> {
+    let mut groups: HashMap<u64, Vec<Vec<usize>>> = HashMap::new();
     let hashes = team.map(kinds.len(), |k| pattern_hash(&kinds[k]));
-    for (k, hash) in hashes.iter().enumerate() {
-        if needed[k] && forms[k] == OperatorForm::Explicit {
-            let groups = found.entry(*hash).or_default();
-            match groups
-                .iter_mut()
-                .find(|g| same_pattern(&kinds[g[0]], &kinds[k]))
-            {
-                Some(group) => group.push(k),
-                None => groups.push(vec![k]),
-            }
+    for (k, hash) in hashes.iter().enumerate().filter(|(k, _)| needed[*k]) {
+        let alike = groups.entry(*hash).or_default();
+        match alike
+            .iter_mut()
+            .find(|g| same_pattern(&kinds[g[0]], &kinds[k]))
+        {
+            Some(group) => group.push(k),
+            None => alike.push(vec![k]),
         }
     }
-    // A pattern of a single kind is analysed during its factorisation and then dropped.
-    let mut shared: Vec<Vec<usize>> = found
-        .into_values()
-        .flatten()
-        .filter(|g| g.len() > 1)
-        .collect();
-    shared.sort_unstable();
-    let made = team.map(shared.len(), |g| {
-        let kind = &kinds[shared[g][0]];
+    let mut groups: Vec<Vec<usize>> = groups.into_values().flatten().collect();
+    groups.sort_unstable();
+    let mut out = vec![None; kinds.len()];
+    // Groups whose kinds would otherwise all analyse the pattern.
+    let mut open = Vec::new();
+    for group in &groups {
+        let mut of_group = group.iter().filter_map(|&k| found(kinds[k].j));
+        let dense = |k: &&usize| forms[**k] == OperatorForm::Explicit;
+        let shared = group.iter().filter(dense).count() > 1;
+        let Some(analysed) = of_group
+            .next()
+            .or_else(|| (keeps || shared).then(Arc::default))
+        else {
+            continue;
+        };
+        if shared && analysed.dense.get().is_none() {
+            open.push((group[0], analysed.clone()));
+        }
+        group.iter().for_each(|&k| out[k] = Some(analysed.clone()));
+    }
+    team.map(open.len(), |g| {
+        let (k, analysed) = &open[g];
+        let kind = &kinds[*k];
         let interface = [kind.delta, kind.primal].concat();
-        solver
-            .analyse(&kind.sub.k, &interface, kind.sub.coordinates.as_deref())
-            .ok()
-    });
-    let mut out = Analyses {
-        all: Vec::new(),
-        of: vec![None; kinds.len()],
-    };
-    // A failed analysis is repeated, and reported, for each of its kinds.
-    for (analysis, group) in made.into_iter().zip(&shared) {
-        if let Some(analysis) = analysis {
-            group.iter().for_each(|&k| out.of[k] = Some(out.all.len()));
-            out.all.push(analysis);
+        let made = solver.analyse(&kind.sub.k, &interface, kind.sub.coordinates.as_deref());
+        // A failed analysis is repeated, and reported, for each of its kinds.
+        if let Ok(made) = made {
+            let _ = analysed.dense.set(made);
         }
-    }
+    });
     out
 }
 

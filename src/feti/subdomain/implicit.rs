@@ -13,10 +13,9 @@
 //! application reads both factors twice. This pays in space, where S is nearly as large as a factor and takes many
 //! times as long to compute.
 
-use std::sync::Arc;
-
 use super::basis::Basis;
 use super::which::Operator;
+use crate::cholesky::interior::{Analysed, Own};
 use crate::cholesky::multifrontal::{PartialCholesky, SingularInterior};
 use crate::cholesky::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
@@ -56,7 +55,8 @@ pub struct Coarse {
 }
 
 impl Implicit {
-    /// Factors K_II and K_rr. Returns `None` if the vertices do not hold the subdomain.
+    /// Factors K_II and K_rr. Returns `None` if the vertices do not hold the subdomain. Analyses of the pattern are
+    /// taken from `analysed` and left there.
     ///
     /// # Errors
     /// An interior that nothing holds.
@@ -66,23 +66,40 @@ impl Implicit {
         n_delta: usize,
         basis: &Basis,
         coordinates: Option<&[[f64; 3]]>,
+        analysed: Option<&Analysed>,
     ) -> Result<Option<(Implicit, Coarse)>, SingularInterior> {
         let vertices = &interface[n_delta..];
         let inside = k.others(interface);
 
-        let Ok((held, s_vv)) = factored(k, vertices, coordinates) else {
+        let known = analysed.and_then(|a| a.sparse.get());
+        let new = known
+            .is_none()
+            .then(|| Own::new(Symbolic::new(k, vertices, coordinates)));
+        let of_held = known.map_or_else(|| new.as_ref().expect("made just now"), |k| &k[0]);
+        let Ok((held, s_vv)) = of_held.solver(k) else {
             return Ok(None);
         };
         if held.weakest_pivot(k) <= WEAKLY_HELD {
             return Ok(None);
         }
         let k_inside = k.restricted(&inside);
-        let places: Option<Vec<[f64; 3]>> =
-            coordinates.map(|x| inside.iter().map(|&i| x[i as usize]).collect());
-        let (interior, _) =
-            factored(&k_inside, &[], places.as_deref()).map_err(|e| SingularInterior {
-                dof: inside[e.dof as usize],
-            })?;
+        let singular = |e: SingularInterior| SingularInterior {
+            dof: inside[e.dof as usize],
+        };
+        let (interior, _) = match known {
+            Some([_, of_interior]) => of_interior.solver(&k_inside).map_err(singular)?,
+            None => {
+                let places: Option<Vec<[f64; 3]>> =
+                    coordinates.map(|x| inside.iter().map(|&i| x[i as usize]).collect());
+                let of_interior = Own::new(Symbolic::new(&k_inside, &[], places.as_deref()));
+                let made = of_interior.solver(&k_inside).map_err(singular)?;
+                if let (Some(analysed), Some(of_held)) = (analysed, new) {
+                    // Another thread may have left them in the meantime, which are the same.
+                    let _ = analysed.sparse.set([of_held, of_interior]);
+                }
+                made
+            }
+        };
 
         let mut out = Implicit {
             coupling: k.block(&inside, interface),
@@ -278,15 +295,6 @@ impl Implicit {
             + self.k_gamma.bytes();
         (sparse, 8 * (self.x.data.len() + self.m.data.len()))
     }
-}
-
-fn factored(
-    k: &Csr,
-    interface: &[u32],
-    coordinates: Option<&[[f64; 3]]>,
-) -> Result<(PartialCholesky, Dense), SingularInterior> {
-    let symbolic = Symbolic::new(k, interface, coordinates);
-    PartialCholesky::inside(k, &symbolic, Arc::new(symbolic.inside()))
 }
 
 fn columns(rows: usize, of: &[Vec<f64>]) -> Dense {

@@ -1,13 +1,32 @@
-//! Subdomains that stay factored while the rows between bodies are replaced.
+//! What is kept of the subdomains of a set-up for the next one: factors where only rows between bodies are replaced,
+//! analyses of patterns where matrices have other numbers, too.
+
+use std::sync::Arc;
 
 use super::scaled::Scaled;
+use super::which::OperatorForm;
+use crate::cholesky::interior::Analysed;
 use crate::feti::interface::entities::Average;
 use crate::feti::jump::operator::Jump;
 
 /// The subdomains of a set-up, each with the interface that it was factored for.
 pub(crate) struct Kept {
     interfaces: Vec<Interface>,
-    locals: Vec<Scaled>,
+    forms: Vec<OperatorForm>,
+    /// `None`: the matrices have other numbers.
+    locals: Option<Vec<Scaled>>,
+    analysed: Vec<Option<Arc<Analysed>>>,
+}
+
+/// What of one subdomain is still right.
+#[derive(Default)]
+pub(crate) struct Still {
+    /// The form of its operators.
+    pub form: Option<OperatorForm>,
+    /// All of it.
+    pub whole: Option<Scaled>,
+    /// Analyses of its pattern and interface.
+    pub analysed: Option<Arc<Analysed>>,
 }
 
 /// What the operators of a subdomain depend on beside its matrix.
@@ -29,21 +48,38 @@ impl Interface {
 }
 
 impl Kept {
-    /// The subdomains `locals` of a set-up with these rows.
-    pub fn new(jump: &Jump, locals: &[Scaled]) -> Kept {
-        let each = 0..locals.len();
+    /// The subdomains `locals` of a set-up with these rows, and the analyses of their patterns as far as there are any.
+    pub fn new(jump: &Jump, locals: &[Scaled], analysed: &[Option<Arc<Analysed>>]) -> Kept {
+        let form = |local: &Scaled| match local.is_implicit() {
+            true => OperatorForm::Implicit,
+            false => OperatorForm::Explicit,
+        };
         Kept {
-            interfaces: each.map(|j| Interface::of(jump, j)).collect(),
-            locals: locals.to_vec(),
+            interfaces: (0..locals.len()).map(|j| Interface::of(jump, j)).collect(),
+            forms: locals.iter().map(form).collect(),
+            locals: Some(locals.to_vec()),
+            analysed: analysed.to_vec(),
         }
     }
 
-    /// The subdomains whose interface is still the same with other rows.
-    pub fn still(&self, jump: &Jump) -> Vec<Option<Scaled>> {
-        let both = self.interfaces.iter().zip(&self.locals);
-        let same = both.enumerate().map(|(j, (interface, local))| {
-            (*interface == Interface::of(jump, j)).then(|| local.clone())
-        });
-        same.collect()
+    /// The same without the factors, for matrices with the same patterns and other numbers.
+    pub fn patterns(self) -> Kept {
+        Kept {
+            locals: None,
+            ..self
+        }
+    }
+
+    /// What is still right with other rows, for each local subdomain: nothing where its interface has changed.
+    pub fn still(&self, jump: &Jump) -> Vec<Still> {
+        let of = |(j, interface): (usize, &Interface)| match *interface == Interface::of(jump, j) {
+            false => Still::default(),
+            true => Still {
+                form: Some(self.forms[j]),
+                whole: self.locals.as_ref().map(|l| l[j].clone()),
+                analysed: self.analysed[j].clone(),
+            },
+        };
+        self.interfaces.iter().enumerate().map(of).collect()
     }
 }

@@ -42,7 +42,6 @@ const MOST_FREE: usize = 12;
 static FACTORISATIONS: AtomicUsize = AtomicUsize::new(0);
 
 /// Number of subdomains that this process has factored so far. A contact loop must not increase it.
-#[cfg(feature = "cli")]
 pub fn factorisations() -> usize {
     FACTORISATIONS.load(Ordering::Relaxed)
 }
@@ -146,7 +145,7 @@ impl Gamma {
 
 impl LocalProblem {
     /// Factors subdomain matrix `k` with the given dual and primal interface dofs; `averages` lists the dual dofs of
-    /// each primal average. An analysis inside `condenser` must belong to the interface [delta, primal].
+    /// each primal average. Analyses inside `condenser` must belong to the interface [delta, primal].
     ///
     /// # Errors
     /// A matrix that is no stiffness matrix, or an error of the solver.
@@ -167,7 +166,8 @@ impl LocalProblem {
         if form == OperatorForm::Implicit && condenser.solver.kind == Solver::Multifrontal {
             let interface = [delta, primal].concat();
             // The dense form handles an interior that nothing holds.
-            let made = Implicit::new(k, &interface, delta.len(), &basis, coordinates);
+            let (n_delta, known) = (delta.len(), condenser.analysed);
+            let made = Implicit::new(k, &interface, n_delta, &basis, coordinates, known);
             if let Ok(Some((implicit, coarse))) = made {
                 return Ok(LocalProblem {
                     stiff: diagonal(k, &interface),
@@ -196,7 +196,7 @@ impl LocalProblem {
                 // Nothing holds the interior: its free dof joins Γ and becomes a fixing dof there.
                 Err(NoFactor::Interior(e)) if delta.len() < given + MOST_FREE => {
                     delta.push(e.dof);
-                    condenser.analysis = None;
+                    condenser.analysed = None;
                 }
                 Err(e) => return Err(e),
             }

@@ -25,6 +25,7 @@ fn forms(grid: &'static str, memory: f64, check: fn(&[OperatorForm])) {
         let kinds = kinds(&problem, &jump, &first);
         check(&choose(
             &kinds,
+            &vec![None; kinds.len()],
             &team,
             Operators::Auto,
             APPLICATIONS[0],

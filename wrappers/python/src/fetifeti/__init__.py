@@ -21,8 +21,9 @@ from .vtu import Fields, read_vtu
 
 if TYPE_CHECKING:
     from .ksp import inner_ksp, register, set_body, set_body_is, set_body_label
-    from .calls import Error
-    from .solver import MortarResult, RowKind, Solver
+    from .calls import ContactStep, Error
+    from .contact import RowKind
+    from .solver import MortarResult, Solver
 
 _PLACES = {
     "register": "ksp",
@@ -32,7 +33,8 @@ _PLACES = {
     "inner_ksp": "ksp",
     "Error": "calls",
     "Solver": "solver",
-    "RowKind": "solver",
+    "RowKind": "contact",
+    "ContactStep": "calls",
     "MortarResult": "solver",
 }
 

@@ -14,6 +14,9 @@ from .library import load
 DECIDE = -1
 """PETSC_DECIDE."""
 
+ERR_USER = 83
+"""PETSC_ERR_USER."""
+
 _I, _D, _P, _S = ctypes.c_int, ctypes.c_double, ctypes.c_void_p, ctypes.c_char_p
 
 # Types of the arguments, in their order; handles, arrays and places for results are pointers.
@@ -40,7 +43,12 @@ SIGNATURES: dict[str, list[Any]] = {
     "FetiFetiSetNeumannBoundaries": [_P, _P],
     "FetiFetiSetPrimalDofs": [_P, _P],
     "FetiFetiSetContactRows": [_P, _I, _P, _P, _P, _P, _P],
+    "FetiFetiUpdateMatrices": [_P, _I, _P],
+    "FetiFetiUpdateSubdomain": [_P, _I, _I, _P, _P, _P],
+    "FetiFetiSetContactRowsByMatrix": [_P, _I, _P, _P, _P, _P, _P, _P],
+    "FetiFetiSetContactGaps": [_P, _I, _P],
     "FetiFetiSetContactPairs": [_P, _I, _P, _I, _P, _P, _I],
+    "FetiFetiContactMonitorSet": [_P, _P, _P],
     "FetiFetiAddSurface": [_P, _I, _I, _I, _I, _P, _P, _I, _P, _P, _P],
     "FetiFetiAddMortar": [_P, _I, _I, _I, _D, _D, _D, _P, _P, _P],
     "FetiFetiGetMortar": [_P, _I, _I, _P, _P, _P, _P],
@@ -55,6 +63,25 @@ SIGNATURES: dict[str, list[Any]] = {
     "FetiFetiGetMultipliers": [_P, _I, _P],
     "FetiFetiGetInnerKSP": [_P, _P],
 }
+
+
+class ContactStep(ctypes.Structure):
+    """A step of the contact loop, as `Solver.on_step` gets it."""
+
+    _fields_ = [
+        ("step", _I),
+        ("active", _I),
+        ("entered", _I),
+        ("left", _I),
+        ("wrong", _I),
+        ("iterations", _I),
+        ("residual", _D),
+        ("tolerance", _D),
+    ]
+
+
+MONITOR = ctypes.CFUNCTYPE(_I, ctypes.POINTER(ContactStep), _P)
+"""The type of the function that the library calls after each step."""
 
 
 class Error(PETSc.Error):

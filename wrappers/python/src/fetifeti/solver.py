@@ -4,31 +4,19 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from enum import IntEnum
 from types import TracebackType
 from typing import Any, NamedTuple, Union
 
 import numpy as np
 from petsc4py import PETSc
 
-from .arrays import csr, for_each, integers, reals
-from .calls import DECIDE, Error, call, ksp_at
+from .arrays import csr, integers, reals
+from .calls import ContactStep, Error, call, ksp_at
+from .contact import Contact, RowKind, _number
 from .surfaces import Surfaces
 
 Vector = Union[PETSc.Vec, np.ndarray, Sequence[PETSc.Vec]]
 """A vector of PETSc, this rank's entries of one, or the parts of a nested one."""
-
-
-class RowKind(IntEnum):
-    """How a row of contact holds."""
-
-    EQUALITY = 0
-    """(B u)_r = gap_r"""
-    INEQUALITY = 1
-    """(B u)_r <= gap_r, with a multiplier that is not negative"""
-
-
-EQUALITY, INEQUALITY = RowKind.EQUALITY, RowKind.INEQUALITY
 
 
 class Kkt(NamedTuple):
@@ -58,7 +46,7 @@ class MortarResult(NamedTuple):
     """(n,) 1 where the row holds, 0 where the sides are apart, -1 at nodes without a multiplier."""
 
 
-class Solver(Surfaces):
+class Solver(Contact, Surfaces):
     """A solver for bodies that are tied or in contact: min 1/2 u'Ku - f'u subject to B u = c, B u <= c.
 
     The unknowns of all bodies have one numbering, that of the entries of the load. Units are the caller's: matrices in
@@ -89,6 +77,8 @@ class Solver(Surfaces):
 
     def __init__(self, comm: Any = None, *, prefix: str = "", options: Mapping[str, Any] | None = None) -> None:
         self._ff = ctypes.c_void_p()
+        self._monitor: Any = None
+        self._raised: BaseException | None = None
         if comm is None:
             comm = PETSc.COMM_WORLD
         self.comm: PETSc.Comm = comm if isinstance(comm, PETSc.Comm) else PETSc.Comm(comm)
@@ -190,6 +180,25 @@ class Solver(Surfaces):
         """
         call("FetiFetiAddMatIS", self._ff, matrix, self._set(numbers, "numbers"), _number(body))
 
+    def update_matrices(self, matrices: Sequence[PETSc.Mat | None]) -> None:
+        """Takes new entries of the matrices that were added, for Newton's method and load steps. Collective.
+
+        The next `setup` or `solve` keeps bodies, constraints and the analyses of patterns; where the new entries do not
+        fit them, everything is set up anew. Rows and their multipliers stay.
+
+        Parameters
+        ----------
+        matrices : list of PETSc.Mat or None
+            As many as were added, in their order, with the same maps; None for one that stays.
+        """
+        handles = np.array([0 if a is None else a.handle for a in matrices], np.uintp)
+        call("FetiFetiUpdateMatrices", self._ff, len(handles), handles)
+
+    def update_subdomain(self, number: int, matrix: Any) -> None:
+        """Takes new entries of a subdomain of `add_subdomain`: the `number`-th of this rank, from 0."""
+        ia, ja, a = csr(matrix, "matrix")
+        call("FetiFetiUpdateSubdomain", self._ff, number, len(ia) - 1, ia, ja, a)
+
     def set_near_null_space(self, space: PETSc.NullSpace | None) -> None:
         """Gives vectors that span every kernel that a subdomain without boundary conditions may have. Collective."""
         call("FetiFetiSetNearNullSpace", self._ff, space)
@@ -222,58 +231,6 @@ class Solver(Surfaces):
         """Makes unknowns primal where subdomains of one body share them; None: those that the solver chooses alone.
         Collective."""
         call("FetiFetiSetPrimalDofs", self._ff, self._set(dofs, "dofs"))
-
-    # Contact
-
-    def set_contact_rows(self, rows: Any, gap: Any = 0.0, kind: Any = INEQUALITY) -> None:
-        """Gives the rows (B u)_r <= gap_r or = gap_r of this rank, instead of those that it gave here before.
-
-        Parameters
-        ----------
-        rows : scipy.sparse matrix, (row starts, columns, entries), or array_like; n rows
-            B; its columns are numbers of unknowns. Each row is given by one rank, any one. With the normal from the
-            first node to the second one at the first and minus the normal at the second, the multiplier is the force
-            with which the second is pressed away.
-        gap : float or array_like, shape (n,)
-            Right-hand sides: distances.
-        kind : RowKind, "equality" or "inequality", or n of these
-        """
-        ia, ja, b = csr(rows, "rows")
-        n = len(ia) - 1
-        kinds = np.array([_kind(k) for k in kind] if _several(kind) else n * [_kind(kind)], np.int32)
-        kinds = integers(kinds, "kind", (n,))
-        call("FetiFetiSetContactRows", self._ff, n, ia, ja, b, for_each(gap, n, "gap"), kinds)
-        self._rows = n
-
-    def add_contact_pairs(
-        self, first: Any, second: Any, gap: Any = None, kind: Any = INEQUALITY, *, matrices: Any = (None, None)
-    ) -> None:
-        """Adds rows u_first - u_second <= gap, or = gap, for unknowns that face each other. Collective.
-
-        Parameters
-        ----------
-        first, second : PETSc.IS or array_like of int, shape (n,)
-            Unknowns, entry by entry; of any rank.
-        gap : float or array_like, shape (n,), optional
-            Right-hand sides; left out: zero.
-        kind : RowKind, "equality" or "inequality"
-        matrices : (int or None, int or None)
-            The matrices whose unknowns `first` and `second` list: 0 for the first one of `add_mat_is`. None: numbers
-            among the unknowns of all bodies.
-        """
-        first, second = self._set(first, "first"), self._set(second, "second")
-        if first is None or second is None:
-            raise TypeError("first or second is None, expected unknowns; clear_contact_pairs forgets the pairs")
-        n = first.getLocalSize()
-        gap = None if gap is None else for_each(gap, n, "gap")
-        a, b = (_number(k) for k in matrices)
-        call("FetiFetiSetContactPairs", self._ff, a, first, b, second, gap, _kind(kind))
-        self._pairs += n
-
-    def clear_contact_pairs(self) -> None:
-        """Forgets all pairs of `add_contact_pairs`. Collective."""
-        call("FetiFetiSetContactPairs", self._ff, DECIDE, None, DECIDE, None, None, EQUALITY)
-        self._pairs = 0
 
     # Solving and results
 
@@ -310,7 +267,14 @@ class Solver(Surfaces):
             load = PETSc.Vec().createWithArray(reals(load, "load"), comm=self.comm)
         if solution is None:
             solution = load.duplicate()
-        call("FetiFetiSolve", self._ff, load, solution)
+        self._raised = None
+        try:
+            call("FetiFetiSolve", self._ff, load, solution)
+        except Error:
+            # What a callback has raised says more than that it has.
+            if self._raised is not None:
+                raise self._raised from None
+            raise
         return solution.getArray().copy() if plain else solution
 
     @property
@@ -368,27 +332,5 @@ class Solver(Surfaces):
         call(name, self._ff, place)
         return int(place[0])
 
-    def _set(self, numbers: Any, what: str) -> PETSc.IS | None:
-        """An index set of numbers that may be one already."""
-        if numbers is None or isinstance(numbers, PETSc.IS):
-            return numbers
-        return PETSc.IS().createGeneral(integers(numbers, what), comm=self.comm)
 
-
-def _number(n: int | None) -> int:
-    """A number for C, PETSC_DECIDE for None."""
-    return DECIDE if n is None else int(integers(n, "a number", ()))
-
-
-def _several(kind: Any) -> bool:
-    return not isinstance(kind, str) and np.ndim(kind) > 0
-
-
-def _kind(kind: Any) -> RowKind:
-    try:
-        return RowKind[kind.upper()] if isinstance(kind, str) else RowKind(kind)
-    except (KeyError, ValueError):
-        raise ValueError(f"a row is of kind {kind!r}, expected 'equality' or 'inequality'") from None
-
-
-__all__ = ["Error", "Kkt", "MortarResult", "RowKind", "Solver"]
+__all__ = ["ContactStep", "Error", "Kkt", "MortarResult", "RowKind", "Solver"]

@@ -11,7 +11,8 @@ from .arrays import for_each, integers, reals
 from .calls import call
 
 if TYPE_CHECKING:
-    from .solver import MortarResult, RowKind
+    from .contact import RowKind
+    from .solver import MortarResult
 
 
 class Surfaces:
@@ -99,7 +100,7 @@ class Surfaces:
         int
             The number of the mortar, for `mortar`.
         """
-        from .solver import _kind
+        from .contact import _kind
 
         kind = _kind(kind)
         n = self._surfaces[first][0] if 0 <= first < len(self._surfaces) else 0
@@ -112,7 +113,8 @@ class Surfaces:
 
     def mortar(self, number: int = 0) -> MortarResult:
         """The result of a mortar at the nodes that this rank gave of its first surface."""
-        from .solver import INEQUALITY, MortarResult
+        from .contact import INEQUALITY
+        from .solver import MortarResult
 
         if not 0 <= number < len(self._mortars):
             raise ValueError(f"there is no mortar {number}, expected one of {len(self._mortars)} (from 0)")

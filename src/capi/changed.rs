@@ -1,0 +1,33 @@
+//! What a host has changed since the last set-up.
+
+use crate::parallel::exchange::max_all;
+use crate::petsc::Session;
+
+/// What has changed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Changed {
+    /// Anything that is not among the following.
+    pub whole: bool,
+    /// Entries of matrices.
+    pub matrices: bool,
+    /// Rows.
+    pub rows: bool,
+    /// Right-hand sides of rows.
+    pub gaps: bool,
+}
+
+impl Changed {
+    /// What has changed on any rank. Collective.
+    pub fn anywhere(self, session: &Session) -> Changed {
+        let mut all =
+            [self.whole, self.matrices, self.rows, self.gaps].map(|b| f64::from(u8::from(b)));
+        max_all(session.comm(), &mut all);
+        let [whole, matrices, rows, gaps] = all.map(|v| v > 0.0);
+        Changed {
+            whole,
+            matrices,
+            rows,
+            gaps,
+        }
+    }
+}

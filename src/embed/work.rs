@@ -1,0 +1,66 @@
+//! What set-ups have done so far, counted over all ranks: how much of it was repeated.
+
+use super::partition::partitions;
+use crate::cholesky::symbolic::analyses;
+use crate::feti::subdomain::problem::factorisations;
+use crate::parallel::exchange::sum_all;
+use crate::petsc::Session;
+use crate::Result;
+
+/// The kind of a set-up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SetUp {
+    /// Of everything.
+    Whole,
+    /// Other numbers in the same matrices.
+    Numbers,
+    /// Other rows.
+    Rows,
+}
+
+/// Set-ups, and what they took over all ranks.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Work {
+    /// Set-ups of everything, of other numbers, of other rows alone.
+    pub set_ups: [usize; 3],
+    /// Patterns that were analysed, subdomains that were factored, partitions into bodies that were looked for.
+    pub spent: [f64; 3],
+}
+
+impl Work {
+    /// Does something of which some may be a set-up, and counts what it takes. `done` says what it was. Collective.
+    ///
+    /// # Errors
+    /// Those of `work`.
+    pub fn count<T>(
+        &mut self,
+        session: &Session,
+        work: impl FnOnce() -> Result<T>,
+        done: impl FnOnce(&T) -> Option<SetUp>,
+    ) -> Result<T> {
+        let before = now();
+        let out = work()?;
+        let mut spent = now();
+        spent.iter_mut().zip(before).for_each(|(s, b)| *s -= b);
+        sum_all(session.comm(), &mut spent);
+        self.spent.iter_mut().zip(spent).for_each(|(s, n)| *s += n);
+        if let Some(kind) = done(&out) {
+            self.set_ups[kind as usize] += 1;
+        }
+        Ok(out)
+    }
+
+    /// The counts as a line for -ksp_view and FetiFetiView.
+    pub fn line(&self) -> String {
+        let ([whole, numbers, rows], [analysed, factored, partitions]) = (self.set_ups, self.spent);
+        format!(
+            "set-ups: {whole} whole, {numbers} of numbers, {rows} of rows; {analysed} patterns analysed, \
+             {factored} subdomains factored, {partitions} partitions into bodies"
+        )
+    }
+}
+
+/// What this process has done so far.
+fn now() -> [f64; 3] {
+    [analyses(), factorisations(), partitions()].map(|n| n as f64)
+}

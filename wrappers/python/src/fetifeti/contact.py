@@ -1,0 +1,167 @@
+"""The part of `fetifeti.Solver` for rows between bodies (contact, obstacles, equations) and the loop over them."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from petsc4py import PETSc
+
+from .arrays import csr, for_each, integers
+from .calls import DECIDE, ERR_USER, MONITOR, ContactStep, call
+
+
+class RowKind(IntEnum):
+    """How a row of contact holds."""
+
+    EQUALITY = 0
+    """(B u)_r = gap_r"""
+    INEQUALITY = 1
+    """(B u)_r <= gap_r, with a multiplier that is not negative"""
+
+
+EQUALITY, INEQUALITY = RowKind.EQUALITY, RowKind.INEQUALITY
+
+
+class Contact:
+    """Rows of a solver."""
+
+    comm: PETSc.Comm
+    _ff: ctypes.c_void_p
+    _rows: int
+    _pairs: int
+    _monitor: Any
+    _raised: BaseException | None
+
+    def set_contact_rows(self, rows: Any, gap: Any = 0.0, kind: Any = INEQUALITY) -> None:
+        """Gives the rows (B u)_r <= gap_r or = gap_r of this rank, instead of those that it gave here before.
+
+        Parameters
+        ----------
+        rows : scipy.sparse matrix, (row starts, columns, entries), or array_like; n rows
+            B; its columns are numbers of unknowns. Each row is given by one rank, any one. With the normal from the
+            first node to the second one at the first and minus the normal at the second, the multiplier is the force
+            with which the second is pressed away.
+        gap : float or array_like, shape (n,)
+            Right-hand sides: distances.
+        kind : RowKind, "equality" or "inequality", or n of these
+        """
+        ia, ja, b = csr(rows, "rows")
+        n = len(ia) - 1
+        kinds = np.array([_kind(k) for k in kind] if _several(kind) else n * [_kind(kind)], np.int32)
+        kinds = integers(kinds, "kind", (n,))
+        call("FetiFetiSetContactRows", self._ff, n, ia, ja, b, for_each(gap, n, "gap"), kinds)
+        self._rows = n
+
+    def set_contact_blocks(self, blocks: Mapping[int, Any], gap: Any = 0.0, kind: Any = INEQUALITY) -> None:
+        """`set_contact_rows` with numbers of single matrices: nobody has to know the numbering of all unknowns.
+
+        Parameters
+        ----------
+        blocks : dict of int to a matrix with n rows, as in `set_contact_rows`
+            For matrices of `add_mat_is` (0 for the first one) or for that of `set_mat_is` (0) the part of the rows of
+            this rank at their unknowns; columns are numbered as the entries of vectors of each matrix.
+        gap, kind
+            As in `set_contact_rows`.
+        """
+        parts = [(k, *csr(rows, f"the rows of matrix {k}")) for k, rows in blocks.items()]
+        lengths = {len(ia) - 1 for _, ia, _, _ in parts} or {0}
+        if len(lengths) > 1:
+            raise ValueError(f"the blocks have {sorted(lengths)} rows, expected as many in each")
+        n = lengths.pop()
+        row = np.concatenate([np.repeat(np.arange(n), np.diff(ia)) for _, ia, _, _ in parts] or [np.zeros(0, int)])
+        order = np.argsort(row, kind="stable")
+        join = lambda lists, kind: np.concatenate([*lists, np.zeros(0, kind)])[order].astype(kind)  # noqa: E731
+        matrix = join([np.full(len(ja), k, np.int32) for k, _, ja, _ in parts], np.int32)
+        ja, b = join([p[2] for p in parts], np.int32), join([p[3] for p in parts], np.float64)
+        ia = np.searchsorted(row[order], np.arange(n + 1)).astype(np.int32)
+        kinds = np.array([_kind(k) for k in kind] if _several(kind) else n * [_kind(kind)], np.int32)
+        kinds, gap = integers(kinds, "kind", (n,)), for_each(gap, n, "gap")
+        call("FetiFetiSetContactRowsByMatrix", self._ff, n, ia, matrix, ja, b, gap, kinds)
+        self._rows = n
+
+    def set_contact_gaps(self, gap: Any) -> None:
+        """Gives new right-hand sides of the rows and pairs of this rank, in the order of `multipliers`.
+
+        Parameters
+        ----------
+        gap : float or array_like, shape (rows and pairs of this rank,)
+        """
+        gap = for_each(gap, self._rows + self._pairs, "gap")
+        call("FetiFetiSetContactGaps", self._ff, len(gap), gap)
+
+    def add_contact_pairs(
+        self, first: Any, second: Any, gap: Any = None, kind: Any = INEQUALITY, *, matrices: Any = (None, None)
+    ) -> None:
+        """Adds rows u_first - u_second <= gap, or = gap, for unknowns that face each other. Collective.
+
+        Parameters
+        ----------
+        first, second : PETSc.IS or array_like of int, shape (n,)
+            Unknowns, entry by entry; of any rank.
+        gap : float or array_like, shape (n,), optional
+            Right-hand sides; left out: zero.
+        kind : RowKind, "equality" or "inequality"
+        matrices : (int or None, int or None)
+            The matrices whose unknowns `first` and `second` list: 0 for the first one of `add_mat_is`. None: numbers
+            among the unknowns of all bodies.
+        """
+        first, second = self._set(first, "first"), self._set(second, "second")
+        if first is None or second is None:
+            raise TypeError("first or second is None, expected unknowns; clear_contact_pairs forgets the pairs")
+        n = first.getLocalSize()
+        gap = None if gap is None else for_each(gap, n, "gap")
+        a, b = (_number(k) for k in matrices)
+        call("FetiFetiSetContactPairs", self._ff, a, first, b, second, gap, _kind(kind))
+        self._pairs += n
+
+    def clear_contact_pairs(self) -> None:
+        """Forgets all pairs of `add_contact_pairs`. Collective."""
+        call("FetiFetiSetContactPairs", self._ff, DECIDE, None, DECIDE, None, None, EQUALITY)
+        self._pairs = 0
+
+    def on_step(self, callback: Callable[[ContactStep], Any] | None) -> None:
+        """Sets a function that is called after each step of the contact loop, on all ranks; None: none.
+
+        It gets the number of the ``step`` from 0, the rows that held (``active``), that ``entered`` and that ``left``,
+        those on the ``wrong`` side, ``iterations``, ``residual`` and ``tolerance``. What it raises ends `solve`, which
+        raises it; it must not call this solver.
+        """
+
+        def monitor(step: Any, _: Any) -> int:
+            try:
+                callback(ContactStep.from_buffer_copy(step.contents))
+            except BaseException as error:
+                self._raised = error
+                return ERR_USER
+            return 0
+
+        function = MONITOR(0) if callback is None else MONITOR(monitor)
+        call("FetiFetiContactMonitorSet", self._ff, ctypes.cast(function, ctypes.c_void_p), None)
+        # The library calls it as long as it is not replaced.
+        self._monitor = function
+
+    def _set(self, numbers: Any, what: str) -> PETSc.IS | None:
+        """An index set of numbers that may be one already."""
+        if numbers is None or isinstance(numbers, PETSc.IS):
+            return numbers
+        return PETSc.IS().createGeneral(integers(numbers, what), comm=self.comm)
+
+
+def _number(n: int | None) -> int:
+    """A number for C, PETSC_DECIDE for None."""
+    return DECIDE if n is None else int(integers(n, "a number", ()))
+
+
+def _several(kind: Any) -> bool:
+    return not isinstance(kind, str) and np.ndim(kind) > 0
+
+
+def _kind(kind: Any) -> RowKind:
+    try:
+        return RowKind[kind.upper()] if isinstance(kind, str) else RowKind(kind)
+    except (KeyError, ValueError):
+        raise ValueError(f"a row is of kind {kind!r}, expected 'equality' or 'inequality'") from None
