@@ -36,6 +36,8 @@ packages+=(gfortran cmake)
 [ -n "${PETSC_DIR:-}" ] || packages+=(libsuitesparse-dev libscotch-dev)
 # pip and pytest are for the Python package.
 packages+=(python3-pip python3-setuptools python3-wheel python3-numpy python3-pytest)
+# A processor without AVX2, for a test.
+packages+=(qemu-user)
 # Builds of PETSc that the plug-in must refuse.
 packages+=(libpetsc-complex3.18-dev libpetsc64-real3.18-dev)
 [ -n "${SLEPC_DIR:-}${PETSC_DIR:-}" ] || packages+=(slepc-dev)

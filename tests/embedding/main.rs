@@ -16,4 +16,5 @@ mod packages;
 mod partitions;
 mod petsc_examples;
 mod python;
+mod ways;
 mod wrong_petsc;
