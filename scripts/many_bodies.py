@@ -69,6 +69,8 @@ default = "contact"
 
 {ties}[options]
 fetifeti_ksp_rtol = 1e-8
+# Of many bodies few are stiff: the cheap weight does as well as M^-1.
+fetifeti_projector = "diagonal"
 """
 
 PART = """
@@ -77,20 +79,24 @@ name = "{name}"
 origin = [{x}, {y}]
 size = [{w}, {h}]
 elements = [{nx}, {ny}]
-young = 1e5
+young = 1e6
 poisson = 0.2
 load = [0, -1]
 """
 
+# Widest and highest window. A window as large as a third of any wall would have a lintel that bends by more than its
+# own height, and bricks that turn far: nothing for small displacements.
+WIDEST = 12
+
 
 def wall(courses, bricks, out):
     width = 2 * bricks
-    # The window with its frame of one unit all round: a third of the width, from a third of the height, in whole
-    # bricks of courses with half bricks at the ends.
+    # The window with its frame of one unit all round: a third of the width or WIDEST, from a third of the height, in
+    # whole bricks of courses with half bricks at the ends.
     low = courses // 3 // 2 * 2 + 1
-    high = low + max(4, courses // 3 // 2 * 2)
+    high = low + min(WIDEST, max(4, courses // 3 // 2 * 2))
     left = 2 * (bricks // 3) + 1
-    right = left + 2 * max(2, bricks // 3)
+    right = left + min(WIDEST, 2 * max(2, bricks // 3))
     whole, halves = [], []
     for y in range(courses):
         inside = low <= y < high

@@ -4,10 +4,11 @@
 use crate::support::session::with_session;
 use crate::support::{assembled, contact_judge, mpi};
 use assembled::{Assembled, Reference};
+use contact_judge::How;
 use fetifeti::contact::ContactType;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
-use fetifeti::{Error, FetiFeti, Result, Settings};
+use fetifeti::{Error, FetiFeti, ProjectorKind, Result, Settings};
 
 const KINDS: [ContactType; 3] = [
     ContactType::ActiveSet,
@@ -24,6 +25,12 @@ fn blocks(load: &str) -> String {
          back = {{ z = 0 }} }}\n[interface]\ndefault = \"contact\"\n"
     )
 }
+
+const WEIGHTS: [ProjectorKind; 3] = [
+    ProjectorKind::Identity,
+    ProjectorKind::Diagonal,
+    ProjectorKind::Preconditioner,
+];
 
 /// Blocks that are pushed to all sides, and heights that are pushed up and down: rows open, and others must hold bodies
 /// that have lost theirs.
@@ -56,6 +63,24 @@ fn agree(session: &Session, kinds: &[ContactType]) -> Result<()> {
     Ok(())
 }
 
+/// The wall with coefficients 1 and 1e4 in a checkerboard, with every weight: the factor of GᵀQG is the crate's own.
+fn agree_with_jumps(session: &Session, weights: &[ProjectorKind]) -> Result<()> {
+    let [_, (_, text)] = scenes();
+    let jump = "rho = { checkerboard = [1, 1e4], by = \"body\" }\n[interface]";
+    let scene = Scene::parse("jumps", &text.replace("[interface]", jump))?;
+    let problem = Assembled::of_scene(&scene);
+    let reference: Reference = problem.solve();
+    for &projector in weights {
+        let how = How {
+            projector,
+            ..ContactType::ActiveSet.into()
+        };
+        contact_judge::judge(session, (&scene, &problem, &reference), false, how)
+            .map_err(|why| Error::input(format!("Q = {}: {why}", projector.name())))?;
+    }
+    Ok(())
+}
+
 /// Four blocks at a corner of the top are pushed up.
 fn refused(session: &Session) -> Result<()> {
     let up = "load = [0, \"0.5*(bi > 2.5)*(bj > 2.5)*(bk > 1.5) - 0.01\", 0]";
@@ -82,6 +107,7 @@ fn many_motions_on_one_rank() {
     mpi::alone(|| {
         with_session(|session| {
             agree(session, &KINDS).unwrap();
+            agree_with_jumps(session, &WEIGHTS).unwrap();
             refused(session).unwrap();
         });
     });
@@ -91,6 +117,7 @@ fn many_motions_on_one_rank() {
 fn many_motions_on_two_and_four_ranks() {
     let started = mpi::as_rank(|session, _| {
         agree(session, &KINDS[..1])?;
+        agree_with_jumps(session, &WEIGHTS[1..])?;
         refused(session)
     });
     for ranks in [2, 4] {

@@ -84,7 +84,10 @@ fn random_scenes_with_coupled_blocks() {
         with_session(|session| {
             let cases = Collection::new(20_000, 150).solvable;
             for kind in KINDS {
-                let how = How { kind, coupled: 0 };
+                let how = How {
+                    coupled: 0,
+                    ..How::from(kind)
+                };
                 if let Err(why) = all_agree(session, &cases, how) {
                     panic!("{why}");
                 }

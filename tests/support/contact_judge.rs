@@ -7,20 +7,27 @@ use fetifeti::gather_all;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
 use fetifeti::{Error, Result};
-use fetifeti::{FetiFeti, MethodSettings, Settings};
+use fetifeti::{FetiFeti, MethodSettings, ProjectorKind, Settings};
 use std::collections::HashMap;
 
-/// The loop, and the number of rows from which a block is scaled with a sparse factorisation.
+/// The loop, the number of rows from which a block is scaled with a sparse factorisation, and the projector's weight.
 #[derive(Debug, Clone, Copy)]
 pub struct How {
     pub kind: ContactType,
     pub coupled: usize,
+    pub projector: ProjectorKind,
 }
 
 impl From<ContactType> for How {
     fn from(kind: ContactType) -> How {
-        let coupled = MethodSettings::default().coupled;
-        How { kind, coupled }
+        let MethodSettings {
+            coupled, projector, ..
+        } = MethodSettings::default();
+        How {
+            kind,
+            coupled,
+            projector,
+        }
     }
 }
 
@@ -28,6 +35,7 @@ fn settings(how: How) -> Settings {
     let mut settings = Settings::from(MethodSettings {
         rtol: 1e-11,
         coupled: how.coupled,
+        projector: how.projector,
         ..MethodSettings::default()
     });
     settings.contact.kind = how.kind;

@@ -26,6 +26,10 @@ const NOTHING: f64 = 1e-13;
 /// … and of solves with many columns.
 const NOTHING_SOLVED: f64 = 1e-10;
 
+/// The smallest pivot of a weighted product, relative to its diagonal entry. Below it a factor has less than three
+/// digits.
+const WEIGHTED: f64 = 1e-13;
+
 /// The diagonal entry of a column that is left out: its root divides what other columns have in common with it.
 const OUT: f64 = 1e300;
 
@@ -103,7 +107,11 @@ pub struct Shape {
 impl Shape {
     /// The shape for all rows `g`. Collective.
     pub fn new(comm: &SimpleCommunicator, g: &Rows, start: &[usize]) -> Shape {
-        let pattern = Pattern::new(comm, g, g, start);
+        Shape::of(Pattern::new(comm, g, g, start))
+    }
+
+    /// The shape of matrices with this pattern.
+    pub fn of(pattern: Pattern) -> Shape {
         let r = pattern.bodies().len();
         // Whole bodies are ordered: the columns of one are all coupled.
         let order = (r > FEW).then(|| {
@@ -191,6 +199,23 @@ impl Gram {
             dropped,
             unheld: alone.into_iter().map(|m| m.1).collect(),
         }
+    }
+
+    /// The factor of a weighted product GᵀQG, Q positive definite, that leaves out the columns that `plain` leaves out:
+    /// weights do not change what rows hold, but hide it where they differ by many orders. `None` if the columns are
+    /// few, or dependent beyond that after rounding.
+    pub fn weighted(shape: &Shape, mut a: Csr, plain: &Gram) -> Option<Gram> {
+        let order = shape.order.as_ref()?;
+        let scale = scale_to_unit_diagonal(&mut a);
+        for &k in &plain.dropped {
+            a.set_diagonal(k as usize, OUT);
+        }
+        let (factor, more) = PartialCholesky::semidefinite(&a, order.clone(), WEIGHTED);
+        more.is_empty().then(|| Gram {
+            factor: Factor::Sparse { factor, scale },
+            dropped: plain.dropped.clone(),
+            unheld: Vec::new(),
+        })
     }
 
     /// x ← A⁺ x, zero in the columns that are left out.

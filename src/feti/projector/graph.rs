@@ -59,6 +59,11 @@ impl BodyGraph {
         distinct(lists.copied())
     }
 
+    /// For every body those that are near a body near it, increasing.
+    pub fn second(&self) -> Vec<Vec<u32>> {
+        self.near.iter().map(|near| self.around(near)).collect()
+    }
+
     /// Groups of `bodies` such that no body is near two bodies of one group. M⁻¹ applied to a jump at one body of a
     /// group then does not reach the rows of another one.
     pub fn colours(&self, bodies: &[u32]) -> Vec<Vec<u32>> {

@@ -1,16 +1,18 @@
 //! Gᵀ Q G and its inverse, the same on every rank.
 //!
-//! With Q = I and many rigid motions the factor of GᵀG that tells what the rows hold ([`Gram`]) is the inverse, too. In
-//! all other cases the matrix stands behind a PETSc KSP (prefix `fetifeti_gtg_`), and so it does if an option with this
-//! prefix is set.
+//! With Q = I and many rigid motions the factor of GᵀG that tells what the rows hold ([`Gram`]) is the inverse, too.
+//! With other Q and many motions it is a factor of its own (`weighted`). In all other cases the matrix stands behind a
+//! PETSc KSP (prefix `fetifeti_gtg_`), and so it does if an option with this prefix is set.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
-use super::gram::{scale_to_unit_diagonal, Gram};
+use super::gram::{scale_to_unit_diagonal, Gram, Shape};
 use super::rows::Rows;
+use super::weighted::Weighted;
+use crate::feti::settings::ProjectorKind;
 use crate::linalg::csr::Csr;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::sum_all;
@@ -37,6 +39,8 @@ pub struct Gtg {
 enum Solver {
     /// The factor of GᵀG, where Q = I.
     Own,
+    /// The factor of GᵀQG.
+    Weighted(Box<Weighted>),
     Petsc(Scaled),
 }
 
@@ -54,24 +58,26 @@ struct Scaled {
 }
 
 impl Gtg {
-    /// The inverse for the rows of `gram`. `product` makes GᵀQG where it differs from the matrix of `gram` or goes to
-    /// PETSc; `own` says whether it does not differ. Collective.
+    /// The inverse for the rows of `gram` and the weight `q`, not Auto. `product` makes GᵀQG, which has the pattern
+    /// of `shape`. Collective.
     pub fn new(
         session: &Session,
-        gram: Rc<Gram>,
-        own: bool,
+        (shape, gram): (&Shape, Rc<Gram>),
+        q: ProjectorKind,
         product: impl FnOnce() -> Csr,
         prefix: &str,
     ) -> Result<Gtg> {
-        let own = own && gram.is_sparse() && !Options::new(session, prefix).any()?;
-        let (solver, r) = match own {
-            true => (Solver::Own, gram.n()),
-            false => {
-                let a = product();
-                let r = a.n();
-                (Solver::Petsc(Scaled::new(session, &gram, a, prefix)?), r)
-            }
+        let own = gram.is_sparse() && !Options::new(session, prefix).any()?;
+        let petsc = |a: Csr| Scaled::new(session, &gram, a, prefix).map(Solver::Petsc);
+        let solver = match q {
+            ProjectorKind::Identity if own => Solver::Own,
+            _ if own => match Weighted::new(shape, product(), &gram) {
+                Ok(factor) => Solver::Weighted(factor.into()),
+                Err(a) => petsc(a)?,
+            },
+            _ => petsc(product())?,
         };
+        let r = gram.n();
         Ok(Gtg {
             solver,
             gram,
@@ -82,7 +88,7 @@ impl Gtg {
     /// PETSc's solver, if it is one.
     pub fn ksp(&self) -> Option<&Ksp> {
         match &self.solver {
-            Solver::Own => None,
+            Solver::Own | Solver::Weighted(_) => None,
             Solver::Petsc(scaled) => Some(&scaled.ksp),
         }
     }
@@ -93,6 +99,7 @@ impl Gtg {
         match &self.solver {
             // G alone has no jumps.
             Solver::Own => Ok(0.0),
+            Solver::Weighted(factor) => Ok(factor.defect),
             Solver::Petsc(scaled) => scaled.defect(),
         }
     }
@@ -102,6 +109,10 @@ impl Gtg {
         match &self.solver {
             Solver::Own => {
                 self.gram.solve(x);
+                Ok(())
+            }
+            Solver::Weighted(factor) => {
+                factor.solve(x, side);
                 Ok(())
             }
             Solver::Petsc(scaled) => scaled.solve(x, side),

@@ -3,8 +3,10 @@
 pub mod gram;
 pub mod graph;
 pub mod gtg;
+pub mod held;
 pub mod natural;
 pub mod pattern;
 pub mod rows;
 pub mod sweep;
+mod weighted;
 mod weights;

@@ -7,13 +7,14 @@
 //! A row of G is sparse: it has entries for the bodies at its node. It lives on the rank that owns the row. Gᵀ Q G is
 //! sparse, too: bodies that touch have common entries. Every rank solves it (prefix `fetifeti_gtg_`).
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
-use super::gram::{Gram, Motion, Shape};
+use super::gram::{Gram, Shape};
+use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::pattern::Pattern;
 use super::rows::{RowEntry, Rows};
@@ -25,7 +26,7 @@ use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{any, exchange, gather_all, max_all, sum_all};
 use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
-use crate::{Error, Result};
+use crate::Result;
 
 /// Entries of R below this part of their column's largest are rounding.
 const STILL: f64 = 1e-12;
@@ -50,6 +51,9 @@ pub struct NaturalCoarse {
     pub all: Rows,
     /// Where GᵀG has entries.
     pub shape: Option<Shape>,
+    /// Where GᵀQG has entries with Q = M⁻¹, and the graph that says so, once they are needed.
+    wide: OnceCell<Shape>,
+    graph: OnceCell<BodyGraph>,
     /// The last choice of rows that was asked for, and their GᵀG.
     last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
     /// G on the owned rows.
@@ -102,6 +106,8 @@ impl NaturalCoarse {
             first_column,
             all: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             shape: None,
+            wide: OnceCell::new(),
+            graph: OnceCell::new(),
             last: RefCell::new(None),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
@@ -151,17 +157,31 @@ impl NaturalCoarse {
         let (session, comm) = (&stiffness.session, stiffness.comm());
         let gram = self.gram(comm, &stiffness.jump.active);
         let (g, qg, start) = (&self.g, self.qg(), &stiffness.space.kernel_start);
-        let shape = self.shape.as_ref().expect("a body floats");
-        let product = || match self.projector {
+        let shape = match self.projector {
             // Q reaches the rows of neighbours.
             ProjectorKind::Preconditioner => {
-                Pattern::new(comm, g, qg, start).product(comm, g, qg, |_| true)
+                let graph = self.graph(problem, stiffness);
+                let new = || Shape::of(Pattern::of_bodies(graph.second(), start));
+                self.wide.get_or_init(new)
             }
-            _ => shape.pattern.product(comm, g, qg, |_| true),
+            _ => self.shape.as_ref().expect("a body floats"),
         };
-        let gtg = Gtg::new(session, gram, self.qg.is_none(), product, &self.prefix)?;
+        let product = || shape.pattern.product(comm, g, qg, |_| true);
+        let gtg = Gtg::new(
+            session,
+            (shape, gram),
+            self.projector,
+            product,
+            &self.prefix,
+        )?;
         self.gtg = Some(gtg);
         Ok(())
+    }
+
+    /// The graph of the bodies. Collective when it is first asked for.
+    pub(super) fn graph(&self, problem: &Substructures, stiffness: &Stiffness) -> &BodyGraph {
+        self.graph
+            .get_or_init(|| BodyGraph::new(problem, stiffness))
     }
 
     /// GᵀG of these rows, factored. Collective.
@@ -302,33 +322,6 @@ impl NaturalCoarse {
         KernelLoad { e, size }
     }
 
-    /// Returns an error if the load moves a body that no row holds: e is then not in the range of Gᵀ.
-    pub fn check_held(
-        &self,
-        problem: &Substructures,
-        stiffness: &Stiffness,
-        load: &KernelLoad,
-    ) -> Result<()> {
-        for motion in self.unheld() {
-            let (work, scale) = (motion.dot(&load.e), motion.size(&load.size));
-            if work.abs() > 1e-10 * scale {
-                let mut alpha = vec![0.0; self.r];
-                motion.add(1.0, &mut alpha);
-                let who = moving(problem, &stiffness.space.kernel_start, &alpha);
-                return Err(Error::input(format!(
-                    "{who} held by nothing (no Dirichlet side and no tie to a held body) \
-                     and the load does not balance, expected a Dirichlet side or a tie"
-                )));
-            }
-        }
-        Ok(())
-    }
-
-    /// Combinations of kernel vectors on which all rows vanish.
-    pub fn unheld(&self) -> &[Motion] {
-        self.gtg.as_ref().map_or(&[], |gtg| &gtg.gram.unheld)
-    }
-
     /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.
     /// Collective.
     pub fn balance(
@@ -369,23 +362,5 @@ impl NaturalCoarse {
     pub fn add_kernel(&self, j: usize, alpha: &[f64], y: &mut [f64]) {
         let kernel = &self.kernels[j];
         kernel.add_mul(&alpha[self.first_column[j]..][..kernel.cols], y);
-    }
-}
-
-/// The bodies that a combination of kernel vectors moves, as the beginning of a sentence: "body "a" is".
-pub fn moving(problem: &Substructures, kernel_start: &[usize], motion: &[f64]) -> String {
-    let largest = motion.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let moves = |b: &usize| {
-        let columns = &motion[kernel_start[*b]..kernel_start[*b + 1]];
-        columns.iter().any(|c| c.abs() > 1e-8 * largest)
-    };
-    let names: Vec<String> = (0..problem.n_bodies)
-        .filter(moves)
-        .map(|b| format!("\"{}\"", problem.body_names[b]))
-        .collect();
-    match names.len() {
-        1 => format!("body {} is", names[0]),
-        n if n > 4 => format!("bodies {} and {} more are", names[..3].join(", "), n - 3),
-        _ => format!("bodies {} are", names.join(", ")),
     }
 }

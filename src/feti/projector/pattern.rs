@@ -28,12 +28,8 @@ impl Pattern {
     /// The pattern of AᵀB for rows that are distributed alike, and of the diagonal. `start` has the first column of
     /// each body. Collective.
     pub fn new(comm: &SimpleCommunicator, a: &Rows, b: &Rows, start: &[usize]) -> Pattern {
-        let r = *start.last().expect("there is an end");
         let n = start.len() - 1;
-        let mut body = vec![0u32; r];
-        for (k, columns) in start.windows(2).enumerate() {
-            body[columns[0]..columns[1]].fill(k as u32);
-        }
+        let body = body_of_columns(start);
         let mut pairs: Vec<u64> = Vec::new();
         for i in 0..a.n() {
             let (left, right) = (a.entries(i).0, b.entries(i).0);
@@ -52,17 +48,22 @@ impl Pattern {
         for pair in gather_all(comm, &distinct(pairs)).concat() {
             lists[(pair >> 32) as usize].push(pair as u32);
         }
+        let lists = lists.into_iter().map(distinct).collect();
+        Pattern::of_bodies(lists, start)
+    }
+
+    /// The pattern with entries for each body and those in its list, which increases and contains the body itself.
+    pub fn of_bodies(lists: Vec<Vec<u32>>, start: &[usize]) -> Pattern {
         let mut pattern = Pattern {
             start: start.to_vec(),
-            body,
-            near: Vec::with_capacity(n),
+            body: body_of_columns(start),
+            near: Vec::with_capacity(lists.len()),
             row_ptr: vec![0],
             col: Vec::new(),
         };
         for (k, list) in lists.into_iter().enumerate() {
             let mut length = 0;
             let mut near = Vec::new();
-            let list = distinct(list);
             for &other in &list {
                 near.push((other, length));
                 length += pattern.columns(other as usize).len() as u32;
@@ -153,6 +154,15 @@ impl Pattern {
         sum_all(comm, val);
         product
     }
+}
+
+/// The body of each column.
+fn body_of_columns(start: &[usize]) -> Vec<u32> {
+    let mut body = vec![0u32; *start.last().expect("there is an end")];
+    for (k, columns) in start.windows(2).enumerate() {
+        body[columns[0]..columns[1]].fill(k as u32);
+    }
+    body
 }
 
 /// The runs of columns that belong to one body.

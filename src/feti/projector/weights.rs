@@ -2,7 +2,6 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::graph::BodyGraph;
 use super::natural::NaturalCoarse;
 use super::rows::Rows;
 use super::sweep;
@@ -110,12 +109,12 @@ impl NaturalCoarse {
         rigid: &[f64],
     ) -> Result<Rows> {
         let n = stiffness.jump.n_owned;
-        let graph = BodyGraph::new(problem, stiffness);
+        let graph = self.graph(problem, stiffness);
         let start = &stiffness.space.kernel_start;
         let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
         let like = PetscVec::mpi(&stiffness.session, n)?;
         let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
-        let images = sweep::images(&like, &graph, &columns, apply)?;
+        let images = sweep::images(&like, graph, &columns, apply)?;
         let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
             let entries = list.iter().enumerate().flat_map(|(c, column)| {
                 let entries = column.entries.iter();

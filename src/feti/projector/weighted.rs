@@ -1,0 +1,132 @@
+//! (GᵀQG)⁻¹ with many rigid motions and Q ≠ I, by the crate's sparse Cholesky factorisation.
+//!
+//! With Q = M⁻¹ rounding makes GᵀQG unsymmetric. P is a projection all the same if this very matrix is inverted, not
+//! its symmetric part, which is what is factored. Steps of iterative refinement make up for the difference. Without
+//! extreme jumps none is needed.
+
+use super::gram::{Gram, Shape};
+use super::gtg::Side;
+use crate::linalg::csr::Csr;
+
+/// Largest residual of a solution, relative to the right-hand side, both in the scaled matrix: that of an LU
+/// factorisation.
+const EXACT: f64 = 1e-14;
+
+/// Largest number of refinement steps.
+const STEPS: usize = 3;
+
+/// The factor of the symmetric part of A = GᵀQG, and A.
+pub struct Weighted {
+    factor: Gram,
+    matrix: Csr,
+    /// Aᵀ, if steps are needed.
+    transpose: Option<Csr>,
+    /// Number of refinement steps.
+    steps: usize,
+    /// The relative error of a vector after multiplication with the scaled matrix and its inverse.
+    pub defect: f64,
+}
+
+impl Weighted {
+    /// Factors `a`, which has the pattern of `shape`; `plain` says what the rows hold. Gives `a` back if the factor is
+    /// not as good as one with pivots would be, or columns are few.
+    pub fn new(shape: &Shape, a: Csr, plain: &Gram) -> Result<Weighted, Csr> {
+        let transpose = transposed(&a);
+        let mut symmetric = a.clone();
+        let both = symmetric.val.iter_mut().zip(&transpose.val);
+        both.for_each(|(s, t)| *s = 0.5 * (*s + t));
+        let Some(factor) = Gram::weighted(shape, symmetric, plain) else {
+            return Err(a);
+        };
+        let mut weighted = Weighted {
+            factor,
+            matrix: a,
+            transpose: Some(transpose),
+            steps: 0,
+            defect: f64::INFINITY,
+        };
+        match weighted.enough() {
+            true => Ok(weighted),
+            false => Err(weighted.matrix),
+        }
+    }
+
+    /// Finds out how many steps are needed. Returns whether so many do.
+    fn enough(&mut self) -> bool {
+        let root: Vec<f64> = self.matrix.diagonal().iter().map(|d| d.sqrt()).collect();
+        // A test vector that is neither smooth nor orthogonal to anything in particular.
+        let mut x: Vec<f64> = (0..root.len())
+            .map(|i| 1.0 + ((i * 7919) % 13) as f64 / 13.0)
+            .zip(&root)
+            .map(|(x, d)| if *d > 0.0 { x / d } else { 0.0 })
+            .collect();
+        self.without_dropped(&mut x);
+        let mut b = vec![0.0; x.len()];
+        self.matrix.mul(&x, &mut b);
+        self.without_dropped(&mut b);
+        let scaled = |v: &[f64], power: i32| {
+            let entries = v.iter().zip(&root).filter(|e| *e.1 > 0.0);
+            entries.fold(0.0f64, |m, (v, d)| m.max((v * d.powi(power)).abs()))
+        };
+        for steps in 0..=STEPS {
+            self.steps = steps;
+            let mut y = b.clone();
+            self.solve(&mut y, Side::Plain);
+            let rest = self.rest(&y, &b, Side::Plain);
+            let error: Vec<f64> = y.iter().zip(&x).map(|(y, x)| y - x).collect();
+            self.defect = scaled(&error, 1) / scaled(&x, 1);
+            // What is not a number is no small residual.
+            if scaled(&rest, -1) <= EXACT * scaled(&b, -1).max(scaled(&x, 1)) {
+                if steps == 0 {
+                    self.transpose = None;
+                }
+                return true;
+            }
+        }
+        false
+    }
+
+    fn without_dropped(&self, x: &mut [f64]) {
+        let dropped = self.factor.dropped.iter();
+        dropped.for_each(|&k| x[k as usize] = 0.0);
+    }
+
+    /// b − A x, or b − Aᵀ x.
+    fn rest(&self, x: &[f64], b: &[f64], side: Side) -> Vec<f64> {
+        let a = match (side, &self.transpose) {
+            (Side::Transposed, Some(transpose)) => transpose,
+            _ => &self.matrix,
+        };
+        let mut rest = vec![0.0; x.len()];
+        a.mul(x, &mut rest);
+        rest.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+        self.without_dropped(&mut rest);
+        rest
+    }
+
+    /// x ← A⁻¹ x or A⁻ᵀ x, zero in the columns that are left out.
+    pub fn solve(&self, x: &mut [f64], side: Side) {
+        let b = x.to_vec();
+        self.factor.solve(x);
+        for _ in 0..self.steps {
+            let mut rest = self.rest(x, &b, side);
+            self.factor.solve(&mut rest);
+            x.iter_mut().zip(&rest).for_each(|(x, r)| *x += r);
+        }
+    }
+}
+
+/// Aᵀ for a pattern that is symmetric.
+fn transposed(a: &Csr) -> Csr {
+    let mut out = a.clone();
+    for i in 0..a.n() {
+        for k in a.row_ptr[i]..a.row_ptr[i + 1] {
+            out.val[k] = a.get(a.col[k] as usize, i);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+#[path = "../../../tests/inside/feti/projector/weighted.rs"]
+mod tests;
