@@ -133,7 +133,8 @@ impl LinearMethod {
     /// The subdomains as they are factored. The operators may have adaptive constraints that rows do not know.
     fn kept(&self) -> Kept {
         let dual = self.dual();
-        Kept::new(&dual.stiffness.jump, &dual.stiffness.locals, &self.analysed)
+        let s = &dual.stiffness;
+        Kept::new(&s.jump, &s.locals, &self.analysed, s.primal.patterns())
     }
 
     /// Changes Z^k to `active` (one per owned row). Returns the number of rows that changed over all ranks. Collective.

@@ -100,7 +100,7 @@ impl LinearMethod {
             &sharing,
             jump,
             locals,
-            (team, varies, &settings),
+            (team, varies, &settings, kept),
         )?; /* S̃⁺, F */
         let lifting = match kind {
             PcType::CoarseCorrected => clock::timed(Phase::LiftingSetup, || {
@@ -192,13 +192,15 @@ fn stiffness(
     sharing: &Sharing,
     jump: Jump,
     locals: Vec<Scaled>,
-    (team, varies, settings): (Team, f64, &MethodSettings),
+    (team, varies, settings, kept): (Team, f64, &MethodSettings, Option<&Kept>),
 ) -> Result<Stiffness> {
     let comm = session.comm();
     let mut space = PrimalSpace::new(comm, problem, sharing, &jump.averages, &locals);
     let primal = clock::timed(Phase::PrimalSetup, || {
         let prefix = format!("{}coarse_", settings.prefix);
-        PrimalProblem::new(session, &mut space, &team, &prefix)
+        let known = kept.map_or(&[][..], Kept::coarse);
+        let patterns = (known, settings.keeps_analyses);
+        PrimalProblem::new(session, &mut space, &team, &prefix, patterns)
     })?;
     let layout = PetscVec::mpi(session, jump.n_owned)?;
     let dual_halo = Halo::new(session, &layout, &jump.ghosts)?;

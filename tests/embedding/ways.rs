@@ -65,6 +65,29 @@ fn a_nested_matrix_is_refused_by_name() {
     }
 }
 
+/// Counts over all ranks: set-ups of everything and of numbers; patterns, subdomains, partitions into bodies.
+#[test]
+fn other_entries_analyse_nothing_again() {
+    let scratch = Scratch::new("ways-again");
+    let program = Program::own("mpicc", &scratch, "again.c");
+    let sizes = "-dim 3 -m 5 -times 2 -ksp_type fetifeti -fetifeti_bodies 2 -ksp_view";
+    let out = program.with_plugin(4, sizes);
+    assert_eq!(out.code, 0, "{}", out.all());
+    let lines = out.stdout.lines().filter(|l| l.contains("set-ups: "));
+    let counts = |line: &str| -> Vec<usize> {
+        let numbers = line.split(|c: char| !c.is_ascii_digit());
+        numbers.filter_map(|n| n.parse().ok()).collect()
+    };
+    let counts: Vec<Vec<usize>> = lines.map(counts).collect();
+    let [first, second] = &counts[..] else {
+        panic!("{}", out.all());
+    };
+    let patterns = first[3];
+    assert!(patterns >= 8, "kernels and factors of each subdomain");
+    assert_eq!(first[..], [1, 0, 0, patterns, 4, 1]);
+    assert_eq!(second[..], [1, 1, 0, patterns, 8, 1]);
+}
+
 #[test]
 fn some_of_the_ranks_do_nothing() {
     let scratch = Scratch::new("ways-half");

@@ -3,10 +3,9 @@
 //! S_Π is block diagonal by body, and the rows of a body live on one rank. The crate's own Cholesky factorisation of
 //! each body solves S_Π exactly and without a message. Any option `-fetifeti_coarse_…` selects a PETSc KSP instead.
 
+use super::body::{Body, Pattern};
 use super::matrix::PrimalMatrix;
 use super::space::PrimalSpace;
-use crate::cholesky::multifrontal::PartialCholesky;
-use crate::cholesky::symbolic::Symbolic;
 use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::any;
 use crate::parallel::halo::Halo;
@@ -28,18 +27,20 @@ struct Parts {
 }
 
 enum Solver {
-    /// For each body of this rank: its first row here, and the factor.
-    Own(Vec<(usize, PartialCholesky)>),
+    /// A factor for each body of this rank.
+    Own(Vec<Body>),
     Petsc(Ksp),
 }
 
 impl PrimalProblem {
-    /// Assembles the matrix and sets its solver up; consumes S_Π. Collective.
+    /// Assembles the matrix and sets its solver up; consumes S_Π. `known` has patterns of an earlier set-up by body,
+    /// and may be empty; `keeps`: there may be a later one. Collective.
     pub fn new(
         session: &Session,
         space: &mut PrimalSpace,
         team: &Team,
         prefix: &str,
+        (known, keeps): (&[Pattern], bool),
     ) -> Result<PrimalProblem> {
         if space.n_global == 0 {
             return Ok(PrimalProblem { parts: None });
@@ -48,10 +49,10 @@ impl PrimalProblem {
         let rhs = PetscVec::mpi(session, space.n_owned)?;
         let own = match Options::new(session, prefix).any()? {
             true => None,
-            false => own(session, space, team, &matrix),
+            false => own(session, space, team, &matrix, (known, keeps)),
         };
         let solver = match own {
-            Some(factors) => Solver::Own(factors),
+            Some(bodies) => Solver::Own(bodies),
             // A factorisation may fail on one rank alone.
             None => Solver::Petsc(session.agree(petsc(session, space, &matrix, prefix))?),
         };
@@ -66,6 +67,16 @@ impl PrimalProblem {
                 halo,
             }),
         })
+    }
+
+    /// The patterns of this rank's bodies, if they are kept; or none.
+    pub fn patterns(&self) -> Vec<Pattern> {
+        let of = |solver: &Solver| match solver {
+            Solver::Own(bodies) => bodies.iter().map(|b| b.pattern.clone()).collect(),
+            Solver::Petsc(_) => None,
+        };
+        let found = self.parts.as_ref().and_then(|p| of(&p.solver));
+        found.unwrap_or_default()
     }
 
     /// Applies S_Π⁺. `values` (at this rank's ghosts) has the rank's contributions to Ψᵀ v on entry and S_Π⁺ of their
@@ -95,20 +106,20 @@ impl PrimalProblem {
                 p.session
                     .agree(solved.and_then(|()| solved_to_the_end(ksp)))?;
             }
-            Solver::Own(factors) => {
+            Solver::Own(bodies) => {
                 let rhs = p.rhs.array()?;
-                let mut parts: Vec<Vec<f64>> = factors
+                let mut parts: Vec<Vec<f64>> = bodies
                     .iter()
-                    .map(|(first, factor)| rhs[*first..first + factor.n()].to_vec())
+                    .map(|body| rhs[body.first..body.first + body.factor.n()].to_vec())
                     .collect();
                 clock::timed(Phase::Primal, || {
                     team.for_each(&mut parts, |b, x| {
-                        factors[b].1.solve(x);
+                        bodies[b].factor.solve(x);
                     });
                 });
                 let mut solution = p.solution.array_mut()?;
-                for ((first, _), x) in factors.iter().zip(&parts) {
-                    solution[*first..first + x.len()].copy_from_slice(x);
+                for (body, x) in bodies.iter().zip(&parts) {
+                    solution[body.first..body.first + x.len()].copy_from_slice(x);
                 }
             }
         }
@@ -133,18 +144,16 @@ fn own(
     space: &PrimalSpace,
     team: &Team,
     matrix: &PrimalMatrix,
-) -> Option<Vec<(usize, PartialCholesky)>> {
-    let factors = team.map(space.owned.len(), |b| {
+    (known, keeps): (&[Pattern], bool),
+) -> Option<Vec<Body>> {
+    let bodies = team.map(space.owned.len(), |b| {
         let range = &space.owned[b].range;
-        let k = matrix.sparse(range);
-        let symbolic = Symbolic::new(&k, &[], None);
-        let factor = PartialCholesky::new(&k, symbolic.into()).ok()?.0;
-        Some((range.start, factor))
+        Body::new(range.start, &matrix.sparse(range), known.get(b), keeps)
     });
-    let factors: Option<Vec<_>> = factors.into_iter().collect();
+    let bodies: Option<Vec<_>> = bodies.into_iter().collect();
     // All ranks make the same choice.
-    let failed = any(session.comm(), factors.is_none());
-    factors.filter(|_| !failed)
+    let failed = any(session.comm(), bodies.is_none());
+    bodies.filter(|_| !failed)
 }
 
 /// Returns an error if the last solve failed on this rank.

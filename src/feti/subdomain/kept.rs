@@ -8,6 +8,7 @@ use super::which::OperatorForm;
 use crate::cholesky::interior::Analysed;
 use crate::feti::interface::entities::Average;
 use crate::feti::jump::operator::Jump;
+use crate::feti::primal::body::Pattern;
 
 /// The subdomains of a set-up, each with the interface that it was factored for.
 pub(crate) struct Kept {
@@ -16,6 +17,7 @@ pub(crate) struct Kept {
     /// `None`: the matrices have other numbers.
     locals: Option<Vec<Scaled>>,
     analysed: Vec<Option<Arc<Analysed>>>,
+    coarse: Vec<Pattern>,
 }
 
 /// What of one subdomain is still right.
@@ -48,8 +50,14 @@ impl Interface {
 }
 
 impl Kept {
-    /// The subdomains `locals` of a set-up with these rows, and the analyses of their patterns as far as there are any.
-    pub fn new(jump: &Jump, locals: &[Scaled], analysed: &[Option<Arc<Analysed>>]) -> Kept {
+    /// The subdomains `locals` of a set-up with these rows, and the analyses of their patterns and of the `coarse`
+    /// problems of bodies, as far as there are any.
+    pub fn new(
+        jump: &Jump,
+        locals: &[Scaled],
+        analysed: &[Option<Arc<Analysed>>],
+        coarse: Vec<Pattern>,
+    ) -> Kept {
         let form = |local: &Scaled| match local.is_implicit() {
             true => OperatorForm::Implicit,
             false => OperatorForm::Explicit,
@@ -59,6 +67,7 @@ impl Kept {
             forms: locals.iter().map(form).collect(),
             locals: Some(locals.to_vec()),
             analysed: analysed.to_vec(),
+            coarse,
         }
     }
 
@@ -68,6 +77,11 @@ impl Kept {
             locals: None,
             ..self
         }
+    }
+
+    /// The patterns of the coarse problems of this rank's bodies. They may be those of other rows.
+    pub fn coarse(&self) -> &[Pattern] {
+        &self.coarse
     }
 
     /// What is still right with other rows, for each local subdomain: nothing where its interface has changed.

@@ -1,0 +1,46 @@
+//! The factor of a body's primal problem, and what is known of its pattern for the next set-up.
+
+use std::sync::Arc;
+
+use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::symbolic::Symbolic;
+use crate::linalg::csr::Csr;
+
+/// A pattern and its analysis.
+#[derive(Debug, Clone)]
+pub struct Pattern {
+    row_ptr: Vec<usize>,
+    col: Vec<u32>,
+    symbolic: Arc<Symbolic>,
+}
+
+/// The factor of a body's matrix.
+pub struct Body {
+    /// The first row of the body on this rank.
+    pub first: usize,
+    pub factor: PartialCholesky,
+    /// The pattern, if it is to be kept.
+    pub pattern: Option<Pattern>,
+}
+
+impl Body {
+    /// Factors `k`, with the analysis of `known` where the pattern is the same. `None` if a pivot vanishes.
+    pub fn new(first: usize, k: &Csr, known: Option<&Pattern>, keeps: bool) -> Option<Body> {
+        let same = known.filter(|known| known.row_ptr == k.row_ptr && known.col == k.col);
+        let symbolic = match same {
+            Some(known) => known.symbolic.clone(),
+            None => Arc::new(Symbolic::new(k, &[], None)),
+        };
+        let (factor, _) = PartialCholesky::new(k, symbolic.clone()).ok()?;
+        let pattern = || Pattern {
+            row_ptr: k.row_ptr.clone(),
+            col: k.col.clone(),
+            symbolic,
+        };
+        Some(Body {
+            first,
+            factor,
+            pattern: keeps.then(pattern),
+        })
+    }
+}
