@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::petsc::Session;
 use crate::report::json::contact::OuterStep;
+use crate::report::output;
 use crate::{Error, Result};
 
 /// The file for events, which the first rank writes; or none.
@@ -18,8 +19,13 @@ impl Events {
     /// Opens the file; lines are added at its end. Collective.
     ///
     /// # Errors
-    /// A file that cannot be written.
+    /// A file that cannot be written; `-`, which is standard output elsewhere.
     pub fn new(session: &Session, path: Option<&Path>) -> Result<Events> {
+        if path.is_some_and(output::is_stdout) {
+            return Err(Error::input(
+                "--events - is standard output, expected a file that lines can be added to",
+            ));
+        }
         let open = |path: &Path| {
             let file = File::options().append(true).create(true).open(path);
             file.map_err(|e| Error::environment(format!("{}: {e}", path.display())))

@@ -122,6 +122,7 @@ fn solve(
         args.checkpoint.as_deref(),
         args.resume.as_deref(),
     )?;
+    let events = Events::new(session, args.events.as_deref())?;
     let start = Instant::now();
     let substructures = distribution::substructures(session, scene)?;
     let assemble = start.elapsed().as_secs_f64();
@@ -135,7 +136,6 @@ fn solve(
         true => Place::EachRank,
         false => Place::FirstRank,
     };
-    let events = Events::new(session, args.events.as_deref())?;
     let written = (checkpoints, &events);
     let course = follow(session, scene, &mut solver, destination, place, written)?;
     let scene = course.scene.as_ref().unwrap_or(scene);

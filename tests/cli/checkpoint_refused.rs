@@ -132,6 +132,10 @@ fn a_place_that_cannot_be_written_is_found_before_the_work() {
         2,
         &["standard output"],
     );
+    // Events go to files, too.
+    let events = |place: &str| fetifeti(&["solve", MODEL, "--events", place]);
+    refused(&events(&below), 3, &["file/c: "]);
+    refused(&events("-"), 2, &["--events - is standard output"]);
     assert_eq!(fs::read_to_string(&file).expect("still there"), "old");
     // A full disk ends the run with one sentence, on all ranks.
     for ranks in [1, 2] {

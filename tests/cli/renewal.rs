@@ -172,7 +172,20 @@ fn without_sliding_nothing_changes() {
 #[test]
 fn all_ranks_give_the_same() {
     let scene = blocks(1.1, 3.15, 6, false, UPDATE);
-    let [one, two, four] = [1, 2, 4].map(|ranks| solved("ranks", &scene, ranks));
+    let scratch = Scratch::new("renewal-events");
+    let [one, two, four] = [1, 2, 4].map(|ranks| {
+        let events = scratch.path(&format!("{ranks}.jsonl"));
+        let (out, report) = run("ranks", &scene, ranks, &["--events", &events]);
+        assert_eq!(out.code, 0, "{}", out.all());
+        let report = report.expect("a report");
+        let lines = fs::read_to_string(events).expect("a line for each step");
+        let lines = lines
+            .lines()
+            .map(|l| serde_json::from_str(l).expect("JSON"));
+        let steps = Value::Array(lines.collect());
+        assert_eq!(steps, report["contact"]["steps"]);
+        report
+    });
     for other in [two, four] {
         for key in ["force", "max_pressure", "area", "largest_sliding"] {
             near(
