@@ -42,3 +42,65 @@ fn a_stiff_body_floats_beside_a_soft_one() {
         assert!((other / rigid - 1.0).abs() < 1e-8, "{other} {rigid}");
     }
 }
+
+/// A soft block that floats on a stiff plate of another mesh, tied or in contact, with multipliers on the side of
+/// `multipliers`.
+fn block_on_plate(stiff: f64, joint: &str, multipliers: &str) -> String {
+    let held = match joint {
+        "tie" => "",
+        _ => "dirichlet = { left = { x = 0 }, back = { z = 0 } }\n",
+    };
+    let push = if joint == "tie" { 0.01 } else { 0.0 };
+    format!(
+        "dimension = 3\nphysics = \"elasticity\"\n[[body]]\nname = \"plate\"\nsize = [2, 1, 2]\n\
+         elements = [6, 3, 6]\nsubdomains = [2, 1, 2]\nyoung = {stiff:e}\ndirichlet = [\"bottom\"]\n\
+         {}{held}[[{joint}]]\nbodies = [\"plate\", \"block\"]\nmultipliers = \"{multipliers}\"\n",
+        block(push)
+    )
+}
+
+/// The block alone.
+fn block(push: f64) -> String {
+    format!(
+        "[[body]]\nname = \"block\"\norigin = [0.3, 1, 0.4]\nsize = 1\nelements = [4, 4, 4]\nsubdomains = 2\n\
+         young = 1\ntraction = {{ top = [{push}, \"-0.01*(1 + 0.2*(x - 0.5))\", 0] }}\n"
+    )
+}
+
+/// The stiffer the plate, the less it gives: at last the block stands on something rigid, and takes no more iterations.
+#[test]
+fn a_soft_body_floats_on_a_stiff_one() {
+    for joint in ["tie", "contact"] {
+        let rigid = match joint {
+            "tie" => "dirichlet = [\"bottom\"]\n",
+            _ => "dirichlet = { bottom = { y = 0 }, left = { x = 0 }, back = { z = 0 } }\n",
+        };
+        let push = if joint == "tie" { 0.01 } else { 0.0 };
+        let head = "dimension = 3\nphysics = \"elasticity\"\n";
+        let rigid = solve(&format!("{head}{}{rigid}", block(push))).energy;
+        for multipliers in ["block", "plate"] {
+            let [some, most] =
+                [1e4, 1e12].map(|stiff| solve(&block_on_plate(stiff, joint, multipliers)));
+            println!(
+                "{joint} {multipliers}: {} and {} iterations",
+                some.iterations, most.iterations
+            );
+            assert!(most.iterations <= some.iterations + 1);
+            // With multipliers of the plate, faces of the block touch it in the mean.
+            let like = if multipliers == "block" { 1e-9 } else { 0.1 };
+            let ratio = most.energy / rigid;
+            assert!((ratio - 1.0).abs() < like, "{joint} {multipliers}: {ratio}");
+        }
+    }
+}
+
+/// One subdomain for each body: the interface moves by 10⁻¹² of what the inside moves, less than rounding of the forces.
+#[test]
+fn gaps_below_rounding_are_closed() {
+    let whole = |text: String| {
+        let text = text.replace("subdomains = [2, 1, 2]", "subdomains = 1");
+        text.replace("subdomains = 2", "subdomains = 1")
+    };
+    let solution = solve(&whole(block_on_plate(1e12, "contact", "block")));
+    assert!(solution.steps.len() < 10, "{}", solution.steps.len());
+}

@@ -15,7 +15,6 @@ use super::refinement::remainder;
 use super::residual::Iterate;
 use crate::feti::method::LinearMethod;
 use crate::feti::operators::dual::Dual;
-use crate::feti::subdomain::scaled::Scaled;
 use crate::linalg::csr::Csr;
 use crate::parallel::exchange::sum_all;
 use crate::Result;
@@ -132,10 +131,8 @@ fn correction(dual: &Dual, loads: Loads) -> Result<Vec<(Vec<f64>, Vec<f64>)>> {
 fn work_inside(dual: &Dual, loads: &Loads, f: &[&[f64]]) -> f64 {
     let locals = &dual.stiffness.locals;
     let works = dual.stiffness.team.map(locals.len(), |j| {
-        let still = vec![0.0; locals[j].gamma().n_gamma()];
-        let parts = [(&loads.interiors[j][..], &still[..])];
-        let x = Scaled::recover_many(&[&locals[j]], &parts);
-        let terms = x.iter().flatten().zip(f[j]);
+        let x = loads.inside(locals, j);
+        let terms = x.iter().zip(f[j]);
         terms.map(|(x, f)| x * f).sum::<f64>()
     });
     works.iter().sum()

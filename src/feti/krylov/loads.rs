@@ -8,6 +8,7 @@ use crate::cholesky::lanes::LANES;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::natural::KernelLoad;
 use crate::feti::subdomain::scaled::Scaled;
+use crate::parallel::exchange::highest;
 use crate::substructures::Substructures;
 
 /// The data of the right-hand side of the dual problem.
@@ -46,5 +47,22 @@ impl Loads {
             kernel,
             jumps,
         }
+    }
+
+    /// K_II⁻¹ f_I of local subdomain `j`, zero on Γ.
+    pub fn inside(&self, locals: &[Scaled], j: usize) -> Vec<f64> {
+        let local = &locals[j];
+        let still = vec![0.0; local.gamma().n_gamma()];
+        Scaled::recover_many(&[local], &[(&self.interiors[j], &still)]).concat()
+    }
+
+    /// The largest displacement inside subdomains while their interfaces stay where they are. Collective.
+    pub fn largest_inside(&self, dual: &Dual) -> f64 {
+        let locals = &dual.stiffness.locals;
+        let largest = dual.stiffness.team.map(locals.len(), |j| {
+            let u = self.inside(locals, j);
+            u.iter().fold(0.0f64, |a, u| a.max(u.abs()))
+        });
+        highest(dual.comm(), largest.into_iter().fold(0.0, f64::max))
     }
 }

@@ -100,7 +100,11 @@ impl NaturalCoarse {
         Ok(out)
     }
 
-    /// Q G with Q = M⁻¹ + diag(`rigid`). Columns of bodies that are far from each other share a product with M⁻¹.
+    /// Q G with Q = J M⁻¹ J + diag(`rigid`), where J selects the rows of B_gl. Columns of bodies that are far from each
+    /// other share a product with M⁻¹.
+    ///
+    /// Without J, what Gᵀ M⁻¹ G divides would come from the rows of B_loc in stiff bodies as well, and be larger by as
+    /// much as bodies differ in stiffness (docs/theory.md, section 6).
     pub(super) fn probe(
         &self,
         problem: &Substructures,
@@ -114,7 +118,11 @@ impl NaturalCoarse {
         let columns = sweep::kernel_columns(&self.g, start, |b| graph.near[b].clone());
         let like = PetscVec::mpi(&stiffness.session, n)?;
         let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
-        let images = sweep::images(&like, graph, &columns, apply)?;
+        let mut images = sweep::images(&like, graph, &columns, apply)?;
+        for column in &mut images {
+            let global = |row: u32| row as usize >= stiffness.jump.n_owned_local;
+            column.entries.retain(|e| global(e.0));
+        }
         let of = |list: &[sweep::Column], weigh: &dyn Fn(u32) -> f64| {
             let entries = list.iter().enumerate().flat_map(|(c, column)| {
                 let entries = column.entries.iter();

@@ -253,6 +253,21 @@ fn contacts(add: &mut dyn FnMut(&'static str, &str, String)) {
             CONTACT,
         ),
     );
+    let place = |name: &str, origin: &str, size: &str, elements: &str| {
+        format!("[[body]]\nname = \"{name}\"\norigin = {origin}\nsize = {size}\nelements = {elements}\nsubdomains = 2\n")
+    };
+    let plate = place("plate", "[0, 0, 0]", "[2, 1, 2]", "[6, 4, 6]");
+    let block = place("block", "[0.3, 1, 0.4]", "1", "[4, 4, 4]");
+    add(
+        "soft-on-rigid",
+        "a floating solid on a plate 1e12 times as stiff, of another mesh",
+        format!(
+            "{SOLID}{plate}young = 1e12\ndirichlet = [\"bottom\"]\n{block}young = 1\n\
+             dirichlet = {{ left = {{ x = 0 }}, back = {{ z = 0 }} }}\n\
+             traction = {{ top = [0, \"-0.01*(1 + 0.2*(x - 0.5))\", 0] }}\n[[contact]]\n\
+             bodies = [\"plate\", \"block\"]\nmultipliers = \"block\"\n"
+        ),
+    );
     add(
         "flies-away",
         "a floating block that the load pulls away: no solution",
