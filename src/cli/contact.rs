@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::contact::Step;
 use crate::petsc::Session;
 use crate::report::interfaces::InterfaceNodes;
-use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep};
+use crate::report::json::contact::{InterfaceForce, InterfaceKind, OuterStep, Slid};
 use crate::report::plots::profile::Profile;
 use crate::scene::sliding::{Sliders, Sliding};
 use crate::scene::{Displaced, Scene, Shape};
@@ -87,9 +87,7 @@ pub fn forces(
                     let touching = rows.iter().filter(|r| r.is_inequality() && r.holds());
                     touching.map(|r| r.label.area).sum()
                 }),
-                largest_sliding: slid.map(|s| s.largest),
-                sliding_over_face: slid.map(|s| s.over_face),
-                largest_turn: slid.map(|s| s.turned),
+                slid: recorded(slid),
             }
         })
         .collect()
@@ -103,6 +101,15 @@ pub fn sliding(scene: &Scene, rows: &[SolvedRow], moved: &Displaced, step: usize
     let sliders = Sliders::new(scene, step);
     let each = with_inequalities(rows).map(|rows| sliders.of(rows, moved));
     each.fold(Sliding::default(), Sliding::max)
+}
+
+/// The form of a sliding in reports.
+pub(super) fn recorded(slid: Option<Sliding>) -> Slid {
+    Slid {
+        largest_sliding: slid.map(|s| s.largest),
+        sliding_over_face: slid.map(|s| s.over_face),
+        largest_turn: slid.map(|s| s.turned),
+    }
 }
 
 /// Σ λ n: the force of the first body, or the only one, on the opposite body or obstacle.

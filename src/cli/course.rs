@@ -218,9 +218,7 @@ fn load_step_record(scene: &Scene, t: f64, course: &Course) -> LoadStep {
         active: inequalities().filter(|r| r.holds()).count(),
         energy: course.energy,
         contact_force: inequalities().map(|r| r.multiplier).sum(),
-        largest_sliding: slid.map(|s| s.largest),
-        sliding_over_face: slid.map(|s| s.over_face),
-        largest_turn: slid.map(|s| s.turned),
+        slid: contact::recorded(slid),
         ..LoadStep::default()
     }
 }

@@ -144,8 +144,16 @@ pub struct InterfaceForce {
     /// Elasticity and solids, where sides may touch: sum of the nodal areas of the rows that hold.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
-    /// Elasticity, where sides may touch: the largest displacement of the two sides along each other at nodes that
-    /// touch, at the end and since the pairing was made.
+    /// Elasticity, where sides may touch: how far they slide.
+    #[serde(flatten)]
+    pub slid: Slid,
+}
+
+/// How far sides that touch slide along each other and turn.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Slid {
+    /// The largest displacement of two sides along each other at nodes that touch, at the end and since the pairing was
+    /// made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_sliding: Option<f64>,
     /// The largest such displacement over the size of the faces at its node.
@@ -242,15 +250,9 @@ pub struct LoadStep {
     /// Where contacts are renewed: number of subdomains that were factored for the new rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factored: Option<usize>,
-    /// Elasticity: as in [`InterfaceForce`], the largest of all interfaces at the end of the step.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub largest_sliding: Option<f64>,
-    /// As in [`InterfaceForce`].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sliding_over_face: Option<f64>,
-    /// As in [`InterfaceForce`].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub largest_turn: Option<f64>,
+    /// Elasticity: the largest values of all interfaces at the end of the step.
+    #[serde(flatten)]
+    pub slid: Slid,
 }
 
 #[cfg(test)]

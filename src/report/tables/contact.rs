@@ -115,8 +115,10 @@ fn load_steps(r: &ContactReport) -> String {
         .numbers("active", |s| s.active)
         .numbers("contact force", |s| value(s.contact_force))
         .when(
-            r.load_steps.iter().any(|s| s.sliding_over_face.is_some()),
-            |t| t.numbers("sliding/face", |s| fixed(s.sliding_over_face, 3)),
+            r.load_steps
+                .iter()
+                .any(|s| s.slid.sliding_over_face.is_some()),
+            |t| t.numbers("sliding/face", |s| fixed(s.slid.sliding_over_face, 3)),
         )
         .numbers("energy", |s| value(s.energy))
         .when(r.updated, |t| {
@@ -190,8 +192,8 @@ fn sliding(r: &ContactReport) -> String {
         let known = r.interfaces.iter().filter_map(|f| Some((of(f)?, f)));
         known.max_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let over = most(|f| f.sliding_over_face);
-    let (Some((over, at)), Some((turn, turned))) = (over, most(|f| f.largest_turn)) else {
+    let over = most(|f| f.slid.sliding_over_face);
+    let (Some((over, at)), Some((turn, turned))) = (over, most(|f| f.slid.largest_turn)) else {
         return String::new();
     };
     // Contact may have been farther in an earlier load step.
@@ -200,8 +202,8 @@ fn sliding(r: &ContactReport) -> String {
         steps.fold(0.0, f64::max)
     };
     let (all, all_turn) = (
-        of_steps(|s| s.sliding_over_face).max(over),
-        of_steps(|s| s.largest_turn).max(turn),
+        of_steps(|s| s.slid.sliding_over_face).max(over),
+        of_steps(|s| s.slid.largest_turn).max(turn),
     );
     let mut text = format!(
         "largest sliding {} of the size of a face ({}), largest turn of a face {} degrees ({})",

@@ -1,7 +1,7 @@
 //! Unit tests of `src/report/tables/contact.rs`.
 
 use super::*;
-use crate::report::json::contact::{InterfaceKind, LoadStep};
+use crate::report::json::contact::{InterfaceKind, LoadStep, Slid};
 use crate::report::json::Spectrum;
 
 /// A run with `steps` outer steps and `n` interfaces of forces 1, 2, …, n.
@@ -168,9 +168,9 @@ fn sliding_that_is_not_small_is_said() {
     let mut report = sample(2, 2);
     assert!(!contact(&report).contains("sliding"), "scalars have none");
     for (k, f) in report.interfaces.iter_mut().enumerate() {
-        f.largest_sliding = Some(0.01 * (k + 1) as f64);
-        f.sliding_over_face = Some(0.2 * (k + 1) as f64);
-        f.largest_turn = Some(1.0);
+        f.slid.largest_sliding = Some(0.01 * (k + 1) as f64);
+        f.slid.sliding_over_face = Some(0.2 * (k + 1) as f64);
+        f.slid.largest_turn = Some(1.0);
     }
     let text = contact(&report);
     assert!(
@@ -179,8 +179,11 @@ fn sliding_that_is_not_small_is_said() {
     );
     assert!(!text.contains("not small"), "{text}");
     report.load_steps = vec![LoadStep {
-        sliding_over_face: Some(0.6),
-        largest_turn: Some(0.5),
+        slid: Slid {
+            sliding_over_face: Some(0.6),
+            largest_turn: Some(0.5),
+            ..Slid::default()
+        },
         ..LoadStep::default()
     }];
     let text = contact(&report);
