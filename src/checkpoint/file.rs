@@ -17,7 +17,7 @@ use crate::{Error, Result};
 
 const MAGIC: &[u8] = b"fetifeti checkpoint\n";
 /// Version of the format; it changes with the content or its meaning.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Bytes in front of the content; bytes behind it.
 const HEAD: usize = MAGIC.len() + 4 + 8;
 const TAIL: usize = 8;

@@ -1,7 +1,8 @@
 //! Checkpoints of the contact loop: `--checkpoint FILE` and `--resume FILE` of `fetifeti solve`.
 //!
-//! A file holds the current load step, the state of the contact loop in it, and the records of everything before. It
-//! belongs to a scene, not to a run: the run that resumes may have other ranks, tolerances and methods.
+//! A file holds the current load step, the state of the contact loop in it, and the records of everything before. Where
+//! load steps renew contacts it holds the displacements, too, from which those of the current step follow. It belongs
+//! to a scene, not to a run: the run that resumes may have other ranks, tolerances and methods.
 //!
 //! | file | task |
 //! |---|---|
@@ -17,7 +18,7 @@ use crate::contact::State;
 use crate::petsc::Session;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::output;
-use crate::scene::{Field, Scene};
+use crate::scene::{Displaced, Field, Scene};
 use crate::{Error, FetiFeti, Result};
 use rows::{GlobalState, Layout};
 
@@ -35,8 +36,19 @@ pub struct Checkpoint {
     pub load_step: usize,
     /// The [`Records`] up to this state, as JSON.
     pub records: String,
+    /// The displacements by body and node for which the contacts of the load step were made; empty unless load steps
+    /// renew them.
+    pub left: Vec<(usize, usize, [f64; 3])>,
     /// The state of the contact loop in the load step.
     pub state: GlobalState,
+}
+
+/// The part of a checkpoint that every rank needs.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Before {
+    load_step: usize,
+    records: String,
+    left: Vec<(usize, usize, [f64; 3])>,
 }
 
 /// The files that the command line names, checked before the solve.
@@ -49,8 +61,8 @@ pub struct Checkpoints {
     scene: u64,
     /// The checkpoint that was read; only rank 0 has the state.
     found: Option<Checkpoint>,
-    /// Its load step and records, on every rank.
-    before: Option<(usize, String)>,
+    /// The rest of it, on every rank.
+    before: Option<Before>,
 }
 
 /// [`Checkpoints`] with a solver that provides and takes states.
@@ -58,6 +70,8 @@ pub struct Attached {
     asked: Checkpoints,
     layout: Option<Layout>,
     start: Option<State>,
+    /// The displacements for which the present contacts were made, where load steps renew them.
+    left: Displaced,
 }
 
 /// The point at which a run resumes; without a checkpoint, the beginning.
@@ -128,7 +142,11 @@ impl Checkpoints {
         };
         session.agree(read)?;
         if out.resume.is_some() {
-            let before = out.found.as_ref().map(|c| (c.load_step, c.records.clone()));
+            let before = out.found.as_ref().map(|c| Before {
+                load_step: c.load_step,
+                records: c.records.clone(),
+                left: c.left.clone(),
+            });
             let everywhere = before.map(|before| vec![before; session.size()]);
             out.before = Some(rows::from_first(session, everywhere));
         }
@@ -145,13 +163,6 @@ impl Checkpoints {
             return Err(Error::input(format!(
                 "{flag}: {} has no contact and no obstacle, \
                  so that there is no outer loop, expected a scene with inequalities",
-                path.display()
-            )));
-        }
-        if scene.is_renewed() {
-            return Err(Error::input(format!(
-                "{flag}: {} has `update` in [steps], which makes new rows at each load step, and a checkpoint is for \
-                 the rows of one (a scene without `update` was expected)",
                 path.display()
             )));
         }
@@ -195,7 +206,15 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Determines the owners of rows in this run. Collective.
+    /// The load step at which the run resumes, and the displacements for which its contacts were made; `None` without a
+    /// checkpoint, and in the first load step.
+    pub fn left(&self) -> Option<(usize, Displaced)> {
+        let before = self.before.as_ref().filter(|b| b.load_step > 0)?;
+        Some((before.load_step, Displaced::of_nodes(&before.left)))
+    }
+
+    /// Determines the owners of rows in this run. The solver must have the rows of the load step at which it resumes.
+    /// Collective.
     ///
     /// # Errors
     /// A checkpoint whose rows are not those of the solver.
@@ -210,6 +229,7 @@ impl Checkpoints {
             _ => None,
         };
         Ok(Attached {
+            left: self.left().map(|(_, left)| left).unwrap_or_default(),
             asked: self,
             layout,
             start,
@@ -223,21 +243,28 @@ impl Attached {
     /// # Errors
     /// Records that this program has not written.
     pub fn resume(&self, session: &Session) -> Result<Resumed> {
-        let (Some((load_step, records)), Some(file)) = (&self.asked.before, &self.asked.resume)
-        else {
+        let (Some(before), Some(file)) = (&self.asked.before, &self.asked.resume) else {
             return Ok(Resumed::default());
         };
-        let records = serde_json::from_str(records).map_err(|e| {
+        let records = serde_json::from_str(&before.records).map_err(|e| {
             Error::input(format!(
                 "{}: the records of the checkpoint cannot be read: {e}",
                 file.display()
             ))
         });
         Ok(Resumed {
-            load_step: *load_step,
+            load_step: before.load_step,
             records: session.agree(records)?,
             state: self.start.clone(),
         })
+    }
+
+    /// Notes that the solver has new rows, made for these displacements. Collective.
+    pub fn renewed(&mut self, solver: &FetiFeti, left: &Displaced) {
+        if let Some(layout) = &mut self.layout {
+            *layout = Layout::new(&solver.method);
+            self.left.clone_from(left);
+        }
     }
 
     /// Writes the state of load step `load_step` and the records so far; does nothing where no file was asked for.
@@ -263,6 +290,7 @@ impl Attached {
                 scene: self.asked.scene,
                 load_step,
                 records,
+                left: self.left.nodes(),
                 state,
             };
             file::write(file, &content)

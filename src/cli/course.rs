@@ -61,7 +61,12 @@ pub(super) fn follow(
         .out
         .as_ref()
         .map(|dir| Pvd::new(dir.join("solution.pvd")));
-    let checkpoints = checkpoints.attach(session, solver)?;
+    let mut renewed = Renewed::new(scene);
+    if let Some((step, left)) = checkpoints.left() {
+        let made = renewed.resume(session, &owns, solver, (step, left));
+        made.map_err(|e| renewed.at_step(step, e))?;
+    }
+    let mut checkpoints = checkpoints.attach(session, solver)?;
     let Resumed {
         load_step: first,
         mut records,
@@ -78,7 +83,6 @@ pub(super) fn follow(
     });
     let mut stepping = many.transpose()?;
     let mut fields: Option<Gathered> = None;
-    let mut renewed = Renewed::new(scene);
     for step in first..n {
         let set_up = match &course {
             Some(last) => renewed
@@ -86,10 +90,14 @@ pub(super) fn follow(
                 .map_err(|e| renewed.at_step(step, e))?,
             None => None,
         };
-        let scene = renewed.scene();
         if let Some((start, _)) = &set_up {
             state.clone_from(start);
+            checkpoints.renewed(solver, renewed.start());
+            if let Some(state) = &state {
+                checkpoints.save(session, step, || records.clone(), state)?;
+            }
         }
+        let scene = renewed.scene();
         if let Some(stepping) = &mut stepping {
             let loads = session.agree(stepping.loads(step))?;
             solver.set_loads(loads, &scene.gaps(&owns, step)?);
@@ -166,7 +174,10 @@ pub(super) fn follow(
         }
         if step + 1 < n {
             let next = done.solution.warm_start();
-            checkpoints.save(session, step + 1, || records.clone(), &next)?;
+            // Where contacts are renewed, the next step has other rows.
+            if !renewed.scene().is_renewed() {
+                checkpoints.save(session, step + 1, || records.clone(), &next)?;
+            }
             state = Some(next);
         }
     }

@@ -58,6 +58,40 @@ impl<'a> Renewed<'a> {
         }
     }
 
+    /// The displacements for which the present contacts were made.
+    pub fn start(&self) -> &Displaced {
+        &self.start
+    }
+
+    /// Renews the contacts for load step `step`, which a checkpoint is in, where the step before has left the bodies.
+    /// Collective.
+    ///
+    /// # Errors
+    /// As [`Renewed::renew`].
+    pub fn resume(
+        &mut self,
+        session: &Session,
+        owns: &dyn Fn(usize) -> bool,
+        solver: &mut FetiFeti,
+        (step, left): (usize, Displaced),
+    ) -> Result<()> {
+        if self.present.is_none() {
+            return Ok(());
+        }
+        self.end = left;
+        self.renew_at_end(session, step)?;
+        solver.set_rows(self.scene().rows(owns))
+    }
+
+    /// Renews the contacts at the displacements of the end of the last step. Collective.
+    fn renew_at_end(&mut self, session: &Session, step: usize) -> Result<()> {
+        if let Some(scene) = &mut self.present {
+            session.agree(scene.renew(&self.end, step))?;
+            self.start.clone_from(&self.end);
+        }
+        Ok(())
+    }
+
     /// Renews the contacts for load step `step` after the solution `last`. Returned are the start of the contact loop
     /// and the cost; `None` where contacts stay as they are. Collective.
     ///
@@ -71,7 +105,7 @@ impl<'a> Renewed<'a> {
         last: &Course,
         step: usize,
     ) -> Result<Option<(Option<State>, Cost)>> {
-        let Some(scene) = &mut self.present else {
+        let Some(scene) = &self.present else {
             return Ok(None);
         };
         let (clock, before) = (Instant::now(), factorisations());
@@ -83,8 +117,8 @@ impl<'a> Renewed<'a> {
                 known.insert(place, value);
             }
         }
-        session.agree(scene.renew(&self.end, step))?;
-        self.start.clone_from(&self.end);
+        self.renew_at_end(session, step)?;
+        let scene = self.scene();
         let rows = scene.rows(owns);
         let start = rows.iter().map(|row| {
             let inequality = row.kind == RowKind::Inequality;

@@ -72,6 +72,24 @@ impl Displaced {
         }
     }
 
+    /// From the displacements by body and node.
+    pub fn of_nodes(list: &[(usize, usize, [f64; 3])]) -> Displaced {
+        let mut nodes: HashMap<usize, HashMap<usize, [f64; 3]>> = HashMap::new();
+        for &(body, node, u) in list {
+            nodes.entry(body).or_default().insert(node, u);
+        }
+        Displaced::new(nodes)
+    }
+
+    /// The displacements by body and node, in their order.
+    pub fn nodes(&self) -> Vec<(usize, usize, [f64; 3])> {
+        let bodies = self.nodes.iter();
+        let each = bodies.flat_map(|(&body, u)| u.iter().map(move |(&node, &u)| (body, node, u)));
+        let mut list: Vec<(usize, usize, [f64; 3])> = each.collect();
+        list.sort_unstable_by_key(|e| (e.0, e.1));
+        list
+    }
+
     /// The displacement of a node; zero where it is not known.
     pub fn at(&self, at: BodyNode) -> [f64; 3] {
         let of_body = self.nodes.get(&at.body);

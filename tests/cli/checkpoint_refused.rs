@@ -51,7 +51,7 @@ fn bad_files_are_refused_and_stay() {
     );
     let mut older = good.clone();
     older[20..24].copy_from_slice(&1u32.to_le_bytes());
-    resume(&older, &["format 1", "format 3"]);
+    resume(&older, &["format 1", "format 4"]);
     let foreign = fs::read(MODEL).expect("the scene");
     resume(&foreign, &["no checkpoint"]);
     assert_eq!(scratch.files().len(), 2, "{:?}", scratch.files());

@@ -1,11 +1,14 @@
 //! `[steps] update = true`: contacts that are renewed at each load step.
 
+use super::checkpoint::solve;
 use crate::support::checks::number;
 use crate::support::{mpi, program};
 use std::fs;
+use std::path::Path;
 
+use fetifeti::checkpoint::file::read;
 use mpi::{Output, Scratch};
-use program::{fetifeti, run_fetifeti};
+use program::{fetifeti, run_fetifeti, PATH};
 use serde_json::Value;
 
 pub(super) fn run(name: &str, scene: &str, ranks: usize, more: &[&str]) -> (Output, Option<Value>) {
@@ -278,19 +281,46 @@ fn what_cannot_be_renewed_is_refused() {
         assert_eq!(out.code, 2, "{message}: {}", out.all());
         assert!(out.stderr.contains(message), "{message}: {}", out.stderr);
     }
-    let scratch = Scratch::new("renewal-checkpoint");
-    let (out, _) = run(
-        "checkpoint",
-        &scene,
-        1,
-        &["--checkpoint", &scratch.path("c")],
-    );
-    assert_eq!(out.code, 2, "{}", out.all());
-    assert!(
-        out.stderr.contains("makes new rows at each load step"),
-        "{}",
-        out.stderr
-    );
+}
+
+/// A checkpoint has the displacements from which the contacts of its load step follow.
+#[test]
+fn an_interrupted_run_goes_on_with_the_contacts_of_its_step() {
+    let scratch = Scratch::new("renewal-resumed");
+    let scene = scratch.file("s.toml", &blocks(1.1, 3.15, 6, false, UPDATE));
+    let (file, end) = (scratch.path("c"), scratch.path("e"));
+    let tight = ["-fetifeti_ksp_rtol", "1e-10"];
+    let whole = solve(1, &scene, 0, &tight);
+    let mut child = std::process::Command::new(PATH)
+        .args(["solve", &scene, "--quiet", "--checkpoint", &file])
+        .args(tight)
+        .spawn()
+        .expect("the program starts");
+    let at = || read(Path::new(&file)).map_or(0, |c| c.load_step);
+    while at() < 2 && child.try_wait().expect("it can be asked").is_none() {
+        std::thread::yield_now();
+    }
+    let _ = child.kill();
+    child.wait().expect("it ends");
+    assert!((2..5).contains(&at()), "load step {}", at());
+    let energies = |report: &Value| -> Vec<f64> {
+        let steps = report["contact"]["load_steps"].as_array();
+        let steps = steps.expect("load steps").iter();
+        steps.map(|s| number(&s["energy"])).collect()
+    };
+    // The end of the second run is in the last load step.
+    for (ranks, from) in [(1, &file), (2, &file), (2, &end)] {
+        let files = ["--resume", from, "--checkpoint", &end];
+        let resumed = solve(ranks, &scene, 0, &[&files[..], &tight].concat());
+        let (a, b) = (energies(&resumed), energies(&whole));
+        assert_eq!(a.len(), b.len());
+        for (a, b) in a.iter().zip(&b) {
+            // The block moves so far that rounding of its rigid motion is a part of 10⁻⁶.
+            near("energy", *a, *b, 1e-5);
+        }
+        near("depth", probe(&resumed, 0)[1], probe(&whole, 0)[1], 1e-7);
+        assert_eq!(read(Path::new(&end)).expect("a checkpoint").load_step, 4);
+    }
 }
 
 #[test]

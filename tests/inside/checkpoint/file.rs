@@ -10,6 +10,7 @@ fn example() -> Checkpoint {
         scene: 0x1234_5678_9abc_def0,
         load_step: 3,
         records: "{\"steps\": [1, 2]}".into(),
+        left: vec![(0, 5, [1e-3, -0.25, 0.0]), (2, 0, [0.0; 3])],
         state: GlobalState {
             local: vec![2, 0, 1],
             blocks: vec![(7, 2), (40, 1)],
