@@ -3,8 +3,8 @@
 use super::body::{bounds_of, Body};
 use super::deck::DeckScenes;
 use super::geometry::interface::Interface;
-use super::geometry::loose;
 use super::geometry::matching::Matching;
+use super::geometry::{loose, overlap};
 use super::model::expr::Expr;
 use super::model::grid::GridSpec;
 use super::model::joints::Pair;
@@ -179,6 +179,8 @@ impl Scene {
             let loose = loose::sentences(&bodies, &interfaces, &equations, &spec.form, language);
             spec.notes.extend(loose);
         }
+        let deep = overlap::sentences(&bodies, &interfaces, &obstacles, &spec.form);
+        spec.notes.extend(deep);
         validate::check_unknowns(&bodies)?;
         Ok(Scene {
             options: spec.options,

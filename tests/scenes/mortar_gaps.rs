@@ -146,3 +146,28 @@ fn a_table_is_linear_between_its_rows() {
         assert!((gap - expected).abs() < 1e-14, "{gaps:?}");
     }
 }
+
+/// The shortest edge of both sides is 1/3.
+#[test]
+fn an_overlap_of_much_of_an_edge_is_said() {
+    let notes = |apart: f64, joint: &str| {
+        let pair = "bodies = [\"low\", \"up\"]\nsides = [\"top\", \"bottom\"]\n";
+        let text = blocks(2, 1, apart, &joint.replace("PAIR", pair));
+        Scene::parse("s.toml", &text).expect("a scene").notes
+    };
+    let contact = "[[contact]]\nPAIR";
+    let said = notes(-0.05, contact);
+    let names = "Side `top` of `low` and side `bottom` of `up` overlap by 5.000e-2 to begin with, more than a tenth";
+    assert!(said.len() == 1 && said[0].starts_with(names), "{said:?}");
+    assert!(said[0].contains("contact presses them apart"), "{said:?}");
+    let tied = notes(-0.05, "[[tie]]\nPAIR");
+    assert!(
+        tied.iter()
+            .any(|t| t.ends_with("the tie keeps the overlap.")),
+        "{tied:?}"
+    );
+    for (apart, joint) in [(-0.03, ""), (-0.05, "adjust = 0.06\n"), (0.05, "")] {
+        let said = notes(apart, &format!("{contact}{joint}"));
+        assert!(said.is_empty(), "{apart} {joint}: {said:?}");
+    }
+}

@@ -353,6 +353,15 @@ fn a_surface_inside_the_body_is_refused() {
         &block(2, 1, MESH),
         "side `bottom` of `block` and the rigid surface `die` overlap by 0.4",
     );
-    deep.scene(&block(2, 1, &format!("{MESH}\nadjust = 0.41")));
-    Model::new("shallow", &at(0.26)).scene(&block(2, 1, MESH));
+    let adjusted = deep.scene(&block(2, 1, &format!("{MESH}\nadjust = 0.41")));
+    assert!(adjusted.notes.is_empty(), "{:?}", adjusted.notes);
+    // Less than that is said.
+    let shallow = Model::new("shallow", &at(0.26)).scene(&block(2, 1, MESH));
+    let names =
+        "Side `bottom` of `block` and the rigid surface `die` overlap by 2.400e-1 to begin with";
+    assert!(
+        shallow.notes.len() == 1 && shallow.notes[0].starts_with(names),
+        "{:?}",
+        shallow.notes
+    );
 }

@@ -41,15 +41,26 @@ impl Opposite {
     pub(super) fn overlap(&self, body: &Body, side: usize, adjust: f64) -> Option<String> {
         let deepest = self.nearest.values().min_by(|a, b| a.0.total_cmp(&b.0));
         let &(distance, normal) = deepest.filter(|n| n.0 < -adjust)?;
+        overlap::sentence(self.names(body, side), -distance, body, normal)
+    }
+
+    /// The side of a body and this surface, by name.
+    pub(crate) fn names(&self, body: &Body, side: usize) -> [String; 2] {
         let (name, side) = (&body.spec.name, body.spec.mesh.side_name(side));
-        let names = [
+        [
             format!("side `{side}` of `{name}`"),
             format!(
                 "the rigid surface `{}`",
                 self.name.as_deref().unwrap_or_default()
             ),
-        ];
-        overlap::sentence(names, -distance, body, normal)
+        ]
+    }
+
+    /// The nodes that carry multipliers, and their distances.
+    pub(crate) fn distances(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.nearest
+            .iter()
+            .map(|(&node, &(distance, _))| (node, distance))
     }
 }
 

@@ -96,6 +96,11 @@ impl Obstacle {
         self.parameters.get(&node).copied().unwrap_or_default()
     }
 
+    /// Whether `adjust` takes a node as touching.
+    pub(crate) fn counts_as_touching(&self, node: usize) -> bool {
+        self.adjusted.contains_key(&node)
+    }
+
     /// The distance of a node from the rigid body, and the direction towards it. An obstacle that bounds u itself has
     /// distance 0: u ≤ g and −u ≤ −g are rows along ±1.
     pub(crate) fn ahead(&self, node: usize) -> (f64, [f64; 3]) {
