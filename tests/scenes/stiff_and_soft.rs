@@ -94,7 +94,7 @@ fn a_soft_body_floats_on_a_stiff_one() {
     }
 }
 
-/// One subdomain for each body: the interface moves by 10⁻¹² of what the inside moves, less than rounding of the forces.
+/// One subdomain for each body: the interface moves by 10⁻¹² of what the inside moves, less than rounding of forces.
 #[test]
 fn gaps_below_rounding_are_closed() {
     let whole = |text: String| {

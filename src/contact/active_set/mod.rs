@@ -301,8 +301,8 @@ impl<'a> ActiveSet<'a> {
         Ok((step, inner.status, verdict))
     }
 
-    /// Whether the jumps that rigid motions leave are as small as the residual, or rounding. The interface of a soft body
-    /// on a stiff one hardly moves, but its forces are rounded like those inside. Collective.
+    /// Whether the jumps that rigid motions leave are as small as the residual, or rounding. The interface of a soft
+    /// body on a stiff one hardly moves, but its forces are rounded like those inside. Collective.
     fn closed(&self, jump_left: f64, target: f64) -> bool {
         let beyond = |length: f64| jump_left > CLOSED * target + 1e3 * judge::ROUNDING * length;
         // It takes a solve to know how far the inside moves: only where the interface does not settle it.

@@ -254,7 +254,10 @@ fn contacts(add: &mut dyn FnMut(&'static str, &str, String)) {
         ),
     );
     let place = |name: &str, origin: &str, size: &str, elements: &str| {
-        format!("[[body]]\nname = \"{name}\"\norigin = {origin}\nsize = {size}\nelements = {elements}\nsubdomains = 2\n")
+        format!(
+            "[[body]]\nname = \"{name}\"\norigin = {origin}\nsize = {size}\nelements = {elements}\n\
+             subdomains = 2\n"
+        )
     };
     let plate = place("plate", "[0, 0, 0]", "[2, 1, 2]", "[6, 4, 6]");
     let block = place("block", "[0.3, 1, 0.4]", "1", "[4, 4, 4]");
