@@ -15,6 +15,7 @@
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
 //! | `null_vector` | what a semidefinite matrix maps to zero |
+//! | [`shared`] | a factor that several ranks share |
 //! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
 //!
 //! `docs/cholesky.md` has the theory, the data structures and the measurements.
@@ -26,6 +27,7 @@ pub mod lanes;
 pub mod multifrontal;
 mod null_vector;
 pub mod panel;
+pub mod shared;
 pub mod substitution;
 mod sweep;
 pub mod symbolic;

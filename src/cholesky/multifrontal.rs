@@ -105,7 +105,7 @@ impl PartialCholesky {
 }
 
 /// Pivots that vanish.
-enum Pivots<'a> {
+pub(super) enum Pivots<'a> {
     /// None may.
     Regular,
     /// Those below this fraction of the diagonal entry are replaced; the list takes their dofs.
@@ -122,13 +122,65 @@ fn factor(
     kept: &Symbolic,
     mut pivots: Pivots<'_>,
 ) -> Result<(Vec<f64>, Dense), SingularInterior> {
-    let mut s = schur_start(k, sym);
-    let mut panels = vec![0.0; kept.storage];
-    let mut updates: Vec<Vec<f64>> = vec![Vec::new(); sym.fronts.len()];
-    let mut children: Vec<Vec<usize>> = vec![Vec::new(); sym.fronts.len()];
-    let mut place = vec![0u32; k.n()];
-    let mut scratch = Scratch::default();
-    for (f, front) in sym.fronts.iter().enumerate() {
+    let mut elimination = Elimination::new(k, sym, kept);
+    for f in 0..sym.fronts.len() {
+        elimination.front(f, &mut pivots)?;
+    }
+    let Elimination { panels, mut s, .. } = elimination;
+    s.mirror_lower();
+    Ok((panels, s))
+}
+
+/// A factorisation on its way from the leaves to the root.
+pub(super) struct Elimination<'a> {
+    k: &'a Csr,
+    sym: &'a Symbolic,
+    kept: &'a Symbolic,
+    /// The panels of the fronts in `kept`.
+    pub panels: Vec<f64>,
+    /// S so far.
+    s: Dense,
+    /// What fronts leave to their parents: lower triangles of the rows below, until the parents take them.
+    updates: Vec<Vec<f64>>,
+    children: Vec<Vec<usize>>,
+    place: Vec<u32>,
+    scratch: Scratch,
+}
+
+impl<'a> Elimination<'a> {
+    pub fn new(k: &'a Csr, sym: &'a Symbolic, kept: &'a Symbolic) -> Elimination<'a> {
+        Elimination {
+            k,
+            sym,
+            kept,
+            panels: vec![0.0; kept.storage],
+            s: schur_start(k, sym),
+            updates: vec![Vec::new(); sym.fronts.len()],
+            children: vec![Vec::new(); sym.fronts.len()],
+            place: vec![0u32; k.n()],
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// Takes the update that front `f` leaves to its parent.
+    pub fn take(&mut self, f: usize) -> Vec<f64> {
+        let parent = self.sym.fronts[f].parent;
+        let siblings = &mut self.children[parent.expect("there is a parent")];
+        siblings.retain(|&c| c != f);
+        std::mem::take(&mut self.updates[f])
+    }
+
+    /// Gives front `f` this update, as if it had been eliminated here.
+    pub fn give(&mut self, f: usize, update: Vec<f64>) {
+        let parent = self.sym.fronts[f].parent;
+        self.children[parent.expect("there is a parent")].push(f);
+        self.updates[f] = update;
+    }
+
+    /// Eliminates front `f`; its children have been.
+    pub fn front(&mut self, f: usize, pivots: &mut Pivots<'_>) -> Result<(), SingularInterior> {
+        let (k, sym) = (self.k, self.sym);
+        let (front, place) = (&sym.fronts[f], &mut self.place);
         let (width, size) = (front.width(), front.size());
         let mut panel = Dense::zeros(size, width);
         let mut update = Dense::zeros(size - width, size - width);
@@ -155,42 +207,46 @@ fn factor(
                 k.get(dof, dof)
             })
             .collect();
-        for &c in &children[f] {
+        for &c in &self.children[f] {
             let child = &sym.fronts[c];
-            extend_add(&mut panel, &mut update, &child.into_parent, &updates[c]);
-            updates[c] = Vec::new();
+            extend_add(
+                &mut panel,
+                &mut update,
+                &child.into_parent,
+                &self.updates[c],
+            );
+            self.updates[c] = Vec::new();
         }
-        match &mut pivots {
+        let scratch = &mut self.scratch;
+        match pivots {
             Pivots::Regular => {
-                let done = factor_front(&mut panel, &mut update, &diagonal, SINGULAR, &mut scratch);
+                let done = factor_front(&mut panel, &mut update, &diagonal, SINGULAR, scratch);
                 done.map_err(|j| SingularInterior {
                     dof: sym.interior[front.start + j],
                 })?;
             }
             Pivots::Above(least, left) => {
-                let weak =
-                    factor_semidefinite(&mut panel, &mut update, &diagonal, *least, &mut scratch);
+                let weak = factor_semidefinite(&mut panel, &mut update, &diagonal, *least, scratch);
                 left.extend(weak.iter().map(|&j| sym.interior[front.start + j]));
             }
         }
-        let into = &kept.fronts[f];
+        let into = &self.kept.fronts[f];
         panel::store(
             &panel.data,
             size,
             width,
             into.size(),
-            &mut panels[into.panel..],
+            &mut self.panels[into.panel..],
         );
         match front.parent {
             Some(t) => {
-                updates[f] = update.data;
-                children[t].push(f);
+                self.updates[f] = update.data;
+                self.children[t].push(f);
             }
-            None => add_lower(&mut s, &front.into_parent, &update.data),
+            None => add_lower(&mut self.s, &front.into_parent, &update.data),
         }
+        Ok(())
     }
-    s.mirror_lower();
-    Ok((panels, s))
 }
 
 /// The lower triangle of K_ΓΓ, where S starts.

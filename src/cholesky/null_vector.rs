@@ -12,23 +12,27 @@
 
 use super::multifrontal::PartialCholesky;
 use super::panel;
+use super::symbolic::Front;
 
 /// Entries below this, relative to the largest one, are rounding: they are not followed.
 const NOTHING: f64 = 1e-13;
 
 impl PartialCholesky {
-    /// The vector v with A v = 0 and v_k = 1 that vanishes on the other dofs that are left out: (dof, entry), by
-    /// increasing dof.
-    pub fn null_vector(&self, k: u32) -> Vec<(u32, f64)> {
+    /// The vector v with A v = 0 and v_k = 1 that vanishes on the other dofs that are left out: (dof, entry) for the
+    /// rows of these fronts, by increasing dof. They come in the reverse order of elimination; all fronts above them
+    /// that have rows in common with them are among them.
+    pub(super) fn null_vector<'a>(
+        &self,
+        k: u32,
+        fronts: impl Iterator<Item = &'a Front>,
+    ) -> Vec<(u32, f64)> {
         let symbolic = &*self.symbolic;
         let mut v = vec![0.0; symbolic.n_interior()];
         let start = symbolic.position[k as usize] as usize;
         v[start] = 1.0;
         let mut largest: f64 = 1.0;
-        let fronts = &symbolic.fronts;
-        let last = fronts.partition_point(|f| f.end <= start);
         let mut rows: Vec<(usize, f64)> = Vec::new();
-        for front in fronts[..=last].iter().rev() {
+        for front in fronts.skip_while(|f| f.start > start) {
             let (width, size) = (front.width(), front.size());
             // The rows of the front on which v does not vanish, those that come last first.
             rows.clear();

@@ -30,11 +30,11 @@ impl PartialCholesky {
         self.by_dof(&y, b);
     }
 
-    fn in_order(&self, b: &[f64]) -> Vec<f64> {
+    pub(super) fn in_order(&self, b: &[f64]) -> Vec<f64> {
         self.symbolic.dofs().map(|i| b[i as usize]).collect()
     }
 
-    fn by_dof(&self, y: &[f64], b: &mut [f64]) {
+    pub(super) fn by_dof(&self, y: &[f64], b: &mut [f64]) {
         for (y, i) in y.iter().zip(self.symbolic.dofs()) {
             b[i as usize] = *y;
         }

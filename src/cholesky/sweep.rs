@@ -6,6 +6,7 @@
 
 use super::multifrontal::PartialCholesky;
 use super::panel::{self, COLUMNS};
+use super::symbolic::Front;
 
 /// The values of one unknown: a number, or one for each of several right-hand sides.
 pub(super) trait Entry: Copy + Default {
@@ -23,8 +24,17 @@ pub(super) trait Entry: Copy + Default {
 impl PartialCholesky {
     /// y ← [L_II⁻¹ y_I; y_Γ − L_ΓI L_II⁻¹ y_I] in the order of elimination.
     pub(super) fn lower<E: Entry>(&self, y: &mut [E]) {
+        self.lower_of(self.symbolic.fronts.iter(), y);
+    }
+
+    /// The part of [`lower`](Self::lower) that these fronts do, which come in the order of elimination.
+    pub(super) fn lower_of<'a, E: Entry>(
+        &self,
+        fronts: impl Iterator<Item = &'a Front>,
+        y: &mut [E],
+    ) {
         let mut work = Vec::new();
-        for front in &self.symbolic.fronts {
+        for front in fronts {
             let (width, size) = (front.width(), front.size());
             let (pivots, below) = y[front.start..].split_at_mut(width);
             work.clear();
@@ -40,8 +50,17 @@ impl PartialCholesky {
 
     /// y ← [L_II⁻ᵀ (y_I − L_ΓIᵀ y_Γ); y_Γ] in the order of elimination.
     pub(super) fn upper<E: Entry>(&self, y: &mut [E]) {
+        self.upper_of(self.symbolic.fronts.iter().rev(), y);
+    }
+
+    /// The part of [`upper`](Self::upper) that these fronts do, which come in the reverse order of elimination.
+    pub(super) fn upper_of<'a, E: Entry>(
+        &self,
+        fronts: impl Iterator<Item = &'a Front>,
+        y: &mut [E],
+    ) {
         let mut work = Vec::new();
-        for front in self.symbolic.fronts.iter().rev() {
+        for front in fronts {
             let width = front.width();
             let (pivots, below) = y[front.start..].split_at_mut(width);
             work.clear();

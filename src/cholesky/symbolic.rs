@@ -65,6 +65,12 @@ impl Front {
     pub(crate) fn size(&self) -> usize {
         self.width() + self.below.len()
     }
+
+    /// Multiplications and additions of its elimination.
+    pub(crate) fn flops(&self) -> f64 {
+        let (w, m) = (self.width() as f64, self.below.len() as f64);
+        w.powi(3) / 3.0 + w * w * m + w * m * m
+    }
 }
 
 impl Symbolic {
@@ -193,6 +199,18 @@ impl Symbolic {
         Symbolic::of_factor(self.interior.clone(), &self.interface, fronts)
     }
 
+    /// The same with room for the panels of these fronts alone.
+    pub(crate) fn with_panels(mut self, has: impl Fn(usize) -> bool) -> Symbolic {
+        self.storage = 0;
+        for (f, front) in self.fronts.iter_mut().enumerate() {
+            front.panel = self.storage;
+            if has(f) {
+                self.storage += panel::length(front.width(), front.size());
+            }
+        }
+        self
+    }
+
     /// Number of dofs.
     pub(crate) fn n(&self) -> usize {
         self.interior.len() + self.interface.len()
@@ -210,11 +228,7 @@ impl Symbolic {
 
     /// Multiplications and additions of the factorisation, S included.
     pub fn flops(&self) -> f64 {
-        let of = |front: &Front| {
-            let (w, m) = (front.width() as f64, front.below.len() as f64);
-            w.powi(3) / 3.0 + w * w * m + w * m * m
-        };
-        self.fronts.iter().map(of).sum()
+        self.fronts.iter().map(Front::flops).sum()
     }
 
     /// Number of entries of the factor.

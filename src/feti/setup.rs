@@ -119,7 +119,7 @@ impl LinearMethod {
             settings.precision,
         ); /* M⁻¹ */
         let natural = clock::timed(Phase::NaturalSetup, || {
-            let projector = (settings.projector, varies);
+            let projector = (settings.projector, varies, settings.gtg_redundancy);
             let prefix = format!("{}gtg_", settings.prefix);
             NaturalCoarse::new(&problem, &stiffness, &preconditioner, projector, &prefix)
         })?; /*                                                                 G, P                   */

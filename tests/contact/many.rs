@@ -81,6 +81,41 @@ fn agree_with_jumps(session: &Session, weights: &[ProjectorKind]) -> Result<()> 
     Ok(())
 }
 
+/// Whatever number of ranks shares the factor, the energy is the same to 1e-10. A number that does not divide the ranks
+/// is refused.
+fn copies_do_not_matter(session: &Session) -> Result<()> {
+    let [(name, text), _] = scenes();
+    let scene = Scene::parse(name, &text)?;
+    let share = fetifeti::share(session, scene.n_subdomains());
+    let solve = |copies: usize| {
+        let mut settings = Settings::default();
+        settings.method.gtg_redundancy = copies;
+        settings.method.rtol = 1e-10;
+        let rows = scene.substructures(&|s| share.contains(&s))?;
+        FetiFeti::new(session, rows, settings)?.solve()
+    };
+    let size = session.size();
+    let mut energies = Vec::new();
+    for copies in (1..=size + 1).filter(|c| size % c == 0) {
+        let solution = solve(copies)?;
+        if !solution.converged() {
+            return Err(Error::input(format!(
+                "{copies} copies: {}",
+                solution.status
+            )));
+        }
+        energies.push(solution.energy);
+    }
+    let away = energies.iter().map(|e| (e - energies[0]).abs());
+    let away = away.fold(0.0, f64::max) / energies[0].abs();
+    let refused = solve(size + 1).map(drop).unwrap_err().to_string();
+    let why = format!("expected a number that divides {size}");
+    match away < 1e-10 && refused.contains(&why) {
+        true => Ok(()),
+        false => Err(Error::input(format!("{energies:?}, {refused}"))),
+    }
+}
+
 /// Four blocks at a corner of the top are pushed up.
 fn refused(session: &Session) -> Result<()> {
     let up = "load = [0, \"0.5*(bi > 2.5)*(bj > 2.5)*(bk > 1.5) - 0.01\", 0]";
@@ -118,6 +153,7 @@ fn many_motions_on_two_and_four_ranks() {
     let started = mpi::as_rank(|session, _| {
         agree(session, &KINDS[..1])?;
         agree_with_jumps(session, &WEIGHTS[1..])?;
+        copies_do_not_matter(session)?;
         refused(session)
     });
     for ranks in [2, 4] {

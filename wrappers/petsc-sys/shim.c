@@ -367,15 +367,17 @@ int ff_viewer_is_ascii(PetscViewer viewer, int *ascii)
   return 0;
 }
 
-int ff_options_any(const char *start, PetscBool *found)
+int ff_options_any(const char *start, const char *but, PetscBool *found)
 {
   char  *text   = NULL;
-  size_t length = strlen(start);
+  size_t length = strlen(start), other = strlen(but);
 
   *found = PETSC_FALSE;
   PetscCall(PetscOptionsGetAll(NULL, &text));
   for (const char *at = text; at && *at; ++at) {
-    if ((at == text || at[-1] == ' ') && !strncmp(at, start, length)) *found = PETSC_TRUE;
+    if ((at != text && at[-1] != ' ') || strncmp(at, start, length)) continue;
+    if (other && !strncmp(at, but, other) && (!at[other] || at[other] == ' ')) continue;
+    *found = PETSC_TRUE;
   }
   return (int)PetscFree(text);
 }

@@ -65,7 +65,7 @@ int ff_partition(const char *prefix, int n, const int *row, const int *col, cons
 int ff_is_repeated(Mat mat, int *repeated);
 
 /* Whether any option begins with `start` (dash included). */
-int ff_options_any(const char *start, PetscBool *found);
+int ff_options_any(const char *start, const char *but, PetscBool *found);
 /* Messages, their bytes and all-reduces that PETSc has counted on this rank; 0 where it was built without its log. */
 int ff_counters(double counts[3]);
 

@@ -4,14 +4,14 @@
 //! may be chosen; many by the crate's sparse Cholesky factorisation, whose order of elimination is that of the graph of
 //! all candidate rows and is found once.
 
-use std::sync::Arc;
+use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
 use super::pattern::Pattern;
 use super::rows::Rows;
 use crate::cholesky::dissection::nested_dissection;
-use crate::cholesky::multifrontal::PartialCholesky;
+use crate::cholesky::shared::{SharedCholesky, Team};
 use crate::cholesky::symbolic::Symbolic;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
@@ -100,21 +100,21 @@ impl Motion {
 pub struct Shape {
     /// The entries for all candidate rows.
     pub pattern: Pattern,
-    /// The order, if there are many columns.
-    order: Option<Arc<Symbolic>>,
+    /// The order and the ranks that share the factor, if there are many columns.
+    team: Option<Rc<Team>>,
 }
 
 impl Shape {
-    /// The shape for all rows `g`. Collective.
-    pub fn new(comm: &SimpleCommunicator, g: &Rows, start: &[usize]) -> Shape {
-        Shape::of(Pattern::new(comm, g, g, start))
+    /// The shape for all rows `g`; there are to be `copies` of a factor. Collective.
+    pub fn new(comm: &SimpleCommunicator, g: &Rows, start: &[usize], copies: usize) -> Shape {
+        Shape::of(comm, Pattern::new(comm, g, g, start), copies)
     }
 
-    /// The shape of matrices with this pattern.
-    pub fn of(pattern: Pattern) -> Shape {
+    /// The shape of matrices with this pattern. Collective.
+    pub fn of(comm: &SimpleCommunicator, pattern: Pattern, copies: usize) -> Shape {
         let r = pattern.bodies().len();
         // Whole bodies are ordered: the columns of one are all coupled.
-        let order = (r > FEW).then(|| {
+        let team = (r > FEW).then(|| {
             let graph = pattern.graph();
             let floats = |b: &u32| !pattern.columns(*b as usize).is_empty();
             let floating: Vec<u32> = (0..graph.n() as u32).filter(floats).collect();
@@ -123,9 +123,10 @@ impl Shape {
             let sets: Vec<Vec<u32>> = sets
                 .map(|set| set.iter().flat_map(columns).collect())
                 .collect();
-            Symbolic::with_supernodes(&pattern.zeros(), &[], &sets).into()
+            let symbolic = Symbolic::with_supernodes(&pattern.zeros(), &[], &sets);
+            Team::new(comm, symbolic, copies).into()
         });
-        Shape { pattern, order }
+        Shape { pattern, team }
     }
 }
 
@@ -133,12 +134,12 @@ impl Shape {
 enum Factor {
     Dense(Semidefinite),
     Sparse {
-        factor: PartialCholesky,
+        factor: SharedCholesky,
         scale: Vec<f64>,
     },
 }
 
-/// GᵀG, factored; dependent columns are left out. The same on every rank.
+/// GᵀG, factored; dependent columns are left out. Answers are the same on every rank.
 pub struct Gram {
     factor: Factor,
     /// Columns that are left out, increasing.
@@ -148,11 +149,11 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// Factors `a`, a GᵀG of this shape. Every rank does the same.
+    /// Factors `a`, a GᵀG of this shape that every rank has. Collective.
     pub fn new(shape: &Shape, a: Csr) -> Gram {
-        match &shape.order {
+        match &shape.team {
             None => Gram::few(&a),
-            Some(order) => Gram::many(&shape.pattern, order, a),
+            Some(team) => Gram::many(&shape.pattern, team, a),
         }
     }
 
@@ -177,21 +178,21 @@ impl Gram {
         }
     }
 
-    fn many(pattern: &Pattern, order: &Arc<Symbolic>, mut a: Csr) -> Gram {
+    fn many(pattern: &Pattern, team: &Rc<Team>, mut a: Csr) -> Gram {
         let scale = scale_to_unit_diagonal(&mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
         let mut alone = alone(pattern, &a, &scale);
         for &(k, _) in &alone {
             a.set_diagonal(k as usize, OUT);
         }
-        let (factor, together) = PartialCholesky::semidefinite(&a, order.clone(), DEPENDENT);
+        let (factor, together) = SharedCholesky::semidefinite(&a, team.clone(), DEPENDENT);
         let mut dropped: Vec<u32> = alone.iter().map(|m| m.0).collect();
         dropped.extend(&together);
         dropped.sort_unstable();
-        alone.extend(together.iter().map(|&k| {
-            let v = factor.null_vector(k).into_iter();
-            let v: Vec<(u32, f64)> = v.map(|(c, v)| (c, v * scale[c as usize])).collect();
-            (k, Motion::above(NOTHING_SOLVED, v.iter().copied()))
+        let vectors = factor.null_vectors(&together).into_iter();
+        alone.extend(together.iter().zip(vectors).map(|(&k, v)| {
+            let v = v.iter().map(|(c, v)| (*c, v * scale[*c as usize]));
+            (k, Motion::above(NOTHING_SOLVED, v))
         }));
         alone.sort_by_key(|m| m.0);
         Gram {
@@ -203,14 +204,14 @@ impl Gram {
 
     /// The factor of a weighted product GᵀQG, Q positive definite, that leaves out the columns that `plain` leaves out:
     /// weights do not change what rows hold, but hide it where they differ by many orders. `None` if the columns are
-    /// few, or dependent beyond that after rounding.
+    /// few, or dependent beyond that after rounding. Collective.
     pub fn weighted(shape: &Shape, mut a: Csr, plain: &Gram) -> Option<Gram> {
-        let order = shape.order.as_ref()?;
+        let team = shape.team.as_ref()?;
         let scale = scale_to_unit_diagonal(&mut a);
         for &k in &plain.dropped {
             a.set_diagonal(k as usize, OUT);
         }
-        let (factor, more) = PartialCholesky::semidefinite(&a, order.clone(), WEIGHTED);
+        let (factor, more) = SharedCholesky::semidefinite(&a, team.clone(), WEIGHTED);
         more.is_empty().then(|| Gram {
             factor: Factor::Sparse { factor, scale },
             dropped: plain.dropped.clone(),
@@ -218,7 +219,7 @@ impl Gram {
         })
     }
 
-    /// x ← A⁺ x, zero in the columns that are left out.
+    /// x ← A⁺ x, zero in the columns that are left out. Collective.
     pub fn solve(&self, x: &mut [f64]) {
         match &self.factor {
             Factor::Dense(factor) => factor.solve(x),

@@ -1,8 +1,9 @@
-//! Gᵀ Q G and its inverse, the same on every rank.
+//! Gᵀ Q G and its inverse.
 //!
 //! With Q = I and many rigid motions the factor of GᵀG that tells what the rows hold ([`Gram`]) is the inverse, too.
-//! With other Q and many motions it is a factor of its own (`weighted`). In all other cases the matrix stands behind a
-//! PETSc KSP (prefix `fetifeti_gtg_`), and so it does if an option with this prefix is set.
+//! With other Q and many motions it is a factor of its own (`weighted`). Ranks share both. In all other cases the
+//! matrix stands behind a PETSc KSP of each rank (prefix `fetifeti_gtg_`), and so it does if an option with this prefix
+//! is set other than `redundancy`.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -67,7 +68,7 @@ impl Gtg {
         product: impl FnOnce() -> Csr,
         prefix: &str,
     ) -> Result<Gtg> {
-        let own = gram.is_sparse() && !Options::new(session, prefix).any()?;
+        let own = gram.is_sparse() && !Options::new(session, prefix).any_but("redundancy")?;
         let petsc = |a: Csr| Scaled::new(session, &gram, a, prefix).map(Solver::Petsc);
         let solver = match q {
             ProjectorKind::Identity if own => Solver::Own,
@@ -104,7 +105,7 @@ impl Gtg {
         }
     }
 
-    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank.
+    /// x ← (Gᵀ Q G)⁻¹ x or (Gᵀ Q G)⁻ᵀ x, the same on every rank. Collective.
     pub fn solve(&self, x: &mut [f64], side: Side) -> Result<()> {
         match &self.solver {
             Solver::Own => {

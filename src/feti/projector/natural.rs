@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A row of G is sparse: it has entries for the bodies at its node. It lives on the rank that owns the row. Gᵀ Q G is
-//! sparse, too: bodies that touch have common entries. Every rank solves it (prefix `fetifeti_gtg_`).
+//! sparse, too: bodies that touch have common entries. All ranks solve it together (`gtg`).
 
 use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
@@ -26,7 +26,7 @@ use crate::linalg::dense::Dense;
 use crate::parallel::exchange::{any, exchange, gather_all, max_all, sum_all};
 use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
-use crate::Result;
+use crate::{Error, Result};
 
 /// Entries of R below this part of their column's largest are rounding.
 const STILL: f64 = 1e-12;
@@ -54,6 +54,8 @@ pub struct NaturalCoarse {
     /// Where GᵀQG has entries with Q = M⁻¹, and the graph that says so, once they are needed.
     wide: OnceCell<Shape>,
     graph: OnceCell<BodyGraph>,
+    /// Number of copies of a factor of many rigid motions among the ranks.
+    copies: usize,
     /// The last choice of rows that was asked for, and their GᵀG.
     last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
     /// G on the owned rows.
@@ -75,16 +77,25 @@ pub struct KernelLoad {
 }
 
 impl NaturalCoarse {
-    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body.
-    /// Collective.
+    /// Assembles G and Gᵀ Q G for the active rows; `varies` is the largest ratio of coefficients inside a body,
+    /// `copies` the number of factors of many rigid motions. Collective.
+    ///
+    /// # Errors
+    /// `copies` does not divide the number of ranks.
     pub fn new(
         problem: &Substructures,
         stiffness: &Stiffness,
         preconditioner: &Preconditioner,
-        (wanted, varies): (ProjectorKind, f64),
+        (wanted, varies, copies): (ProjectorKind, f64, usize),
         prefix: &str,
     ) -> Result<NaturalCoarse> {
         let comm = stiffness.comm();
+        if copies == 0 || comm.size() as usize % copies != 0 {
+            return Err(Error::input(format!(
+                "option -{prefix}redundancy is {copies}, expected a number that divides {}, the number of ranks",
+                comm.size()
+            )));
+        }
         let space = &stiffness.space;
         let r = *space
             .kernel_start
@@ -108,6 +119,7 @@ impl NaturalCoarse {
             shape: None,
             wide: OnceCell::new(),
             graph: OnceCell::new(),
+            copies,
             last: RefCell::new(None),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
@@ -116,7 +128,8 @@ impl NaturalCoarse {
         };
         if r > 0 {
             natural.all = natural.all_rows(stiffness);
-            natural.shape = Some(Shape::new(comm, &natural.all, &space.kernel_start));
+            let start = &space.kernel_start;
+            natural.shape = Some(Shape::new(comm, &natural.all, start, copies));
             natural.projector = choose(comm, problem, stiffness, preconditioner, wanted, varies);
             natural.renew(problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
@@ -161,7 +174,8 @@ impl NaturalCoarse {
             // Q reaches the rows of neighbours.
             ProjectorKind::Preconditioner => {
                 let graph = self.graph(problem, stiffness);
-                let new = || Shape::of(Pattern::of_bodies(graph.second(), start));
+                let new =
+                    || Shape::of(comm, Pattern::of_bodies(graph.second(), start), self.copies);
                 self.wide.get_or_init(new)
             }
             _ => self.shape.as_ref().expect("a body floats"),
@@ -271,7 +285,7 @@ impl NaturalCoarse {
         largest
     }
 
-    /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank.
+    /// x ← (Gᵀ Q G)⁻¹ x for coefficients of kernel vectors, the same on every rank. Collective.
     pub fn solve_gtg(&self, x: &mut [f64]) -> Result<()> {
         self.gtg
             .as_ref()
