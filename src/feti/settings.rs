@@ -169,7 +169,7 @@ pub enum ProjectorKind {
     Identity,
     /// Q = the diagonal of B_D diag(K) B_Dᵀ (superlumped).
     Diagonal,
-    /// Q = M⁻¹ on the rows between bodies.
+    /// Q = M⁻¹; on the rows between bodies alone where their stiffnesses differ by more than 10⁷.
     Preconditioner,
     /// Q = M⁻¹ where some bodies float and bodies differ in stiffness or coefficients jump inside them, else I.
     Auto,

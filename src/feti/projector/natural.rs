@@ -18,7 +18,7 @@ use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::pattern::Pattern;
 use super::rows::{RowEntry, Rows};
-use super::weights::choose;
+use super::weights::{choose, spread};
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
@@ -54,6 +54,8 @@ pub struct NaturalCoarse {
     /// Where GᵀQG has entries with Q = M⁻¹, and the graph that says so, once they are needed.
     wide: OnceCell<Shape>,
     graph: OnceCell<BodyGraph>,
+    /// The largest ratio of the stiffnesses of bodies.
+    pub(super) spread: f64,
     /// Number of copies of a factor of many rigid motions among the ranks.
     copies: usize,
     /// The last choice of rows that was asked for, and their GᵀG.
@@ -119,6 +121,7 @@ impl NaturalCoarse {
             shape: None,
             wide: OnceCell::new(),
             graph: OnceCell::new(),
+            spread: 1.0,
             copies,
             last: RefCell::new(None),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
@@ -130,7 +133,8 @@ impl NaturalCoarse {
             natural.all = natural.all_rows(stiffness);
             let start = &space.kernel_start;
             natural.shape = Some(Shape::new(comm, &natural.all, start, copies));
-            natural.projector = choose(comm, problem, stiffness, preconditioner, wanted, varies);
+            natural.spread = spread(comm, problem, stiffness);
+            natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
             natural.renew(problem, stiffness, preconditioner)?;
             let auto = wanted == ProjectorKind::Auto;
             if auto && natural.projector == ProjectorKind::Preconditioner {

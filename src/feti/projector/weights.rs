@@ -14,15 +14,16 @@ use crate::petsc::Vec as PetscVec;
 use crate::substructures::Substructures;
 use crate::Result;
 
-/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness, or coefficients jump inside them. It is called only if
-/// some body floats.
+/// Bodies that differ in stiffness by more than this are too far apart for all rows of M⁻¹: P would magnify rounding by
+/// the ratio. Up to it Q is M⁻¹ itself.
+pub(super) const APART: f64 = 1e7;
+
+/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness by the ratio `spread`, or coefficients jump inside them. It
+/// is called only if some body floats.
 pub(super) fn choose(
-    comm: &SimpleCommunicator,
-    problem: &Substructures,
-    stiffness: &Stiffness,
     preconditioner: &Preconditioner,
     wanted: ProjectorKind,
-    varies: f64,
+    (spread, varies): (f64, f64),
 ) -> ProjectorKind {
     if wanted != ProjectorKind::Auto {
         return match (wanted, preconditioner.kind) {
@@ -31,8 +32,21 @@ pub(super) fn choose(
             _ => wanted,
         };
     }
-    // Mean diagonal entry of K over the interface of each body. With Q = I the rows of stiff and soft bodies have the
-    // same weight.
+    // Corners and mesh sizes alone cause a factor of two.
+    let differ = spread > 3.0 || varies > JUMPS;
+    match (differ, preconditioner.kind) {
+        (false, _) => ProjectorKind::Identity,
+        (true, PcType::None) => ProjectorKind::Diagonal,
+        (true, _) => ProjectorKind::Preconditioner,
+    }
+}
+
+/// The largest ratio of the stiffnesses of bodies: means of the diagonal of K over their interfaces. Collective.
+pub(super) fn spread(
+    comm: &SimpleCommunicator,
+    problem: &Substructures,
+    stiffness: &Stiffness,
+) -> f64 {
     let n = problem.n_bodies;
     let mut sums = vec![0.0; 2 * n];
     for (sub, local) in problem.local.iter().zip(&stiffness.locals) {
@@ -48,13 +62,7 @@ pub(super) fn choose(
     let (low, high) = means.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), m| {
         (l.min(m), h.max(m))
     });
-    // Corners and mesh sizes alone cause a factor of two.
-    let differ = high > 3.0 * low || varies > JUMPS;
-    match (differ, preconditioner.kind) {
-        (false, _) => ProjectorKind::Identity,
-        (true, PcType::None) => ProjectorKind::Diagonal,
-        (true, _) => ProjectorKind::Preconditioner,
-    }
+    high / low
 }
 
 impl NaturalCoarse {
@@ -100,11 +108,11 @@ impl NaturalCoarse {
         Ok(out)
     }
 
-    /// Q G with Q = J M⁻¹ J + diag(`rigid`), where J selects the rows of B_gl. Columns of bodies that are far from each
-    /// other share a product with M⁻¹.
+    /// Q G with Q = M⁻¹ + diag(`rigid`). Columns of bodies that are far from each other share a product with M⁻¹.
     ///
-    /// Without J, what Gᵀ M⁻¹ G divides would come from the rows of B_loc in stiff bodies as well, and be larger by as
-    /// much as bodies differ in stiffness (docs/theory.md, section 6).
+    /// Where stiffnesses are far [`APART`], M⁻¹ becomes J M⁻¹ J, and J selects the rows of B_gl. Without J, what Gᵀ M⁻¹ G
+    /// divides would come from the rows of B_loc in stiff bodies as well, and be larger by as much as bodies differ in
+    /// stiffness (docs/theory.md, section 6).
     pub(super) fn probe(
         &self,
         problem: &Substructures,
@@ -119,7 +127,7 @@ impl NaturalCoarse {
         let like = PetscVec::mpi(&stiffness.session, n)?;
         let apply = |x: &[PetscVec], y: &[PetscVec]| preconditioner.apply_many(stiffness, x, y);
         let mut images = sweep::images(&like, graph, &columns, apply)?;
-        for column in &mut images {
+        for column in images.iter_mut().filter(|_| self.spread > APART) {
             let global = |row: u32| row as usize >= stiffness.jump.n_owned_local;
             column.entries.retain(|e| global(e.0));
         }
