@@ -18,8 +18,8 @@ use crate::Result;
 /// the ratio. Up to it Q is M⁻¹ itself.
 pub(super) const APART: f64 = 1e7;
 
-/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness by the ratio `spread`, or coefficients jump inside them. It
-/// is called only if some body floats.
+/// Resolves `Auto`: Q = M⁻¹ where bodies differ in stiffness by the ratio `spread`, or coefficients jump inside them.
+/// It is called only if some body floats.
 pub(super) fn choose(
     preconditioner: &Preconditioner,
     wanted: ProjectorKind,
@@ -110,9 +110,9 @@ impl NaturalCoarse {
 
     /// Q G with Q = M⁻¹ + diag(`rigid`). Columns of bodies that are far from each other share a product with M⁻¹.
     ///
-    /// Where stiffnesses are far [`APART`], M⁻¹ becomes J M⁻¹ J, and J selects the rows of B_gl. Without J, what Gᵀ M⁻¹ G
-    /// divides would come from the rows of B_loc in stiff bodies as well, and be larger by as much as bodies differ in
-    /// stiffness (docs/theory.md, section 6).
+    /// Where stiffnesses are far [`APART`], M⁻¹ becomes J M⁻¹ J, and J selects the rows of B_gl. Without J, what
+    /// Gᵀ M⁻¹ G divides would come from the rows of B_loc in stiff bodies as well, and be larger by as much as bodies
+    /// differ in stiffness (docs/theory.md, section 6).
     pub(super) fn probe(
         &self,
         problem: &Substructures,
