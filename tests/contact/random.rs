@@ -130,7 +130,7 @@ fn scenes_without_a_solution_are_refused() {
 #[test]
 fn random_scenes_on_two_and_four_ranks() {
     let started = mpi::as_rank(|session, _| {
-        let cases = Collection::new(10_000, 40).solvable;
+        let cases = Collection::new(10_000, 24).solvable;
         for kind in KINDS {
             all_agree(session, &cases, kind.into()).map_err(Error::input)?;
         }

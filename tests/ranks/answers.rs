@@ -282,12 +282,13 @@ fn krylov_methods_on_two_ranks() {
 }
 
 #[test]
-fn spectra_of_table_1_on_1_2_and_4_ranks() {
+fn spectra_of_table_1_on_2_and_4_ranks() {
     let oracle: Vec<Value> =
         serde_json::from_str(include_str!("../data/grid2d_spectra.json")).expect("JSON");
     let key =
         |r: &Value| ["bodies", "subdomains", "elements"].map(|k| r[k].as_u64().expect("a count"));
-    for ranks in [1, 2, 4] {
+    // One rank: `tests/linear/spectra.rs`.
+    for ranks in [2, 4] {
         let rows = [
             "--rows", "2,4,2", "--rows", "2,2,8", "--rows", "4,2,2", "--rows", "3,3,4",
         ];
