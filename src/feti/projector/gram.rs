@@ -74,9 +74,9 @@ impl Motion {
         let mut all: Vec<(u32, f64)> = self.0.clone();
         all.extend(other.0.iter().map(|&(c, v)| (c, alpha * v)));
         all.sort_by_key(|e| e.0);
-        let sums = all.chunk_by(|a, b| a.0 == b.0);
-        let sums = sums.map(|s| (s[0].0, s.iter().map(|e| e.1).sum()));
-        Motion::above(NOTHING, sums)
+        let of_column = |s: &[(u32, f64)]| (s[0].0, s.iter().map(|e| e.1).sum());
+        let sums: Vec<(u32, f64)> = all.chunk_by(|a, b| a.0 == b.0).map(of_column).collect();
+        Motion::above(NOTHING, sums.iter().copied())
     }
 
     /// x ← x + α times the coefficients.
