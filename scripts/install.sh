@@ -57,6 +57,15 @@ put 755 "$built/fetifeti" bin/fetifeti
 put 755 "$built/libfetifeti.so" "$lib/libfetifeti.so.$version"
 strip "$root/bin/fetifeti"
 strip --strip-unneeded "$root/$lib/libfetifeti.so.$version"
+# Panics in crates name their files. The directory becomes "./////" of the same length: nothing moves.
+for dir in "$PWD/vendor" "${CARGO_HOME:-$HOME/.cargo}/registry"; do
+    (
+        export LC_ALL=C
+        pattern=$(sed 's/[].[*^$|\\]/\\&/g' <<<"$dir")
+        slashes=$(printf '%*s' $((${#dir} - 1)) "" | tr ' ' /)
+        sed -i "s|$pattern/|.$slashes/|g" "$root/bin/fetifeti" "$root/$lib/libfetifeti.so.$version"
+    )
+done
 ln -s "libfetifeti.so.$version" "$root/$lib/libfetifeti.so.$abi"
 ln -s "libfetifeti.so.$abi" "$root/$lib/libfetifeti.so"
 fill fetifeti.pc.in "$lib/pkgconfig/fetifeti.pc"

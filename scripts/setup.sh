@@ -34,8 +34,8 @@ packages+=(gfortran cmake)
 [ -n "${PETSC_DIR:-}" ] || packages+=(petsc-dev libpetsc3.18-dev-examples python3-petsc4py-real)
 # The orderings METIS (through CHOLMOD of SuiteSparse) and Scotch; the build goes without what is missing.
 [ -n "${PETSC_DIR:-}" ] || packages+=(libsuitesparse-dev libscotch-dev)
-# pip and pytest are for the Python package.
-packages+=(python3-pip python3-setuptools python3-wheel python3-numpy python3-pytest)
+# pip, venv and pytest are for the Python package.
+packages+=(python3-pip python3-venv python3-setuptools python3-wheel python3-numpy python3-pytest)
 # A processor without AVX2, for a test.
 packages+=(qemu-user)
 # Builds of PETSc that the plug-in must refuse.

@@ -3,7 +3,7 @@
 
 use crate::support::{mpi, plugin};
 use mpi::{command, Scratch};
-use plugin::{library, Program};
+use plugin::{library, number_after, Program};
 
 /// Runs tests/plugin/ways.c, which must succeed.
 fn good(program: &Program, ranks: usize, options: &str) {
@@ -30,25 +30,18 @@ fn inside_other_solvers() {
                  -pc_fieldsplit_schur_fact_type full -pc_fieldsplit_schur_precondition selfp \
                  -fieldsplit_u_ksp_type fetifeti -fieldsplit_u_ksp_rtol 1e-10 -fieldsplit_u_fetifeti_bodies 2 \
                  -fieldsplit_p_ksp_type gmres -fieldsplit_p_ksp_rtol 1e-10 -fieldsplit_p_pc_type jacobi -options_left";
-    let out = program.with_plugin(4, split);
-    assert_eq!(out.code, 0, "{}", out.all());
-    // The prefix of the split stands before the method's own options.
-    assert!(
-        out.stdout.contains("There are no unused options."),
-        "{}",
-        out.all()
-    );
-    good(&program, 1, split);
     let composite = "-do composite -ksp_type fgmres -pc_type composite -pc_composite_type multiplicative \
                      -pc_composite_pcs jacobi,ksp -sub_1_ksp_ksp_type fetifeti -sub_1_ksp_ksp_rtol 1e-8 \
                      -sub_1_ksp_fetifeti_bodies 2 -options_left";
-    let out = program.with_plugin(4, composite);
-    assert_eq!(out.code, 0, "{}", out.all());
-    assert!(
-        out.stdout.contains("There are no unused options."),
-        "{}",
-        out.all()
-    );
+    for options in [split, composite] {
+        for ranks in [1, 2, 4] {
+            let out = program.with_plugin(ranks, options);
+            assert_eq!(out.code, 0, "{ranks} ranks, {options}: {}", out.all());
+            // The prefix of the split stands before the method's own options.
+            let used = out.stdout.contains("There are no unused options.");
+            assert!(used, "{ranks} ranks: {}", out.all());
+        }
+    }
 }
 
 #[test]
@@ -65,6 +58,12 @@ fn a_nested_matrix_is_refused_by_name() {
     }
 }
 
+/// The numbers in a line of words.
+fn integers(line: &str) -> Vec<usize> {
+    let numbers = line.split(|c: char| !c.is_ascii_digit());
+    numbers.filter_map(|n| n.parse().ok()).collect()
+}
+
 /// Counts over all ranks: set-ups of everything and of numbers; patterns, subdomains, partitions into bodies.
 #[test]
 fn other_entries_analyse_nothing_again() {
@@ -74,11 +73,7 @@ fn other_entries_analyse_nothing_again() {
     let out = program.with_plugin(4, sizes);
     assert_eq!(out.code, 0, "{}", out.all());
     let lines = out.stdout.lines().filter(|l| l.contains("set-ups: "));
-    let counts = |line: &str| -> Vec<usize> {
-        let numbers = line.split(|c: char| !c.is_ascii_digit());
-        numbers.filter_map(|n| n.parse().ok()).collect()
-    };
-    let counts: Vec<Vec<usize>> = lines.map(counts).collect();
+    let counts: Vec<Vec<usize>> = lines.map(integers).collect();
     let [first, second] = &counts[..] else {
         panic!("{}", out.all());
     };
@@ -86,6 +81,35 @@ fn other_entries_analyse_nothing_again() {
     assert!(patterns >= 8, "kernels and factors of each subdomain");
     assert_eq!(first[..], [1, 0, 0, patterns, 4, 1]);
     assert_eq!(second[..], [1, 1, 0, patterns, 8, 1]);
+}
+
+/// A TS has another matrix in each step of Newton's method, whose shift and entries change with the time.
+#[test]
+fn time_steps_renew_numbers() {
+    let scratch = Scratch::new("ways-time");
+    let program = Program::own("mpicc", &scratch, "time.c");
+    for (ranks, method) in [(1, "arkimex"), (2, "arkimex"), (2, "beuler")] {
+        let options = "-ts_adapt_type none -ksp_type fetifeti -fetifeti_bodies 2";
+        let out = program.with_plugin(ranks, &format!("-ts_type {method} {options}"));
+        assert_eq!(out.code, 0, "{method}, {ranks} ranks: {}", out.all());
+        // The solution by LU first.
+        let marches: Vec<Vec<usize>> = (out.stdout.lines())
+            .filter(|l| l.contains(" Jacobians"))
+            .map(integers)
+            .collect();
+        let [exact, own] = &marches[..] else {
+            panic!("{}", out.all());
+        };
+        assert_eq!(exact, own, "steps and Jacobians: {}", out.all());
+        let done = out.stdout.lines().find(|l| l.contains("set-ups: "));
+        let done = integers(done.expect("KSPView says what was set up"));
+        // A pattern of a kernel and one of a factor for each subdomain.
+        let (patterns, jacobians) = (2 * ranks, own[1]);
+        let expected = [1, jacobians - 1, 0, patterns, ranks * jacobians, 1];
+        assert_eq!(done, expected, "{}", out.all());
+        let error = number_after(&out, "error");
+        assert!(error < 1e-10, "{method}, {ranks} ranks: {error}");
+    }
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -53,6 +55,12 @@ def test_all_places_are_named(nowhere):
         assert word in str(caught.value)
     with pytest.raises(fetifeti.NotFoundError, match="program 'fetifeti' is in none"):
         fetifeti.find_program()
+
+
+def test_where_petsc4py_is_missing():
+    code = "import sys; sys.modules['petsc4py'] = None; import fetifeti; fetifeti.register()"
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert "NotFoundError: fetifeti.register needs petsc4py" in out.stderr and "PYTHONPATH=" in out.stderr
 
 
 def test_a_wrong_name_is_not_replaced(nowhere, monkeypatch):

@@ -62,7 +62,15 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'fetifeti' has no attribute '{name}'")
     from importlib import import_module
 
-    return getattr(import_module(f"{__name__}.{_PLACES[name]}"), name)
+    try:
+        return getattr(import_module(f"{__name__}.{_PLACES[name]}"), name)
+    except ModuleNotFoundError as error:
+        if error.name != "petsc4py":
+            raise
+        raise NotFoundError(
+            f"fetifeti.{name} needs petsc4py, that of the PETSc which the library was built with. Debian's is found "
+            "after 'export PYTHONPATH=/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real/lib/python3/dist-packages'"
+        ) from error
 
 
 def __dir__() -> list[str]:
