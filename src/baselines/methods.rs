@@ -89,6 +89,12 @@ impl<'a> Methods<'a> {
         if let (Some(_), Some(trouble)) = (run.baseline, &self.layout.trouble) {
             return Ok(Ran::not(format!("not for this scene: {trouble}")));
         }
+        if run.ranks > self.plan.max_ranks {
+            return Ok(Ran::not(format!(
+                "needs {} ranks, one for each of its parts; {} are allowed (-compare_max_ranks)",
+                run.ranks, self.plan.max_ranks
+            )));
+        }
         let equations = run
             .baseline
             .is_some_and(|b| b.format == Format::Unassembled);

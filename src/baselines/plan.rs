@@ -14,6 +14,10 @@ use crate::{Error, Result};
 /// Default of `-compare_inner_rtol`.
 const INNER: f64 = 0.1;
 
+/// Default of `-compare_max_ranks`. A rank takes some 50 MB before it has read anything: 512 of them, one for each
+/// subdomain of a scene of 512 bodies, were more than 24 GB, and the system ended other programs.
+const MAX_RANKS: usize = 256;
+
 /// One method in one layout.
 pub struct Run {
     /// `None`: ours.
@@ -75,6 +79,8 @@ pub struct Plan {
     pub inner: f64,
     /// Cores that every method may use.
     pub cores: usize,
+    /// Ranks that a method may have.
+    pub max_ranks: usize,
     /// Time limit of one method.
     pub limit: Duration,
     /// The methods.
@@ -112,6 +118,13 @@ impl Plan {
         let cores = options
             .usize("cores", all, "cores that every method may use")?
             .max(1);
+        let max_ranks = options.usize("max_ranks", MAX_RANKS, "ranks that a method may have")?;
+        if cores > max_ranks {
+            return Err(Error::input(format!(
+                "-compare_cores is {cores}, expected at most {max_ranks}, the ranks that a method may have \
+                 (-compare_max_ranks)"
+            )));
+        }
         let help = "reduction of the residual per contact step while the active set changes";
         let inner = options.f64("inner_rtol", INNER, help)?;
         if !(inner > 0.0 && inner < 1.0) {
@@ -126,6 +139,7 @@ impl Plan {
             rtol,
             inner,
             cores,
+            max_ranks,
             limit: Duration::from_secs(limit as u64),
             runs: runs(scene, cores, baselines, layouts),
         })

@@ -168,6 +168,29 @@ fn the_last_load_step_is_solved_and_that_is_said() {
 }
 
 #[test]
+fn more_ranks_than_allowed_are_not_started() {
+    let scene = SceneFile::new("ranks", &model("[2, 1]", "16"));
+    let report = scene.compare(&["--with", "bddc", "-compare_max_ranks", "2"]);
+    let text: Vec<_> = report
+        .rows
+        .iter()
+        .filter_map(|r| r.run.message.clone())
+        .collect();
+    assert!(
+        text.iter()
+            .any(|m| m.starts_with("needs ") && m.contains("2 are allowed")),
+        "{text:?}"
+    );
+    let output = fetifeti(&["compare", scene.path(), "-compare_cores", "1000"]);
+    assert_eq!(output.code, 2);
+    let err = &output.stderr;
+    assert!(
+        err.contains("-compare_cores is 1000, expected at most 256"),
+        "{err}"
+    );
+}
+
+#[test]
 fn the_tolerance_of_the_inner_solves_is_an_option() {
     let scene = SceneFile::new("inner", &model("[2, 1]", "16"));
     let iterations = |inner: &str| {
