@@ -29,7 +29,7 @@ mod settle;
 mod smalbe;
 mod state;
 
-pub use settings::{ContactSettings, ContactType};
+pub use settings::{ContactSettings, ContactStart, ContactType};
 pub use state::{Observer, Progress, State, Step};
 
 use crate::feti::krylov::loads::Loads;

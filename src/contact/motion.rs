@@ -11,7 +11,7 @@
 
 use mpi::topology::SimpleCommunicator;
 
-use super::rigid;
+use super::rigid::{self, First};
 use crate::feti::jump::operator::Jump;
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::gram::FEW;
@@ -77,6 +77,30 @@ pub fn check(problem: &Substructures, dual: &Dual, load: &KernelLoad) -> Result<
         }
     };
     pushed_away(problem, dual, &rest, tolerance * size)
+}
+
+/// A first λ and a first set from rigid bodies on springs at the rows, which are as stiff as the nodes there. `None` if
+/// it is not decided whether springs carry the load: the loop then begins as if nobody had asked. Collective.
+///
+/// # Errors
+/// Bodies that the load moves away for ever; PETSc's own errors.
+pub fn first(
+    problem: &Substructures,
+    dual: &Dual,
+    load: &KernelLoad,
+) -> Result<Option<(Vec<f64>, Vec<bool>)>> {
+    let jump = &dual.stiffness.jump;
+    let mut stiff = dual.stiffness.compliance_of_rows(problem)?;
+    let rows = stiff.iter_mut().filter(|c| **c > 0.0);
+    rows.for_each(|c| *c = 1.0 / *c);
+    let size = load.size.iter().fold(0.0f64, |a, s| a.max(*s));
+    let law = (stiff, jump.gap.clone());
+    let (e, enough) = (&load.e[..], 0.1 * NEARLY * size);
+    match rigid::first(dual.comm(), &dual.natural, jump, (e, enough), &law) {
+        First::At(lambda, active) => Ok(Some((lambda, active))),
+        First::Nowhere(rest) => pushed_away(problem, dual, &rest, NEARLY * size).map(|()| None),
+        First::Unknown => Ok(None),
+    }
 }
 
 /// Returns an error that names the bodies if the part of the load that nothing stands against, `rest`, is above

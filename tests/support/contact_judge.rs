@@ -2,7 +2,7 @@
 
 use super::assembled::compare::{compare, Agreement, Candidate, Tolerances};
 use super::assembled::{Assembled, Reference};
-use fetifeti::contact::ContactType;
+use fetifeti::contact::{ContactStart, ContactType};
 use fetifeti::gather_all;
 use fetifeti::petsc::Session;
 use fetifeti::scene::Scene;
@@ -10,10 +10,12 @@ use fetifeti::{Error, Result};
 use fetifeti::{FetiFeti, MethodSettings, ProjectorKind, Settings};
 use std::collections::HashMap;
 
-/// The loop, the number of rows from which a block is scaled with a sparse factorisation, and the projector's weight.
+/// The loop and its start, the number of rows from which a block is scaled with a sparse factorisation, and the
+/// projector's weight.
 #[derive(Debug, Clone, Copy)]
 pub struct How {
     pub kind: ContactType,
+    pub start: ContactStart,
     pub coupled: usize,
     pub projector: ProjectorKind,
 }
@@ -25,6 +27,7 @@ impl From<ContactType> for How {
         } = MethodSettings::default();
         How {
             kind,
+            start: ContactStart::All,
             coupled,
             projector,
         }
@@ -39,6 +42,7 @@ fn settings(how: How) -> Settings {
         ..MethodSettings::default()
     });
     settings.contact.kind = how.kind;
+    settings.contact.start = how.start;
     settings
 }
 
