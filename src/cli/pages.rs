@@ -37,7 +37,8 @@ pub fn manual(dir: Option<&Path>) -> Result<()> {
     let commands = line.get_subcommands().filter(|c| !c.is_hide_set());
     let mut names = Vec::new();
     for command in std::iter::once(&line).chain(commands) {
-        let page = Man::new(Command::clone(command));
+        let version = concat!("fetifeti ", env!("CARGO_PKG_VERSION"));
+        let page = Man::new(Command::clone(command)).source(version);
         output::write_text(&dir.join(page.get_filename()), &roff(&page)?)?;
         names.push(page.get_filename());
     }
