@@ -13,12 +13,19 @@ use serde::{Deserialize, Serialize};
 use super::fit::Law;
 use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds, Work};
+use crate::feti::projector::gram::FEW;
 
 /// Projections in an iteration, each with an all-reduce of r numbers: P and Pᵀ around F and around M⁻¹.
 const PROJECTIONS: f64 = 4.0;
 
-/// All-reduces of r² numbers in the set-up: Gᵀ Q G, and Gᵀ G to see which bodies are held.
-const SQUARES: f64 = 2.0;
+/// All-reduces with the entries of Gᵀ G in the set-up: the product, and what subtrees of its factor leave to the top.
+const SUMS: f64 = 2.0;
+
+/// Entries in a row of Gᵀ G: a body of a plane grid and its eight neighbours, scalar.
+const NEAR: f64 = 9.0;
+
+/// All-reduces of up to r numbers in a solve with a factor that ranks share, where r is above [`FEW`].
+const SHARED: f64 = 2.0;
 
 /// A phase: its terms as functions of a rank's work, and the measured seconds.
 struct Phase {
@@ -61,10 +68,10 @@ const PHASES: [Phase; 11] = [
     },
     Phase {
         name: "set-up, GᵀQG",
-        terms: &["multipliers", "r^2", "r^3"],
+        terms: &["multipliers", "r log r", "r^1.5"],
         values: |w| {
             let r = w.kernels;
-            vec![any(r) * w.multipliers, r.powi(2), r.powi(3)]
+            vec![any(r) * w.multipliers, r * (r + 1.0).log2(), r.powf(1.5)]
         },
         seconds: |p| p.setup.natural,
     },
@@ -149,6 +156,12 @@ pub struct Model {
 /// per entry.
 const FILL: f64 = 93.0;
 
+/// Bytes of what every rank has of Gᵀ G and its factor, with r numbers for each of a projection's vectors: matrix and
+/// pattern, and a factor that is the top for every rank (at most: subtrees are on one rank).
+pub fn replicated(r: f64) -> f64 {
+    12.0 * NEAR * r + FILL * r * (r + 1.0).log2() + 8.0 * PROJECTIONS * r
+}
+
 /// The part of the data read by a rank in an iteration that does not fit in a cache of this size.
 fn beyond(cache: f64, work: &Work) -> f64 {
     let r = work.kernels;
@@ -220,7 +233,8 @@ impl Model {
         let at = |k: usize| self.laws[k].at(&terms(k, self.cache, work));
         let r = work.kernels;
         let mut setup = SetupSeconds::from_fn(at);
-        setup.natural += SQUARES * any(r) * network.all_reduce(ranks, 8.0 * r * r);
+        setup.natural += SUMS * any(r) * network.all_reduce(ranks, 8.0 * NEAR * r);
+        let shared = any((r - FEW as f64).max(0.0)) * SHARED;
         let iteration = IterationSeconds {
             local: at(5),
             primal: at(6),
@@ -228,7 +242,7 @@ impl Model {
             natural: at(8),
             exchange: at(9) + network.messages(sent.messages, sent.bytes),
             reduction: sent.dots * network.all_reduce(ranks, 8.0)
-                + PROJECTIONS * any(r) * network.all_reduce(ranks, 8.0 * r),
+                + PROJECTIONS * (any(r) + shared) * network.all_reduce(ranks, 8.0 * r),
         };
         Modelled {
             setup,

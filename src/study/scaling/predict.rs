@@ -2,17 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::model::{Model, Modelled, Sent};
+use super::model::{replicated, Model, Modelled, Sent};
 use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds};
 
 /// Numbers of ranks in the predictions.
-pub const RANKS: [usize; 9] = [9, 16, 64, 256, 1024, 4096, 16_384, 65_536, 100_000];
+pub const RANKS: [usize; 10] = [
+    9, 16, 64, 256, 1024, 4096, 16_384, 65_536, 100_000, 1_000_000,
+];
 
-/// Dense r × r matrices that a rank holds while Gᵀ Q G is set up: Gᵀ Q G, Gᵀ G, and the factor of the latter.
-const DENSE: f64 = 3.0;
-
-/// Memory of a rank in bytes. Where the dense matrices need more, the tables say that they do not fit.
+/// Memory of a rank in bytes. Where GᵀG and its factor need more, the tables say that they do not fit.
 const ROOM: f64 = 4e9;
 
 /// The problem with a body on each of `ranks` ranks.
@@ -24,7 +23,7 @@ pub struct PredictedRow {
     pub kernels: usize,
     /// Unknowns, copies counted.
     pub unknowns: f64,
-    /// Bytes of the dense matrices of order r on every rank during set-up.
+    /// Bytes of GᵀG and its factor on every rank.
     pub replicated_bytes: f64,
     /// Seconds by phase.
     pub seconds: Modelled,
@@ -59,8 +58,7 @@ pub struct Prediction {
     pub iteration_limits: Vec<Limit>,
     /// Number of ranks from which on the time is twice that of the first row; `None`: beyond the last row.
     pub doubles_at: Option<usize>,
-    /// Number of ranks from which on the dense matrices of order r need more than 4 GB on every rank; `None`: beyond
-    /// the last row.
+    /// Number of ranks from which on GᵀG and its factor need more than 4 GB on every rank; `None`: beyond the last row.
     pub full_at: Option<usize>,
 }
 
@@ -93,7 +91,7 @@ impl Basis<'_> {
             ranks: ranks as usize,
             kernels: work.kernels as usize,
             unknowns: ranks * work.unknowns,
-            replicated_bytes: DENSE * 8.0 * work.kernels.powi(2),
+            replicated_bytes: replicated(work.kernels),
             seconds,
             total: seconds.total(n),
             without_kernels: free.total(n),

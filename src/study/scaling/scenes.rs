@@ -79,7 +79,9 @@ pub fn setups(quick: bool) -> Vec<Setup> {
         out.push(tied(Series::Weak, bodies, s, e, ranks));
     }
     // A body on every rank; the body in the middle has all eight neighbours.
-    out.push(tied(Series::Neighbours, [3, 3], s, e, 9));
+    let sides: &[usize] = if quick { &[3] } else { &[3, 4, 5, 6] };
+    let one = |&n: &usize| tied(Series::Neighbours, [n, n], s, e, n * n);
+    out.extend(sides.iter().map(one));
     out
 }
 

@@ -138,7 +138,7 @@ fn prediction(p: &Prediction) -> Table {
         .numbers("ranks", |r| r.ranks)
         .numbers("unknowns", |r| scientific(Some(r.unknowns)))
         .numbers("r", |r| r.kernels)
-        .numbers("MB of r x r", |r| short(1e-6 * r.replicated_bytes));
+        .numbers("MB of GᵀQG", |r| short(1e-6 * r.replicated_bytes));
     let table = each(
         table,
         "S",
@@ -186,12 +186,11 @@ fn limits(p: &Prediction) -> String {
     };
     out += &match p.full_at {
         Some(at) => format!(
-            ".\nFrom {at} ranks on the dense matrices of order r, which every rank has, need more than \
-             4 GB per rank during set-up: beyond that this set-up is not possible, whatever it takes.\n"
+            ".\nFrom {at} ranks on GᵀQG and its factor, which every rank has, need more than 4 GB per \
+             rank: beyond that this set-up is not possible, whatever it takes.\n"
         ),
         None => format!(
-            ".\nThe dense matrices of order r, which every rank has, need less than 4 GB per rank \
-             up to {last} ranks.\n"
+            ".\nGᵀQG and its factor, which every rank has, need less than 4 GB per rank up to {last} ranks.\n"
         ),
     };
     out
