@@ -4,6 +4,7 @@
 mod support;
 
 mod answers;
+mod bits;
 mod communication;
 mod constraints;
 mod copies;
