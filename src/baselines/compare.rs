@@ -10,6 +10,7 @@ use super::launch::{Failure, Launcher, Workspace};
 use super::methods::{facts, forwarded, judged, row, sentence, stopped, Methods, Ran};
 use super::plan::{Layouts, Plan};
 use super::table::{self, Case};
+use crate::petsc::signals::Signals;
 use crate::petsc::{Options, Session};
 use crate::report::destination::Destination;
 use crate::report::json::CompareReport;
@@ -76,6 +77,8 @@ pub fn on_first_rank(session: &Session, work: impl FnOnce() -> Result<()>) -> Re
 fn run(wanted: &Comparison, scene: &Scene, plan: &Plan) -> Result<()> {
     let Comparison { destination, .. } = wanted;
     destination.prepare()?;
+    // Temporary files go when a signal ends this.
+    let _signals = Signals::watch();
     let progress = |what: &str| destination.progress(&format!("compare: {what}"));
     let launcher = Launcher {
         workspace: Workspace::new()?,

@@ -2,12 +2,13 @@
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use serde::de::DeserializeOwned;
 use serde::Serialize;
 
+use crate::petsc::signals::{self, Signals};
 use crate::petsc::Session;
 use crate::report::json;
 use crate::{Error, Result};
@@ -129,6 +130,8 @@ impl Launcher {
             .stdin(Stdio::null())
             .stdout(create(out)?)
             .stderr(create(err)?);
+        let _signals = Signals::watch();
+        interrupted()?;
         let mut child = command.spawn().map_err(|e| {
             Error::environment(format!(
                 "cannot start mpirun, which runs on several ranks need: {e}"
@@ -136,22 +139,17 @@ impl Launcher {
         })?;
         let clock = Instant::now();
         // mpirun ends itself after the limit; if it hangs, it is killed from here.
-        let patience = self.limit + Duration::from_secs(20);
+        let patience = self.limit + LATE;
         let status = loop {
-            match child.try_wait() {
-                Ok(Some(status)) => break status,
-                Ok(None) if clock.elapsed() < patience => {
+            match child.try_wait().map_err(lost)? {
+                Some(status) => break status,
+                None if clock.elapsed() < patience && Signals::noted().is_none() => {
                     std::thread::sleep(Duration::from_millis(10));
                 }
-                Ok(None) => {
-                    let _ = child.kill();
-                    let waited = child.wait();
-                    break waited
-                        .map_err(|e| Error::environment(format!("mpirun is lost: {e}")))?;
-                }
-                Err(e) => return Err(Error::environment(format!("mpirun is lost: {e}"))),
+                None => break end(&mut child)?,
             }
         };
+        interrupted()?;
         let text = |path: &Path| {
             let bytes = std::fs::read(path).unwrap_or_default();
             String::from_utf8_lossy(&bytes).into_owned()
@@ -188,6 +186,40 @@ impl Launcher {
             None => "was ended by a signal".to_string(),
         });
         Failure { code, message }
+    }
+}
+
+/// An mpirun that should have ended gets this time to end itself and its ranks.
+const LATE: Duration = Duration::from_secs(20);
+
+/// Ends a job: mpirun ends its ranks when it is asked to end; if it does not, it is killed.
+fn end(child: &mut Child) -> Result<ExitStatus> {
+    signals::terminate(child);
+    let clock = Instant::now();
+    while clock.elapsed() < LATE {
+        if let Some(status) = child.try_wait().map_err(lost)? {
+            return Ok(status);
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let _ = child.kill();
+    child.wait().map_err(lost)
+}
+
+fn lost(e: std::io::Error) -> Error {
+    Error::environment(format!("mpirun is lost: {e}"))
+}
+
+/// An error if a signal has come that asks this process to end.
+///
+/// # Errors
+/// [`Error::Environment`] with the name of the signal.
+pub fn interrupted() -> Result<()> {
+    match Signals::noted() {
+        None => Ok(()),
+        Some(signal) => Err(Error::environment(format!(
+            "ended by {signal}, and the processes that were started with it"
+        ))),
     }
 }
 

@@ -8,6 +8,7 @@ use clap_complete::Shell;
 
 use crate::baselines::{Benchmark, Comparison, BASELINES};
 use crate::report::destination::Destination;
+use crate::report::output;
 
 /// What ends the help of the program.
 const PETSC: &str = "\
@@ -99,6 +100,22 @@ pub enum Command {
     },
 }
 
+impl Command {
+    /// Whether standard output gets a report as JSON.
+    pub fn json_on_stdout(&self) -> bool {
+        let json = match self {
+            Command::Solve(args) => &args.results.json,
+            Command::Plan(args) => &args.json,
+            Command::Compare(args) => &args.results.json,
+            Command::Bench(args) => &args.results.json,
+            Command::Table1(args) => &args.results.json,
+            Command::Study(args) => &args.results.json,
+            _ => return false,
+        };
+        json.as_deref().is_some_and(output::is_stdout)
+    }
+}
+
 /// Where results go.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct Results {
@@ -147,6 +164,9 @@ pub struct Plan {
     /// The scene, a TOML file
     #[arg(value_hint = ValueHint::FilePath)]
     pub scene: PathBuf,
+    /// File for the plan; - is standard output, and then nothing else is printed there
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub json: Option<PathBuf>,
 }
 
 /// Arguments of `table1`.

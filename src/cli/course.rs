@@ -84,6 +84,9 @@ pub(super) fn follow(
     let mut stepping = many.transpose()?;
     let mut fields: Option<Gathered> = None;
     for step in first..n {
+        if n > 1 {
+            progress.load_step(step, n);
+        }
         let set_up = match &course {
             Some(last) => renewed
                 .renew(session, &owns, solver, last, step)

@@ -14,12 +14,14 @@ mod parse;
 mod physics;
 mod picture;
 mod plan;
+mod plan_record;
 mod plan_tables;
 mod record;
 mod renewed;
 mod solve;
 mod study;
 mod table1;
+mod unused;
 mod values;
 
 use args::Command;
@@ -28,7 +30,7 @@ use parse::{Invocation, Wanted};
 
 use crate::petsc::{self, Comm, Ksp, Session};
 use crate::scene::distribution;
-use crate::{baselines, Result, Settings};
+use crate::{baselines, Error, Result, Settings};
 
 /// Runs the program with the process's arguments and returns its exit code.
 pub fn main() -> i32 {
@@ -67,9 +69,22 @@ fn run(session: &Session, invocation: Invocation) -> Result<()> {
         }
         Wanted::Say(text) => return say(session, &text),
     };
+    if command.json_on_stdout() {
+        petsc::print_on_stderr(session);
+    }
+    let done = carry_out(session, command.clone(), petsc);
+    if let (Ok(()) | Err(Error::NotConverged(_)), 0) = (&done, session.rank()) {
+        if let Some(warning) = unused::warning(session, &command)? {
+            eprintln!("{warning}");
+        }
+    }
+    done
+}
+
+fn carry_out(session: &Session, command: Command, petsc: Vec<String>) -> Result<()> {
     match command {
         Command::Solve(args) => solve::run(session, args),
-        Command::Plan(args) => plan::run(session, &args.scene),
+        Command::Plan(args) => plan::run(session, args),
         Command::Table1(args) => table1::run(session, args),
         Command::Study(args) => study::run(session, args, &petsc),
         Command::Compare(args) => baselines::compare(session, &args.wanted(petsc)),

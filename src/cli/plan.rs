@@ -1,11 +1,12 @@
 //! `fetifeti plan`: describes what the solver will build for a scene, and why.
 
 use std::fmt::Write;
-use std::path::Path;
 
+use super::args::Plan;
 use super::coefficient::Coefficient;
-use super::first_rank::say;
+use super::first_rank::on_first_rank;
 use super::physics;
+use super::plan_record::report;
 use super::plan_tables::{bodies, interfaces, LIST};
 use super::record::adaptive;
 use super::solve::lines;
@@ -16,13 +17,19 @@ use crate::feti::settings::Adaptive;
 use crate::feti::{MethodSettings, PcType};
 use crate::parallel::team::Team;
 use crate::petsc::Session;
-use crate::scene::{distribution, Plan, Scene};
+use crate::report::destination::Destination;
+use crate::scene::{self, distribution, fits, Scene};
 use crate::substructures::Substructures;
 use crate::{FetiFeti, Result};
 
 /// Validates the scene and prints the plan.
-pub fn run(session: &Session, path: &Path) -> Result<()> {
-    let scene = distribution::load(session, path)?;
+pub fn run(session: &Session, args: Plan) -> Result<()> {
+    let destination = Destination {
+        json: args.json,
+        ..Destination::default()
+    };
+    let scene = distribution::load(session, &args.scene)?;
+    on_first_rank(session, || destination.prepare())?;
     let substructures = distribution::substructures(session, &scene)?;
     let settings = MethodSettings::default().with_options(session)?;
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
@@ -35,9 +42,35 @@ pub fn run(session: &Session, path: &Path) -> Result<()> {
     ))?;
     let coefficient = Coefficient::of(session, &scene)?;
     let mut out = text(&scene, &sizes, &coefficient);
+    let _ = writeln!(out, "{:<22}{}", "", of_a_solve(session, &scene)?);
     let deflation = deflation(session, substructures, settings, &coefficient)?;
     let _ = writeln!(out, "{:<22}{deflation}", "adaptive");
-    say(session, &out)
+    let record = report(session, &scene, &sizes)?;
+    on_first_rank(session, || {
+        destination.print(&out)?;
+        destination.write_json("plan.json", &record)
+    })
+}
+
+/// A sentence on the memory that a solve takes, and whether it is there.
+fn of_a_solve(session: &Session, scene: &Scene) -> Result<String> {
+    let needed = fits::needed(session, scene);
+    let each = match session.size() {
+        1 => "",
+        _ => " on each rank",
+    };
+    let mut out = format!("about {} for a solve{each}", fits::size(needed));
+    if let Some(left) = session.agree(fits::left(session, None))? {
+        if needed > left.bytes {
+            let _ = write!(
+                out,
+                ", more than the {} {} that are left",
+                fits::size(left.bytes),
+                left.by
+            );
+        }
+    }
+    Ok(out)
 }
 
 /// The effect of `-fetifeti_adaptive`. Where the solver is sure to search, the search is carried out here, and the
@@ -109,7 +142,7 @@ fn text(scene: &Scene, sizes: &Sizes, coefficient: &Coefficient) -> String {
     out
 }
 
-fn decisions(scene: &Scene, plan: &Plan, sizes: &Sizes) -> String {
+fn decisions(scene: &Scene, plan: &scene::Plan, sizes: &Sizes) -> String {
     let mut out = String::new();
     let mut line = |what: &str, text: String| {
         let _ = writeln!(out, "{what:<22}{text}");
@@ -232,7 +265,7 @@ fn kernels(scene: &Scene, sizes: &Sizes) -> String {
 }
 
 /// A sentence on the primal constraints: vertices that subdomains share, corners where bodies may touch, averages.
-fn constraints(scene: &Scene, plan: &Plan, primal: usize, largest: usize) -> String {
+fn constraints(scene: &Scene, plan: &scene::Plan, primal: usize, largest: usize) -> String {
     if scene.dim() == 2 && !scene.form.is_elastic() {
         return format!("{primal} vertices, at most {largest} in a body");
     }
@@ -248,7 +281,7 @@ fn constraints(scene: &Scene, plan: &Plan, primal: usize, largest: usize) -> Str
 }
 
 /// A sentence on what load steps renew.
-fn renewed(scene: &Scene, plan: &Plan) -> String {
+fn renewed(scene: &Scene, plan: &scene::Plan) -> String {
     let [renewed, kept] = scene.renewed_pairs();
     let mut out = format!(
         "at each load step normals, pairing and gaps of {renewed} contact pairs and {} obstacles, where the last step \
@@ -265,7 +298,7 @@ fn renewed(scene: &Scene, plan: &Plan) -> String {
 }
 
 /// A sentence on the inequalities.
-fn inequalities(plan: &Plan) -> String {
+fn inequalities(plan: &scene::Plan) -> String {
     let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
     let contact = format!(
         "{} in {}",

@@ -7,7 +7,7 @@ use super::{balance, contact, physics};
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::parallel::exchange::sum_all;
-use crate::petsc::{max_memory, Session};
+use crate::petsc::{max_memory, Options, Session};
 use crate::report::json::adaptive::{Adaptive, Deflation};
 use crate::report::json::contact::ContactReport;
 use crate::report::json::{self, Operators, SolveReport};
@@ -43,6 +43,10 @@ pub(super) fn report(
     let mut active = [rows.iter().filter(|r| r.holds()).count() as f64];
     sum_all(session.comm(), &mut active);
     Ok(SolveReport {
+        schema: SolveReport::SCHEMA.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        converged: solution.converged(),
+        options: options(session)?,
         scene: scene.title.clone(),
         dimension: scene.dim(),
         physics: if scene.form.is_elastic() {
@@ -114,6 +118,14 @@ pub(super) fn report(
         check: None,
         rtol: solver.ksp().tolerances()?.0,
     })
+}
+
+/// The PETSc options that are set.
+pub(super) fn options(session: &Session) -> Result<BTreeMap<String, String>> {
+    let mut all: BTreeMap<String, String> = Options::new(session, "").all()?.into_iter().collect();
+    // That of the session itself.
+    all.remove("-no_signal_handler");
+    Ok(all)
 }
 
 /// The checks of the identities, and of λ_min ≥ 1 by the exact spectrum.

@@ -23,7 +23,7 @@ use crate::report::output;
 use crate::report::pictures::contact_map;
 use crate::report::plots::{load_steps, profile};
 use crate::report::tables::summary;
-use crate::scene::{distribution, DeckScenes, Scene};
+use crate::scene::{distribution, fits, DeckScenes, Scene};
 use crate::substructures::BodyNode;
 use crate::{Error, FetiFeti, Result, Status};
 
@@ -123,6 +123,8 @@ fn solve(
         args.resume.as_deref(),
     )?;
     let events = Events::new(session, args.events.as_deref())?;
+    let name = args.scene.display().to_string();
+    session.agree(fits::solved(session, scene, &name))?;
     let start = Instant::now();
     let substructures = distribution::substructures(session, scene)?;
     let assemble = start.elapsed().as_secs_f64();

@@ -1,6 +1,7 @@
 //! `fetifeti study`: arguments and files; the studies themselves are in [`crate::study`].
 
 use std::path::Path;
+use std::time::Instant;
 
 use clap::ValueEnum;
 
@@ -11,6 +12,7 @@ use crate::feti::MethodSettings;
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::output;
+use crate::report::pace::left;
 use crate::report::tables::table::Table;
 use crate::study::{
     adaptive, benchmarks, hard_cases, hertz, kappa, kernels, scaling, speed_error, walls,
@@ -228,11 +230,15 @@ impl Task<'_> {
         self.case.as_deref()
     }
 
-    /// Prints progress on rank 0.
+    /// Prints progress on rank 0, with what is left where the text begins with "3 of 10".
     fn progress(&self) -> impl FnMut(&str) + '_ {
-        |what| {
+        let start = Instant::now();
+        move |what| {
             if self.session.rank() == 0 {
-                self.destination.progress(&format!("{}: {what}", self.name));
+                let left = counted(what).and_then(|(k, n)| left(start.elapsed(), k - 1, n));
+                let left = left.map_or(String::new(), |left| format!("; {left}"));
+                let name = &self.name;
+                self.destination.progress(&format!("{name}: {what}{left}"));
             }
         }
     }
@@ -250,6 +256,13 @@ impl Task<'_> {
             self.destination.finish(&self.name, text, report, more)
         })
     }
+}
+
+/// The numbers of a text that begins with "3 of 10".
+fn counted(text: &str) -> Option<(usize, usize)> {
+    let (now, rest) = text.split_once(" of ")?;
+    let all = rest.split(',').next()?;
+    Some((now.parse().ok().filter(|&k| k > 0)?, all.parse().ok()?))
 }
 
 /// Writes tables as CSV; returns the names of the files.

@@ -8,9 +8,10 @@ use crate::feti::{Facts, MethodSettings, PcType};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::{PaperSide, PcResult, Table1Row, Table1Side};
+use crate::report::pace::Pace;
 use crate::report::plots::figure3;
 use crate::report::tables::{paper, summary};
-use crate::scene::{distribution, Faces, Scene};
+use crate::scene::{distribution, fits, Faces, Scene};
 use crate::{Error, FetiFeti, Result};
 
 /// Computes the rows and writes the results that the arguments ask for.
@@ -27,13 +28,15 @@ pub fn run(session: &Session, args: Table1) -> Result<()> {
     };
     let mut rows = Vec::with_capacity(wanted.len());
     let mut stopped = None;
+    let mut pace = Pace::new(wanted.len());
     for (done, &[bodies, subdomains, elements]) in wanted.iter().enumerate() {
         if session.rank() == 0 {
-            destination.progress(&format!("table1: {done} of {} rows", wanted.len()));
+            let left = pace.text();
+            destination.progress(&format!("table1: {done} of {} rows{left}", wanted.len()));
         }
         let of_paper = paper::lookup(bodies, subdomains, elements);
         let mut side = |faces, paper: Option<PaperSide>| {
-            let scene = session.agree(Scene::lee(bodies, subdomains, elements, faces))?;
+            let scene = session.agree(fits::lee(session, [bodies, subdomains, elements], faces))?;
             side(session, &scene, paper, &mut stopped)
         };
         rows.push(Table1Row {
@@ -46,6 +49,7 @@ pub fn run(session: &Session, args: Table1) -> Result<()> {
                 of_paper.as_ref().map(|p| p.middle_third),
             )?,
         });
+        pace.done();
     }
     on_first_rank(session, || {
         destination.progress("");

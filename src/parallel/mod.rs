@@ -1,5 +1,7 @@
 //! Ranks and threads: messages between ranks, the threads of a rank, and what both cost.
 
+#[cfg(feature = "cli")]
+pub(crate) mod available;
 pub mod clock;
 pub mod exchange;
 pub mod halo;

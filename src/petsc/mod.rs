@@ -27,6 +27,8 @@ mod pc;
 mod scatter;
 mod session;
 mod shell;
+#[cfg(feature = "cli")]
+pub(crate) mod signals;
 mod spectrum;
 mod together;
 mod vec;
@@ -46,7 +48,7 @@ pub use options::{Named, Options};
 pub use partition::partition;
 pub use pc::Pc;
 pub use scatter::Scatter;
-pub use session::{max_memory, Comm, Session};
+pub use session::{max_memory, print_on_stderr, Comm, Session};
 pub use shell::{ShellMat, ShellOp, ShellPc};
 pub use spectrum::extreme_eigenvalues;
 pub use vec::{Array, ArrayMut, Vec};

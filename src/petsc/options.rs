@@ -280,6 +280,30 @@ impl Options {
         Ok(left)
     }
 
+    /// All options with this prefix that are set, by whomever: (name with its dash, value), in the order of the names.
+    pub fn all(&self) -> Result<Vec<(String, String)>> {
+        let mut text: *mut c_char = null_mut();
+        petsc!(PetscOptionsGetAll(null_mut(), &mut text))?;
+        let listed = rust_string(text);
+        petsc!(ff_free(text.cast()))?;
+        let mut all: Vec<(String, String)> = Vec::new();
+        for word in listed.split_whitespace() {
+            match word.strip_prefix('-') {
+                Some(_) if word.parse::<f64>().is_err() => all.push((word.into(), String::new())),
+                _ => {
+                    let Some((_, value)) = all.last_mut() else {
+                        continue;
+                    };
+                    *value = format!("{value} {word}").trim_start().to_string();
+                }
+            }
+        }
+        let start = format!("-{}", self.prefix);
+        all.retain(|(name, _)| name.starts_with(&start));
+        all.sort();
+        Ok(all)
+    }
+
     /// Whether the user has set any option with this prefix.
     pub fn any(&self) -> Result<bool> {
         self.any_but("")

@@ -281,6 +281,12 @@ impl Drop for Inner {
     }
 }
 
+/// From now on what PETSc prints on standard output goes to standard error: monitors, views, `-options_left`.
+pub fn print_on_stderr(_session: &Session) {
+    // SAFETY: PETSc is initialised, and writes to the stream only from this thread.
+    unsafe { sys::ff_print_on_stderr() }
+}
+
 /// Largest memory that this process has held so far, in bytes.
 pub fn max_memory() -> f64 {
     // SAFETY: a call without arguments.

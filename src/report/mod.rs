@@ -15,6 +15,7 @@
 //! | `plots` | line and scatter plots: Figure 3 of Lee (2010), contact along interfaces, energy and force over load steps |
 //! | `pictures` | fields on quadrilaterals and on the surface of solids, with the contact zone; pressure on faces of contact |
 //! | `paraview` | VTU files, contact as point data, time series |
+//! | `pace` | how much of a long run is left |
 //! | `progress` | the progress line of a contact solve |
 
 pub(crate) mod destination;
@@ -22,6 +23,7 @@ pub(crate) mod drawing;
 pub(crate) mod interfaces;
 pub mod json;
 pub(crate) mod output;
+pub(crate) mod pace;
 pub(crate) mod paraview;
 pub(crate) mod pictures;
 pub(crate) mod plots;

@@ -2,9 +2,10 @@
 //! is not a terminal.
 //!
 //! ```text
-//! contact step 3, 130 active  [##############>               ] 2.3e-4 of 1.0e-8, 17 it
+//! load step 4 of 20, about 12 s left, contact step 3, 9 active  [######>        ] 2.3e-4 of 1.0e-8, 17 it
 //! ```
 
+use super::pace::left;
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
@@ -21,6 +22,10 @@ pub struct Progress {
     width: usize,
     step: usize,
     active: usize,
+    /// The load step, if there are several, with what is left.
+    load_step: String,
+    /// When the first load step began, and its number.
+    began: Option<(Duration, usize)>,
 }
 
 impl Progress {
@@ -45,7 +50,20 @@ impl Progress {
             width: 0,
             step: 0,
             active: 0,
+            load_step: String::new(),
+            began: None,
         }
+    }
+
+    /// Starts load step `step` of `n`, counted from 0; what is left follows from the steps since the first call.
+    pub fn load_step(&mut self, step: usize, n: usize) {
+        let now = (self.now)();
+        let (start, first) = *self.began.get_or_insert((now, step));
+        let left = left(now.saturating_sub(start), step - first, n - first);
+        let left = left.map_or(String::new(), |left| format!(", {left}"));
+        self.load_step = format!("load step {} of {n}{left}", step + 1);
+        let line = self.load_step.clone();
+        self.draw(&line);
     }
 
     /// Starts an outer step. The line is always redrawn: outer steps are few.
@@ -77,7 +95,11 @@ impl Progress {
     }
 
     fn line(&self, residual: Option<(f64, f64, usize)>) -> String {
-        let mut text = format!("contact step {}, {} active", self.step, self.active);
+        let before = match self.load_step.as_str() {
+            "" => String::new(),
+            step => format!("{step}, "),
+        };
+        let mut text = format!("{before}contact step {}, {} active", self.step, self.active);
         let (relative, tolerance, iterations) = residual.unwrap_or((1.0, f64::NAN, 0));
         let cells = (fraction(relative, tolerance) * BAR as f64) as usize;
         let mut bar = "#".repeat(cells);

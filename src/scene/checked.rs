@@ -92,7 +92,15 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`] with file, line and what was expected.
     pub fn load(path: impl AsRef<Path>) -> Result<Scene> {
-        let path = path.as_ref();
+        Scene::load_if(path.as_ref(), |_| Ok(()))
+    }
+
+    /// [`Scene::load`], if `fits` has no objection to what was read. It is asked before anything is made from that; of
+    /// a deck, when its bodies are known.
+    pub(super) fn load_if(
+        path: &Path,
+        fits: impl FnOnce(&SceneSpec) -> Result<()>,
+    ) -> Result<Scene> {
         let file = path.display().to_string();
         if DeckScenes::is_deck(path) {
             let deck = DeckScenes::load(path)?;
@@ -100,7 +108,9 @@ impl Scene {
         }
         let text = std::fs::read_to_string(path)
             .map_err(|e| Error::Input(format!("{file}: the scene cannot be read: {e}")))?;
-        Scene::parse(&file, &text)
+        let spec = read::read(&file, &text)?;
+        fits(&spec)?;
+        Scene::new(spec)
     }
 
     /// Checks the scene in `text`; `file` names it in messages.

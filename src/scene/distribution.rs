@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::checked::Scene;
+use super::fits;
 use crate::error::{Error, Result};
 use crate::mesh::contiguous_share;
 use crate::petsc::{Options, Session};
@@ -11,7 +12,7 @@ use crate::substructures::Substructures;
 
 /// Reads the scene and puts its options into the database, below those of the user. Collective.
 pub(crate) fn load(session: &Session, path: &Path) -> Result<Scene> {
-    let scene = session.agree(Scene::load(path))?;
+    let scene = session.agree(fits::load(session, path))?;
     set_options(session, &scene)?;
     Ok(scene)
 }
@@ -112,6 +113,7 @@ fn by_work(works: &[f64], ranks: usize, rank: usize) -> Range<usize> {
 
 /// This rank's part of the scene, assembled. Collective.
 pub(crate) fn substructures(session: &Session, scene: &Scene) -> Result<Substructures> {
+    session.agree(fits::assembled(session, scene))?;
     let owns = owner(session, scene)?;
     let threads = if session.size() == 1 { 0 } else { 1 };
     let pool = rayon::ThreadPoolBuilder::new()
@@ -119,8 +121,32 @@ pub(crate) fn substructures(session: &Session, scene: &Scene) -> Result<Substruc
         .build()
         .map_err(|e| Error::environment(format!("cannot start threads: {e}")))?;
     let built = pool.install(|| scene.substructures(&owns));
-    session.agree(built)
+    session.agree(built.and_then(|built| measurable(&scene.title, built)))
 }
+
+/// The substructures, if squares of forces, stiffnesses and displacements are numbers: norms are made of them.
+fn measurable(title: &str, built: Substructures) -> Result<Substructures> {
+    for sub in &built.local {
+        let force = sub.f.iter().fold(0.0_f64, |a, f| a.max(f.abs()));
+        let stiffness = sub.k.diagonal().into_iter().filter(|k| *k > 0.0);
+        let (low, high) = stiffness.fold((f64::INFINITY, 0.0_f64), |(low, high), k| {
+            (low.min(k), high.max(k))
+        });
+        let sizes = [force, high, force / low];
+        if sizes.iter().all(|s| s.abs() < LARGEST_SQUARED) {
+            continue;
+        }
+        return Err(Error::Input(format!(
+            "{title}: in a subdomain of body `{}` nodal forces are up to {force:.1e} and stiffnesses from {low:.1e} to \
+             {high:.1e}, whose squares are no numbers (take other units, for `load`, `size`, `rho` or `young`)",
+            built.body_names[sub.body]
+        )));
+    }
+    Ok(built)
+}
+
+/// Sums of squares up to this are far from overflow.
+const LARGEST_SQUARED: f64 = 1e145;
 
 #[cfg(test)]
 #[path = "../../tests/inside/scene/distribution.rs"]

@@ -6,7 +6,7 @@ use super::meshes::side_part;
 use super::model::body::Force;
 use super::model::field::Field;
 use super::model::steps::Factors;
-use super::validate::LOAD;
+use super::quantity::LOAD;
 use crate::error::Result;
 use crate::fem::{self, SubdomainMesh};
 use crate::linalg::csr::Csr;
@@ -199,7 +199,7 @@ impl Scene {
             let mut out = [0.0; 3];
             for (o, field) in out.iter_mut().zip(fields) {
                 *o = evaluate(body, inside, field, point) * scale;
-                if !o.is_finite() {
+                if !(LOAD.good)(*o) {
                     bad.get_or_insert((*o, point));
                 }
             }

@@ -5,7 +5,7 @@ use super::checked::Scene;
 use super::coefficient::{by_element, evaluate};
 use super::model::field::Field;
 use super::model::steps::Factors;
-use super::validate::{Quantity, RATIO, SPRING};
+use super::quantity::{Quantity, RATIO, SPRING};
 use crate::error::Result;
 use crate::fem::element::Integration;
 use crate::fem::{self, Elements, Grid, SidePart, SubdomainMesh};

@@ -20,13 +20,18 @@ pub(crate) mod deck;
 mod displaced;
 #[cfg(feature = "cli")]
 pub(crate) mod distribution;
+#[cfg(feature = "cli")]
+pub(crate) mod fits;
 pub(crate) mod geometry;
 mod joint;
 mod loads;
 mod meshes;
 pub(crate) mod model;
+#[cfg(feature = "cli")]
+mod need;
 mod numbering;
 mod plan;
+mod quantity;
 mod read;
 mod renew;
 mod renewal;

@@ -4,6 +4,7 @@ use super::body::Body;
 use super::model::body::{BodySpec, Force};
 use super::model::field::{At, Field};
 use super::model::spec::SceneSpec;
+use super::quantity::{Quantity, LARGEST, LOAD, LONGEST, RATIO};
 use crate::error::{Error, Result};
 use crate::fem::cell::jacobian_is_positive;
 use crate::fem::Form;
@@ -56,7 +57,7 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
 
 impl BodySpec {
     /// The error `message` about this body.
-    fn error<T>(&self, message: impl std::fmt::Display) -> Result<T> {
+    pub(super) fn error<T>(&self, message: impl std::fmt::Display) -> Result<T> {
         let (written, name) = (&self.written, &self.name);
         Err(Error::Input(format!("{written}body `{name}`: {message}")))
     }
@@ -80,10 +81,23 @@ fn check_mesh(body: &BodySpec) -> Result<()> {
                 origin[d]
             ));
         }
+        if origin[d].abs() > LONGEST {
+            return body.error(format!(
+                "origin {:e} in {axis} where at most {LONGEST:e} was expected (take other units)",
+                origin[d]
+            ));
+        }
         if !(size[d].is_finite() && size[d] > 0.0) {
             return body.error(format!(
                 "size {} in {axis} where a positive number was expected",
                 size[d]
+            ));
+        }
+        if !(1.0 / LONGEST..=LONGEST).contains(&size[d]) {
+            return body.error(format!(
+                "size {:e} in {axis} where a number between {:e} and {LONGEST:e} was expected (take other units)",
+                size[d],
+                1.0 / LONGEST
             ));
         }
         if elements[d] == 0 || subdomains[d] == 0 {
@@ -199,84 +213,6 @@ fn check_shape(body: &BodySpec, form: &Form) -> Result<()> {
     Ok(())
 }
 
-/// A quantity that a body has by points: its name in messages, and the values that it may have.
-pub(super) struct Quantity {
-    name: &'static str,
-    pub good: fn(f64) -> bool,
-    wanted: &'static str,
-}
-
-/// The coefficient of a scalar problem.
-const RHO: Quantity = Quantity {
-    name: "ρ =",
-    good: |v| v.is_finite() && v > 0.0,
-    wanted: "a positive number",
-};
-
-/// Young's modulus.
-const YOUNG: Quantity = Quantity { name: "E =", ..RHO };
-
-/// Poisson's ratio.
-pub(super) const RATIO: Quantity = Quantity {
-    name: "ν =",
-    good: |v| v > -1.0 && v < 0.5,
-    wanted: "a number above -1 and below 1/2",
-};
-
-/// A component of a load.
-pub(super) const LOAD: Quantity = Quantity {
-    name: "load",
-    good: f64::is_finite,
-    wanted: "a finite number",
-};
-
-/// The stiffness of an elastic foundation.
-pub(super) const SPRING: Quantity = Quantity {
-    name: "spring",
-    good: |v| v >= 0.0 && v.is_finite(),
-    wanted: "a finite number of at least 0",
-};
-
-impl Quantity {
-    /// ρ or E.
-    pub fn coefficient(form: &Form) -> Quantity {
-        match form.is_elastic() {
-            true => YOUNG,
-            false => RHO,
-        }
-    }
-
-    /// A value at a point, checked.
-    pub fn at(&self, body: &BodySpec, value: f64, point: [f64; 3]) -> Result<f64> {
-        match (self.good)(value) {
-            true => Ok(value),
-            false => self.refuse(body, value, &format!(" at {}", body.spot_at(point))),
-        }
-    }
-
-    /// The error of a value; `place` says where it is.
-    fn refuse<T>(&self, body: &BodySpec, value: f64, place: &str) -> Result<T> {
-        let Quantity { name, wanted, .. } = self;
-        body.error(format!("{name} {value}{place} where {wanted} was expected"))
-    }
-
-    /// Checks the values of a field that are known without evaluation.
-    fn check(&self, body: &BodySpec, field: &Field) -> Result<()> {
-        let wrong = |value: &f64| !(self.good)(*value);
-        let Some(value) = field.known_values().into_iter().find(wrong) else {
-            return Ok(());
-        };
-        let found = match field {
-            Field::Cells(cells) => cells.find(|v| wrong(&v))?,
-            _ => None,
-        };
-        match found {
-            Some((value, cell)) => self.refuse(body, value, &format!(" in {cell}")),
-            None => self.refuse(body, value, ""),
-        }
-    }
-}
-
 /// Degrees of freedom with a value that a side gives, in increasing order: C k + c for component c of node k.
 ///
 /// # Errors
@@ -303,9 +239,13 @@ pub(super) fn dirichlet_dofs(body: &BodySpec, components: usize) -> Result<Vec<(
                     continue;
                 };
                 let value = field.eval(&at);
-                if !value.is_finite() {
+                if !(LOAD.good)(value) {
+                    let wanted = match value.is_finite() {
+                        true => format!("at most {LARGEST:e} was expected (take other units)"),
+                        false => "a finite number was expected".into(),
+                    };
                     return body.error(format!(
-                        "Dirichlet value {value} at {} on side {} where a finite number was expected",
+                        "Dirichlet value {value:?} at {} on side {} where {wanted}",
                         body.spot(node),
                         mesh.side_name(side)
                     ));

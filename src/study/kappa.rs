@@ -120,14 +120,14 @@ pub fn run(
     progress: &mut dyn FnMut(&str),
 ) -> Result<KappaReport> {
     let mut rows = Vec::new();
-    for family in super::chosen(FAMILIES.to_vec(), |f| f.name, only)? {
+    for (of, family) in super::numbered(super::chosen(FAMILIES.to_vec(), |f| f.name, only)?) {
         let n = if quick {
             family.quick
         } else {
             family.sizes.len()
         };
         for &[subdomains, elements] in &family.sizes[..n] {
-            progress(&format!("{}, {subdomains} x {elements}", family.name));
+            progress(&format!("{of}, {}, {subdomains} x {elements}", family.name));
             rows.push(grid(session, &family, [2, subdomains, elements], exact)?);
         }
     }

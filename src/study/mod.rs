@@ -46,3 +46,10 @@ fn chosen<T>(all: Vec<T>, name: impl Fn(&T) -> &str, only: Option<&str>) -> Resu
     }
     Ok(found)
 }
+
+/// Cases, each with its number in words: "3 of 10".
+fn numbered<T>(cases: Vec<T>) -> impl Iterator<Item = (String, T)> {
+    let n = cases.len();
+    let cases = cases.into_iter().enumerate();
+    cases.map(move |(k, case)| (format!("{} of {n}", k + 1), case))
+}

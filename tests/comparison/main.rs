@@ -9,3 +9,4 @@ mod elastic;
 mod equations;
 mod mortar;
 mod scalar;
+mod signals;

@@ -10,7 +10,14 @@ include!("names.rs");
 const ORDERINGS: [&str; 3] = ["ordering.h", "metis.c", "scotch.c"];
 
 fn main() {
-    for file in ["build.rs", "names.rs", "wrapper.h", "shim.h", "shim.c"] {
+    for file in [
+        "build.rs",
+        "names.rs",
+        "wrapper.h",
+        "shim.h",
+        "shim.c",
+        "process.c",
+    ] {
         println!("cargo:rerun-if-changed={file}");
     }
     for file in ORDERINGS {
@@ -162,6 +169,7 @@ fn shim(include: &[PathBuf]) {
     let mut build = cc::Build::new();
     build
         .file("shim.c")
+        .file("process.c")
         .includes(include)
         .define("PETSC_SKIP_COMPLEX", None)
         .flag_if_supported("-Wno-unused-parameter")

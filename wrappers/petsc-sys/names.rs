@@ -20,6 +20,7 @@ const FUNCTIONS: &[&str] = &[
     "PetscOptionsGetInt",
     "PetscOptionsGetBool",
     "PetscOptionsGetString",
+    "PetscOptionsGetAll",
     "PetscOptionsLeftGet",
     "PetscOptionsLeftRestore",
     "PetscOptionsUsed",

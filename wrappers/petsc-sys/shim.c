@@ -1,6 +1,5 @@
 #include "shim.h"
 #include <string.h>
-#include <sys/resource.h>
 
 MPI_Comm ff_comm_world(void)
 {
@@ -385,16 +384,4 @@ int ff_options_any(const char *start, const char *but, PetscBool *found)
 int ff_free(void *memory)
 {
   return (int)PetscFree(memory);
-}
-
-double ff_max_memory(void)
-{
-  struct rusage usage;
-
-  if (getrusage(RUSAGE_SELF, &usage)) return 0.0;
-#if defined(__APPLE__)
-  return (double)usage.ru_maxrss;
-#else
-  return 1024.0 * (double)usage.ru_maxrss;
-#endif
 }

@@ -76,6 +76,15 @@ int ff_help_print(MPI_Comm comm, const char *text);
 int ff_viewer_print(PetscViewer viewer, const char *text);
 int ff_viewer_is_ascii(PetscViewer viewer, int *ascii);
 int ff_free(void *memory);
+/* What PETSc prints on standard output, monitors and views among it, goes to standard error from now on. */
+void ff_print_on_stderr(void);
+/* SIGINT and SIGTERM are noted from now on, until as many calls of ff_signals_leave; a second one ends the program. */
+void ff_signals_watch(void);
+void ff_signals_leave(void);
+/* The signal that was noted last, 0 without any. */
+int ff_signals_noted(void);
+/* Sends SIGTERM to a process. */
+void ff_terminate(int pid);
 /* Largest resident set of this process so far, in bytes. */
 double ff_max_memory(void);
 

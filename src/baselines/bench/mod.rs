@@ -14,16 +14,18 @@ mod unstructured;
 use std::path::PathBuf;
 
 use super::compare::on_first_rank;
-use super::launch::{Launcher, Workspace};
+use super::launch::{interrupted, Launcher, Workspace};
 use super::methods::{self, facts, forwarded, judged, row, sentence, stopped, Left, Methods, Ran};
 use super::plan::{Layouts, Plan};
 use super::table::{self, Baseline};
+use crate::petsc::signals::Signals;
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::{BenchCase, BenchReport, BenchRow, BenchSample, MethodRun};
 use crate::report::output;
+use crate::report::pace::Pace;
 use crate::report::tables::bench as tables;
-use crate::scene::{distribution, Scene};
+use crate::scene::{distribution, fits, Scene};
 use crate::{Error, Result};
 use cases::{Named, CASES};
 
@@ -71,9 +73,14 @@ pub fn bench(session: &Session, wanted: &Benchmark) -> Result<()> {
     if names.is_empty() {
         names.extend(CASES.iter().map(|c| c.name.to_string()));
     }
+    // Files of cases go when a signal ends this.
+    let _signals = Signals::watch();
     let cases: Result<Vec<Case>> = names
         .iter()
-        .map(|name| Case::new(session, name, wanted.quick, &baselines))
+        .map(|name| {
+            session.agree(interrupted())?;
+            Case::new(session, name, wanted.quick, &baselines)
+        })
         .collect();
     let cases = cases?;
     on_first_rank(session, || run(wanted, &cases))
@@ -99,7 +106,7 @@ impl Case {
             if let Some(named) = Named::find(name) {
                 let home = Workspace::new()?;
                 let (file, names) = named.write(home.dir(), quick)?;
-                let scene = Scene::load(&file)?;
+                let scene = fits::load(session, &file)?;
                 return Ok((name.to_string(), file, Some((home, names)), scene));
             }
             let file = PathBuf::from(name);
@@ -110,7 +117,7 @@ impl Case {
                     known.join(", ")
                 )));
             }
-            let scene = Scene::load(&file)?;
+            let scene = fits::load(session, &file)?;
             let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned());
             let full = std::fs::canonicalize(&file).unwrap_or(file);
             let name = stem.unwrap_or_else(|| name.to_string());
@@ -143,6 +150,23 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
         quick: wanted.quick,
         cases: Vec::new(),
     };
+    let done = rounds(wanted, cases, &mut report);
+    if let (Err(error), Some(_)) = (&done, Signals::noted()) {
+        // The results so far are results.
+        write(destination, cases, &report)?;
+        return Err(error.clone());
+    }
+    done?;
+    write(destination, cases, &report)?;
+    let cases = report.cases.iter();
+    stopped(cases.flat_map(|c| c.methods.iter().map(|r| (&r.run, c.case.clone()))))
+}
+
+/// All rounds of all cases, into the report as they come.
+fn rounds(wanted: &Benchmark, cases: &[Case], report: &mut BenchReport) -> Result<()> {
+    let Benchmark { destination, .. } = wanted;
+    let each = cases.iter().map(|c| wanted.rounds * c.plan.runs.len());
+    let mut pace = Pace::new(each.sum());
     for (k, case) in cases.iter().enumerate() {
         let launcher = Launcher {
             workspace: Workspace::new()?,
@@ -155,7 +179,17 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
         let mut sequence = 0;
         for round in 1..=wanted.rounds {
             let now = &mut report.cases[k];
-            let first = one_round(wanted, case, &mut methods, now, (round, &mut sequence))?;
+            let first = one_round(
+                wanted,
+                case,
+                &mut methods,
+                now,
+                (round, &mut sequence),
+                &mut pace,
+            );
+            now.rounds = round - 1;
+            now.sum_up();
+            let first = first?;
             if round == 1 {
                 progress(wanted, &format!("{}, direct solution", case.name));
                 let (numbers, solutions): (Vec<usize>, Vec<_>) = first.into_iter().unzip();
@@ -169,13 +203,11 @@ fn run(wanted: &Benchmark, cases: &[Case]) -> Result<()> {
             now.sum_up();
             // Results are written as they come: a long run that is interrupted keeps them.
             if !destination.json_on_stdout() {
-                destination.write_json("bench.json", &report)?;
+                destination.write_json("bench.json", report)?;
             }
         }
     }
-    write(destination, cases, &report)?;
-    let cases = report.cases.iter();
-    stopped(cases.flat_map(|c| c.methods.iter().map(|r| (&r.run, c.case.clone()))))
+    Ok(())
 }
 
 /// Runs every method that has not failed so far. Returns the numbers of the methods that have left a solution, with the
@@ -186,11 +218,13 @@ fn one_round(
     methods: &mut Methods,
     now: &mut BenchCase,
     (round, sequence): (usize, &mut usize),
+    pace: &mut Pace,
 ) -> Result<Vec<(usize, Left)>> {
     let mut solutions = Vec::new();
     for (k, run) in case.plan.runs.iter().enumerate() {
         let known = &now.methods[k].run;
         if known.message.is_some() {
+            pace.skip();
             continue;
         }
         let mut ran = methods.run(k, known.rescue.is_some())?;
@@ -217,7 +251,12 @@ fn one_round(
             _ => "failed".to_string(),
         };
         let of = format!("round {round} of {}", wanted.rounds);
-        progress(wanted, &format!("{}, {of}, {title}: {seconds}", case.name));
+        pace.done();
+        let left = pace.text();
+        progress(
+            wanted,
+            &format!("{}, {of}, {title}: {seconds}{left}", case.name),
+        );
         record(&mut now.methods[k], row(run, ran).run, sample);
     }
     Ok(solutions)

@@ -7,7 +7,7 @@ use crate::feti::method::LinearMethod;
 use crate::feti::spectrum::Spectrum;
 use crate::petsc::{ConvergedReason, Ksp, LargeEigenvalue, Stopped, Vec as PetscVec};
 use crate::status::Status;
-use crate::Result;
+use crate::{Error, Result};
 
 /// An iteration is no longer broken off if its residual is less than this many times its tolerance.
 const NEARLY: f64 = 30.0;
@@ -145,6 +145,13 @@ pub fn iterate(
         if start <= nothing {
             return Ok(Run::nothing_to_do(start));
         }
+    }
+    if !(start.is_finite() && control.tolerance.is_finite()) {
+        return Err(Error::input(format!(
+            "the residual is {start:e} and the tolerance {:e}: loads, coefficients and lengths are so large or so \
+             small together that squares of forces are no numbers (take other units)",
+            control.tolerance
+        )));
     }
     let (rtol, atol, dtol, max_it) = ksp.tolerances()?;
     if max_it == 0 {

@@ -7,6 +7,7 @@ mod bench;
 mod compare;
 pub mod contact;
 mod number;
+mod plan;
 pub mod probes;
 mod solve;
 mod spectrum;
@@ -17,6 +18,7 @@ pub use compare::{
     CompareContact, CompareInequalities, CompareReport, CompareRow, ComparedScene, MethodRun,
     PhaseSeconds,
 };
+pub use plan::{PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
 pub use solve::{ErrorNorms, Iterations, Kkt, Multipliers, Operators, Seconds, SolveReport};
 pub use spectrum::{Condition, Spectrum};
 pub use table1::{PaperSide, PcResult, Table1Row, Table1Side};

@@ -7,10 +7,23 @@ use super::probes::{NodePrint, ProbeValue};
 use super::spectrum::Condition;
 use crate::feti::Communication;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The report of `solve`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SolveReport {
+    /// Name and version of this record: [`SolveReport::SCHEMA`].
+    #[serde(default)]
+    pub schema: String,
+    /// Version of fetifeti.
+    #[serde(default)]
+    pub version: String,
+    /// Whether the iteration, and with inequalities the contact loop, reached its tolerance.
+    #[serde(default)]
+    pub converged: bool,
+    /// PETSc options that were set, on the command line, in a file, in the environment or in the scene.
+    #[serde(default)]
+    pub options: BTreeMap<String, String>,
     /// The scene's name or file.
     pub scene: String,
     /// 2 or 3.
@@ -99,10 +112,15 @@ pub struct SolveReport {
     pub projector: String,
     /// Relative defects of the operators' identities, with `-fetifeti_check`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub check: Option<std::collections::BTreeMap<String, f64>>,
+    pub check: Option<BTreeMap<String, f64>>,
     /// Relative tolerance of the inner iteration.
     #[serde(with = "number")]
     pub rtol: f64,
+}
+
+impl SolveReport {
+    /// The value of `schema`.
+    pub const SCHEMA: &'static str = "fetifeti.solve/1";
 }
 
 /// The storage of the subdomains' operators, over all ranks.

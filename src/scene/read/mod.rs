@@ -24,6 +24,8 @@ use crate::fem::Form;
 use crate::mesh::BoxMesh;
 use document::{Item, Section, Value};
 use fields::Shape;
+#[cfg(feature = "cli")]
+pub(super) use values::MOST as MOST_IN_A_ROW;
 use values::MOST;
 
 /// The scene in `text`; `file` names it in messages.

@@ -8,7 +8,7 @@ use crate::scene::model::expr::Expr;
 
 /// Largest number of elements or subdomains along one side of a body: a typing error must not exhaust the memory before
 /// it can be reported.
-pub(super) const MOST: usize = 1 << 22;
+pub(in crate::scene) const MOST: usize = 1 << 22;
 
 impl Item<'_> {
     /// A positive whole number.

@@ -258,11 +258,11 @@ pub fn run(
     let mut records = Vec::new();
     let meshes = if quick { Meshes::Quick } else { Meshes::Small };
     let fine = cases(Meshes::Fine);
-    for case in super::chosen(cases(meshes), |c| &c.name, only)? {
-        progress(&case.name);
+    for (of, case) in super::numbered(super::chosen(cases(meshes), |c| &c.name, only)?) {
+        progress(&format!("{of}, {}", case.name));
         let mut record = measure::one(session, &case, effort, dir)?;
         if let Some(fine) = fine.iter().find(|f| f.name == case.name && !quick) {
-            progress(&format!("{}, finer elements", case.name));
+            progress(&format!("{of}, {}, finer elements", case.name));
             record.fine = Some(measure::fine(session, fine, effort, dir)?);
         }
         records.push(record);

@@ -132,8 +132,8 @@ pub fn run(
     progress: &mut dyn FnMut(&str),
 ) -> Result<HardCasesReport> {
     let mut records = Vec::new();
-    for case in super::chosen(cases(quick), |c| c.name, only)? {
-        progress(case.name);
+    for (of, case) in super::numbered(super::chosen(cases(quick), |c| c.name, only)?) {
+        progress(&format!("{of}, {}", case.name));
         records.push(one(session, &case, SPECTRUM[usize::from(quick)])?);
     }
     Ok(HardCasesReport {

@@ -131,10 +131,10 @@ pub fn run(
     progress: &mut dyn FnMut(&str),
 ) -> Result<HertzReport> {
     let mut cases = Vec::new();
-    for case in super::chosen(HertzCase::ALL.to_vec(), |c| c.name(), only)? {
+    for (of, case) in super::numbered(super::chosen(HertzCase::ALL.to_vec(), |c| c.name(), only)?) {
         let mut list = Vec::new();
         for &n in meshes(case, quick) {
-            progress(&format!("{}, {n} elements per radius", case.name()));
+            progress(&format!("{of}, {}, {n} elements per radius", case.name()));
             list.push(mesh(session, case, n)?);
         }
         cases.push(CaseReport {

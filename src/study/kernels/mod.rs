@@ -130,10 +130,10 @@ pub fn run(
 ) -> Result<KernelsReport> {
     super::alone(session, "kernels", "it measures one thread")?;
     let mut rows = Vec::new();
-    for case in super::chosen(CASES.to_vec(), |c| c.name, only)? {
+    for (of, case) in super::numbered(super::chosen(CASES.to_vec(), |c| c.name, only)?) {
         let sizes = if quick { &case.sizes[..1] } else { case.sizes };
         for &elements in sizes {
-            progress(&format!("{}, {elements} elements", case.name));
+            progress(&format!("{of}, {}, {elements} elements", case.name));
             rows.extend(one(&case, elements, quick)?);
         }
     }

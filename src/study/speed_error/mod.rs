@@ -140,16 +140,20 @@ pub fn run(
     )?;
     let mut cores = 0;
     let mut cases = Vec::new();
-    for case in super::chosen(SpeedErrorCase::ALL.to_vec(), |c| c.name(), only)? {
+    for (of, case) in super::numbered(super::chosen(
+        SpeedErrorCase::ALL.to_vec(),
+        |c| c.name(),
+        only,
+    )?) {
         let meshes = case.meshes(quick);
-        progress(&format!("{}: errors of the meshes", case.name()));
+        progress(&format!("{of}, {}: errors of the meshes", case.name()));
         let errors = meshes::errors(session, case, meshes)?;
         let mut runs = Vec::new();
         for &rtol in tolerances(quick) {
             for mesh in &errors {
                 for (k, variant) in VARIANTS.iter().enumerate() {
                     progress(&format!(
-                        "{}, {} elements per subdomain, rtol {rtol:e}",
+                        "{of}, {}, {} elements per subdomain, rtol {rtol:e}",
                         case.name(),
                         mesh.elements
                     ));

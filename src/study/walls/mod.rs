@@ -92,9 +92,9 @@ pub fn run(
     progress: &mut dyn FnMut(&str),
 ) -> Result<WallsReport> {
     let mut rows = Vec::new();
-    for family in super::chosen(FAMILIES.to_vec(), |f| f.name, only)? {
+    for (of, family) in super::numbered(super::chosen(FAMILIES.to_vec(), |f| f.name, only)?) {
         for jump in JUMPS {
-            progress(&format!("{}, jump {jump:e}", family.name));
+            progress(&format!("{of}, {}, jump {jump:e}", family.name));
             rows.push(walls(session, &family, jump, SCENES[usize::from(quick)])?);
         }
     }

@@ -127,3 +127,22 @@ fn the_bar_counts_decades() {
     assert_eq!(fraction(f64::NAN, 1e-8), 0.0);
     assert_eq!((fraction(0.5, 2.0), fraction(3.0, 2.0)), (1.0, 0.0));
 }
+
+#[test]
+fn load_steps_say_how_many_are_left_and_for_how_long() {
+    let (terminal, clock, mut p) = progress();
+    // Resumed at the third of five.
+    p.load_step(2, 5);
+    assert_eq!(terminal.shown(), "load step 3 of 5");
+    p.step(1, 7);
+    let shown = terminal.shown();
+    assert!(
+        shown.starts_with("load step 3 of 5, contact step 1, 7 active  [>"),
+        "{shown}"
+    );
+    clock.set(20_000);
+    p.load_step(3, 5);
+    assert_eq!(terminal.shown(), "load step 4 of 5, about 40 s left");
+    p.finish();
+    assert_eq!(terminal.shown(), "");
+}

@@ -117,6 +117,21 @@ impl Expr {
         free(&self.root).then(|| self.eval(&Variables::default()))
     }
 
+    /// Whether the expression contains x, y or z.
+    #[cfg(feature = "cli")]
+    pub(crate) fn varies_in_space(&self) -> bool {
+        fn varies(ast: &Ast) -> bool {
+            match ast {
+                Ast::Number(_) => false,
+                Ast::Variable(k) => *k < 3,
+                Ast::Unary(_, a) => varies(a),
+                Ast::Binary(_, a, b) => varies(a) || varies(b),
+                Ast::If(c, a, b) => varies(c) || varies(a) || varies(b),
+            }
+        }
+        varies(&self.root)
+    }
+
     /// The value at `at`.
     pub fn eval(&self, at: &Variables) -> f64 {
         if let Ast::Number(value) = self.root {

@@ -6,6 +6,10 @@ use serde_json::{json, Value};
 
 fn report() -> SolveReport {
     SolveReport {
+        schema: SolveReport::SCHEMA.into(),
+        version: "1.0".into(),
+        converged: true,
+        options: BTreeMap::from([("-fetifeti_ksp_rtol".into(), "1e-6".into())]),
         scene: "two bodies".into(),
         dimension: 2,
         physics: "scalar".into(),

@@ -1,0 +1,104 @@
+//! What reports say of themselves, and what does not get between their lines.
+
+use serde_json::Value;
+
+use crate::support::mpi::Scratch;
+use crate::support::program::{fetifeti, run_fetifeti};
+
+const SCENE: &str = "examples/scenes/model_contact.toml";
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
+}
+
+#[test]
+fn a_misspelt_option_is_a_warning_on_standard_error() {
+    let misspelt = ["solve", SCENE, "-fetifeti_ksp_rtoll", "1e-9", "--json", "-"];
+    for ranks in [1, 2] {
+        let out = match ranks {
+            1 => fetifeti(&misspelt),
+            n => run_fetifeti(n, &misspelt),
+        };
+        assert_eq!(out.code, 0, "{}", out.all());
+        let report = json(&out.stdout);
+        // That of the scene.
+        assert_eq!(report["rtol"], 1e-10, "{report}");
+        let warned = "Warning: nobody has asked for -fetifeti_ksp_rtoll: misspelt";
+        assert_eq!(out.stderr.matches(warned).count(), 1, "{}", out.all());
+    }
+    // Options of other programs in PETSC_OPTIONS are none of ours; PETSc's own list takes the place of the warning.
+    for (option, expected) in [("-other_rtol", ""), ("-fetifeti_rtol", "-fetifeti_rtol")] {
+        let out = fetifeti(&["solve", SCENE, "--quiet", option, "1e-9"]);
+        assert_eq!(out.code, 0, "{}", out.all());
+        assert_eq!(
+            out.stderr.contains("Warning"),
+            !expected.is_empty(),
+            "{}",
+            out.all()
+        );
+        assert!(out.stderr.contains(expected), "{}", out.all());
+    }
+    let out = fetifeti(&["solve", SCENE, "-options_left", "-fetifeti_rtol", "1e-9"]);
+    assert_eq!((out.code, out.stderr.as_str()), (0, ""), "{}", out.all());
+    assert!(out.stdout.contains("-fetifeti_rtol"), "{}", out.all());
+}
+
+#[test]
+fn monitors_do_not_mix_into_a_report_on_standard_output() {
+    let monitored = [
+        "-fetifeti_ksp_monitor",
+        "-fetifeti_ksp_view",
+        "-options_left",
+    ];
+    for verb in ["solve", "plan"] {
+        let out = fetifeti(&[&[verb, SCENE, "--json", "-"], &monitored[..]].concat());
+        assert_eq!(out.code, 0, "{}", out.all());
+        json(&out.stdout);
+        let monitors = out.stderr.matches("KSP Residual norm").count();
+        assert_eq!(monitors > 0, verb == "solve", "{}", out.all());
+    }
+    let out = fetifeti(&[&["solve", SCENE], &monitored[..1]].concat());
+    assert!(out.stdout.contains("KSP Residual norm"), "{}", out.all());
+}
+
+#[test]
+fn a_report_names_schema_version_options_and_convergence() {
+    let options = ["-fetifeti_ksp_rtol", "1e-9", "-fetifeti_check"];
+    let out = fetifeti(&[&["solve", SCENE, "--json", "-"], &options[..]].concat());
+    let report = json(&out.stdout);
+    assert_eq!(report["schema"], "fetifeti.solve/1", "{report}");
+    assert_eq!(report["version"], env!("CARGO_PKG_VERSION"), "{report}");
+    assert_eq!(report["converged"], true, "{report}");
+    let set = serde_json::json!({ "-fetifeti_ksp_rtol": "1e-9", "-fetifeti_check": "" });
+    assert_eq!(report["options"], set, "{report}");
+    let out = fetifeti(&[
+        "solve",
+        SCENE,
+        "--json",
+        "-",
+        "-fetifeti_contact_max_it",
+        "1",
+    ]);
+    assert_eq!(out.code, 1, "{}", out.all());
+    assert_eq!(json(&out.stdout)["converged"], false, "{}", out.stdout);
+}
+
+#[test]
+fn a_plan_is_a_report_too() {
+    let scratch = Scratch::new("plan-json");
+    let file = scratch.path("plan.json");
+    let out = fetifeti(&["plan", SCENE, "--json", &file]);
+    assert_eq!((out.code, out.stderr.as_str()), (0, ""), "{}", out.all());
+    assert!(out.stdout.contains("for a solve"), "{}", out.stdout);
+    let plan = json(&std::fs::read_to_string(&file).expect("the plan"));
+    assert_eq!(plan["schema"], "fetifeti.plan/1", "{plan}");
+    assert_eq!(plan["bodies"].as_array().map(Vec::len), Some(2), "{plan}");
+    assert_eq!(plan["inequalities"], 33, "{plan}");
+    assert_eq!(plan["bodies"][1]["floating"], 1, "{plan}");
+    let memory = &plan["memory"];
+    assert!(memory["solve_mb"].as_f64() > Some(50.0), "{plan}");
+    assert!(
+        memory["available_mb"].as_f64() > memory["solve_mb"].as_f64(),
+        "{plan}"
+    );
+}

@@ -1,0 +1,58 @@
+//! Unit tests of `src/scene/need.rs`.
+
+use super::Need;
+use crate::scene::read::read;
+
+fn of(text: &str) -> Need {
+    let spec = read("scene.toml", text).expect("a scene");
+    Need::of(spec.bodies.iter(), &spec.form)
+}
+
+fn grid(bodies: usize, subdomains: usize, elements: usize, more: &str) -> Need {
+    of(&format!(
+        "{more}\n[grid]\nbodies = {bodies}\nsubdomains = {subdomains}\nelements_per_subdomain = {elements}\n"
+    ))
+}
+
+/// Largest resident memory of `fetifeti plan` and `fetifeti solve` in MB, measured (docs/options.md, "Memory").
+#[test]
+fn the_need_is_what_was_measured_within_a_factor_of_two() {
+    let solid = "dimension = 3\nphysics = \"elasticity\"";
+    for (need, plan, solve) in [
+        (grid(1, 447, 2, ""), 728.0, 1155.0),
+        (grid(1, 1, 1000, ""), 318.0, 928.0),
+        (grid(30, 4, 8, ""), 446.0, 527.0),
+        (grid(1, 1, 600, "physics = \"elasticity\""), 426.0, 1127.0),
+        (grid(1, 1, 40, "dimension = 3"), 88.0, 438.0),
+        (grid(1, 1, 24, solid), 106.0, 475.0),
+        (grid(1, 4, 8, solid), 190.0, 341.0),
+        (grid(1, 2, 8, &format!("{solid}\norder = 2")), 405.0, 1134.0),
+    ] {
+        let factors = [need.assembled(1) / plan / 1e6, need.solved(1) / solve / 1e6];
+        assert!(
+            factors.iter().all(|f| (0.5..2.0).contains(f)),
+            "{factors:?} of {plan} and {solve} MB: {need:?}"
+        );
+    }
+}
+
+#[test]
+fn ranks_share_the_need_but_for_what_all_of_them_know() {
+    let need = grid(8, 4, 8, "");
+    let [one, four] = [1, 4].map(|ranks| need.solved(ranks));
+    assert!(four < one && 4.0 * four > one, "{one} {four}");
+}
+
+#[test]
+fn coefficients_that_vary_in_space_leave_nothing_to_share() {
+    let with = |rho: &str| {
+        of(&format!(
+            "[grid]\nbodies = 1\nsubdomains = 8\nelements_per_subdomain = 32\nrho = {rho}\n"
+        ))
+        .solved(1)
+    };
+    let [constant, by_body, by_point] = ["3", "\"1 + bi\"", "\"1 + x\""].map(with);
+    assert_eq!(constant, by_body);
+    // 64 factors instead of 9.
+    assert!(by_point > constant + 1e7, "{by_point} {constant}");
+}
