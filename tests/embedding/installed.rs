@@ -64,6 +64,22 @@ pub fn files(below: &Path) -> Vec<PathBuf> {
     all
 }
 
+/// Asks that a file names neither the source tree nor the directory of the crates.
+pub fn names_no_tree(file: &Path) {
+    let tree = env!("CARGO_MANIFEST_DIR").as_bytes();
+    let home = std::env::var("CARGO_HOME").or_else(|_| Ok(std::env::var("HOME")? + "/.cargo"));
+    let crates = home.map(|home: String| home + "/registry/");
+    let crates = crates.unwrap_or_else(|_: std::env::VarError| "/registry/src/".into());
+    let bytes = std::fs::read(file).expect("a file");
+    let mut places = bytes.windows(crates.len());
+    let bad = |w: &[u8]| w == crates.as_bytes();
+    assert!(!places.any(bad), "{}: {crates}", file.display());
+    // Panics inside of code that a dependency generates name its file below target/ in unoptimised builds.
+    let mut places = bytes.windows(tree.len() + 8);
+    let bad = |w: &[u8]| w.starts_with(tree) && !w.ends_with(b"/target/");
+    assert!(!places.any(bad), "{}", file.display());
+}
+
 #[test]
 fn nothing_lies_beside_the_prefix_or_knows_the_source_tree() {
     let scratch = Scratch::new("install-destdir");
@@ -78,19 +94,8 @@ fn nothing_lies_beside_the_prefix_or_knows_the_source_tree() {
     for file in listed.lines() {
         assert!(prefix.join(file).exists(), "{file}");
     }
-    let tree = env!("CARGO_MANIFEST_DIR").as_bytes();
-    let home = std::env::var("CARGO_HOME").or_else(|_| Ok(std::env::var("HOME")? + "/.cargo"));
-    let crates = home.map(|home: String| home + "/registry/");
-    let crates = crates.unwrap_or_else(|_: std::env::VarError| "/registry/src/".into());
     for file in &all {
-        let bytes = std::fs::read(file).expect("a file");
-        let mut places = bytes.windows(crates.len());
-        let bad = |w: &[u8]| w == crates.as_bytes();
-        assert!(!places.any(bad), "{}: {crates}", file.display());
-        // Panics inside of code that a dependency generates name its file below target/ in unoptimised builds.
-        let mut places = bytes.windows(tree.len() + 8);
-        let bad = |w: &[u8]| w.starts_with(tree) && !w.ends_with(b"/target/");
-        assert!(!places.any(bad), "{}", file.display());
+        names_no_tree(file);
     }
     let library = prefix.join("lib/libfetifeti.so");
     let dynamic = run(

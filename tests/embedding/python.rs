@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use crate::installed::names_no_tree;
 use crate::support::mpi::{command, mpirun, Output, Scratch};
 use crate::support::plugin::library;
 
@@ -77,6 +78,28 @@ fn install(sources: &str, to: &str) -> Command {
     pip
 }
 
+/// The types in its sources agree, where mypy is installed.
+#[test]
+fn the_types_of_the_package_agree() {
+    let mut mypy = command("python3");
+    mypy.args(["-m", "mypy", "--python-executable", "/usr/bin/python3"])
+        .args([
+            "--cache-dir",
+            "/dev/null",
+            "--config-file",
+            "../pyproject.toml",
+        ])
+        .args(["-p", "fetifeti"])
+        .current_dir(format!("{ROOT}/wrappers/python/src"));
+    let out = mypy.output().expect("python3 starts");
+    let said = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
+    if said.contains("No module named mypy") {
+        println!("skipped: mypy is not installed");
+        return;
+    }
+    assert!(out.status.success(), "{said}");
+}
+
 #[test]
 fn the_package_is_installed_and_passes_its_tests() {
     let scratch = Scratch::new("python");
@@ -135,6 +158,7 @@ fn pip_builds_the_library_where_there_is_none() {
     let called = std::fs::read_to_string(format!("{bin}/called")).expect("cargo was called");
     let expected = format!("{tree}\nbuild --release --lib --no-default-features\n");
     assert_eq!(called, expected);
+    names_no_tree(Path::new(&format!("{place}/fetifeti/libfetifeti.so")));
     let mut python = command("/usr/bin/python3");
     python
         .arg("-c")

@@ -38,6 +38,18 @@ def built(file: str) -> Path:
     return Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target") / "release" / file
 
 
+def without_paths(file: Path) -> None:
+    """Removes the directories of the crates and of the build, which panics name, as scripts/install.sh does.
+
+    Each becomes "./////" of the same length, so that nothing moves."""
+    cargo = Path(os.environ.get("CARGO_HOME") or Path.home() / ".cargo")
+    text = file.read_bytes()
+    for place in (ROOT / "vendor", cargo / "registry", built(LIBRARY).parents[1]):
+        path = os.fsencode(place.absolute())
+        text = text.replace(path + b"/", b"." + b"/" * len(path))
+    file.write_bytes(text)
+
+
 class Build(build_py):
     """Copies the Python sources, and the library if it is wanted; the program, too, if cargo has made it."""
 
@@ -55,6 +67,7 @@ class Build(build_py):
                 shutil.copy2(built(file), to)
                 if shutil.which("strip"):
                     subprocess.run(["strip", "--strip-unneeded", str(to)], check=True)
+                without_paths(to)
 
 
 class Platform(Distribution):

@@ -144,7 +144,7 @@ def _argument(a: Any) -> Any:
     return a.encode() if isinstance(a, str) else a
 
 
-def ksp_at(address: int) -> PETSc.KSP:
+def ksp_at(address: ctypes.c_void_p) -> PETSc.KSP:
     """The petsc4py object of a KSP in C, which it refers to (petsc4py's C function PyPetscKSP_New)."""
     python, capsule = ctypes.pythonapi, PETSc.__pyx_capi__["PyPetscKSP_New"]
     python.PyCapsule_GetName.restype, python.PyCapsule_GetName.argtypes = _S, [ctypes.py_object]

@@ -132,6 +132,7 @@ class Contact:
         """
 
         def monitor(step: Any, _: Any) -> int:
+            assert callback is not None
             try:
                 callback(ContactStep.from_buffer_copy(step.contents))
             except BaseException as error:

@@ -55,4 +55,4 @@ def inner_ksp(ksp: PETSc.KSP) -> PETSc.KSP:
     """The KSP that iterates on the multipliers, after ``ksp.setUp()``."""
     place = ctypes.c_void_p()
     call("KSPFETIFETIGetInnerKSP", ksp, ctypes.byref(place))
-    return ksp_at(place.value)
+    return ksp_at(place)

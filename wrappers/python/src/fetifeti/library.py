@@ -96,10 +96,11 @@ def _pkg_config(file: str) -> tuple[str, Path | None]:
 
 
 def _path(file: str) -> tuple[str, Path | None]:
-    program = shutil.which(PROGRAM)
-    if file == PROGRAM or program is None:
-        return "PATH" if file == PROGRAM else f"the prefix of '{PROGRAM}' on PATH", program and Path(program)
-    return f"the prefix of '{PROGRAM}' on PATH", Path(program).resolve().parents[1] / "lib" / file
+    found = shutil.which(PROGRAM)
+    program = Path(found) if found else None
+    if file == PROGRAM:
+        return "PATH", program
+    return f"the prefix of '{PROGRAM}' on PATH", program and program.resolve().parents[1] / "lib" / file
 
 
 def _source(file: str) -> tuple[str, Path | None]:

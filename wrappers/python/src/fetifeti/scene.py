@@ -128,11 +128,12 @@ class Result:
         types = {"name": f"U{max(map(len, columns[0]), default=1)}", "active": "?"}
         out = np.zeros(len(rows), [(name, types.get(name, "f8")) for name in head])
         for name, column in zip(head, columns):
-            if name == "active":
-                column = [int(value) != 0 for value in column]
-            elif name != "name":
-                column = [float(value) if value else np.nan for value in column]
-            out[name] = column
+            if name == "name":
+                out[name] = column
+            elif name == "active":
+                out[name] = [int(value) != 0 for value in column]
+            else:
+                out[name] = [float(value) if value else np.nan for value in column]
         return out
 
     @cached_property
@@ -178,14 +179,16 @@ class Scene:
 
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
+        # Where the text of `from_text` lies as long as the scene lives.
+        self._files: tempfile.TemporaryDirectory[str] | None = None
 
     @classmethod
     def from_text(cls, text: str) -> Scene:
         """A scene that was put together here; files that it names need full paths."""
-        scene = cls.__new__(cls)
-        scene._files = tempfile.TemporaryDirectory(prefix="fetifeti-")
-        scene.path = Path(scene._files.name) / "scene.toml"
+        files = tempfile.TemporaryDirectory(prefix="fetifeti-")
+        scene = cls(Path(files.name) / "scene.toml")
         scene.path.write_text(text)
+        scene._files = files
         return scene
 
     def solve(

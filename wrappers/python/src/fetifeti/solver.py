@@ -265,6 +265,7 @@ class Solver(Contact, Surfaces):
             if solution is not None:
                 raise TypeError("the load is an array and the solution is given, expected vectors of PETSc for both")
             load = PETSc.Vec().createWithArray(reals(load, "load"), comm=self.comm)
+        assert isinstance(load, PETSc.Vec)
         if solution is None:
             solution = load.duplicate()
         self._raised = None
@@ -325,7 +326,7 @@ class Solver(Contact, Surfaces):
         """The KSP that iterates on the multipliers, after `setup`; a new set-up makes a new one."""
         place = ctypes.c_void_p()
         call("FetiFetiGetInnerKSP", self._ff, ctypes.byref(place))
-        return ksp_at(place.value)
+        return ksp_at(place)
 
     def _int(self, name: str) -> int:
         place = np.zeros(1, np.int32)
