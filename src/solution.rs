@@ -1,7 +1,7 @@
 //! The result of a solve.
 
 use crate::contact::{State, Step};
-use crate::feti::{Kkt, LinearSolution, Spectrum};
+use crate::feti::{Kkt, LinearSolution, Spectrum, Verdict};
 use crate::status::Status;
 use crate::substructures::SolvedRow;
 
@@ -32,6 +32,8 @@ pub struct Solution {
     pub solve_seconds: f64,
     /// Seconds of the recovery of displacements.
     pub recover_seconds: f64,
+    /// The bound of the error in the energy norm, or why there is none; `None` if nobody asked for it.
+    pub certified: Option<Verdict>,
     /// Steps of the contact loop; empty without inequalities.
     pub steps: Vec<Step>,
     rows: Vec<SolvedRow>,
@@ -53,6 +55,7 @@ impl Solution {
             energy: found.energy,
             solve_seconds: found.solve_seconds,
             recover_seconds: found.recover_seconds,
+            certified: None,
             steps,
             rows,
         }

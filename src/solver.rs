@@ -1,5 +1,7 @@
 //! The main entry: from substructures to a solver that returns solutions and spectra.
 
+mod early;
+
 use std::cell::Ref;
 
 use crate::contact::{self, Step};
@@ -12,6 +14,7 @@ use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::substructures::{InterfaceRow, SolvedRow, Substructures};
 use crate::Result;
+pub use early::{Discretisation, PART};
 
 const CITATION: &str = "@techreport{Lee2010,
   author = {Jungho Lee},
@@ -91,7 +94,7 @@ impl FetiFeti {
     pub fn solve_until(&self, enough: &Judge) -> Result<Solution> {
         let _staged = self.solve_stage.scope()?;
         let found = self.method.solve(Some(enough))?;
-        Ok(self.solution(found, Vec::new()))
+        self.certified(found, Vec::new())
     }
 
     /// Solves as [`FetiFeti::solve`], from a given state of the contact loop and with a call after each of its steps.
@@ -107,10 +110,21 @@ impl FetiFeti {
         let _staged = self.solve_stage.scope()?;
         if self.facts().inequalities == 0 {
             let found = self.method.solve(None)?;
-            return Ok(self.solution(found, Vec::new()));
+            return self.certified(found, Vec::new());
         }
         let (found, steps) = contact::solve(&self.method, &self.settings.contact, start, observe)?;
-        Ok(self.solution(found, steps))
+        self.certified(found, steps)
+    }
+
+    /// The solution, with a bound of its error if that was asked for. Collective.
+    fn certified(&self, found: LinearSolution, steps: Vec<Step>) -> Result<Solution> {
+        let certified = match self.settings.method.certify {
+            true => Some(self.method.certified(&found)?),
+            false => None,
+        };
+        let mut solution = self.solution(found, steps);
+        solution.certified = certified;
+        Ok(solution)
     }
 
     /// The solution, with the rows in the order in which the problem has them.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::contact;
+use super::early::Early;
 use super::events::Events;
 use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
@@ -11,6 +12,7 @@ use crate::checkpoint::{Checkpoints, Resumed};
 use crate::parallel::exchange::total;
 use crate::petsc::Session;
 use crate::report::destination::Destination;
+use crate::report::json::certified::Certified;
 use crate::report::json::contact::{LoadStep, OuterStep};
 use crate::report::paraview::pvd::Pvd;
 use crate::report::progress::Progress;
@@ -24,6 +26,8 @@ pub(super) struct Course {
     pub solution: Solution,
     /// The load step of this solution.
     pub step: usize,
+    /// The bounds of its error, if they were asked for.
+    pub certified: Option<Certified>,
     /// Its potential energy, with that of given values.
     pub energy: f64,
     pub outer: Vec<OuterStep>,
@@ -83,6 +87,7 @@ pub(super) fn follow(
     });
     let mut stepping = many.transpose()?;
     let mut fields: Option<Gathered> = None;
+    let mut early = Early::new(session, scene, solver)?;
     for step in first..n {
         if n > 1 {
             progress.load_step(step, n);
@@ -107,7 +112,7 @@ pub(super) fn follow(
         }
         let load_step = if times.is_some() { step + 1 } else { 0 };
         let mut outer = records.take(load_step);
-        let solved = solver.solve_from(state.as_ref(), &mut |done, state| {
+        let solved = early.solve(solver, scene, step, state.as_ref(), &mut |done, state| {
             outer.push(contact::outer_step(load_step, outer.len() + 1, done));
             progress.step(outer.len(), done.active);
             progress.residual(done.residual, done.tolerance, done.iterations);
@@ -131,8 +136,10 @@ pub(super) fn follow(
         let scene = renewed.scene();
         seconds[0] += solution.solve_seconds;
         seconds[1] += solution.recover_seconds;
+        let certified = early.record(session, scene, &solution, step);
         let mut now = Course {
             step,
+            certified,
             energy: solution.energy + given,
             iterations: if outer.is_empty() {
                 vec![solution.iterations]

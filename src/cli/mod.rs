@@ -5,6 +5,7 @@ mod balance;
 mod coefficient;
 mod contact;
 mod course;
+mod early;
 mod events;
 mod fields;
 mod first_rank;

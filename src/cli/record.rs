@@ -76,6 +76,7 @@ pub(super) fn report(
         },
         adaptive: adaptive(solver)?,
         kkt: json::Kkt::new(&solution.kkt, facts.inequalities > 0),
+        certified: course.certified.clone(),
         energy: course.energy,
         contact,
         error: scene.exact.is_some().then_some(json::ErrorNorms {

@@ -97,7 +97,14 @@ impl Embedded {
         wanted: usize,
         settings: MethodSettings,
     ) -> Result<Embedded> {
-        let primal = settings.clone().with_options(session)?.primal;
+        let asked = settings.clone().with_options(session)?;
+        if asked.stops_early {
+            return Err(Error::input(format!(
+                "option -{}rtol is \"auto\", expected ksp_rtol: matrices have no discretisation error",
+                settings.prefix
+            )));
+        }
+        let primal = asked.primal;
         let (ghosts, halo) = torn.halo(session)?;
         let states = states(session, torn);
         let (mut parts, rows_of_pieces) = session.agree(parts(torn, &states))?;

@@ -40,6 +40,35 @@ pub fn for_each_cell(
     }
 }
 
+/// ∫ (σ* − σ_h) : (ε* − ε_h) and ∫ σ_h : ε_h over all cells. `recovered` gives σ* and ε* at a node of a cell: its
+/// number among the nodes of all cells, one cell after the other.
+pub fn squares(
+    mesh: &SubdomainMesh,
+    nodal: &[f64],
+    recovered: impl Fn(usize) -> NodeStress,
+) -> [f64; 2] {
+    let (mut points, mut u, mut at) = (Vec::new(), Vec::new(), Vec::new());
+    let mut sums = [0.0; 2];
+    let mut first = 0;
+    for (e, (kind, nodes)) in mesh.cells().iter().enumerate() {
+        let each = nodes.iter().map(|&k| k as usize);
+        take(mesh, nodal, each, &mut points, &mut u);
+        at.clear();
+        at.extend((first..first + nodes.len()).map(&recovered));
+        first += nodes.len();
+        let (dim, material, rule) = (mesh.dim, mesh.material(e), mesh.integration(e));
+        let here = match &mesh.elements {
+            Elements::Grid(grid) if mesh.form.element == Element::P1 => {
+                let own = whole(&of_grid(mesh, grid, e, nodal));
+                element::recovered_squares_of(kind, dim, &points, &material, &own, &at)
+            }
+            _ => element::recovered_squares(kind, dim, &points, &material, rule, &u, &at),
+        };
+        (0..2).for_each(|k| sums[k] += here[k]);
+    }
+    sums
+}
+
 /// Strain and stress of every cell: at the centres of the cells of a grid, elsewhere the mean over the nodes.
 pub fn cell_stresses(mesh: &SubdomainMesh, nodal: &[f64]) -> Vec<CellStress> {
     let mut out = Vec::with_capacity(mesh.n_elements());

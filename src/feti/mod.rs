@@ -21,6 +21,7 @@ pub(crate) mod subdomain;
 pub use crate::cholesky::interior::{LocalSolver, Ordering, Solver};
 pub use facts::Facts;
 pub use krylov::certificate::Kkt;
+pub use krylov::certified::{Certified, Uncertified, Verdict};
 pub(crate) use krylov::recovery::LinearSolution;
 pub use krylov::tally::Communication;
 pub(crate) use method::LinearMethod;

@@ -249,6 +249,10 @@ pub struct MethodSettings {
     pub keeps_analyses: bool,
     /// `fetifeti_check`: print the identities of the theory with their defects.
     pub check: bool,
+    /// `fetifeti_certify`: a guaranteed bound of the error in the energy norm.
+    pub certify: bool,
+    /// `fetifeti_rtol auto`: the iteration stops where the discretisation error makes further digits useless.
+    pub stops_early: bool,
     /// `fetifeti_spectrum`: exact extreme eigenvalues of the preconditioned operator.
     pub spectrum: bool,
     /// Relative residual of the dual problem at which the iteration stops, unless `fetifeti_ksp_rtol` sets another one.
@@ -278,6 +282,8 @@ impl Default for MethodSettings {
             coupled: MANY,
             keeps_analyses: false,
             check: false,
+            certify: false,
+            stops_early: false,
             spectrum: false,
             rtol: 1e-6,
             prefix: "fetifeti_".into(),
@@ -342,6 +348,22 @@ impl MethodSettings {
         self.local = self.local.from_options(&o)?;
         let help = "print the operator identities, which must be zero";
         self.check = o.bool("check", self.check, help)?;
+        let help = "a guaranteed bound of the error in the energy norm, and estimates of the discretisation error";
+        self.certify = o.bool("certify", self.certify, help)?;
+        let help = "auto: stop where the discretisation error makes more digits useless; ksp_rtol: at that number";
+        let text = o.string(
+            "rtol",
+            ["ksp_rtol", "auto"][usize::from(self.stops_early)],
+            help,
+        )?;
+        self.stops_early = text == "auto";
+        if !self.stops_early && text != "ksp_rtol" {
+            return Err(Error::input(format!(
+                "option {} is \"{text}\", expected auto, or ksp_rtol for the tolerance that {} says",
+                o.full_name("rtol"),
+                o.full_name("ksp_rtol")
+            )));
+        }
         let help = "exact extreme eigenvalues of the preconditioned operator";
         self.spectrum = o.bool("spectrum", self.spectrum, help)?;
         let krylov = "the Krylov method of the dual problem (any KSP option)";

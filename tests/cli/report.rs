@@ -27,7 +27,10 @@ fn a_misspelt_option_is_a_warning_on_standard_error() {
         assert_eq!(out.stderr.matches(warned).count(), 1, "{}", out.all());
     }
     // Options of other programs in PETSC_OPTIONS are none of ours; PETSc's own list takes the place of the warning.
-    for (option, expected) in [("-other_rtol", ""), ("-fetifeti_rtol", "-fetifeti_rtol")] {
+    for (option, expected) in [
+        ("-other_rtol", ""),
+        ("-fetifeti_tolerance", "-fetifeti_tolerance"),
+    ] {
         let out = fetifeti(&["solve", SCENE, "--quiet", option, "1e-9"]);
         assert_eq!(out.code, 0, "{}", out.all());
         assert_eq!(
@@ -38,9 +41,15 @@ fn a_misspelt_option_is_a_warning_on_standard_error() {
         );
         assert!(out.stderr.contains(expected), "{}", out.all());
     }
-    let out = fetifeti(&["solve", SCENE, "-options_left", "-fetifeti_rtol", "1e-9"]);
+    let out = fetifeti(&[
+        "solve",
+        SCENE,
+        "-options_left",
+        "-fetifeti_tolerance",
+        "1e-9",
+    ]);
     assert_eq!((out.code, out.stderr.as_str()), (0, ""), "{}", out.all());
-    assert!(out.stdout.contains("-fetifeti_rtol"), "{}", out.all());
+    assert!(out.stdout.contains("-fetifeti_tolerance"), "{}", out.all());
 }
 
 #[test]

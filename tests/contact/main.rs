@@ -4,6 +4,7 @@
 mod support;
 
 mod bodies;
+mod certified;
 mod elastic;
 mod jumps;
 mod many;

@@ -5,6 +5,7 @@ mod support;
 
 mod answers;
 mod bits;
+mod certified;
 mod communication;
 mod constraints;
 mod copies;

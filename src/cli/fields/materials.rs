@@ -23,11 +23,16 @@ pub(super) struct OfBody(Vec<Key>);
 impl Materials {
     /// Those of some subdomains, or of all ranks' subdomains where every rank has its own. Collective.
     pub fn new(session: &Session, scene: &Scene, parts: &[SteppedMesh], place: Place) -> Materials {
-        let mut all = Materials(BTreeMap::new());
         // Scalar fields have no stress.
-        if !scene.form.is_elastic() {
-            return all;
+        match scene.form.is_elastic() {
+            true => Materials::told_apart(session, parts, place),
+            false => Materials(BTreeMap::new()),
         }
+    }
+
+    /// The same, in scalar problems, too. Collective.
+    pub fn told_apart(session: &Session, parts: &[SteppedMesh], place: Place) -> Materials {
+        let mut all = Materials(BTreeMap::new());
         for mesh in parts.iter().map(SteppedMesh::mesh) {
             let mut last = None;
             for key in (0..mesh.n_elements()).map(|e| key(mesh, e)) {

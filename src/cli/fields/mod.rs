@@ -4,6 +4,7 @@
 //! body of a few materials has a point per node and material. In a body of more the coefficient is a field of its own,
 //! and stress is averaged over all cells around a node.
 
+pub(super) mod discretisation;
 mod materials;
 mod shared;
 mod vtu;

@@ -144,7 +144,7 @@ fn mean<const D: usize, const N: usize>(
     add_gradient(&gradient, nodal, &mut out.at[0]);
 }
 
-fn add_gradient<const D: usize, const N: usize>(
+pub(super) fn add_gradient<const D: usize, const N: usize>(
     slopes: &[[f64; N]; D],
     nodal: &[f64],
     gradient: &mut [[f64; 3]; 3],
@@ -159,7 +159,7 @@ fn add_gradient<const D: usize, const N: usize>(
 }
 
 /// Strain and stress of a gradient.
-fn law(
+pub(super) fn law(
     dim: usize,
     material: &Material,
     moduli: Moduli,

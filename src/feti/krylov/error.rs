@@ -52,7 +52,7 @@ impl LinearMethod {
         } else {
             let lambda = dual.multipliers()?;
             lambda.array_mut()?.copy_from_slice(&solution.lambda);
-            let forces = remainder(problem, dual, solution, &lambda)?.0;
+            let forces = remainder(problem, dual, &solution.u, &lambda)?.0;
             let f: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
             let loads = Loads::of(dual, &f, None);
             inside = work_inside(dual, &loads, &f);
@@ -128,7 +128,7 @@ fn correction(dual: &Dual, loads: Loads) -> Result<Vec<(Vec<f64>, Vec<f64>)>> {
 }
 
 /// f_Iᵀ K_II⁻¹ f_I over the subdomains of this rank.
-fn work_inside(dual: &Dual, loads: &Loads, f: &[&[f64]]) -> f64 {
+pub(super) fn work_inside(dual: &Dual, loads: &Loads, f: &[&[f64]]) -> f64 {
     let locals = &dual.stiffness.locals;
     let works = dual.stiffness.team.map(locals.len(), |j| {
         let x = loads.inside(locals, j);

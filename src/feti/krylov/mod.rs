@@ -1,8 +1,10 @@
 //! The Krylov method: project, iterate, look at the spectrum, deflate, refine, certify, recover. [`solve`] is the
 //! module to read first.
 
+mod admissible;
 mod bound;
 pub mod certificate;
+pub mod certified;
 pub(super) mod check;
 mod eigenvalues;
 mod error;

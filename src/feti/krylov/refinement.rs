@@ -87,10 +87,20 @@ impl LinearMethod {
 
     /// One step, which reduces the residual of the correction problem by the factor `reduction`. Collective.
     pub(super) fn refined(&self, solution: &LinearSolution, reduction: f64) -> Result<Step> {
+        let next = self.corrected(solution, reduction)?;
+        let better = distance(&next.solution.kkt) < 0.5 * distance(&solution.kkt);
+        Ok(Step {
+            better: better.then_some(next.solution),
+            correction: next.converged.then_some(next.size),
+        })
+    }
+
+    /// The solution with a correction whose residual is reduced by the factor `reduction`. Collective.
+    pub(super) fn corrected(&self, solution: &LinearSolution, reduction: f64) -> Result<Corrected> {
         let (problem, dual) = (&self.problem, &*self.dual());
         let lambda = dual.multipliers()?;
         lambda.array_mut()?.copy_from_slice(&solution.lambda);
-        let (forces, jumps) = remainder(problem, dual, solution, &lambda)?;
+        let (forces, jumps) = remainder(problem, dual, &solution.u, &lambda)?;
         let forces: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
         let loads = Loads::of(dual, &forces, Some(jumps));
         let mut at = Iterate::new(dual, loads)?;
@@ -107,15 +117,7 @@ impl LinearMethod {
         }
         lambda.axpy(1.0, &at.lambda)?;
         let certificate = Certificate::new(problem, dual, &u, &lambda, self.length.get())?;
-        let better = distance(&certificate.kkt) < 0.5 * distance(&solution.kkt);
-        let correction = run.status.converged().then_some(size);
-        if !better {
-            return Ok(Step {
-                better: None,
-                correction,
-            });
-        }
-        let better = Some(LinearSolution {
+        let solution = LinearSolution {
             u,
             lambda: lambda.to_vec()?,
             gaps: certificate.gaps,
@@ -124,12 +126,16 @@ impl LinearMethod {
             left: certificate.left,
             iterations: solution.iterations + run.iterations,
             ..solution.clone()
-        });
-        Ok(Step { better, correction })
+        };
+        Ok(Corrected {
+            solution,
+            size,
+            converged: run.status.converged(),
+        })
     }
 
     /// ‖u‖_K. Collective.
-    fn energy_norm(&self, u: &[Vec<f64>]) -> f64 {
+    pub(super) fn energy_norm(&self, u: &[Vec<f64>]) -> f64 {
         let dual = self.dual();
         let local = &self.problem.local;
         let energies = dual.stiffness.team.map(local.len(), |j| {
@@ -139,6 +145,16 @@ impl LinearMethod {
         });
         total(dual.comm(), energies.iter().sum()).max(0.0).sqrt()
     }
+}
+
+/// A solution with a correction.
+pub(super) struct Corrected {
+    /// The corrected solution, whether it is better or not.
+    pub solution: LinearSolution,
+    /// ‖du‖_K.
+    pub size: f64,
+    /// Whether the correction problem was solved.
+    pub converged: bool,
 }
 
 /// The result of one step.
@@ -167,7 +183,7 @@ fn distance(kkt: &Kkt) -> f64 {
 pub(super) fn remainder(
     problem: &Substructures,
     dual: &Dual,
-    solution: &LinearSolution,
+    u: &[Vec<f64>],
     lambda: &PetscVec,
 ) -> Result<(Vec<Vec<f64>>, Vec<f64>)> {
     let stiffness = &dual.stiffness;
@@ -182,9 +198,9 @@ pub(super) fn remainder(
         for (&i, v) in interface.iter().zip(&w.v) {
             f[i as usize] -= v;
         }
-        forces.push(less_product(sub, &solution.u[j], f));
+        forces.push(less_product(sub, &u[j], f));
         for (y, &i) in w.y.iter_mut().zip(interface) {
-            *y = solution.u[j][i as usize];
+            *y = u[j][i as usize];
         }
     }
     let rows = dual.multipliers()?;

@@ -4,6 +4,7 @@
 
 pub mod adaptive;
 mod bench;
+pub mod certified;
 mod compare;
 pub mod contact;
 mod number;

@@ -1,6 +1,7 @@
 //! The record of `solve`.
 
 use super::adaptive::Adaptive;
+use super::certified::Certified;
 use super::contact::ContactReport;
 use super::number;
 use super::probes::{NodePrint, ProbeValue};
@@ -63,6 +64,9 @@ pub struct SolveReport {
     pub adaptive: Option<Adaptive>,
     /// Residuals of the Karush-Kuhn-Tucker conditions.
     pub kkt: Kkt,
+    /// Guaranteed bounds of the error, with `-fetifeti_certify` or `-fetifeti_rtol auto`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certified: Option<Certified>,
     /// The value of the Lagrangian ½ uᵀKu − fᵀu + λᵀ(Bu − c), given values included: at the solution the potential
     /// energy.
     #[serde(with = "number")]

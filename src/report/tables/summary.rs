@@ -102,6 +102,12 @@ pub fn solve(r: &SolveReport) -> String {
         contact_summary::certificate(&r.kkt),
     ));
     lines.push(("energy", format!("{:.12e}", r.energy)));
+    if let Some(certified) = &r.certified {
+        lines.push(("certified error", certified.text()));
+        if let Some(discretisation) = &certified.discretisation {
+            lines.push(("discretisation error", discretisation.text()));
+        }
+    }
     if let Some(e) = r.error {
         lines.push((
             "error",

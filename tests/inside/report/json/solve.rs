@@ -41,6 +41,7 @@ fn report() -> SolveReport {
             min_multiplier: None,
             error: None,
         },
+        certified: None,
         energy: f64::INFINITY,
         contact: None,
         error: None,

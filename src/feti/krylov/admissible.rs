@@ -1,0 +1,216 @@
+//! Displacements that satisfy all rows and multipliers that push everywhere, near those of a solution.
+
+use super::loads::Loads;
+use crate::cholesky::lanes::LANES;
+use crate::feti::jump::operator::Jump;
+use crate::feti::method::LinearMethod;
+use crate::feti::subdomain::scaled::Scaled;
+use crate::linalg::dense::Dense;
+use crate::linalg::nnls::nnls;
+use crate::parallel::exchange::{any, max_all};
+use crate::Result;
+
+/// Rounds in which rows are closed, and in which multipliers that pull are taken away.
+const ROUNDS: usize = 12;
+
+/// Jumps below this part of the largest displacement or gap are rounding.
+const CLOSED: f64 = 1e-12;
+
+/// Gaps of dependent rows that contradict each other by less than this part of it do so by rounding.
+const AGREES: f64 = 1e-10;
+
+/// Forces of dependent rows below this part of the largest multiplier are rounding.
+const SAME: f64 = 1e-12;
+
+/// Displacements that satisfy all rows.
+pub(super) struct Admissible {
+    /// By local dof of each local subdomain.
+    pub u: Vec<Vec<f64>>,
+    /// c − B u on the owned rows: 0 where they are closed, positive where inequalities are open.
+    slack: Vec<f64>,
+}
+
+impl Admissible {
+    /// This rank's part of λᵀ (c − B u).
+    pub fn work(&self, lambda: &[f64]) -> f64 {
+        lambda.iter().zip(&self.slack).map(|(l, s)| l * s).sum()
+    }
+}
+
+/// u ← u − H B_Dᵀ (B u − c) on the rows that hold, and on those that are violated, until all are satisfied; H continues
+/// into the interiors with least energy. `None` if there is no end of it. Collective.
+pub(super) fn admissible(method: &LinearMethod, u: &[Vec<f64>]) -> Result<Option<Admissible>> {
+    let given = method.dual().stiffness.jump.active.clone();
+    let mut held = given.clone();
+    let mut out = u.to_vec();
+    let mut found = None;
+    for round in 0..=ROUNDS {
+        let (gaps, length) = all_gaps(method, &out)?;
+        let (more, far) = {
+            let dual = method.dual();
+            let jump = &dual.stiffness.jump;
+            let mut more = false;
+            let mut far = 0.0f64;
+            for (r, &gap) in gaps.iter().enumerate() {
+                if held[r] {
+                    let slack = jump.held[r] - jump.gap[r];
+                    let slack = if slack.abs() < AGREES * length {
+                        slack
+                    } else {
+                        0.0
+                    };
+                    far = far.max((gap - slack).abs());
+                } else if jump.inequality[r] && gap > CLOSED * length {
+                    held[r] = true;
+                    more = true;
+                    far = far.max(gap);
+                }
+            }
+            let mut largest = [far, f64::from(u8::from(more))];
+            max_all(dual.comm(), &mut largest);
+            (largest[1] > 0.0, largest[0])
+        };
+        if !more && far <= CLOSED * length {
+            let slack = gaps.iter().zip(&held);
+            let slack = slack.map(|(gap, held)| if *held { 0.0 } else { (-gap).max(0.0) });
+            found = Some(slack.collect());
+            break;
+        }
+        if round == ROUNDS {
+            break;
+        }
+        if more {
+            method.set_active(&held)?;
+        }
+        close(method, &gaps, &mut out)?;
+    }
+    method.set_active(&given)?;
+    Ok(found.map(|slack| Admissible { u: out, slack }))
+}
+
+/// B u − c on the owned rows, and the scale of its terms. Collective.
+fn all_gaps(method: &LinearMethod, u: &[Vec<f64>]) -> Result<(Vec<f64>, f64)> {
+    let dual = method.dual();
+    let stiffness = &dual.stiffness;
+    let jump = &stiffness.jump;
+    let mut work = stiffness.work();
+    for ((w, local), u) in work.iter_mut().zip(&stiffness.locals).zip(u) {
+        for (y, &i) in w.y.iter_mut().zip(&local.gamma().interface) {
+            *y = u[i as usize];
+        }
+    }
+    let rows = dual.multipliers()?;
+    stiffness.jump_of_all(&work, &rows)?;
+    let mut gaps = rows.to_vec()?;
+    gaps.iter_mut().zip(&jump.gap).for_each(|(b, c)| *b -= c);
+    let size = |list: &mut dyn Iterator<Item = &f64>| list.fold(0.0f64, |a, v| a.max(v.abs()));
+    let candidates = (0..jump.n_owned).filter(|&r| jump.is_candidate(r));
+    let mut largest = [
+        size(&mut u.iter().flatten()),
+        size(&mut candidates.map(|r| &jump.gap[r])),
+    ];
+    max_all(dual.comm(), &mut largest);
+    Ok((gaps, largest[0].max(largest[1])))
+}
+
+/// u ← u − H B_Dᵀ gaps on the rows that hold now. Collective.
+fn close(method: &LinearMethod, gaps: &[f64], u: &mut [Vec<f64>]) -> Result<()> {
+    let dual = method.dual();
+    let stiffness = &dual.stiffness;
+    let jump = &stiffness.jump;
+    let rows = dual.multipliers()?;
+    {
+        let mut rows = rows.array_mut()?;
+        let inside = jump.rows_between_bodies().start;
+        for (r, row) in rows.iter_mut().enumerate() {
+            if r < inside || jump.active[r] {
+                *row = gaps[r] - (jump.held[r] - jump.gap[r]);
+            }
+        }
+    }
+    let mut ghost = stiffness.scaled_ghosts();
+    stiffness.fetch_scaled(&rows, &mut ghost)?;
+    let columns = &jump.columns;
+    let mut work = stiffness.work();
+    stiffness.team.for_each(&mut work, |j, w| {
+        columns[j].bd_transpose(&ghost, &mut w.y); /*         v ← B_Dᵀ (B u − c)        */
+    });
+    let none: Vec<Vec<f64>> = u.iter().map(|u| vec![0.0; u.len()]).collect();
+    let none: Vec<&[f64]> = none.iter().map(Vec::as_slice).collect();
+    let still = Loads::of(&dual, &none, None).interiors;
+    let batches = stiffness.batches(LANES);
+    let moved = stiffness.by_batch(&batches, |locals, members| {
+        let part = |&j: &usize| (&still[j][..], &work[j].y[..]);
+        let parts: Vec<_> = members.iter().map(part).collect();
+        Scaled::recover_many(locals, &parts)
+    });
+    for (u, v) in u.iter_mut().flatten().zip(moved.iter().flatten()) {
+        *u -= v; /*                                           u ← u − H v               */
+    }
+    Ok(())
+}
+
+/// Multipliers near `lambda` that are not negative on inequalities and balance the loads of floating bodies. `None` if
+/// there is no end of the search. Collective.
+pub(super) fn feasible(method: &LinearMethod, lambda: &[f64]) -> Result<Option<Vec<f64>>> {
+    let given = method.dual().stiffness.jump.active.clone();
+    let mut held = given.clone();
+    let mut out = lambda.to_vec();
+    let mut found = false;
+    let mut load = None;
+    for _ in 0..ROUNDS {
+        let pulls = {
+            let dual = method.dual();
+            let jump = &dual.stiffness.jump;
+            share(jump, &held, &mut out);
+            let mut pulls = false;
+            for r in jump.rows_between_bodies().filter(|&r| jump.inequality[r]) {
+                if out[r] < 0.0 {
+                    (out[r], held[r], pulls) = (0.0, false, true);
+                }
+            }
+            any(dual.comm(), pulls)
+        };
+        if !pulls {
+            found = true;
+            break;
+        }
+        method.set_active(&held)?;
+        let dual = method.dual();
+        let load = load.get_or_insert_with(|| Loads::new(&method.problem, &dual).kernel);
+        let rows = dual.multipliers()?;
+        rows.array_mut()?.copy_from_slice(&out);
+        dual.natural.balance(dual.comm(), load, &rows)?;
+        out.copy_from_slice(&rows.array()?);
+    }
+    method.set_active(&given)?;
+    Ok(found.then_some(out))
+}
+
+/// Gives dependent rows, some of which pull, other multipliers with the same forces, if there are some that push.
+fn share(jump: &Jump, held: &[bool], lambda: &mut [f64]) {
+    for block in &jump.blocks {
+        let start = block.rows.start;
+        let on = &held[block.rows.clone()];
+        let pulls = |r: usize| jump.inequality[start + r] && lambda[start + r] < 0.0;
+        if !(0..on.len()).any(|r| on[r] && pulls(r)) {
+            continue;
+        }
+        let Some((rows, part)) = block.dependent(on) else {
+            continue;
+        };
+        let at: Vec<usize> = (0..rows.len()).filter(|&i| on[rows[i]]).collect();
+        let b = Dense::from_fn(part.cols, at.len(), |j, i| part.get(at[i], j));
+        let mut forces = vec![0.0; part.cols];
+        let own: Vec<f64> = at.iter().map(|&i| lambda[start + rows[i]]).collect();
+        b.add_mul(&own, &mut forces);
+        let free = at.iter().map(|&i| !jump.inequality[start + rows[i]]);
+        let (others, rest) = nnls(&b, &forces, &free.collect::<Vec<_>>());
+        let largest = own.iter().fold(0.0f64, |a, l| a.max(l.abs()));
+        if rest.iter().all(|v| v.abs() <= SAME * largest) {
+            for (&i, value) in at.iter().zip(others) {
+                lambda[start + rows[i]] = value;
+            }
+        }
+    }
+}
