@@ -9,6 +9,7 @@ mod early;
 mod events;
 mod fields;
 mod first_rank;
+mod inputs;
 mod maps;
 mod pages;
 mod parse;

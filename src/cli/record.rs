@@ -7,7 +7,7 @@ use super::{balance, contact, physics};
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::parallel::exchange::sum_all;
-use crate::petsc::{max_memory, Options, Session};
+use crate::petsc::{self, max_memory, Options, Session};
 use crate::report::json::adaptive::{Adaptive, Deflation};
 use crate::report::json::contact::ContactReport;
 use crate::report::json::{self, Operators, SolveReport};
@@ -45,9 +45,12 @@ pub(super) fn report(
     Ok(SolveReport {
         schema: SolveReport::SCHEMA.into(),
         version: env!("CARGO_PKG_VERSION").into(),
+        petsc: petsc::version()?,
         converged: solution.converged(),
         options: options(session)?,
         scene: scene.title.clone(),
+        command: std::env::args().collect(),
+        inputs: Vec::new(),
         dimension: scene.dim(),
         physics: if scene.form.is_elastic() {
             "elasticity"

@@ -11,7 +11,7 @@ use super::fields::{Gathered, Place};
 use super::first_rank::on_first_rank;
 use super::record::{checks, report};
 use super::values::Values;
-use super::{maps, picture};
+use super::{inputs, maps, picture};
 use crate::checkpoint::Checkpoints;
 use crate::feti::MethodSettings;
 use crate::mesh::deck;
@@ -152,6 +152,9 @@ fn solve(
         report.check = Some(checks(&solver, exact)?);
     }
     report.seconds.assemble = assemble;
+    if session.rank() == 0 {
+        report.inputs = inputs::of(&args.scene);
+    }
     let asked = deck.as_ref().and_then(|deck| deck.deck.asks(deck.step));
     let mut printed = Vec::new();
     if !scene.probes.is_empty() || asked.is_some() {

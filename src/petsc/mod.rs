@@ -48,6 +48,8 @@ pub use options::{Named, Options};
 pub use partition::partition;
 pub use pc::Pc;
 pub use scatter::Scatter;
+#[cfg(feature = "cli")]
+pub(crate) use session::version;
 pub use session::{max_memory, print_on_stderr, Comm, Session};
 pub use shell::{ShellMat, ShellOp, ShellPc};
 pub use spectrum::extreme_eigenvalues;

@@ -15,6 +15,7 @@ use std::mem::{ManuallyDrop, MaybeUninit};
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::ptr::{null, null_mut};
 use std::rc::Rc;
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// The ranks that share a new object.
@@ -95,6 +96,13 @@ impl Session {
         let argv: &'static mut *mut *mut c_char =
             Box::leak(Box::new(Box::leak(argv.into_boxed_slice()).as_mut_ptr()));
         let help = c_string(help).into_raw();
+        // What a static variable names is no leak for those who look for leaks.
+        static KEPT: OnceLock<[usize; 3]> = OnceLock::new();
+        let _ = KEPT.set([
+            std::ptr::from_mut(argc) as usize,
+            std::ptr::from_mut(argv) as usize,
+            help as usize,
+        ]);
         if let Err(error) = petsc!(PetscInitialize(argc, argv, null(), help)) {
             let why = match error {
                 Error::Petsc { trace, .. } if !trace.is_empty() => trace[0].clone(),
@@ -274,7 +282,8 @@ impl Drop for Inner {
                 if self.began_slepc.get() {
                     sys::SlepcFinalize();
                 }
-                sys::PetscPopErrorHandler();
+                // The error handler stays: it was allocated before PetscInitialize, when -malloc_debug was not known
+                // yet, and PETSc would take its place in memory for a corrupted one.
                 sys::PetscFinalize();
             }
         }
@@ -330,6 +339,19 @@ fn duplicate(comm: sys::MPI_Comm) -> Result<SimpleCommunicator> {
         }
         Ok(SimpleCommunicator::from_raw(copy.assume_init()))
     }
+}
+
+/// PETSc's version, as in `3.18.5`.
+#[cfg(feature = "cli")]
+pub fn version() -> Result<String> {
+    let (mut major, mut minor, mut rest) = (0, 0, 0);
+    petsc!(PetscGetVersionNumber(
+        &mut major,
+        &mut minor,
+        &mut rest,
+        null_mut()
+    ))?;
+    Ok(format!("{major}.{minor}.{rest}"))
 }
 
 /// Structures differ between minor versions, so the headers and the library must agree in both numbers.

@@ -80,6 +80,27 @@ fn a_report_names_schema_version_options_and_convergence() {
     assert_eq!(report["converged"], true, "{report}");
     let set = serde_json::json!({ "-fetifeti_ksp_rtol": "1e-9", "-fetifeti_check": "" });
     assert_eq!(report["options"], set, "{report}");
+    // What it takes to run it again.
+    assert_eq!(report["ranks"], 1, "{report}");
+    assert!(report["threads"].as_u64() >= Some(1), "{report}");
+    assert!(
+        report["petsc"]
+            .as_str()
+            .is_some_and(|v| v.starts_with("3.")),
+        "{report}"
+    );
+    assert_eq!(
+        (&report["command"][1], &report["command"][2]),
+        (&"solve".into(), &SCENE.into())
+    );
+    let inputs = report["inputs"].as_array().expect("a list");
+    assert_eq!(
+        (inputs.len(), &inputs[0]["file"]),
+        (1, &SCENE.into()),
+        "{report}"
+    );
+    let hash = inputs[0]["sha256"].as_str().expect("a hash");
+    assert_eq!(hash.len(), 64, "{report}");
     let out = fetifeti(&[
         "solve",
         SCENE,

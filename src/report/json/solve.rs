@@ -19,6 +19,9 @@ pub struct SolveReport {
     /// Version of fetifeti.
     #[serde(default)]
     pub version: String,
+    /// Version of PETSc.
+    #[serde(default)]
+    pub petsc: String,
     /// Whether the iteration, and with inequalities the contact loop, reached its tolerance.
     #[serde(default)]
     pub converged: bool,
@@ -27,6 +30,12 @@ pub struct SolveReport {
     pub options: BTreeMap<String, String>,
     /// The scene's name or file.
     pub scene: String,
+    /// The words of the command line.
+    #[serde(default)]
+    pub command: Vec<String>,
+    /// The scene and the files that it names, with hashes.
+    #[serde(default)]
+    pub inputs: Vec<Input>,
     /// 2 or 3.
     #[serde(default)]
     pub dimension: usize,
@@ -125,6 +134,17 @@ pub struct SolveReport {
 impl SolveReport {
     /// The value of `schema`.
     pub const SCHEMA: &'static str = "fetifeti.solve/1";
+}
+
+/// A file that a run has read.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// Its path.
+    pub file: String,
+    /// Its length.
+    pub bytes: u64,
+    /// The SHA-256 hash of its content, as `sha256sum` prints it.
+    pub sha256: String,
 }
 
 /// The storage of the subdomains' operators, over all ranks.

@@ -8,8 +8,11 @@ fn report() -> SolveReport {
     SolveReport {
         schema: SolveReport::SCHEMA.into(),
         version: "1.0".into(),
+        petsc: "3.18.5".into(),
         converged: true,
         options: BTreeMap::from([("-fetifeti_ksp_rtol".into(), "1e-6".into())]),
+        command: vec!["fetifeti".into()],
+        inputs: Vec::new(),
         scene: "two bodies".into(),
         dimension: 2,
         physics: "scalar".into(),
