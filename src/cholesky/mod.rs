@@ -15,7 +15,7 @@
 //! | `sweep` | the way of a solve through the fronts |
 //! | [`substitution`], [`lanes`] | solves with one vector, and with eight side by side |
 //! | `null_vector` | what a semidefinite matrix maps to zero |
-//! | [`shared`] | a factor that several ranks share |
+//! | [`team`], [`shared`] | the ranks that share a factor, and the factor |
 //! | [`interior`] | the face for subdomains: our method or faer's, in several orders |
 //!
 //! `docs/cholesky.md` has the theory, the data structures and the measurements.
@@ -31,3 +31,4 @@ pub mod shared;
 pub mod substitution;
 mod sweep;
 pub mod symbolic;
+pub mod team;

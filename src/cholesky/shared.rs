@@ -5,139 +5,14 @@
 //! a solve takes two sums over the ranks: of what subtrees leave to the rows of the top, and of the solution.
 
 use std::rc::Rc;
-use std::sync::Arc;
 
-use mpi::topology::{Color, SimpleCommunicator};
 use mpi::traits::Communicator;
 
 use super::multifrontal::{Elimination, PartialCholesky, Pivots};
-use super::symbolic::{Front, Symbolic};
+use super::team::{Team, Whose};
 use crate::linalg::csr::Csr;
+use crate::parallel::clock::{self, Phase};
 use crate::parallel::exchange::{gather_all, sum_all};
-
-/// Whose a front is, and its rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Whose {
-    /// Of the subtrees of this rank.
-    Own,
-    /// Of all ranks.
-    Top,
-    Other,
-}
-
-/// Ranks that share a factor, and who of them has which front.
-pub struct Team {
-    comm: SimpleCommunicator,
-    /// The pattern; it has room for the panels of the own fronts and of the top alone.
-    symbolic: Arc<Symbolic>,
-    /// Fronts in the order of elimination.
-    own: Vec<usize>,
-    top: Vec<usize>,
-    /// The own fronts whose parents are in the top.
-    roots: Vec<usize>,
-    /// Whose each row is, in the order of elimination.
-    rows: Vec<Whose>,
-}
-
-impl Team {
-    /// Divides the ranks of `comm` into `copies` teams of the same size, which have the same factor, and deals out the
-    /// fronts of `symbolic`. Collective.
-    ///
-    /// # Panics
-    /// If `copies` does not divide the number of ranks.
-    pub fn new(comm: &SimpleCommunicator, symbolic: Symbolic, copies: usize) -> Team {
-        let size = comm.size() as usize;
-        assert_eq!(size % copies, 0, "teams of the same size");
-        let team = comm.rank() / (size / copies) as i32;
-        let comm = comm.split_by_color(Color::with_value(team));
-        let comm = comm.expect("every rank has a colour");
-        let rank = comm.rank() as u32;
-        let ranks = deal(&symbolic.fronts, comm.size() as usize);
-        let whose = |f: usize| match ranks[f] {
-            None => Whose::Top,
-            Some(r) if r == rank => Whose::Own,
-            Some(_) => Whose::Other,
-        };
-        let of = |w: Whose| (0..ranks.len()).filter(|&f| whose(f) == w).collect();
-        let (own, top): (Vec<usize>, Vec<usize>) = (of(Whose::Own), of(Whose::Top));
-        let above = |f: &usize| symbolic.fronts[*f].parent.map(whose) == Some(Whose::Top);
-        let roots = own.iter().copied().filter(above).collect();
-        let mut rows = Vec::with_capacity(symbolic.n_interior());
-        for (f, front) in symbolic.fronts.iter().enumerate() {
-            rows.extend(std::iter::repeat_n(whose(f), front.width()));
-        }
-        let symbolic = symbolic.with_panels(|f| whose(f) != Whose::Other);
-        Team {
-            comm,
-            symbolic: symbolic.into(),
-            own,
-            top,
-            roots,
-            rows,
-        }
-    }
-
-    fn fronts<'a>(
-        &'a self,
-        numbers: &'a [usize],
-    ) -> impl DoubleEndedIterator<Item = &'a Front> + 'a {
-        numbers.iter().map(|&f| &self.symbolic.fronts[f])
-    }
-}
-
-/// The rank of each front, `None` for those of the top: the cut through the tree with the shortest way, counted in
-/// operations of the top and of the rank that has most.
-fn deal(fronts: &[Front], ranks: usize) -> Vec<Option<u32>> {
-    let mut children: Vec<Vec<usize>> = vec![Vec::new(); fronts.len()];
-    let mut work: Vec<f64> = fronts.iter().map(Front::flops).collect();
-    let mut subtrees: Vec<usize> = Vec::new();
-    for (f, front) in fronts.iter().enumerate() {
-        match front.parent {
-            Some(t) => {
-                work[t] += work[f];
-                children[t].push(f);
-            }
-            None => subtrees.push(f),
-        }
-    }
-    let mut top = 0.0;
-    let mut best: Option<(f64, Vec<(usize, u32)>)> = None;
-    // More pieces than this are smaller than what they could balance.
-    for _ in 0..16 * ranks {
-        subtrees.sort_by(|a, b| work[*b].total_cmp(&work[*a]).then(a.cmp(b)));
-        let mut loads = vec![0.0; ranks];
-        let mut dealt = Vec::with_capacity(subtrees.len());
-        for &f in &subtrees {
-            let least = (0..ranks).fold(0, |r, s| if loads[s] < loads[r] { s } else { r });
-            loads[least] += work[f];
-            dealt.push((f, least as u32));
-        }
-        let way = top + loads.iter().fold(0.0f64, |a, b| a.max(*b));
-        if best.as_ref().is_none_or(|(shortest, _)| way < *shortest) {
-            best = Some((way, dealt));
-        }
-        let Some(&largest) = subtrees.first() else {
-            break;
-        };
-        if ranks == 1 || children[largest].is_empty() {
-            break;
-        }
-        subtrees.remove(0);
-        subtrees.extend(&children[largest]);
-        top += fronts[largest].flops();
-    }
-    let mut rank = vec![None; fronts.len()];
-    for (f, r) in best.map_or(Vec::new(), |b| b.1) {
-        rank[f] = Some(r);
-    }
-    // Parents come after their children: from the roots of the subtrees down.
-    for f in (0..fronts.len()).rev() {
-        if let (None, Some(t)) = (rank[f], fronts[f].parent) {
-            rank[f] = rank[t];
-        }
-    }
-    rank
-}
 
 /// The factor of a semidefinite matrix, shared by a team.
 pub struct SharedCholesky {
@@ -147,8 +22,8 @@ pub struct SharedCholesky {
 }
 
 impl SharedCholesky {
-    /// The factor of `k`, which every rank has, and the dofs that it leaves out
-    /// ([`semidefinite`](PartialCholesky::semidefinite)). Collective.
+    /// The factor of `k`, of which a rank needs the rows of its subtrees and of the top, and the dofs that it leaves
+    /// out ([`semidefinite`](PartialCholesky::semidefinite)). Collective.
     pub fn semidefinite(k: &Csr, team: Rc<Team>, least: f64) -> (SharedCholesky, Vec<u32>) {
         let (comm, symbolic) = (&team.comm, &*team.symbolic);
         let mut elimination = Elimination::new(k, symbolic, symbolic);
@@ -232,6 +107,40 @@ impl SharedCholesky {
         factor.by_dof(&y, b);
     }
 
+    /// A⁺ b for a vector b that no rank has whole. `own` has the entries of the rows of this rank's subtrees. `top` has
+    /// this rank's share of the entries of the top; the shares of all ranks are summed. Both have the solution on
+    /// return. One sum over the ranks, of the rows of the top. Collective.
+    pub fn solve_shares(&self, own: &mut [f64], top: &mut [f64]) {
+        let (team, factor) = (&*self.team, &self.factor);
+        let mut y = vec![0.0; team.rows.len()];
+        let put = |rows: &[u32], values: &[f64], y: &mut [f64]| {
+            rows.iter()
+                .zip(values)
+                .for_each(|(&p, v)| y[p as usize] = *v);
+        };
+        let get = |rows: &[u32], values: &mut [f64], y: &[f64]| {
+            rows.iter()
+                .zip(values)
+                .for_each(|(&p, v)| *v = y[p as usize]);
+        };
+        put(&team.own_rows, own, &mut y);
+        factor.lower_of(team.fronts(&team.own), &mut y);
+        let left = team.top_rows.iter().map(|&p| y[p as usize]);
+        top.iter_mut().zip(left).for_each(|(t, l)| *t += l);
+        clock::timed(Phase::Reduction, || sum_all(&team.comm, top));
+        put(&team.top_rows, top, &mut y);
+        factor.lower_of(team.fronts(&team.top), &mut y);
+        factor.upper_of(team.fronts(&team.top).rev(), &mut y);
+        factor.upper_of(team.fronts(&team.own).rev(), &mut y);
+        get(&team.own_rows, own, &y);
+        get(&team.top_rows, top, &y);
+    }
+
+    /// The ranks that share it, and who of them has what.
+    pub fn team(&self) -> &Team {
+        &self.team
+    }
+
     /// Whether this rank tells the others about such rows.
     fn speaks(&self, whose: Whose) -> bool {
         whose == Whose::Own || (whose == Whose::Top && self.team.comm.rank() == 0)
@@ -269,7 +178,3 @@ impl SharedCholesky {
         vectors
     }
 }
-
-#[cfg(test)]
-#[path = "../../tests/inside/cholesky/shared.rs"]
-mod tests;

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use super::course::Course;
 use super::{balance, contact, physics};
+use crate::feti::projector::distributed::{self, Work};
 use crate::feti::subdomain::problem::factorisations;
 use crate::feti::Facts;
 use crate::parallel::exchange::sum_all;
 use crate::petsc::{self, max_memory, Options, Session};
 use crate::report::json::adaptive::{Adaptive, Deflation};
 use crate::report::json::contact::ContactReport;
-use crate::report::json::{self, Operators, SolveReport};
+use crate::report::json::{self, NaturalCoarse, Operators, SolveReport};
 use crate::scene::Scene;
 use crate::{FetiFeti, Result, Spectrum};
 
@@ -119,9 +120,23 @@ pub(super) fn report(
             "none"
         }
         .into(),
+        natural_coarse: match &dual.natural.gtg {
+            Some(gtg) => gtg.work()?.map(natural_coarse),
+            None => None,
+        },
         check: None,
         rtol: solver.ksp().tolerances()?.0,
     })
+}
+
+/// The record of a solver of GᵀQG.
+fn natural_coarse(work: Work) -> NaturalCoarse {
+    NaturalCoarse {
+        solver: work.solver,
+        iterated: work.iterated,
+        rtol: work.iterated.then_some(distributed::EXACT),
+        iterations: (work.iterated).then(|| work.iterations as f64 / work.solves.max(1) as f64),
+    }
 }
 
 /// The PETSc options that are set.

@@ -8,8 +8,8 @@ use mpi::traits::Communicator;
 
 use super::motion::{pushed_away, BALANCE, NEARLY};
 use crate::feti::operators::dual::Dual;
+use crate::feti::projector::balance::KernelLoad;
 use crate::feti::projector::gram::{Motion, FEW};
-use crate::feti::projector::natural::KernelLoad;
 use crate::linalg::union_find::UnionFind;
 use crate::parallel::exchange::gather_all;
 use crate::substructures::Substructures;

@@ -6,6 +6,7 @@ mod support;
 mod answers;
 mod bits;
 mod certified;
+mod coarse;
 mod communication;
 mod constraints;
 mod copies;

@@ -1,9 +1,13 @@
 //! W, F W and Wᵀ F W for the rows that hold, and P_2 built from them.
+//!
+//! Without floating bodies P = I, and E = Wᵀ F W is sparse: two bodies have common entries if F leads from the columns
+//! of one to the rows of the other. With floating bodies X makes E dense.
 
 use mpi::topology::SimpleCommunicator;
 
 use super::balance::Balance;
 use super::panels::Panels;
+use super::sparse::{self, Sparse};
 use crate::feti::operators::dual::Dual;
 use crate::feti::projector::graph::BodyGraph;
 use crate::feti::projector::sweep::{self, Column};
@@ -18,10 +22,30 @@ use crate::Result;
 /// is divided by this number.
 const DEPENDENT: f64 = 1e-10;
 
+/// Largest number of columns for which E is factored as a dense matrix. That may choose its pivots and leaves P_2 two
+/// more digits; a sparse factor is what more columns can afford.
+const FEW: usize = 1000;
+
 /// Columns with their kernel part removed: Y − Q X.
 struct Split {
     y: Panels,
     q: Panels,
+}
+
+/// E, factored.
+enum Inverse {
+    Dense(Semidefinite),
+    Sparse(Sparse),
+}
+
+impl Inverse {
+    /// c ← E⁺ c, the same on every rank. Collective.
+    fn solve(&self, c: &mut [f64]) {
+        match self {
+            Inverse::Dense(factor) => factor.solve(c),
+            Inverse::Sparse(sparse) => sparse.solve(c),
+        }
+    }
 }
 
 /// P_2 in terms of P W = W − Q G X.
@@ -32,19 +56,21 @@ pub struct Matrices {
     fw: Split,
     /// X, r × the number of columns.
     x: Dense,
-    /// Wᵀ Pᵀ F P W.
-    e: Semidefinite,
+    /// E = Wᵀ Pᵀ F P W.
+    e: Inverse,
     /// F-norms of the columns of W.
     norms: Vec<f64>,
 }
 
 impl Matrices {
-    /// Applies F to the columns and builds the matrices. Collective.
+    /// Applies F to the columns and builds the matrices. The pattern of `before` is taken over where it suffices.
+    /// Collective.
     pub fn new(
         dual: &Dual,
         graph: &BodyGraph,
         balance: &Balance,
         columns: &[Column],
+        before: Option<&Matrices>,
     ) -> Result<Matrices> {
         let (k, r) = (columns.len(), dual.natural.r);
         let like = dual.multipliers()?;
@@ -69,20 +95,39 @@ impl Matrices {
             qg = Panels::new(&columns);
         }
         let (w, fw) = (Split { y: w, q: qg }, Split { y: fw, q: fqg });
-        let e = gram(dual.comm(), &w, &fw, &x);
+        let (e, diagonal) = match r {
+            0 if k > FEW => {
+                let known = before.and_then(|b| match &b.e {
+                    Inverse::Sparse(sparse) => Some(sparse.shape.clone()),
+                    Inverse::Dense(_) => None,
+                });
+                let (shape, e) = sparse::product(dual.comm(), &w.y, &fw.y, known);
+                let diagonal = e.diagonal();
+                (Inverse::Sparse(Sparse::new(shape, e)), diagonal)
+            }
+            _ => {
+                let e = dense(dual.comm(), &w, &fw, &x);
+                let diagonal = (0..k).map(|i| e.get(i, i)).collect();
+                let factor = Semidefinite::above(&e, DEPENDENT);
+                (Inverse::Dense(factor), diagonal)
+            }
+        };
         Ok(Matrices {
             session: dual.stiffness.session.clone(),
             w,
             fw,
             x,
-            norms: (0..k).map(|i| e.get(i, i).max(0.0).sqrt()).collect(),
-            e: Semidefinite::above(&e, DEPENDENT),
+            norms: diagonal.iter().map(|e| e.max(0.0).sqrt()).collect(),
+            e,
         })
     }
 
     /// Number of independent vectors.
     pub fn rank(&self) -> usize {
-        self.e.rank()
+        match &self.e {
+            Inverse::Dense(factor) => factor.rank(),
+            Inverse::Sparse(sparse) => sparse.rank(),
+        }
     }
 
     /// λ ← P_2 λ for λ in V. Collective.
@@ -142,7 +187,7 @@ impl Matrices {
 }
 
 /// (Y_w − Q_w X)ᵀ (Y_f − Q_f X). Collective.
-fn gram(comm: &SimpleCommunicator, w: &Split, f: &Split, x: &Dense) -> Dense {
+fn dense(comm: &SimpleCommunicator, w: &Split, f: &Split, x: &Dense) -> Dense {
     let k = x.cols;
     // The products of all columns, the kernel columns last: [Y Q]ᵀ F [Y Q].
     let m = k + w.q.cols;

@@ -21,6 +21,7 @@ pub mod matrices;
 pub mod panels;
 pub mod pencil;
 pub mod search;
+pub mod sparse;
 pub mod whole;
 
 use std::time::Instant;
@@ -132,7 +133,7 @@ impl Deflation {
         let columns = sweep::images(&dual.multipliers()?, &graph, &jumps, |x, y| {
             dual.m_many(x, y)
         })?;
-        let matrices = Matrices::new(dual, &graph, &balance, &columns)?;
+        let matrices = Matrices::new(dual, &graph, &balance, &columns, None)?;
         cost.dependent = columns.len() - matrices.rank();
         cost.seconds = clock.elapsed().as_secs_f64();
         Ok(Deflation {
@@ -162,7 +163,7 @@ impl Deflation {
         let n = found.len();
         if n > 0 {
             self.columns.extend(found);
-            self.matrices = Matrices::new(dual, &self.graph, &self.balance, &self.columns)?;
+            self.matrices = Matrices::new(dual, &self.graph, &self.balance, &self.columns, None)?;
             self.cost.shared += n;
         }
         self.cost.seconds += clock.elapsed().as_secs_f64();
@@ -185,7 +186,8 @@ impl Deflation {
             reach: column.reach.clone(),
         };
         let columns: Vec<Column> = self.columns.iter().map(mask).collect();
-        self.matrices = Matrices::new(dual, &self.graph, &self.balance, &columns)?;
+        let before = Some(&self.matrices);
+        self.matrices = Matrices::new(dual, &self.graph, &self.balance, &columns, before)?;
         Ok(())
     }
 

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::feti::projector::sweep::Column;
-use crate::linalg::dense::{multiply, Dense};
+use crate::linalg::dense::Dense;
 
 /// Consecutive columns with the same reach.
 #[derive(Debug, Default)]
@@ -66,22 +66,68 @@ impl Panels {
 
     /// out ← out + Aᵀ B on this rank's rows, placed at (`at`.0, `at`.1) of `out`.
     pub fn add_product(&self, other: &Panels, out: &mut Dense, at: (usize, usize)) {
-        for a in &self.panels {
-            for b in &other.panels {
-                let common = b.gather(&a.rows);
-                if common.data.is_empty() {
-                    continue;
-                }
-                let mut part = Dense::zeros(a.values.cols, common.cols);
-                let left = a.values.view().transpose();
-                multiply(part.view_mut(), false, 1.0, left, common.view());
-                for (q, j) in b.columns.clone().enumerate() {
-                    let column = &mut out.col_mut(at.1 + j)[at.0..];
-                    let sums = column[a.columns.clone()].iter_mut().zip(part.col(q));
-                    sums.for_each(|(o, p)| *o += p);
+        self.products(other, |a, b, part| {
+            for (q, j) in other.columns(b).enumerate() {
+                let column = &mut out.col_mut(at.1 + j)[at.0..];
+                let sums = column[self.columns(a)].iter_mut().zip(part.col(q));
+                sums.for_each(|(o, p)| *o += p);
+            }
+        });
+    }
+
+    /// AᵀB on this rank's rows: calls `visit(a, b, block)` for every panel a and every panel b of `other` that have a
+    /// row in common, by increasing a and b. Panels without common rows cost nothing.
+    pub fn products(&self, other: &Panels, mut visit: impl FnMut(usize, usize, &Dense)) {
+        let places = other.places();
+        let rows_of =
+            |p: &Panel| Dense::from_fn(p.values.cols, p.rows.len(), |j, i| p.values.get(i, j));
+        let right: Vec<Dense> = other.panels.iter().map(rows_of).collect();
+        // The blocks of one panel, and which of them are in use.
+        let mut blocks: Vec<Dense> = vec![Dense::default(); other.panels.len()];
+        let mut used: Vec<usize> = Vec::new();
+        for (a, panel) in self.panels.iter().enumerate() {
+            let left = rows_of(panel);
+            for (here, &row) in panel.rows.iter().enumerate() {
+                for &(b, at) in places.get(row as usize).into_iter().flatten() {
+                    let (x, y) = (left.col(here), right[b as usize].col(at as usize));
+                    let block = &mut blocks[b as usize];
+                    if block.data.is_empty() {
+                        *block = Dense::zeros(x.len(), y.len());
+                        used.push(b as usize);
+                    }
+                    for (column, y) in block.data.chunks_exact_mut(x.len()).zip(y) {
+                        column.iter_mut().zip(x).for_each(|(c, x)| *c += x * y);
+                    }
                 }
             }
+            used.sort_unstable();
+            for b in used.drain(..) {
+                visit(a, b, &std::mem::take(&mut blocks[b]));
+            }
         }
+    }
+
+    /// The columns of panel `k`.
+    pub fn columns(&self, k: usize) -> Range<usize> {
+        self.panels[k].columns.clone()
+    }
+
+    /// Where the columns of every panel begin, and the end.
+    pub fn starts(&self) -> Vec<usize> {
+        let starts = self.panels.iter().map(|p| p.columns.start);
+        starts.chain([self.cols]).collect()
+    }
+
+    /// For every row the panels that have it, and where.
+    fn places(&self) -> Vec<Vec<(u32, u32)>> {
+        let last = self.panels.iter().filter_map(|p| p.rows.last()).max();
+        let mut places = vec![Vec::new(); last.map_or(0, |&row| row as usize + 1)];
+        for (b, panel) in (0..).zip(&self.panels) {
+            for (at, &row) in (0..).zip(&panel.rows) {
+                places[row as usize].push((b, at));
+            }
+        }
+        places
     }
 }
 
@@ -110,30 +156,6 @@ impl Panel {
             rows,
             values,
         }
-    }
-
-    /// These rows of all columns, with zeros in rows that the panel does not have. The matrix is empty if the panel has
-    /// none of the rows.
-    fn gather(&self, rows: &[u32]) -> Dense {
-        let mut pairs = Vec::new();
-        let mut at = 0;
-        for (i, row) in rows.iter().enumerate() {
-            while at < self.rows.len() && self.rows[at] < *row {
-                at += 1;
-            }
-            if self.rows.get(at) == Some(row) {
-                pairs.push((i, at));
-            }
-        }
-        if pairs.is_empty() {
-            return Dense::default();
-        }
-        let mut out = Dense::zeros(rows.len(), self.values.cols);
-        for c in 0..out.cols {
-            let (from, to) = (self.values.col(c), out.col_mut(c));
-            pairs.iter().for_each(|&(i, at)| to[i] = from[at]);
-        }
-        out
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::cholesky::lanes::LANES;
 use crate::feti::operators::dual::Dual;
-use crate::feti::projector::natural::KernelLoad;
+use crate::feti::projector::balance::KernelLoad;
 use crate::feti::subdomain::scaled::Scaled;
 use crate::parallel::exchange::highest;
 use crate::substructures::Substructures;

@@ -7,6 +7,7 @@ use mpi::topology::SimpleCommunicator;
 
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
+use crate::feti::projector::gtg::Gtg;
 use crate::feti::projector::natural::NaturalCoarse;
 use crate::parallel::exchange::total;
 use crate::petsc::{Event, Vec as PetscVec};
@@ -143,10 +144,15 @@ impl Dual {
             }
             None => String::new(),
         };
-        let coarse = match natural.gtg.as_ref().map(|gtg| gtg.ksp().is_some()) {
-            None => "",
-            Some(true) => ", G^T Q G by PETSc",
-            Some(false) => ", G^T G by a sparse Cholesky factor",
+        let chosen = |gtg: &Gtg| gtg.work().ok().flatten();
+        let coarse = match natural.gtg.as_ref().map(|gtg| (chosen(gtg), gtg.ksp())) {
+            None => String::new(),
+            Some((Some(work), _)) if work.iterated => {
+                format!(", G^T Q G by FGMRES around {}", work.solver)
+            }
+            Some((Some(work), _)) => format!(", G^T Q G by {}", work.solver),
+            Some((None, Some(_))) => ", G^T Q G by PETSc".into(),
+            Some((None, None)) => ", G^T G by a sparse Cholesky factor".into(),
         };
         format!(
             "  multipliers: {} local, {} global\n  projector: {} ({} kernel vectors of floating bodies{coarse})\

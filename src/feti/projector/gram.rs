@@ -9,13 +9,14 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 
 use super::pattern::Pattern;
-use super::rows::Rows;
 use crate::cholesky::dissection::nested_dissection;
-use crate::cholesky::shared::{SharedCholesky, Team};
+use crate::cholesky::shared::SharedCholesky;
 use crate::cholesky::symbolic::Symbolic;
+use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
 use crate::linalg::semidefinite::{Semidefinite, DEPENDENT};
+use crate::parallel::exchange::{gather_all, sum_all};
 
 /// Largest number of rigid motions for dense algebra.
 pub const FEW: usize = 150;
@@ -105,28 +106,38 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// The shape for all rows `g`; there are to be `copies` of a factor. Collective.
-    pub fn new(comm: &SimpleCommunicator, g: &Rows, start: &[usize], copies: usize) -> Shape {
-        Shape::of(comm, Pattern::new(comm, g, g, start), copies)
-    }
-
-    /// The shape of matrices with this pattern. Collective.
-    pub fn of(comm: &SimpleCommunicator, pattern: Pattern, copies: usize) -> Shape {
+    /// The shape of matrices with this pattern; there are to be `copies` of a factor. `home` has the rank of each body,
+    /// or nothing if that does not matter. Collective.
+    pub fn of(comm: &SimpleCommunicator, pattern: Pattern, copies: usize, home: &[u32]) -> Shape {
         let r = pattern.bodies().len();
         // Whole bodies are ordered: the columns of one are all coupled.
         let team = (r > FEW).then(|| {
             let graph = pattern.graph();
             let floats = |b: &u32| !pattern.columns(*b as usize).is_empty();
-            let floating: Vec<u32> = (0..graph.n() as u32).filter(floats).collect();
+            // What meets more than half of all bodies comes last: no cut would separate it from anything.
+            let everywhere = |b: &u32| 2 * graph.row(*b as usize).0.len() > graph.n();
+            let (last, floating): (Vec<u32>, Vec<u32>) =
+                (0..graph.n() as u32).filter(floats).partition(everywhere);
             let columns = |b: &u32| pattern.columns(*b as usize).map(|c| c as u32);
             let sets = nested_dissection(&graph, &floating, None).into_iter();
+            let sets = sets.chain((!last.is_empty()).then_some(last));
             let sets: Vec<Vec<u32>> = sets
                 .map(|set| set.iter().flat_map(columns).collect())
                 .collect();
             let symbolic = Symbolic::with_supernodes(&pattern.zeros(), &[], &sets);
-            Team::new(comm, symbolic, copies).into()
+            let bodies = pattern.bodies().iter();
+            let home: Vec<u32> = match home.is_empty() {
+                true => Vec::new(),
+                false => bodies.map(|&b| home[b as usize]).collect(),
+            };
+            Team::new(comm, symbolic, copies, &home).into()
         });
         Shape { pattern, team }
+    }
+
+    /// The ranks that share factors of this shape, if there are many columns.
+    pub fn team(&self) -> Option<&Rc<Team>> {
+        self.team.as_ref()
     }
 }
 
@@ -149,7 +160,8 @@ pub struct Gram {
 }
 
 impl Gram {
-    /// Factors `a`, a GᵀG of this shape that every rank has. Collective.
+    /// Factors `a`, a GᵀG of this shape. A rank needs the rows of its subtrees and of the top, and all of few columns.
+    /// Collective.
     pub fn new(shape: &Shape, a: Csr) -> Gram {
         match &shape.team {
             None => Gram::few(&a),
@@ -179,9 +191,15 @@ impl Gram {
     }
 
     fn many(pattern: &Pattern, team: &Rc<Team>, mut a: Csr) -> Gram {
-        let scale = scale_to_unit_diagonal(&mut a);
+        let mut scale = scale_to_unit_diagonal(&mut a);
         // Most motions that nothing holds are of one body alone. They are found in its block.
-        let mut alone = alone(pattern, &a, &scale);
+        let mut alone = alone(pattern, team, &a, &scale);
+        for (k, s) in (0..).zip(&mut scale) {
+            if !team.tells(k) {
+                *s = 0.0;
+            }
+        }
+        sum_all(team.comm(), &mut scale);
         for &(k, _) in &alone {
             a.set_diagonal(k as usize, OUT);
         }
@@ -233,6 +251,27 @@ impl Gram {
         }
     }
 
+    /// A⁺ b for a vector b that no rank has whole ([`SharedCholesky::solve_shares`]), of many columns. Collective.
+    ///
+    /// # Panics
+    /// If the columns are few.
+    pub fn solve_shares(&self, own: &mut [f64], top: &mut [f64]) {
+        let Factor::Sparse { factor, scale } = &self.factor else {
+            unreachable!("few columns are not shared")
+        };
+        let scaled = |own: &mut [f64], top: &mut [f64]| {
+            let times = |(v, c): (&mut f64, u32)| match self.dropped.binary_search(&c) {
+                Ok(_) => *v = 0.0,
+                Err(_) => *v *= scale[c as usize],
+            };
+            own.iter_mut().zip(factor.team().own_dofs()).for_each(times);
+            top.iter_mut().zip(factor.team().top_dofs()).for_each(times);
+        };
+        scaled(own, top);
+        factor.solve_shares(own, top);
+        scaled(own, top);
+    }
+
     /// Number of columns, r.
     pub fn n(&self) -> usize {
         match &self.factor {
@@ -248,12 +287,13 @@ impl Gram {
 }
 
 /// The motions of single bodies that nothing holds, each with the column that is left out for it. `a` has a unit
-/// diagonal.
-fn alone(pattern: &Pattern, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
-    let mut out = Vec::new();
+/// diagonal. Each rank looks at the bodies whose rows it has. Collective.
+fn alone(pattern: &Pattern, team: &Team, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
+    // [column, number of entries, (column, coefficient)…] for each motion.
+    let mut words: Vec<u64> = Vec::new();
     for body in 0..pattern.n_bodies() {
         let columns = pattern.columns(body);
-        if columns.is_empty() {
+        if columns.is_empty() || !team.tells(columns.start as u32) {
             continue;
         }
         let first = columns.start;
@@ -265,8 +305,26 @@ fn alone(pattern: &Pattern, a: &Csr, scale: &[f64]) -> Vec<(u32, Motion)> {
             let v = null_vector(&block, &factor, k);
             let entries = (columns.clone()).zip(&v);
             let entries = entries.map(|(c, v)| (c as u32, v * scale[c]));
-            out.push(((first + k) as u32, Motion::above(NOTHING_SOLVED, entries)));
+            let Motion(motion) = Motion::above(NOTHING_SOLVED, entries);
+            words.extend([(first + k) as u64, motion.len() as u64]);
+            words.extend(
+                motion
+                    .iter()
+                    .flat_map(|(c, v)| [u64::from(*c), v.to_bits()]),
+            );
         }
+    }
+    let all = gather_all(team.comm(), &words).concat();
+    let mut rest = &all[..];
+    let mut out = Vec::new();
+    while let [k, n, tail @ ..] = rest {
+        let (entries, tail) = tail.split_at(2 * *n as usize);
+        let entries = entries.chunks_exact(2);
+        let motion = entries
+            .map(|e| (e[0] as u32, f64::from_bits(e[1])))
+            .collect();
+        out.push((*k as u32, Motion(motion)));
+        rest = tail;
     }
     out
 }

@@ -1,17 +1,19 @@
 //! Gᵀ Q G and its inverse.
 //!
 //! With Q = I and many rigid motions the factor of GᵀG that tells what the rows hold ([`Gram`]) is the inverse, too.
-//! With other Q and many motions it is a factor of its own (`weighted`). Ranks share both. In all other cases the
-//! matrix stands behind a PETSc KSP of each rank (prefix `fetifeti_gtg_`), and so it does if an option with this prefix
-//! is set other than `redundancy`.
+//! With other Q and many motions it is a factor of its own (`weighted`). Ranks share both. The matrix of few motions
+//! stands behind an LU factorisation of each rank. If an option with the prefix `fetifeti_gtg_` is set, other than
+//! `redundancy`, it stands behind a PETSc KSP over all ranks (`distributed`).
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use mpi::topology::SimpleCommunicator;
 
+use super::distributed::{Distributed, Work};
 use super::gram::{scale_to_unit_diagonal, Gram, Shape};
 use super::rows::Rows;
+use super::spread::Spread;
 use super::weighted::Weighted;
 use crate::feti::settings::ProjectorKind;
 use crate::linalg::csr::Csr;
@@ -34,6 +36,8 @@ pub struct Gtg {
     solver: Solver,
     /// GᵀG of the rows that hold: what they hold.
     pub gram: Rc<Gram>,
+    /// The way of distributed vectors to the factor, where ranks share it.
+    spread: Option<Rc<Spread>>,
     scratch: RefCell<Vec<f64>>,
 }
 
@@ -42,7 +46,10 @@ enum Solver {
     Own,
     /// The factor of GᵀQG.
     Weighted(Box<Weighted>),
+    /// LU of every rank.
     Petsc(Scaled),
+    /// The user's choice.
+    Chosen(Box<Distributed>),
 }
 
 /// (Gᵀ Q G)⁻¹ as D⁻¹ (D⁻¹ Gᵀ Q G D⁻¹)⁻¹ D⁻¹; D² is the diagonal of Gᵀ Q G. The scaling is needed with Q = M⁻¹: the rows
@@ -59,31 +66,57 @@ struct Scaled {
 }
 
 impl Gtg {
-    /// The inverse for the rows of `gram` and the weight `q`, not Auto. `product` makes GᵀQG, which has the pattern
-    /// of `shape`. Collective.
+    /// The inverse for the rows of `gram` and the weight `q`, not Auto. `product` makes this rank's share of GᵀQG,
+    /// which has the pattern of `shape`. `chosen` makes a solver of the user's choice from it. Collective.
     pub fn new(
         session: &Session,
         (shape, gram): (&Shape, Rc<Gram>),
         q: ProjectorKind,
         product: impl FnOnce() -> Csr,
         prefix: &str,
+        chosen: impl FnOnce(&Gram, &Csr) -> Result<Distributed>,
     ) -> Result<Gtg> {
-        let own = gram.is_sparse() && !Options::new(session, prefix).any_but("redundancy")?;
+        let sum = |mut a: Csr| {
+            sum_all(session.comm(), &mut a.val);
+            a
+        };
         let petsc = |a: Csr| Scaled::new(session, &gram, a, prefix).map(Solver::Petsc);
         let solver = match q {
-            ProjectorKind::Identity if own => Solver::Own,
-            _ if own => match Weighted::new(shape, product(), &gram) {
+            _ if Options::new(session, prefix).any_but("redundancy")? => {
+                Solver::Chosen(chosen(&gram, &product())?.into())
+            }
+            ProjectorKind::Identity if gram.is_sparse() => Solver::Own,
+            _ if gram.is_sparse() => match Weighted::new(shape, sum(product()), &gram) {
                 Ok(factor) => Solver::Weighted(factor.into()),
                 Err(a) => petsc(a)?,
             },
-            _ => petsc(product())?,
+            _ => petsc(sum(product()))?,
         };
         let r = gram.n();
         Ok(Gtg {
             solver,
             gram,
+            spread: None,
             scratch: RefCell::new(vec![0.0; r]),
         })
+    }
+
+    /// Whether ranks share a factor that solves at once.
+    pub fn is_shared(&self) -> bool {
+        self.shared().is_some()
+    }
+
+    /// Vectors go to the shared factor this way from now on.
+    pub fn set_spread(&mut self, spread: Option<Rc<Spread>>) {
+        self.spread = spread;
+    }
+
+    fn shared(&self) -> Option<&Gram> {
+        match &self.solver {
+            Solver::Own => Some(&self.gram),
+            Solver::Weighted(factor) => factor.plain(),
+            Solver::Petsc(_) | Solver::Chosen(_) => None,
+        }
     }
 
     /// PETSc's solver, if it is one.
@@ -91,6 +124,15 @@ impl Gtg {
         match &self.solver {
             Solver::Own | Solver::Weighted(_) => None,
             Solver::Petsc(scaled) => Some(&scaled.ksp),
+            Solver::Chosen(chosen) => Some(chosen.ksp()),
+        }
+    }
+
+    /// How the user's solver works, if there is one.
+    pub fn work(&self) -> Result<Option<Work>> {
+        match &self.solver {
+            Solver::Chosen(chosen) => chosen.work().map(Some),
+            _ => Ok(None),
         }
     }
 
@@ -102,6 +144,7 @@ impl Gtg {
             Solver::Own => Ok(0.0),
             Solver::Weighted(factor) => Ok(factor.defect),
             Solver::Petsc(scaled) => scaled.defect(),
+            Solver::Chosen(chosen) => Ok(chosen.defect),
         }
     }
 
@@ -117,6 +160,7 @@ impl Gtg {
                 Ok(())
             }
             Solver::Petsc(scaled) => scaled.solve(x, side),
+            Solver::Chosen(chosen) => chosen.solve(x, side),
         }
     }
 
@@ -130,6 +174,12 @@ impl Gtg {
         side: Side,
     ) -> Result<()> {
         let mut c = self.scratch.borrow_mut();
+        if let Solver::Chosen(chosen) = &self.solver {
+            return chosen.remove(x, (from, along), &mut c, side);
+        }
+        if let (Some(factor), Some(spread)) = (self.shared(), &self.spread) {
+            return spread.remove(factor, x, from, along);
+        }
         c.fill(0.0);
         from.add_transpose(&x.array()?, &mut c);
         clock::timed(Phase::Reduction, || sum_all(comm, &mut c));

@@ -1,7 +1,8 @@
 //! Motions of bodies that no row opposes, and the sentence about them.
 
+use super::balance::KernelLoad;
 use super::gram::Motion;
-use super::natural::{KernelLoad, NaturalCoarse};
+use super::natural::NaturalCoarse;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::substructures::Substructures;
 use crate::{Error, Result};

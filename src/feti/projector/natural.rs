@@ -13,18 +13,22 @@ use std::rc::Rc;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::Communicator;
 
+use super::distributed::Distributed;
 use super::gram::{Gram, Shape};
 use super::graph::BodyGraph;
 use super::gtg::{Gtg, Side};
 use super::pattern::Pattern;
 use super::rows::{RowEntry, Rows};
+use super::spread::Spread;
 use super::weights::{choose, spread};
 use crate::feti::operators::preconditioner::Preconditioner;
 use crate::feti::operators::stiffness::Stiffness;
 use crate::feti::settings::ProjectorKind;
+use crate::linalg::csr::Csr;
 use crate::linalg::dense::Dense;
-use crate::parallel::exchange::{any, exchange, gather_all, max_all, sum_all};
-use crate::petsc::Vec as PetscVec;
+use crate::linalg::sorted::distinct;
+use crate::parallel::exchange::{any, exchange, gather_all, max_all};
+use crate::petsc::{Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::{Error, Result};
 
@@ -58,6 +62,8 @@ pub struct NaturalCoarse {
     pub(super) spread: f64,
     /// Number of copies of a factor of many rigid motions among the ranks.
     copies: usize,
+    /// The way of distributed vectors to the shared factor of GᵀQG.
+    way: RefCell<Option<Rc<Spread>>>,
     /// The last choice of rows that was asked for, and their GᵀG.
     last: RefCell<Option<(Vec<bool>, Rc<Gram>)>>,
     /// G on the owned rows.
@@ -67,15 +73,6 @@ pub struct NaturalCoarse {
     /// (Gᵀ Q G)⁻¹, where a body floats.
     pub gtg: Option<Gtg>,
     prefix: String,
-}
-
-/// The work of the loads on the kernels: e = Rᵀ g, and the size of the terms that may cancel in it.
-#[derive(Debug, Clone, Default)]
-pub struct KernelLoad {
-    /// e, length r.
-    pub e: Vec<f64>,
-    /// For each entry of e the largest |R| times Σ|f|. Loads inside a subdomain may cancel before they reach g.
-    pub size: Vec<f64>,
 }
 
 impl NaturalCoarse {
@@ -123,6 +120,7 @@ impl NaturalCoarse {
             graph: OnceCell::new(),
             spread: 1.0,
             copies,
+            way: RefCell::new(None),
             last: RefCell::new(None),
             g: Rows::from_triplets(stiffness.jump.n_owned, Vec::new()),
             qg: None,
@@ -132,7 +130,8 @@ impl NaturalCoarse {
         if r > 0 {
             natural.all = natural.all_rows(stiffness);
             let start = &space.kernel_start;
-            natural.shape = Some(Shape::new(comm, &natural.all, start, copies));
+            let pattern = Pattern::new(comm, &natural.all, &natural.all, start);
+            natural.shape = Some(Shape::of(comm, pattern, copies, &space.owner));
             natural.spread = spread(comm, problem, stiffness);
             natural.projector = choose(preconditioner, wanted, (natural.spread, varies));
             natural.renew(problem, stiffness, preconditioner)?;
@@ -178,22 +177,67 @@ impl NaturalCoarse {
             // Q reaches the rows of neighbours.
             ProjectorKind::Preconditioner => {
                 let graph = self.graph(problem, stiffness);
-                let new =
-                    || Shape::of(comm, Pattern::of_bodies(graph.second(), start), self.copies);
-                self.wide.get_or_init(new)
+                self.wide.get_or_init(|| {
+                    let pattern = Pattern::of_bodies(graph.second(), start);
+                    Shape::of(comm, pattern, self.copies, &stiffness.space.owner)
+                })
             }
             _ => self.shape.as_ref().expect("a body floats"),
         };
-        let product = || shape.pattern.product(comm, g, qg, |_| true);
+        let product = || shape.pattern.product_here(g, qg, |_| true);
+        let chosen = |gram: &Gram, here: &Csr| {
+            Distributed::new(
+                session,
+                (&shape.pattern, here),
+                [g, qg],
+                (
+                    &gram.dropped,
+                    self.projector == ProjectorKind::Preconditioner,
+                ),
+                &self.prefix,
+                |like, own| self.motions(problem, stiffness, like, own),
+            )
+        };
         let gtg = Gtg::new(
             session,
             (shape, gram),
             self.projector,
             product,
             &self.prefix,
+            chosen,
         )?;
-        self.gtg = Some(gtg);
+        let spread = match gtg.is_shared() {
+            true => self.spread_for(session, shape, [g, qg])?,
+            false => None,
+        };
+        let gtg = self.gtg.insert(gtg);
+        gtg.set_spread(spread);
         Ok(())
+    }
+
+    /// The way to the factor of this shape for these rows: the one that is known if it suffices. Collective.
+    fn spread_for(
+        &self,
+        session: &Session,
+        shape: &Shape,
+        rows: [&Rows; 2],
+    ) -> Result<Option<Rc<Spread>>> {
+        if !shape
+            .team()
+            .is_some_and(|team| team.is_whole(session.comm()))
+        {
+            return Ok(None);
+        }
+        let mut known = self.way.borrow_mut();
+        let fits = known
+            .as_ref()
+            .is_some_and(|s| s.fits(shape) && s.covers(&rows));
+        if any(session.comm(), !fits) {
+            let all = [rows[0], rows[1], &self.all].into_iter();
+            let columns = distinct(all.flat_map(|r| r.columns().iter().copied()));
+            *known = Spread::new(session, shape, &columns)?.map(Rc::new);
+        }
+        Ok(known.clone())
     }
 
     /// The graph of the bodies. Collective when it is first asked for.
@@ -212,7 +256,10 @@ impl NaturalCoarse {
         let known = last.as_ref().is_some_and(|(rows, _)| rows == chosen);
         if any(comm, !known) {
             let all = &self.all;
-            let a = shape.pattern.product(comm, all, all, |i| chosen[i]);
+            let a = match shape.team().filter(|team| team.is_whole(comm)) {
+                Some(team) => shape.pattern.product_shared(team, all, all, |i| chosen[i]),
+                None => shape.pattern.product(comm, all, all, |i| chosen[i]),
+            };
             *last = Some((chosen.to_vec(), Rc::new(Gram::new(shape, a))));
         }
         last.as_ref().expect("it was set").1.clone()
@@ -296,6 +343,11 @@ impl NaturalCoarse {
             .map_or(Ok(()), |gtg| gtg.solve(x, Side::Plain))
     }
 
+    /// First column of R of local subdomain `j`'s body.
+    pub(super) fn first_column(&self, j: usize) -> usize {
+        self.first_column[j]
+    }
+
     /// Q G, which is G itself for Q = I.
     pub fn qg(&self) -> &Rows {
         self.qg.as_ref().unwrap_or(&self.g)
@@ -315,70 +367,5 @@ impl NaturalCoarse {
             Some(gtg) => gtg.remove(comm, residual, self.qg(), &self.g, Side::Transposed),
             None => Ok(()),
         }
-    }
-
-    /// e = Rᵀ g for the condensed loads g of the loads f. Collective.
-    pub fn kernel_load(
-        &self,
-        comm: &SimpleCommunicator,
-        f: &[&[f64]],
-        g: &[Vec<f64>],
-    ) -> KernelLoad {
-        let mut e = vec![0.0; 2 * self.r];
-        for (j, kernel) in self.kernels.iter().enumerate() {
-            let load: f64 = f[j].iter().map(|f| f.abs()).sum();
-            for c in 0..kernel.cols {
-                let at = self.first_column[j] + c;
-                let largest = kernel.col(c).iter().fold(0.0f64, |a, r| a.max(r.abs()));
-                let work = kernel.col(c).iter().zip(&g[j]).map(|(r, g)| r * g);
-                e[at] += work.sum::<f64>();
-                e[self.r + at] += largest * load;
-            }
-        }
-        sum_all(comm, &mut e);
-        let size = e.split_off(self.r);
-        KernelLoad { e, size }
-    }
-
-    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.
-    /// Collective.
-    pub fn balance(
-        &self,
-        comm: &SimpleCommunicator,
-        load: &KernelLoad,
-        lambda: &PetscVec,
-    ) -> Result<()> {
-        let Some(solver) = &self.gtg else {
-            return Ok(());
-        };
-        // The second pass recovers the digits that a badly conditioned Gᵀ Q G costs.
-        for _ in 0..2 {
-            let mut c = vec![0.0; self.r];
-            self.g.add_transpose(&lambda.array()?, &mut c);
-            sum_all(comm, &mut c);
-            c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
-            solver.solve(&mut c, Side::Plain)?;
-            self.qg().add(1.0, &c, &mut lambda.array_mut()?);
-        }
-        Ok(())
-    }
-
-    /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ). Collective.
-    pub fn alpha(&self, comm: &SimpleCommunicator, jump: &PetscVec) -> Result<Vec<f64>> {
-        let mut c = vec![0.0; self.r];
-        let qg = self.qg();
-        qg.add_transpose(&jump.array()?, &mut c);
-        sum_all(comm, &mut c);
-        if let Some(gtg) = &self.gtg {
-            gtg.solve(&mut c, Side::Transposed)?;
-        }
-        c.iter_mut().for_each(|v| *v = -*v);
-        Ok(c)
-    }
-
-    /// y ← y + R α on local subdomain `j`.
-    pub fn add_kernel(&self, j: usize, alpha: &[f64], y: &mut [f64]) {
-        let kernel = &self.kernels[j];
-        kernel.add_mul(&alpha[self.first_column[j]..][..kernel.cols], y);
     }
 }

@@ -2,12 +2,15 @@
 
 use std::ops::Range;
 
+use faer::MatRef;
 use mpi::topology::SimpleCommunicator;
+use mpi::traits::Communicator;
 
 use super::rows::Rows;
+use crate::cholesky::team::Team;
 use crate::linalg::csr::Csr;
 use crate::linalg::sorted::distinct;
-use crate::parallel::exchange::{gather_all, sum_all};
+use crate::parallel::exchange::{exchange_words, gather_all, sum_all};
 
 /// The places of the entries of an r × r matrix, block by block: each block belongs to two bodies. The same on every
 /// rank.
@@ -85,6 +88,11 @@ impl Pattern {
         self.start[body]..self.start[body + 1]
     }
 
+    /// The first column of a body, or the end.
+    pub fn start_of(&self, body: usize) -> usize {
+        self.start[body]
+    }
+
     /// Number of bodies.
     pub fn n_bodies(&self) -> usize {
         self.near.len()
@@ -118,6 +126,33 @@ impl Pattern {
         }
     }
 
+    /// Adds `block` to the entries of `matrix`, which has this pattern, in the rows of body `a` and the columns of
+    /// body `b`.
+    ///
+    /// # Panics
+    /// If the pattern has no such entries.
+    pub fn add_block(&self, matrix: &mut Csr, (a, b): (usize, usize), block: MatRef<'_, f64>) {
+        let place = self.place(a as u32, b as u32);
+        for (i, row) in self.columns(a).enumerate() {
+            let first = self.row_ptr[row] + place;
+            let entries = &mut matrix.val[first..first + block.ncols()];
+            entries
+                .iter_mut()
+                .enumerate()
+                .for_each(|(j, v)| *v += block[(i, j)]);
+        }
+    }
+
+    /// Whether it has entries for all these bodies in the rows of each body.
+    pub fn contains(&self, lists: &[Vec<u32>]) -> bool {
+        let has = |a: usize, b: &u32| self.near[a].binary_search_by_key(b, |n| n.0).is_ok();
+        lists.len() == self.near.len()
+            && lists
+                .iter()
+                .enumerate()
+                .all(|(a, list)| list.iter().all(|b| has(a, b)))
+    }
+
     /// Where the columns of body `b` begin among the entries of a row of body `a`.
     fn place(&self, a: u32, b: u32) -> usize {
         let near = &self.near[a as usize];
@@ -133,6 +168,60 @@ impl Pattern {
         b: &Rows,
         chosen: impl Fn(usize) -> bool,
     ) -> Csr {
+        let mut product = self.product_here(a, b, chosen);
+        sum_all(comm, &mut product.val);
+        product
+    }
+
+    /// AᵀB over the rows that `chosen` selects, where every rank gets the rows of the product that it has in the factor
+    /// of `team`. Rows of subtrees go to their owners; those of the top are summed over all ranks. Collective.
+    pub fn product_shared(
+        &self,
+        team: &Team,
+        a: &Rows,
+        b: &Rows,
+        chosen: impl Fn(usize) -> bool,
+    ) -> Csr {
+        let mut product = self.product_here(a, b, chosen);
+        let (size, rank) = (team.comm().size() as usize, team.comm().rank() as u32);
+        let mut outgoing: Vec<Vec<u64>> = vec![Vec::new(); size];
+        let mut top: Vec<f64> = Vec::new();
+        let row = |i: usize| self.row_ptr[i]..self.row_ptr[i + 1];
+        let mut of_top = Vec::new();
+        for i in 0..self.body.len() {
+            match team.owner(i as u32) {
+                None => {
+                    of_top.push(i);
+                    top.extend(&product.val[row(i)]);
+                }
+                Some(owner) if owner != rank => {
+                    for k in row(i) {
+                        let value = std::mem::take(&mut product.val[k]);
+                        if value != 0.0 {
+                            outgoing[owner as usize].extend([k as u64, value.to_bits()]);
+                        }
+                    }
+                }
+                Some(_) => (),
+            }
+        }
+        for words in exchange_words(team.comm(), outgoing) {
+            for entry in words.chunks_exact(2) {
+                product.val[entry[0] as usize] += f64::from_bits(entry[1]);
+            }
+        }
+        sum_all(team.comm(), &mut top);
+        let mut rest = &top[..];
+        for i in of_top {
+            let (values, tail) = rest.split_at(row(i).len());
+            product.val[row(i)].copy_from_slice(values);
+            rest = tail;
+        }
+        product
+    }
+
+    /// This rank's share of AᵀB over the rows that `chosen` selects.
+    pub fn product_here(&self, a: &Rows, b: &Rows, chosen: impl Fn(usize) -> bool) -> Csr {
         let mut product = self.zeros();
         let val = &mut product.val;
         for i in (0..a.n()).filter(|&i| chosen(i)) {
@@ -151,7 +240,6 @@ impl Pattern {
                 }
             }
         }
-        sum_all(comm, val);
         product
     }
 }

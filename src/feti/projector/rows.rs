@@ -75,6 +75,11 @@ impl Rows {
         (&self.col[range.clone()], &self.val[range])
     }
 
+    /// The columns of all entries.
+    pub fn columns(&self) -> &[u32] {
+        &self.col
+    }
+
     /// Number of rows.
     pub fn n(&self) -> usize {
         self.start.len() - 1

@@ -86,6 +86,11 @@ impl Weighted {
         false
     }
 
+    /// The factor, if it solves without refinement.
+    pub fn plain(&self) -> Option<&Gram> {
+        (self.steps == 0).then_some(&self.factor)
+    }
+
     fn without_dropped(&self, x: &mut [f64]) {
         let dropped = self.factor.dropped.iter();
         dropped.for_each(|&k| x[k as usize] = 0.0);

@@ -20,7 +20,9 @@ pub use compare::{
     PhaseSeconds,
 };
 pub use plan::{PlanReport, PlannedBody, PlannedInterface, PlannedMemory};
-pub use solve::{ErrorNorms, Input, Iterations, Kkt, Multipliers, Operators, Seconds, SolveReport};
+pub use solve::{
+    ErrorNorms, Input, Iterations, Kkt, Multipliers, NaturalCoarse, Operators, Seconds, SolveReport,
+};
 pub use spectrum::{Condition, Spectrum};
 pub use table1::{PaperSide, PcResult, Table1Row, Table1Side};
 

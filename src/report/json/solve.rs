@@ -123,12 +123,28 @@ pub struct SolveReport {
     pub local_ordering: String,
     /// Weight Q of the projector: `none` without floating bodies, else `identity`, `diagonal` or `preconditioner`.
     pub projector: String,
+    /// How GᵀQG was solved, where options with the prefix `fetifeti_gtg_` have chosen that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub natural_coarse: Option<NaturalCoarse>,
     /// Relative defects of the operators' identities, with `-fetifeti_check`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub check: Option<BTreeMap<String, f64>>,
     /// Relative tolerance of the inner iteration.
     #[serde(with = "number")]
     pub rtol: f64,
+}
+
+/// A solver of GᵀQG that options have chosen.
+#[derive(Debug, Clone, Serialize, Deserialize, PartialEq)]
+pub struct NaturalCoarse {
+    /// KSP and PC.
+    pub solver: String,
+    /// Whether FGMRES iterates around it, because it is no factorisation.
+    pub iterated: bool,
+    /// Relative residual of FGMRES.
+    pub rtol: Option<f64>,
+    /// Iterations of FGMRES for a solution, on average with the rows that hold in the end.
+    pub iterations: Option<f64>,
 }
 
 impl SolveReport {

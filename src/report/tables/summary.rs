@@ -53,6 +53,18 @@ pub fn solve(r: &SolveReport) -> String {
             ),
         ),
     ];
+    if let Some(coarse) = &r.natural_coarse {
+        let how = match (coarse.iterations, coarse.rtol) {
+            (Some(n), Some(rtol)) => {
+                format!(
+                    "{}, {n:.1} iterations of FGMRES around it to {rtol:.0e}",
+                    coarse.solver
+                )
+            }
+            _ => format!("{}, exact after rounding", coarse.solver),
+        };
+        lines.push(("coarse problem of bodies", how));
+    }
     // The default, a scalar problem in the plane, is not mentioned.
     if r.dimension == 3 || r.components > 1 {
         lines.insert(1, ("physics", r.form.clone()));

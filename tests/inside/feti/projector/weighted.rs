@@ -30,7 +30,7 @@ fn with_matrix(skew: f64, test: impl Fn(Result<Weighted, Csr>, &Csr) + Send + Sy
         let comm = session.comm();
         let g = rows();
         let start: Vec<usize> = (0..=BODIES).map(|b| 2 * b).collect();
-        let shape = Shape::of(comm, Pattern::new(comm, &g, &g, &start), 1);
+        let shape = Shape::of(comm, Pattern::new(comm, &g, &g, &start), 1, &[]);
         let plain = Gram::new(&shape, shape.pattern.product(comm, &g, &g, |_| true));
         assert!(plain.is_sparse() && plain.dropped.is_empty());
         let mut weighted = g.clone();

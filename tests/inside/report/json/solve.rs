@@ -61,6 +61,7 @@ fn report() -> SolveReport {
         local_solver: "multifrontal".into(),
         local_ordering: "nd".into(),
         projector: "identity".into(),
+        natural_coarse: None,
         check: None,
         rtol: 1e-6,
     }

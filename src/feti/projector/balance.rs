@@ -1,0 +1,85 @@
+//! Forces that are balanced on every floating body, and the motions of the bodies.
+
+use mpi::topology::SimpleCommunicator;
+
+use super::gtg::Side;
+use super::natural::NaturalCoarse;
+use crate::parallel::exchange::sum_all;
+use crate::petsc::Vec as PetscVec;
+use crate::Result;
+
+/// The work of the loads on the kernels: e = Rᵀ g, and the size of the terms that may cancel in it.
+#[derive(Debug, Clone, Default)]
+pub struct KernelLoad {
+    /// e, length r.
+    pub e: Vec<f64>,
+    /// For each entry of e the largest |R| times Σ|f|. Loads inside a subdomain may cancel before they reach g.
+    pub size: Vec<f64>,
+}
+
+impl NaturalCoarse {
+    /// e = Rᵀ g for the condensed loads g of the loads f. Collective.
+    pub fn kernel_load(
+        &self,
+        comm: &SimpleCommunicator,
+        f: &[&[f64]],
+        g: &[Vec<f64>],
+    ) -> KernelLoad {
+        let mut e = vec![0.0; 2 * self.r];
+        for (j, kernel) in self.kernels.iter().enumerate() {
+            let load: f64 = f[j].iter().map(|f| f.abs()).sum();
+            for c in 0..kernel.cols {
+                let at = self.first_column(j) + c;
+                let largest = kernel.col(c).iter().fold(0.0f64, |a, r| a.max(r.abs()));
+                let work = kernel.col(c).iter().zip(&g[j]).map(|(r, g)| r * g);
+                e[at] += work.sum::<f64>();
+                e[self.r + at] += largest * load;
+            }
+        }
+        sum_all(comm, &mut e);
+        let size = e.split_off(self.r);
+        KernelLoad { e, size }
+    }
+
+    /// λ ← λ + Q G (Gᵀ Q G)⁻¹ (e − Gᵀ λ): balances the forces on every floating body. From λ = 0 the result is λ₀.
+    /// Collective.
+    pub fn balance(
+        &self,
+        comm: &SimpleCommunicator,
+        load: &KernelLoad,
+        lambda: &PetscVec,
+    ) -> Result<()> {
+        let Some(solver) = &self.gtg else {
+            return Ok(());
+        };
+        // The second pass recovers the digits that a badly conditioned Gᵀ Q G costs.
+        for _ in 0..2 {
+            let mut c = vec![0.0; self.r];
+            self.g.add_transpose(&lambda.array()?, &mut c);
+            sum_all(comm, &mut c);
+            c.iter_mut().zip(&load.e).for_each(|(c, e)| *c = e - *c);
+            solver.solve(&mut c, Side::Plain)?;
+            self.qg().add(1.0, &c, &mut lambda.array_mut()?);
+        }
+        Ok(())
+    }
+
+    /// α = −(Gᵀ Q G)⁻¹ (Q G)ᵀ jump: the rigid motions that close the jump left by S̃⁺(g − Bᵀ λ). Collective.
+    pub fn alpha(&self, comm: &SimpleCommunicator, jump: &PetscVec) -> Result<Vec<f64>> {
+        let mut c = vec![0.0; self.r];
+        let qg = self.qg();
+        qg.add_transpose(&jump.array()?, &mut c);
+        sum_all(comm, &mut c);
+        if let Some(gtg) = &self.gtg {
+            gtg.solve(&mut c, Side::Transposed)?;
+        }
+        c.iter_mut().for_each(|v| *v = -*v);
+        Ok(c)
+    }
+
+    /// y ← y + R α on local subdomain `j`.
+    pub fn add_kernel(&self, j: usize, alpha: &[f64], y: &mut [f64]) {
+        let kernel = &self.kernels[j];
+        kernel.add_mul(&alpha[self.first_column(j)..][..kernel.cols], y);
+    }
+}

@@ -1,0 +1,114 @@
+//! The natural coarse problem of many bodies: whoever solves it, on whatever number of ranks, the answer is the same.
+
+use crate::support::{mpi, program};
+use mpi::Scratch;
+use program::run_fetifeti;
+use serde_json::Value;
+
+/// A wall of 192 bodies, and squares of different stiffness that are tied.
+fn scenes(scratch: &Scratch) -> Vec<(&'static str, String)> {
+    let tied = "[grid]\nbodies = [14, 13]\nsize = [14, 13]\nsubdomains = 1\nelements_per_subdomain = 3\n\
+                rho = { checkerboard = [1, 1e4], by = \"body\" }\ndirichlet = [\"right\"]\nload = \"1 + x\"\n\
+                [options]\nfetifeti_projector = \"preconditioner\"\n";
+    let path = scratch.path("tied.toml");
+    std::fs::write(&path, tied).expect("the scene can be written");
+    vec![("wall", "examples/scenes/wall.toml".into()), ("tied", path)]
+}
+
+fn report(ranks: usize, scene: &str, scratch: &Scratch, options: &str) -> Value {
+    let json = scratch.path("report.json");
+    let mut args = vec![
+        "solve",
+        scene,
+        "--quiet",
+        "--json",
+        &json,
+        "-fetifeti_ksp_rtol",
+        "1e-9",
+    ];
+    args.extend(options.split_whitespace());
+    let run = run_fetifeti(ranks, &args);
+    assert_eq!(
+        run.code,
+        0,
+        "{ranks} ranks, {scene} {options}: {}",
+        run.all()
+    );
+    let text = std::fs::read_to_string(&json).expect("there is a report");
+    serde_json::from_str(&text).expect("the report is JSON")
+}
+
+/// Energy and κ are those of our own factor, to the tolerance and to three more digits than anybody reads. Solvers that
+/// are no factorisation are iterated upon, and the report says so.
+#[test]
+fn whoever_solves_the_coarse_problem_the_answer_is_the_same() {
+    let scratch = Scratch::new("coarse");
+    let telescope =
+        "-fetifeti_gtg_pc_type telescope -fetifeti_gtg_pc_telescope_reduction_factor 2 \
+                     -fetifeti_gtg_telescope_pc_type lu";
+    for (name, scene) in scenes(&scratch) {
+        let own = report(1, &scene, &scratch, "");
+        assert_eq!(own["natural_coarse"], Value::Null);
+        let expected = |r: &Value| (r["energy"].as_f64().unwrap(), kappa(r));
+        let (energy, own_kappa) = expected(&own);
+        for ranks in [1, 2, 4] {
+            let solvers = [
+                ("", None),
+                ("-fetifeti_gtg_pc_type lu", Some(false)),
+                (
+                    "-fetifeti_gtg_ksp_type cg -fetifeti_gtg_pc_type gamg",
+                    Some(true),
+                ),
+                (telescope, None),
+            ];
+            for (options, iterated) in solvers {
+                if ranks == 1 && (options == telescope || options.is_empty()) {
+                    continue;
+                }
+                let r = report(ranks, &scene, &scratch, options);
+                let what = format!("{name}, {ranks} ranks, {options}");
+                let (e, k) = expected(&r);
+                assert!(
+                    (e / energy - 1.0).abs() < 1e-9,
+                    "{what}: energy {e}, not {energy}"
+                );
+                assert!(
+                    (k / own_kappa - 1.0).abs() < 1e-5,
+                    "{what}: κ {k}, not {own_kappa}"
+                );
+                let said = &r["natural_coarse"]["iterated"];
+                if let Some(iterated) = iterated {
+                    assert_eq!(said.as_bool(), Some(iterated), "{what}");
+                }
+            }
+        }
+    }
+}
+
+fn kappa(report: &Value) -> f64 {
+    report["condition"]["estimate"]["kappa"]
+        .as_f64()
+        .expect("CG estimates κ")
+}
+
+/// With our own factor only the columns that separate the parts of the ranks are summed over all ranks: four times in
+/// an iteration, together less than a single vector of all columns.
+#[test]
+fn vectors_of_all_columns_are_not_summed() {
+    let scratch = Scratch::new("coarse-sums");
+    let scene = "examples/scenes/wall.toml";
+    for ranks in [2, 4] {
+        let r = report(ranks, scene, &scratch, "");
+        let columns = 3.0 * r["floating_bodies"].as_f64().unwrap();
+        assert!(columns > 150.0, "few columns are another case");
+        let communication = &r["communication"];
+        let summed = communication["reduced_bytes_per_iteration"]
+            .as_f64()
+            .unwrap();
+        assert!(
+            summed < 8.0 * columns,
+            "{ranks} ranks: {summed} bytes of {columns} columns"
+        );
+        assert!(communication["reductions_per_iteration"].as_f64().unwrap() < 8.0);
+    }
+}
