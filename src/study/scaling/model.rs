@@ -18,14 +18,8 @@ use crate::feti::projector::gram::FEW;
 /// Projections in an iteration, each with an all-reduce of r numbers: P and Pᵀ around F and around M⁻¹.
 const PROJECTIONS: f64 = 4.0;
 
-/// All-reduces with the entries of Gᵀ G in the set-up: the product, and what subtrees of its factor leave to the top.
-const SUMS: f64 = 2.0;
-
 /// Entries in a row of Gᵀ G: a body of a plane grid and its eight neighbours, scalar.
 const NEAR: f64 = 9.0;
-
-/// All-reduces of up to r numbers in a solve with a factor that ranks share, where r is above [`FEW`].
-const SHARED: f64 = 2.0;
 
 /// A phase: its terms as functions of a rank's work, and the measured seconds.
 struct Phase {
@@ -156,10 +150,44 @@ pub struct Model {
 /// per entry.
 const FILL: f64 = 93.0;
 
-/// Bytes of what every rank has of Gᵀ G and its factor, with r numbers for each of a projection's vectors: matrix and
-/// pattern, and a factor that is the top for every rank (at most: subtrees are on one rank).
-pub fn replicated(r: f64) -> f64 {
-    12.0 * NEAR * r + FILL * r * (r + 1.0).log2() + 8.0 * PROJECTIONS * r
+/// Bytes that every rank has for each rigid motion, whoever factors it: pattern and entries of Gᵀ G, its order, the
+/// structure of the fronts, and who has what.
+const KNOWN: f64 = 12.0 * NEAR + 200.0;
+
+/// How ranks share the factor of Gᵀ Q G of a plane grid of bodies (`cholesky::team`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shares {
+    /// Number of subtrees; none if every rank has the whole factor.
+    pub subtrees: f64,
+    /// Number of rows in the top.
+    pub top: f64,
+    /// Number of rows whose factor a rank has.
+    pub rows: f64,
+}
+
+impl Shares {
+    /// Of r rigid motions among `ranks` ranks: √P squares, at least four, and the lines between them.
+    pub fn new(r: f64, ranks: f64) -> Shares {
+        if r <= FEW as f64 || ranks <= 1.0 {
+            return Shares {
+                subtrees: 0.0,
+                top: 0.0,
+                rows: r,
+            };
+        }
+        let subtrees = ranks.sqrt().max(ranks.min(4.0));
+        let top = (2.0 * (subtrees.sqrt() - 1.0) * r.sqrt()).min(r);
+        Shares {
+            subtrees,
+            top,
+            rows: top + (r - top) / subtrees,
+        }
+    }
+}
+
+/// Bytes of Gᵀ G and its factor on a rank.
+pub fn replicated(r: f64, ranks: f64) -> f64 {
+    KNOWN * r + FILL * Shares::new(r, ranks).rows * (r + 1.0).log2()
 }
 
 /// The part of the data read by a rank in an iteration that does not fit in a cache of this size.
@@ -232,17 +260,32 @@ impl Model {
     pub fn seconds(&self, work: &Work, ranks: f64, sent: &Sent, network: &Network) -> Modelled {
         let at = |k: usize| self.laws[k].at(&terms(k, self.cache, work));
         let r = work.kernels;
+        let sum = |n: f64| any(n) * network.all_reduce(ranks, 8.0 * n);
+        let shares = Shares::new(r, ranks);
+        let shared = any(shares.subtrees);
         let mut setup = SetupSeconds::from_fn(at);
-        setup.natural += SUMS * any(r) * network.all_reduce(ranks, 8.0 * NEAR * r);
-        let shared = any((r - FEW as f64).max(0.0)) * SHARED;
+        // The product and, where ranks share the factor, what subtrees leave to the top, and the scaling.
+        setup.natural += match shared {
+            0.0 => sum(NEAR * r),
+            _ => sum(NEAR * shares.top) + sum(NEAR * r) + sum(r),
+        };
+        // A projection sums all columns, or those of the top. The rank of a subtree hears from all that have its
+        // columns, and answers.
+        let summed = if shared > 0.0 { shares.top } else { r };
+        let heard = shared * ranks / shares.subtrees.max(1.0);
+        let answered = 2.0 * PROJECTIONS * network.messages(heard, 8.0 * NEAR * heard);
+        let solved = Work {
+            kernels: shares.rows,
+            ..*work
+        };
+        let of_projections = |k: usize| self.laws[k].at(&terms(k, self.cache, &solved));
         let iteration = IterationSeconds {
             local: at(5),
             primal: at(6),
             lifting: at(7),
-            natural: at(8),
-            exchange: at(9) + network.messages(sent.messages, sent.bytes),
-            reduction: sent.dots * network.all_reduce(ranks, 8.0)
-                + PROJECTIONS * (any(r) + shared) * network.all_reduce(ranks, 8.0 * r),
+            natural: of_projections(8),
+            exchange: at(9) + network.messages(sent.messages, sent.bytes) + answered,
+            reduction: sent.dots * network.all_reduce(ranks, 8.0) + PROJECTIONS * sum(summed),
         };
         Modelled {
             setup,

@@ -23,7 +23,7 @@ pub struct PredictedRow {
     pub kernels: usize,
     /// Unknowns, copies counted.
     pub unknowns: f64,
-    /// Bytes of GᵀG and its factor on every rank.
+    /// Bytes of GᵀG and of its part of the factor on a rank.
     pub replicated_bytes: f64,
     /// Seconds by phase.
     pub seconds: Modelled,
@@ -91,7 +91,7 @@ impl Basis<'_> {
             ranks: ranks as usize,
             kernels: work.kernels as usize,
             unknowns: ranks * work.unknowns,
-            replicated_bytes: replicated(work.kernels),
+            replicated_bytes: replicated(work.kernels, ranks),
             seconds,
             total: seconds.total(n),
             without_kernels: free.total(n),

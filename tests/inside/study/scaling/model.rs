@@ -2,7 +2,11 @@
 
 use super::super::{Problem, Series};
 use super::*;
+use crate::cholesky::dissection::nested_dissection;
+use crate::cholesky::symbolic::Symbolic;
+use crate::cholesky::team::shared_parts;
 use crate::feti::krylov::tally::{Communication, PerIteration};
+use crate::linalg::csr::Csr;
 
 /// Seconds per term of an iteration on the subdomains, as chosen for the tests.
 const KNOWN: [f64; 6] = [4e-7, 3e-10, 2e-8, 0.0, 2e-9, 0.0];
@@ -107,9 +111,38 @@ fn messages_come_on_top() {
     assert!((many.iteration.reduction - reduction).abs() < 1e-12);
     assert_eq!(alone.iteration.reduction, 0.0);
     assert_eq!(many.iteration.local, alone.iteration.local);
-    // Two all-reduces of 9 r numbers in the set-up.
+    // An all-reduce of 9 r numbers in the set-up: few motions are factored by every rank.
     let more = many.setup.natural - alone.setup.natural;
-    assert!((more - 2.0 * net.all_reduce(1024.0, 8.0 * 63.0)).abs() < 1e-15);
+    assert!((more - net.all_reduce(1024.0, 8.0 * 63.0)).abs() < 1e-15);
     let total = many.setup.sum() + 5.0 * many.iteration.sum() + many.outside;
     assert_eq!(many.total(5.0), total);
+}
+
+/// What the model says of the shares is what ranks have: a square of bodies, each coupled with its eight neighbours.
+#[test]
+fn shares_are_those_of_the_factor() {
+    let n = 100usize;
+    let at = |i: usize, j: usize| (i * n + j) as u32;
+    let mut entries = Vec::new();
+    for (i, j) in (0..n * n).map(|k| (k / n, k % n)) {
+        for p in i.saturating_sub(1)..(i + 2).min(n) {
+            for q in j.saturating_sub(1)..(j + 2).min(n) {
+                entries.push((at(i, j), at(p, q), 1.0));
+            }
+        }
+    }
+    let graph = Csr::from_triplets(n * n, &entries);
+    let all: Vec<u32> = (0..(n * n) as u32).collect();
+    let sets = nested_dissection(&graph, &all, None);
+    let symbolic = Symbolic::with_supernodes(&graph, &[], &sets);
+    for ranks in [4, 100, 10_000] {
+        let (subtrees, top) = shared_parts(&symbolic, ranks);
+        let modelled = Shares::new((n * n) as f64, ranks as f64);
+        let times = |found: usize, modelled: f64| found as f64 / modelled;
+        let (more, larger) = (times(subtrees, modelled.subtrees), times(top, modelled.top));
+        assert!(
+            (0.8..2.5).contains(&more) && (0.5..2.0).contains(&larger),
+            "{ranks} ranks: {subtrees} subtrees, {top} rows in the top, modelled {modelled:?}"
+        );
+    }
 }
