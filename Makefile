@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup build run install uninstall dist deb test test-newer fmt lint docs clean
+.PHONY: help setup build run install uninstall dist deb test test-newer sanitize fmt lint docs clean
 
 OUT ?= out
 TARGET := $(if $(CARGO_TARGET_DIR),$(CARGO_TARGET_DIR),target)
@@ -87,6 +87,12 @@ test-newer: setup ## Build a newer PETSc and SLEPc, and test the plug-in, the C 
 	source "$(NEWER_DIR)/env" && export CARGO_TARGET_DIR="$(NEWER_DIR)/build-$(NEWER_PETSC)" && \
 	cargo test --no-fail-fast --lib --test embedding --test linear --test ranks --test contact \
 		-- --skip petsc4py --skip fortran --skip random
+
+# Some of malloc, valgrind, address, thread and miri; all without.
+PARTS ?=
+
+sanitize: setup ## Run the program, the plug-in and the C API under sanitizers (an hour; PARTS="address miri")
+	scripts/sanitize.sh "$(TARGET)/sanitize" $(PARTS)
 
 fmt: ## Format the sources
 	cargo fmt --all

@@ -67,8 +67,11 @@ static PetscErrorCode Block(FetiFeti ff, PetscInt m, PetscInt n, PetscInt low, V
   PetscCall(VecGetLocalSize(places, nodes));
   *nodes /= 2;
   PetscCall(FetiFetiAddSurface(ff, low, 2, 2, *nodes, dofs, at, faces, start, list, NULL));
+  PetscCall(ISLocalToGlobalMappingRestoreIndices(map, &dofs));
+  PetscCall(VecRestoreArrayRead(places, &at));
   PetscCall(PetscFree3(start, list, rows));
   PetscCall(MatDestroy(&A)); /* its entries have been copied */
+  PetscCall(DMDestroy(&da));
   PetscFunctionReturn(0);
 }
 
@@ -94,6 +97,10 @@ int main(int argc, char **argv)
   PetscCallMPI(MPI_Allreduce(&error[0], &error[1], 1, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "pressure 0.1 but for %.2e\n", (double)error[1]));
   PetscCheck(error[1] < 1e-10, PETSC_COMM_WORLD, PETSC_ERR_PLIB, "not the pressure that was expected");
+  PetscCall(PetscFree2(pressure, state));
+  for (k = 0; k < 2; k++) PetscCall(VecDestroy(&b[k]));
+  PetscCall(VecDestroy(&load));
+  PetscCall(VecDestroy(&u));
   PetscCall(FetiFetiDestroy(&ff));
   return PetscFinalize();
 }
