@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::fit::Law;
 use super::network::Network;
 use super::{IterationSeconds, Point, SetupSeconds, Work};
+use crate::cholesky::team::least_subtrees;
 use crate::feti::projector::gram::FEW;
 
 /// Projections in an iteration, each with an all-reduce of r numbers: P and Pᵀ around F and around M⁻¹.
@@ -166,7 +167,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Of r rigid motions among `ranks` ranks: √P squares, at least four, and the lines between them.
+    /// Of r rigid motions among `ranks` ranks: squares of bodies, at least four, and the lines between them.
     pub fn new(r: f64, ranks: f64) -> Shares {
         if r <= FEW as f64 || ranks <= 1.0 {
             return Shares {
@@ -175,7 +176,7 @@ impl Shares {
                 rows: r,
             };
         }
-        let subtrees = ranks.sqrt().max(ranks.min(4.0));
+        let subtrees = least_subtrees(ranks).max(ranks.min(4.0));
         let top = (2.0 * (subtrees.sqrt() - 1.0) * r.sqrt()).min(r);
         Shares {
             subtrees,

@@ -87,7 +87,7 @@ fn many_ranks_share_many_subtrees() {
             roots * roots >= ranks,
             "{ranks} ranks share {roots} subtrees"
         );
-        // Lines between √P squares.
+        // Lines between squares.
         let top: usize = (fronts.iter().zip(&dealt))
             .filter(|f| f.1.is_none())
             .map(|f| f.0.width())
