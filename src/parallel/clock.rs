@@ -76,6 +76,6 @@ pub fn timed<T>(phase: Phase, work: impl FnOnce() -> T) -> T {
     result
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "cli"))]
 #[path = "../../tests/inside/parallel/clock.rs"]
 mod tests;
