@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup build run install uninstall dist deb test test-newer sanitize fmt lint docs clean
+.PHONY: help setup build run install uninstall dist deb test test-newer sanitize fuzz soak fmt lint docs clean
 
 OUT ?= out
 TARGET := $(if $(CARGO_TARGET_DIR),$(CARGO_TARGET_DIR),target)
@@ -93,6 +93,15 @@ PARTS ?=
 
 sanitize: setup ## Run the program, the plug-in and the C API under sanitizers (an hour; PARTS="address miri")
 	scripts/sanitize.sh "$(TARGET)/sanitize" $(PARTS)
+
+# Seconds of each target of fuzz, and of soak together. Nightly Rust is needed for fuzz only.
+SECONDS ?= 60
+
+fuzz: setup ## Feed the readers with made-up bytes, SECONDS for each (make fuzz SECONDS=60)
+	scripts/fuzz.sh "$(SECONDS)" "$(or $(RUNS),0)" $(READERS)
+
+soak: setup ## Solve random scenes for SECONDS and compare each with the direct solution (make soak SECONDS=60)
+	scripts/soak.sh "$(SECONDS)" "$(or $(FIRST),0)"
 
 fmt: ## Format the sources
 	cargo fmt --all

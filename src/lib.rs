@@ -131,9 +131,17 @@ pub mod substructures;
 // With this name, tests use `fetifeti` inside the crate as they do outside.
 #[cfg(test)]
 extern crate self as fetifeti;
+/// What `make fuzz` feeds; cargo-fuzz compiles with this condition.
+#[cfg(fuzzing)]
+#[path = "../tests/fuzz/readers.rs"]
+pub mod fuzz;
 #[cfg(all(test, feature = "cli"))]
 #[path = "../tests/inside/mod.rs"]
 mod inside;
+/// What `make soak` runs.
+#[cfg(fuzzing)]
+#[path = "../tests/fuzz/soak.rs"]
+pub mod soak;
 #[cfg(test)]
 #[path = "../tests/support/session.rs"]
 mod testing;

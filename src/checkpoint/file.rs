@@ -82,7 +82,11 @@ pub(super) fn hash_of(path: &Path) -> Result<u64> {
 }
 
 fn to_bytes(checkpoint: &Checkpoint) -> Vec<u8> {
-    let content = postcard::to_allocvec(checkpoint).expect("numbers, texts and lists have a form");
+    around(&postcard::to_allocvec(checkpoint).expect("numbers, texts and lists have a form"))
+}
+
+/// The file with this content.
+pub(crate) fn around(content: &[u8]) -> Vec<u8> {
     let mut file = Vec::with_capacity(HEAD + content.len() + TAIL);
     file.extend(MAGIC);
     file.extend(VERSION.to_le_bytes());
@@ -92,7 +96,8 @@ fn to_bytes(checkpoint: &Checkpoint) -> Vec<u8> {
     file
 }
 
-fn from_bytes(file: &[u8]) -> std::result::Result<Checkpoint, String> {
+/// The content of a file with these bytes; or what is wrong with it, a clause.
+pub(crate) fn from_bytes(file: &[u8]) -> std::result::Result<Checkpoint, String> {
     let found = file.len();
     if !file.starts_with(&MAGIC[..found.min(MAGIC.len())]) {
         return Err("the file is no checkpoint, expected one that --checkpoint has written".into());

@@ -62,6 +62,12 @@ fn start() -> i32 {
     session.run(|session| run(session, parsed?))
 }
 
+/// The arguments for PETSc among these.
+#[cfg(fuzzing)]
+pub(crate) fn parse_line(args: Vec<String>) -> Result<Vec<String>> {
+    Ok(parse::parse(args)?.petsc)
+}
+
 fn run(session: &Session, invocation: Invocation) -> Result<()> {
     let Invocation { wanted, petsc } = invocation;
     let command = match wanted {

@@ -1,6 +1,23 @@
 //! A mesh as a file has it: cells of every dimension, and named groups of cells, nodes or sides of cells.
 
 use super::cells::Cells;
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// The bytes of the file `path`, which has a `what`. A device or a pipe may have no end, and is refused.
+///
+/// # Errors
+/// [`Error::Input`] with the path.
+pub(crate) fn bytes(path: &Path, what: &str) -> Result<Vec<u8>> {
+    let name = path.display();
+    let fail = |e| Error::Input(format!("{name}: the {what} cannot be read: {e}"));
+    if !std::fs::metadata(path).map_err(fail)?.is_file() {
+        return Err(Error::Input(format!(
+            "{name} is no file, where one with a {what} was expected"
+        )));
+    }
+    std::fs::read(path).map_err(fail)
+}
 
 /// What a reader of mesh files returns, whatever the format.
 #[derive(Debug, Clone, PartialEq, Default)]

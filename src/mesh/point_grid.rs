@@ -27,9 +27,22 @@ impl PointGrid {
     /// The points in the cells that meet a box.
     pub fn within(&self, low: [f64; 3], high: [f64; 3]) -> impl Iterator<Item = usize> + '_ {
         let (a, b) = (self.cell(low), self.cell(high));
-        let cells = (a[2]..=b[2]).flat_map(move |k| {
-            (a[1]..=b[1]).flat_map(move |j| (a[0]..=b[0]).map(move |i| [i, j, k]))
-        });
+        // A box that is large beside the cells has more of them than there are with points.
+        let many = (0..3).map(|d| b[d] as f64 - a[d] as f64 + 1.0);
+        let large = many.product::<f64>() > self.cells.len() as f64;
+        let every = || {
+            let rows = (a[2]..=b[2]).flat_map(move |k| (a[1]..=b[1]).map(move |j| [j, k]));
+            rows.flat_map(move |[j, k]| (a[0]..=b[0]).map(move |i| [i, j, k]))
+        };
+        let held = || {
+            let inside = |c: &&[i64; 3]| (0..3).all(|d| (a[d]..=b[d]).contains(&c[d]));
+            let mut held: Vec<[i64; 3]> = self.cells.keys().filter(inside).copied().collect();
+            held.sort_by_key(|&[i, j, k]| [k, j, i]);
+            held
+        };
+        let (every, held) = ((!large).then(every), large.then(held));
+        let cells = every.into_iter().flatten();
+        let cells = cells.chain(held.into_iter().flatten());
         cells.filter_map(|c| self.cells.get(&c)).flatten().copied()
     }
 
@@ -38,3 +51,7 @@ impl PointGrid {
         self.within(x.map(|v| v - near), x.map(|v| v + near))
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/inside/mesh/point_grid.rs"]
+mod tests;

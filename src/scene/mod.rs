@@ -28,7 +28,7 @@ mod loads;
 mod meshes;
 pub(crate) mod model;
 #[cfg(feature = "cli")]
-mod need;
+pub(crate) mod need;
 mod numbering;
 mod plan;
 mod quantity;
@@ -68,6 +68,8 @@ pub use model::spec::{lee, ByDefault, Faces, ProbeSpec, SceneSpec};
 pub use model::steps::Steps;
 pub use numbering::Numbering;
 pub use plan::{BodyPlan, InterfacePlan, Plan};
+#[cfg(fuzzing)]
+pub(crate) use read::read;
 pub use rows::equations::Equation;
 pub use rows::obstacles::Obstacle;
 pub use rows::points::{Inequality, Point, PointRow};

@@ -38,6 +38,12 @@ pub(super) fn check(spec: &SceneSpec) -> Result<()> {
                 body.mesh.dim()
             ));
         }
+        if body.name.contains(char::is_control) {
+            let (written, name) = (&body.written, &body.name);
+            return Err(Error::Input(format!(
+                "{written}body {name:?}: a control character in its name, expected letters, digits and signs"
+            )));
+        }
         check_mesh(body)?;
         check_values(body, &spec.form)?;
         check_frame(body, &spec.form)?;

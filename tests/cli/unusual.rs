@@ -119,6 +119,22 @@ fn bodies_in_a_row() {
     );
 }
 
+/// Loads on nodes that ties hold: u = 0, and rounding of it is no jump.
+#[test]
+fn a_load_that_moves_nothing() {
+    let scratch = Scratch::new("held");
+    let text =
+        "[[body]]\nname = \"a\"\nsize = [0.7, 0.5]\nelements = [2, 1]\nsubdomains = [2, 1]\n\
+                load = -1\ndirichlet = [\"bottom\"]\n\
+                [[body]]\nname = \"b\"\norigin = [0, 0.5]\nsize = [0.7, 1]\nelements = [3, 1]\n\
+                load = 1\ndirichlet = \"all\"\n[[tie]]\nbodies = [\"a\", \"b\"]\n";
+    let out = fetifeti(&["solve", &scratch.file("s.toml", text), "--json", "-"]);
+    assert_eq!(out.code, 0, "{}", out.all());
+    let report: serde_json::Value = serde_json::from_str(&out.stdout).expect("JSON");
+    let energy = report["energy"].as_f64().expect("a number");
+    assert!(energy.abs() < 1e-20, "{energy}");
+}
+
 #[test]
 fn no_load_at_all() {
     for dirichlet in ["\"all\"", "[\"left\"]"] {

@@ -5,6 +5,18 @@ use fetifeti::mesh::BoxMesh;
 use fetifeti::scene::{BodySpec, Field, GridSpec, Scene, SceneSpec};
 use scene_message::{body, check, message, pair};
 
+/// Sentences are one line, also where they quote texts of several.
+#[test]
+fn names_of_two_lines() {
+    let two = body("a\\nb", "[0, 0]", "elements = 4");
+    check(
+        &two,
+        "s.toml:1: body \"a\\nb\": a control character in its name, expected letters, digits and signs",
+    );
+    let said = message(&body("a", "[0, 0]", "elements = 4\nload = \"1 +\\n; 2\""));
+    assert!(said.contains("1 +\\n; 2"), "{said}");
+}
+
 #[test]
 fn bodies_together() {
     check(

@@ -132,7 +132,7 @@ fn files_have_a_placement_on_each_line() {
 fn mistakes_have_a_sentence_each() {
     let e = message(&bricks("\"nowhere.txt\"", ""));
     assert!(
-        e.starts_with("s.toml:6: nowhere.txt: the placements cannot be read: "),
+        e.starts_with("s.toml:6: nowhere.txt: the list of placements cannot be read: "),
         "{e}"
     );
     check(

@@ -81,6 +81,7 @@ impl Certificate {
         let mut on_gamma = Vec::new();
         let mut primal = vec![0.0; stiffness.space.ghosts.len()];
         let mut primal_d = primal.clone();
+        let mut scale = known;
         let mut work = stiffness.work();
         for (part, work) in examined.into_iter().zip(&mut work) {
             sums.iter_mut().zip(part.sums).for_each(|(s, p)| *s += p);
@@ -93,6 +94,7 @@ impl Certificate {
                 .iter()
                 .for_each(|&at| primal_d[at as usize] = 1.0);
             work.y = part.on_interface;
+            scale = scale.max(part.loaded);
             on_gamma.push(part.residual);
         }
         let rows = dual.multipliers()?;
@@ -106,7 +108,7 @@ impl Certificate {
         let forces = sums[1].sqrt() + sums[2].sqrt();
         let residual = (sums[0] + primal).sqrt();
 
-        let mut largest = [0.0, 0.0, 0.0, 0.0, known]; // |u|, |λ|, violation, |λ (Bu − c)|, scale
+        let mut largest = [0.0, 0.0, 0.0, 0.0, scale]; // |u|, |λ|, violation, |λ (Bu − c)|, scale
         let mut smallest = [0.0f64];
         largest[0] = u.iter().flatten().fold(0.0, |a, v| a.max(v.abs()));
         for r in 0..jump.n_owned {
@@ -155,6 +157,8 @@ struct Examined {
     primal: Vec<(u32, f64, f64)>,
     /// Ghosts of fixing dofs.
     fixing: Vec<u32>,
+    /// The largest |f/d|: a displacement of the problem's scale, also where all is held and u = 0.
+    loaded: f64,
     /// u on Γ.
     on_interface: Vec<f64>,
     /// f − K u − Bᵀ λ on Γ.
@@ -221,8 +225,11 @@ fn examine(
     }
     sums[4] = weigh(&r, &d);
     sums[0] = sums[4] + weigh(&on_gamma, &stiff);
+    let loaded = sub.f.iter().zip(&d).filter(|(_, d)| **d > 0.0);
+    let loaded = loaded.map(|(f, d)| (f / d).abs());
     Examined {
         sums,
+        loaded: loaded.fold(0.0, f64::max),
         primal,
         fixing: places[local.gamma().n_pi() - local.gamma().fixing.len()..].to_vec(),
         on_interface: on(u),

@@ -18,8 +18,8 @@ mod version2;
 mod version4;
 mod write;
 
-use super::file::MeshFile;
-use crate::error::{Error, Result};
+use super::file::{bytes, MeshFile};
+use crate::error::Result;
 use elements::Elements;
 use names::{Groups, Names};
 use nodes::Nodes;
@@ -31,17 +31,10 @@ pub use write::write;
 /// Reads the file `path`.
 ///
 /// # Errors
-/// [`Error::Input`] with file, line or byte, what was found and what was expected.
+/// [`Error::Input`](crate::Error::Input) with file, line or byte, what was found and what was expected.
 pub fn load(path: impl AsRef<Path>) -> Result<MeshFile> {
     let path = path.as_ref();
-    let name = path.display().to_string();
-    let fail = |e| Error::Input(format!("{name}: the mesh cannot be read: {e}"));
-    if !std::fs::metadata(path).map_err(fail)?.is_file() {
-        return Err(Error::Input(format!(
-            "{name} is no file, where one with a mesh was expected"
-        )));
-    }
-    read(&name, &std::fs::read(path).map_err(fail)?)
+    read(&path.display().to_string(), &bytes(path, "mesh")?)
 }
 
 /// Reads the bytes of a file; `name` names it in messages.

@@ -16,6 +16,7 @@ use super::model::spec::{ByDefault, SceneSpec};
 use crate::error::{Error, Result};
 use crate::fem::cell::{Cure, Plane};
 use crate::fem::{Form, Physics};
+use crate::mesh::bytes;
 use crate::mesh::deck::{self, Deck, Model};
 use crate::substructures::BodyNode;
 use bodies::Extracted;
@@ -46,17 +47,23 @@ impl DeckScenes {
     /// # Errors
     /// [`Error::Input`] with file, line and what was expected.
     pub fn load(path: &Path) -> Result<DeckScenes> {
-        let read = |file: &Path| {
-            let name = file.display();
-            let bytes = std::fs::read(file);
-            bytes.map_err(|e| Error::Input(format!("{name}: the deck cannot be read: {e}")))
-        };
+        let read = |file: &Path| bytes(file, "deck");
         let directory = path.parent().unwrap_or(Path::new(""));
         let name = path.display().to_string();
-        let deck = deck::read(&name, &read(path)?, &|file| read(&directory.join(file)))?;
+        DeckScenes::of(deck::read(&name, &read(path)?, &|file| {
+            read(&directory.join(file))
+        })?)
+    }
+
+    /// The scenes of a deck.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for one without a step.
+    pub(crate) fn of(deck: Deck) -> Result<DeckScenes> {
         if deck.steps.is_empty() {
             return Err(Error::Input(format!(
-                "{name}: the deck has no *STEP (one at least was expected)"
+                "{}: the deck has no *STEP (one at least was expected)",
+                deck.mesh.name
             )));
         }
         let numbers = Numbers::new(&deck);

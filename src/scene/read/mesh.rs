@@ -5,7 +5,7 @@ use super::fields::Shape;
 use super::instances::none_to_select;
 use super::Reader;
 use crate::error::{Error, Result};
-use crate::mesh::{deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
+use crate::mesh::{bytes, deck, defects, gmsh, BoxMesh, CellMesh, Extractor, Members, MeshFile};
 use crate::scene::model::body::{held, BodySpec, Cut, Force, SurfaceLoad};
 use crate::scene::model::field::Field;
 use crate::scene::model::rigid_surface::RigidSurface;
@@ -211,10 +211,7 @@ pub(crate) fn load(path: &Path) -> Result<MeshFile> {
     match ending.as_deref() {
         Some("msh") => gmsh::load(path),
         Some("inp") => {
-            let read = |file: &Path| {
-                let name = file.display();
-                std::fs::read(file).map_err(|e| Error::Input(format!("{name}: the deck cannot be read: {e}")))
-            };
+            let read = |file: &Path| bytes(file, "deck");
             let directory = path.parent().unwrap_or(Path::new(""));
             deck::read_mesh(&name, &read(path)?, &|file| read(&directory.join(file)))
         }

@@ -28,8 +28,21 @@ use fields::Shape;
 pub(super) use values::MOST as MOST_IN_A_ROW;
 use values::MOST;
 
-/// The scene in `text`; `file` names it in messages.
-pub(super) fn read(file: &str, text: &str) -> Result<SceneSpec> {
+/// The scene in `text`; `file` names it in messages, which are one line whatever the texts are that they quote.
+pub(crate) fn read(file: &str, text: &str) -> Result<SceneSpec> {
+    spec(file, text).map_err(|e| match e {
+        Error::Input(said) if said.contains(char::is_control) => {
+            let shown = |c: char| match c.is_control() {
+                true => c.escape_default().to_string(),
+                false => c.to_string(),
+            };
+            Error::Input(said.chars().map(shown).collect())
+        }
+        other => other,
+    })
+}
+
+fn spec(file: &str, text: &str) -> Result<SceneSpec> {
     let root = document::parse(file, text)?;
     let mut scene = root.section("the scene")?;
     let reader = Reader::new(&mut scene)?;

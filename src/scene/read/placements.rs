@@ -3,6 +3,7 @@
 use super::document::{Item, Value};
 use super::Reader;
 use crate::error::{Error, Result};
+use crate::mesh::bytes;
 use crate::scene::model::motion::Motion;
 use std::path::{Path, PathBuf};
 
@@ -89,7 +90,9 @@ impl Reader {
         let directory = Path::new(item.file).parent();
         let path = directory.map_or(PathBuf::from(file), |directory| directory.join(file));
         let shown = path.display();
-        let text = std::fs::read_to_string(&path)
+        let refused = |e: Error| item.error(e.to_string());
+        let read = bytes(&path, "list of placements").or_else(refused)?;
+        let text = String::from_utf8(read)
             .or_else(|e| item.error(format!("{shown}: the placements cannot be read: {e}")))?;
         let mut out = Vec::new();
         for (line, number) in text.lines().zip(1..) {

@@ -1,6 +1,7 @@
 //! Files that Gmsh and meshio wrote, read and compared with what they say is in them.
 
 use super::*;
+use crate::error::Error;
 use crate::mesh::{CellKind, Members};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
