@@ -259,6 +259,25 @@ impl Attached {
         })
     }
 
+    /// The error of a run that a signal has ended: where it was, and how to go on from there.
+    pub fn ended(&self, error: Error, (load_step, n): (usize, usize), steps: usize) -> Error {
+        let mut what = error.to_string();
+        if n > 1 {
+            what += &format!(" in load step {} of {n}", load_step + 1);
+        }
+        if steps > 0 {
+            what += &format!(" after {steps} contact steps");
+        }
+        what += match (&self.asked.file, load_step + steps) {
+            (Some(file), 1..) => {
+                return Error::Environment(format!("{what}, --resume {} goes on", file.display()))
+            }
+            (_, 0) => "",
+            (None, _) => " (--checkpoint FILE would have kept them)",
+        };
+        Error::Environment(what)
+    }
+
     /// Notes that the solver has new rows, made for these displacements. Collective.
     pub fn renewed(&mut self, solver: &FetiFeti, left: &Displaced) {
         if let Some(layout) = &mut self.layout {

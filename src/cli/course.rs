@@ -10,6 +10,7 @@ use super::first_rank::on_first_rank;
 use super::renewed::Renewed;
 use crate::checkpoint::{Checkpoints, Resumed};
 use crate::parallel::exchange::total;
+use crate::petsc::signals::{self, Heeded};
 use crate::petsc::Session;
 use crate::report::destination::Destination;
 use crate::report::json::certified::Certified;
@@ -88,6 +89,8 @@ pub(super) fn follow(
     let mut stepping = many.transpose()?;
     let mut fields: Option<Gathered> = None;
     let mut early = Early::new(session, scene, solver)?;
+    // From here on there are results to keep; before, a signal ends the program at once.
+    let _signals = Heeded::watch();
     for step in first..n {
         if n > 1 {
             progress.load_step(step, n);
@@ -119,9 +122,13 @@ pub(super) fn follow(
             if let Some(last) = outer.last() {
                 events.step(session, last)?;
             }
-            checkpoints.save(session, step, || records.followed_by(&outer), state)
+            checkpoints.save(session, step, || records.followed_by(&outer), state)?;
+            signals::heed(session)
         });
-        let solution = solved.map_err(|e| renewed.at_step(step, e))?;
+        let solution = solved.map_err(|e| match signals::is_end(&e) {
+            true => checkpoints.ended(e, (step, n), outer.len()),
+            false => renewed.at_step(step, e),
+        })?;
         progress.finish();
         let mine = solver.problem().local.iter().map(|s| s.index);
         let given = session.agree(scene.given_energy(mine, step))?;

@@ -67,6 +67,7 @@ fn run_deck(session: &Session, args: &Solve, destination: &Destination) -> Resul
             _ => format!("{stem}, step {}", step + 1),
         };
         let scene = session.agree(deck.scene(&title, step))?;
+        distribution::same_on_all_ranks(session, &args.scene, &scene)?;
         let mut of_step = destination.clone();
         if n > 1 {
             of_step.out = destination

@@ -101,6 +101,7 @@ impl<'a> Augmented<'a> {
     fn f(&mut self, x: &[f64], y: &mut [f64]) -> Result<()> {
         let lambda = self.unscaled(x);
         self.lambda.array_mut()?.copy_from_slice(&lambda);
+        self.method.system.heed()?;
         let dual = self.method.dual();
         dual.stiffness.f_mult_all(&self.lambda, &self.image)?;
         for ((y, f), s) in y.iter_mut().zip(&*self.image.array()?).zip(&self.scale) {

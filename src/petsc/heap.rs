@@ -1,5 +1,44 @@
 //! The C library's heap in our own programs.
 
+use petsc_sys as sys;
+use std::alloc::{GlobalAlloc, Layout, System};
+
+/// The system's allocator, which ends the program with a sentence and exit code 3 where there is no memory. Rust's own
+/// answer is abort(), at which MPI prints a stack. A program names it as its `#[global_allocator]`.
+pub struct Heap;
+
+/// `memory`, if it is some.
+fn got(memory: *mut u8, bytes: usize) -> *mut u8 {
+    if memory.is_null() && bytes > 0 {
+        // SAFETY: the function does not return, and allocates nothing.
+        unsafe { sys::ff_no_memory(bytes) }
+    }
+    memory
+}
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Heap {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: by the caller, as for the calls below.
+        got(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: by the caller.
+        got(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: by the caller.
+        unsafe { System.dealloc(memory, layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: by the caller.
+        got(unsafe { System.realloc(memory, layout, size) }, size)
+    }
+}
+
 /// Amount by which a thread's heap grows: one segment of glibc.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const SEGMENT: std::ffi::c_int = 64 << 20;

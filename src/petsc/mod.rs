@@ -27,7 +27,6 @@ mod pc;
 mod scatter;
 mod session;
 mod shell;
-#[cfg(feature = "cli")]
 pub(crate) mod signals;
 mod spectrum;
 mod together;
@@ -37,7 +36,7 @@ mod watch;
 pub use citations::cite;
 pub use eps::{End, Eps, ProblemType, Settled, Which};
 pub use handle::Handle;
-pub use heap::let_threads_allocate;
+pub use heap::{let_threads_allocate, Heap};
 pub use is::Is;
 pub use ksp::{ConvergedReason, Ksp, NormType};
 pub use log::{counters, Counters, Event, Scope, Stage};

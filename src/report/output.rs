@@ -105,6 +105,12 @@ pub fn prepare_directory(path: &Path) -> Result<()> {
             shown(path)
         ))
     };
+    if fs::metadata(path).is_ok_and(|there| !there.is_dir()) {
+        return Err(Error::Environment(format!(
+            "cannot write into the directory {}: it is a file, expected a directory",
+            shown(path)
+        )));
+    }
     fs::create_dir_all(path).map_err(refused)?;
     let probe = temporary_name(&path.join("probe"));
     fs::File::create(&probe).map_err(refused)?;

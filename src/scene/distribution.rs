@@ -7,14 +7,52 @@ use super::checked::Scene;
 use super::fits;
 use crate::error::{Error, Result};
 use crate::mesh::contiguous_share;
+use crate::parallel::exchange::gather_all;
 use crate::petsc::{Options, Session};
 use crate::substructures::Substructures;
 
 /// Reads the scene and puts its options into the database, below those of the user. Collective.
 pub(crate) fn load(session: &Session, path: &Path) -> Result<Scene> {
     let scene = session.agree(fits::load(session, path))?;
+    same_on_all_ranks(session, path, &scene)?;
     set_options(session, &scene)?;
     Ok(scene)
+}
+
+/// Refuses a scene of which ranks have read different files, as those of different machines may be: the text, counts,
+/// and the nodes of meshes are compared. Collective.
+///
+/// # Errors
+/// [`Error::Environment`] with the ranks that differ from rank 0.
+pub(crate) fn same_on_all_ranks(session: &Session, path: &Path, scene: &Scene) -> Result<()> {
+    if session.size() == 1 {
+        return Ok(());
+    }
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |word: u64| hash = (hash ^ word).wrapping_mul(0x0100_0000_01b3).rotate_left(23);
+    let text = std::fs::read(path).unwrap_or_default();
+    text.iter().for_each(|&byte| add(byte.into()));
+    for body in &scene.bodies {
+        let mesh = body.mesh();
+        add(mesh.n_nodes() as u64);
+        add(mesh.n_subdomains() as u64);
+        let points = mesh.cells().map(|mesh| mesh.points.iter().flatten());
+        points.into_iter().flatten().for_each(|x| add(x.to_bits()));
+    }
+    let all = gather_all(session.comm(), &[hash]);
+    let differ = |rank: &usize| all[*rank] != all[0];
+    let differ: Vec<String> = (0..all.len())
+        .filter(differ)
+        .map(|r| r.to_string())
+        .collect();
+    if differ.is_empty() {
+        return Ok(());
+    }
+    Err(Error::Environment(format!(
+        "{}: rank {} has read another file than rank 0, expected the same files on all machines",
+        path.display(),
+        differ.join(", ")
+    )))
 }
 
 /// Calls `work` with the options of the scene in the database, below those of the user, and removes them afterwards. It

@@ -1,8 +1,11 @@
 /* The process: its standard output, its memory, and the signals that ask it to end. */
 #include "shim.h"
 #include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 static volatile sig_atomic_t noted    = 0;
 static int                   watchers = 0;
@@ -36,6 +39,23 @@ void ff_signals_leave(void)
 int ff_signals_noted(void)
 {
   return (int)noted;
+}
+
+void ff_no_memory(size_t bytes)
+{
+  static volatile sig_atomic_t said = 0;
+  const char *rank = getenv("OMPI_COMM_WORLD_RANK");
+  char        text[200];
+  int         length;
+
+  if (!rank) rank = getenv("PMI_RANK");
+  length = snprintf(text, sizeof(text),
+                    "Error%s%.9s: there is no memory for another %.1f MB, "
+                    "take fewer elements per subdomain or ranks on more machines\n",
+                    rank ? " on rank " : "", rank ? rank : "", 1e-6 * (double)bytes);
+  /* Other threads may find the same. */
+  if (!said++ && length > 0 && write(STDERR_FILENO, text, (size_t)length) < 0) _exit(3);
+  _exit(3);
 }
 
 void ff_terminate(int pid)

@@ -83,6 +83,8 @@ void ff_signals_watch(void);
 void ff_signals_leave(void);
 /* The signal that was noted last, 0 without any. */
 int ff_signals_noted(void);
+/* Ends the program with exit code 3 and a sentence on memory. It does not return, and needs no memory. */
+void ff_no_memory(size_t bytes);
 /* Sends SIGTERM to a process. */
 void ff_terminate(int pid);
 /* Largest resident set of this process so far, in bytes. */

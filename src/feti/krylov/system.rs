@@ -10,9 +10,12 @@ use super::tally::Tally;
 use crate::feti::deflation::matrices::Matrices;
 use crate::feti::deflation::Deflation;
 use crate::feti::operators::dual::Dual;
-use crate::petsc::{Session, Vec as PetscVec};
+use crate::petsc::{signals, Session, Vec as PetscVec};
 use crate::substructures::Substructures;
 use crate::Result;
+
+/// Of so many products one asks whether a signal has come.
+const HEED: usize = 4;
 
 /// F, M⁻¹, P, P_2, and the directions of earlier iterations.
 pub struct System {
@@ -26,6 +29,8 @@ pub struct System {
     running: RefCell<Option<Running>>,
     /// Communication and time of the iterations.
     tally: Cell<Tally>,
+    /// Products with A so far.
+    products: Cell<usize>,
     /// Buffers for projected copies.
     x: PetscVec,
     y: PetscVec,
@@ -60,6 +65,7 @@ impl System {
             recycled: RefCell::new(Recycle::new(recycle)),
             running: RefCell::new(None),
             tally: Cell::default(),
+            products: Cell::default(),
         })
     }
 
@@ -179,6 +185,15 @@ impl System {
         dual.p_transpose(residual)
     }
 
+    /// An error on all ranks if a signal asks them to end; to be called before each product with A. Collective.
+    pub(crate) fn heed(&self) -> Result<()> {
+        self.products.set(self.products.get() + 1);
+        match self.products.get() % HEED {
+            0 => signals::heed(&self.session),
+            _ => Ok(()),
+        }
+    }
+
     fn keep(&self, direction: &PetscVec, image: &PetscVec) -> Result<()> {
         match *self.running.borrow() {
             Some(_) => self.recycled.borrow_mut().keep(direction, image),
@@ -189,6 +204,7 @@ impl System {
     /// y ← A x = Pᵀ P_2ᵀ F P x. The residuals of this operator have no part in range F W, where the preconditioner
     /// would not see it.
     pub(super) fn apply(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.heed()?;
         let dual = self.dual();
         if dual.natural.r == 0 {
             dual.f(x, y)?;
@@ -218,6 +234,7 @@ impl System {
 
     /// y ← Pᵀ P_2ᵀ F P_2 P x: the operator of CG with deflation.
     pub(super) fn apply_deflated(&self, x: &PetscVec, y: &PetscVec) -> Result<()> {
+        self.heed()?;
         let dual = self.dual();
         let inner = dual.multipliers()?;
         inner.copy_from(x)?;

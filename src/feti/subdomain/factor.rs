@@ -96,6 +96,10 @@ pub(crate) fn factor(
         let averages: Vec<&[u32]> = averages.map(|a| &a.dofs[..]).collect();
         let places = sub.coordinates.as_deref();
         let (delta, primal, form) = (kind.delta, kind.primal, forms[k]);
+        // Nothing else could stiffen what no other subdomain and no row shares.
+        if let Some(dof) = slack(sub, [delta, primal]) {
+            return Err(unfit_matrix(problem, sub, dof));
+        }
         LocalProblem::new(&sub.k, delta, primal, &averages, places, condenser, form)
             .map(|mut local| {
                 if kind.copies < forms::MANY {
@@ -221,6 +225,13 @@ pub(crate) fn no_factor(problem: &Substructures, sub: &Subdomain, error: NoFacto
         }
         NoFactor::Failed(why) => Error::environment(why),
     }
+}
+
+/// A dof without stiffness inside the subdomain, away from its interface.
+fn slack(sub: &Subdomain, interface: [&[u32]; 2]) -> Option<u32> {
+    let mut slack = sub.k.diagonal().into_iter().enumerate();
+    let dofs = slack.find(|&(i, d)| d == 0.0 && !interface.concat().contains(&(i as u32)));
+    dofs.map(|(i, _)| i as u32)
 }
 
 fn unfit_matrix(problem: &Substructures, sub: &Subdomain, dof: u32) -> Error {
