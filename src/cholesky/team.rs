@@ -263,8 +263,8 @@ pub fn shared_parts(symbolic: &Symbolic, ranks: usize) -> (usize, usize) {
     (roots.count(), top.map(|(f, _)| f.width()).sum())
 }
 
-/// The least number of subtrees for so many ranks. Vectors go to and from the owners of subtrees: the more of these, the
-/// fewer others an owner has to do with, but the larger is the top, with which every rank solves. This power of the
+/// The least number of subtrees for so many ranks. Vectors go to and from the owners of subtrees: the more of these,
+/// the fewer others an owner has to do with, but the larger is the top, with which every rank solves. This power of the
 /// ranks has the shortest iterations in the model of `study scaling` around 10⁵ ranks.
 pub fn least_subtrees(ranks: f64) -> f64 {
     ranks.powf(0.6)
