@@ -176,13 +176,10 @@ fn predicts(report: &ScalingReport) {
             assert!(positive(row.without_kernels) && row.without_kernels <= row.total);
         }
         assert!(!prediction.limits.is_empty() && !prediction.iteration_limits.is_empty());
-        // A sparse factor of order 10⁶ has some 2 GB.
+        // A sparse factor of order 10⁶ has some 2 GB, of which a rank has its subtree and the top.
         assert_eq!(prediction.full_at, None);
         let last = prediction.rows.last().map(|r| r.replicated_bytes);
-        assert!(
-            last.is_some_and(|b| (1.5e9..2.5e9).contains(&b)),
-            "{last:?}"
-        );
+        assert!(last.is_some_and(|b| (4e8..7e8).contains(&b)), "{last:?}");
     }
 }
 
