@@ -22,7 +22,7 @@ here=$PWD/target/fuzz
 program=$here/soak/release/soak
 mkdir -p "$here"
 (cd tests/fuzz && CARGO_PROFILE_RELEASE_DEBUG=0 RUSTFLAGS="--cfg fuzzing -C target-cpu=x86-64-v3" \
-    cargo build --release --bin soak --target-dir "$here/soak") || stop "the program does not build"
+    cargo build --release --features soak --bin soak --target-dir "$here/soak") || stop "the program does not build"
 [ "${1:-}" != --print ] || exec "$program" "$@"
 [ $# -ge 1 ] || stop "expected seconds"
 seconds=$1 first=${2:-0} count=${3:-0} ranks=${4:-1}
