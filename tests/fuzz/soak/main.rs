@@ -30,6 +30,8 @@ fn main() {
     }
     let session = Session::new(&[], "").expect("PETSc starts");
     let code = session.run(|session| run(session, number(0), number(1), number(2)));
+    // MPI has to be finalised, or mpirun takes the end of a rank for a failure.
+    drop(session);
     std::process::exit(code);
 }
 
