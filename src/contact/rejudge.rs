@@ -8,8 +8,6 @@ use super::state::State;
 use crate::feti::jump::blocks::Block;
 use crate::feti::jump::operator::Jump;
 use crate::feti::{LinearMethod, LinearSolution};
-use crate::linalg::dense::Dense;
-use crate::linalg::nnls::nnls;
 use crate::parallel::exchange::{any, max_all};
 use crate::Result;
 
@@ -69,16 +67,13 @@ fn leave(block: &Block, jump: &Jump, lambda: &[f64], pull: f64, active: &mut [bo
         return;
     }
     let mut leaves: Vec<usize> = (0..held.len()).filter(on).filter(pulls).collect();
-    if let Some((rows, part)) = block.dependent(&held) {
-        let at: Vec<usize> = (0..rows.len()).filter(|&i| held[rows[i]]).collect();
-        let b = Dense::from_fn(part.cols, at.len(), |j, i| part.get(at[i], j));
-        let mut forces = vec![0.0; part.cols];
-        let own: Vec<f64> = at.iter().map(|&i| lambda[start + rows[i]]).collect();
-        b.add_mul(&own, &mut forces);
-        let free = at.iter().map(|&i| !jump.inequality[start + rows[i]]);
-        let (_, rest) = nnls(&b, &forces, &free.collect::<Vec<_>>());
-        if rest.iter().all(|v| v.abs() <= pull) {
-            leaves.retain(|r| !rows.contains(r));
+    let (inequality, lambda) = (
+        &jump.inequality[block.rows.clone()],
+        &lambda[block.rows.clone()],
+    );
+    if let Some(others) = block.others(&held, inequality, lambda) {
+        if others.rest <= pull {
+            leaves.retain(|r| !others.rows.contains(r));
         }
     }
     leaves.iter().for_each(|r| active[start + r] = false);

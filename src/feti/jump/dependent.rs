@@ -1,7 +1,41 @@
 //! Rows that depend on each other: right-hand sides that they can satisfy together, and rows that follow from others.
 
+use super::blocks::Block;
 use super::scaling;
 use crate::linalg::dense::Dense;
+use crate::linalg::nnls::nnls;
+
+/// Other multipliers of rows that depend on each other.
+pub struct Others {
+    /// All rows of the block that may depend on each other.
+    pub rows: Vec<usize>,
+    /// (row, multiplier) of those that hold, not negative on inequalities.
+    pub multipliers: Vec<(usize, f64)>,
+    /// The largest force that they lack.
+    pub rest: f64,
+}
+
+impl Block {
+    /// The multipliers, not negative on inequalities, whose forces are nearest to those of `lambda` on the rows in `on`
+    /// that may depend on each other. All slices have an entry per row of the block. `None` if no row depends on
+    /// others.
+    pub fn others(&self, on: &[bool], inequality: &[bool], lambda: &[f64]) -> Option<Others> {
+        let (rows, part) = self.dependent(on)?;
+        let at: Vec<usize> = (0..rows.len()).filter(|&i| on[rows[i]]).collect();
+        let b = Dense::from_fn(part.cols, at.len(), |j, i| part.get(at[i], j));
+        let held: Vec<usize> = at.iter().map(|&i| rows[i]).collect();
+        let own: Vec<f64> = held.iter().map(|&r| lambda[r]).collect();
+        let mut forces = vec![0.0; part.cols];
+        b.add_mul(&own, &mut forces);
+        let free: Vec<bool> = held.iter().map(|&r| !inequality[r]).collect();
+        let (values, rest) = nnls(&b, &forces, &free);
+        Some(Others {
+            rows,
+            multipliers: held.into_iter().zip(values).collect(),
+            rest: rest.iter().fold(0.0, |a, v| a.max(v.abs())),
+        })
+    }
+}
 
 /// B B⁺ c over the active rows of B, the nearest right-hand side that they can satisfy together; `c` on the others.
 pub fn consistent(b: &Dense, active: &[bool], c: &[f64]) -> Vec<f64> {

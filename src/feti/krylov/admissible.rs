@@ -5,8 +5,6 @@ use crate::cholesky::lanes::LANES;
 use crate::feti::jump::operator::Jump;
 use crate::feti::method::LinearMethod;
 use crate::feti::subdomain::scaled::Scaled;
-use crate::linalg::dense::Dense;
-use crate::linalg::nnls::nnls;
 use crate::parallel::exchange::{any, max_all};
 use crate::Result;
 
@@ -196,20 +194,15 @@ fn share(jump: &Jump, held: &[bool], lambda: &mut [f64]) {
         if !(0..on.len()).any(|r| on[r] && pulls(r)) {
             continue;
         }
-        let Some((rows, part)) = block.dependent(on) else {
+        let of_block = block.rows.clone();
+        let others = block.others(on, &jump.inequality[of_block.clone()], &lambda[of_block]);
+        let Some(others) = others else {
             continue;
         };
-        let at: Vec<usize> = (0..rows.len()).filter(|&i| on[rows[i]]).collect();
-        let b = Dense::from_fn(part.cols, at.len(), |j, i| part.get(at[i], j));
-        let mut forces = vec![0.0; part.cols];
-        let own: Vec<f64> = at.iter().map(|&i| lambda[start + rows[i]]).collect();
-        b.add_mul(&own, &mut forces);
-        let free = at.iter().map(|&i| !jump.inequality[start + rows[i]]);
-        let (others, rest) = nnls(&b, &forces, &free.collect::<Vec<_>>());
-        let largest = own.iter().fold(0.0f64, |a, l| a.max(l.abs()));
-        if rest.iter().all(|v| v.abs() <= SAME * largest) {
-            for (&i, value) in at.iter().zip(others) {
-                lambda[start + rows[i]] = value;
+        let own = others.multipliers.iter().map(|m| lambda[start + m.0].abs());
+        if others.rest <= SAME * own.fold(0.0, f64::max) {
+            for (row, value) in others.multipliers {
+                lambda[start + row] = value;
             }
         }
     }
